@@ -1,0 +1,148 @@
+use std::collections::HashMap;
+
+/// Weighted points that CGAL can stand: all numbers finite and of sane magnitude, no two places
+/// equal, at least four points. Checked once, then trusted.
+#[derive(Clone, Debug)]
+pub struct Sites {
+    positions: Vec<[f64; 3]>,
+    weights: Vec<f64>,
+    /// Input index of each site.
+    input: Vec<u32>,
+    duplicates: Vec<[u32; 2]>,
+}
+
+/// Why points make no sites.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SitesError {
+    /// Positions and weights do not pair up.
+    #[error("{positions} positions but {weights} weights: each point needs one weight")]
+    Lengths {
+        /// Positions given.
+        positions: usize,
+        /// Weights given.
+        weights: usize,
+    },
+    /// More points than 32-bit indices.
+    #[error("{0} points are too many: at most {max} fit a 32-bit index; select fewer", max = u32::MAX)]
+    TooMany(usize),
+    /// NaN, infinity or an absurd magnitude.
+    #[error(
+        "point {index} has {what} {value}: it must be a finite number of magnitude at most {limit:e}; clean or rescale the input"
+    )]
+    Value {
+        /// Input index of the point.
+        index: usize,
+        /// Which of its numbers.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// The largest magnitude accepted.
+        limit: f64,
+    },
+    /// Fewer than four different places.
+    #[error(
+        "{distinct} distinct points cannot span a tetrahedron: at least 4 are needed; select more points"
+    )]
+    TooFew {
+        /// Different places among the input.
+        distinct: usize,
+    },
+    /// All points in one plane or on one line.
+    #[error(
+        "all {points} points lie {on}: a 3D triangulation needs points that span a volume; select more points, or perturb them knowingly"
+    )]
+    Flat {
+        /// Different places among the input.
+        points: usize,
+        /// "in one plane" or "on one line".
+        on: &'static str,
+    },
+}
+
+impl Sites {
+    /// The largest coordinate accepted, 2⁵⁰⁰ ≈ 3.3e150: its square, and so every power distance,
+    /// is still a finite double.
+    pub const MAX_COORDINATE: f64 = f64::from_bits((1023 + 500) << 52);
+    /// The largest weight accepted, 2¹⁰⁰⁰: a squared length.
+    pub const MAX_WEIGHT: f64 = f64::from_bits((1023 + 1000) << 52);
+
+    /// Checks points and removes duplicates: of several at one place the largest weight stays, of
+    /// equal weights the lowest index. −0 and 0 are one place. O(n) expected.
+    ///
+    /// # Errors
+    /// See [`SitesError`]; points in one plane are found later, by the triangulation.
+    pub fn new(positions: &[[f64; 3]], weights: &[f64]) -> Result<Self, SitesError> {
+        if positions.len() != weights.len() {
+            return Err(SitesError::Lengths { positions: positions.len(), weights: weights.len() });
+        }
+        if positions.len() > u32::MAX as usize {
+            return Err(SitesError::TooMany(positions.len()));
+        }
+        for (index, (p, &weight)) in positions.iter().zip(weights).enumerate() {
+            let numbers = [("x", p[0]), ("y", p[1]), ("z", p[2]), ("weight", weight)];
+            for (what, value) in numbers {
+                let limit = if what == "weight" { Self::MAX_WEIGHT } else { Self::MAX_COORDINATE };
+                // NaN compares false, so it is refused too.
+                if !(value.abs() <= limit) {
+                    return Err(SitesError::Value { index, what, value, limit });
+                }
+            }
+        }
+        let (kept, duplicates) = keep_heaviest(positions, weights);
+        if kept.len() < 4 {
+            return Err(SitesError::TooFew { distinct: kept.len() });
+        }
+        Ok(Self {
+            positions: kept.iter().map(|&i| positions[i as usize]).collect(),
+            weights: kept.iter().map(|&i| weights[i as usize]).collect(),
+            input: kept,
+            duplicates,
+        })
+    }
+
+    /// Positions, one per site.
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// Power weights, one per site.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// The input index of each site, ascending.
+    pub fn input(&self) -> &[u32] {
+        &self.input
+    }
+
+    /// Pairs of input indices: a point that went, and the one at the same place that stayed.
+    /// Ascending.
+    pub fn duplicates(&self) -> &[[u32; 2]] {
+        &self.duplicates
+    }
+}
+
+/// Indices that stay, and pairs (went, stayed), both ascending.
+fn keep_heaviest(positions: &[[f64; 3]], weights: &[f64]) -> (Vec<u32>, Vec<[u32; 2]>) {
+    // Adding 0.0 turns −0.0 into 0.0, so equal numbers have equal bits.
+    let place = |i: usize| positions[i].map(|v| (v + 0.0).to_bits());
+    let mut heaviest: HashMap<[u64; 3], u32> = HashMap::with_capacity(positions.len());
+    for (i, &weight) in weights.iter().enumerate() {
+        let best = heaviest.entry(place(i)).or_insert(i as u32);
+        if weight > weights[*best as usize] {
+            *best = i as u32;
+        }
+    }
+    if heaviest.len() == positions.len() {
+        return ((0..positions.len() as u32).collect(), Vec::new());
+    }
+    let (mut kept, mut duplicates) = (Vec::with_capacity(heaviest.len()), Vec::new());
+    for i in 0..positions.len() {
+        match heaviest[&place(i)] {
+            best if best == i as u32 => kept.push(best),
+            best => duplicates.push([i as u32, best]),
+        }
+    }
+    (kept, duplicates)
+}

@@ -1,0 +1,3 @@
+//! The `walpha` command.
+
+fn main() {}

@@ -1,0 +1,68 @@
+use serde::{Deserialize, Serialize};
+
+/// The parameter α of a shape: a **squared** length, as in CGAL and in Edelsbrunner 1992.
+///
+/// α = ∞ gives the convex hull; with weights a negative α is legal. It is never NaN.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Alpha(f64);
+
+impl Alpha {
+    /// α = ∞: every cell of the regular triangulation, whose union is the convex hull.
+    pub const INFINITE: Self = Self(f64::INFINITY);
+
+    /// α given as a squared length.
+    ///
+    /// # Errors
+    /// [`NotAnAlpha`] for NaN.
+    pub fn from_squared(squared: f64) -> Result<Self, NotAnAlpha> {
+        if squared.is_nan() { Err(NotAnAlpha { given: squared }) } else { Ok(Self(squared)) }
+    }
+
+    /// α given by the radius it is the square of, rounded once.
+    ///
+    /// # Errors
+    /// [`NotAnAlpha`] for NaN and for a negative radius.
+    pub fn from_radius(radius: f64) -> Result<Self, NotAnAlpha> {
+        if radius >= 0.0 { Ok(Self(radius * radius)) } else { Err(NotAnAlpha { given: radius }) }
+    }
+
+    /// α as a squared length.
+    pub fn squared(self) -> f64 {
+        self.0
+    }
+
+    /// √α, a length; `None` when α is negative.
+    pub fn radius(self) -> Option<f64> {
+        (self.0 >= 0.0).then(|| self.0.sqrt())
+    }
+}
+
+impl std::fmt::Display for Alpha {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.radius() {
+            Some(radius) => write!(f, "α = {} (squared length; √α = {radius:.6})", self.0),
+            None => write!(f, "α = {} (squared length; negative, so no radius)", self.0),
+        }
+    }
+}
+
+/// The number given as α is none.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "α cannot be {given}: give a number (squared length), or `inf` for the convex hull; a radius must not be negative"
+)]
+pub struct NotAnAlpha {
+    given: f64,
+}
+
+/// What a point with weight ω is at parameter α.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Balls {
+    /// A ball of squared radius α + ω: the usual reading (Edelsbrunner 1992; CGAL), the default.
+    #[default]
+    Power,
+    /// A ball of radius α + ω, as a sentence of the paper's section 4.2 reads: the power weight
+    /// (α + ω)² at parameter 0.
+    Radius,
+}

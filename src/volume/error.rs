@@ -1,0 +1,69 @@
+use std::path::PathBuf;
+
+use super::Dims;
+
+/// What can be wrong with a volume or the file it comes from.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum VolumeError {
+    /// An axis without samples.
+    #[error("a volume of {x}×{y}×{z} samples is empty: every axis needs at least one")]
+    EmptyAxis {
+        /// Samples along x.
+        x: u64,
+        /// Samples along y.
+        y: u64,
+        /// Samples along z.
+        z: u64,
+    },
+    /// More samples than indices.
+    #[error(
+        "{x}×{y}×{z} samples are too many: at most {} fit a 32-bit index; crop or downsample first",
+        Dims::MAX_SAMPLES
+    )]
+    TooManySamples {
+        /// Samples along x.
+        x: u64,
+        /// Samples along y.
+        y: u64,
+        /// Samples along z.
+        z: u64,
+    },
+    /// A NaN or an infinity among the samples.
+    #[error(
+        "sample (x, y, z) = {at:?} is {value}: every sample must be a finite number; replace it first"
+    )]
+    NotFinite {
+        /// The offending value.
+        value: f32,
+        /// Its voxel, (x, y, z).
+        at: [usize; 3],
+    },
+    /// An empty gray range.
+    #[error("gray range {low}..{high} is empty: give LO..HI with LO < HI, both finite")]
+    GrayRange {
+        /// The value meant to become 0.
+        low: f64,
+        /// The value meant to become 255.
+        high: f64,
+    },
+    /// The operating system refused.
+    #[error("cannot read {path}: {source}")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is not what its name or header says.
+    #[error("{path}: {what}")]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and what to do next.
+        what: String,
+    },
+    /// The sample is not installed, or no sample has this name.
+    #[error("{0}")]
+    Sample(String),
+}

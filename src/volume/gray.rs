@@ -1,0 +1,37 @@
+use serde::{Deserialize, Serialize};
+
+/// The values of a file that become gray 0 and gray 255; the mapping between is linear, values
+/// outside are not clamped, and nothing is rounded.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GrayRange {
+    /// The value that becomes gray 0.
+    pub low: f64,
+    /// The value that becomes gray 255.
+    pub high: f64,
+}
+
+/// Which mapping turns the values of a file into gray levels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Gray {
+    /// Unsigned 8-bit samples as they are, anything else from its minimum to its maximum.
+    #[default]
+    Automatic,
+    /// A range given by the user (`--gray LO..HI`).
+    Range(GrayRange),
+}
+
+impl GrayRange {
+    /// The range that leaves values as they are.
+    pub const IDENTITY: Self = Self { low: 0.0, high: 255.0 };
+
+    /// The gray level of a value. An empty range (constant volume) maps everything to 0.
+    pub fn gray(&self, value: f64) -> f64 {
+        if *self == Self::IDENTITY {
+            value
+        } else if self.high == self.low {
+            0.0
+        } else {
+            255.0 * (value - self.low) / (self.high - self.low)
+        }
+    }
+}

@@ -1,0 +1,104 @@
+use serde::{Deserialize, Serialize};
+
+use super::VolumeError;
+
+/// The number of samples along each axis of a volume, checked once: none is zero, and the volume
+/// has at most [`Dims::MAX_SAMPLES`] samples, so a voxel index fits `u32` and a byte count `u64`.
+///
+/// Written (x, y, z), as points are; the array behind it is `[z, y, x]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Dims {
+    x: usize,
+    y: usize,
+    z: usize,
+}
+
+impl Dims {
+    /// 2³² − 1: simplices name their vertices by `u32` indices, and a 1625³ volume is the most a
+    /// machine that could triangulate its points would hold.
+    pub const MAX_SAMPLES: u64 = u32::MAX as u64;
+
+    /// Checks sizes along x, y and z as a file header or a user gives them.
+    ///
+    /// # Errors
+    /// [`VolumeError::EmptyAxis`] when one is zero, [`VolumeError::TooManySamples`] when the
+    /// product passes [`Dims::MAX_SAMPLES`]. Nothing is allocated.
+    pub fn new(x: u64, y: u64, z: u64) -> Result<Self, VolumeError> {
+        if x == 0 || y == 0 || z == 0 {
+            return Err(VolumeError::EmptyAxis { x, y, z });
+        }
+        let samples = x.checked_mul(y).and_then(|xy| xy.checked_mul(z));
+        match samples {
+            Some(n) if n <= Self::MAX_SAMPLES => {
+                Ok(Self { x: x as usize, y: y as usize, z: z as usize })
+            }
+            _ => Err(VolumeError::TooManySamples { x, y, z }),
+        }
+    }
+
+    /// Samples along x, the fastest axis in memory.
+    pub fn x(self) -> usize {
+        self.x
+    }
+
+    /// Samples along y.
+    pub fn y(self) -> usize {
+        self.y
+    }
+
+    /// Samples along z, the slowest axis in memory.
+    pub fn z(self) -> usize {
+        self.z
+    }
+
+    /// Samples in all.
+    pub fn samples(self) -> usize {
+        self.x * self.y * self.z
+    }
+
+    /// The array shape `[z, y, x]`.
+    pub fn shape(self) -> [usize; 3] {
+        [self.z, self.y, self.x]
+    }
+
+    /// Sizes as (x, y, z).
+    pub fn xyz(self) -> [usize; 3] {
+        [self.x, self.y, self.z]
+    }
+}
+
+impl std::fmt::Display for Dims {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}×{}×{}", self.x, self.y, self.z)
+    }
+}
+
+/// Where a grid lies in the world: sample (i, j, k) along (x, y, z) stands at
+/// `origin + direction · (spacing ∘ (i, j, k))`, in the units of the file.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// World position of the first sample, (x, y, z).
+    pub origin: [f64; 3],
+    /// Distance between neighbouring samples along the grid's x, y and z axes.
+    pub spacing: [f64; 3],
+    /// Unit vectors of the grid's axes: `direction[r][c]` is world component r of grid axis c.
+    pub direction: [[f64; 3]; 3],
+}
+
+impl Frame {
+    /// Origin 0, spacing 1, axes along the world's: voxel units.
+    pub const VOXEL: Self = Self {
+        origin: [0.0; 3],
+        spacing: [1.0; 3],
+        direction: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    };
+
+    /// The world position of a (fractional) sample index, both as (x, y, z).
+    pub fn to_world(&self, index: [f64; 3]) -> [f64; 3] {
+        let step = [0, 1, 2].map(|c| self.spacing[c] * index[c]);
+        [0, 1, 2].map(|r| {
+            let row = &self.direction[r];
+            self.origin[r] + row[0] * step[0] + row[1] * step[1] + row[2] * step[2]
+        })
+    }
+}

@@ -1,0 +1,117 @@
+use ndarray::{Array3, ArrayView3};
+use rayon::prelude::*;
+
+use super::{Dims, Frame, Gray, GrayRange, VolumeError};
+
+/// A grid of finite samples, stored `[z, y, x]` (x fastest) in standard layout.
+///
+/// # Example
+/// ```
+/// use ndarray::Array3;
+/// use walpha::{Frame, Volume};
+///
+/// // Two slices of 3 rows of 4 samples: 4 along x, 3 along y, 2 along z.
+/// let volume = Volume::new(Array3::zeros((2, 3, 4)), Frame::VOXEL)?;
+/// assert_eq!(volume.dims().xyz(), [4, 3, 2]);
+/// # Ok::<(), walpha::VolumeError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Volume {
+    samples: Array3<f32>,
+    dims: Dims,
+    frame: Frame,
+    /// Set by readers of unsigned 8-bit data, whose values are gray levels already.
+    gray_levels: bool,
+}
+
+impl Volume {
+    /// Checks samples of any meaning. See [`Volume::with_gray_levels`] for 8-bit data.
+    ///
+    /// # Errors
+    /// An axis of length zero, more than [`Dims::MAX_SAMPLES`] samples, or a NaN or infinity
+    /// ([`VolumeError::NotFinite`] names the first).
+    pub fn new(samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
+        let (z, y, x) = samples.dim();
+        let dims = Dims::new(x as u64, y as u64, z as u64)?;
+        let samples = if samples.is_standard_layout() {
+            samples
+        } else {
+            samples.as_standard_layout().into_owned()
+        };
+        let flat = samples.as_slice().expect("standard layout");
+        if let Some(index) = flat.par_iter().position_first(|v| !v.is_finite()) {
+            let at = [index % x, index / x % y, index / (x * y)];
+            return Err(VolumeError::NotFinite { value: flat[index], at });
+        }
+        Ok(Self { samples, dims, frame, gray_levels: false })
+    }
+
+    /// Says that the samples are gray levels 0..255 already, as those of unsigned 8-bit files are.
+    pub fn with_gray_levels(mut self) -> Self {
+        self.gray_levels = true;
+        self
+    }
+
+    /// Whether the samples are gray levels 0..255 already, so that [`Gray::Automatic`] keeps them.
+    pub fn has_gray_levels(&self) -> bool {
+        self.gray_levels
+    }
+
+    /// Sizes along the axes.
+    pub fn dims(&self) -> Dims {
+        self.dims
+    }
+
+    /// Where the grid lies in the world.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// The samples, `[z, y, x]`.
+    pub fn samples(&self) -> ArrayView3<'_, f32> {
+        self.samples.view()
+    }
+
+    /// The samples in memory order: voxel (x, y, z) at `x + X·(y + Y·z)`.
+    pub fn as_slice(&self) -> &[f32] {
+        self.samples.as_slice().expect("standard layout is an invariant of Volume")
+    }
+
+    /// Gives the samples away, `[z, y, x]`.
+    pub fn into_samples(self) -> Array3<f32> {
+        self.samples
+    }
+
+    /// The smallest and the largest sample. One pass.
+    pub fn value_range(&self) -> (f32, f32) {
+        let ends = |a: (f32, f32), b: (f32, f32)| (a.0.min(b.0), a.1.max(b.1));
+        self.as_slice()
+            .par_iter()
+            .map(|&v| (v, v))
+            .reduce(|| (f32::INFINITY, f32::NEG_INFINITY), ends)
+    }
+
+    /// The volume with gray levels 0..255 as samples, and the range they came from. In place.
+    ///
+    /// # Errors
+    /// [`VolumeError::GrayRange`] when the given range is empty, reversed or not finite.
+    pub fn into_gray(mut self, gray: Gray) -> Result<(Self, GrayRange), VolumeError> {
+        let range = match gray {
+            Gray::Automatic if self.gray_levels => GrayRange::IDENTITY,
+            Gray::Automatic => {
+                let (low, high) = self.value_range();
+                GrayRange { low: low.into(), high: high.into() }
+            }
+            Gray::Range(range) => {
+                if !(range.low < range.high && range.low.is_finite() && range.high.is_finite()) {
+                    return Err(VolumeError::GrayRange { low: range.low, high: range.high });
+                }
+                range
+            }
+        };
+        if range != GrayRange::IDENTITY {
+            self.samples.par_mapv_inplace(|v| range.gray(v.into()) as f32);
+        }
+        Ok((self.with_gray_levels(), range))
+    }
+}
