@@ -3,8 +3,10 @@
 pub use ndarray;
 
 pub mod cgal;
+pub mod points;
 pub mod shape;
 pub mod volume;
 
-pub use shape::{Alpha, Balls, Class, Complex, Simplices};
+pub use points::WeightedPoints;
+pub use shape::{Alpha, AlphaShape, Balls, Class, Complex, Simplices, alpha_shape};
 pub use volume::{Dims, Frame, Gray, GrayRange, Volume, VolumeError};

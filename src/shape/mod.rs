@@ -1,7 +1,15 @@
 //! Floor 3: the alpha shape of weighted points, its topology and its measures.
 
 mod alpha;
+mod alpha_shape;
+mod canonical;
 mod complex;
+mod measure;
+mod topology;
+mod union_find;
 
 pub use alpha::{Alpha, Balls, NotAnAlpha};
+pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
 pub use complex::{Class, Complex, Simplices};
+pub use measure::Measures;
+pub use topology::{Betti, direct_betti};
