@@ -3,6 +3,7 @@
 pub use ndarray;
 
 pub mod cgal;
+pub mod export;
 pub mod points;
 pub mod shape;
 pub mod volume;

@@ -5,6 +5,7 @@ mod alpha_shape;
 mod canonical;
 mod complex;
 mod measure;
+mod surface;
 mod topology;
 mod union_find;
 
@@ -12,4 +13,5 @@ pub use alpha::{Alpha, Balls, NotAnAlpha};
 pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
 pub use complex::{Class, Complex, Simplices};
 pub use measure::Measures;
+pub use surface::Surface;
 pub use topology::{Betti, direct_betti};
