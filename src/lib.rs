@@ -3,8 +3,10 @@
 pub use ndarray;
 
 pub mod cgal;
+pub mod haar;
 pub mod shape;
 pub mod volume;
 
+pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
 pub use shape::{Alpha, Balls, Class, Complex, Simplices};
 pub use volume::{Dims, Frame, Gray, GrayRange, Volume, VolumeError};

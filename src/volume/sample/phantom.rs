@@ -72,7 +72,8 @@ fn skin(p: Point) -> f64 {
     let head = ellipsoid(p, [0.0, 0.12, 0.28], [0.70, 0.82, 0.66]);
     let face = ellipsoid(p, [0.0, -0.26, -0.36], [0.66, 0.62, 0.60]);
     let nose = ellipsoid(p, [0.0, -0.86, -0.16], [0.10, 0.12, 0.15]);
-    unite(unite(head, face, 0.15), nose, 0.06)
+    let chin = ellipsoid(p, [0.0, -0.62, -0.74], [0.24, 0.20, 0.22]);
+    unite(unite(unite(head, face, 0.15), nose, 0.06), chin, 0.10)
 }
 
 fn brow(p: Point) -> f64 {
@@ -97,7 +98,7 @@ fn cheek(p: Point) -> f64 {
 
 /// The lower jaw: chin, body, and the branch that rises to its joint below the arch.
 fn jaw(p: Point) -> f64 {
-    let chin = slab(p, [0.0, -0.66, -0.78], [0.13, 0.05, 0.09], 0.04);
+    let chin = slab(p, [0.0, -0.65, -0.77], [0.12, 0.04, 0.08], 0.05);
     let body = rod(p, [0.12, -0.65, -0.75], [0.42, -0.20, -0.62], 0.075);
     let ridge = rod(p, [0.10, -0.62, -0.66], [0.38, -0.24, -0.55], 0.05);
     let branch = rod(p, [0.42, -0.20, -0.60], [0.46, -0.02, -0.20], 0.06);
@@ -108,7 +109,7 @@ fn jaw(p: Point) -> f64 {
 fn teeth(p: Point) -> f64 {
     let tooth = |k: i32, z: f64| {
         let x = 0.036 + 0.066 * f64::from(k);
-        slab(p, [x, 2.2 * x * x - 0.70, z], [0.014, 0.018, 0.045], 0.014)
+        slab(p, [x, 2.2 * x * x - 0.70, z], [0.014, 0.018, 0.036], 0.014)
     };
     (0..5).flat_map(|k| [tooth(k, -0.50), tooth(k, -0.615)]).fold(f64::INFINITY, f64::min)
 }
