@@ -4,9 +4,11 @@ pub use ndarray;
 
 pub mod cgal;
 pub mod haar;
+pub mod points;
 pub mod shape;
 pub mod volume;
 
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
+pub use points::{Points, PointsError, Selection, SelectionRule, Units, WeightedPoints, Weighting};
 pub use shape::{Alpha, Balls, Class, Complex, Simplices};
 pub use volume::{Dims, Frame, Gray, GrayRange, Volume, VolumeError};
