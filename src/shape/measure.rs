@@ -48,10 +48,11 @@ fn fixed_order_sum<const N: usize>(
         .par_chunks(CHUNK)
         .enumerate()
         .map(|(chunk, rows)| {
-            rows.iter().enumerate().map(|(i, &row)| term(chunk * CHUNK + i, row)).sum()
+            let rows = rows.iter().enumerate();
+            rows.fold(0.0, |sum, (i, &row)| sum + term(chunk * CHUNK + i, row))
         })
         .collect();
-    sums.iter().sum()
+    sums.iter().fold(0.0, |sum, part| sum + part)
 }
 
 fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
