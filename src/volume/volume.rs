@@ -39,7 +39,7 @@ impl Volume {
             samples.as_standard_layout().into_owned()
         };
         let flat = samples.as_slice().expect("standard layout");
-        if let Some(index) = flat.par_iter().position_first(|v| !v.is_finite()) {
+        if let Some(index) = first_not_finite(flat) {
             let at = [index % x, index / x % y, index / (x * y)];
             return Err(VolumeError::NotFinite { value: flat[index], at });
         }
@@ -114,4 +114,14 @@ impl Volume {
         }
         Ok((self.with_gray_levels(), range))
     }
+}
+
+/// The first index whose value is a NaN or an infinity: whole chunks are judged at once, and only
+/// one with such a value is searched.
+fn first_not_finite(values: &[f32]) -> Option<usize> {
+    const CHUNK: usize = 1 << 14;
+    let has_one = |chunk: &[f32]| chunk.iter().fold(false, |found, v| found | !v.is_finite());
+    let chunk = values.par_chunks(CHUNK).position_first(has_one)?;
+    let inside = values[chunk * CHUNK..].iter().position(|v| !v.is_finite())?;
+    Some(chunk * CHUNK + inside)
 }
