@@ -94,7 +94,8 @@ impl Volume {
     /// The volume with gray levels 0..255 as samples, and the range they came from. In place.
     ///
     /// # Errors
-    /// [`VolumeError::GrayRange`] when the given range is empty, reversed or not finite.
+    /// [`VolumeError::GrayRange`] when the given range is empty, reversed or not finite, or so narrow
+    /// that the gray level of a sample passes the range of `f32`.
     pub fn into_gray(mut self, gray: Gray) -> Result<(Self, GrayRange), VolumeError> {
         let range = match gray {
             Gray::Automatic if self.gray_levels => GrayRange::IDENTITY,
@@ -103,7 +104,12 @@ impl Volume {
                 GrayRange { low: low.into(), high: high.into() }
             }
             Gray::Range(range) => {
-                if !(range.low < range.high && range.low.is_finite() && range.high.is_finite()) {
+                let (low, high) = self.value_range();
+                let fits = |sample: f32| (range.gray(sample.into()) as f32).is_finite();
+                let ordered = range.low < range.high;
+                if !(ordered && range.low.is_finite() && range.high.is_finite())
+                    || !(fits(low) && fits(high))
+                {
                     return Err(VolumeError::GrayRange { low: range.low, high: range.high });
                 }
                 range
