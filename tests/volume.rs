@@ -244,7 +244,7 @@ fn headers_that_claim_too_much_are_refused() {
 #[test]
 fn damaged_gzip_streams_are_refused() {
     let folder = Folder::new();
-    let samples: Vec<u8> = (0..30_000u32).map(|i| (i * i >> 3) as u8).collect();
+    let samples: Vec<u8> = (0..30_000u32).map(|i| ((i * i) >> 3) as u8).collect();
     let header = "XDIM=300\nYDIM=100\nZDIM=1\nTYPE=unsigned fixed\nPIXSIZE=8 bits\nCPU=pc";
     let whole = gzip(&inr(header, &samples));
     let refuses = |bytes: &[u8], parts: &[&str]| folder.refuses("v.inr.gz", bytes, &KNOWN, parts);

@@ -60,15 +60,15 @@ pub enum HaarError {
 
 impl Tolerance {
     pub(super) fn check(self) -> Result<(), HaarError> {
-        match self {
-            Self::Rms(given) if !(given >= 0.0) => {
-                Err(HaarError::Tolerance { given, what: "the RMS error in gray levels" })
-            }
-            Self::Epsilon(given) if !(given >= 0.0) => {
-                Err(HaarError::Tolerance { given, what: "ε, the L² norm of the error," })
-            }
-            _ => Ok(()),
+        let (given, what) = match self {
+            Self::Rms(given) => (given, "the RMS error in gray levels"),
+            Self::Epsilon(given) => (given, "ε, the L² norm of the error,"),
+            Self::Coefficients(_) => return Ok(()),
+        };
+        if given.is_nan() || given < 0.0 {
+            return Err(HaarError::Tolerance { given, what });
         }
+        Ok(())
     }
 
     fn budget(self, total: u64) -> Budget {

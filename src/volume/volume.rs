@@ -106,10 +106,8 @@ impl Volume {
             Gray::Range(range) => {
                 let (low, high) = self.value_range();
                 let fits = |sample: f32| (range.gray(sample.into()) as f32).is_finite();
-                let ordered = range.low < range.high;
-                if !(ordered && range.low.is_finite() && range.high.is_finite())
-                    || !(fits(low) && fits(high))
-                {
+                let finite = range.low.is_finite() && range.high.is_finite();
+                if !(range.low < range.high && finite && fits(low) && fits(high)) {
                     return Err(VolumeError::GrayRange { low: range.low, high: range.high });
                 }
                 range
