@@ -43,7 +43,8 @@ fn the_cut_lies_where_numpy_finds_it() {
     }
     let differences = points().differences.unwrap();
     let least = differences.iter().copied().fold(f64::INFINITY, f64::min);
-    assert!((least - 20.360_935).abs() < 2e-6, "{least}");
+    // Gray levels are single precision here; the next sample has L = 20.36070.
+    assert!((least - 20.36094).abs() < 2e-5, "{least}");
 }
 
 #[test]
