@@ -3,6 +3,7 @@
 pub use ndarray;
 
 pub mod cgal;
+pub mod render;
 pub mod shape;
 pub mod volume;
 

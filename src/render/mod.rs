@@ -1,0 +1,28 @@
+//! Floor 5: pictures. A scene of triangles, balls and tubes becomes a [`Picture`]; pictures and
+//! vector [`Drawing`]s become a [`Figure`] with panels, labels and a colour bar.
+//!
+//! Every picture is a function of its description alone: the same bytes on any number of threads
+//! and in each run. In the three-dimensional part nothing but + − × ÷ √ touches a pixel, which
+//! IEEE 754 fixes to the bit, and text is set in fonts that come with the library.
+
+mod camera;
+mod capsule;
+mod colour;
+mod error;
+mod facets;
+mod light;
+mod marching;
+mod occlusion;
+mod picture;
+mod raster;
+mod scene;
+mod sphere;
+mod triangle;
+mod vector;
+
+pub use camera::{Camera, Projection, View};
+pub use colour::{ColourMap, PALETTE, Rgb};
+pub use error::RenderError;
+pub use marching::Isosurface;
+pub use picture::{Picture, Size};
+pub use scene::{Background, Ball, Colours, Mesh, Scene, Shading, Tube};
