@@ -74,6 +74,14 @@ pub enum RenderError {
         /// Points to colour.
         points: usize,
     },
+    /// A shape over other points than those given.
+    #[error("the shape has vertex {vertex}, but {points} points were given: give all input points")]
+    Point {
+        /// The vertex, an input index.
+        vertex: u32,
+        /// Points given.
+        points: usize,
+    },
     /// PNG encoding failed.
     #[error("cannot encode the picture as PNG: {0}")]
     Png(#[from] image::ImageError),

@@ -18,13 +18,13 @@ pub(super) struct Studio {
 }
 
 /// Shares of light. White in full light, key and sky, comes close to 1.
-const SKY: f64 = 0.50;
-const KEY: f64 = 0.50;
-const FILL: f64 = 0.12;
+const SKY: f64 = 0.42;
+const KEY: f64 = 0.66;
+const FILL: f64 = 0.09;
 const RIM: f64 = 0.10;
 const GLOSS: f64 = 0.035;
 /// What the key still gives in its own shadow, by reflection in the room.
-const SHADOW: f64 = 0.12;
+const SHADOW: f64 = 0.05;
 
 impl Studio {
     pub(super) fn new(lens: &Lens) -> Self {
@@ -32,7 +32,7 @@ impl Studio {
             unit(lens.world_direction(right, up, back)).expect("lamps have a direction")
         };
         Self {
-            key: lamp(-0.50, 0.62, 0.72),
+            key: lamp(-0.70, 0.72, 0.50),
             fill: lamp(0.80, 0.05, 0.60),
             up: lens.up,
             eye: lens.eye,
@@ -66,7 +66,8 @@ impl Studio {
         let lit = SHADOW + (1.0 - SHADOW) * key;
         let key_light = KEY * lit * dot(normal, self.key).max(0.0);
         let fill_light = FILL * (0.3 + 0.7 * open) * dot(normal, self.fill).max(0.0);
-        let matt = SKY * sky + key_light + fill_light;
+        // Light that enters a hollow is also lost between its walls.
+        let matt = SKY * sky * (0.4 + 0.6 * open) + key_light + fill_light;
         let graze = 1.0 - dot(normal, to_eye).max(0.0).min(1.0);
         let rim = RIM * open * graze * graze * graze * graze;
         let half = unit(add(self.key, to_eye)).unwrap_or(to_eye);
