@@ -8,8 +8,10 @@
 mod camera;
 mod capsule;
 mod colour;
+mod drawing;
 mod error;
 mod facets;
+mod figure;
 mod light;
 mod marching;
 mod occlusion;
@@ -18,12 +20,16 @@ mod raster;
 mod scene;
 mod shape;
 mod sphere;
+mod svg;
+mod ticks;
 mod triangle;
 mod vector;
 
 pub use camera::{Camera, Projection, View};
 pub use colour::{ColourMap, PALETTE, Rgb};
+pub use drawing::{Drawing, Pen, Step};
 pub use error::RenderError;
+pub use figure::{ColourBar, Content, Figure, Panel};
 pub use marching::Isosurface;
 pub use picture::{Picture, Size};
 pub use scene::{Background, Ball, Colours, Mesh, Scene, Shading, Tube};
