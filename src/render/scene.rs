@@ -211,3 +211,6 @@ impl Mesh {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

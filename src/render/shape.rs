@@ -164,3 +164,6 @@ fn surface(
         opacity: style.opacity,
     })
 }
+
+#[cfg(test)]
+mod tests;
