@@ -91,8 +91,9 @@ impl Camera {
         }
         let target = scale(add(low, high), 0.5);
         let (direction, up) = view.direction_and_up();
-        let back = unit(direction).expect("views have a direction");
-        let right = unit(cross(up, back)).expect("views are not upright");
+        // Views have a direction, and their up is another.
+        let back = unit(direction).unwrap_or(direction);
+        let right = unit(cross(up, back)).unwrap_or(up);
         let top = cross(back, right);
         let aspect = f64::from(size.width()) / f64::from(size.height());
         let half = Self::FITTED_OPENING / 2.0 * Self::FITTED_SHARE;

@@ -71,7 +71,7 @@ impl Capsule {
         let p = along(origin, t, direction);
         let axis = sub(b, a);
         let share = dot(axis, sub(p, a)) / dot(axis, axis).max(f64::MIN_POSITIVE);
-        let share = vector::share(share);
+        let share = vector::saturate(share);
         let normal = unit(sub(p, along(a, share, axis))).unwrap_or([0.0, 0.0, -1.0]);
         let world = |v: V3| lens.world_direction(v[0], v[1], -v[2]);
         let (normal, place) = (world(normal), along(lens.eye, 1.0, world(p)));
@@ -80,7 +80,7 @@ impl Capsule {
         let mean = from.mean + (to.mean - from.mean) * share;
         let key = from.key + (to.key - from.key) * share;
         let toward = along(scale(from.toward, 1.0 - share), share, to.toward);
-        let to_eye = stage.studio.to_eye(place);
+        let to_eye = stage.studio.towards_eye(place);
         let sky = mean + 2.0 * dot(toward, normal);
         stage.studio.shade(tube.colour.light(), normal, to_eye, sky, key)
     }
@@ -89,7 +89,7 @@ impl Capsule {
         let [a, b] = self.line;
         let (u, v) = ([b[0] - a[0], b[1] - a[1]], [x - a[0], y - a[1]]);
         let share = (u[0] * v[0] + u[1] * v[1]) / (u[0] * u[0] + u[1] * u[1]);
-        let share = vector::share(share);
+        let share = vector::saturate(share);
         let off = [v[0] - share * u[0], v[1] - share * u[1]];
         off[0] * off[0] + off[1] * off[1] > self.reach * self.reach
     }

@@ -1,3 +1,5 @@
+use super::vector::saturate;
+
 /// A colour as files and screens have it: red, green, blue, 0 to 255 each (sRGB).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rgb(pub [u8; 3]);
@@ -75,7 +77,7 @@ impl ColourMap {
         let share =
             if self.high > self.low { (value - self.low) / (self.high - self.low) } else { 0.5 };
         let last = VIRIDIS.len() - 1;
-        let at = share.max(0.0).min(1.0) * last as f64;
+        let at = saturate(share) * last as f64;
         let step = (at as usize).min(last - 1);
         let between = at - step as f64;
         let (a, b) = (VIRIDIS[step], VIRIDIS[step + 1]);

@@ -44,7 +44,7 @@ fn angle(a: V3, b: V3) -> f64 {
     if lengths <= 0.0 {
         return 0.0;
     }
-    let cosine = (dot(a, b) / lengths).max(-1.0).min(1.0);
+    let cosine = (dot(a, b) / lengths).clamp(-1.0, 1.0);
     // Abramowitz and Stegun 4.4.45: arccos x = √(1 − x) · polynomial for x ≥ 0.
     let x = cosine.abs();
     let polynomial = ((-0.0187293 * x + 0.0742610) * x - 0.2121144) * x + 1.5707288;

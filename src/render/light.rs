@@ -42,7 +42,7 @@ impl Studio {
     }
 
     /// The unit vector from a place to the eye.
-    pub(super) fn to_eye(&self, place: V3) -> V3 {
+    pub(super) fn towards_eye(&self, place: V3) -> V3 {
         match self.projection {
             Projection::Perspective => unit(sub(self.eye, place)).unwrap_or(self.back),
             Projection::Orthographic => self.back,
@@ -68,7 +68,7 @@ impl Studio {
         let fill_light = FILL * (0.3 + 0.7 * open) * dot(normal, self.fill).max(0.0);
         // Light that enters a hollow is also lost between its walls.
         let matt = SKY * sky * (0.4 + 0.6 * open) + key_light + fill_light;
-        let graze = 1.0 - dot(normal, to_eye).max(0.0).min(1.0);
+        let graze = 1.0 - dot(normal, to_eye).clamp(0.0, 1.0);
         let rim = RIM * open * graze * graze * graze * graze;
         let half = unit(add(self.key, to_eye)).unwrap_or(to_eye);
         let gloss = [(); 5].iter().fold(dot(normal, half).max(0.0), |g, ()| g * g);

@@ -349,7 +349,7 @@ fn resolve(
 /// The mean of samples as bytes.
 fn encode(samples: &[[f32; 4]; SAMPLES]) -> [u8; 4] {
     let mean = [0, 1, 2, 3].map(|c| samples.iter().map(|s| s[c]).sum::<f32>() / SAMPLES as f32);
-    let byte = |v: f32| (v.max(0.0).min(1.0) * 255.0 + 0.5) as u8;
+    let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
     if mean[3] <= 0.0 {
         return [0; 4];
     }

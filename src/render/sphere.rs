@@ -60,7 +60,7 @@ impl Sphere {
         let normal = lens.world_direction(normal[0], normal[1], -normal[2]);
         let ball = &stage.scene.balls[self.ball as usize];
         let light = &stage.exposure.balls[self.ball as usize];
-        let to_eye = stage.studio.to_eye(add(ball.centre, scale(normal, self.radius)));
+        let to_eye = stage.studio.towards_eye(add(ball.centre, scale(normal, self.radius)));
         let sky = light.mean + 2.0 * dot(light.toward, normal);
         stage.studio.shade(ball.colour.light(), normal, to_eye, sky, light.key)
     }

@@ -134,7 +134,7 @@ impl Triangle {
             }
         };
         let place = blend(places);
-        let to_eye = stage.studio.to_eye(place);
+        let to_eye = stage.studio.towards_eye(place);
         // Blended normals of facets near the outline may point away: bring them to the outline.
         let away = dot(normal, to_eye).min(0.0);
         let normal = unit(along(normal, -away, to_eye)).unwrap_or(normal);

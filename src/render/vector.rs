@@ -44,6 +44,6 @@ pub(super) fn unit(a: V3) -> Option<V3> {
 
 /// The number moved into 0..1; NaN becomes 0, where `clamp` would keep it.
 #[expect(clippy::manual_clamp)]
-pub(super) fn share(x: f64) -> f64 {
+pub(super) fn saturate(x: f64) -> f64 {
     x.max(0.0).min(1.0)
 }

@@ -65,7 +65,7 @@ impl Cases {
 fn faces() -> [[usize; 4]; 6] {
     std::array::from_fn(|face| {
         let (axis, side) = (face / 2, face % 2);
-        let (u, v) = (1 << (axis + 1) % 3, 1 << (axis + 2) % 3);
+        let (u, v) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
         let ring = if side == 1 { [0, u, u | v, v] } else { [0, v, u | v, u] };
         ring.map(|corner| corner | side << axis)
     })

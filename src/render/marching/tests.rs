@@ -147,3 +147,76 @@ fn what_is_no_number_is_refused() {
     field[[1, 2, 3]] = f32::INFINITY;
     assert!(matches!(Isosurface::new(field.view(), 0.0), Err(RenderError::Isosurface(_))));
 }
+
+/// A field as the `isosurface` crate reads one: on the unit cube, negative inside.
+struct Published<'a>(&'a Array3<f32>);
+
+impl isosurface::source::ScalarSource for Published<'_> {
+    fn sample_scalar(&self, p: isosurface::math::Vec3) -> isosurface::distance::Signed {
+        let cells = (self.0.dim().0 - 1) as f32;
+        let at = [p.z, p.y, p.x].map(|c| (c * cells).round() as usize);
+        // It reads one slice beyond the grid, where nothing is inside.
+        isosurface::distance::Signed(self.0.get(at).map_or(1.0, |v| -v))
+    }
+}
+
+#[test]
+fn a_published_implementation_finds_the_same_surface() {
+    use isosurface::extractor::IndexedVertices;
+    use isosurface::sampler::Sampler;
+
+    // A power of two, so that places on the unit cube are exact.
+    const CELLS: usize = 32;
+    let torus = |d: [f64; 3]| {
+        let ring = (d[0] * d[0] + d[1] * d[1]).sqrt() - 9.3;
+        3.7 - (ring * ring + d[2] * d[2]).sqrt()
+    };
+    let blobs = |d: [f64; 3]| {
+        let near = |c: [f64; 3]| 1.0 / (1.0 + 0.05 * length(sub(d, c)).powi(2));
+        near([4.1, 0.3, -2.2]) + near([-5.3, 1.7, 3.1]) + near([0.9, -6.4, 5.8]) - 0.62
+    };
+    let wave = |d: [f64; 3]| {
+        let [x, y, z] = d.map(|k| k * 0.41);
+        let gyroid = x.sin() * y.cos() + y.sin() * z.cos() + z.sin() * x.cos();
+        (0.3 - gyroid.abs()).min(13.0 - length(d))
+    };
+    let fields: [(&str, Option<i64>, &dyn Fn([f64; 3]) -> f64); 3] =
+        [("torus", Some(0), &torus), ("blobs", Some(2), &blobs), ("gyroid", None, &wave)];
+    for (name, euler, field) in fields {
+        let samples = Array3::from_shape_fn([CELLS + 1; 3], |(z, y, x)| {
+            field([x, y, z].map(|k| k as f64 - CELLS as f64 / 2.0)) as f32
+        });
+        let ours = Isosurface::new(samples.view(), 0.0).unwrap();
+        assert_watertight(&ours, [CELLS + 1; 3]);
+        let (mut flat, mut indices) = (Vec::new(), Vec::new());
+        let source = Published(&samples);
+        isosurface::MarchingCubes::<isosurface::distance::Signed>::new(CELLS + 1)
+            .extract(&Sampler::new(&source), &mut IndexedVertices::new(&mut flat, &mut indices));
+        let (vertices, corners) = (flat.as_chunks::<3>().0, indices.as_chunks::<3>().0);
+        let theirs = Isosurface {
+            positions: vertices.iter().map(|p| p.map(|c| f64::from(c) * CELLS as f64)).collect(),
+            triangles: corners.to_vec(),
+            ..ours.clone()
+        };
+        assert!(theirs.triangles.len() > 500, "{name}");
+        assert_eq!(ours.positions.len(), theirs.positions.len(), "{name}: vertices");
+        assert_eq!(ours.triangles.len(), theirs.triangles.len(), "{name}: triangles");
+        let sorted = |surface: &Isosurface| {
+            let mut all: Vec<[i64; 3]> =
+                surface.positions.iter().map(|p| p.map(|c| (c * 1000.0).round() as i64)).collect();
+            all.sort_unstable();
+            all
+        };
+        for (a, b) in sorted(&ours).iter().zip(sorted(&theirs)) {
+            assert!((0..3).all(|k| (a[k] - b[k]).abs() <= 1), "{name}: {a:?} is not {b:?}");
+        }
+        // Loops of more than three vertices may be cut along other diagonals.
+        let ratio = ours.area() / theirs.area();
+        assert!((ratio - 1.0).abs() < 2e-3, "{name}: the areas' ratio is {ratio}");
+        if let Some(euler) = euler {
+            let edges = directed_edges(&ours).len() as i64 / 2;
+            let got = ours.positions.len() as i64 - edges + ours.triangles.len() as i64;
+            assert_eq!(got, euler, "{name}: Euler characteristic");
+        }
+    }
+}
