@@ -22,6 +22,8 @@ mod shape;
 mod sphere;
 mod svg;
 mod ticks;
+mod tile;
+mod tiles;
 mod triangle;
 mod vector;
 

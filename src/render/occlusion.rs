@@ -54,8 +54,8 @@ pub(super) struct Exposure {
     pub tubes: Vec<[Light; 2]>,
 }
 
-/// A place that asks for its light: raised by `lift` texels along `normal`, and not hidden by
-/// what is within `radius` of it.
+/// A place that asks for its light: raised a little along `normal` so that its own
+/// surface does not hide it, nor what is within `radius` of it.
 struct Receiver {
     place: V3,
     normal: V3,

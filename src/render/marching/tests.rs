@@ -180,7 +180,8 @@ fn a_published_implementation_finds_the_same_surface() {
         let gyroid = x.sin() * y.cos() + y.sin() * z.cos() + z.sin() * x.cos();
         (0.3 - gyroid.abs()).min(13.0 - length(d))
     };
-    let fields: [(&str, Option<i64>, &dyn Fn([f64; 3]) -> f64); 3] =
+    type Field<'a> = &'a dyn Fn([f64; 3]) -> f64;
+    let fields: [(&str, Option<i64>, Field); 3] =
         [("torus", Some(0), &torus), ("blobs", Some(2), &blobs), ("gyroid", None, &wave)];
     for (name, euler, field) in fields {
         let samples = Array3::from_shape_fn([CELLS + 1; 3], |(z, y, x)| {
