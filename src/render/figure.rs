@@ -6,6 +6,9 @@ use super::{ColourMap, Drawing, Picture, RenderError, Rgb, Size};
 
 /// A figure as a paper has it: panels in rows, each with its letter, title and caption, under a
 /// common title, with what the colours mean below. One description gives the SVG and the PNG.
+///
+/// Words in a PNG are set in Ubuntu Light, which has Greek and √ ² ₁ × − ≤ ≥ ∞; a line with a sign
+/// that it lacks (arrows, ∈, ⊆, ‖, ₊) is set in Hack as a whole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// Above all panels; empty for none.
