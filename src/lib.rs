@@ -7,6 +7,7 @@ pub mod export;
 pub mod haar;
 pub mod memory;
 pub mod points;
+pub mod render;
 pub mod shape;
 pub mod volume;
 
