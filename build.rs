@@ -53,12 +53,9 @@ fn main() {
     build.flag_if_supported("-Wall").flag_if_supported("-Wextra");
     build.compile("walpha_cgal");
 
-    if let Some(lib) =
-        cgal.include.as_ref().and_then(|include| include.parent()).map(|p| p.join("lib"))
-    {
-        if lib.is_dir() {
-            println!("cargo::rustc-link-search=native={}", lib.display());
-        }
+    let prefix = cgal.include.as_ref().and_then(|include| include.parent());
+    if let Some(lib) = prefix.map(|prefix| prefix.join("lib")).filter(|lib| lib.is_dir()) {
+        println!("cargo::rustc-link-search=native={}", lib.display());
     }
     if cgal.gmp {
         println!("cargo::rustc-link-lib=mpfr");
