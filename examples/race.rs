@@ -17,7 +17,7 @@ use walpha::points::{Points, Selection, Units, difference, select, weigh};
 use walpha::shape::ShapeOptions;
 use walpha::{Alpha, Gray, Volume, WeightedPoints, Weighting, alpha_shape, memory, volume};
 
-type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
 const RUNS: usize = 5;
 const THREADS: usize = 2;
