@@ -3,6 +3,7 @@
 pub use ndarray;
 
 pub mod cgal;
+pub mod check;
 pub mod shape;
 pub mod volume;
 

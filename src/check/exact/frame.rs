@@ -1,0 +1,113 @@
+use std::cmp::Ordering;
+
+use dashu_int::IBig;
+
+use super::WeightedPoint;
+use super::binary::{Binary, Range};
+use super::number::{Approx, Bits, Number, sign};
+
+/// Weighted points seen from one of them, the origin p₀: the place where every formula starts.
+///
+/// Coordinates are integers in units of 2^c, heights in units of 2^h with h ≤ 2c. The two scales
+/// are apart because the formulas are homogeneous in each, so that a lattice with arbitrary
+/// doubles as weights needs few digits for its coordinates.
+pub struct Frame<T, const N: usize> {
+    /// pᵢ − p₀.
+    pub offsets: [[T; 3]; N],
+    /// Lifted heights relative to the origin's: |pᵢ − p₀|² − wᵢ + w₀. Lifting about p₀ instead of
+    /// zero adds an affine function to all heights, which no convex hull notices.
+    pub heights: [T; N],
+    /// α + w₀, a height; 0 if no α was given.
+    pub level: T,
+    /// One squared coordinate unit as a height: 2^(2c − h).
+    pub unit: T,
+}
+
+/// A polynomial in a frame, of which only the sign is wanted.
+pub trait Formula<const N: usize> {
+    fn value<T: Number>(&self, frame: &Frame<T, N>) -> T;
+}
+
+/// The exact sign of a formula over finite doubles.
+pub fn sign_of<const N: usize>(
+    formula: &impl Formula<N>,
+    origin: &WeightedPoint,
+    others: [&WeightedPoint; N],
+    alpha: f64,
+) -> Ordering {
+    let quick = frame(
+        origin.position.map(Approx::exact),
+        Approx::exact(origin.weight),
+        others.map(|p| (p.position.map(Approx::exact), Approx::exact(p.weight))),
+        Approx::exact(alpha),
+        Approx::exact(1.0),
+    );
+    formula.value(&quick).sign().unwrap_or_else(|| exact_sign_of(formula, origin, others, alpha))
+}
+
+fn exact_sign_of<const N: usize>(
+    formula: &impl Formula<N>,
+    origin: &WeightedPoint,
+    others: [&WeightedPoint; N],
+    alpha: f64,
+) -> Ordering {
+    let decode = |p: &WeightedPoint| (p.position.map(Binary::new), Binary::new(p.weight));
+    let origin = decode(origin);
+    let others = others.map(decode);
+    let alpha = Binary::new(alpha);
+    let (mut lengths, mut squares) = (Range::EMPTY, Range::EMPTY.with(alpha));
+    for (position, weight) in std::iter::once(&origin).chain(&others) {
+        lengths = position.iter().fold(lengths, |range, &x| range.with(x));
+        squares = squares.with(*weight);
+    }
+    let coordinate = lengths.unit().unwrap_or(0);
+    let height = squares.unit().unwrap_or(2 * coordinate).min(2 * coordinate);
+    let shift = (2 * coordinate - height) as u32;
+
+    let length = Bits(lengths.bits(coordinate));
+    let square = Bits(squares.bits(height));
+    let bound =
+        frame([length; 3], square, [([length; 3], square); N], square, Bits(shift + 1));
+    let widest = bound.heights.iter().fold(formula.value(&bound).0, |most, h| most.max(h.0));
+    if widest.max(bound.level.0).max(bound.unit.0) <= Bits::I128 {
+        let small = |(position, weight): ([Binary; 3], Binary)| {
+            (position.map(|x| x.small(coordinate)), weight.small(height))
+        };
+        let (position, weight) = small(origin);
+        let frame = frame(position, weight, others.map(small), alpha.small(height), 1 << shift);
+        return formula.value(&frame).cmp(&0);
+    }
+    let big = |(position, weight): ([Binary; 3], Binary)| {
+        (position.map(|x| x.big(coordinate)), weight.big(height))
+    };
+    let (position, weight) = big(origin);
+    let unit = IBig::ONE << shift as usize;
+    sign(&formula.value(&frame(position, weight, others.map(big), alpha.big(height), unit)))
+}
+
+fn frame<T: Number, const N: usize>(
+    origin: [T; 3],
+    weight: T,
+    others: [([T; 3], T); N],
+    alpha: T,
+    unit: T,
+) -> Frame<T, N> {
+    let offsets = std::array::from_fn(|i| -> [T; 3] {
+        std::array::from_fn(|k| others[i].0[k].minus(&origin[k]))
+    });
+    let heights = std::array::from_fn(|i| {
+        dot(&offsets[i], &offsets[i]).times(&unit).minus(&others[i].1.minus(&weight))
+    });
+    Frame { offsets, heights, level: alpha.plus(&weight), unit }
+}
+
+/// u · v.
+pub fn dot<T: Number>(u: &[T; 3], v: &[T; 3]) -> T {
+    u[0].times(&v[0]).plus(&u[1].times(&v[1])).plus(&u[2].times(&v[2]))
+}
+
+/// u × v.
+pub fn cross<T: Number>(u: &[T; 3], v: &[T; 3]) -> [T; 3] {
+    let minor = |i: usize, j: usize| u[i].times(&v[j]).minus(&u[j].times(&v[i]));
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
