@@ -1,0 +1,116 @@
+//! Point sets, and the CGAL engine's answer in canonical order.
+#![allow(dead_code, reason = "each test file uses its part")]
+
+use walpha::cgal::{CgalError, RawComplex, Sites, reference};
+use walpha::{Class, Complex, Simplices};
+
+/// A small set of weighted points and a parameter.
+#[derive(Clone, Debug)]
+pub struct Case {
+    pub positions: Vec<[f64; 3]>,
+    pub weights: Vec<f64>,
+    pub alpha: f64,
+}
+
+/// What an engine makes of a case.
+#[derive(Debug, PartialEq)]
+pub struct Answer {
+    pub complex: Complex,
+    pub hidden: Vec<u32>,
+    pub duplicates: Vec<[u32; 2]>,
+}
+
+/// CGAL's answer, in input indices and canonical order.
+pub fn engine(case: &Case) -> Result<Answer, CgalError> {
+    let sites = Sites::new(&case.positions, &case.weights)?;
+    let raw = reference(&sites, case.alpha)?;
+    let complex = canonical(&raw, sites.input());
+    let vertices: Vec<u32> = complex.vertices.vertices.iter().map(|v| v[0]).collect();
+    let is_hidden = |i: &u32| vertices.binary_search(i).is_err();
+    let hidden = sites.input().iter().copied().filter(is_hidden).collect();
+    Ok(Answer { complex, hidden, duplicates: sites.duplicates().to_vec() })
+}
+
+fn canonical(raw: &RawComplex, input: &[u32]) -> Complex {
+    Complex {
+        cells: rows(raw.cells(), input, |_| true),
+        facets: rows(raw.facets(), input, |class| class == Class::Regular),
+        edges: rows(raw.edges(), input, |_| false),
+        vertices: rows(raw.vertices(), input, |_| false),
+    }
+}
+
+fn rows<const N: usize>(
+    (rows, classes): (&[[u32; N]], &[u8]),
+    input: &[u32],
+    oriented: impl Fn(Class) -> bool,
+) -> Simplices<N> {
+    let mut all: Vec<([u32; N], Class)> = rows
+        .iter()
+        .zip(classes)
+        .map(|(row, &class)| {
+            let class = Class::ALL[class as usize];
+            let row = row.map(|site| input[site as usize]);
+            let mut sorted = row;
+            sorted.sort_unstable();
+            if oriented(class) && odd(row) {
+                sorted.swap(N - 2, N - 1);
+            }
+            (sorted, class)
+        })
+        .collect();
+    all.sort_unstable();
+    let (vertices, classes) = all.into_iter().unzip();
+    Simplices { vertices, classes }
+}
+
+fn odd<const N: usize>(row: [u32; N]) -> bool {
+    let pairs = (0..N).flat_map(|i| (i + 1..N).map(move |j| (i, j)));
+    pairs.filter(|&(i, j)| row[j] < row[i]).count() % 2 == 1
+}
+
+/// SplitMix64: the same numbers everywhere.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// An integer below `n`.
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+
+    /// A double in [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn shuffle<T>(&mut self, items: &mut [T]) {
+        for i in (1..items.len()).rev() {
+            items.swap(i, self.below(i + 1));
+        }
+    }
+
+    pub fn pick<T: Copy>(&mut self, items: &[T]) -> T {
+        items[self.below(items.len())]
+    }
+}
+
+/// The points of an n³ integer grid.
+pub fn grid(n: usize) -> Vec<[f64; 3]> {
+    let axis = move || 0..n;
+    axis()
+        .flat_map(|z| axis().flat_map(move |y| axis().map(move |x| [x, y, z])))
+        .map(|p| p.map(|i| i as f64))
+        .collect()
+}
