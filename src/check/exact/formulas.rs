@@ -71,13 +71,26 @@ pub struct Radius4;
 impl Formula<3> for Radius4 {
     fn value<T: Number>(&self, frame: &Frame<T, 3>) -> T {
         let ([a, b, c], [ha, hb, hc]) = (&frame.offsets, &frame.heights);
-        let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
-        let center: [T; 3] = std::array::from_fn(|k| {
-            ha.times(&bc[k]).plus(&hb.times(&ca[k])).plus(&hc.times(&ab[k]))
-        });
-        let det = dot(&ab, c);
+        let (center, det) = center4([a, b, c], [ha, hb, hc]);
         excess(dot(&center, &center), det.times(&det), frame)
     }
+}
+
+/// 2 det · c and det for a tetrahedron.
+pub fn center4<T: Number>([a, b, c]: [&[T; 3]; 3], [ha, hb, hc]: [&T; 3]) -> ([T; 3], T) {
+    let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
+    let center = std::array::from_fn(|k| {
+        ha.times(&bc[k]).plus(&hb.times(&ca[k])).plus(&hc.times(&ab[k]))
+    });
+    (center, dot(&ab, c))
+}
+
+/// 2 det G · c and det G for a triangle.
+pub fn center3<T: Number>([a, b]: [&[T; 3]; 2], [ha, hb]: [&T; 2]) -> ([T; 3], T) {
+    let gram = Gram::of(a, b);
+    let [la, lb] = gram.adjugate_times(ha, hb);
+    let center = std::array::from_fn(|k| la.times(&a[k]).plus(&lb.times(&b[k])));
+    (center, gram.determinant())
 }
 
 /// 4 det G · (R² − α) for a triangle.

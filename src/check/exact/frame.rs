@@ -35,14 +35,17 @@ pub fn sign_of<const N: usize>(
     others: [&WeightedPoint; N],
     alpha: f64,
 ) -> Ordering {
-    let quick = frame(
-        origin.position.map(Approx::exact),
-        Approx::exact(origin.weight),
-        others.map(|p| (p.position.map(Approx::exact), Approx::exact(p.weight))),
-        Approx::exact(alpha),
-        Approx::exact(1.0),
-    );
-    formula.value(&quick).sign().unwrap_or_else(|| exact_sign_of(formula, origin, others, alpha))
+    formula.value(&approx(origin, others, alpha)).sign().unwrap_or_else(|| exact_sign_of(formula, origin, others, alpha))
+}
+
+/// The frame in doubles with error bounds; its unit is 1.
+pub fn approx<const N: usize>(
+    origin: &WeightedPoint,
+    others: [&WeightedPoint; N],
+    alpha: f64,
+) -> Frame<Approx, N> {
+    let point = |p: &WeightedPoint| (p.position.map(Approx::exact), Approx::exact(p.weight));
+    frame(point(origin), others.map(point), Approx::exact(alpha), Approx::exact(1.0))
 }
 
 fn exact_sign_of<const N: usize>(
@@ -51,43 +54,76 @@ fn exact_sign_of<const N: usize>(
     others: [&WeightedPoint; N],
     alpha: f64,
 ) -> Ordering {
-    let decode = |p: &WeightedPoint| (p.position.map(Binary::new), Binary::new(p.weight));
-    let origin = decode(origin);
-    let others = others.map(decode);
-    let alpha = Binary::new(alpha);
-    let (mut lengths, mut squares) = (Range::EMPTY, Range::EMPTY.with(alpha));
-    for (position, weight) in std::iter::once(&origin).chain(&others) {
-        lengths = position.iter().fold(lengths, |range, &x| range.with(x));
-        squares = squares.with(*weight);
+    let digits = Digits::new(origin, others, alpha);
+    if digits.fit_i128(formula) {
+        formula.value(&digits.small()).cmp(&0)
+    } else {
+        sign(&formula.value(&digits.big()))
     }
-    let coordinate = lengths.unit().unwrap_or(0);
-    let height = squares.unit().unwrap_or(2 * coordinate).min(2 * coordinate);
-    let shift = (2 * coordinate - height) as u32;
+}
 
-    let length = Bits(lengths.bits(coordinate));
-    let square = Bits(squares.bits(height));
-    let bound =
-        frame([length; 3], square, [([length; 3], square); N], square, Bits(shift + 1));
-    let widest = bound.heights.iter().fold(formula.value(&bound).0, |most, h| most.max(h.0));
-    if widest.max(bound.level.0).max(bound.unit.0) <= Bits::I128 {
-        let small = |(position, weight): ([Binary; 3], Binary)| {
-            (position.map(|x| x.small(coordinate)), weight.small(height))
-        };
-        let (position, weight) = small(origin);
-        let frame = frame(position, weight, others.map(small), alpha.small(height), 1 << shift);
-        return formula.value(&frame).cmp(&0);
+/// The arguments of a formula as integers in common units.
+pub struct Digits<const N: usize> {
+    origin: ([Binary; 3], Binary),
+    others: [([Binary; 3], Binary); N],
+    alpha: Binary,
+    lengths: Range,
+    squares: Range,
+    /// The unit of coordinates is two to this power.
+    pub coordinate: i32,
+    /// The unit of heights is two to this power, at most twice `coordinate`.
+    pub height: i32,
+}
+
+impl<const N: usize> Digits<N> {
+    pub fn new(origin: &WeightedPoint, others: [&WeightedPoint; N], alpha: f64) -> Self {
+        let decode = |p: &WeightedPoint| (p.position.map(Binary::new), Binary::new(p.weight));
+        let origin = decode(origin);
+        let others = others.map(decode);
+        let alpha = Binary::new(alpha);
+        let (mut lengths, mut squares) = (Range::EMPTY, Range::EMPTY.with(alpha));
+        for (position, weight) in std::iter::once(&origin).chain(&others) {
+            lengths = position.iter().fold(lengths, |range, &x| range.with(x));
+            squares = squares.with(*weight);
+        }
+        let coordinate = lengths.unit().unwrap_or(0);
+        let height = squares.unit().unwrap_or(2 * coordinate).min(2 * coordinate);
+        Self { origin, others, alpha, lengths, squares, coordinate, height }
     }
-    let big = |(position, weight): ([Binary; 3], Binary)| {
-        (position.map(|x| x.big(coordinate)), weight.big(height))
-    };
-    let (position, weight) = big(origin);
-    let unit = IBig::ONE << shift as usize;
-    sign(&formula.value(&frame(position, weight, others.map(big), alpha.big(height), unit)))
+
+    fn shift(&self) -> u32 {
+        (2 * self.coordinate - self.height) as u32
+    }
+
+    /// Whether an `i128` holds the formula, its intermediate results and the frame.
+    fn fit_i128(&self, formula: &impl Formula<N>) -> bool {
+        let length = Bits(self.lengths.bits(self.coordinate));
+        let square = Bits(self.squares.bits(self.height));
+        let point = ([length; 3], square);
+        let bound = frame(point, [point; N], square, Bits(self.shift() + 1));
+        let widest = bound.heights.iter().fold(formula.value(&bound).0, |most, h| most.max(h.0));
+        widest.max(bound.level.0).max(bound.unit.0) <= Bits::I128
+    }
+
+    fn small(&self) -> Frame<i128, N> {
+        let point = |(position, weight): ([Binary; 3], Binary)| {
+            (position.map(|x| x.small(self.coordinate)), weight.small(self.height))
+        };
+        let alpha = self.alpha.small(self.height);
+        frame(point(self.origin), self.others.map(point), alpha, 1 << self.shift())
+    }
+
+    pub fn big(&self) -> Frame<IBig, N> {
+        let point = |(position, weight): ([Binary; 3], Binary)| {
+            (position.map(|x| x.big(self.coordinate)), weight.big(self.height))
+        };
+        let unit = IBig::ONE << self.shift() as usize;
+        frame(point(self.origin), self.others.map(point), self.alpha.big(self.height), unit)
+    }
 }
 
 fn frame<T: Number, const N: usize>(
-    origin: [T; 3],
-    weight: T,
+    (origin, weight): ([T; 3], T),
     others: [([T; 3], T); N],
     alpha: T,
     unit: T,

@@ -7,19 +7,23 @@
 //! proves that it can; big integers decide the rest.
 
 mod binary;
+mod center;
 mod formulas;
 mod frame;
 mod number;
 mod perturb;
 mod solid;
+mod value;
 
 use std::cmp::Ordering;
 
 use formulas::{Area, Power1, Power2, Power3, Power4, Radius2, Radius3, Radius4, Volume};
 use frame::sign_of;
 
+pub use center::center;
 pub use perturb::{in_conflict, rank};
 pub use solid::{Lattice, Star};
+pub use value::{Exact, power_value, radius_value, six_volume};
 
 /// A point with a power weight; all four numbers finite.
 #[derive(Clone, Copy, Debug, PartialEq)]

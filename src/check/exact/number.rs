@@ -82,6 +82,11 @@ impl Approx {
         Self { value, error: error + f64::MIN_POSITIVE }
     }
 
+    /// The computed value and a bound on its error.
+    pub fn value_and_error(self) -> (f64, f64) {
+        (self.value, self.error)
+    }
+
     /// The sign of the true value, if the bound proves it. Never `Equal`.
     pub fn sign(self) -> Option<Ordering> {
         if self.value > self.error {
