@@ -35,8 +35,20 @@ impl Exact {
         }
     }
 
+    /// Whether it is zero.
+    pub fn is_zero(&self) -> bool {
+        self.numerator.is_zero()
+    }
+
     pub(in crate::check) fn integer(value: IBig, exponent: i64) -> Self {
         Self::new(value, IBig::ONE, exponent)
+    }
+}
+
+impl Default for Exact {
+    /// Zero.
+    fn default() -> Self {
+        Self { numerator: IBig::ZERO, denominator: IBig::ONE, exponent: 0 }
     }
 }
 
