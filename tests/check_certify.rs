@@ -2,9 +2,8 @@
 
 mod check_common;
 
-use check_common::{Answer, Case, Random, engine, grid};
+use check_common::{Answer, Case, Random, engine, grid, shape_of};
 use walpha::check::{Claim, Extent, Finding};
-use walpha::{Class, Complex, Simplices};
 
 fn claim<'a>(case: &'a Case, answer: &'a Answer, extent: Extent) -> Claim<'a> {
     Claim {
@@ -20,22 +19,6 @@ fn claim<'a>(case: &'a Case, answer: &'a Answer, extent: Extent) -> Claim<'a> {
 
 fn whole(case: &Case, answer: &Answer) -> Vec<Finding> {
     claim(case, answer, Extent::Whole).findings().unwrap().0
-}
-
-/// The shape alone: what a local engine returns.
-fn shape_of(answer: &Answer) -> Answer {
-    fn members<const N: usize>(all: &Simplices<N>) -> Simplices<N> {
-        let rows = all.iter().filter(|(_, class)| *class != Class::Exterior);
-        let (vertices, classes) = rows.map(|(row, class)| (*row, class)).unzip();
-        Simplices { vertices, classes }
-    }
-    let complex = Complex {
-        cells: members(&answer.complex.cells),
-        facets: members(&answer.complex.facets),
-        edges: members(&answer.complex.edges),
-        vertices: members(&answer.complex.vertices),
-    };
-    Answer { complex, hidden: answer.hidden.clone(), duplicates: answer.duplicates.clone() }
 }
 
 fn shape(case: &Case, answer: &Answer) -> Vec<Finding> {

@@ -1,6 +1,8 @@
 //! Point sets, and the CGAL engine's answer in canonical order.
 #![allow(dead_code, reason = "each test file uses its part")]
 
+use std::collections::BTreeSet;
+
 use walpha::cgal::{CgalError, RawComplex, Sites, reference};
 use walpha::{Class, Complex, Simplices};
 
@@ -113,4 +115,45 @@ pub fn grid(n: usize) -> Vec<[f64; 3]> {
         .flat_map(|z| axis().flat_map(move |y| axis().map(move |x| [x, y, z])))
         .map(|p| p.map(|i| i as f64))
         .collect()
+}
+
+/// The shape alone: what a local engine returns.
+pub fn shape_of(answer: &Answer) -> Answer {
+    fn members<const N: usize>(all: &Simplices<N>) -> Simplices<N> {
+        let rows = all.iter().filter(|(_, class)| *class != Class::Exterior);
+        let (vertices, classes) = rows.map(|(row, class)| (*row, class)).unzip();
+        Simplices { vertices, classes }
+    }
+    let complex = Complex {
+        cells: members(&answer.complex.cells),
+        facets: members(&answer.complex.facets),
+        edges: members(&answer.complex.edges),
+        vertices: members(&answer.complex.vertices),
+    };
+    Answer { complex, hidden: answer.hidden.clone(), duplicates: answer.duplicates.clone() }
+}
+
+/// The complex of cells and all their faces, every class exterior.
+pub fn closed(cells: &[[u32; 4]]) -> Complex {
+    fn exterior<const N: usize>(rows: impl IntoIterator<Item = Vec<u32>>) -> Simplices<N> {
+        let rows = rows.into_iter().map(|mut row| {
+            row.sort_unstable();
+            row.try_into().expect("N vertices")
+        });
+        let vertices: Vec<[u32; N]> = BTreeSet::from_iter(rows).into_iter().collect();
+        Simplices { classes: vec![Class::Exterior; vertices.len()], vertices }
+    }
+    let faces = |size: u32| {
+        cells.iter().flat_map(move |cell| {
+            (0u32..16).filter(move |mask| mask.count_ones() == size).map(move |mask| {
+                (0..4).filter(|k| mask >> k & 1 == 1).map(|k: usize| cell[k]).collect::<Vec<u32>>()
+            })
+        })
+    };
+    Complex {
+        cells: Simplices { vertices: cells.to_vec(), classes: vec![Class::Exterior; cells.len()] },
+        facets: exterior(faces(3)),
+        edges: exterior(faces(2)),
+        vertices: exterior(faces(1)),
+    }
 }

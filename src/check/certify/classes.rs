@@ -28,6 +28,11 @@ pub fn judge(structure: &Structure, judge: &Judge) -> Vec<Finding> {
     let facets = judge.facets(structure, &cells);
     findings.extend(judge.compare(&complex.facets, &facets));
     findings.extend(windings(structure, &cells, &facets));
+    if judge.extent == Extent::Whole {
+        let strays = (0..complex.facets.len()).filter(|&i| structure.halves(i).next().is_none());
+        let facet = |i: usize| complex.facets.vertices[i].into();
+        findings.extend(strays.map(|i| Finding::Stray { simplex: facet(i) }));
+    }
 
     const OF_FACET: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
     let (edges, found) =
