@@ -4,8 +4,13 @@ pub use ndarray;
 
 pub mod cgal;
 pub mod check;
+pub mod export;
+pub mod haar;
+pub mod points;
 pub mod shape;
 pub mod volume;
 
-pub use shape::{Alpha, Balls, Class, Complex, Simplices};
+pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
+pub use points::{Points, PointsError, Selection, SelectionRule, Units, WeightedPoints, Weighting};
+pub use shape::{Alpha, AlphaShape, Balls, Class, Complex, Simplices, alpha_shape};
 pub use volume::{Dims, Frame, Gray, GrayRange, Volume, VolumeError};

@@ -63,13 +63,19 @@ impl<const N: usize> Simplices<N> {
         }
         counts
     }
+
+    fn retain_shape(&mut self) {
+        let mut classes = self.classes.iter();
+        self.vertices.retain(|_| classes.next() != Some(&Class::Exterior));
+        self.classes.retain(|&class| class != Class::Exterior);
+    }
 }
 
 /// A classified simplicial complex over indexed points: the plain result type, which engines
 /// return, writers write and the checker judges.
 ///
-/// **Canonical order.** Cells are positively oriented (the fourth vertex lies on the side from
-/// which the first three turn counter-clockwise backwards: det(b−a, c−a, d−a) > 0) and regular
+/// **Canonical order.** Cells are positively oriented (a, b, c turn counter-clockwise seen
+/// from d: det(b−a, c−a, d−a) > 0) and regular
 /// facets turn counter-clockwise seen from outside; each is written as the lexicographically
 /// smallest even permutation of its vertices. All other simplices are sorted. Rows are in
 /// lexicographic order. So equal complexes are equal byte by byte.
@@ -83,4 +89,14 @@ pub struct Complex {
     pub edges: Simplices<2>,
     /// Vertices of the triangulation; points that are hidden or duplicates are none.
     pub vertices: Simplices<1>,
+}
+
+impl Complex {
+    /// Drops exterior simplices.
+    pub(super) fn retain_shape(&mut self) {
+        self.cells.retain_shape();
+        self.facets.retain_shape();
+        self.edges.retain_shape();
+        self.vertices.retain_shape();
+    }
 }

@@ -1,7 +1,17 @@
 //! Floor 3: the alpha shape of weighted points, its topology and its measures.
 
 mod alpha;
+mod alpha_shape;
+mod canonical;
 mod complex;
+mod measure;
+mod surface;
+mod topology;
+mod union_find;
 
 pub use alpha::{Alpha, Balls, NotAnAlpha};
+pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
 pub use complex::{Class, Complex, Simplices};
+pub use measure::Measures;
+pub use surface::Surface;
+pub use topology::{Betti, direct_betti};

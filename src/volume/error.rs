@@ -48,7 +48,7 @@ pub enum VolumeError {
         high: f64,
     },
     /// The operating system refused.
-    #[error("cannot read {path}: {source}")]
+    #[error("cannot read {path}: {source}{}", next_step(source.kind()))]
     Io {
         /// The file.
         path: PathBuf,
@@ -63,7 +63,25 @@ pub enum VolumeError {
         /// What is wrong, and what to do next.
         what: String,
     },
+    /// A file whose header or samples make no volume.
+    #[error("{path}: {source}")]
+    InFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with them.
+        source: Box<VolumeError>,
+    },
     /// The sample is not installed, or no sample has this name.
     #[error("{0}")]
     Sample(String),
+}
+
+/// What to do about an error of the system.
+fn next_step(kind: std::io::ErrorKind) -> &'static str {
+    match kind {
+        std::io::ErrorKind::NotFound => "; check the path, or try sample:phantom",
+        std::io::ErrorKind::PermissionDenied => "; make it readable first",
+        std::io::ErrorKind::IsADirectory => "; name a file in it",
+        _ => "",
+    }
 }

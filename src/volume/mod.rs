@@ -1,11 +1,19 @@
 //! Floor 0: a grid of samples, where it comes from, and how its values become gray levels.
 
+mod dtype;
 mod error;
 mod gray;
 mod grid;
+mod read;
+mod sample;
+#[expect(clippy::module_inception, reason = "the type gives the floor its name")]
 mod volume;
 
+pub use dtype::{Dtype, Endian, UnknownName};
 pub use error::VolumeError;
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
+pub(crate) use read::{NPY_MAGIC, NpyFile};
+pub use read::{RawLayout, ReadOptions, read};
+pub use sample::{SAMPLES, open, phantom, sample};
 pub use volume::Volume;

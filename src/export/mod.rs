@@ -1,0 +1,18 @@
+//! Floor 5: shapes as files for other programs.
+//!
+//! A writer turns a shape into bytes behind one trait and knows no paths; [`Target`] gives it a
+//! file that appears under its name only when it is complete.
+
+mod format;
+mod obj;
+mod off;
+mod ply;
+mod target;
+mod vtu;
+
+pub use format::{Exporter, Format, UnknownFormat};
+pub use obj::Obj;
+pub use off::Off;
+pub use ply::Ply;
+pub use target::{Target, TargetError};
+pub use vtu::Vtu;

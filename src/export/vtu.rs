@@ -1,0 +1,121 @@
+use std::io::{self, Write};
+
+use super::Exporter;
+use crate::shape::{AlphaShape, Simplices};
+
+/// VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as
+/// cell data (1 interior, 2 regular, 3 singular); `weight`, `value` and `input_index` as point
+/// data. Arrays are appended raw, little-endian, with 64-bit sizes.
+///
+/// Where a complex holds exterior simplices they are written too, as class 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Vtu;
+
+impl Exporter for Vtu {
+    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        let complex = shape.complex();
+        let points = shape.points();
+        let vertices: Vec<u32> = complex.vertices.vertices.iter().map(|&[v]| v).collect();
+        let number = |v: u32| vertices.binary_search(&v).expect("faces are closed") as i64;
+
+        let mut grid = Grid::default();
+        grid.push(&complex.vertices, VTK_VERTEX, number);
+        grid.push(&complex.edges, VTK_LINE, number);
+        grid.push(&complex.facets, VTK_TRIANGLE, number);
+        grid.push(&complex.cells, VTK_TETRA, number);
+
+        let of = |per_point: &[f64]| {
+            bytes(vertices.iter().map(|&v| per_point[v as usize].to_le_bytes()))
+        };
+        let mut file = Appended::default();
+        write!(
+            file.xml,
+            "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
+             <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
+             <UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
+            shape.options().alpha,
+            vertices.len(),
+            grid.types.len(),
+        )?;
+        file.array("Float64", "weight", 1, of(&points.weights))?;
+        if let Some(values) = &points.values {
+            file.array("Float64", "value", 1, of(values))?;
+        }
+        file.array("UInt32", "input_index", 1, bytes(vertices.iter().map(|v| v.to_le_bytes())))?;
+        write!(file.xml, "</PointData>\n<CellData>\n")?;
+        file.array("UInt8", "class", 1, grid.classes)?;
+        write!(file.xml, "</CellData>\n<Points>\n")?;
+        let positions = vertices.iter().flat_map(|&v| points.positions[v as usize]);
+        file.array("Float64", "Points", 3, bytes(positions.map(f64::to_le_bytes)))?;
+        write!(file.xml, "</Points>\n<Cells>\n")?;
+        file.array(
+            "Int64",
+            "connectivity",
+            1,
+            bytes(grid.connectivity.iter().map(|i| i.to_le_bytes())),
+        )?;
+        file.array("Int64", "offsets", 1, bytes(grid.offsets.iter().map(|i| i.to_le_bytes())))?;
+        file.array("UInt8", "types", 1, grid.types)?;
+        write!(
+            file.xml,
+            "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
+        )?;
+        out.write_all(&file.xml)?;
+        out.write_all(&file.data)?;
+        write!(out, "\n</AppendedData>\n</VTKFile>\n")
+    }
+}
+
+const VTK_VERTEX: u8 = 1;
+const VTK_LINE: u8 = 3;
+const VTK_TRIANGLE: u8 = 5;
+const VTK_TETRA: u8 = 10;
+
+#[derive(Default)]
+struct Grid {
+    connectivity: Vec<i64>,
+    offsets: Vec<i64>,
+    types: Vec<u8>,
+    classes: Vec<u8>,
+}
+
+impl Grid {
+    fn push<const N: usize>(
+        &mut self,
+        simplices: &Simplices<N>,
+        vtk_type: u8,
+        number: impl Fn(u32) -> i64,
+    ) {
+        for (row, class) in simplices.iter() {
+            self.connectivity.extend(row.iter().map(|&v| number(v)));
+            self.offsets.push(self.connectivity.len() as i64);
+            self.types.push(vtk_type);
+            self.classes.push(class as u8);
+        }
+    }
+}
+
+/// The head of the file, and the arrays it points to.
+#[derive(Default)]
+struct Appended {
+    xml: Vec<u8>,
+    data: Vec<u8>,
+}
+
+impl Appended {
+    fn array(&mut self, kind: &str, name: &str, components: u8, bytes: Vec<u8>) -> io::Result<()> {
+        writeln!(
+            self.xml,
+            "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
+             format=\"appended\" offset=\"{}\"/>",
+            self.data.len()
+        )?;
+        self.data.extend((bytes.len() as u64).to_le_bytes());
+        self.data.extend(bytes);
+        Ok(())
+    }
+}
+
+fn bytes<const B: usize>(values: impl Iterator<Item = [u8; B]>) -> Vec<u8> {
+    values.flatten().collect()
+}

@@ -1,0 +1,122 @@
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::{Budget, Coefficients, Cut};
+use crate::volume::VolumeError;
+
+/// Coefficients summed at a time. Fixed, so that sums are the same on any number of threads.
+const CHUNK: usize = 1 << 16;
+
+/// How much of a volume may be lost, one of three ways to say it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Tolerance {
+    /// The root mean square of f − f̂ over the samples, in their units (gray levels): ε² = rms²·n.
+    Rms(f64),
+    /// The norm ‖f − f̂‖ itself, ε.
+    Epsilon(f64),
+    /// This many coefficients stay, or all if there are fewer.
+    Coefficients(u64),
+}
+
+/// An RMS of one gray level.
+impl Default for Tolerance {
+    fn default() -> Self {
+        Self::Rms(1.0)
+    }
+}
+
+/// What truncation did.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Truncation {
+    /// What was asked for.
+    pub asked: Tolerance,
+    /// Coefficients that stay.
+    pub kept: u64,
+    /// Coefficients there were, as many as samples.
+    pub total: u64,
+    /// ‖f − f̂‖ reached: the square root of the sum of the squares of the dropped coefficients.
+    pub epsilon: f64,
+    /// The root mean square of f − f̂ reached, epsilon/√n.
+    pub rms: f64,
+}
+
+/// Why a volume cannot be truncated.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum HaarError {
+    /// A negative or undefined tolerance.
+    #[error("a tolerance of {given} makes no sense: {what} must be a number from 0 up")]
+    Tolerance {
+        /// The number given.
+        given: f64,
+        /// What it was meant for.
+        what: &'static str,
+    },
+    /// The truncated samples make no volume: they passed the range of `f32`.
+    #[error("after truncation: {0}")]
+    Volume(#[from] VolumeError),
+}
+
+impl Tolerance {
+    pub(super) fn check(self) -> Result<(), HaarError> {
+        match self {
+            Self::Rms(given) if !(given >= 0.0) => {
+                Err(HaarError::Tolerance { given, what: "the RMS error in gray levels" })
+            }
+            Self::Epsilon(given) if !(given >= 0.0) => {
+                Err(HaarError::Tolerance { given, what: "ε, the L² norm of the error," })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn budget(self, total: u64) -> Budget {
+        match self {
+            Self::Rms(rms) => Budget::Energy(rms * rms * total as f64),
+            Self::Epsilon(epsilon) => Budget::Energy(epsilon * epsilon),
+            Self::Coefficients(kept) => Budget::Count(total.saturating_sub(kept)),
+        }
+    }
+}
+
+impl Coefficients {
+    /// Drops (sets to 0) the smallest coefficients: in order of decreasing magnitude, ties in order
+    /// of their index, the fewest stay for which the squares of the dropped ones sum to at most
+    /// ε².
+    ///
+    /// O(n), sums in f64, the same on any number of threads. Zeros are always dropped when an error
+    /// is asked for, so `Rms(0.0)` keeps the coefficients that are not 0.
+    ///
+    /// # Errors
+    /// [`HaarError::Tolerance`] when the tolerance is negative or NaN.
+    pub fn truncate(&mut self, asked: Tolerance) -> Result<Truncation, HaarError> {
+        asked.check()?;
+        let values = self.values.as_slice_mut().expect("standard layout");
+        let total = values.len() as u64;
+        let magnitude = |value: f32| value.abs().to_bits();
+        let cut = Cut::new(values.len(), |i| Some(magnitude(values[i])), asked.budget(total));
+        let drop_from = |(chunk, values): (usize, &mut [f32])| {
+            let (mut dropped, mut energy) = (0, 0.0);
+            for (i, value) in values.iter_mut().enumerate() {
+                if !cut.keeps(magnitude(*value), chunk * CHUNK + i) {
+                    dropped += 1;
+                    energy += f64::from(*value).powi(2);
+                    *value = 0.0;
+                }
+            }
+            (dropped, energy)
+        };
+        let parts: Vec<(u64, f64)> =
+            values.par_chunks_mut(CHUNK).enumerate().map(drop_from).collect();
+        let dropped: u64 = parts.iter().map(|part| part.0).sum();
+        let energy: f64 = parts.iter().map(|part| part.1).sum();
+        Ok(Truncation {
+            asked,
+            kept: total - dropped,
+            total,
+            epsilon: energy.sqrt(),
+            rms: (energy / total as f64).sqrt(),
+        })
+    }
+}

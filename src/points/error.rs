@@ -1,0 +1,81 @@
+use std::path::PathBuf;
+
+use super::Weighting;
+use crate::volume::VolumeError;
+
+/// Why there are no points, or no weights for them.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PointsError {
+    /// A number of the selection is out of its range.
+    #[error("{what} {given} makes no sense: it must be {need}")]
+    Number {
+        /// The option.
+        what: &'static str,
+        /// What was given.
+        given: f64,
+        /// What would do.
+        need: &'static str,
+    },
+    /// More voxels asked for than there are, or none.
+    #[error(
+        "{asked} points cannot be selected: give a count from 1 to {available}, the voxels that \
+         take part"
+    )]
+    Count {
+        /// Points asked for.
+        asked: u64,
+        /// Voxels that take part.
+        available: u64,
+    },
+    /// The threshold or the mask leaves no voxel.
+    #[error(
+        "none of {voxels} voxels is selected: lower --threshold or --gray-min, or give --ratio"
+    )]
+    Empty {
+        /// Voxels of the volume.
+        voxels: u64,
+    },
+    /// Weights in proportion to an infinite α.
+    #[error(
+        "{weighting} weights are proportional to α, which is {alpha}: give a finite α, or the one \
+         to freeze weights at (--alpha-ref)"
+    )]
+    UnboundedAlpha {
+        /// The weights asked for.
+        weighting: Weighting,
+        /// The α given.
+        alpha: f64,
+    },
+    /// Scattered points have no neighbours to differ from.
+    #[error(
+        "{weighting} weights need the differences of a volume's voxels, which these points come \
+         without: use column or common=C"
+    )]
+    NoDifferences {
+        /// The weights asked for.
+        weighting: Weighting,
+    },
+    /// The input has no weights.
+    #[error("column weights need a column `weight` in the input: add it, or use common=C")]
+    NoColumn,
+    /// A weight that is no finite number.
+    #[error("the weight of point {index} is {weight}: it must be finite; correct the input")]
+    Weight {
+        /// The point, counted from 0.
+        index: usize,
+        /// Its weight.
+        weight: f64,
+    },
+    /// A point file is not what it should be.
+    #[error("{path}: {what}")]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and what to do next.
+        what: String,
+    },
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] VolumeError),
+}

@@ -1,0 +1,32 @@
+//! Floor 2: from a volume to weighted points.
+//!
+//! Steps 5 to 7 of the paper: the difference L of each voxel of the truncated volume, the voxels
+//! of the largest, and their weights (equations 4.1 and 4.2).
+//!
+//! ```
+//! use walpha::haar::{HaarOptions, smooth};
+//! use walpha::points::{Selection, Units, Weighting, difference, select, weigh};
+//! use walpha::volume::sample;
+//!
+//! let volume = sample("sample:phantom@32")?;
+//! let (smoothed, _) = smooth(&volume, &HaarOptions::default())?;
+//! let points = select(&volume, &smoothed, &difference(&smoothed), &Selection::default(), Units::Voxel)?;
+//! assert_eq!(points.len(), 1996); // 6.09 % of 32³
+//! let weighted = weigh(&points, Weighting::MinMax, 10.0)?;
+//! assert_eq!((weighted.summary().min, weighted.summary().max), (0.0, 10.0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod difference;
+mod error;
+mod read;
+mod select;
+mod weigh;
+mod write;
+
+pub use difference::{difference, difference_row};
+pub use error::PointsError;
+pub use read::{is_point_file, read_points};
+pub use select::{Points, Selection, SelectionRule, Units, select};
+pub use weigh::{UnknownWeighting, WeightSummary, WeightedPoints, Weighting, weigh};
+pub use write::{write_csv, write_npy};

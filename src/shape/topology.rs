@@ -1,0 +1,108 @@
+//! Betti numbers of a shape.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::union_find::UnionFind;
+use super::{Class, Complex, Simplices};
+
+/// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "[u64; 3]", from = "[u64; 3]")]
+pub struct Betti {
+    /// Connected components.
+    pub b0: u64,
+    /// Tunnels (independent loops that bound nothing).
+    pub b1: u64,
+    /// Voids (bounded components of the complement).
+    pub b2: u64,
+}
+
+impl From<Betti> for [u64; 3] {
+    fn from(betti: Betti) -> Self {
+        [betti.b0, betti.b1, betti.b2]
+    }
+}
+
+impl From<[u64; 3]> for Betti {
+    fn from([b0, b1, b2]: [u64; 3]) -> Self {
+        Self { b0, b1, b2 }
+    }
+}
+
+impl Complex {
+    /// The Euler characteristic of the shape: vertices − edges + facets − cells, exterior ones left
+    /// out.
+    pub fn euler_characteristic(&self) -> i64 {
+        fn inside<const N: usize>(simplices: &Simplices<N>) -> i64 {
+            (simplices.len() - simplices.counts()[Class::Exterior as usize]) as i64
+        }
+        inside(&self.vertices) - inside(&self.edges) + inside(&self.facets) - inside(&self.cells)
+    }
+}
+
+/// The Betti numbers of a shape within its *whole* regular triangulation, exterior simplices
+/// included, by direct count: b0 is the number of components; b2 the number of components of the
+/// complement less one, counted over exterior cells joined through exterior facets, the outside
+/// of the convex hull being one more cell; b1 follows from the Euler characteristic.
+///
+/// An empty shape has no component, and its complement is one. O(n log n).
+pub fn direct_betti(whole: &Complex) -> Betti {
+    let b0 = components(whole);
+    let b2 = complement_components(whole) - 1;
+    let b1 = (b0 + b2) as i64 - whole.euler_characteristic();
+    Betti { b0, b1: u64::try_from(b1).expect("b1 counts something"), b2 }
+}
+
+/// Components of the shape, by its edges.
+fn components(complex: &Complex) -> u64 {
+    let of_shape = |class| class != Class::Exterior;
+    let points = complex.vertices.vertices.last().map_or(0, |&[v]| v as usize + 1);
+    let mut sets = UnionFind::new(points);
+    let vertices = complex.vertices.iter().filter(|&(_, class)| of_shape(class)).count();
+    let edges = complex.edges.iter().filter(|&(_, class)| of_shape(class));
+    let united = edges.filter(|&(&[a, b], _)| sets.unite(a, b)).count();
+    (vertices - united) as u64
+}
+
+/// Components of the complement: exterior cells and the outside, joined through exterior facets.
+fn complement_components(whole: &Complex) -> u64 {
+    // Each facet of each exterior cell, so that the cells at one facet stand side by side.
+    let mut sides: Vec<([u32; 3], u32)> = whole
+        .cells
+        .vertices
+        .par_iter()
+        .zip(&whole.cells.classes)
+        .enumerate()
+        .filter(|(_, (_, class))| **class == Class::Exterior)
+        .flat_map_iter(|(id, (&cell, _))| {
+            (0..4).map(move |skip| {
+                let mut facet = [1, 2, 3].map(|step| cell[(skip + step) % 4]);
+                facet.sort_unstable();
+                (facet, id as u32)
+            })
+        })
+        .collect();
+    sides.par_sort_unstable();
+
+    let outside = whole.cells.len() as u32;
+    let mut sets = UnionFind::new(whole.cells.len() + 1);
+    let exterior_cells = whole.cells.counts()[Class::Exterior as usize];
+    let mut united = 0;
+    let mut at = 0;
+    // Exterior facets are sorted rows in ascending order, so both lists run side by side.
+    for facet in whole.facets.of(Class::Exterior) {
+        while at < sides.len() && sides[at].0 < *facet {
+            at += 1;
+        }
+        let cells: Vec<u32> =
+            sides[at..].iter().take_while(|side| side.0 == *facet).map(|side| side.1).collect();
+        let (a, b) = match cells[..] {
+            [a, b] => (a, b),
+            [a] => (a, outside),
+            _ => unreachable!("an exterior facet has exterior cells on both sides, or the outside"),
+        };
+        united += u64::from(sets.unite(a, b));
+    }
+    exterior_cells as u64 + 1 - united
+}

@@ -1,0 +1,144 @@
+use std::fmt;
+use std::str::FromStr;
+
+/// How a file stores one sample.
+///
+/// Samples become `f32`. 8-bit and 16-bit integers and `f32` keep their exact value; `u32`, `i32`,
+/// `u64`, `i64` and `f64` are rounded to the nearest `f32` (24 significant bits), and an `f64`
+/// beyond its range becomes infinite, which [`Volume::new`](super::Volume::new) refuses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say all")]
+pub enum Dtype {
+    U8,
+    I8,
+    U16,
+    I16,
+    U32,
+    I32,
+    U64,
+    I64,
+    F32,
+    F64,
+}
+
+/// The order of the bytes of a sample in a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Endian {
+    /// Least significant byte first, as x86 and ARM machines write.
+    #[default]
+    Little,
+    /// Most significant byte first.
+    Big,
+}
+
+/// A name that is no sample type or byte order.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{given:?} is no {kind}: give one of {known}")]
+pub struct UnknownName {
+    given: String,
+    kind: &'static str,
+    known: String,
+}
+
+impl Dtype {
+    /// All types.
+    pub const ALL: [Self; 10] = [
+        Self::U8,
+        Self::I8,
+        Self::U16,
+        Self::I16,
+        Self::U32,
+        Self::I32,
+        Self::U64,
+        Self::I64,
+        Self::F32,
+        Self::F64,
+    ];
+
+    /// Bytes of one sample.
+    pub fn size(self) -> usize {
+        match self {
+            Self::U8 | Self::I8 => 1,
+            Self::U16 | Self::I16 => 2,
+            Self::U32 | Self::I32 | Self::F32 => 4,
+            Self::U64 | Self::I64 | Self::F64 => 8,
+        }
+    }
+
+    /// The short name, as in `--dtype`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::U8 => "u8",
+            Self::I8 => "i8",
+            Self::U16 => "u16",
+            Self::I16 => "i16",
+            Self::U32 => "u32",
+            Self::I32 => "i32",
+            Self::U64 => "u64",
+            Self::I64 => "i64",
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+}
+
+impl fmt::Display for Dtype {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Dtype {
+    type Err = UnknownName;
+
+    fn from_str(text: &str) -> Result<Self, UnknownName> {
+        Self::ALL.into_iter().find(|dtype| dtype.name() == text).ok_or_else(|| UnknownName {
+            given: text.into(),
+            kind: "sample type",
+            known: Self::ALL.map(Self::name).join(", "),
+        })
+    }
+}
+
+impl fmt::Display for Endian {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Little => "little",
+            Self::Big => "big",
+        })
+    }
+}
+
+impl FromStr for Endian {
+    type Err = UnknownName;
+
+    fn from_str(text: &str) -> Result<Self, UnknownName> {
+        match text {
+            "little" => Ok(Self::Little),
+            "big" => Ok(Self::Big),
+            _ => Err(UnknownName {
+                given: text.into(),
+                kind: "byte order",
+                known: "little, big".into(),
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_back() {
+        for dtype in Dtype::ALL {
+            assert_eq!(dtype.to_string().parse(), Ok(dtype));
+        }
+        for endian in [Endian::Little, Endian::Big] {
+            assert_eq!(endian.to_string().parse(), Ok(endian));
+        }
+        let text = "f16".parse::<Dtype>().unwrap_err().to_string();
+        assert!(text.contains("f16") && text.contains("u8, i8"), "{text}");
+        assert!("middle".parse::<Endian>().is_err());
+    }
+}

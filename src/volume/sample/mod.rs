@@ -1,0 +1,70 @@
+//! Volumes at hand without a file of one's own.
+
+mod phantom;
+mod skull;
+
+use std::path::Path;
+
+pub use phantom::phantom;
+
+use super::{ReadOptions, Volume, VolumeError, read};
+
+/// The samples there are, as a user writes them.
+pub const SAMPLES: [&str; 3] = ["sample:skull", "sample:phantom", "sample:phantom@N"];
+/// Samples along each axis of the phantom unless `@N` says otherwise: as many as the skull has.
+const PHANTOM_SIZE: u64 = 64;
+
+/// Opens what a user names: a sample, or else a file.
+///
+/// # Errors
+/// Those of [`sample`] and [`read()`].
+pub fn open(input: &str, options: &ReadOptions) -> Result<Volume, VolumeError> {
+    if input.starts_with("sample:") { sample(input) } else { read(Path::new(input), options) }
+}
+
+/// A sample by its name: one of [`SAMPLES`].
+///
+/// `sample:skull` is `skull_2.9.inr` of CGAL's own data, 64³ samples of a CT scan, read in place;
+/// `sample:phantom` is a [`phantom`] of 64³ samples, `sample:phantom@N` one of N³.
+///
+/// # Errors
+/// No sample has this name; the skull is not installed or its archive damaged; N is no size.
+pub fn sample(name: &str) -> Result<Volume, VolumeError> {
+    match name.strip_prefix("sample:") {
+        Some("skull") => skull::skull(),
+        Some("phantom") => phantom(PHANTOM_SIZE),
+        Some(other) if other.starts_with("phantom@") => match other["phantom@".len()..].parse() {
+            Ok(size) => phantom(size),
+            Err(_) => Err(unknown(name, "N is a number of samples along each axis, as in @128")),
+        },
+        _ => Err(unknown(name, "see `walpha --help`")),
+    }
+}
+
+fn unknown(name: &str, hint: &str) -> VolumeError {
+    let known = SAMPLES.join(", ");
+    VolumeError::Sample(format!("{name:?} is no sample; there are {known}; {hint}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_samples_name_the_known_ones() {
+        for name in ["sample:skul", "sample:phantom@", "sample:phantom@-3", "phantom"] {
+            let text = sample(name).unwrap_err().to_string();
+            assert!(text.contains(name) && text.contains("sample:phantom@N"), "{text}");
+        }
+        assert!(matches!(sample("sample:phantom@0"), Err(VolumeError::EmptyAxis { .. })));
+        assert!(matches!(sample("sample:phantom@99999"), Err(VolumeError::TooManySamples { .. })));
+    }
+
+    #[test]
+    fn inputs_are_samples_or_files() {
+        let volume = open("sample:phantom@5", &ReadOptions::default()).unwrap();
+        assert_eq!(volume.dims().xyz(), [5, 5, 5]);
+        let text = open("no/such.inr", &ReadOptions::default()).unwrap_err().to_string();
+        assert!(text.contains("no/such.inr") && text.contains("sample:phantom"), "{text}");
+    }
+}
