@@ -1,10 +1,10 @@
-//! Point sets, and the CGAL engine's answer in canonical order.
+//! Point sets, and what the CGAL engine makes of them.
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use std::collections::BTreeSet;
 
-use walpha::cgal::{CgalError, RawComplex, Sites, reference};
-use walpha::{Class, Complex, Simplices};
+use walpha::shape::{ShapeError, ShapeOptions};
+use walpha::{Alpha, Class, Complex, Simplices, WeightedPoints, alpha_shape};
 
 /// A small set of weighted points and a parameter.
 #[derive(Clone, Debug)]
@@ -22,53 +22,17 @@ pub struct Answer {
     pub duplicates: Vec<[u32; 2]>,
 }
 
-/// CGAL's answer, in input indices and canonical order.
-pub fn engine(case: &Case) -> Result<Answer, CgalError> {
-    let sites = Sites::new(&case.positions, &case.weights)?;
-    let raw = reference(&sites, case.alpha)?;
-    let complex = canonical(&raw, sites.input());
-    let vertices: Vec<u32> = complex.vertices.vertices.iter().map(|v| v[0]).collect();
-    let is_hidden = |i: &u32| vertices.binary_search(i).is_err();
-    let hidden = sites.input().iter().copied().filter(is_hidden).collect();
-    Ok(Answer { complex, hidden, duplicates: sites.duplicates().to_vec() })
-}
-
-fn canonical(raw: &RawComplex, input: &[u32]) -> Complex {
-    Complex {
-        cells: rows(raw.cells(), input, |_| true),
-        facets: rows(raw.facets(), input, |class| class == Class::Regular),
-        edges: rows(raw.edges(), input, |_| false),
-        vertices: rows(raw.vertices(), input, |_| false),
-    }
-}
-
-fn rows<const N: usize>(
-    (rows, classes): (&[[u32; N]], &[u8]),
-    input: &[u32],
-    oriented: impl Fn(Class) -> bool,
-) -> Simplices<N> {
-    let mut all: Vec<([u32; N], Class)> = rows
-        .iter()
-        .zip(classes)
-        .map(|(row, &class)| {
-            let class = Class::ALL[class as usize];
-            let row = row.map(|site| input[site as usize]);
-            let mut sorted = row;
-            sorted.sort_unstable();
-            if oriented(class) && odd(row) {
-                sorted.swap(N - 2, N - 1);
-            }
-            (sorted, class)
-        })
-        .collect();
-    all.sort_unstable();
-    let (vertices, classes) = all.into_iter().unzip();
-    Simplices { vertices, classes }
-}
-
-fn odd<const N: usize>(row: [u32; N]) -> bool {
-    let pairs = (0..N).flat_map(|i| (i + 1..N).map(move |j| (i, j)));
-    pairs.filter(|&(i, j)| row[j] < row[i]).count() % 2 == 1
+/// CGAL's answer: the whole triangulation.
+pub fn engine(case: &Case) -> Result<Answer, ShapeError> {
+    let Case { positions, weights, alpha } = case.clone();
+    let alpha = Alpha::from_squared(alpha).expect("α is no NaN");
+    let options = ShapeOptions { exterior: true, ..ShapeOptions::new(alpha) };
+    let shape = alpha_shape(WeightedPoints { positions, weights, values: None }, &options)?;
+    Ok(Answer {
+        complex: shape.complex().clone(),
+        hidden: shape.hidden().expect("the whole triangulation was seen").to_vec(),
+        duplicates: shape.duplicates().to_vec(),
+    })
 }
 
 /// SplitMix64: the same numbers everywhere.

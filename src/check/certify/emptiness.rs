@@ -1,6 +1,6 @@
 use super::Points;
 use super::near::Grid;
-use crate::check::exact::{Side, center, in_conflict, orientation, side};
+use crate::check::exact::{RoundedSphere, Side, WeightedPoint, in_conflict, orientation, side};
 
 /// Answers whether a sphere is empty by asking all points nearby.
 ///
@@ -31,28 +31,32 @@ impl<'a> Emptiness<'a> {
         // Negatively oriented cells are another rule's business.
         let order = orientation(a.position, b.position, c.position, d.position);
         let positive = if order.is_gt() { [a, b, c, d] } else { [a, b, d, c] };
-        self.find(cell, |q| in_conflict(positive, &self.points.get(q)))
+        self.find(cell, |q| in_conflict(positive, q))
     }
 
     /// A point strictly inside the smallest orthogonal sphere of a simplex, whose squared radius
     /// is at most α.
     pub fn refuter<const N: usize>(&self, simplex: [u32; N]) -> Option<u32> {
         let corners = self.points.at(simplex);
-        self.find(simplex, |q| side(corners.each_ref(), &self.points.get(q)) == Side::Inside)
+        self.find(simplex, |q| side(corners.each_ref(), q) == Side::Inside)
     }
 
     fn find<const N: usize>(
         &self,
         simplex: [u32; N],
-        refutes: impl Fn(u32) -> bool,
+        refutes: impl Fn(&WeightedPoint) -> bool,
     ) -> Option<u32> {
         let corners = self.points.at(simplex);
-        let (place, radius) = match center(corners.each_ref()) {
-            Some((place, error)) if error < self.reach => (place, self.reach + error),
-            _ => (corners[0].position, 2.0 * self.reach),
+        let sphere =
+            RoundedSphere::new(corners.each_ref()).filter(|sphere| sphere.error < self.reach);
+        let (place, radius) = match &sphere {
+            Some(sphere) => (sphere.center, self.reach + sphere.error),
+            None => (corners[0].position, 2.0 * self.reach),
         };
-        self.grid.within(place, radius.next_up(), |q| {
-            (!simplex.contains(&q) && refutes(q)).then_some(q)
+        self.grid.within(place, radius.next_up(), |index| {
+            let q = self.points.get(index);
+            let outside = sphere.as_ref().is_some_and(|sphere| sphere.surely_outside(&q));
+            (!outside && !simplex.contains(&index) && refutes(&q)).then_some(index)
         })
     }
 }
