@@ -1,10 +1,13 @@
 use std::fmt;
 
+use serde::Serialize;
+
+use crate::check::class_name;
 use crate::check::exact::Exact;
 use crate::shape::Class;
 
 /// A simplex by the input indices of its vertices.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct Simplex(Vec<u32>);
 
 impl Simplex {
@@ -29,7 +32,10 @@ impl fmt::Display for Simplex {
 
 /// What is wrong with a complex: the rule that is broken, the simplex that breaks it, and the exact
 /// values that show it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+///
+/// Serialized with the rule as `"rule"`, exact values as text.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "rule", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Finding {
     /// A vertex is no input point.
@@ -236,7 +242,7 @@ impl fmt::Display for Finding {
                 "the cells do not fill the hull: six times their volume is {cells}, six times the hull's {hull}"
             ),
             Self::Class { simplex, given, expected, radius_squared, refuted_by } => {
-                write!(f, "{simplex} is {}, not {}", name(*expected), name(*given))?;
+                write!(f, "{simplex} is {}, not {}", class_name(*expected), class_name(*given))?;
                 if let Some(radius) = radius_squared {
                     write!(f, " (squared radius {radius})")?;
                 }
@@ -276,15 +282,6 @@ impl fmt::Display for Finding {
                 write!(f, "point {point} is a vertex, but gives way to point {stays} at its place")
             }
         }
-    }
-}
-
-fn name(class: Class) -> &'static str {
-    match class {
-        Class::Exterior => "exterior",
-        Class::Interior => "interior",
-        Class::Regular => "regular",
-        Class::Singular => "singular",
     }
 }
 

@@ -12,6 +12,8 @@ mod structure;
 
 use std::ops::ControlFlow;
 
+use serde::Serialize;
+
 use super::exact::{Exact, WeightedPoint};
 use crate::shape::{Class, Complex};
 use classes::Judge;
@@ -61,7 +63,7 @@ pub struct Claim<'a> {
 }
 
 /// What was judged, and what could not be.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Certificate {
     /// How many findings there were before the visitor stopped.
     pub findings: usize,
@@ -72,7 +74,8 @@ pub struct Certificate {
 }
 
 /// Rules that were not applied.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum NotJudged {
     /// Whether a simplex of the shape is missing that nothing listed has as a face: this needs the

@@ -2,6 +2,7 @@ use std::cmp::Ordering;
 use std::ops::Add;
 
 use dashu_int::IBig;
+use dashu_int::ops::Gcd;
 use rayon::prelude::*;
 
 use super::binary::{Binary, Range};
@@ -54,6 +55,21 @@ impl Lattice {
             }
         });
         sums.reduce(|| IBig::ZERO, Add::add)
+    }
+
+    /// The plane through three points that are not on one line, the same for whichever three:
+    /// normal and offset without common factor, the first number that is not zero positive.
+    pub fn plane(self, triangle: [[f64; 3]; 3]) -> [IBig; 4] {
+        let [a, b, c] = triangle.map(|p| self.big(p));
+        let [x, y, z] = cross(&minus(&b, &a), &minus(&c, &a));
+        let offset = dot(&[x.clone(), y.clone(), z.clone()], &a);
+        let plane = [x, y, z, offset];
+        let numbers = || plane.iter().filter(|number| !number.is_zero());
+        let divisor = numbers().cloned().reduce(|common, number| (&common).gcd(&number).into());
+        let (Some(divisor), Some(first)) = (divisor, numbers().next()) else { return plane };
+        let same_sign = sign(first) == sign(&divisor);
+        let divisor = if same_sign { divisor } else { -divisor };
+        plane.map(|number| number / &divisor)
     }
 
     fn small(self, p: [f64; 3]) -> [i128; 3] {

@@ -2,6 +2,7 @@ use std::fmt;
 
 use dashu_int::IBig;
 use dashu_int::ops::Gcd;
+use serde::{Serialize, Serializer};
 
 use super::WeightedPoint;
 use super::formulas::{Power1, Power2, Power3, Power4, Radius2, Radius3, Radius4, Volume};
@@ -70,6 +71,13 @@ impl fmt::Display for Exact {
             write!(f, "/{bottom}")?;
         }
         if rest != 0 { write!(f, "·2^{rest}") } else { Ok(()) }
+    }
+}
+
+impl Serialize for Exact {
+    /// As text: JSON numbers would round it.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 
