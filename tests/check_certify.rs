@@ -89,6 +89,8 @@ fn time_of_big_complexes() {
         assert_eq!(shape(&case, &shape_alone), []);
         let shape = clock.elapsed() - made - whole;
         let (points, cells) = (case.positions.len(), answer.complex.cells.len());
-        println!("{kind}: {points} points, {cells} cells, engine {made:.1?}, whole {whole:.1?}, shape {shape:.1?}");
+        println!(
+            "{kind}: {points} points, {cells} cells, engine {made:.1?}, whole {whole:.1?}, shape {shape:.1?}"
+        );
     }
 }

@@ -3,6 +3,8 @@
 mod check_common;
 
 use check_common::{Answer, Case, Random, engine, grid};
+use proptest::prelude::*;
+use walpha::Class;
 use walpha::check::enumerate;
 
 /// Both answers must be equal, and so must be the decision that there is none.
@@ -97,7 +99,8 @@ fn sixty_points() {
 fn cospherical() {
     let on_sphere = |square: i32| {
         let axis = || -7..=7;
-        let points = axis().flat_map(move |x| axis().flat_map(move |y| axis().map(move |z| [x, y, z])));
+        let points =
+            axis().flat_map(move |x| axis().flat_map(move |y| axis().map(move |z| [x, y, z])));
         points.filter(move |p| p.iter().map(|x| x * x).sum::<i32>() == square)
     };
     agree_on(300, |random| {
@@ -216,5 +219,70 @@ fn critical_alpha() {
             }
             agree(&Case { weights: vec![0.0; 8], positions, alpha });
         }
+    }
+}
+
+/// Shuffling the input gives the same complex in input indices.
+#[test]
+fn the_order_of_input_does_not_count() {
+    let mut random = Random::new(21);
+    for _ in 0..60 {
+        let n = 8 + random.below(60);
+        // Places of their own, so that no tie among duplicates depends on the order.
+        let mut positions = grid(5);
+        random.shuffle(&mut positions);
+        positions.truncate(n);
+        let weights = weights(&mut random, n);
+        let case = Case { positions, weights, alpha: alpha(&mut random) };
+        let Ok(straight) = engine(&case) else { continue };
+        let mut order: Vec<usize> = (0..n).collect();
+        random.shuffle(&mut order);
+        let shuffled = engine(&Case {
+            positions: order.iter().map(|&i| case.positions[i]).collect(),
+            weights: order.iter().map(|&i| case.weights[i]).collect(),
+            alpha: case.alpha,
+        })
+        .unwrap();
+        let back = |row: &[u32]| {
+            let mut row: Vec<_> = row.iter().map(|&i| order[i as usize] as u32).collect();
+            row.sort_unstable();
+            row
+        };
+        assert_eq!(rows(&shuffled, back), rows(&straight, |row| back_to_itself(row)), "{case:?}");
+    }
+}
+
+fn back_to_itself(row: &[u32]) -> Vec<u32> {
+    let mut row = row.to_vec();
+    row.sort_unstable();
+    row
+}
+
+/// All simplices with sorted vertices and their classes, and the hidden points.
+fn rows(answer: &Answer, renumber: impl Fn(&[u32]) -> Vec<u32>) -> Vec<(Vec<u32>, Option<Class>)> {
+    let c = &answer.complex;
+    let mut all: Vec<_> = c.cells.iter().map(|(r, class)| (renumber(r), Some(class))).collect();
+    all.extend(c.facets.iter().map(|(r, class)| (renumber(r), Some(class))));
+    all.extend(c.edges.iter().map(|(r, class)| (renumber(r), Some(class))));
+    all.extend(c.vertices.iter().map(|(r, class)| (renumber(r), Some(class))));
+    all.extend(answer.hidden.iter().map(|&i| (renumber(&[i]), None)));
+    all.sort_unstable();
+    all
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1500, ..ProptestConfig::default() })]
+
+    /// Shrinks to few points with small numbers when it fails.
+    #[test]
+    fn any_small_set(
+        points in prop::collection::vec((prop::array::uniform3(-3i8..=3), -4i8..=4), 5..14),
+        halves in any::<bool>(),
+        alpha in -3i8..=12,
+    ) {
+        let scale = if halves { 0.5 } else { 1.0 };
+        let positions = points.iter().map(|(p, _)| p.map(f64::from)).collect();
+        let weights = points.iter().map(|(_, w)| f64::from(*w) * scale).collect();
+        agree(&Case { positions, weights, alpha: f64::from(alpha) * 0.25 });
     }
 }

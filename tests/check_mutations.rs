@@ -111,8 +111,7 @@ fn each_missing_face() {
                 break;
             };
             let all = findings(&case, &with(&answer, mutated), Extent::Whole);
-            let is_it =
-                |f: &Finding| matches!(f, Finding::MissingFace { face, .. } if sorted(face.vertices()) == dropped);
+            let is_it = |f: &Finding| matches!(f, Finding::MissingFace { face, .. } if sorted(face.vertices()) == dropped);
             assert!(all.iter().any(is_it), "{dropped:?}: {all:?}");
         }
     }
@@ -255,10 +254,7 @@ fn a_point_hidden_twice_and_one_that_is_none() {
 
 #[test]
 fn a_hidden_point_that_is_not() {
-    found!(
-        |c, _| c.weights[HIDDEN as usize] = -0.7,
-        Finding::NotHidden { point: HIDDEN, .. }
-    );
+    found!(|c, _| c.weights[HIDDEN as usize] = -0.7, Finding::NotHidden { point: HIDDEN, .. });
     // On the sphere, where the perturbation decides.
     found!(
         |c, _| c.weights[HIDDEN as usize] = -0.75,
@@ -330,14 +326,21 @@ fn a_cube_with_other_diagonals() {
 /// Two cells around the wrong one of two diagonals, far from any tie.
 #[test]
 fn a_cell_that_is_not_regular() {
-    let positions =
-        vec![[0.0, 0.0, 3.0], [0.0, 0.0, -3.0], [2.0, 0.0, 0.0], [-1.0, 2.0, 0.0], [-1.0, -2.0, 0.0]];
+    let positions = vec![
+        [0.0, 0.0, 3.0],
+        [0.0, 0.0, -3.0],
+        [2.0, 0.0, 0.0],
+        [-1.0, 2.0, 0.0],
+        [-1.0, -2.0, 0.0],
+    ];
     let (case, answer) = triangulation(positions, &[[2, 3, 4, 0], [2, 4, 3, 1]]);
     assert_eq!(findings(&case, &answer, Extent::Whole), []);
-    let (case, answer) =
-        triangulation(case.positions, &[[0, 1, 3, 2], [0, 1, 4, 3], [0, 1, 2, 4]]);
+    let (case, answer) = triangulation(case.positions, &[[0, 1, 3, 2], [0, 1, 4, 3], [0, 1, 2, 4]]);
     let all = findings(&case, &answer, Extent::Whole);
-    assert!(all.iter().any(|f| matches!(f, Finding::NotRegular { power, .. } if !power.is_zero())), "{all:?}");
+    assert!(
+        all.iter().any(|f| matches!(f, Finding::NotRegular { power, .. } if !power.is_zero())),
+        "{all:?}"
+    );
 }
 
 #[test]

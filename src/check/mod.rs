@@ -10,7 +10,9 @@ pub mod exact;
 pub mod schema;
 
 pub use certify::{Certificate, Claim, Extent, Finding, NotCertifiable, NotJudged, Simplex};
-pub use compare::{ClassDifference, Comparison, Differences, Domain, NotComparable, Placed, compare};
+pub use compare::{
+    ClassDifference, Comparison, Differences, Domain, NotComparable, Placed, compare,
+};
 pub use enumerate::{Enumeration, NotEnumerable, enumerate};
 
 /// A class in words.

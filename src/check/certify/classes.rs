@@ -107,9 +107,7 @@ impl Judge<'_> {
                 return Verdict::of(Class::Exterior);
             }
             let corners = self.points.at(facet);
-            let inside = |&q: &u32| {
-                side(corners.each_ref(), &self.points.get(q)) == Side::Inside
-            };
+            let inside = |&q: &u32| side(corners.each_ref(), &self.points.get(q)) == Side::Inside;
             let neighbours = structure.halves(i).map(|half| structure.apex(half));
             self.alone(facet, neighbours.filter(inside).min())
         };
@@ -160,7 +158,8 @@ impl Judge<'_> {
                 slot.store(flag | CANDIDATE, Ordering::Relaxed);
             }
         });
-        let refuters: Vec<AtomicU32> = lower.vertices.iter().map(|_| AtomicU32::new(NONE)).collect();
+        let refuters: Vec<AtomicU32> =
+            lower.vertices.iter().map(|_| AtomicU32::new(NONE)).collect();
         let candidate = |flag: &AtomicU8| flag.load(Ordering::Relaxed) & CANDIDATE != 0;
         if flags.par_iter().any(candidate) {
             rows().filter(|(_, verdict)| verdict.class == Class::Exterior).for_each(|(row, _)| {
@@ -186,8 +185,7 @@ impl Judge<'_> {
                 self.alone(row, Some(refuter).filter(|&point| point != NONE))
             }
         };
-        let verdicts =
-            lower.vertices.par_iter().zip(&flags).zip(&refuters).map(verdict).collect();
+        let verdicts = lower.vertices.par_iter().zip(&flags).zip(&refuters).map(verdict).collect();
         if self.extent == Extent::Whole {
             let stray = |(_, flag): &(_, &AtomicU8)| flag.load(Ordering::Relaxed) & SEEN == 0;
             let strays = lower.vertices.iter().zip(&flags).filter(stray);
@@ -198,8 +196,8 @@ impl Judge<'_> {
 
     /// The verdict on a simplex with a small sphere and nothing of the shape above it.
     fn alone<const N: usize>(&self, row: [u32; N], neighbour_inside: Option<u32>) -> Verdict {
-        let inside = neighbour_inside
-            .or_else(|| self.emptiness.as_ref().and_then(|near| near.refuter(row)));
+        let inside =
+            neighbour_inside.or_else(|| self.emptiness.as_ref().and_then(|near| near.refuter(row)));
         match inside {
             Some(refuted_by) => Verdict { class: Class::Exterior, refuted_by },
             None => Verdict::of(Class::Singular),

@@ -258,7 +258,10 @@ impl fmt::Display for Finding {
                 "{facet} must turn counter-clockwise seen from outside, but point {behind} of the shape is before it"
             ),
             Self::NotHidden { point, cell, power } => {
-                write!(f, "point {point} is not hidden: it is inside the orthogonal sphere of {cell}, in which it lies")?;
+                write!(
+                    f,
+                    "point {point} is not hidden: it is inside the orthogonal sphere of {cell}, in which it lies"
+                )?;
                 write_power(f, power)
             }
             Self::OutsideHull { point, facet, six_volumes } => write!(
@@ -269,7 +272,10 @@ impl fmt::Display for Finding {
                 write!(f, "point {point} is neither vertex nor hidden nor a duplicate")
             }
             Self::NotOnlyHidden { point } => {
-                write!(f, "point {point} is listed as hidden, but it is a vertex, a duplicate, listed before or no point")
+                write!(
+                    f,
+                    "point {point} is listed as hidden, but it is a vertex, a duplicate, listed before or no point"
+                )
             }
             Self::Duplicate { point, given, expected } => {
                 let stays = |who: &Option<u32>| match who {

@@ -38,8 +38,7 @@ fn overlap(structure: &Structure, one: Half, other: Half) -> Option<Finding> {
     // Seen from the two sides, a facet turns the two ways.
     let same_turn = [[a, b, c], [b, c, a], [c, a, b]].contains(&structure.outward(other));
     let cell = |half: Half| structure.complex.cells.vertices[half.cell].into();
-    same_turn
-        .then(|| Finding::Overlap { facet: [a, b, c].into(), cells: [cell(one), cell(other)] })
+    same_turn.then(|| Finding::Overlap { facet: [a, b, c].into(), cells: [cell(one), cell(other)] })
 }
 
 fn refuted(structure: &Structure, points: Points, one: Half, other: Half) -> Option<Finding> {

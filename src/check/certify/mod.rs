@@ -204,11 +204,8 @@ impl<'a> Claim<'a> {
         visitor: &mut dyn FnMut(Finding) -> ControlFlow<()>,
     ) -> Result<Certificate, NotCertifiable> {
         self.sane()?;
-        let mut certificate = Certificate {
-            findings: 0,
-            six_volumes: Exact::default(),
-            not_judged: Vec::new(),
-        };
+        let mut certificate =
+            Certificate { findings: 0, six_volumes: Exact::default(), not_judged: Vec::new() };
         if self.extent == Extent::Shape {
             let local =
                 [NotJudged::MissingSimplices, NotJudged::TiedSingular, NotJudged::HiddenAndHull];

@@ -85,7 +85,8 @@ impl Grid {
         let reach = *self.counts.iter().max().expect("three axes");
         (0..reach).find_map(|ring| {
             let from: [usize; 3] = std::array::from_fn(|k| center[k].saturating_sub(ring));
-            let to: [usize; 3] = std::array::from_fn(|k| (center[k] + ring).min(self.counts[k] - 1));
+            let to: [usize; 3] =
+                std::array::from_fn(|k| (center[k] + ring).min(self.counts[k] - 1));
             (from[2]..=to[2]).find_map(|z| {
                 (from[1]..=to[1]).find_map(|y| {
                     let first = self.number([from[0], y, z]);

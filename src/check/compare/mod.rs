@@ -66,7 +66,9 @@ pub struct ClassDifference {
 #[non_exhaustive]
 pub enum NotComparable {
     /// A coordinate is NaN or infinite.
-    #[error("point {point} of complex {which} has a coordinate that is not finite; clean the input")]
+    #[error(
+        "point {point} of complex {which} has a coordinate that is not finite; clean the input"
+    )]
     NotFinite {
         /// `A` or `B`.
         which: char,
@@ -118,9 +120,8 @@ pub fn compare(a: Placed, b: Placed) -> Result<Comparison, NotComparable> {
 impl Comparison {
     /// Whether the points and all compared simplices with their classes are the same.
     pub fn is_equal(&self) -> bool {
-        let same = |d: &Differences| {
-            d.only_a.is_empty() && d.only_b.is_empty() && d.classes.is_empty()
-        };
+        let same =
+            |d: &Differences| d.only_a.is_empty() && d.only_b.is_empty() && d.classes.is_empty();
         self.points_only_a.is_empty()
             && self.points_only_b.is_empty()
             && self.dimensions.iter().all(same)

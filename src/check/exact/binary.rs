@@ -57,10 +57,7 @@ impl Range {
             return self;
         }
         let length = (64 - number.mantissa.unsigned_abs().leading_zeros()) as i32;
-        Self {
-            low: self.low.min(number.exponent),
-            high: self.high.max(number.exponent + length),
-        }
+        Self { low: self.low.min(number.exponent), high: self.high.max(number.exponent + length) }
     }
 
     /// The exponent of the common unit; none when all numbers are zero.

@@ -79,9 +79,8 @@ impl Formula<3> for Radius4 {
 /// 2 det · c and det for a tetrahedron.
 pub fn center4<T: Number>([a, b, c]: [&[T; 3]; 3], [ha, hb, hc]: [&T; 3]) -> ([T; 3], T) {
     let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
-    let center = std::array::from_fn(|k| {
-        ha.times(&bc[k]).plus(&hb.times(&ca[k])).plus(&hc.times(&ab[k]))
-    });
+    let center =
+        std::array::from_fn(|k| ha.times(&bc[k]).plus(&hb.times(&ca[k])).plus(&hc.times(&ab[k])));
     (center, dot(&ab, c))
 }
 
@@ -139,10 +138,7 @@ impl<T: Number> Gram<T> {
     }
 
     fn adjugate_times(&self, u: &T, v: &T) -> [T; 2] {
-        [
-            self.bb.times(u).minus(&self.ab.times(v)),
-            self.aa.times(v).minus(&self.ab.times(u)),
-        ]
+        [self.bb.times(u).minus(&self.ab.times(v)), self.aa.times(v).minus(&self.ab.times(u))]
     }
 }
 

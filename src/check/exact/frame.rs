@@ -35,7 +35,10 @@ pub fn sign_of<const N: usize>(
     others: [&WeightedPoint; N],
     alpha: f64,
 ) -> Ordering {
-    formula.value(&approx(origin, others, alpha)).sign().unwrap_or_else(|| exact_sign_of(formula, origin, others, alpha))
+    formula
+        .value(&approx(origin, others, alpha))
+        .sign()
+        .unwrap_or_else(|| exact_sign_of(formula, origin, others, alpha))
 }
 
 /// The frame in doubles with error bounds; its unit is 1.
@@ -146,4 +149,73 @@ pub fn dot<T: Number>(u: &[T; 3], v: &[T; 3]) -> T {
 pub fn cross<T: Number>(u: &[T; 3], v: &[T; 3]) -> [T; 3] {
     let minor = |i: usize, j: usize| u[i].times(&v[j]).minus(&u[j].times(&v[i]));
     [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::formulas::{
+        Power1, Power2, Power3, Power4, Radius2, Radius3, Radius4, Volume,
+    };
+    use super::*;
+
+    /// SplitMix64.
+    fn next(state: &mut u64) -> u64 {
+        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Small integers, and if `wild` their neighbours, halves, and numbers of any size.
+    fn number(state: &mut u64, wild: bool) -> f64 {
+        let small = (next(state) % 9) as f64 - 4.0;
+        match next(state) % 8 {
+            _ if !wild => small,
+            0 => small.next_up(),
+            1 => small / 2.0,
+            2 => small * 10f64.powi((next(state) % 400) as i32 - 250),
+            3 => (next(state) as f64) / 1e19,
+            _ => small,
+        }
+    }
+
+    /// Which ways gave the same answer as big integers: doubles, `i128`.
+    fn agree<const N: usize>(formula: &impl Formula<N>, state: &mut u64, hits: &mut [usize; 3]) {
+        let wild = next(state) % 2 == 0;
+        let mut draw = || number(state, wild);
+        let mut point = || WeightedPoint { position: [0; 3].map(|_| draw()), weight: draw() };
+        let (origin, others) = (point(), [0; N].map(|_| point()));
+        let alpha = draw();
+        let digits = Digits::new(&origin, others.each_ref(), alpha);
+        let truth = sign(&formula.value(&digits.big()));
+        hits[0] += usize::from(truth.is_eq());
+        if let Some(quick) = formula.value(&approx(&origin, others.each_ref(), alpha)).sign() {
+            assert_eq!(quick, truth, "{origin:?} {others:?} {alpha}");
+            hits[1] += 1;
+        }
+        if digits.fit_i128(formula) {
+            assert_eq!(formula.value(&digits.small()).cmp(&0), truth, "{origin:?} {others:?}");
+            hits[2] += 1;
+        }
+        assert_eq!(sign_of(formula, &origin, others.each_ref(), alpha), truth);
+    }
+
+    #[test]
+    fn all_kinds_of_number_agree() {
+        let mut state = 7;
+        let mut hits = [[0; 3]; 8];
+        for _ in 0..4000 {
+            agree(&Volume, &mut state, &mut hits[0]);
+            agree(&Power1, &mut state, &mut hits[1]);
+            agree(&Power2, &mut state, &mut hits[2]);
+            agree(&Power3, &mut state, &mut hits[3]);
+            agree(&Power4, &mut state, &mut hits[4]);
+            agree(&Radius2, &mut state, &mut hits[5]);
+            agree(&Radius3, &mut state, &mut hits[6]);
+            agree(&Radius4, &mut state, &mut hits[7]);
+        }
+        for [_, quick, small] in hits {
+            assert!(quick > 1000 && small > 1000, "{hits:?}");
+        }
+    }
 }

@@ -151,5 +151,8 @@ fn four_unit<const N: usize>(frame: &Frame<IBig, N>) -> IBig {
 /// |a × b|², the determinant of the Gram matrix.
 fn area(a: &[IBig; 3], b: &[IBig; 3]) -> IBig {
     let normal = cross(a, b);
-    normal[0].times(&normal[0]).plus(&normal[1].times(&normal[1])).plus(&normal[2].times(&normal[2]))
+    normal[0]
+        .times(&normal[0])
+        .plus(&normal[1].times(&normal[1]))
+        .plus(&normal[2].times(&normal[2]))
 }

@@ -13,8 +13,12 @@ impl ComplexFile {
     /// Fields that do not pair up, point numbers out of range, no simplices at all.
     pub fn into_complex(self) -> Result<PlacedComplex, SchemaError> {
         let n = self.points.len();
-        if [self.cells.is_none(), self.facets.is_none(), self.edges.is_none(), self.vertices.is_none()]
-            == [true; 4]
+        if [
+            self.cells.is_none(),
+            self.facets.is_none(),
+            self.edges.is_none(),
+            self.vertices.is_none(),
+        ] == [true; 4]
         {
             return Err(SchemaError::NoSimplices);
         }
@@ -119,9 +123,9 @@ fn settle<const N: usize, const M: usize>(
         }
     }
     let derived = listed.rows.is_none();
-    let rows = listed.rows.unwrap_or_else(|| {
-        BTreeSet::from_iter(above.keys().copied()).into_iter().collect()
-    });
+    let rows = listed
+        .rows
+        .unwrap_or_else(|| BTreeSet::from_iter(above.keys().copied()).into_iter().collect());
     let implied = |row: &[u32; M]| match above.get(&sorted(*row)) {
         // Nothing is above a cell.
         _ if M == 4 => Class::Interior,

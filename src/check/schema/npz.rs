@@ -163,8 +163,11 @@ impl<R: Read + Seek> Npz<R> {
     ) -> Result<Option<Vec<[T; N]>>, SchemaError> {
         let Some(array) = self.array(name)? else { return Ok(None) };
         let got = format!("shape {:?}", array.shape());
+        let empty = array.is_empty();
         let wrong = || SchemaError::Array { name, got, expected: format!("shape [m, {N}]") };
         match array.into_dimensionality::<Ix2>() {
+            // NumPy makes a flat array of an empty list of rows.
+            Err(_) if empty => Ok(Some(Vec::new())),
             Ok(table) if table.ncols() == N => {
                 let row = |row: ndarray::ArrayView1<f64>| {
                     let mut out = [T::default(); N];
