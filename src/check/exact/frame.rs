@@ -181,7 +181,7 @@ mod tests {
 
     /// Which ways gave the same answer as big integers: doubles, `i128`.
     fn agree<const N: usize>(formula: &impl Formula<N>, state: &mut u64, hits: &mut [usize; 3]) {
-        let wild = next(state) % 2 == 0;
+        let wild = next(state).is_multiple_of(2);
         let mut draw = || number(state, wild);
         let mut point = || WeightedPoint { position: [0; 3].map(|_| draw()), weight: draw() };
         let (origin, others) = (point(), [0; N].map(|_| point()));

@@ -21,7 +21,7 @@ use formulas::{Area, Power1, Power2, Power3, Power4, Radius2, Radius3, Radius4, 
 use frame::sign_of;
 
 pub use center::RoundedSphere;
-pub use perturb::{in_conflict, rank};
+pub use perturb::in_conflict;
 pub use solid::{Lattice, Star};
 pub use value::{Exact, power_value, radius_value, six_volume};
 

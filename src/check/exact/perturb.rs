@@ -5,7 +5,7 @@ use super::frame::sign_of;
 use super::{WeightedPoint, orientation};
 
 /// The order of the perturbation: points by x, then y, then z. The largest is raised most.
-pub fn rank(a: &WeightedPoint, b: &WeightedPoint) -> Ordering {
+fn rank(a: &WeightedPoint, b: &WeightedPoint) -> Ordering {
     a.position.partial_cmp(&b.position).expect("coordinates are no NaN")
 }
 
