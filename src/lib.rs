@@ -6,7 +6,9 @@ pub mod cgal;
 pub mod check;
 pub mod export;
 pub mod haar;
+pub mod memory;
 pub mod points;
+pub mod render;
 pub mod shape;
 pub mod volume;
 

@@ -6,9 +6,15 @@
 //! fewer than four points) before the call, in [`Sites`]. C++ never calls back into Rust, because
 //! CGAL changes the rounding mode while it works.
 
+#[allow(unused_qualifications, reason = "in what the macro writes")]
 mod ffi;
+mod lattice;
 mod reference;
 mod sites;
+mod slab;
 
+pub use lattice::Lattice;
+use reference::flat;
 pub use reference::{CgalError, RawComplex, reference};
 pub use sites::{Sites, SitesError};
+pub use slab::{HIDDEN, RawSlab, SlabSites, slab};

@@ -8,6 +8,7 @@ mod obj;
 mod off;
 mod ply;
 mod target;
+mod volume;
 mod vtu;
 
 pub use format::{Exporter, Format, UnknownFormat};
@@ -15,4 +16,5 @@ pub use obj::Obj;
 pub use off::Off;
 pub use ply::Ply;
 pub use target::{Target, TargetError};
+pub use volume::write_volume_npy;
 pub use vtu::Vtu;

@@ -39,7 +39,8 @@ impl Target {
         // Temporary files are private by default; this one becomes an ordinary file.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.tempfile_in(folder).map_err(fail)?;
+        // The name of the temporary file, which the error tells, means nothing to anybody.
+        let file = builder.tempfile_in(folder).map_err(|why| fail(why.kind().into()))?;
         Ok(Self { path: path.to_owned(), file: BufWriter::new(file) })
     }
 
@@ -57,7 +58,7 @@ impl Target {
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), TargetError> {
         let Self { path, mut file } = self;
-        let mut finish = || -> io::Result<()> {
+        let finish = || -> io::Result<()> {
             content(&mut file)?;
             file.flush()
         };

@@ -1,0 +1,280 @@
+//! Options that several commands share, and how they become options of the library.
+
+use std::num::NonZeroUsize;
+
+use anyhow::bail;
+use clap::{Args, ValueEnum};
+use walpha::shape::{Engine, ShapeOptions};
+use walpha::volume::{Dtype, Endian, RawLayout, ReadOptions};
+use walpha::{
+    Alpha, Balls, Decomposition, Dims, Gray, GrayRange, HaarOptions, Selection, SelectionRule,
+    Tolerance, Units, Weighting,
+};
+
+/// What to read.
+#[derive(Args, Clone)]
+pub struct InputArgs {
+    /// Volume or point file, sample:skull, sample:phantom or sample:phantom@N.
+    #[arg(value_name = "INPUT")]
+    pub input: String,
+    #[command(flatten)]
+    pub raw: RawArgs,
+    /// Values that become gray 0 and 255 [default: as they are for unsigned 8 bits, else min..max].
+    #[arg(long, value_name = "LO..HI", value_parser = gray_range, allow_hyphen_values = true)]
+    gray: Option<GrayRange>,
+}
+
+impl InputArgs {
+    /// How values become gray levels.
+    pub fn gray(&self) -> Gray {
+        self.gray.map_or(Gray::Automatic, Gray::Range)
+    }
+}
+
+/// The layout of a raw file.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "Raw volumes")]
+pub struct RawArgs {
+    /// Read bare samples, so many along x, y and z (x fastest in the file).
+    #[arg(long, value_name = "X,Y,Z", value_parser = dims, requires = "dtype")]
+    dims: Option<Dims>,
+    /// Type of a sample: u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64.
+    #[arg(long, value_name = "TYPE", requires = "dims")]
+    dtype: Option<Dtype>,
+    /// Byte order of a sample: little or big.
+    #[arg(long, value_name = "ORDER", default_value = "little", requires = "dims")]
+    endian: Endian,
+    /// Bytes to skip at the start of the file.
+    #[arg(long, value_name = "BYTES", default_value_t = 0, requires = "dims")]
+    offset: u64,
+}
+
+impl RawArgs {
+    /// How to read the file.
+    pub fn options(&self) -> ReadOptions {
+        let raw = self.dims.zip(self.dtype);
+        let layout =
+            |(dims, dtype)| RawLayout { dims, dtype, endian: self.endian, offset: self.offset };
+        ReadOptions { raw: raw.map(layout) }
+    }
+}
+
+/// The wavelet stage.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Wavelet stage")]
+pub struct HaarArgs {
+    /// Decomposition: all axes once per level, or each axis fully.
+    #[arg(long, value_enum, default_value_t, value_name = "KIND")]
+    haar: Haar,
+    /// Root mean square error allowed, in gray levels [default: 1].
+    #[arg(long, value_name = "E", group = "tolerance", value_parser = not_negative)]
+    rms: Option<f64>,
+    /// L² norm of the error allowed, in gray levels.
+    #[arg(long, value_name = "E", group = "tolerance", value_parser = not_negative)]
+    epsilon: Option<f64>,
+    /// Coefficients to keep.
+    #[arg(long, value_name = "N", group = "tolerance")]
+    coefficients: Option<u64>,
+}
+
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum Haar {
+    #[default]
+    NonStandard,
+    Standard,
+}
+
+impl HaarArgs {
+    /// The stage's options.
+    pub fn options(&self) -> HaarOptions {
+        let tolerance = match (self.rms, self.epsilon, self.coefficients) {
+            (Some(rms), ..) => Tolerance::Rms(rms),
+            (_, Some(epsilon), _) => Tolerance::Epsilon(epsilon),
+            (.., Some(count)) => Tolerance::Coefficients(count),
+            _ => Tolerance::default(),
+        };
+        let decomposition = match self.haar {
+            Haar::NonStandard => Decomposition::NonStandard,
+            Haar::Standard => Decomposition::Standard,
+        };
+        HaarOptions { decomposition, tolerance }
+    }
+}
+
+/// Which samples become points.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Points")]
+pub struct SelectArgs {
+    /// Keep the N samples of largest gray difference.
+    #[arg(long, value_name = "N", group = "rule")]
+    count: Option<u64>,
+    /// Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609].
+    #[arg(long, value_name = "R", group = "rule")]
+    ratio: Option<f64>,
+    /// Keep the samples whose gray difference is at least T gray levels.
+    #[arg(long, value_name = "T", group = "rule")]
+    threshold: Option<f64>,
+    /// Leave out samples below this gray level after truncation.
+    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    gray_min: Option<f64>,
+    /// Coordinates in voxels, or in the file's units; then α, weights and sizes are too.
+    #[arg(long, value_enum, default_value_t, value_name = "UNITS")]
+    units: UnitsArg,
+}
+
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum UnitsArg {
+    #[default]
+    Voxel,
+    World,
+}
+
+impl SelectArgs {
+    /// The stage's options.
+    pub fn selection(&self) -> Selection {
+        let rule = match (self.count, self.ratio, self.threshold) {
+            (Some(count), ..) => SelectionRule::Count(count),
+            (_, Some(ratio), _) => SelectionRule::Ratio(ratio),
+            (.., Some(threshold)) => SelectionRule::Threshold(threshold),
+            _ => SelectionRule::default(),
+        };
+        Selection { rule, gray_min: self.gray_min }
+    }
+
+    /// What coordinates are measured in.
+    pub fn units(&self) -> Units {
+        match self.units {
+            UnitsArg::Voxel => Units::Voxel,
+            UnitsArg::World => Units::World,
+        }
+    }
+}
+
+/// α and the weights in proportion to it.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Weights and α")]
+pub struct WeightArgs {
+    /// The parameter α, a squared length; `inf` gives the convex hull [default: 10].
+    #[arg(long, value_name = "A", value_parser = alpha, group = "parameter", allow_negative_numbers = true)]
+    alpha: Option<Alpha>,
+    /// The parameter as a radius: α = R².
+    #[arg(long, value_name = "R", value_parser = alpha_radius, group = "parameter")]
+    alpha_radius: Option<Alpha>,
+    /// Weights ω (squared lengths): common=C, min-max (eq. 4.1), barycentric (eq. 4.2),
+    /// barycentric-n (N times that) or column (from the input).
+    #[arg(long, value_name = "KIND", allow_hyphen_values = true)]
+    weights: Option<Weighting>,
+}
+
+impl WeightArgs {
+    /// The parameter α.
+    pub fn alpha(&self) -> Alpha {
+        const PAPER: f64 = 10.0;
+        let given = self.alpha.or(self.alpha_radius);
+        given.unwrap_or_else(|| Alpha::from_squared(PAPER).expect("a number"))
+    }
+
+    /// The weights asked for; without a word, those of the input, or else none.
+    pub fn weighting(&self, input_has_weights: bool) -> Weighting {
+        let silent = if input_has_weights { Weighting::Column } else { Weighting::Common(0.0) };
+        self.weights.unwrap_or(silent)
+    }
+}
+
+/// How the shape is computed.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Shape")]
+pub struct ShapeArgs {
+    /// A point is a ball of squared radius α + ω (power), or of radius α + ω (radius).
+    #[arg(long, value_enum, default_value_t, value_name = "READING")]
+    balls: BallsArg,
+    /// Program that computes the shape: slabs (fast), or reference (plain CGAL). Same answer.
+    #[arg(long, value_enum, default_value_t, value_name = "ENGINE")]
+    engine: EngineArg,
+    /// Slabs to cut the points into [default: by threads and memory]; 1 is the whole
+    /// triangulation, which alone knows hidden points.
+    #[arg(long, value_name = "N")]
+    slabs: Option<NonZeroUsize>,
+    /// Memory to plan slabs for, as in 2G or 500M.
+    #[arg(long, value_name = "SIZE", value_parser = bytes, conflicts_with = "slabs")]
+    memory: Option<u64>,
+    /// Keep the simplices outside the shape too: the whole triangulation.
+    #[arg(long)]
+    exterior: bool,
+}
+
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum EngineArg {
+    #[default]
+    Slabs,
+    Reference,
+}
+
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum BallsArg {
+    #[default]
+    Power,
+    Radius,
+}
+
+impl ShapeArgs {
+    /// The stage's options.
+    pub fn options(&self, alpha: Alpha) -> ShapeOptions {
+        let balls = match self.balls {
+            BallsArg::Power => Balls::Power,
+            BallsArg::Radius => Balls::Radius,
+        };
+        let engine = match self.engine {
+            EngineArg::Slabs => Engine::Slabs,
+            EngineArg::Reference => Engine::Reference,
+        };
+        let Self { exterior, slabs, memory, .. } = *self;
+        ShapeOptions { alpha, balls, engine, exterior, slabs, memory }
+    }
+}
+
+fn dims(text: &str) -> anyhow::Result<Dims> {
+    let sizes: Vec<u64> =
+        text.split(',').map(|size| size.trim().parse()).collect::<Result<_, _>>()?;
+    let [x, y, z] = sizes[..] else {
+        bail!("three sizes are needed, as in 64,64,64 for x, y and z");
+    };
+    Ok(Dims::new(x, y, z)?)
+}
+
+fn gray_range(text: &str) -> anyhow::Result<GrayRange> {
+    let Some((low, high)) = text.split_once("..") else {
+        bail!("two numbers are needed, as in -1000..2000");
+    };
+    let range = GrayRange { low: low.trim().parse()?, high: high.trim().parse()? };
+    if !(range.low < range.high && range.low.is_finite() && range.high.is_finite()) {
+        bail!("LO must be less than HI, and both finite");
+    }
+    Ok(range)
+}
+
+fn bytes(text: &str) -> anyhow::Result<u64> {
+    let units = [("K", 10), ("M", 20), ("G", 30), ("T", 40)];
+    let unit = units.iter().find_map(|(name, bits)| Some((text.strip_suffix(name)?, bits)));
+    let (number, bits) = unit.unwrap_or((text, &0));
+    let Some(bytes) = number.parse().ok().and_then(|n: u64| n.checked_mul(1 << bits)) else {
+        bail!("a whole number of bytes is needed, as in 2G, 500M or 1073741824");
+    };
+    Ok(bytes)
+}
+
+fn not_negative(text: &str) -> anyhow::Result<f64> {
+    let number: f64 = text.parse()?;
+    if !(number >= 0.0) {
+        bail!("a number from 0 up is needed");
+    }
+    Ok(number)
+}
+
+fn alpha(text: &str) -> anyhow::Result<Alpha> {
+    Ok(Alpha::from_squared(text.parse()?)?)
+}
+
+fn alpha_radius(text: &str) -> anyhow::Result<Alpha> {
+    Ok(Alpha::from_radius(text.parse()?)?)
+}

@@ -1,0 +1,67 @@
+//! `walpha haar`: steps 1 to 5 alone.
+
+use std::path::PathBuf;
+
+use anyhow::bail;
+use clap::Args;
+use serde::Serialize;
+use walpha::export::{Target, write_volume_npy};
+use walpha::haar::smooth;
+
+use super::Global;
+use super::args::{HaarArgs, InputArgs};
+use super::output::{print, print_json};
+use super::pipeline::{Input, read};
+use super::progress::Progress;
+use super::report::{HaarReport, SCHEMA_VERSION};
+
+/// Transform a volume, drop small coefficients, and restore it.
+///
+/// Example: walpha haar sample:skull --rms 2 -o smooth.npy
+#[derive(Args)]
+pub struct Haar {
+    #[command(flatten)]
+    input: InputArgs,
+    /// File to write the restored gray levels to: .npy, f32, axes z, y, x.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    haar: HaarArgs,
+}
+
+#[derive(Serialize)]
+struct Facts {
+    schema_version: u32,
+    input: String,
+    haar: HaarReport,
+}
+
+impl Haar {
+    pub fn run(self, global: Global) -> anyhow::Result<()> {
+        let target = match &self.output {
+            None => None,
+            Some(path) if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy")) => {
+                Some(Target::open(path)?)
+            }
+            Some(path) => bail!("{}: a volume can be written as .npy", path.display()),
+        };
+        let mut progress = Progress::new(global);
+        let Input::Volume(volume, _) = read(&self.input, &mut progress)? else {
+            bail!("{} holds points, and a volume is needed", self.input.input);
+        };
+        let options = self.haar.options();
+        let (smoothed, truncation) = progress.stage("haar", || smooth(&volume, &options))?;
+        if let Some(target) = target {
+            progress.stage("write", || target.write(|out| write_volume_npy(&smoothed, out)))?;
+        }
+        progress.finish();
+        let haar = HaarReport::from(&truncation);
+        if global.json {
+            let input = self.input.input;
+            print_json(&Facts { schema_version: SCHEMA_VERSION, input, haar })?;
+        } else if !global.quiet {
+            print(&format!("{haar}\n"))?;
+        }
+        Ok(())
+    }
+}

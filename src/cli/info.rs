@@ -1,0 +1,109 @@
+//! `walpha info`: what a file holds.
+
+use clap::Args;
+use serde::Serialize;
+use walpha::points::read_points;
+use walpha::volume;
+
+use super::args::InputArgs;
+use super::output::{print, print_json};
+use super::report::SCHEMA_VERSION;
+use super::{Global, pipeline};
+
+/// Say what a file holds, without computing anything.
+///
+/// Example: walpha info sample:skull --json
+#[derive(Args)]
+pub struct Info {
+    #[command(flatten)]
+    input: InputArgs,
+}
+
+#[derive(Serialize)]
+struct Facts {
+    schema_version: u32,
+    input: String,
+    #[serde(flatten)]
+    content: Content,
+}
+
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+enum Content {
+    Volume {
+        dims: [usize; 3],
+        spacing: [f64; 3],
+        origin: [f64; 3],
+        min: f32,
+        max: f32,
+        gray_levels: bool,
+    },
+    Points {
+        count: usize,
+        low: [f64; 3],
+        high: [f64; 3],
+        weights: bool,
+        values: bool,
+    },
+}
+
+impl Info {
+    pub fn run(self, global: Global) -> anyhow::Result<()> {
+        let content = self.look()?;
+        if global.json {
+            let input = self.input.input;
+            print_json(&Facts { schema_version: SCHEMA_VERSION, input, content })?;
+        } else if !global.quiet {
+            print(&content.to_string())?;
+        }
+        Ok(())
+    }
+
+    fn look(&self) -> anyhow::Result<Content> {
+        if pipeline::is_points(&self.input)? {
+            let points = read_points(self.input.input.as_ref())?;
+            let axis = |end: fn(f64, f64) -> f64, start: f64, axis: usize| {
+                points.positions.iter().fold(start, |so_far, p| end(so_far, p[axis]))
+            };
+            return Ok(Content::Points {
+                count: points.len(),
+                low: [0, 1, 2].map(|i| axis(f64::min, f64::INFINITY, i)),
+                high: [0, 1, 2].map(|i| axis(f64::max, f64::NEG_INFINITY, i)),
+                weights: points.weights.is_some(),
+                values: points.values.is_some(),
+            });
+        }
+        let volume = volume::open(&self.input.input, &self.input.raw.options())?;
+        let (min, max) = volume.value_range();
+        Ok(Content::Volume {
+            dims: volume.dims().xyz(),
+            spacing: volume.frame().spacing,
+            origin: volume.frame().origin,
+            min,
+            max,
+            gray_levels: volume.has_gray_levels(),
+        })
+    }
+}
+
+impl std::fmt::Display for Content {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Volume { dims: [x, y, z], spacing, origin, min, max, gray_levels } => {
+                writeln!(f, "volume    {x}×{y}×{z} samples (x, y, z)")?;
+                writeln!(f, "spacing   {} {} {}", spacing[0], spacing[1], spacing[2])?;
+                writeln!(f, "origin    {} {} {}", origin[0], origin[1], origin[2])?;
+                let gray = if *gray_levels { ", gray levels as they are" } else { "" };
+                writeln!(f, "values    {min} to {max}{gray}")
+            }
+            Self::Points { count, low, high, weights, values } => {
+                writeln!(f, "points    {count}")?;
+                for (i, axis) in ["x", "y", "z"].iter().enumerate() {
+                    writeln!(f, "{axis}         {} to {}", low[i], high[i])?;
+                }
+                let has = |there: bool| if there { "yes" } else { "no" };
+                writeln!(f, "weights   {}\nvalues    {}", has(*weights), has(*values))
+            }
+        }
+    }
+}

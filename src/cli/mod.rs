@@ -1,0 +1,89 @@
+//! Floor 7: parse, call the library, print, choose an exit code.
+
+mod args;
+mod haar;
+mod info;
+mod output;
+mod pipeline;
+mod points;
+mod progress;
+mod report;
+mod shape;
+
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand};
+
+use output::is_broken_pipe;
+
+/// Volume modelling of scattered data with wavelet-weighted alpha shapes.
+///
+/// A volume is Haar-transformed, small coefficients are dropped, the samples of largest gray
+/// difference become weighted points, and CGAL's regular triangulation and alpha shape turn these
+/// into cells, facets, edges and vertices.
+///
+/// INPUT is a volume (.inr, .inr.gz, .npy, raw with --dims), a point file (.csv, .npy), or one of
+/// sample:skull, sample:phantom, sample:phantom@N. α and weights are squared lengths.
+#[derive(Parser)]
+#[command(name = "walpha", version = VERSION, max_term_width = 100, arg_required_else_help = true)]
+struct Cli {
+    #[command(flatten)]
+    global: Global,
+    #[command(subcommand)]
+    command: Command,
+}
+
+const VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    "\nlicence GPL-3.0-or-later (it contains CGAL's triangulations and alpha shapes, under the GPL)"
+);
+
+/// Options of every command.
+#[derive(Args, Clone, Copy)]
+struct Global {
+    /// Print one JSON object instead of text.
+    #[arg(long, global = true)]
+    json: bool,
+    /// Print nothing but errors (and JSON, if asked for).
+    #[arg(short, long, global = true)]
+    quiet: bool,
+    /// Threads to compute with; the result is the same for any number [default: all].
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Shape(shape::Shape),
+    Points(points::Points),
+    Haar(haar::Haar),
+    Info(info::Info),
+}
+
+/// Runs the command line of this process.
+pub fn run() -> ExitCode {
+    let Cli { global, command } = Cli::parse();
+    match execute(global, command) {
+        Ok(code) => code,
+        // Whoever reads our output has enough of it.
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Each message of the library tells its cause itself.
+            eprintln!("walpha: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
+    if let Some(threads) = global.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
+    }
+    match command {
+        Command::Shape(shape) => shape.run(global)?,
+        Command::Points(points) => points.run(global)?,
+        Command::Haar(haar) => haar.run(global)?,
+        Command::Info(info) => info.run(global)?,
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,76 @@
+//! `walpha points`: steps 1 to 7 alone.
+
+use std::path::PathBuf;
+
+use anyhow::bail;
+use clap::Args;
+use walpha::export::Target;
+use walpha::points::{write_csv, write_npy};
+
+use super::args::{HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::output::{print, print_json};
+use super::progress::Progress;
+use super::report::Report;
+use super::{Global, pipeline};
+
+/// Select points from a volume and weigh them.
+///
+/// Example: walpha points sample:skull --count 15956 --weights min-max -o skull.csv
+#[derive(Args)]
+pub struct Points {
+    #[command(flatten)]
+    input: InputArgs,
+    /// File to write: .csv (header x,y,z,weight,value) or .npy (the same columns).
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    haar: HaarArgs,
+    #[command(flatten)]
+    select: SelectArgs,
+    #[command(flatten)]
+    weights: WeightArgs,
+}
+
+impl Points {
+    pub fn run(self, global: Global) -> anyhow::Result<()> {
+        let target = match &self.output {
+            None => None,
+            Some(path) => {
+                let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+                let csv = extension == "csv";
+                if !csv && extension != "npy" {
+                    bail!("{}: points can be written as .csv or .npy", path.display());
+                }
+                Some((Target::open(path)?, csv))
+            }
+        };
+        let mut progress = Progress::new(global);
+        let weighed = pipeline::weighted_points(
+            &self.input,
+            &self.haar,
+            &self.select,
+            &self.weights,
+            &mut progress,
+        )?;
+        if let Some((target, csv)) = target {
+            progress.stage("write", || {
+                target.write(|out| {
+                    if csv {
+                        write_csv(&weighed.points, out)
+                    } else {
+                        write_npy(&weighed.points, out)
+                    }
+                })
+            })?;
+        }
+        let mut report = Report::of_points(&self.input.input, &weighed, self.weights.alpha());
+        let files = self.output.iter().map(|path| path.display().to_string()).collect();
+        report.finish(progress.finish(), files);
+        if global.json {
+            print_json(&report)?;
+        } else if !global.quiet {
+            print(&report.to_string())?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,263 @@
+//! The facts a command prints, as JSON or as text.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+
+use serde::{Serialize, Serializer};
+use walpha::shape::{Betti, Engine};
+use walpha::{Alpha, AlphaShape, Class, GrayRange, Simplices, Truncation, memory};
+
+use super::pipeline::{VolumeFacts, Weighed};
+
+/// Counted up when a field changes its meaning or goes; new fields may come at any time.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// What `walpha shape` and `walpha points` did. A fact that is not known is null.
+#[derive(Serialize)]
+pub struct Report {
+    schema_version: u32,
+    input: InputReport,
+    haar: Option<HaarReport>,
+    points: PointsReport,
+    alpha: AlphaReport,
+    weights: WeightsReport,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shape: Option<ShapeReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    engine: Option<Engine>,
+    files: Vec<String>,
+    seconds: BTreeMap<&'static str, f64>,
+    peak_memory_bytes: Option<u64>,
+}
+
+#[derive(Serialize)]
+struct InputReport {
+    name: String,
+    /// Samples along x, y and z; null for points.
+    dims: Option<[usize; 3]>,
+    /// The values that became gray 0 and 255; null for points.
+    gray_range: Option<[f64; 2]>,
+}
+
+#[derive(Serialize)]
+pub struct HaarReport {
+    kept: u64,
+    total: u64,
+    epsilon: f64,
+    rms: f64,
+}
+
+#[derive(Serialize)]
+struct PointsReport {
+    selected: usize,
+    duplicates: Option<usize>,
+    hidden: Option<usize>,
+    in_shape: Option<usize>,
+}
+
+#[derive(Serialize)]
+struct AlphaReport {
+    #[serde(serialize_with = "number_or_name")]
+    squared: f64,
+    #[serde(serialize_with = "number_or_null_or_name")]
+    radius: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct WeightsReport {
+    kind: String,
+    min: f64,
+    mean: f64,
+    max: f64,
+}
+
+#[derive(Serialize)]
+struct ShapeReport {
+    cells: Cells,
+    facets: Counts,
+    edges: Counts,
+    vertices: Counts,
+    betti: Option<Betti>,
+    volume: f64,
+    area: f64,
+    singular_area: f64,
+}
+
+#[derive(Serialize)]
+struct Cells {
+    interior: usize,
+}
+
+#[derive(Serialize)]
+struct Counts {
+    interior: usize,
+    regular: usize,
+    singular: usize,
+}
+
+impl Counts {
+    fn of<const N: usize>(simplices: &Simplices<N>) -> Self {
+        let counts = simplices.counts();
+        let count = |class| counts[class as usize];
+        Self {
+            interior: count(Class::Interior),
+            regular: count(Class::Regular),
+            singular: count(Class::Singular),
+        }
+    }
+}
+
+impl Display for Counts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { interior, regular, singular } = self;
+        write!(f, "{interior:>9} interior {regular:>9} regular {singular:>9} singular")
+    }
+}
+
+impl From<&Truncation> for HaarReport {
+    fn from(t: &Truncation) -> Self {
+        Self { kept: t.kept, total: t.total, epsilon: t.epsilon, rms: t.rms }
+    }
+}
+
+impl Display for HaarReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kept, total, epsilon, rms } = self;
+        write!(f, "{kept} of {total} coefficients kept, ε = {epsilon:.6}, rms {rms:.6} gray levels")
+    }
+}
+
+impl Report {
+    /// What is known before there is a shape.
+    pub fn of_points(name: &str, weighed: &Weighed, alpha: Alpha) -> Self {
+        let summary = weighed.points.summary();
+        let volume = weighed.volume.as_ref();
+        Self {
+            schema_version: SCHEMA_VERSION,
+            input: InputReport {
+                name: name.to_owned(),
+                dims: volume.map(|v| v.dims),
+                gray_range: volume
+                    .map(|VolumeFacts { range: GrayRange { low, high }, .. }| [*low, *high]),
+            },
+            haar: volume.map(|v| HaarReport::from(&v.truncation)),
+            points: PointsReport {
+                selected: weighed.points.len(),
+                duplicates: None,
+                hidden: None,
+                in_shape: None,
+            },
+            alpha: AlphaReport { squared: alpha.squared(), radius: alpha.radius() },
+            weights: WeightsReport {
+                kind: weighed.weighting.to_string(),
+                min: summary.min,
+                mean: summary.mean,
+                max: summary.max,
+            },
+            shape: None,
+            engine: None,
+            files: Vec::new(),
+            seconds: BTreeMap::new(),
+            peak_memory_bytes: None,
+        }
+    }
+
+    /// Adds what the shape is.
+    pub fn add_shape(&mut self, shape: &AlphaShape) {
+        let complex = shape.complex();
+        self.points.duplicates = Some(shape.duplicates().len());
+        self.points.hidden = shape.hidden().map(<[u32]>::len);
+        self.points.in_shape = Some(shape.points_in_shape());
+        self.engine = Some(shape.options().engine);
+        self.shape = Some(ShapeReport {
+            cells: Cells { interior: complex.cells.counts()[Class::Interior as usize] },
+            facets: Counts::of(&complex.facets),
+            edges: Counts::of(&complex.edges),
+            vertices: Counts::of(&complex.vertices),
+            betti: shape.betti(),
+            volume: shape.measures().volume,
+            area: shape.measures().area,
+            singular_area: shape.measures().singular_area,
+        });
+    }
+
+    /// Adds what it cost and what it left.
+    pub fn finish(&mut self, seconds: Vec<(&'static str, f64)>, files: Vec<String>) {
+        self.seconds = seconds.into_iter().collect();
+        self.files = files;
+        self.peak_memory_bytes = memory::peak_bytes();
+    }
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "input     {}", self.input.name)?;
+        if let (Some([x, y, z]), Some([low, high])) = (self.input.dims, self.input.gray_range) {
+            write!(f, "  {x}×{y}×{z} samples, values {low}..{high} are gray 0..255")?;
+        }
+        writeln!(f)?;
+        if let Some(haar) = &self.haar {
+            writeln!(f, "haar      {haar}")?;
+        }
+        write!(f, "points    {} selected", self.points.selected)?;
+        for (count, what) in [
+            (self.points.duplicates, "duplicates"),
+            (self.points.hidden, "hidden"),
+            (self.points.in_shape, "in the shape"),
+        ] {
+            if let Some(count) = count {
+                write!(f, ", {count} {what}")?;
+            }
+        }
+        let WeightsReport { kind, min, mean, max } = &self.weights;
+        writeln!(
+            f,
+            "\nweights   {kind}: min {min:.6}, mean {mean:.6}, max {max:.6} (squared lengths)"
+        )?;
+        let alpha = Alpha::from_squared(self.alpha.squared).map_err(|_| fmt::Error)?;
+        writeln!(f, "parameter {alpha}")?;
+        if let Some(shape) = &self.shape {
+            writeln!(f, "cells     {:>9} interior", shape.cells.interior)?;
+            writeln!(f, "facets    {}", shape.facets)?;
+            writeln!(f, "edges     {}", shape.edges)?;
+            writeln!(f, "vertices  {}", shape.vertices)?;
+            if let Some(Betti { b0, b1, b2 }) = shape.betti {
+                writeln!(f, "topology  {b0} components, {b1} tunnels, {b2} voids")?;
+            }
+            writeln!(f, "volume    {:.6}", shape.volume)?;
+            writeln!(f, "area      {:.6}, singular facets {:.6}", shape.area, shape.singular_area)?;
+            if self.points.in_shape == Some(0) {
+                writeln!(f, "the shape is empty: every α + ω is negative; raise --alpha")?;
+            }
+        }
+        for file in &self.files {
+            writeln!(f, "wrote     {file}")?;
+        }
+        write!(f, "time     ")?;
+        for stage in ["read", "haar", "points", "shape", "write", "total"] {
+            if let Some(seconds) = self.seconds.get(stage) {
+                write!(f, " {stage} {seconds:.2} s")?;
+            }
+        }
+        writeln!(f)
+    }
+}
+
+/// ∞ has no JSON number: it is written as the string "inf" or "-inf".
+fn number_or_name<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    if number.is_finite() {
+        serializer.serialize_f64(*number)
+    } else {
+        serializer.serialize_str(&number.to_string())
+    }
+}
+
+fn number_or_null_or_name<S: Serializer>(
+    number: &Option<f64>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match number {
+        Some(number) => number_or_name(number, serializer),
+        None => serializer.serialize_none(),
+    }
+}
