@@ -34,6 +34,7 @@
 pub use ndarray;
 
 pub mod cgal;
+pub mod check;
 pub mod export;
 pub mod haar;
 pub mod memory;
