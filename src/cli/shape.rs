@@ -19,7 +19,7 @@ use super::{Global, pipeline};
 pub struct Shape {
     #[command(flatten)]
     input: InputArgs,
-    /// Files to write: .ply, .off, .obj (boundary) or .vtu (all simplices).
+    /// Files to write: .ply, .off, .obj (boundary), .vtu or .json (all simplices).
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
     /// Write text where a format has a binary form too (PLY).

@@ -10,9 +10,12 @@ impl ComplexFile {
     /// Flat cells and repeated rows stay, for the checker to find.
     ///
     /// # Errors
-    /// Fields that do not pair up, point numbers out of range, no simplices at all.
+    /// Fields that do not pair up, point numbers out of range, no points or simplices at all.
     pub fn into_complex(self) -> Result<PlacedComplex, SchemaError> {
         let n = self.points.len();
+        if n == 0 {
+            return Err(SchemaError::NoPoints);
+        }
         if [
             self.cells.is_none(),
             self.facets.is_none(),

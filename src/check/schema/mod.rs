@@ -15,7 +15,8 @@
 //!   "duplicates": [] }
 //! ```
 //!
-//! - `points` and `alpha` are needed; `alpha` is a squared length, a number or `"inf"` or `"-inf"`.
+//! - `points` are needed, unless they come in a file of their own (`--points`); `alpha` is needed: a
+//!   squared length, a number or `"inf"` or `"-inf"`.
 //! - `weights` are power weights, 0 where missing. An unweighted complex whose radii are called
 //!   r has α = r².
 //! - Simplices are rows of point numbers from 0, in any order and winding. A dimension that is
@@ -49,6 +50,7 @@ use crate::shape::{Class, Complex, Simplices};
 #[serde(deny_unknown_fields)]
 pub struct ComplexFile {
     /// x, y, z of each point.
+    #[serde(default)]
     pub points: Vec<[f64; 3]>,
     /// Power weights, squared lengths; all 0 if missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -164,6 +166,11 @@ pub enum SchemaError {
         /// How many points there are.
         points: usize,
     },
+    /// No points at all.
+    #[error(
+        "the file lists no points: add `points`, or give them in a file of their own with --points"
+    )]
+    NoPoints,
     /// No simplices at all.
     #[error("the file lists no simplices: give at least one of cells, facets, edges, vertices")]
     NoSimplices,

@@ -13,7 +13,7 @@ impl ComplexFile {
     /// Missing, ill-shaped or unreadable arrays; numbers that are no indices or classes.
     pub fn read_npz(reader: impl Read + Seek) -> Result<Self, SchemaError> {
         let mut file = Npz::new(reader)?;
-        let points = file.rows("points", Ok)?.ok_or(SchemaError::Missing("points"))?;
+        let points = file.rows("points", Ok)?.unwrap_or_default();
         let alpha = file.array("alpha")?.ok_or(SchemaError::Missing("alpha"))?;
         let alpha = alpha.into_dimensionality::<Ix0>().map_err(|_| SchemaError::Array {
             name: "alpha",
