@@ -6,8 +6,8 @@ use std::{env, fs};
 /// The first CGAL whose `Regular_triangulation_3` and `Fixed_alpha_shape_3` the bridge is written for.
 const OLDEST: (u32, u32) = (5, 3);
 
-const SOURCES: [&str; 2] = ["cpp/bridge.cc", "cpp/reference.cc"];
-const HEADERS: [&str; 3] = ["cpp/bridge.h", "cpp/kernel.h", "cpp/reference.h"];
+const SOURCES: [&str; 3] = ["cpp/bridge.cc", "cpp/plane.cc", "cpp/reference.cc"];
+const HEADERS: [&str; 4] = ["cpp/bridge.h", "cpp/kernel.h", "cpp/plane.h", "cpp/reference.h"];
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

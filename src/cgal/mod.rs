@@ -7,8 +7,10 @@
 //! CGAL changes the rounding mode while it works.
 
 mod ffi;
+mod plane;
 mod reference;
 mod sites;
 
+pub use plane::{PlaneSites, RawTriangulation, farthest_plane, regular_plane};
 pub use reference::{CgalError, RawComplex, reference};
 pub use sites::{Sites, SitesError};
