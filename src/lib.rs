@@ -5,6 +5,7 @@ pub use ndarray;
 pub mod cgal;
 pub mod export;
 pub mod haar;
+pub mod plane;
 pub mod points;
 pub mod shape;
 pub mod volume;

@@ -15,3 +15,4 @@ pub use complex::{Class, Complex, Simplices};
 pub use measure::Measures;
 pub use surface::Surface;
 pub use topology::{Betti, direct_betti};
+pub(crate) use union_find::UnionFind;
