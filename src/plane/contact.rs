@@ -134,9 +134,11 @@ pub(super) fn of_half_planes(mesh: &Mesh, exact: &Exact) -> Contacts {
         on_line.entry(lines.find(number as u32)).or_default().extend(edge.ends);
     }
     let edges: BTreeSet<_> = on_line.values().flat_map(pairs).collect();
-    let ways = outer.iter().map(|Edge { ends: [p, q], right, .. }| {
-        if right.is_some() { [*q, *p] } else { [*p, *q] }
-    });
+    let ways = outer.iter().map(
+        |Edge { ends: [p, q], right, .. }| {
+            if right.is_some() { [*q, *p] } else { [*p, *q] }
+        },
+    );
     Contacts {
         edges: edges.into_iter().collect(),
         inside: mesh.triangles.clone(),

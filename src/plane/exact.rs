@@ -224,7 +224,8 @@ mod tests {
         let tiny = 1e-160;
         for scale in [1.0, 2f64.powi(-300), 2f64.powi(300)] {
             // A right triangle over the diameter 2·scale: its circle has the radius scale.
-            let points = [[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [tiny, 0.0]].map(|p| p.map(|v: f64| v * scale));
+            let points = [[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [tiny, 0.0]]
+                .map(|p| p.map(|v: f64| v * scale));
             let exact = Exact::new(&points);
             let circle = exact.circumradius([0, 1, 2]);
             let alpha = 1.0 / scale;

@@ -64,8 +64,7 @@ impl EksShape {
         // A half distance above the radius is rounding: exactly, it is not.
         let height = (radius - half).max(0.0).sqrt() * (radius + half).sqrt();
         let (x, y) = ((end[0] - start[0]) / length, (end[1] - start[1]) / length);
-        let centre =
-            [start[0] + x * half - y * height, start[1] + y * half + x * height];
+        let centre = [start[0] + x * half - y * height, start[1] + y * half + x * height];
         Arc { centre, radius, start, end, counter_clockwise: true }
     }
 

@@ -99,7 +99,9 @@ fn classify(mesh: &Mesh, exact: &Exact) -> PlaneComplex {
     let rows = mesh.edges.iter().map(|edge| edge.ends).zip(edges);
     let interior = |fits| if fits { Class::Interior } else { Class::Exterior };
     PlaneComplex {
-        triangles: of_shape(mesh.triangles.iter().copied().zip(triangles.into_iter().map(interior))),
+        triangles: of_shape(
+            mesh.triangles.iter().copied().zip(triangles.into_iter().map(interior)),
+        ),
         edges: of_shape(rows),
         vertices: of_shape(vertices),
     }
