@@ -74,11 +74,11 @@ pub(super) fn of_discs(mesh: &Mesh, exact: &Exact, curve: &Curve, diagram: Diagr
         };
         [true, false].into_iter().filter(|&left| between(left)).for_each(&mut touch);
 
-        if let (Some(l), Some(r)) = (left, right) {
-            if l.on_curve() && r.on_curve() && l.sign == r.sign {
-                circles.unite(l.triangle as u32, r.triangle as u32);
-                continue;
-            }
+        if let (Some(l), Some(r)) = (left, right)
+            && (l.on_curve() && r.on_curve() && l.sign == r.sign)
+        {
+            circles.unite(l.triangle as u32, r.triangle as u32);
+            continue;
         }
         // The side of a polygon of points on one circle, the polygon on its left.
         for (centre, way) in [(left, [p, q]), (right, [q, p])] {
@@ -122,10 +122,10 @@ pub(super) fn of_half_planes(mesh: &Mesh, exact: &Exact) -> Contacts {
     for (&middle, numbers) in &at {
         if let [a, b] = numbers[..] {
             let far = |number: usize| outer[number].ends.into_iter().find(|&end| end != middle);
-            if let (Some(p), Some(q)) = (far(a), far(b)) {
-                if exact.collinear(p, middle, q) {
-                    lines.unite(a as u32, b as u32);
-                }
+            if let (Some(p), Some(q)) = (far(a), far(b))
+                && exact.collinear(p, middle, q)
+            {
+                lines.unite(a as u32, b as u32);
             }
         }
     }

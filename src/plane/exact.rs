@@ -213,7 +213,7 @@ mod tests {
         for value in [0.0, -0.0, 1.0, -1.5, 0.1, 5e-324, -2.5e-310, f64::MAX, 1e-300] {
             let Some(e) = lowest(value) else { continue };
             let m = integer(value, e);
-            assert_eq!((&m % 2i32) & 1, 1i32.into(), "{value}: the lowest bit is set");
+            assert_eq!(m.trailing_zeros(), Some(0), "{value}: the lowest bit is set");
             assert_eq!(integer(value, e - 7), m << 7);
         }
         assert_eq!(integer(-1.5, -1), (-3i32).into());
