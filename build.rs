@@ -6,8 +6,20 @@ use std::{env, fs};
 /// The first CGAL whose `Regular_triangulation_3` and `Fixed_alpha_shape_3` the bridge is written for.
 const OLDEST: (u32, u32) = (5, 3);
 
-const SOURCES: [&str; 3] = ["cpp/bridge.cc", "cpp/plane.cc", "cpp/reference.cc"];
-const HEADERS: [&str; 4] = ["cpp/bridge.h", "cpp/kernel.h", "cpp/plane.h", "cpp/reference.h"];
+const SOURCES: [&str; 5] =
+    ["cpp/bridge.cc", "cpp/mesh.cc", "cpp/plane.cc", "cpp/reference.cc", "cpp/slab.cc"];
+const HEADERS: [&str; 10] = [
+    "cpp/bridge.h",
+    "cpp/classes.h",
+    "cpp/kernel.h",
+    "cpp/lattice.h",
+    "cpp/lattice_kernel.h",
+    "cpp/mesh.h",
+    "cpp/plane.h",
+    "cpp/predicates.h",
+    "cpp/reference.h",
+    "cpp/slab.h",
+];
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -32,7 +44,8 @@ fn main() {
     build.files(SOURCES).std("c++17").opt_level(2).debug(false);
     // Interval arithmetic needs the rounding mode left alone; CGAL's assertions, which check it,
     // stay on (no NDEBUG): they cost nothing measurable. No -ffast-math, no -march, no LTO here.
-    for flag in ["-frounding-math", "-ffp-contract=off"] {
+    // With -pthread, CGAL keeps its caches thread-local.
+    for flag in ["-frounding-math", "-ffp-contract=off", "-pthread"] {
         build.flag_if_supported(flag);
     }
     if let Some(include) = &cgal.include {

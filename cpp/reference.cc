@@ -13,6 +13,7 @@
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include "walpha/cpp/bridge.h"
+#include "walpha/cpp/classes.h"
 #include "walpha/cpp/kernel.h"
 
 namespace walpha {
@@ -27,9 +28,6 @@ using Structure = CGAL::Triangulation_data_structure_3<Vertex, Cell>;
 using Triangulation = CGAL::Regular_triangulation_3<Kernel, Structure>;
 using Alpha_shape = CGAL::Fixed_alpha_shape_3<Triangulation>;
 using Utilities = CGAL::Triangulation_utils_3;
-
-// The numbers of `Class` in src/shape/complex.rs.
-enum Class : std::uint8_t { EXTERIOR = 0, INTERIOR = 1, REGULAR = 2, SINGULAR = 3 };
 
 Class number(Alpha_shape::Classification_type type) {
   if (type == Alpha_shape::INTERIOR) return INTERIOR;

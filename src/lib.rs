@@ -5,8 +5,10 @@ pub use ndarray;
 pub mod cgal;
 pub mod export;
 pub mod haar;
+pub mod memory;
 pub mod plane;
 pub mod points;
+pub mod render;
 pub mod shape;
 pub mod volume;
 

@@ -41,9 +41,10 @@ impl FromStr for Decomposition {
 /// Orthonormal Haar coefficients of a volume, in the place of its samples.
 ///
 /// Along an axis, the coefficient of the whole row's mean stands at 0, and the detail between the
-/// halves that start at i and i + 2ˡ stands at i + 2ˡ, so the number of trailing zeros of an index is its level.
-/// A row of four samples becomes `[mean, fine detail of 0 and 1, coarse detail, fine detail of 2
-/// and 3]`:
+/// samples from i to i + 2ˡ and those from there to i + 2·2ˡ stands at i + 2ˡ: the number of
+/// trailing zeros of an index is its level. In the non-standard decomposition the level of a voxel
+/// is the least of its three indices'. A row of four samples becomes `[mean, fine detail of 0 and
+/// 1, coarse detail, fine detail of 2 and 3]`:
 ///
 /// ```
 /// use ndarray::arr3;
@@ -68,7 +69,8 @@ pub struct Coefficients {
 
 /// Transforms samples `[z, y, x]`, in place if they are in standard layout.
 ///
-/// O(n), parallel, the same on any number of threads. Magnitudes above 10³⁶ may overflow.
+/// O(n), parallel, the same on any number of threads. Sample magnitudes whose
+/// sum or norm passes the range of `f32` overflow; gray levels are far from that.
 pub fn forward(samples: Array3<f32>, decomposition: Decomposition) -> Coefficients {
     let mut values = if samples.is_standard_layout() {
         samples

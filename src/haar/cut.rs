@@ -1,7 +1,7 @@
 use rayon::prelude::*;
 
 /// Values counted into one histogram. Fixed, so that sums are the same on any number of threads.
-const CHUNK: usize = 1 << 18;
+const CHUNK: usize = 1 << 17;
 /// Position and number of the bits of a magnitude that each pass sorts by, 31 in all.
 const DIGITS: [(u32, u32); 3] = [(19, 12), (10, 9), (0, 10)];
 
@@ -25,15 +25,15 @@ pub(crate) struct Cut {
 }
 
 impl Cut {
-    /// Cuts `n` values so that as many are dropped as the budget allows.
+    /// Cuts values so that as many are dropped as the budget allows. NaN takes no part, and does
+    /// not stay; infinities must not occur.
     ///
-    /// `key` gives the bits of a value's magnitude, or `None` if it takes no part. Non-negative
-    /// `f32` are ordered as their bits are, so this is a radix selection: three passes, each a
-    /// histogram of counts and energies, and no value moves. O(n).
-    pub fn new(n: usize, key: impl Fn(usize) -> Option<u32> + Sync, mut budget: Budget) -> Self {
+    /// Magnitudes are ordered as their bits are, so this is a radix selection: three passes, each
+    /// a histogram of counts and energies, and no value moves. O(n).
+    pub fn new(values: &[f32], mut budget: Budget) -> Self {
         let (mut magnitude, mut ties) = (0, 0);
         for (shift, width) in DIGITS {
-            let bins = histogram(n, &key, magnitude, shift, width);
+            let bins = histogram(values, magnitude, shift, width);
             let Some(digit) = bins.iter().position(|bin| !budget.take(bin)) else {
                 // All values, or (sums of parts are rounded otherwise than the sum of all) all of
                 // the last digit: the cut is above them.
@@ -46,17 +46,27 @@ impl Cut {
         let stay = ties - budget.equal(f64::from(f32::from_bits(magnitude)).powi(2), ties);
         let ties_end = match stay {
             0 => 0,
-            _ if stay == ties => n,
-            _ => place_after(stay, n, |i| key(i) == Some(magnitude)),
+            _ if stay == ties => values.len(),
+            _ => place_after(stay, values, magnitude),
         };
         Self { magnitude, ties_end }
     }
 
-    /// Whether the value of these bits at this index stays.
+    /// Whether the value at this index stays.
     #[inline]
-    pub fn keeps(self, bits: u32, index: usize) -> bool {
-        bits > self.magnitude || (bits == self.magnitude && index < self.ties_end)
+    pub fn keeps(self, value: f32, index: usize) -> bool {
+        let bits = magnitude(value);
+        let above = bits > self.magnitude && bits < INFINITY;
+        above || (bits == self.magnitude && index < self.ties_end)
     }
+}
+
+/// The bits of an infinite magnitude. Those of NaN are larger.
+const INFINITY: u32 = f32::INFINITY.to_bits();
+
+#[inline(always)]
+fn magnitude(value: f32) -> u32 {
+    value.to_bits() & (u32::MAX >> 1)
 }
 
 #[derive(Clone, Copy, Default)]
@@ -65,28 +75,23 @@ struct Bin {
     energy: f64,
 }
 
+impl Bin {
+    #[inline(always)]
+    fn add(&mut self, bits: u32) {
+        let value = f64::from(f32::from_bits(bits));
+        self.count += 1;
+        self.energy += value * value;
+    }
+}
+
 /// Sorts values that agree with `prefix` above the digit at `shift` by this digit.
-fn histogram(
-    n: usize,
-    key: &(impl Fn(usize) -> Option<u32> + Sync),
-    prefix: u32,
-    shift: u32,
-    width: u32,
-) -> Vec<Bin> {
-    let (above, mask) = (shift + width, (1 << width) - 1);
-    let of_chunk = |chunk: usize| {
-        let mut bins = vec![Bin::default(); 1 << width];
-        for i in chunk * CHUNK..n.min((chunk + 1) * CHUNK) {
-            if let Some(bits) = key(i).filter(|bits| bits >> above == prefix >> above) {
-                let bin = &mut bins[(bits >> shift & mask) as usize];
-                bin.count += 1;
-                let value = f64::from(f32::from_bits(bits));
-                bin.energy += value * value;
-            }
-        }
-        bins
+fn histogram(values: &[f32], prefix: u32, shift: u32, width: u32) -> Vec<Bin> {
+    let above = shift + width;
+    let sort = |chunk| match above {
+        31 => leading_digits(chunk, shift, width),
+        _ => inner_digits(chunk, prefix, shift, width),
     };
-    let chunks: Vec<Vec<Bin>> = (0..n.div_ceil(CHUNK)).into_par_iter().map(of_chunk).collect();
+    let chunks: Vec<Vec<Bin>> = values.par_chunks(CHUNK).map(sort).collect();
     let mut total = vec![Bin::default(); 1 << width];
     for chunk in chunks {
         for (total, bin) in total.iter_mut().zip(chunk) {
@@ -94,25 +99,63 @@ fn histogram(
             total.energy += bin.energy;
         }
     }
+    if above == 31 {
+        total.truncate((INFINITY >> shift) as usize);
+    }
     total
 }
 
-/// The index after the `nth` (from 1) of those that are `wanted`, of which there are as many.
-fn place_after(nth: u64, n: usize, wanted: impl Fn(usize) -> bool + Sync) -> usize {
-    let chunk_range = |chunk: usize| chunk * CHUNK..n.min((chunk + 1) * CHUNK);
-    let counts: Vec<u64> = (0..n.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| chunk_range(chunk).filter(|&i| wanted(i)).count() as u64)
-        .collect();
+/// Every value counts. Neighbours go to two tables in turn: runs of equal values (zeros, mostly)
+/// would make each addition wait for the one before.
+fn leading_digits(chunk: &[f32], shift: u32, width: u32) -> Vec<Bin> {
+    let mut bins = vec![Bin::default(); 1 << width];
+    let mut others = bins.clone();
+    let (pairs, rest) = chunk.as_chunks::<2>();
+    for pair in pairs {
+        let [bits, other] = pair.map(magnitude);
+        bins[(bits >> shift) as usize].add(bits);
+        others[(other >> shift) as usize].add(other);
+    }
+    for bits in rest.iter().copied().map(magnitude) {
+        bins[(bits >> shift) as usize].add(bits);
+    }
+    for (bin, other) in bins.iter_mut().zip(others) {
+        bin.count += other.count;
+        bin.energy += other.energy;
+    }
+    bins
+}
+
+/// Few values count: blocks without one are passed over, which the compiler vectorises.
+fn inner_digits(chunk: &[f32], prefix: u32, shift: u32, width: u32) -> Vec<Bin> {
+    let (above, mask) = (shift + width, (1 << width) - 1);
+    let mut bins = vec![Bin::default(); 1 << width];
+    for block in chunk.chunks(32) {
+        let agrees = |&value: &f32| (magnitude(value) ^ prefix) >> above == 0;
+        if block.iter().fold(false, |any, value| any | agrees(value)) {
+            for bits in block.iter().filter(|&value| agrees(value)).copied().map(magnitude) {
+                bins[(bits >> shift & mask) as usize].add(bits);
+            }
+        }
+    }
+    bins
+}
+
+/// The index after the `nth` (from 1) value of this magnitude, of which there are as many.
+fn place_after(nth: u64, values: &[f32], wanted: u32) -> usize {
+    let is_wanted = |value: &f32| magnitude(*value) == wanted;
+    let count = |chunk: &[f32]| chunk.iter().filter(|&value| is_wanted(value)).count() as u64;
+    let counts: Vec<u64> = values.par_chunks(CHUNK).map(count).collect();
     let mut left = nth;
     for (chunk, count) in counts.into_iter().enumerate() {
         if left <= count {
-            let mut places = chunk_range(chunk).filter(|&i| wanted(i));
-            return places.nth(left as usize - 1).map_or(n, |i| i + 1);
+            let start = chunk * CHUNK;
+            let mut places = (start..values.len()).filter(|&i| is_wanted(&values[i]));
+            return places.nth(left as usize - 1).map_or(values.len(), |i| i + 1);
         }
         left -= count;
     }
-    n
+    values.len()
 }
 
 impl Budget {

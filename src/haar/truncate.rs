@@ -60,15 +60,15 @@ pub enum HaarError {
 
 impl Tolerance {
     pub(super) fn check(self) -> Result<(), HaarError> {
-        match self {
-            Self::Rms(given) if !(given >= 0.0) => {
-                Err(HaarError::Tolerance { given, what: "the RMS error in gray levels" })
-            }
-            Self::Epsilon(given) if !(given >= 0.0) => {
-                Err(HaarError::Tolerance { given, what: "ε, the L² norm of the error," })
-            }
-            _ => Ok(()),
+        let (given, what) = match self {
+            Self::Rms(given) => (given, "the RMS error in gray levels"),
+            Self::Epsilon(given) => (given, "ε, the L² norm of the error,"),
+            Self::Coefficients(_) => return Ok(()),
+        };
+        if given.is_nan() || given < 0.0 {
+            return Err(HaarError::Tolerance { given, what });
         }
+        Ok(())
     }
 
     fn budget(self, total: u64) -> Budget {
@@ -94,16 +94,16 @@ impl Coefficients {
         asked.check()?;
         let values = self.values.as_slice_mut().expect("standard layout");
         let total = values.len() as u64;
-        let magnitude = |value: f32| value.abs().to_bits();
-        let cut = Cut::new(values.len(), |i| Some(magnitude(values[i])), asked.budget(total));
+        let cut = Cut::new(values, asked.budget(total));
         let drop_from = |(chunk, values): (usize, &mut [f32])| {
             let (mut dropped, mut energy) = (0, 0.0);
             for (i, value) in values.iter_mut().enumerate() {
-                if !cut.keeps(magnitude(*value), chunk * CHUNK + i) {
-                    dropped += 1;
-                    energy += f64::from(*value).powi(2);
-                    *value = 0.0;
-                }
+                // Without branches: which coefficients stay cannot be foretold.
+                let keeps = cut.keeps(*value, chunk * CHUNK + i);
+                let lost = if keeps { 0.0 } else { f64::from(*value) };
+                dropped += u64::from(!keeps);
+                energy += lost * lost;
+                *value = if keeps { *value } else { 0.0 };
             }
             (dropped, energy)
         };

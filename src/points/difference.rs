@@ -46,9 +46,6 @@ pub fn difference_row(row: &[f32], divisor: f64) -> Vec<f32> {
 /// The differences of a row from itself and from the rows beside it.
 fn row_differences(row: &[f32], beside: [&[f32]; 4], divisor: f64, differences: &mut [f32]) {
     let n = row.len();
-    if n == 0 {
-        return;
-    }
     let [a, b, c, d] = beside.map(|row| &row[..n]);
     let one = |i: usize, left: f32, right: f32| {
         let value = f64::from(row[i]);
@@ -56,12 +53,22 @@ fn row_differences(row: &[f32], beside: [&[f32]; 4], divisor: f64, differences: 
         let sum = from(left) + from(right) + from(a[i]) + from(b[i]) + from(c[i]) + from(d[i]);
         (sum / divisor) as f32
     };
-    // The ends apart, so that the middle is vectorised.
-    differences[0] = one(0, row[0], row[1.min(n - 1)]);
-    for i in 1..n.saturating_sub(1) {
-        differences[i] = one(i, row[i - 1], row[i + 1]);
+    let differences = &mut differences[..n];
+    // Slices of one length, so that the middle is vectorised; the ends are written again below.
+    if n > 2 {
+        let m = n - 2;
+        let (left, here, right) = (&row[..m], &row[1..][..m], &row[2..][..m]);
+        let [a, b, c, d] = [a, b, c, d].map(|row| &row[1..][..m]);
+        for (i, difference) in differences[1..][..m].iter_mut().enumerate() {
+            let value = f64::from(here[i]);
+            let from = |other: f32| (value - f64::from(other)).abs();
+            let sum =
+                from(left[i]) + from(right[i]) + from(a[i]) + from(b[i]) + from(c[i]) + from(d[i]);
+            *difference = (sum / divisor) as f32;
+        }
     }
-    if n > 1 {
-        differences[n - 1] = one(n - 1, row[n - 2], row[n - 1]);
+    if n > 0 {
+        differences[0] = one(0, row[0], row[1.min(n - 1)]);
+        differences[n - 1] = one(n - 1, row[n.saturating_sub(2)], row[n - 1]);
     }
 }

@@ -99,14 +99,16 @@ pub fn select(
     let differences = differences.as_standard_layout();
     let flat = differences.as_slice().expect("standard layout");
     let voxels = match selection.gray_min {
-        None => chosen(n, |i| Some(flat[i].to_bits()), &selection.rule)?,
+        None => chosen(flat, n as u64, &selection.rule)?,
         Some(least) if least.is_nan() => {
             return Err(PointsError::Number { what: "--gray-min", given: least, need: "a number" });
         }
         Some(least) => {
-            let gray = smoothed.as_slice();
-            let key = |i: usize| (f64::from(gray[i]) >= least).then(|| flat[i].to_bits());
-            chosen(n, key, &selection.rule)?
+            let mask =
+                |(&l, &gray): (&f32, &f32)| if f64::from(gray) >= least { l } else { f32::NAN };
+            let masked: Vec<f32> = flat.par_iter().zip(smoothed.as_slice()).map(mask).collect();
+            let available = masked.par_iter().filter(|l| !l.is_nan()).count() as u64;
+            chosen(&masked, available, &selection.rule)?
         }
     };
     let [nx, ny, _] = volume.dims().xyz();
@@ -128,55 +130,46 @@ pub fn select(
     })
 }
 
-/// The indices the rule chooses among those that have a key, ascending.
+/// The indices the rule chooses, ascending. Masked voxels are NaN, and `available` are not.
 fn chosen(
-    n: usize,
-    key: impl Fn(usize) -> Option<u32> + Sync,
+    differences: &[f32],
+    available: u64,
     rule: &SelectionRule,
 ) -> Result<Vec<u32>, PointsError> {
-    let voxels = match *rule {
-        SelectionRule::Threshold(least) if least.is_nan() => {
-            return Err(PointsError::Number {
-                what: "--threshold",
-                given: least,
-                need: "a number of gray levels",
-            });
+    let voxels = differences.len() as u64;
+    let largest = |count: u64| {
+        if count == 0 || count > available {
+            return Err(PointsError::Count { asked: count, available });
         }
-        SelectionRule::Threshold(least) => {
-            collect(n, |i| key(i).is_some_and(|bits| f64::from(f32::from_bits(bits)) >= least))
-        }
-        SelectionRule::Ratio(ratio) if !(ratio > 0.0 && ratio <= 1.0) => {
-            let need = "a share above 0 and up to 1, as in 0.0609 for 6.09 %";
-            return Err(PointsError::Number { what: "--ratio", given: ratio, need });
+        let cut = Cut::new(differences, Budget::Count(available - count));
+        Ok(collect(differences, |l, i| cut.keeps(l, i)))
+    };
+    match *rule {
+        SelectionRule::Count(count) => largest(count),
+        SelectionRule::Ratio(ratio) if ratio > 0.0 && ratio <= 1.0 => {
+            largest(((ratio * voxels as f64).round() as u64).clamp(1, voxels))
         }
         SelectionRule::Ratio(ratio) => {
-            let count = ((ratio * n as f64).round() as u64).clamp(1, n as u64);
-            largest(n, key, count)?
+            let need = "a share above 0 and up to 1, as in 0.0609 for 6.09 %";
+            Err(PointsError::Number { what: "--ratio", given: ratio, need })
         }
-        SelectionRule::Count(count) => largest(n, key, count)?,
-    };
-    if voxels.is_empty() { Err(PointsError::Empty { voxels: n as u64 }) } else { Ok(voxels) }
-}
-
-fn largest(
-    n: usize,
-    key: impl Fn(usize) -> Option<u32> + Sync,
-    count: u64,
-) -> Result<Vec<u32>, PointsError> {
-    let available = (0..n).into_par_iter().filter(|&i| key(i).is_some()).count() as u64;
-    if count == 0 || count > available {
-        return Err(PointsError::Count { asked: count, available });
+        SelectionRule::Threshold(least) if least.is_nan() => {
+            let need = "a number of gray levels";
+            Err(PointsError::Number { what: "--threshold", given: least, need })
+        }
+        SelectionRule::Threshold(least) => {
+            let chosen = collect(differences, |l, _| f64::from(l) >= least);
+            if chosen.is_empty() { Err(PointsError::Empty { voxels }) } else { Ok(chosen) }
+        }
     }
-    let cut = Cut::new(n, &key, Budget::Count(available - count));
-    Ok(collect(n, |i| key(i).is_some_and(|bits| cut.keeps(bits, i))))
 }
 
-/// The indices below n that are wanted, ascending.
-fn collect(n: usize, wanted: impl Fn(usize) -> bool + Sync) -> Vec<u32> {
-    let of_chunk = |chunk: usize| {
-        let range = chunk * CHUNK..n.min((chunk + 1) * CHUNK);
-        range.filter(|&i| wanted(i)).map(|i| i as u32).collect::<Vec<_>>()
+/// The indices of the values that are wanted, ascending.
+fn collect(values: &[f32], wanted: impl Fn(f32, usize) -> bool + Sync) -> Vec<u32> {
+    let of_chunk = |(chunk, values): (usize, &[f32])| {
+        let indices = (chunk * CHUNK..).zip(values);
+        indices.filter(|&(i, &l)| wanted(l, i)).map(|(i, _)| i as u32).collect::<Vec<_>>()
     };
-    let chunks: Vec<Vec<u32>> = (0..n.div_ceil(CHUNK)).into_par_iter().map(of_chunk).collect();
+    let chunks: Vec<Vec<u32>> = values.par_chunks(CHUNK).enumerate().map(of_chunk).collect();
     chunks.concat()
 }

@@ -18,22 +18,23 @@ impl Measures {
     /// Measures a shape. Rounded sums; the same on any number of threads. O(n).
     pub fn of(complex: &Complex, positions: &[[f64; 3]]) -> Self {
         let at = |v: u32| positions[v as usize];
+        // Divided last: sums of determinants on a lattice are whole numbers.
         let area = |class| {
             fixed_order_sum(&complex.facets.vertices, |i, facet| {
                 if complex.facets.classes[i] != class {
                     return 0.0;
                 }
                 let [a, b, c] = facet.map(at);
-                norm(cross(sub(b, a), sub(c, a))) / 2.0
-            })
+                norm(cross(sub(b, a), sub(c, a)))
+            }) / 2.0
         };
         let volume = fixed_order_sum(&complex.cells.vertices, |i, cell| {
             if complex.cells.classes[i] != Class::Interior {
                 return 0.0;
             }
             let [a, b, c, d] = cell.map(at);
-            dot(cross(sub(b, a), sub(c, a)), sub(d, a)) / 6.0
-        });
+            dot(cross(sub(b, a), sub(c, a)), sub(d, a))
+        }) / 6.0;
         Self { volume, area: area(Class::Regular), singular_area: area(Class::Singular) }
     }
 }

@@ -39,8 +39,10 @@ pub enum VolumeError {
         /// Its voxel, (x, y, z).
         at: [usize; 3],
     },
-    /// An empty gray range.
-    #[error("gray range {low}..{high} is empty: give LO..HI with LO < HI, both finite")]
+    /// An empty gray range, or one whose ends are so close or so far that gray levels overflow.
+    #[error(
+        "gray range {low}..{high} cannot be mapped to 0..255: give LO..HI with LO < HI, both finite, of about the samples' size"
+    )]
     GrayRange {
         /// The value meant to become 0.
         low: f64,

@@ -39,7 +39,7 @@ impl Volume {
             samples.as_standard_layout().into_owned()
         };
         let flat = samples.as_slice().expect("standard layout");
-        if let Some(index) = flat.par_iter().position_first(|v| !v.is_finite()) {
+        if let Some(index) = first_not_finite(flat) {
             let at = [index % x, index / x % y, index / (x * y)];
             return Err(VolumeError::NotFinite { value: flat[index], at });
         }
@@ -94,7 +94,8 @@ impl Volume {
     /// The volume with gray levels 0..255 as samples, and the range they came from. In place.
     ///
     /// # Errors
-    /// [`VolumeError::GrayRange`] when the given range is empty, reversed or not finite.
+    /// [`VolumeError::GrayRange`] when the given range is empty, reversed or not finite, or so narrow
+    /// that the gray level of a sample passes the range of `f32`.
     pub fn into_gray(mut self, gray: Gray) -> Result<(Self, GrayRange), VolumeError> {
         let range = match gray {
             Gray::Automatic if self.gray_levels => GrayRange::IDENTITY,
@@ -103,7 +104,10 @@ impl Volume {
                 GrayRange { low: low.into(), high: high.into() }
             }
             Gray::Range(range) => {
-                if !(range.low < range.high && range.low.is_finite() && range.high.is_finite()) {
+                let (low, high) = self.value_range();
+                let fits = |sample: f32| (range.gray(sample.into()) as f32).is_finite();
+                let finite = range.low.is_finite() && range.high.is_finite();
+                if !(range.low < range.high && finite && fits(low) && fits(high)) {
                     return Err(VolumeError::GrayRange { low: range.low, high: range.high });
                 }
                 range
@@ -114,4 +118,14 @@ impl Volume {
         }
         Ok((self.with_gray_levels(), range))
     }
+}
+
+/// The first index whose value is a NaN or an infinity: whole chunks are judged at once, and only
+/// one with such a value is searched.
+fn first_not_finite(values: &[f32]) -> Option<usize> {
+    const CHUNK: usize = 1 << 14;
+    let has_one = |chunk: &[f32]| chunk.iter().fold(false, |found, v| found | !v.is_finite());
+    let chunk = values.par_chunks(CHUNK).position_first(has_one)?;
+    let inside = values[chunk * CHUNK..].iter().position(|v| !v.is_finite())?;
+    Some(chunk * CHUNK + inside)
 }

@@ -96,11 +96,6 @@ impl NpyFile {
         Ok(Self { shape, fortran, dtype, endian, boolean, payload })
     }
 
-    /// The type of the elements.
-    pub fn dtype(&self) -> Dtype {
-        self.dtype
-    }
-
     /// All elements in the order of the file, which must hold exactly as many as it claims.
     pub fn values<T: Element>(self, path: &Path) -> Result<Vec<T>, VolumeError> {
         let count = self.shape.iter().fold(1u64, |product, &n| product.saturating_mul(n));

@@ -26,7 +26,7 @@ pub(super) fn read(path: &Path, layout: &RawLayout) -> Result<Volume, VolumeErro
     let RawLayout { dims, dtype, endian, offset } = *layout;
     let mut reader = File::open(path).map_err(io_error(path))?;
     let length = reader.metadata().map_err(io_error(path))?.len();
-    reader.seek(SeekFrom::Start(offset)).map_err(io_error(path))?;
+    reader.seek(SeekFrom::Start(offset.min(length))).map_err(io_error(path))?;
     let payload = Payload { reader, length: Length::Exactly(length.saturating_sub(offset)) };
     let samples =
         payload.samples(dtype, endian, dims.samples() as u64).map_err(|error| match error {

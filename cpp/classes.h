@@ -1,0 +1,10 @@
+// The numbers of `Class` in src/shape/complex.rs.
+#pragma once
+
+#include <cstdint>
+
+namespace walpha {
+
+enum Class : std::uint8_t { EXTERIOR = 0, INTERIOR = 1, REGULAR = 2, SINGULAR = 3, HIDDEN = 4 };
+
+}  // namespace walpha

@@ -1,0 +1,44 @@
+//! What several test programs need.
+#![allow(dead_code, reason = "each program uses its part")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Whether `sample:skull` can be read. It comes with CGAL's demo package, which a machine need
+/// not have; where `WALPHA_REQUIRE_SKULL` is set, its absence is a failure and not an excuse.
+pub fn has_skull() -> bool {
+    let there = walpha::volume::sample("sample:skull");
+    if let Err(error) = &there {
+        assert!(std::env::var_os("WALPHA_REQUIRE_SKULL").is_none(), "{error}");
+        eprintln!("skipped: {error}");
+    }
+    there.is_ok()
+}
+
+/// The built command, in a folder.
+pub fn walpha(folder: &Path, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_walpha"));
+    command.args(args).current_dir(folder).output().expect("the command starts")
+}
+
+/// Its exit code, standard output and standard error.
+pub fn run(folder: &Path, args: &[&str]) -> (i32, String, String) {
+    let output = walpha(folder, args);
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
+    (output.status.code().expect("no signal"), text(output.stdout), text(output.stderr))
+}
+
+/// Runs and expects success; gives standard output.
+pub fn ok(folder: &Path, args: &[&str]) -> String {
+    let (code, stdout, stderr) = run(folder, args);
+    assert_eq!(code, 0, "walpha {args:?}\n{stdout}\n{stderr}");
+    stdout
+}
+
+/// Runs with `--json` and expects one object.
+pub fn json(folder: &Path, args: &[&str]) -> serde_json::Value {
+    let stdout = ok(folder, &[args, &["--json"]].concat());
+    let value: serde_json::Value = serde_json::from_str(&stdout).expect("one JSON object");
+    assert!(value.is_object());
+    value
+}

@@ -1,0 +1,289 @@
+//! Differences, selection, weights and point files against brute force and by their laws.
+
+use std::path::Path;
+
+use ndarray::Array3;
+use proptest::prelude::*;
+use walpha::haar::{HaarOptions, Tolerance, smooth};
+use walpha::points::*;
+use walpha::volume::{Frame, Gray, Volume, VolumeError, sample};
+
+fn volume(samples: Array3<f32>) -> Volume {
+    Volume::new(samples, Frame::VOXEL).unwrap()
+}
+
+/// L by its definition.
+fn slow_difference(f: &Array3<f32>) -> Array3<f32> {
+    let get = |z: i64, y: i64, x: i64| {
+        let inside = z >= 0 && y >= 0 && x >= 0;
+        if inside { f.get([z as usize, y as usize, x as usize]).copied() } else { None }
+    };
+    Array3::from_shape_fn(f.dim(), |(z, y, x)| {
+        let (z, y, x) = (z as i64, y as i64, x as i64);
+        let neighbours = [(0, 0, -1), (0, 0, 1), (0, -1, 0), (0, 1, 0), (-1, 0, 0), (1, 0, 0)];
+        let here = f64::from(get(z, y, x).unwrap());
+        let there = neighbours.iter().filter_map(|(dz, dy, dx)| get(z + dz, y + dy, x + dx));
+        (there.map(|v| (here - f64::from(v)).abs()).sum::<f64>() / 6.0) as f32
+    })
+}
+
+fn grid() -> impl Strategy<Value = Array3<f32>> {
+    (1usize..7, 1usize..7, 1usize..7).prop_flat_map(|(z, y, x)| {
+        prop::collection::vec(0u8..5, x * y * z).prop_map(move |values| {
+            let values = values.into_iter().map(f32::from).collect();
+            Array3::from_shape_vec((z, y, x), values).unwrap()
+        })
+    })
+}
+
+/// Voxel indices the rule chooses, by sorting.
+fn slow_selection(l: &Array3<f32>, f: &Array3<f32>, selection: &Selection) -> Option<Vec<usize>> {
+    let (l, f): (Vec<f32>, Vec<f32>) = (l.iter().copied().collect(), f.iter().copied().collect());
+    let least = selection.gray_min.unwrap_or(f64::NEG_INFINITY);
+    let mut open: Vec<usize> = (0..l.len()).filter(|&i| f64::from(f[i]) >= least).collect();
+    open.sort_by(|&a, &b| l[b].total_cmp(&l[a]).then(a.cmp(&b)));
+    let count = match selection.rule {
+        SelectionRule::Count(n) => n as usize,
+        SelectionRule::Ratio(r) => ((r * l.len() as f64).round() as usize).max(1),
+        SelectionRule::Threshold(t) => open.iter().filter(|&&i| f64::from(l[i]) >= t).count(),
+    };
+    if count == 0 || count > open.len() {
+        return None;
+    }
+    open.truncate(count);
+    open.sort_unstable();
+    Some(open)
+}
+
+proptest! {
+    #[test]
+    fn differences_are_those_of_the_definition(f in grid()) {
+        prop_assert_eq!(difference(&volume(f.clone())), slow_difference(&f));
+    }
+
+    #[test]
+    fn selection_is_what_sorting_gives(
+        f in grid(),
+        rule in prop_oneof![
+            (0u64..40).prop_map(SelectionRule::Count),
+            (0.001f64..=1.0).prop_map(SelectionRule::Ratio),
+            (0.0f64..4.0).prop_map(SelectionRule::Threshold),
+        ],
+        gray_min in prop::option::of(0.0f64..4.0),
+    ) {
+        let selection = Selection { rule, gray_min };
+        let (v, l) = (volume(f.clone()), slow_difference(&f));
+        let (_, ny, nx) = f.dim();
+        let chosen = select(&v, &v, &l, &selection, Units::Voxel);
+        match slow_selection(&l, &f, &selection) {
+            None => prop_assert!(chosen.is_err()),
+            Some(expected) => {
+                let points = chosen.unwrap();
+                let index = |[x, y, z]: &[f64; 3]| *x as usize + nx * (*y as usize + ny * *z as usize);
+                prop_assert_eq!(points.positions.iter().map(index).collect::<Vec<_>>(), expected.clone());
+                let at = |column: &Array3<f32>| -> Vec<f64> {
+                    let flat: Vec<f32> = column.iter().copied().collect();
+                    expected.iter().map(|&i| f64::from(flat[i])).collect()
+                };
+                prop_assert_eq!(points.values.unwrap(), at(&f));
+                prop_assert_eq!(points.differences.unwrap(), at(&l));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_skull_is_cut_where_it_should_be() {
+    let skull = match sample("sample:skull") {
+        Ok(skull) => skull,
+        Err(VolumeError::Sample(missing)) => {
+            eprintln!("skipped: {missing}");
+            return;
+        }
+        Err(other) => panic!("{other}"),
+    };
+    let (gray, _) = skull.into_gray(Gray::Automatic).unwrap();
+    let options = HaarOptions { tolerance: Tolerance::Rms(0.0), ..HaarOptions::default() };
+    let (smoothed, _) = smooth(&gray, &options).unwrap();
+    let l = difference(&smoothed);
+    let by_count = Selection { rule: SelectionRule::Count(15956), gray_min: None };
+    let points = select(&gray, &smoothed, &l, &by_count, Units::Voxel).unwrap();
+    let least = points.differences.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    assert!((least - 20.36094).abs() < 5e-6, "{least}");
+    let by_threshold = Selection { rule: SelectionRule::Threshold(20.3608), gray_min: None };
+    assert_eq!(select(&gray, &smoothed, &l, &by_threshold, Units::Voxel).unwrap(), points);
+    let next = Selection { rule: SelectionRule::Count(15957), gray_min: None };
+    let next = select(&gray, &smoothed, &l, &next, Units::Voxel).unwrap();
+    let least = next.differences.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    assert!((least - 20.36070).abs() < 5e-6, "{least}");
+    // 0.0609 · 262144 = 15964.57
+    let default = select(&gray, &smoothed, &l, &Selection::default(), Units::Voxel).unwrap();
+    assert_eq!(default.len(), 15965);
+}
+
+#[test]
+fn world_units_follow_the_frame() {
+    let frame = Frame { origin: [10.0, 20.0, 30.0], spacing: [2.0, 3.0, 0.5], ..Frame::VOXEL };
+    let f = Array3::from_shape_fn((2, 2, 2), |(z, y, x)| (x + 2 * y + 4 * z) as f32);
+    let v = Volume::new(f, frame).unwrap();
+    let all = Selection { rule: SelectionRule::Ratio(1.0), gray_min: None };
+    let points = select(&v, &v, &difference(&v), &all, Units::World).unwrap();
+    assert_eq!(points.positions[7], [12.0, 23.0, 30.5]);
+    assert_eq!(points.positions[1], [12.0, 20.0, 30.0]);
+}
+
+#[test]
+fn impossible_selections_say_what_is_possible() {
+    let v = volume(Array3::zeros((2, 3, 4)));
+    let l = difference(&v);
+    let refuse = |rule, gray_min| {
+        select(&v, &v, &l, &Selection { rule, gray_min }, Units::Voxel).unwrap_err().to_string()
+    };
+    assert!(refuse(SelectionRule::Count(0), None).contains("1 to 24"));
+    assert!(refuse(SelectionRule::Count(25), None).contains("1 to 24"));
+    assert!(refuse(SelectionRule::Count(1), Some(1.0)).contains("1 to 0"));
+    assert!(refuse(SelectionRule::Threshold(0.5), None).contains("none of 24 voxels"));
+    for ratio in [0.0, -0.1, 1.1, f64::NAN] {
+        assert!(refuse(SelectionRule::Ratio(ratio), None).contains("--ratio"));
+    }
+    assert!(refuse(SelectionRule::Threshold(f64::NAN), None).contains("--threshold"));
+    assert!(refuse(SelectionRule::Count(1), Some(f64::NAN)).contains("--gray-min"));
+}
+
+#[test]
+fn threads_change_no_selection() {
+    let f =
+        Array3::from_shape_fn((70, 61, 52), |(z, y, x)| ((x * 7 + y * 13 + z * 29) % 17) as f32);
+    let v = volume(f);
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let select = || select(&v, &v, &difference(&v), &Selection::default(), Units::Voxel);
+        pool.install(select).unwrap()
+    };
+    assert_eq!(on(1).len(), (0.0609 * 222_040f64).round() as usize);
+    assert!(on(1) == on(2) && on(1) == on(5));
+}
+
+fn points(differences: &[f64]) -> Points {
+    Points {
+        positions: (0..differences.len()).map(|i| [i as f64, 0.0, 0.0]).collect(),
+        values: None,
+        differences: Some(differences.to_vec()),
+        weights: None,
+    }
+}
+
+#[test]
+fn weights_follow_their_equations() {
+    let four = points(&[1.0, 2.0, 2.0, 5.0]);
+    let of = |weighting| weigh(&four, weighting, 8.0).unwrap().weights;
+    assert_eq!(of(Weighting::Common(3.0)), [3.0; 4]);
+    assert_eq!(of(Weighting::MinMax), [0.0, 2.0, 2.0, 8.0]);
+    assert_eq!(of(Weighting::Barycentric), [0.8, 1.6, 1.6, 4.0]);
+    let n = weigh(&four, Weighting::BarycentricN, 8.0).unwrap();
+    assert_eq!(n.weights, [3.2, 6.4, 6.4, 16.0]);
+    assert_eq!(n.summary(), WeightSummary { min: 3.2, mean: 8.0, max: 16.0 });
+}
+
+#[test]
+fn equal_differences_weigh_nothing_by_min_max() {
+    assert_eq!(weigh(&points(&[2.0; 3]), Weighting::MinMax, 9.0).unwrap().weights, [0.0; 3]);
+    for weighting in [Weighting::MinMax, Weighting::Barycentric, Weighting::BarycentricN] {
+        assert_eq!(weigh(&points(&[0.0; 3]), weighting, 9.0).unwrap().weights, [0.0; 3]);
+    }
+}
+
+#[test]
+fn weights_that_cannot_be_are_refused() {
+    let here = points(&[1.0, 2.0]);
+    for weighting in [Weighting::MinMax, Weighting::Barycentric, Weighting::BarycentricN] {
+        for alpha in [f64::INFINITY, f64::NAN] {
+            let text = weigh(&here, weighting, alpha).unwrap_err().to_string();
+            assert!(text.contains("finite α"), "{text}");
+        }
+        let scattered = Points { differences: None, ..here.clone() };
+        let text = weigh(&scattered, weighting, 1.0).unwrap_err().to_string();
+        assert!(text.contains("column") && text.contains("common=C"), "{text}");
+    }
+    assert!(weigh(&here, Weighting::Common(1.0), f64::INFINITY).is_ok());
+    assert!(matches!(weigh(&here, Weighting::Column, 1.0), Err(PointsError::NoColumn)));
+    let error = weigh(&here, Weighting::Common(f64::NAN), 1.0).unwrap_err();
+    assert!(matches!(error, PointsError::Weight { index: 0, .. }));
+}
+
+#[test]
+fn weightings_are_read_as_they_are_written() {
+    use Weighting::*;
+    for weighting in [Common(10.0), Common(-0.5), MinMax, Barycentric, BarycentricN, Column] {
+        assert_eq!(weighting.to_string().parse(), Ok(weighting));
+    }
+    for text in ["common", "common=", "common=nan", "common=inf", "minmax", ""] {
+        assert!(text.parse::<Weighting>().unwrap_err().to_string().contains("min-max"), "{text}");
+    }
+}
+
+#[test]
+fn written_points_are_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let third = 1.0 / 3.0;
+    for values in [None, Some(vec![1e-300, -7.5])] {
+        let points = WeightedPoints {
+            positions: vec![[third, -2.0, 1e20], [0.0, 5.0, 6.25]],
+            weights: vec![third * third, -1.0],
+            values,
+        };
+        let (csv, npy) = (folder.path().join("p.csv"), folder.path().join("p.npy"));
+        write_csv(&points, std::fs::File::create(&csv).unwrap()).unwrap();
+        write_npy(&points, std::fs::File::create(&npy).unwrap()).unwrap();
+        for path in [csv, npy] {
+            assert!(is_point_file(&path).unwrap());
+            let back = read_points(&path).unwrap();
+            assert_eq!(weigh(&back, Weighting::Column, 1.0).unwrap(), points, "{path:?}");
+        }
+    }
+}
+
+#[test]
+fn csv_columns_may_stand_anywhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.csv");
+    std::fs::write(&path, "\u{feff}name,Z, y ,weight,X\na,3,2,0.5,1\n\"b, c\",6,5,-1e1,4\n")
+        .unwrap();
+    let points = read_points(&path).unwrap();
+    assert_eq!(points.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    assert_eq!(points.weights, Some(vec![0.5, -10.0]));
+    assert_eq!(points.values, None);
+}
+
+#[test]
+fn bad_point_files_say_where_they_are_bad() {
+    let folder = tempfile::tempdir().unwrap();
+    let refuse = |name: &str, bytes: &[u8], parts: &[&str]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        let text = read_points(&path).unwrap_err().to_string();
+        for part in parts.iter().chain(&[name]) {
+            assert!(text.contains(part), "{part:?} is missing in: {text}");
+        }
+    };
+    refuse("empty.csv", b"", &["first line must name"]);
+    refuse("nothing.csv", b"x,y,z\n", &["no point"]);
+    refuse("axis.csv", b"x,y\n1,2\n", &["x, y and z"]);
+    refuse("twice.csv", b"x,y,z,X\n1,2,3,4\n", &["twice"]);
+    refuse("word.csv", b"x,y,z\n1,2,3\n1,two,3\n", &["line 3", "column y", "two"]);
+    refuse("nan.csv", b"x,y,z,weight\n1,2,3,NaN\n", &["line 2", "column weight"]);
+    refuse("short.csv", b"x,y,z\n1,2,3\n1,2\n", &["line: 3"]);
+    refuse("text.csv", b"x,y,z\n\xff,2,3\n", &["UTF-8"]);
+
+    let npy = |array: ndarray::Array2<f64>| {
+        let mut bytes = Vec::new();
+        ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes).unwrap();
+        bytes
+    };
+    refuse("three.npy", &npy(ndarray::arr2(&[[1.0, 2.0, 3.0]])), &["[1, 3]", "n×4"]);
+    let infinite = ndarray::arr2(&[[1.0, 2.0, f64::INFINITY, 0.0]]);
+    refuse("inf.npy", &npy(infinite), &["row 0", "z is inf"]);
+    refuse("none.npy", &npy(ndarray::Array2::zeros((0, 4))), &["no point"]);
+    let text = read_points(Path::new("no/such.csv")).unwrap_err().to_string();
+    assert!(text.contains("no/such.csv"), "{text}");
+}
