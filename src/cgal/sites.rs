@@ -126,8 +126,7 @@ pub(super) fn check<const N: usize>(
         let coordinates = ["x", "y", "z"].into_iter().zip(*p);
         for (what, value) in coordinates.chain([("weight", weight)]) {
             let limit = if what == "weight" { Sites::MAX_WEIGHT } else { Sites::MAX_COORDINATE };
-            // NaN compares false, so it is refused too.
-            if !(value.abs() <= limit) {
+            if value.is_nan() || value.abs() > limit {
                 return Err(SitesError::Value { index, what, value, limit });
             }
         }
