@@ -38,6 +38,7 @@ pub mod check;
 pub mod export;
 pub mod haar;
 pub mod memory;
+pub mod plane;
 pub mod points;
 pub mod render;
 pub mod shape;

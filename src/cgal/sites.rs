@@ -40,6 +40,9 @@ pub enum SitesError {
         /// The largest magnitude accepted.
         limit: f64,
     },
+    /// No point at all, where one would do.
+    #[error("there is no point: at least 1 is needed; select some")]
+    Empty,
     /// Fewer than four different places.
     #[error(
         "{distinct} distinct points cannot span a tetrahedron: at least 4 are needed; select more points"
@@ -73,21 +76,7 @@ impl Sites {
     /// # Errors
     /// See [`SitesError`]; points in one plane are found later, by the triangulation.
     pub fn new(positions: &[[f64; 3]], weights: &[f64]) -> Result<Self, SitesError> {
-        if positions.len() != weights.len() {
-            return Err(SitesError::Lengths { positions: positions.len(), weights: weights.len() });
-        }
-        if positions.len() > u32::MAX as usize {
-            return Err(SitesError::TooMany(positions.len()));
-        }
-        for (index, (p, &weight)) in positions.iter().zip(weights).enumerate() {
-            let numbers = [("x", p[0]), ("y", p[1]), ("z", p[2]), ("weight", weight)];
-            for (what, value) in numbers {
-                let limit = if what == "weight" { Self::MAX_WEIGHT } else { Self::MAX_COORDINATE };
-                if value.is_nan() || value.abs() > limit {
-                    return Err(SitesError::Value { index, what, value, limit });
-                }
-            }
-        }
+        check(positions, weights)?;
         let (kept, duplicates) = keep_heaviest(positions, weights);
         if kept.len() < 4 {
             return Err(SitesError::TooFew { distinct: kept.len() });
@@ -122,11 +111,37 @@ impl Sites {
     }
 }
 
+/// Whether every number is one that CGAL can stand; coordinates are x, y and perhaps z.
+pub(super) fn check<const N: usize>(
+    positions: &[[f64; N]],
+    weights: &[f64],
+) -> Result<(), SitesError> {
+    if positions.len() != weights.len() {
+        return Err(SitesError::Lengths { positions: positions.len(), weights: weights.len() });
+    }
+    if positions.len() > u32::MAX as usize {
+        return Err(SitesError::TooMany(positions.len()));
+    }
+    for (index, (p, &weight)) in positions.iter().zip(weights).enumerate() {
+        let coordinates = ["x", "y", "z"].into_iter().zip(*p);
+        for (what, value) in coordinates.chain([("weight", weight)]) {
+            let limit = if what == "weight" { Sites::MAX_WEIGHT } else { Sites::MAX_COORDINATE };
+            if value.is_nan() || value.abs() > limit {
+                return Err(SitesError::Value { index, what, value, limit });
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Indices that stay, and pairs (went, stayed), both ascending.
-fn keep_heaviest(positions: &[[f64; 3]], weights: &[f64]) -> (Vec<u32>, Vec<[u32; 2]>) {
+pub(super) fn keep_heaviest<const N: usize>(
+    positions: &[[f64; N]],
+    weights: &[f64],
+) -> (Vec<u32>, Vec<[u32; 2]>) {
     // Adding 0.0 turns −0.0 into 0.0, so equal numbers have equal bits.
     let place = |i: u32| positions[i as usize].map(|v| (v + 0.0).to_bits());
-    let mut by_place: Vec<([u64; 3], u32)> =
+    let mut by_place: Vec<([u64; N], u32)> =
         (0..positions.len() as u32).into_par_iter().map(|i| (place(i), i)).collect();
     by_place.par_sort_unstable();
     let mut duplicates = Vec::new();
