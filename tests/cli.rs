@@ -121,6 +121,42 @@ fn points_written_are_points_read() {
 }
 
 #[test]
+fn check_names_a_wrong_simplex() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let make = ["shape", "sample:phantom@12", "--weights", "min-max", "--exterior", "-o", "a.json"];
+    ok(f, &make);
+    assert!(ok(f, &["check", "a.json"]).contains("certified: no finding"));
+    let mut file: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(f.join("a.json")).unwrap()).unwrap();
+    let classes = file["classes"]["facets"].as_array_mut().unwrap();
+    let at = classes.iter().position(|class| class == "regular").unwrap();
+    classes[at] = "interior".into();
+    let facet = format!("facet {}", file["facets"][at]).replace(',', ", ");
+    fs::write(f.join("b.json"), file.to_string()).unwrap();
+
+    let (code, stdout, _) = run(f, &["check", "b.json"]);
+    assert_eq!(code, 3);
+    assert!(stdout.contains(&facet) && stdout.contains("1 findings"), "{facet}\n{stdout}");
+    let (code, stdout, _) = run(f, &["compare", "a.json", "b.json"]);
+    assert_eq!(code, 3);
+    assert!(stdout.contains(&facet) && stdout.contains("A Regular, B Interior"), "{stdout}");
+    assert!(ok(f, &["compare", "a.json", "a.json"]).contains("equal"));
+    // Points may stand in a file of their own.
+    ok(f, &["points", "sample:phantom@12", "--weights", "min-max", "-o", "p.csv"]);
+    file["points"] = serde_json::json!([]);
+    fs::write(f.join("c.json"), file.to_string()).unwrap();
+    let (code, _, stderr) = run(f, &["check", "c.json"]);
+    assert_eq!(code, 1);
+    assert!(stderr.contains("c.json") && stderr.contains("--points"), "{stderr}");
+    assert_eq!(run(f, &["check", "c.json", "--points", "p.csv"]).0, 3);
+    fails(f, 1, "compare a.json missing.json", &["missing.json"]);
+    fails(f, 1, "check sample:phantom@16 --enumerate", &["at most 200 points"]);
+    fails(f, 1, "check sample:phantom --points p.csv", &["--points belongs to a complex"]);
+    ok(f, &["check", "sample:phantom@12", "--weights", "min-max", "--enumerate", "--count", "50"]);
+}
+
+#[test]
 fn threads_change_no_byte() {
     let folder = tempfile::tempdir().unwrap();
     for threads in ["1", "2", "5"] {

@@ -96,7 +96,7 @@ pub fn describe(f: &mut fmt::Formatter<'_>, comparison: &Comparison) -> fmt::Res
             classes.iter().map(|c| format!("{}: A {:?}, B {:?}", c.simplex, c.a, c.b)),
         )?;
     }
-    writeln!(f, "domain    {}", comparison.domain)
+    writeln!(f, "{}", comparison.domain)
 }
 
 fn named<T: Display>(

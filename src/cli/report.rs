@@ -209,6 +209,9 @@ impl Display for Report {
                 write!(f, ", {count} {what}")?;
             }
         }
+        if self.shape.is_some() && self.points.hidden.is_none() {
+            write!(f, " (--slabs 1 counts hidden points)")?;
+        }
         let WeightsReport { kind, min, mean, max } = &self.weights;
         writeln!(
             f,
