@@ -8,6 +8,7 @@ pub mod haar;
 pub mod memory;
 pub mod points;
 pub mod render;
+pub mod reproduce;
 pub mod shape;
 pub mod volume;
 

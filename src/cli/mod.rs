@@ -4,10 +4,12 @@ mod args;
 mod haar;
 mod info;
 mod output;
+mod picture;
 mod pipeline;
 mod points;
 mod progress;
 mod report;
+mod reproduce;
 mod shape;
 
 use std::process::ExitCode;
@@ -54,6 +56,7 @@ struct Global {
 
 #[derive(Subcommand)]
 enum Command {
+    Reproduce(reproduce::Reproduce),
     Shape(shape::Shape),
     Points(points::Points),
     Haar(haar::Haar),
@@ -80,6 +83,7 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
     }
     match command {
+        Command::Reproduce(reproduce) => reproduce.run(global)?,
         Command::Shape(shape) => shape.run(global)?,
         Command::Points(points) => points.run(global)?,
         Command::Haar(haar) => haar.run(global)?,

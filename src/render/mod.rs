@@ -36,3 +36,4 @@ pub use marching::Isosurface;
 pub use picture::{Picture, Size};
 pub use scene::{Background, Ball, Colours, Mesh, Scene, Shading, Tube};
 pub use shape::{Colouring, ShapeStyle, class_colours};
+pub(crate) use svg::base64;

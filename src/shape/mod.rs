@@ -9,6 +9,7 @@ mod slabs;
 mod surface;
 mod topology;
 mod union_find;
+mod voids;
 
 pub use alpha::{Alpha, Balls, NotAnAlpha};
 pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
@@ -17,3 +18,4 @@ pub use measure::Measures;
 pub use slabs::PlanError;
 pub use surface::Surface;
 pub use topology::{Betti, direct_betti};
+pub use voids::Void;
