@@ -232,7 +232,7 @@ impl Display for Report {
             if let Some(voids) = &shape.voids
                 && let Some(largest) = voids.first()
             {
-                let sum: f64 = voids.iter().map(|void| void.volume).sum();
+                let sum = voids.iter().fold(0.0, |sum, void| sum + void.volume);
                 writeln!(f, "voids     {sum:.6} in all, the largest {:.6}", largest.volume)?;
             }
             if self.points.in_shape == Some(0) {

@@ -41,7 +41,7 @@ fn head(html: &mut String, report: &Report) {
         html,
         "<h1>{}: the paper, reproduced</h1>\n\
          <p>Table 1 and the figures, made again on <b>{}</b> ({x}×{y}×{z} samples, values {} to {} \
-         as gray levels). Each claim of the paper is held against our numbers, and nothing is tuned \
+         taken as gray levels 0 to 255). Each claim of the paper is held against our numbers, and nothing is tuned \
          to agree.</p>\n\
          <p>{} of {} points ({} %) are selected after the Haar transform kept {} of {} coefficients, \
          ε = {}, RMS {} gray levels. <b>α and ω are squared lengths</b>, in voxels: at α = 10 with \
@@ -138,7 +138,7 @@ fn section(html: &mut String, item: &Item, files: &[File]) {
 fn judgement(html: &mut String, finding: &Finding) {
     let _ = writeln!(
         html,
-        "<div class=\"finding {}\"><p><b>Claim.</b> {}</p><p>{} <span>{}.</span></p></div>",
+        "<div class=\"finding {}\"><p><b>Claim.</b> {}</p><p>{}: {}.</p></div>",
         class(finding.verdict),
         escape(&finding.claim),
         badge(finding.verdict),

@@ -96,7 +96,7 @@ impl<'a> Clock<'a> {
         Self { announce, running: None, started: Instant::now(), seconds: Vec::new() }
     }
 
-    /// Ends the running stage and starts another.
+    /// Ends the running stage and starts another. Stages of the same name add up.
     fn enter(&mut self, name: &'static str) {
         self.end();
         (self.announce)(name);
@@ -105,7 +105,11 @@ impl<'a> Clock<'a> {
 
     fn end(&mut self) {
         if let Some((name, since)) = self.running.take() {
-            self.seconds.push((name, since.elapsed().as_secs_f64()));
+            let seconds = since.elapsed().as_secs_f64();
+            match self.seconds.iter_mut().find(|stage| stage.0 == name) {
+                Some(stage) => stage.1 += seconds,
+                None => self.seconds.push((name, seconds)),
+            }
         }
     }
 

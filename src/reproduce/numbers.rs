@@ -92,7 +92,7 @@ impl ShapeNumbers {
             edges: ByClass::of(&complex.edges),
             vertices: ByClass::of(&complex.vertices),
             betti: shape.betti().expect("the whole triangulation"),
-            void_volume: voids.iter().map(|void| void.volume).sum(),
+            void_volume: voids.iter().fold(0.0, |sum, void| sum + void.volume),
             largest_voids: voids.into_iter().take(Self::VOIDS).collect(),
             volume: shape.measures().volume,
             area: shape.measures().area,

@@ -2,8 +2,11 @@
 
 /// At most three decimals, without zeros at the end; six significant digits for small numbers.
 pub(super) fn number(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return if value.is_infinite() && value > 0.0 { "∞".into() } else { value.to_string() };
+    if value == 0.0 {
+        return "0".into();
+    }
+    if value == f64::INFINITY {
+        return "∞".into();
     }
     let decimals = if value.abs() < 0.1 { 8 } else { 3 };
     let text = format!("{value:.decimals$}");
@@ -34,7 +37,7 @@ mod tests {
         let pairs = [
             (10.0, "10"),
             (1.0 / 3.0, "0.333"),
-            (0.0, "0"),
+            (-0.0, "0"),
             (0.000_626_723, "0.00062672"),
             (f64::INFINITY, "∞"),
             (24_531.833_333, "24531.833"),

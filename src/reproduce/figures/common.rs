@@ -8,7 +8,7 @@ pub(super) fn figure_6(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let shapes = bench.shapes;
     let plain = &shapes.plain;
     let title = format!("Figure 6. Common factor 0, α = {ALPHA} (√α = {:.3} voxels)", ALPHA.sqrt());
-    let drawn = figure(&title, 1, vec![bench.shape_panel("", plain, 1)?]);
+    let drawn = figure(&title, bench.two_views(plain)?);
     let picture = bench.file("figure-06.png", drawn.to_png()?);
 
     let ladder = shapes.by_alpha();
@@ -70,7 +70,7 @@ pub(super) fn figure_6(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
             ),
         },
     ];
-    let command = bench.drawing_command(plain, 1, "figure-06.png");
+    let command = bench.drawing_command(plain, "figure-06.png");
     Ok(Item {
         id: "figure-6",
         title: "Figure 6. Common factor 0".into(),
@@ -82,6 +82,7 @@ pub(super) fn figure_6(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
             .into(),
         picture: Some(picture),
         commands: vec![command],
+        files: vec![bench.mesh("figure-06.ply", plain)?],
         shapes: vec![plain.numbers.clone()],
         facts: vec![
             Fact::new("volume of the convex hull, by its facets", hull.volume),
@@ -101,7 +102,7 @@ pub(super) fn figure_7(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let title = format!(
         "Figure 7. Common factor {COMMON}, α = {ALPHA}: the unweighted shape at α = {alpha}"
     );
-    let drawn = figure(&title, 1, vec![bench.shape_panel("", common, 1)?]);
+    let drawn = figure(&title, bench.two_views(common)?);
     let picture = bench.file("figure-07.png", drawn.to_png()?);
 
     let (a, b) = (common.shape.complex(), shifted.shape.complex());
@@ -139,7 +140,7 @@ pub(super) fn figure_7(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
             ),
         },
     ];
-    let command = bench.drawing_command(common, 1, "figure-07.png");
+    let command = bench.drawing_command(common, "figure-07.png");
     Ok(Item {
         id: "figure-7",
         title: "Figure 7. Common factor 10".into(),
@@ -150,6 +151,7 @@ pub(super) fn figure_7(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
         ),
         picture: Some(picture),
         commands: vec![command, shifted.numbers.command.clone()],
+        files: vec![bench.mesh("figure-07.ply", common)?],
         shapes: vec![common.numbers.clone(), shifted.numbers.clone()],
         findings,
         ..Item::default()

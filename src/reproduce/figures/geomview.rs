@@ -1,10 +1,11 @@
+use super::super::compare::{PixelDifference, same_set};
 use super::super::off::OffMesh;
-use super::super::stage::{panel, panel_size};
+use super::super::stage::{Eye, panel};
 use super::super::study::{ALPHA, Shaped};
-use super::super::{Fact, Finding, Item, ReproduceError, Verdict, compare};
+use super::super::{Fact, Finding, Item, ReproduceError, Verdict};
 use super::{Bench, figure};
 use crate::export::{Exporter, Off};
-use crate::render::Picture;
+use crate::render::{Figure, Picture};
 use crate::shape::Surface;
 
 /// Figure 11: the pair of Figure 10 as files for Geomview, drawn from these files.
@@ -28,11 +29,11 @@ pub(super) fn figure_11(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
         panel(side.title, side.picture.clone(), vec![caption])
     });
     let title = format!("Figure 11. The pair as OFF files, read back; α = {ALPHA}");
-    let drawn = figure(&title, 2, panels.collect());
+    let drawn = Figure { legend: Vec::new(), ..figure(&title, panels.collect()) };
     let picture = bench.file("figure-11.png", drawn.to_png()?);
 
-    let pixels = compare::pixels(&sides[0].picture, &sides[1].picture);
-    let same = sides[0].mesh == sides[1].mesh;
+    let pixels = PixelDifference::between(&sides[0].picture, &sides[1].picture);
+    let same = same_set(&shapes.plain.shape, &shapes.barycentric.shape);
     let findings = vec![
         Finding {
             claim: "The shapes can be shown by a second program, Geomview.".into(),
@@ -48,12 +49,18 @@ pub(super) fn figure_11(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
         },
         Finding {
             claim: "The right image differs from the left: its hole is filled.".into(),
-            verdict: Verdict::of(pixels > 0 && filled(&shapes.plain, &shapes.barycentric)),
+            verdict: Verdict::of(!same && filled(&shapes.plain, &shapes.barycentric)),
             reason: format!(
-                "the meshes are {}; {pixels} of {} pixels differ; b₁ and b₂ are {} and {} on the \
-                 left, {} and {} on the right",
-                if same { "the same" } else { "not the same" },
+                "the two surfaces are {}; {} of {} pixels differ, by {} of 255 at most; b₁ and b₂ are \
+                 {} and {} on the left, {} and {} on the right",
+                if same {
+                    "the same set of points in space, cut into triangles along other diagonals"
+                } else {
+                    "not the same set of points in space"
+                },
+                pixels.pixels,
                 sides[0].picture.pixels().len(),
+                pixels.largest,
                 shapes.plain.numbers.betti.b1,
                 shapes.plain.numbers.betti.b2,
                 shapes.barycentric.numbers.betti.b1,
@@ -79,7 +86,8 @@ pub(super) fn figure_11(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
             Fact::count("vertices, right", sides[1].mesh.positions.len()),
             Fact::count("facets, left", sides[0].mesh.facets.len()),
             Fact::count("facets, right", sides[1].mesh.facets.len()),
-            Fact::count("pixels that differ", pixels),
+            Fact::count("pixels that differ", pixels.pixels),
+            Fact::new("largest difference of a pixel (of 255)", pixels.largest.into()),
         ],
         findings,
         ..Item::default()
@@ -115,7 +123,7 @@ impl Side {
         let positions = &shaped.shape.points().positions;
         let places = surface.vertices.iter().map(|&v| positions[v as usize]);
         let agrees = places.eq(mesh.positions.iter().copied()) && surface.facets().eq(&mesh.facets);
-        let picture = bench.study.stage.render(&mesh.scene(), panel_size(2))?;
+        let picture = bench.study.stage.render(&mesh.scene(), Eye::Portrait)?;
         Ok(Self { title, file: bench.file(name, bytes), mesh, picture, agrees })
     }
 }

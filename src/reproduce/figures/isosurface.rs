@@ -1,9 +1,9 @@
-use super::super::stage::{panel, panel_size};
+use super::super::stage::{Eye, panel};
 use super::super::study::{PAPER_POINTS, PAPER_SAMPLES, Study};
 use super::super::{Fact, Finding, Item, ReproduceError, Table, Verdict, text};
-use super::{Bench, figure};
+use super::{Bench, VIEWS, figure};
 use crate::points::difference;
-use crate::render::{Isosurface, Scene};
+use crate::render::{Figure, Isosurface, Scene};
 use crate::volume::Volume;
 
 /// The paper's threshold, in gray levels.
@@ -19,13 +19,15 @@ pub(super) fn figure_5(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let (vertices, triangles) = (surface.positions.len(), surface.triangles.len());
     let (read, beside, area) = (surface.samples_read, surface.samples_beside, surface.area());
     let scene = Scene { meshes: vec![surface.into_mesh()], ..Scene::default() };
-    let picture = study.stage.render(&scene, panel_size(1))?;
+    let front = study.stage.render(&scene, Eye::Portrait)?;
+    let side = study.stage.render(&scene, Eye::Side)?;
     let title = format!("Figure 5. The volume: isosurface at gray level {THRESHOLD}");
-    let caption = format!(
-        "marching cubes: {triangles} triangles, from all {read} samples; {beside} of them lie \
-         beside the surface"
-    );
-    let drawn = figure(&title, 1, vec![panel("", picture, vec![caption])]);
+    let captions = vec![
+        format!("marching cubes: {triangles} triangles, from all {read} samples"),
+        format!("{beside} of them lie beside the surface"),
+    ];
+    let panels = vec![panel(VIEWS[0], front, captions), panel(VIEWS[1], side, Vec::new())];
+    let drawn = Figure { legend: Vec::new(), ..figure(&title, panels) };
     let picture = bench.file("figure-05.png", drawn.to_png()?);
 
     let points = study.points.len();

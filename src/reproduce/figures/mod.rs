@@ -10,10 +10,11 @@ mod weighted;
 
 use std::collections::BTreeMap;
 
-use super::stage::{panel, panel_size};
+use super::stage::{Eye, panel, panel_size};
 use super::study::{Shaped, Shapes, Study};
 use super::{File, Item, ReproduceError, text};
-use crate::render::{Figure, Panel, Picture};
+use crate::export::{Exporter, Ply};
+use crate::render::{Figure, Panel, Picture, plain_colours};
 
 /// Makes one item, and leaves its files with the bench.
 type Make = fn(&mut Bench<'_>) -> Result<Item, ReproduceError>;
@@ -36,8 +37,8 @@ pub(super) struct Bench<'a> {
     pub study: &'a Study<'a>,
     pub shapes: &'a Shapes,
     pub files: Vec<File>,
-    /// Pictures of shapes, by label and number of columns: several figures show the same.
-    views: BTreeMap<(String, usize), Picture>,
+    /// Pictures of shapes, by label: several figures show the same.
+    views: BTreeMap<(String, Eye), Picture>,
 }
 
 impl<'a> Bench<'a> {
@@ -51,43 +52,54 @@ impl<'a> Bench<'a> {
         name.to_owned()
     }
 
-    /// The picture of a shape for a panel in a row of `columns`.
-    fn view(&mut self, shaped: &Shaped, columns: usize) -> Result<Picture, ReproduceError> {
-        let key = (shaped.numbers.label.clone(), columns);
+    /// The boundary of a shape as a PLY file; gives its name.
+    fn mesh(&mut self, name: &str, shaped: &Shaped) -> Result<String, ReproduceError> {
+        let mut bytes = Vec::new();
+        Ply { ascii: false }.write(&shaped.shape, &mut bytes)?;
+        Ok(self.file(name, bytes))
+    }
+
+    /// The picture of a shape.
+    fn view(&mut self, shaped: &Shaped, eye: Eye) -> Result<Picture, ReproduceError> {
+        let key = (shaped.numbers.label.clone(), eye);
         if let Some(picture) = self.views.get(&key) {
             return Ok(picture.clone());
         }
-        let picture = self.study.stage.shape(&shaped.shape, panel_size(columns))?;
+        let picture = self.study.stage.shape(&shaped.shape, eye)?;
         self.views.insert(key, picture.clone());
         Ok(picture)
     }
 
-    /// A shape with its numbers below.
-    fn shape_panel(
-        &mut self,
-        title: &str,
-        shaped: &Shaped,
-        columns: usize,
-    ) -> Result<Panel, ReproduceError> {
-        Ok(panel(title, self.view(shaped, columns)?, captions(shaped)))
+    /// The portrait of a shape with its numbers below.
+    fn shape_panel(&mut self, title: &str, shaped: &Shaped) -> Result<Panel, ReproduceError> {
+        Ok(panel(title, self.view(shaped, Eye::Portrait)?, captions(shaped)))
+    }
+
+    /// A shape from both cameras, its numbers below.
+    fn two_views(&mut self, shaped: &Shaped) -> Result<Vec<Panel>, ReproduceError> {
+        let side = self.view(shaped, Eye::Side)?;
+        let front = self.shape_panel(VIEWS[0], shaped)?;
+        Ok(vec![front, panel(VIEWS[1], side, Vec::new())])
     }
 
     /// The command line that draws a shape as our figure does, words left out.
-    fn drawing_command(&self, shaped: &Shaped, columns: usize, file: &str) -> String {
-        let camera = self.study.stage.options(panel_size(columns));
-        format!("{} {camera} -o {file}", shaped.numbers.command)
+    fn drawing_command(&self, shaped: &Shaped, file: &str) -> String {
+        format!("{} {} -o {file}", shaped.numbers.command, self.study.stage.options())
     }
 }
 
-/// A figure of pictures, without colour bar or legend.
-fn figure(title: &str, columns: usize, panels: Vec<Panel>) -> Figure {
+/// What the two views of a shape are called.
+const VIEWS: [&str; 2] = ["from the front", "from its left"];
+
+/// A figure of plain shapes, two in a row.
+fn figure(title: &str, panels: Vec<Panel>) -> Figure {
     Figure {
         title: title.into(),
-        columns,
-        panel: panel_size(columns),
+        columns: 2,
+        panel: panel_size(),
         panels,
         colour_bar: None,
-        legend: Vec::new(),
+        legend: plain_colours().map(|(name, colour)| (name.to_owned(), colour)).into(),
         notes: Vec::new(),
     }
 }
@@ -98,16 +110,13 @@ fn captions(shaped: &Shaped) -> Vec<String> {
     let boundary = n.facets.regular + n.facets.singular;
     vec![
         format!(
-            "{} of {} points, {} hidden; {} cells, {boundary} boundary facets",
+            "{} of {} points ({} hidden), {} cells",
             n.points_in_shape, n.points, n.hidden, n.cells
         ),
         format!(
-            "b₀ = {}, b₁ = {}, b₂ = {}; volume {}, voids {}",
-            n.betti.b0,
-            n.betti.b1,
-            n.betti.b2,
-            text::number(n.volume),
-            text::number(n.void_volume)
+            "{boundary} boundary facets; b₀ = {}, b₁ = {}, b₂ = {}",
+            n.betti.b0, n.betti.b1, n.betti.b2
         ),
+        format!("volume {}, voids {}", text::number(n.volume), text::number(n.void_volume)),
     ]
 }

@@ -1,7 +1,7 @@
-use super::super::stage::{panel, panel_size};
+use super::super::stage::panel;
 use super::super::{Fact, Finding, Item, ReproduceError, Verdict, text};
 use super::{Bench, figure};
-use crate::render::{Ball, ColourBar, ColourMap, Figure, Rgb, Scene};
+use crate::render::{Ball, ColourBar, ColourMap, Figure, Scene, Size};
 
 /// Figure 1: the scattered points in their box, coloured by F.
 pub(super) fn figure_1(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
@@ -15,13 +15,15 @@ pub(super) fn figure_1(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
         radius: 0.36,
         colour: map.colour(value),
     }));
-    let high = study.subject.volume.dims().xyz().map(|n| (n - 1) as f64);
-    scene.add_box([[0.0; 3], high], 0.12, Rgb([90, 90, 90]));
-    let picture = study.stage.render(&scene, panel_size(1))?;
+    let size = Size::new(1600, 1240)?;
+    let picture = study.stage.render_box(scene, size)?;
     let title = format!("Figure 1. {} scattered points v with values F(v)", points.len());
     let drawn = Figure {
         colour_bar: Some(ColourBar { map, label: "F, the original gray level".into() }),
-        ..figure(&title, 1, vec![panel("", picture, Vec::new())])
+        columns: 1,
+        panel: size,
+        legend: Vec::new(),
+        ..figure(&title, vec![panel("", picture, Vec::new())])
     };
     let picture = bench.file("figure-01.png", drawn.to_png()?);
 
