@@ -10,7 +10,8 @@
 namespace walpha {
 
 // Cells that touch an owned point, infinite ones included, in CGAL's vertex order: positively
-// oriented, where the infinite vertex counts as a point far outside.
+// oriented, where the infinite vertex counts as a point far outside. They are numbered by their
+// smallest vertices, so that cells near each other in space are near each other in memory.
 class Mesh {
  public:
   static constexpr std::uint32_t NONE = UINT32_MAX;
@@ -19,18 +20,22 @@ class Mesh {
   Mesh(const std::vector<Site> &sites, const std::uint8_t *owned, const Lattice &lattice);
 
   int dimension() const { return dimension_; }
-  std::size_t cells() const { return vertices_.size() / 4; }
+  std::uint32_t cells() const { return static_cast<std::uint32_t>(vertices_.size() / 4); }
   // The number of the infinite vertex: one past the last site.
   std::uint32_t infinite() const { return infinite_; }
-  const std::uint32_t *vertices(std::uint32_t cell) const { return &vertices_[4 * cell]; }
-  // The cells opposite the vertices; NONE for one that touches no owned point.
-  const std::uint32_t *neighbours(std::uint32_t cell) const { return &neighbours_[4 * cell]; }
-  bool is_infinite(std::uint32_t cell) const {
-    const std::uint32_t *v = vertices(cell);
-    return v[0] == infinite_ || v[1] == infinite_ || v[2] == infinite_ || v[3] == infinite_;
+  const std::uint32_t *vertices(std::uint32_t cell) const {
+    return &vertices_[4 * std::size_t{cell}];
   }
+  // The cells opposite the vertices; NONE for one that touches no owned point.
+  const std::uint32_t *neighbours(std::uint32_t cell) const {
+    return &neighbours_[4 * std::size_t{cell}];
+  }
+  // The place in its neighbour of the facet opposite a vertex of a cell.
+  int mirror(std::uint32_t cell, int opposite) const;
+  // The first cell whose smallest vertex is this site or a later one.
+  std::uint32_t first_cell(std::uint32_t site) const { return first_cell_[site]; }
 
-  // The cells around a site, as 4·cell + place of the site in it.
+  // The cells around an owned site, as 4·cell + place of the site in it, ascending.
   struct Star {
     const std::uint32_t *first, *last;
     const std::uint32_t *begin() const { return first; }
@@ -41,11 +46,13 @@ class Mesh {
   }
 
  private:
+  void triangulate(const std::vector<Site> &sites, const std::uint8_t *owned,
+                   const Lattice &lattice);
   void make_stars(std::size_t sites, const std::uint8_t *owned);
 
   int dimension_ = 3;
   std::uint32_t infinite_;
-  std::vector<std::uint32_t> vertices_, neighbours_, star_, star_start_;
+  std::vector<std::uint32_t> vertices_, neighbours_, first_cell_, star_, star_start_;
 };
 
 }  // namespace walpha

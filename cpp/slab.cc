@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -32,10 +33,10 @@ class Classifier {
              rust::Slice<const std::uint32_t> input, rust::Slice<const std::uint8_t> owned,
              bool everything, bool exterior, Slab &slab)
       : sites_(sites), mesh_(mesh), predicates_(predicates), input_(input), owned_(owned),
-        everything_(everything), exterior_(exterior), slab_(slab), inside_(mesh.cells()),
-        facets_(mesh.cells()), parent_(4 * mesh.cells()), slot_(sites.size() + 1, Mesh::NONE),
+        everything_(everything), exterior_(exterior), slab_(slab), state_(mesh.cells()),
+        parent_(4 * std::size_t{mesh.cells()}), slot_(sites.size(), Mesh::NONE),
         place_(mesh.cells(), Mesh::NONE) {
-    for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = static_cast<std::uint32_t>(i);
+    std::iota(parent_.begin(), parent_.end(), 0);
   }
 
   void run() {
@@ -53,52 +54,50 @@ class Classifier {
     std::uint32_t to;
     bool any, all;  // facets in the shape: at least one, and all finite ones interior
     Class edge_class;
-    std::uint32_t cell;  // one that has the edge
   };
 
   const Site &site(std::uint32_t v) const { return sites_[v]; }
 
+  // What is known of a cell: the classes of its facets, two bits each, and two flags.
+  static constexpr std::uint16_t INSIDE = 0x100, INFINITE = 0x200;
+
+  bool inside(std::uint32_t cell) const { return state_[cell] & INSIDE; }
+  bool infinite(std::uint32_t cell) const { return state_[cell] & INFINITE; }
   Class facet(std::uint32_t cell, int opposite) const {
-    return static_cast<Class>(facets_[cell] >> (2 * opposite) & 3);
+    return static_cast<Class>(state_[cell] >> (2 * opposite) & 3);
   }
 
   void classify_cells() {
     for (std::uint32_t c = 0; c < mesh_.cells(); ++c) {
-      if (mesh_.is_infinite(c)) continue;
       const std::uint32_t *v = mesh_.vertices(c);
-      inside_[c] = everything_ || predicates_.fits(site(v[0]), site(v[1]), site(v[2]), site(v[3]));
+      if (std::find(v, v + 4, mesh_.infinite()) != v + 4) {
+        state_[c] = INFINITE;
+      } else if (everything_ ||
+                 predicates_.fits(site(v[0]), site(v[1]), site(v[2]), site(v[3]))) {
+        state_[c] = INSIDE;
+      }
     }
   }
 
   void classify_facets() {
     for (std::uint32_t c = 0; c < mesh_.cells(); ++c) {
-      const std::uint32_t *v = mesh_.vertices(c), *next = mesh_.neighbours(c);
+      const std::uint32_t *next = mesh_.neighbours(c);
       for (int i = 0; i < 4; ++i) {
         const std::uint32_t n = next[i];
         // Each pair once; a neighbour out of reach shares no owned point, so nobody will ask.
         if (n == Mesh::NONE || n < c) continue;
-        const std::uint32_t *w = mesh_.vertices(n), *back = mesh_.neighbours(n);
-        int j = 0;
-        while (back[j] != c || on_facet(v, i, w[j])) ++j;
-        const Class facet_class = classify_facet(c, i, n, w[j]);
-        facets_[c] |= facet_class << (2 * i);
-        facets_[n] |= facet_class << (2 * j);
+        const int j = mesh_.mirror(c, i);
+        const Class facet_class = classify_facet(c, i, n, j);
+        state_[c] |= static_cast<std::uint16_t>(facet_class << (2 * i));
+        state_[n] |= static_cast<std::uint16_t>(facet_class << (2 * j));
       }
     }
   }
 
-  // Two cells may share two facets; the right one is opposite a vertex that is not on it.
-  static bool on_facet(const std::uint32_t *v, int opposite, std::uint32_t vertex) {
-    for (int i = 0; i < 4; ++i) {
-      if (i != opposite && v[i] == vertex) return true;
-    }
-    return false;
-  }
-
-  Class classify_facet(std::uint32_t c, int i, std::uint32_t n, std::uint32_t beyond) const {
-    if (inside_[c] && inside_[n]) return INTERIOR;
-    if (inside_[c] || inside_[n]) return REGULAR;
-    const std::uint32_t *v = mesh_.vertices(c);
+  Class classify_facet(std::uint32_t c, int i, std::uint32_t n, int j) const {
+    if (inside(c) && inside(n)) return INTERIOR;
+    if (inside(c) || inside(n)) return REGULAR;
+    const std::uint32_t *v = mesh_.vertices(c), beyond = mesh_.vertices(n)[j];
     const std::uint32_t a = v[(i + 1) & 3], b = v[(i + 2) & 3], d = v[(i + 3) & 3];
     const std::uint32_t none = mesh_.infinite();
     if (a == none || b == none || d == none) return EXTERIOR;
@@ -119,17 +118,19 @@ class Classifier {
       slab_.counts_.insert(slab_.counts_.end(), {0, 0, 0});
       return;
     }
-    find_edges(v, star);
-    const Class vertex_class = classify_vertex(v, star);
+    const auto in = [&](std::uint32_t at) { return inside(at / 4); };
+    const bool interior = std::all_of(star.begin(), star.end(), in);
+    find_edges(v, star, interior);
+    const Class vertex_class = interior ? INTERIOR : classify_vertex(v);
     slab_.vertex_classes_.push_back(vertex_class);
-    emit_cells(v, star);
+    emit_cells(v);
     emit_facets(v, star);
     emit_edges(v);
     if (vertex_class == REGULAR) join_sectors(v, star);
     for (const Edge &edge : neighbours_) slot_[edge.to] = Mesh::NONE;
   }
 
-  void find_edges(std::uint32_t v, Mesh::Star star) {
+  void find_edges(std::uint32_t v, Mesh::Star star, bool interior) {
     neighbours_.clear();
     for (const std::uint32_t at : star) {
       const std::uint32_t c = at / 4;
@@ -140,8 +141,9 @@ class Classifier {
         if (j == k || u == mesh_.infinite()) continue;
         if (slot_[u] == Mesh::NONE) {
           slot_[u] = static_cast<std::uint32_t>(neighbours_.size());
-          neighbours_.push_back({u, false, true, EXTERIOR, c});
+          neighbours_.push_back({u, false, true, INTERIOR});
         }
+        if (interior) continue;
         Edge &edge = neighbours_[slot_[u]];
         const auto [a, b] = others(k, j);
         for (const auto &[opposite, third] : {std::pair{a, b}, std::pair{b, a}}) {
@@ -152,6 +154,7 @@ class Classifier {
         }
       }
     }
+    if (interior) return;
     for (Edge &edge : neighbours_) {
       edge.edge_class = edge.all ? INTERIOR : edge.any ? REGULAR : lone_edge(v, edge.to, star);
     }
@@ -171,9 +174,8 @@ class Classifier {
     return SINGULAR;
   }
 
-  Class classify_vertex(std::uint32_t v, Mesh::Star star) const {
-    const auto in = [&](std::uint32_t at) { return inside_[at / 4] != 0; };
-    if (std::all_of(star.begin(), star.end(), in)) return INTERIOR;
+  // The class of a point that is not interior.
+  Class classify_vertex(std::uint32_t v) const {
     const auto there = [](const Edge &edge) { return edge.edge_class != EXTERIOR; };
     if (std::any_of(neighbours_.begin(), neighbours_.end(), there)) return REGULAR;
     if (!everything_ && !predicates_.fits(site(v))) return EXTERIOR;
@@ -181,18 +183,16 @@ class Classifier {
     return std::any_of(neighbours_.begin(), neighbours_.end(), hides) ? EXTERIOR : SINGULAR;
   }
 
-  void emit_cells(std::uint32_t v, Mesh::Star star) {
+  void emit_cells(std::uint32_t v) {
     rows_.clear();
-    for (const std::uint32_t at : star) {
-      const std::uint32_t c = at / 4;
-      if ((!inside_[c] && !exterior_) || mesh_.is_infinite(c)) continue;
+    for (std::uint32_t c = mesh_.first_cell(v); c < mesh_.first_cell(v + 1); ++c) {
+      if ((!inside(c) && !exterior_) || infinite(c)) continue;
       const std::uint32_t *vertex = mesh_.vertices(c);
       std::array<int, 4> order{0, 1, 2, 3};
       std::sort(order.begin(), order.end(), [&](int a, int b) { return vertex[a] < vertex[b]; });
-      if (vertex[order[0]] != v) continue;
       if (!even(order[0], order[1], order[2], order[3])) std::swap(order[2], order[3]);
       rows_.push_back({vertex[order[1]], vertex[order[2]], vertex[order[3]],
-                       inside_[c] ? INTERIOR : EXTERIOR, {}});
+                       inside(c) ? INTERIOR : EXTERIOR, {}});
     }
     std::sort(rows_.begin(), rows_.end());
     for (const Row &row : rows_) {
@@ -219,10 +219,10 @@ class Classifier {
         // (v, p, q) turns counter-clockwise seen from the fourth vertex if the order is even.
         const bool clockwise_here = !even(k, p, q, j);
         Row row{vertex[p], vertex[q], 0, facet_class, {}};
-        const std::uint32_t here = 4 * c + j, there = mirror(c, j);
+        const std::uint32_t here = 4 * c + j, there = 4 * next[j] + mesh_.mirror(c, j);
         if (facet_class == REGULAR) {
-          if (clockwise_here != static_cast<bool>(inside_[c])) std::swap(row.a, row.b);
-          row.nodes = {inside_[c] ? there : here, Mesh::NONE};
+          if (clockwise_here != static_cast<bool>(inside(c))) std::swap(row.a, row.b);
+          row.nodes = {inside(c) ? there : here, Mesh::NONE};
         } else if (facet_class == SINGULAR) {
           row.nodes = clockwise_here ? std::array{here, there} : std::array{there, here};
         }
@@ -261,7 +261,7 @@ class Classifier {
   void join_sectors(std::uint32_t v, Mesh::Star star) {
     for (const std::uint32_t at : star) place_[at / 4] = at & 3;
     for (const std::uint32_t at : star) {
-      if (inside_[at / 4] || place_[at / 4] == Mesh::NONE) continue;
+      if (inside(at / 4) || place_[at / 4] == Mesh::NONE) continue;
       std::uint32_t first = Mesh::NONE;
       const auto touch = [&](std::uint32_t node) {
         if (first == Mesh::NONE) first = node;
@@ -321,15 +321,6 @@ class Classifier {
     return found->second;
   }
 
-  std::uint32_t mirror(std::uint32_t c, int i) const {
-    const std::uint32_t n = mesh_.neighbours(c)[i];
-    const std::uint32_t *v = mesh_.vertices(c), *w = mesh_.vertices(n);
-    const std::uint32_t *back = mesh_.neighbours(n);
-    std::uint32_t j = 0;
-    while (back[j] != c || on_facet(v, i, w[j])) ++j;
-    return 4 * n + j;
-  }
-
   std::uint32_t find(std::uint32_t node) {
     while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
     return node;
@@ -354,8 +345,8 @@ class Classifier {
     for (std::size_t i = 4; i < slab_.shared_.size(); i += 5) number(slab_.shared_[i]);
   }
 
-  void append(std::vector<std::uint32_t> &to, std::initializer_list<std::uint32_t> row) const {
-    to.insert(to.end(), row);
+  static void append(std::vector<std::uint32_t> &to, std::initializer_list<std::uint32_t> row) {
+    for (const std::uint32_t number : row) to.push_back(number);
   }
 
   // The vertices of a simplex after its smallest, and the sheet nodes at its sides.
@@ -376,8 +367,7 @@ class Classifier {
   rust::Slice<const std::uint8_t> owned_;
   bool everything_, exterior_;
   Slab &slab_;
-  std::vector<std::uint8_t> inside_;      // by cell
-  std::vector<std::uint8_t> facets_;      // by cell: four classes of two bits
+  std::vector<std::uint16_t> state_;      // by cell
   std::vector<std::uint32_t> parent_;     // union-find over nodes: 4·cell + facet, then edges
   std::vector<std::uint32_t> slot_;       // by site: its place in neighbours_
   std::vector<std::uint32_t> place_;      // by cell: place of the point in hand, until walked

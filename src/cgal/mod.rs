@@ -9,11 +9,13 @@
 #[allow(unused_qualifications, reason = "in what the macro writes")]
 mod ffi;
 mod lattice;
+mod plane;
 mod reference;
 mod sites;
 mod slab;
 
 pub use lattice::Lattice;
+pub use plane::{PlaneSites, RawTriangulation, farthest_plane, regular_plane};
 use reference::flat;
 pub use reference::{CgalError, RawComplex, reference};
 pub use sites::{Sites, SitesError};

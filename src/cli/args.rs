@@ -265,7 +265,7 @@ fn bytes(text: &str) -> anyhow::Result<u64> {
 
 fn not_negative(text: &str) -> anyhow::Result<f64> {
     let number: f64 = text.parse()?;
-    if !(number >= 0.0) {
+    if number.is_nan() || number < 0.0 {
         bail!("a number from 0 up is needed");
     }
     Ok(number)

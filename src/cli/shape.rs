@@ -20,7 +20,7 @@ use super::{Global, pipeline};
 pub struct Shape {
     #[command(flatten)]
     input: InputArgs,
-    /// Files to write: .ply, .off, .obj (boundary), .vtu (all simplices) or .png (a picture).
+    /// Files to write: .ply, .off, .obj (boundary), .vtu, .json (all simplices) or .png (a picture).
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
     /// Write text where a format has a binary form too (PLY).

@@ -1,7 +1,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Obj, Off, Ply, Vtu};
+use super::{Json, Obj, Off, Ply, Vtu};
 use crate::shape::AlphaShape;
 
 /// A way to write a shape down.
@@ -24,6 +24,8 @@ pub enum Format {
     Obj,
     /// VTK unstructured grid: simplices of all dimensions with their data.
     Vtu,
+    /// The whole complex, for `walpha check` and other programs.
+    Json,
 }
 
 /// No writer has this extension.
@@ -37,8 +39,13 @@ pub struct UnknownFormat {
 
 impl Format {
     /// Every format with its extension.
-    pub const ALL: [(Self, &str); 4] =
-        [(Self::Ply, "ply"), (Self::Off, "off"), (Self::Obj, "obj"), (Self::Vtu, "vtu")];
+    pub const ALL: [(Self, &str); 5] = [
+        (Self::Ply, "ply"),
+        (Self::Off, "off"),
+        (Self::Obj, "obj"),
+        (Self::Vtu, "vtu"),
+        (Self::Json, "json"),
+    ];
 
     /// The format a path asks for.
     ///
@@ -61,6 +68,7 @@ impl Format {
             Self::Off => Box::new(Off),
             Self::Obj => Box::new(Obj),
             Self::Vtu => Box::new(Vtu),
+            Self::Json => Box::new(Json),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! file that appears under its name only when it is complete.
 
 mod format;
+mod json;
 mod obj;
 mod off;
 mod ply;
@@ -12,6 +13,7 @@ mod volume;
 mod vtu;
 
 pub use format::{Exporter, Format, UnknownFormat};
+pub use json::Json;
 pub use obj::Obj;
 pub use off::Off;
 pub use ply::Ply;

@@ -18,4 +18,5 @@ pub use measure::Measures;
 pub use slabs::PlanError;
 pub use surface::Surface;
 pub use topology::{Betti, direct_betti};
+pub(crate) use union_find::UnionFind;
 pub use voids::Void;
