@@ -2,8 +2,12 @@
 
 mod check_common;
 
+use std::num::NonZeroUsize;
+
 use check_common::{Answer, Case, Random, engine, grid, shape_of};
-use walpha::check::{Claim, Extent, Finding};
+use walpha::check::{Claim, Extent, Finding, NotJudged};
+use walpha::shape::{Engine, ShapeOptions};
+use walpha::{Alpha, WeightedPoints, alpha_shape};
 
 fn claim<'a>(case: &'a Case, answer: &'a Answer, extent: Extent) -> Claim<'a> {
     Claim {
@@ -63,6 +67,34 @@ fn a_grid_with_min_max_weights_is_certified() {
     assert_eq!(certificate.not_judged, []);
     assert_eq!(certificate.six_volumes.to_string(), (6 * 11 * 11 * 11).to_string());
     assert_eq!(shape(&case, &shape_of(&answer)), []);
+}
+
+/// The local engine never sees the whole triangulation; its shape is certified all the same.
+#[test]
+fn shapes_made_slab_by_slab_are_certified() {
+    let mut random = Random::new(8);
+    for slabs in [2, 5] {
+        let mut positions = grid(14);
+        positions.retain(|_| random.unit() < 0.5);
+        let weights: Vec<_> = positions.iter().map(|_| random.below(4) as f64 / 2.0).collect();
+        let mut options = ShapeOptions::new(Alpha::from_squared(1.5).unwrap());
+        (options.engine, options.slabs) = (Engine::Slabs, NonZeroUsize::new(slabs));
+        let points = WeightedPoints { positions, weights, values: None };
+        let shape = alpha_shape(points, &options).unwrap();
+        let claim = Claim {
+            positions: &shape.points().positions,
+            weights: shape.power_weights(),
+            alpha: shape.power_alpha(),
+            complex: shape.complex(),
+            extent: Extent::of(shape.complex(), shape.power_alpha()),
+            hidden: shape.hidden(),
+            duplicates: Some(shape.duplicates()),
+        };
+        let (findings, certificate) = claim.findings().unwrap();
+        assert_eq!(findings, []);
+        assert!(certificate.not_judged.contains(&NotJudged::HiddenAndHull));
+        assert!(shape.complex().cells.len() > 1000);
+    }
 }
 
 /// One voxel in sixteen of a big grid: size by `WALPHA_CHECK_GRID`, 256 for a million points.

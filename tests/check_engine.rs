@@ -2,26 +2,32 @@
 
 mod check_common;
 
-use check_common::{Answer, Case, Random, engine, grid};
+use check_common::{Answer, Case, Random, engine, engine_of, grid};
 use proptest::prelude::*;
 use walpha::Class;
 use walpha::check::enumerate;
+use walpha::shape::Engine;
 
-/// Both answers must be equal, and so must be the decision that there is none.
+/// All answers must be equal, and so must be the decision that there is none.
 #[track_caller]
 fn agree(case: &Case) -> bool {
-    let expected = enumerate(&case.positions, &case.weights, case.alpha);
-    let got = engine(case);
-    match (expected, got) {
-        (Ok(e), Ok(got)) => {
-            let expected =
-                Answer { complex: e.complex, hidden: e.hidden, duplicates: e.duplicates };
-            assert!(expected == got, "{case:?}\nexpected {expected:?}\ngot {got:?}");
-            true
+    let expected = enumerate(&case.positions, &case.weights, case.alpha).map(|e| Answer {
+        complex: e.complex,
+        hidden: e.hidden,
+        duplicates: e.duplicates,
+    });
+    for which in [Engine::Reference, Engine::Slabs] {
+        match (&expected, engine_of(case, which)) {
+            (Ok(expected), Ok(got)) => {
+                assert!(*expected == got, "{which:?} {case:?}\nexpected {expected:?}\ngot {got:?}")
+            }
+            (Err(_), Err(_)) => {}
+            (expected, got) => {
+                panic!("{which:?} {case:?}\nexpected {expected:?}\ngot {:?}", got.err())
+            }
         }
-        (Err(_), Err(_)) => false,
-        (expected, got) => panic!("{case:?}\nexpected {expected:?}\ngot {:?}", got.err()),
     }
+    expected.is_ok()
 }
 
 /// Checks many cases; all but a few must be triangulations.
@@ -204,6 +210,37 @@ fn tiny_and_huge_coordinates() {
         let alpha = random.pick(&[0.0, scale * scale, f64::MAX, -1.0]);
         Case { positions, weights, alpha }
     });
+}
+
+/// Five points whose determinants underflow: not one of them is zero.
+#[test]
+fn determinants_that_underflow() {
+    let positions = [[2, 1, 3], [1, 3, 1], [0, 0, 3], [1, 0, 1], [1, 1, 2]]
+        .map(|p| p.map(|x| f64::from(x) * 1e-300))
+        .to_vec();
+    assert!(agree(&Case { positions, weights: vec![0.0; 5], alpha: 0.0 }));
+}
+
+/// Points 0, 1, 3 and 5 span a volume of 1e-339: flat for doubles, not for the definition.
+#[test]
+fn a_cell_thinner_than_any_double() {
+    let tiny = f64::from_bits(1);
+    let [one, two] = [1f64, 2.0].map(f64::next_down);
+    let [one_up, two_up] = [1f64, 2.0].map(f64::next_up);
+    let positions = vec![
+        [two_up, one, -tiny],
+        [2.0, 0.0, -tiny],
+        [0.0, one, 2.0],
+        [two_up, two, tiny],
+        [tiny, 2.0, tiny],
+        [two_up, -tiny, tiny],
+        [two, 2.0, 0.0],
+        [one, one, one_up],
+        [1.0, 1.0, 2.0],
+        [two, one, one],
+    ];
+    let weights = vec![one, 1.0, one, 1.0, 1.0, one_up, 1.0, one_up, one_up, 1.0];
+    assert!(agree(&Case { positions, weights, alpha: -0.5 }));
 }
 
 /// α exactly at R² of some simplex, and one ulp beside it: a facet with R² = 10 on the grid.

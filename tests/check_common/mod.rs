@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use walpha::shape::{ShapeError, ShapeOptions};
+use walpha::shape::{Engine, ShapeError, ShapeOptions};
 use walpha::{Alpha, Class, Complex, Simplices, WeightedPoints, alpha_shape};
 
 /// A small set of weighted points and a parameter.
@@ -22,11 +22,16 @@ pub struct Answer {
     pub duplicates: Vec<[u32; 2]>,
 }
 
-/// CGAL's answer: the whole triangulation.
+/// CGAL's own answer: the whole triangulation.
 pub fn engine(case: &Case) -> Result<Answer, ShapeError> {
+    engine_of(case, Engine::Reference)
+}
+
+/// An engine's answer: the whole triangulation.
+pub fn engine_of(case: &Case, engine: Engine) -> Result<Answer, ShapeError> {
     let Case { positions, weights, alpha } = case.clone();
     let alpha = Alpha::from_squared(alpha).expect("α is no NaN");
-    let options = ShapeOptions { exterior: true, ..ShapeOptions::new(alpha) };
+    let options = ShapeOptions { exterior: true, engine, ..ShapeOptions::new(alpha) };
     let shape = alpha_shape(WeightedPoints { positions, weights, values: None }, &options)?;
     Ok(Answer {
         complex: shape.complex().clone(),
