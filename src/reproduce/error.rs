@@ -1,5 +1,6 @@
 use super::OffError;
 use crate::haar::HaarError;
+use crate::plane::{NotACurvature, PlaneError};
 use crate::points::PointsError;
 use crate::render::RenderError;
 use crate::shape::ShapeError;
@@ -17,6 +18,12 @@ pub enum ReproduceError {
     /// The points have no shape.
     #[error(transparent)]
     Shape(#[from] ShapeError),
+    /// The points in the plane have no shape.
+    #[error(transparent)]
+    Plane(#[from] PlaneError),
+    /// A curvature that is none.
+    #[error(transparent)]
+    Curvature(#[from] NotACurvature),
     /// A picture cannot be drawn.
     #[error(transparent)]
     Render(#[from] RenderError),

@@ -11,6 +11,7 @@ mod html;
 mod hull;
 mod numbers;
 mod off;
+mod outline;
 mod report;
 mod stage;
 mod study;

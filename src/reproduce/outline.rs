@@ -46,8 +46,7 @@ mod tests {
     fn ring(centre: [f64; 2], radius: f64, counter_clockwise: bool) -> Vec<Piece> {
         let [x, y] = centre;
         let [left, right] = [[x - radius, y], [x + radius, y]];
-        let arc =
-            |start, end| Piece::Arc(Arc { centre, radius, start, end, counter_clockwise });
+        let arc = |start, end| Piece::Arc(Arc { centre, radius, start, end, counter_clockwise });
         vec![arc(left, right), arc(right, left)]
     }
 

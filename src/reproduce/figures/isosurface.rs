@@ -1,6 +1,6 @@
 use super::super::stage::{Eye, panel};
 use super::super::study::{PAPER_POINTS, PAPER_SAMPLES, Study};
-use super::super::{Fact, Finding, Item, ReproduceError, Table, Verdict, text};
+use super::super::{Fact, Finding, Item, ReproduceError, Table, Verdict};
 use super::{Bench, VIEWS, figure};
 use crate::points::difference;
 use crate::render::{Figure, Isosurface, Scene};
@@ -85,7 +85,7 @@ pub(super) fn figure_5(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
              {vertices} vertices, {triangles} triangles."
         ),
         picture: Some(picture),
-        commands: vec![format!("walpha reproduce --input {}", text::shell(study.subject.name))],
+        commands: vec![bench.reproduce_command()],
         facts: vec![
             Fact::count("samples that marching cubes reads", read),
             Fact::count("samples beside the surface", beside),

@@ -4,6 +4,7 @@ mod common;
 mod comparison;
 mod geomview;
 mod isosurface;
+mod plane;
 mod points;
 mod table;
 mod weighted;
@@ -20,9 +21,12 @@ use crate::render::{Figure, Panel, Picture, plain_colours};
 type Make = fn(&mut Bench<'_>) -> Result<Item, ReproduceError>;
 
 /// All there is, in the paper's order.
-pub(super) const ALL: [(&str, Make); 9] = [
+pub(super) const ALL: [(&str, Make); 12] = [
     ("Table 1", table::table_1),
     ("Figure 1", points::figure_1),
+    ("Figure 2", plane::figure_2),
+    ("Figure 3", plane::figure_3),
+    ("Figure 4", plane::figure_4),
     ("Figure 5", isosurface::figure_5),
     ("Figure 6", common::figure_6),
     ("Figure 7", common::figure_7),
@@ -80,6 +84,11 @@ impl<'a> Bench<'a> {
         let side = self.view(shaped, Eye::Side)?;
         let front = self.shape_panel(VIEWS[0], shaped)?;
         Ok(vec![front, panel(VIEWS[1], side, Vec::new())])
+    }
+
+    /// The command line that makes everything again.
+    fn reproduce_command(&self) -> String {
+        format!("walpha reproduce --input {}", text::shell(self.study.subject.name))
     }
 
     /// The command line that draws a shape as our figure does, words left out.

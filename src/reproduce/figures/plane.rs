@@ -26,14 +26,16 @@ pub(super) fn figure_2(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     Ok(Item {
         id: "figure-2",
         title: "Figure 2. α-shapes of negative α".into(),
-        paper: "Generalised discs: for α < 0 the complement of a disc of radius −1/α. The α-hull is \
+        paper:
+            "Generalised discs: for α < 0 the complement of a disc of radius −1/α. The α-hull is \
                 the intersection of all that contain the points; α increases from top to bottom \
                 (Definition 2)."
-            .into(),
-        ours: "Left, the α-shape: pairs of points on the boundary of one such disc, shaded where no \
+                .into(),
+        ours:
+            "Left, the α-shape: pairs of points on the boundary of one such disc, shaded where no \
                disc reaches. Right, the α-hull, and one of the discs, dashed. The paper does not \
                list its points; ours are a letter C and a cluster."
-            .into(),
+                .into(),
         findings: vec![grows(&[&ladder[..], &[Rung::at(0.0)?]].concat())],
         ..item
     })
@@ -296,9 +298,10 @@ pub(super) fn figure_4(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     Ok(Item {
         id: "figure-4",
         title: "Figure 4. Weighted α-shape in the plane".into(),
-        paper: "The union of discs is decomposed by the weighted Voronoi cells; the shaded triangles \
+        paper:
+            "The union of discs is decomposed by the weighted Voronoi cells; the shaded triangles \
                 are the dual complex."
-            .into(),
+                .into(),
         ours: "Left, the discs and their power cells; right, the dual complex: triangles, edges \
                without triangles, and a point on its own. A cross marks a hidden point, which has \
                no cell."
