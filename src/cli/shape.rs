@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use anyhow::anyhow;
 use clap::Args;
 use walpha::alpha_shape;
 use walpha::export::{Exporter, Format, Target};
@@ -46,7 +47,8 @@ impl Shape {
             let exporter: Box<dyn Exporter> = if PictureArgs::wanted(path) {
                 Box::new(self.picture)
             } else {
-                Format::of(path)?.exporter(self.ascii)
+                let format = Format::of(path).map_err(|unknown| anyhow!("{unknown}, or .png"))?;
+                format.exporter(self.ascii)
             };
             targets.push((Target::open(path)?, exporter));
         }

@@ -167,7 +167,9 @@ fn shapes(html: &mut String, shapes: &[ShapeNumbers]) {
     if shapes.is_empty() {
         return;
     }
-    html.push_str("<h3>Shapes</h3>\n<div class=\"wide\"><table><thead><tr><th></th>");
+    html.push_str(
+        "<h3>Shapes</h3>\n<div class=\"wide\"><table class=\"shapes\"><thead><tr><th></th>",
+    );
     for shape in shapes {
         let _ = write!(html, "<th>{}</th>", escape(&shape.label));
     }

@@ -1,6 +1,6 @@
 //! Numbers and names as the report writes them.
 
-/// At most three decimals, without zeros at the end; six significant digits for small numbers.
+/// At most three decimals, eight for numbers below 0.1, without zeros at the end.
 pub(super) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
@@ -10,7 +10,7 @@ pub(super) fn number(value: f64) -> String {
     }
     let decimals = if value.abs() < 0.1 { 8 } else { 3 };
     let text = format!("{value:.decimals$}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    text.trim_end_matches('0').trim_end_matches('.').replace('-', "−")
 }
 
 /// A count with its noun.
@@ -41,7 +41,7 @@ mod tests {
             (0.000_626_723, "0.00062672"),
             (f64::INFINITY, "∞"),
             (24_531.833_333, "24531.833"),
-            (-2.5, "-2.5"),
+            (-2.5, "−2.5"),
         ];
         for (value, text) in pairs {
             assert_eq!(number(value), text);

@@ -77,9 +77,10 @@ pub(super) fn figure_6(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
         paper: "All points weigh 0: the unweighted α-shape, at α = 10. It shrinks and develops \
                 cavities as α decreases, and becomes the convex hull as α grows."
             .into(),
-        ours: "The boundary of the shape. The paper prints no count to compare with; ours stand \
-               below."
-            .into(),
+        ours:
+            "The boundary of the shape, from two sides. The paper prints no count to compare with; \
+               ours stand below."
+                .into(),
         picture: Some(picture),
         commands: vec![command],
         files: vec![bench.mesh("figure-06.ply", plain)?],
@@ -90,7 +91,6 @@ pub(super) fn figure_6(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
         ],
         tables: vec![table],
         findings,
-        ..Item::default()
     })
 }
 

@@ -29,7 +29,7 @@ pub(super) fn figure_10(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let improved = improvement(l, &trials);
     let findings = vec![
         Finding {
-            claim: "\"In the left image, we can find hole (cavity).\"".into(),
+            claim: "“In the left image, we can find hole (cavity).”".into(),
             verdict: Verdict::of(l.holes() > 0),
             reason: format!(
                 "ω = 0 has {} and {}, the voids of volume {}",
@@ -39,7 +39,7 @@ pub(super) fn figure_10(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
             ),
         },
         Finding {
-            claim: "\"In the right image, the hole is filled.\"".into(),
+            claim: "“In the right image, the hole is filled.”".into(),
             verdict: Verdict::of(filled),
             reason: format!(
                 "with equation 4.2 as printed b₁ is {} after {}, b₂ {} after {}, the voids' volume {} \
@@ -88,8 +88,8 @@ pub(super) fn figure_10(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     Ok(Item {
         id: "figure-10",
         title: "Figure 10. The hole, and whether it is filled".into(),
-        paper: "Left, common weight 0 and α = 10; right, barycentric weights and α = 10. \"In the \
-                left image, we can find hole (cavity). In the right image, the hole is filled.\""
+        paper: "Left, common weight 0 and α = 10; right, barycentric weights and α = 10. “In the \
+                left image, we can find hole (cavity). In the right image, the hole is filled.”"
             .into(),
         ours: "Above, the paper's pair; below, weights that do change the shape: N times equation \
                4.2, and min-max. All from one camera at one scale."

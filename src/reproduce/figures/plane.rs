@@ -124,7 +124,7 @@ fn eks_item(
 ) -> Result<(Vec<Rung>, Item), ReproduceError> {
     let ladder = alphas.iter().map(|&alpha| Rung::at(alpha)).collect::<Result<Vec<_>, _>>()?;
     let panels = ladder.iter().flat_map(|rung| {
-        let at = format!("α = {}", rung.alpha);
+        let at = format!("α = {}", text::number(rung.alpha));
         let titles = [format!("{at}: shape"), format!("{at}: hull")];
         let drawings = [draw_shape(&rung.shape), draw_hull(rung)];
         let panel = |(title, drawing)| Panel {
@@ -245,10 +245,15 @@ pub(super) fn figure_4(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let (points, weights) = sample_discs();
     let alpha = Alpha::from_squared(DISCS).expect("a number");
     let shape = weighted_plane_shape(&points, &weights, alpha)?;
+    let legend = [
+        ("union of the discs", Rgb([222, 234, 245])),
+        ("triangles of the dual complex", SHADE),
+        ("edges without triangles, and a hidden point (×)", PALETTE[0]),
+    ];
     let figure = Figure {
         title: format!("Figure 4. Weighted α-shape of {} discs, α = {DISCS}", points.len()),
         columns: 2,
-        panel: Size::new(900, 700)?,
+        panel: Size::new(900, 580)?,
         panels: vec![
             Panel {
                 title: "discs of squared radius α + ω, cut into power cells".into(),
@@ -262,7 +267,7 @@ pub(super) fn figure_4(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
             },
         ],
         colour_bar: None,
-        legend: Vec::new(),
+        legend: legend.map(|(name, colour)| (name.to_owned(), colour)).into(),
         notes: Vec::new(),
     };
     let cells = shape.cells();

@@ -75,6 +75,6 @@ pub(super) fn table_1(_: &mut Bench<'_>) -> Result<Item, ReproduceError> {
 }
 
 fn list(values: &[f64]) -> String {
-    let values: Vec<String> = values.iter().map(|&v| text::number(v).replace('-', "−")).collect();
+    let values: Vec<String> = values.iter().map(|&v| text::number(v)).collect();
     format!("[{}]", values.join(", "))
 }

@@ -42,7 +42,7 @@ pub(super) fn figure_8(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
             ),
         },
         Finding {
-            claim: "\"We may think of radii, which are α + ω.\"".into(),
+            claim: "“We may think of radii, which are α + ω.”".into(),
             verdict: if same { Verdict::Reproduced } else { Verdict::Undecided },
             reason: if same {
                 "both readings give the same shape".into()
