@@ -41,6 +41,7 @@ pub mod memory;
 pub mod plane;
 pub mod points;
 pub mod render;
+pub mod reproduce;
 pub mod shape;
 pub mod volume;
 

@@ -7,10 +7,12 @@ mod complex_file;
 mod haar;
 mod info;
 mod output;
+mod picture;
 mod pipeline;
 mod points;
 mod progress;
 mod report;
+mod reproduce;
 mod shape;
 
 use std::process::ExitCode;
@@ -57,6 +59,7 @@ struct Global {
 
 #[derive(Subcommand)]
 enum Command {
+    Reproduce(reproduce::Reproduce),
     Shape(shape::Shape),
     Points(points::Points),
     Haar(haar::Haar),
@@ -99,6 +102,7 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
     }
     match command {
+        Command::Reproduce(reproduce) => reproduce.run(global)?,
         Command::Shape(shape) => shape.run(global)?,
         Command::Points(points) => points.run(global)?,
         Command::Haar(haar) => haar.run(global)?,

@@ -38,6 +38,11 @@ impl Progress {
         result
     }
 
+    /// Shows what is at work, without timing it.
+    pub fn show(&self, name: &'static str) {
+        self.bar.set_message(name);
+    }
+
     /// Ends the show: seconds per stage, and in all.
     pub fn finish(self) -> Vec<(&'static str, f64)> {
         self.bar.finish_and_clear();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 use serde::{Serialize, Serializer};
-use walpha::shape::{Betti, Engine};
+use walpha::shape::{Betti, Engine, Void};
 use walpha::{Alpha, AlphaShape, Class, GrayRange, Simplices, Truncation, memory};
 
 use super::pipeline::{VolumeFacts, Weighed};
@@ -81,6 +81,8 @@ struct ShapeReport {
     volume: f64,
     area: f64,
     singular_area: f64,
+    /// Null unless the simplices outside the shape are kept.
+    voids: Option<Vec<Void>>,
 }
 
 #[derive(Serialize)]
@@ -178,6 +180,7 @@ impl Report {
             volume: shape.measures().volume,
             area: shape.measures().area,
             singular_area: shape.measures().singular_area,
+            voids: shape.voids(),
         });
     }
 
@@ -229,6 +232,12 @@ impl Display for Report {
             }
             writeln!(f, "volume    {:.6}", shape.volume)?;
             writeln!(f, "area      {:.6}, singular facets {:.6}", shape.area, shape.singular_area)?;
+            if let Some(voids) = &shape.voids
+                && let Some(largest) = voids.first()
+            {
+                let sum = voids.iter().fold(0.0, |sum, void| sum + void.volume);
+                writeln!(f, "voids     {sum:.6} in all, the largest {:.6}", largest.volume)?;
+            }
             if self.points.in_shape == Some(0) {
                 writeln!(f, "the shape is empty: every α + ω is negative; raise --alpha")?;
             }

@@ -2,12 +2,14 @@
 
 use std::path::PathBuf;
 
+use anyhow::anyhow;
 use clap::Args;
 use walpha::alpha_shape;
-use walpha::export::{Format, Target};
+use walpha::export::{Exporter, Format, Target};
 
 use super::args::{HaarArgs, InputArgs, SelectArgs, ShapeArgs, WeightArgs};
 use super::output::{print, print_json};
+use super::picture::PictureArgs;
 use super::progress::Progress;
 use super::report::Report;
 use super::{Global, pipeline};
@@ -19,7 +21,7 @@ use super::{Global, pipeline};
 pub struct Shape {
     #[command(flatten)]
     input: InputArgs,
-    /// Files to write: .ply, .off, .obj (boundary), .vtu or .json (all simplices).
+    /// Files to write: .ply, .off, .obj (boundary), .vtu, .json (all simplices) or .png (a picture).
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
     /// Write text where a format has a binary form too (PLY).
@@ -33,6 +35,8 @@ pub struct Shape {
     weights: WeightArgs,
     #[command(flatten)]
     shape: ShapeArgs,
+    #[command(flatten)]
+    picture: PictureArgs,
 }
 
 impl Shape {
@@ -40,8 +44,13 @@ impl Shape {
         // Before the long work: a bad extension or place costs nothing yet.
         let mut targets = Vec::new();
         for path in &self.output {
-            let format = Format::of(path)?;
-            targets.push((Target::open(path)?, format.exporter(self.ascii)));
+            let exporter: Box<dyn Exporter> = if PictureArgs::wanted(path) {
+                Box::new(self.picture)
+            } else {
+                let format = Format::of(path).map_err(|unknown| anyhow!("{unknown}, or .png"))?;
+                format.exporter(self.ascii)
+            };
+            targets.push((Target::open(path)?, exporter));
         }
 
         let mut progress = Progress::new(global);

@@ -72,6 +72,19 @@ impl Camera {
     /// The share of the picture that a fitted box may fill, so that it keeps a margin.
     const FITTED_SHARE: f64 = 0.94;
 
+    /// 2·tan(15°): height over distance of a field of view of 30°.
+    const PORTRAIT_OPENING: f64 = 0.535_898_384_862_245_4;
+
+    /// The perspective camera at a place that looks at a target, with a vertical field of view of
+    /// 30° and +z up (+y, where it looks along z).
+    pub fn portrait(eye: [f64; 3], target: [f64; 3]) -> Self {
+        let sight = sub(target, eye);
+        let vertical = sight[0] == 0.0 && sight[1] == 0.0;
+        let up = if vertical { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
+        let height = length(sight) * Self::PORTRAIT_OPENING;
+        Self { eye, target, up, height, projection: Projection::Perspective }
+    }
+
     /// The camera in the direction of a view that just sees a whole box in a picture of this size.
     ///
     /// `bounds` are the corners of smallest and of largest coordinates. A box that is one point is

@@ -35,4 +35,5 @@ pub use figure::{ColourBar, Content, Figure, Panel};
 pub use marching::Isosurface;
 pub use picture::{Picture, Size};
 pub use scene::{Background, Ball, Colours, Mesh, Scene, Shading, Tube};
-pub use shape::{Colouring, ShapeStyle, class_colours};
+pub use shape::{Colouring, ShapeStyle, class_colours, plain_colours};
+pub(crate) use svg::base64;

@@ -52,6 +52,11 @@ pub fn class_colours() -> [(&'static str, Rgb); 4] {
     ]
 }
 
+/// What is drawn with [`Colouring::Plain`], with its colour: the boundary, and everything singular.
+pub fn plain_colours() -> [(&'static str, Rgb); 2] {
+    [("boundary", Rgb::BONE), ("singular: part of no cell", SINGULAR_TINT)]
+}
+
 /// The tint of singular facets among plain ones.
 const SINGULAR_TINT: Rgb = Rgb([214, 138, 92]);
 

@@ -9,6 +9,7 @@ mod slabs;
 mod surface;
 mod topology;
 mod union_find;
+mod voids;
 
 pub use alpha::{Alpha, Balls, NotAnAlpha};
 pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
@@ -18,3 +19,4 @@ pub use slabs::PlanError;
 pub use surface::Surface;
 pub use topology::{Betti, direct_betti};
 pub(crate) use union_find::UnionFind;
+pub use voids::Void;

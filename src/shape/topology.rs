@@ -50,7 +50,7 @@ impl Complex {
 /// An empty shape has no component, and its complement is one. O(n log n).
 pub fn direct_betti(whole: &Complex) -> Betti {
     let b0 = components(whole);
-    let b2 = complement_components(whole) - 1;
+    let b2 = Complement::of(whole).components - 1;
     let b1 = (b0 + b2) as i64 - whole.euler_characteristic();
     Betti { b0, b1: u64::try_from(b1).expect("b1 counts something"), b2 }
 }
@@ -82,44 +82,67 @@ fn components(complex: &Complex) -> u64 {
     (vertices - united) as u64
 }
 
-/// Components of the complement: exterior cells and the outside, joined through exterior facets.
-fn complement_components(whole: &Complex) -> u64 {
-    // Each facet of each exterior cell, so that the cells at one facet stand side by side.
-    let mut sides: Vec<([u32; 3], u32)> = whole
-        .cells
-        .vertices
-        .par_iter()
-        .zip(&whole.cells.classes)
-        .enumerate()
-        .filter(|(_, (_, class))| **class == Class::Exterior)
-        .flat_map_iter(|(id, (&cell, _))| {
-            (0..4).map(move |skip| {
-                let mut facet = [1, 2, 3].map(|step| cell[(skip + step) % 4]);
-                facet.sort_unstable();
-                (facet, id as u32)
-            })
-        })
-        .collect();
-    sides.par_sort_unstable();
+/// The complement of a shape within its *whole* triangulation: exterior cells and the outside of the
+/// convex hull, joined through exterior facets.
+pub(super) struct Complement {
+    sets: UnionFind,
+    outside: u32,
+    /// How many there are, the outside's own among them.
+    components: u64,
+}
 
-    let outside = whole.cells.len() as u32;
-    let mut sets = UnionFind::new(whole.cells.len() + 1);
-    let exterior_cells = whole.cells.counts()[Class::Exterior as usize];
-    let mut united = 0;
-    let mut at = 0;
-    // Exterior facets are sorted rows in ascending order, so both lists run side by side.
-    for facet in whole.facets.of(Class::Exterior) {
-        while at < sides.len() && sides[at].0 < *facet {
-            at += 1;
-        }
-        let cells: Vec<u32> =
-            sides[at..].iter().take_while(|side| side.0 == *facet).map(|side| side.1).collect();
-        let (a, b) = match cells[..] {
-            [a, b] => (a, b),
-            [a] => (a, outside),
-            _ => unreachable!("an exterior facet has exterior cells on both sides, or the outside"),
-        };
-        united += u64::from(sets.unite(a, b));
+impl Complement {
+    /// The component that is not bounded.
+    pub(super) fn outside(&mut self) -> u32 {
+        self.sets.find(self.outside)
     }
-    exterior_cells as u64 + 1 - united
+
+    /// The component of an exterior cell, named by its first cell.
+    pub(super) fn component(&mut self, cell: u32) -> u32 {
+        self.sets.find(cell)
+    }
+
+    /// Finds the components. O(n log n).
+    pub(super) fn of(whole: &Complex) -> Self {
+        // Each facet of each exterior cell, so that the cells at one facet stand side by side.
+        let mut sides: Vec<([u32; 3], u32)> = whole
+            .cells
+            .vertices
+            .par_iter()
+            .zip(&whole.cells.classes)
+            .enumerate()
+            .filter(|(_, (_, class))| **class == Class::Exterior)
+            .flat_map_iter(|(id, (&cell, _))| {
+                (0..4).map(move |skip| {
+                    let mut facet = [1, 2, 3].map(|step| cell[(skip + step) % 4]);
+                    facet.sort_unstable();
+                    (facet, id as u32)
+                })
+            })
+            .collect();
+        sides.par_sort_unstable();
+
+        let outside = whole.cells.len() as u32;
+        let mut sets = UnionFind::new(whole.cells.len() + 1);
+        let exterior_cells = whole.cells.counts()[Class::Exterior as usize];
+        let mut united = 0;
+        let mut at = 0;
+        // Exterior facets are sorted rows in ascending order, so both lists run side by side.
+        for facet in whole.facets.of(Class::Exterior) {
+            while at < sides.len() && sides[at].0 < *facet {
+                at += 1;
+            }
+            let cells: Vec<u32> =
+                sides[at..].iter().take_while(|side| side.0 == *facet).map(|side| side.1).collect();
+            let (a, b) = match cells[..] {
+                [a, b] => (a, b),
+                [a] => (a, outside),
+                _ => unreachable!(
+                    "an exterior facet has exterior cells on both sides, or the outside"
+                ),
+            };
+            united += u64::from(sets.unite(a, b));
+        }
+        Self { sets, outside, components: exterior_cells as u64 + 1 - united }
+    }
 }

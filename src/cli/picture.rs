@@ -1,0 +1,139 @@
+//! A shape as a picture: the options, and the writer for `.png`.
+
+use std::ffi::OsStr;
+use std::io::{self, Write};
+use std::path::Path;
+
+use anyhow::bail;
+use clap::{Args, ValueEnum};
+use walpha::AlphaShape;
+use walpha::export::Exporter;
+use walpha::render::{
+    Background, Camera, ColourMap, Colouring, Projection, RenderError, Scene, ShapeStyle, Size,
+    View,
+};
+
+/// How a shape is drawn.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Pictures (.png)")]
+pub struct PictureArgs {
+    /// From where a subject is seen whose face is turned to −y and whose crown to +z
+    /// [default: three-quarter].
+    #[arg(long, value_enum, value_name = "VIEW", group = "eye")]
+    view: Option<ViewArg>,
+    /// The eye and what it looks at, in the units of the points, with a field of view of 30°.
+    #[arg(long, value_name = "EX,EY,EZ,TX,TY,TZ", value_parser = camera, group = "eye",
+          allow_hyphen_values = true)]
+    camera: Option<Camera>,
+    /// What colours mean: nothing, the values F, or the classes of simplices.
+    #[arg(long, value_enum, default_value_t, value_name = "MEANING")]
+    colour: ColourArg,
+    /// Pixels.
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1600x1360")]
+    size: Size,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ViewArg {
+    Front,
+    Back,
+    Left,
+    Right,
+    Top,
+    Bottom,
+    ThreeQuarter,
+}
+
+impl From<ViewArg> for View {
+    fn from(view: ViewArg) -> Self {
+        match view {
+            ViewArg::Front => Self::Front,
+            ViewArg::Back => Self::Back,
+            ViewArg::Left => Self::Left,
+            ViewArg::Right => Self::Right,
+            ViewArg::Top => Self::Top,
+            ViewArg::Bottom => Self::Bottom,
+            ViewArg::ThreeQuarter => Self::ThreeQuarter,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
+enum ColourArg {
+    #[default]
+    Plain,
+    Value,
+    Class,
+}
+
+impl PictureArgs {
+    /// Whether a path asks for a picture.
+    pub fn wanted(path: &Path) -> bool {
+        path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case("png"))
+    }
+
+    fn draw(&self, shape: &AlphaShape) -> Result<Vec<u8>, RenderError> {
+        let positions = &shape.points().positions;
+        let values = shape.points().values.as_deref();
+        let colouring = match (self.colour, values) {
+            (ColourArg::Value, Some(values)) => Colouring::Values(values, ColourMap::over(values)),
+            (ColourArg::Class, _) => Colouring::Classes,
+            _ => Colouring::Plain,
+        };
+        let bounds = bounds(positions);
+        let diagonal = (0..3).map(|k| (bounds[1][k] - bounds[0][k]).powi(2)).sum::<f64>().sqrt();
+        // Thin beside the whole, whatever the units: 0.12 for 64³ voxels, as in the figures.
+        let edge_radius = diagonal * 0.0011;
+        let style = ShapeStyle { colouring, edge_radius, ..ShapeStyle::default() };
+        let scene = Scene::of_shape(positions, shape.complex(), &style)?;
+        let view = self.view.map_or(View::ThreeQuarter, View::from);
+        let camera = match self.camera {
+            Some(camera) => camera,
+            None => Camera::fit(bounds, view, Projection::Perspective, self.size)?,
+        };
+        scene.render(&camera, self.size, Background::White)?.to_png()
+    }
+}
+
+impl Exporter for PictureArgs {
+    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        if self.colour == ColourArg::Value && shape.points().values.is_none() {
+            return Err(io::Error::other(
+                "the points have no values to colour by; choose --colour plain or class",
+            ));
+        }
+        out.write_all(&self.draw(shape).map_err(io::Error::other)?)
+    }
+}
+
+/// The box of the points.
+fn bounds(positions: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for p in positions {
+        for k in 0..3 {
+            bounds[0][k] = bounds[0][k].min(p[k]);
+            bounds[1][k] = bounds[1][k].max(p[k]);
+        }
+    }
+    bounds
+}
+
+fn camera(text: &str) -> anyhow::Result<Camera> {
+    let numbers: Vec<f64> =
+        text.split(',').map(|number| number.trim().parse()).collect::<Result<_, _>>()?;
+    let [ex, ey, ez, tx, ty, tz] = numbers[..] else {
+        bail!("six numbers are needed: where the eye is and what it looks at");
+    };
+    let (eye, target) = ([ex, ey, ez], [tx, ty, tz]);
+    if eye == target || !numbers.iter().all(|v| v.is_finite()) {
+        bail!("the eye and what it looks at must be two places, with finite coordinates");
+    }
+    Ok(Camera::portrait(eye, target))
+}
+
+fn size(text: &str) -> anyhow::Result<Size> {
+    let Some((width, height)) = text.split_once(['x', '×']) else {
+        bail!("two numbers are needed, as in 1600x1360");
+    };
+    Ok(Size::new(width.trim().parse()?, height.trim().parse()?)?)
+}

@@ -1,0 +1,36 @@
+use super::OffError;
+use crate::haar::HaarError;
+use crate::plane::{NotACurvature, PlaneError};
+use crate::points::PointsError;
+use crate::render::RenderError;
+use crate::shape::ShapeError;
+
+/// Why the paper cannot be made again on a volume.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReproduceError {
+    /// The wavelet stage refused.
+    #[error(transparent)]
+    Haar(#[from] HaarError),
+    /// The volume yields no points.
+    #[error(transparent)]
+    Points(#[from] PointsError),
+    /// The points have no shape.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// The points in the plane have no shape.
+    #[error(transparent)]
+    Plane(#[from] PlaneError),
+    /// A curvature that is none.
+    #[error(transparent)]
+    Curvature(#[from] NotACurvature),
+    /// A picture cannot be drawn.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// A file just written does not read back.
+    #[error("an OFF file does not read back: {0}; this is a fault of walpha, please report it")]
+    Off(#[from] OffError),
+    /// Memory for a file cannot be had.
+    #[error("cannot write a file into memory: {0}")]
+    Io(#[from] std::io::Error),
+}

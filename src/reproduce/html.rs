@@ -1,0 +1,224 @@
+//! The report as a page: self-contained, without scripts, for screens of any width and for paper.
+
+use std::fmt::Write;
+
+use super::text::number;
+use super::{ByClass, File, Finding, Item, Report, ShapeNumbers, Table, Verdict};
+use crate::render::base64;
+
+const STYLE: &str = include_str!("page.css");
+
+/// `report.html`: what the report says, with the pictures among `files` inside. The same report
+/// and files give the same bytes; times are left out.
+pub fn page(report: &Report, files: &[File]) -> String {
+    let mut html =
+        String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    let title = format!("{}: the paper, reproduced", report.paper);
+    let _ = write!(
+        html,
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>{}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n",
+        escape(&title)
+    );
+    head(&mut html, report);
+    summary(&mut html, report);
+    for item in &report.items {
+        section(&mut html, item, files);
+    }
+    html.push_str(
+        "<section><p class=\"soft\">All numbers of this page stand in report.json beside it, with \
+         more digits; times too, which are all that differs between two runs.</p></section>\n\
+         </body>\n</html>\n",
+    );
+    html
+}
+
+fn head(html: &mut String, report: &Report) {
+    let input = &report.input;
+    let [x, y, z] = input.dims;
+    let [low, high] = input.gray_range;
+    let _ = write!(
+        html,
+        "<h1>{}: the paper, reproduced</h1>\n\
+         <p>Table 1 and the figures, made again on <b>{}</b> ({x}×{y}×{z} samples, values {} to {} \
+         taken as gray levels 0 to 255). Each claim of the paper is held against our numbers, and nothing is tuned \
+         to agree.</p>\n\
+         <p>{} of {} points ({} %) are selected after the Haar transform kept {} of {} coefficients, \
+         ε = {}, RMS {} gray levels. <b>α and ω are squared lengths</b>, in voxels: at α = 10 with \
+         ω = 0 the balls have radius √10.</p>\n",
+        escape(report.paper),
+        escape(&input.name),
+        number(low),
+        number(high),
+        input.points,
+        input.samples,
+        number(input.percent),
+        input.haar.kept,
+        input.haar.total,
+        number(input.haar.epsilon),
+        number(input.haar.rms),
+    );
+}
+
+/// Claims and verdicts at a glance.
+fn summary(html: &mut String, report: &Report) {
+    let counts: Vec<String> = report
+        .verdicts
+        .iter()
+        .map(|(verdict, count)| format!("{count} {}", verdict.words()))
+        .collect();
+    let _ = write!(
+        html,
+        "<p>Claims: {}.</p>\n<div class=\"wide\"><table class=\"summary\"><thead><tr><th>item</th>\
+         <th>claim</th><th>verdict</th></tr></thead><tbody>\n",
+        counts.join(", ")
+    );
+    for item in &report.items {
+        for (k, finding) in item.findings.iter().enumerate() {
+            let name = item.title.split('.').next().unwrap_or_default();
+            let link =
+                if k == 0 { format!("<a href=\"#{}\">{name}</a>", item.id) } else { String::new() };
+            let _ = writeln!(
+                html,
+                "<tr><td>{link}</td><td>{}</td><td>{}</td></tr>",
+                escape(&finding.claim),
+                badge(finding.verdict)
+            );
+        }
+    }
+    html.push_str("</tbody></table></div>\n");
+}
+
+fn section(html: &mut String, item: &Item, files: &[File]) {
+    let _ = write!(
+        html,
+        "<section id=\"{}\"><h2>{}</h2>\n<p><b>The paper.</b> {}</p>\n<p><b>Ours.</b> {}</p>\n",
+        item.id,
+        escape(&item.title),
+        escape(&item.paper),
+        escape(&item.ours)
+    );
+    let picture = item.picture.as_ref();
+    if let Some(file) = picture.and_then(|name| files.iter().find(|file| file.name == *name)) {
+        let _ = writeln!(
+            html,
+            "<figure><img alt=\"{}\" src=\"data:image/png;base64,{}\"></figure>",
+            escape(&item.title),
+            base64(&file.bytes)
+        );
+    }
+    item.findings.iter().for_each(|finding| judgement(html, finding));
+    item.tables.iter().for_each(|table| rows(html, table));
+    shapes(html, &item.shapes);
+    if !item.facts.is_empty() {
+        html.push_str("<h3>Numbers</h3>\n<div class=\"wide\"><table class=\"facts\"><tbody>\n");
+        for fact in &item.facts {
+            let _ = writeln!(
+                html,
+                "<tr><td>{}</td><td>{}</td></tr>",
+                escape(&fact.label),
+                number(fact.value)
+            );
+        }
+        html.push_str("</tbody></table></div>\n");
+    }
+    if !item.commands.is_empty() {
+        let _ = writeln!(
+            html,
+            "<h3>To make it again</h3>\n<pre>{}</pre>",
+            escape(&item.commands.join("\n"))
+        );
+    }
+    if !item.files.is_empty() {
+        let _ = writeln!(html, "<p class=\"soft\">Files: {}</p>", escape(&item.files.join(", ")));
+    }
+    html.push_str("</section>\n");
+}
+
+fn judgement(html: &mut String, finding: &Finding) {
+    let _ = writeln!(
+        html,
+        "<div class=\"finding {}\"><p><b>Claim.</b> {}</p><p>{}: {}.</p></div>",
+        class(finding.verdict),
+        escape(&finding.claim),
+        badge(finding.verdict),
+        escape(&finding.reason)
+    );
+}
+
+fn rows(html: &mut String, table: &Table) {
+    let cells = |tag: &str, row: &[String]| -> String {
+        row.iter().map(|cell| format!("<{tag}>{}</{tag}>", escape(cell))).collect()
+    };
+    let _ = writeln!(
+        html,
+        "<div class=\"wide\"><table><caption>{}</caption><thead><tr>{}</tr></thead><tbody>",
+        escape(&table.caption),
+        cells("th", &table.head)
+    );
+    for row in &table.rows {
+        let _ = writeln!(html, "<tr>{}</tr>", cells("td", row));
+    }
+    html.push_str("</tbody></table></div>\n");
+}
+
+/// The numbers of shapes side by side.
+fn shapes(html: &mut String, shapes: &[ShapeNumbers]) {
+    if shapes.is_empty() {
+        return;
+    }
+    html.push_str(
+        "<h3>Shapes</h3>\n<div class=\"wide\"><table class=\"shapes\"><thead><tr><th></th>",
+    );
+    for shape in shapes {
+        let _ = write!(html, "<th>{}</th>", escape(&shape.label));
+    }
+    html.push_str("</tr></thead><tbody>\n");
+    let mut row = |label: &str, value: &dyn Fn(&ShapeNumbers) -> String| {
+        let cells: String = shapes.iter().map(|s| format!("<td>{}</td>", value(s))).collect();
+        let _ = writeln!(html, "<tr><td>{label}</td>{cells}</tr>");
+    };
+    let classes = |c: &ByClass| format!("{} · {} · {}", c.interior, c.regular, c.singular);
+    row("α, and √α", &|s| format!("{}, {}", number(s.alpha), number(s.alpha.sqrt())));
+    row("ω: least, mean, most", &|s| {
+        let w = s.weights;
+        format!("{}, {}, {}", number(w.min), number(w.mean), number(w.max))
+    });
+    row("points", &|s| s.points.to_string());
+    row("hidden points", &|s| s.hidden.to_string());
+    row("points in the shape", &|s| s.points_in_shape.to_string());
+    row("cells", &|s| s.cells.to_string());
+    row("facets: interior · regular · singular", &|s| classes(&s.facets));
+    row("edges", &|s| classes(&s.edges));
+    row("vertices", &|s| classes(&s.vertices));
+    row("components b₀", &|s| s.betti.b0.to_string());
+    row("tunnels b₁", &|s| s.betti.b1.to_string());
+    row("voids b₂", &|s| s.betti.b2.to_string());
+    row("volume of the voids", &|s| number(s.void_volume));
+    row("largest void", &|s| s.largest_voids.first().map_or("–".into(), |v| number(v.volume)));
+    row("volume (voxels³)", &|s| number(s.volume));
+    row("area of regular facets (voxels²)", &|s| number(s.area));
+    row("area of singular facets", &|s| number(s.singular_area));
+    html.push_str("</tbody></table></div>\n");
+}
+
+fn class(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Reproduced => "yes",
+        Verdict::NotReproduced => "no",
+        Verdict::Undecided => "open",
+    }
+}
+
+fn badge(verdict: Verdict) -> String {
+    let sign = match verdict {
+        Verdict::Reproduced => "✓",
+        Verdict::NotReproduced => "✗",
+        Verdict::Undecided => "?",
+    };
+    format!("<span class=\"verdict {}\">{sign} {}</span>", class(verdict), verdict.words())
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -1,0 +1,116 @@
+use serde::{Serialize, Serializer};
+
+use crate::points::WeightSummary;
+use crate::shape::{AlphaShape, Balls, Betti, Class, Simplices, Void};
+
+/// What is measured of a shape.
+#[derive(Clone, Debug, Serialize)]
+pub struct ShapeNumbers {
+    /// Its weights and α, in short.
+    pub label: String,
+    /// The command line that computes it.
+    pub command: String,
+    /// α, a squared length; the string "inf" where it is infinite.
+    #[serde(serialize_with = "number_or_name")]
+    pub alpha: f64,
+    /// What α + ω means.
+    pub balls: Balls,
+    /// The range of the weights ω, squared lengths.
+    pub weights: WeightSummary,
+    /// Points given.
+    pub points: usize,
+    /// Points that went because another is at the same place.
+    pub duplicates: usize,
+    /// Points that are no vertices of the regular triangulation.
+    pub hidden: usize,
+    /// Points that are vertices of the shape.
+    pub points_in_shape: usize,
+    /// Cells of the shape.
+    pub cells: usize,
+    /// Its facets.
+    pub facets: ByClass,
+    /// Its edges.
+    pub edges: ByClass,
+    /// Its vertices.
+    pub vertices: ByClass,
+    /// Components, tunnels, voids.
+    pub betti: Betti,
+    /// The volume of all voids, in cubed voxels.
+    pub void_volume: f64,
+    /// The voids, largest first, at most [`ShapeNumbers::VOIDS`] of them.
+    pub largest_voids: Vec<Void>,
+    /// Volume, in cubed voxels.
+    pub volume: f64,
+    /// Area of the regular facets, in squared voxels.
+    pub area: f64,
+    /// Area of the singular facets.
+    pub singular_area: f64,
+}
+
+/// Simplices of a shape by class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct ByClass {
+    /// Inside.
+    pub interior: usize,
+    /// On the boundary of something higher.
+    pub regular: usize,
+    /// On their own.
+    pub singular: usize,
+}
+
+impl ByClass {
+    fn of<const N: usize>(simplices: &Simplices<N>) -> Self {
+        let counts = simplices.counts();
+        Self {
+            interior: counts[Class::Interior as usize],
+            regular: counts[Class::Regular as usize],
+            singular: counts[Class::Singular as usize],
+        }
+    }
+}
+
+impl ShapeNumbers {
+    /// As many voids are listed at most.
+    pub const VOIDS: usize = 10;
+
+    /// Measures a shape that was made with its exterior simplices.
+    pub(super) fn of(shape: &AlphaShape, label: String, command: String) -> Self {
+        let voids = shape.voids().expect("made with exterior simplices");
+        let complex = shape.complex();
+        Self {
+            label,
+            command,
+            alpha: shape.options().alpha.squared(),
+            balls: shape.options().balls,
+            weights: shape.points().summary(),
+            points: shape.points().len(),
+            duplicates: shape.duplicates().len(),
+            hidden: shape.hidden().expect("the whole triangulation").len(),
+            points_in_shape: shape.points_in_shape(),
+            cells: complex.cells.counts()[Class::Interior as usize],
+            facets: ByClass::of(&complex.facets),
+            edges: ByClass::of(&complex.edges),
+            vertices: ByClass::of(&complex.vertices),
+            betti: shape.betti().expect("the whole triangulation"),
+            void_volume: voids.iter().fold(0.0, |sum, void| sum + void.volume),
+            largest_voids: voids.into_iter().take(Self::VOIDS).collect(),
+            volume: shape.measures().volume,
+            area: shape.measures().area,
+            singular_area: shape.measures().singular_area,
+        }
+    }
+
+    /// Tunnels and voids together: what one may call holes.
+    pub(super) fn holes(&self) -> u64 {
+        self.betti.b1 + self.betti.b2
+    }
+}
+
+/// ∞ has no JSON number: it is written as the string "inf".
+fn number_or_name<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    if number.is_finite() {
+        serializer.serialize_f64(*number)
+    } else {
+        serializer.serialize_str(&number.to_string())
+    }
+}

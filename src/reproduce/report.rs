@@ -1,0 +1,160 @@
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::ShapeNumbers;
+use crate::haar::Truncation;
+
+/// Everything that was found, as `report.json` has it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Counted up when a field changes its meaning or goes; new fields may come at any time.
+    pub schema_version: u32,
+    /// What is made again.
+    pub paper: &'static str,
+    /// What it is made again on.
+    pub input: Input,
+    /// Table and figures, in the paper's order.
+    pub items: Vec<Item>,
+    /// How many claims have each verdict.
+    pub verdicts: BTreeMap<Verdict, usize>,
+    /// Seconds of each stage and in all: the only thing that differs between two runs.
+    pub seconds: BTreeMap<&'static str, f64>,
+}
+
+/// The volume and the first stages.
+#[derive(Clone, Debug, Serialize)]
+pub struct Input {
+    /// A sample's name, or a file.
+    pub name: String,
+    /// Samples along x, y and z.
+    pub dims: [usize; 3],
+    /// Samples in all.
+    pub samples: usize,
+    /// The values that became gray 0 and 255.
+    pub gray_range: [f64; 2],
+    /// What the wavelet stage kept.
+    pub haar: Truncation,
+    /// Points selected.
+    pub points: usize,
+    /// Points over samples, in percent.
+    pub percent: f64,
+}
+
+/// The table or a figure.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Item {
+    /// `table-1`, `figure-1`, …
+    pub id: &'static str,
+    /// Its name, and what it shows.
+    pub title: String,
+    /// What the paper shows or claims, in its words as far as possible.
+    pub paper: String,
+    /// What ours shows.
+    pub ours: String,
+    /// The picture, a PNG file beside the report.
+    pub picture: Option<String>,
+    /// Other files that belong to it.
+    pub files: Vec<String>,
+    /// Command lines that make it again.
+    pub commands: Vec<String>,
+    /// Shapes measured for it.
+    pub shapes: Vec<ShapeNumbers>,
+    /// Single numbers.
+    pub facts: Vec<Fact>,
+    /// Numbers in rows.
+    pub tables: Vec<Table>,
+    /// Claims and their verdicts.
+    pub findings: Vec<Finding>,
+}
+
+/// A number with its name.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fact {
+    /// What it is, with its unit.
+    pub label: String,
+    /// The number.
+    pub value: f64,
+}
+
+/// Rows of text and numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct Table {
+    /// What it shows.
+    pub caption: String,
+    /// Names of the columns.
+    pub head: Vec<String>,
+    /// The rows.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// A claim of the paper, judged.
+#[derive(Clone, Debug, Serialize)]
+pub struct Finding {
+    /// What the paper claims.
+    pub claim: String,
+    /// Whether our numbers bear it out.
+    pub verdict: Verdict,
+    /// The numbers that decide.
+    pub reason: String,
+}
+
+/// Whether a claim holds on our numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Verdict {
+    /// It does.
+    #[serde(rename = "reproduced")]
+    Reproduced,
+    /// It does not.
+    #[serde(rename = "not reproduced")]
+    NotReproduced,
+    /// The paper does not say enough to tell.
+    #[serde(rename = "cannot be decided")]
+    Undecided,
+}
+
+impl Verdict {
+    /// All verdicts.
+    pub const ALL: [Self; 3] = [Self::Reproduced, Self::NotReproduced, Self::Undecided];
+
+    /// Its words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Reproduced => "reproduced",
+            Self::NotReproduced => "not reproduced",
+            Self::Undecided => "cannot be decided",
+        }
+    }
+
+    /// Reproduced if so, else not.
+    pub(super) fn of(holds: bool) -> Self {
+        if holds { Self::Reproduced } else { Self::NotReproduced }
+    }
+}
+
+impl Fact {
+    /// A number with its name.
+    pub(super) fn new(label: impl Into<String>, value: f64) -> Self {
+        Self { label: label.into(), value }
+    }
+
+    /// A count with its name.
+    pub(super) fn count(label: impl Into<String>, value: usize) -> Self {
+        Self::new(label, value as f64)
+    }
+}
+
+impl Report {
+    pub(super) fn new(input: Input, items: Vec<Item>, seconds: Vec<(&'static str, f64)>) -> Self {
+        let findings = || items.iter().flat_map(|item| &item.findings);
+        let count = |verdict| findings().filter(|finding| finding.verdict == verdict).count();
+        Self {
+            schema_version: 1,
+            paper: "Volume Modeling of Scattered Data based on Weighted Alpha Shapes",
+            verdicts: Verdict::ALL.map(|verdict| (verdict, count(verdict))).into(),
+            input,
+            items,
+            seconds: seconds.into_iter().collect(),
+        }
+    }
+}
