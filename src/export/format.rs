@@ -28,10 +28,11 @@ pub enum Format {
 
 /// No writer has this extension.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{path}: no format has the extension `{extension}`; a shape can be written as {known}")]
+#[error("{path}: no format has the extension `{extension}`; {thing} can be written as {known}")]
 pub struct UnknownFormat {
     path: String,
     extension: String,
+    thing: &'static str,
     known: String,
 }
 
@@ -45,13 +46,7 @@ impl Format {
     /// # Errors
     /// [`UnknownFormat`] names the ones there are.
     pub fn of(path: &Path) -> Result<Self, UnknownFormat> {
-        let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        let found = Self::ALL.iter().find(|(_, known)| *known == extension);
-        found.map(|&(format, _)| format).ok_or_else(|| UnknownFormat {
-            path: path.display().to_string(),
-            extension,
-            known: Self::ALL.map(|(_, extension)| format!(".{extension}")).join(", "),
-        })
+        UnknownFormat::find(path, "a shape", &Self::ALL)
     }
 
     /// Its writer. `ascii` asks for text where the format has a binary form too.
@@ -62,5 +57,26 @@ impl Format {
             Self::Obj => Box::new(Obj),
             Self::Vtu => Box::new(Vtu),
         }
+    }
+}
+
+impl UnknownFormat {
+    /// The format whose extension ends a path.
+    pub(super) fn find<F: Copy>(
+        path: &Path,
+        thing: &'static str,
+        all: &[(F, &str)],
+    ) -> Result<F, Self> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let ends = |extension: &str| {
+            name.strip_suffix(extension).is_some_and(|stem| stem.len() > 1 && stem.ends_with('.'))
+        };
+        let found = all.iter().find(|(_, extension)| ends(extension));
+        found.map(|&(format, _)| format).ok_or_else(|| Self {
+            path: path.display().to_string(),
+            extension: path.extension().unwrap_or_default().to_string_lossy().into_owned(),
+            thing,
+            known: all.iter().map(|(_, extension)| format!(".{extension}")).collect::<Vec<_>>().join(", "),
+        })
     }
 }

@@ -16,5 +16,8 @@ pub use obj::Obj;
 pub use off::Off;
 pub use ply::Ply;
 pub use target::{Target, TargetError};
-pub use volume::write_volume_npy;
+pub use volume::{
+    VolumeFormat, write_volume_nifti, write_volume_npy, write_volume_nrrd, write_volume_raw,
+    write_volume_vti,
+};
 pub use vtu::Vtu;

@@ -1,8 +1,8 @@
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use super::described::{Described, Encoding, frame};
+use super::described::{Described, Encoding, diagonal, frame};
 use super::payload::{Length, Payload};
 use super::{format_error, io_error, payload_error};
 use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
@@ -46,9 +46,12 @@ pub(super) fn read(path: &Path, reader: impl Read, length: Length) -> Result<Vol
     let (slope, inter) = header.scaling();
     if header.is_pair(path)? {
         let image = path.with_extension("img");
-        let file = File::open(&image).map_err(io_error(&image))?;
+        let mut file = File::open(&image).map_err(io_error(&image))?;
         let length = file.metadata().map_err(io_error(&image))?.len();
-        return samples(path, described, slope, inter, BufReader::new(file), Length::Exactly(length));
+        let offset = header.vox_offset().clamp(0.0, length as f64) as u64;
+        file.seek(SeekFrom::Start(offset)).map_err(io_error(&image))?;
+        let left = Length::Exactly(length - offset);
+        return samples(path, described, slope, inter, BufReader::new(file), left);
     }
     let offset = header.offset(path)?;
     let skip = offset - header.bytes.len() as u64;
@@ -165,11 +168,16 @@ impl Header {
         }
     }
 
-    fn offset(&self, path: &Path) -> Result<u64, VolumeError> {
-        let offset = match self.version {
+    fn vox_offset(&self) -> f64 {
+        match self.version {
             1 => f64::from(f32::from_le_bytes(self.at(108, 0))),
             _ => i64::from_le_bytes(self.at(0, 168)) as f64,
-        };
+        }
+    }
+
+    /// Where the samples begin in a file of its own.
+    fn offset(&self, path: &Path) -> Result<u64, VolumeError> {
+        let offset = self.vox_offset();
         if offset >= self.bytes.len() as f64 && offset.fract() == 0.0 {
             return Ok(offset as u64);
         }
@@ -245,11 +253,17 @@ impl Header {
         let length = |i: usize| if pixdim(i) == 0.0 { 1.0 } else { pixdim(i).abs() };
         let spacing = [1, 2, 3].map(length);
         if self.code(252, 344) <= 0 {
-            let [x, y, z] = spacing;
-            return frame(path, [0.0; 3], super::described::diagonal([x, y, z]));
+            return frame(path, [0.0; 3], diagonal(spacing));
         }
-        let [b, c, d] = [0, 1, 2].map(|i| self.real(256, 352, i));
-        let a = (1.0 - b * b - c * c - d * d).max(0.0).sqrt();
+        let mut imaginary = [0, 1, 2].map(|i| self.real(256, 352, i));
+        let square: f64 = imaginary.iter().map(|v| v * v).sum();
+        // A turn of almost 180°: rounding would speak for the real part, as in NIfTI's own library.
+        let half_turn = 1.0 - square < 1e-7;
+        if half_turn && square > 0.0 {
+            imaginary = imaginary.map(|v| v / square.sqrt());
+        }
+        let a = if half_turn { 0.0 } else { (1.0 - square).sqrt() };
+        let [b, c, d] = imaginary;
         let mut rotation = [
             [a * a + b * b - c * c - d * d, 2.0 * (b * c - a * d), 2.0 * (b * d + a * c)],
             [2.0 * (b * c + a * d), a * a + c * c - b * b - d * d, 2.0 * (c * d - a * b)],

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::described::{Described, Encoding, frame};
 use super::lines::Lines;
-use super::{format_error, io_error};
+use super::{format_error, io_error, text};
 use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
 
 /// The first bytes of each legacy VTK file.
@@ -36,13 +36,20 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut lines = Lines::new(BufReader::new(file));
-    let described = header(path, &mut lines)?;
+    let (described, colours) = header(path, &mut lines)?;
     let left = length - lines.bytes();
     let mut reader = lines.into_inner();
     if described.encoding == Encoding::Text {
         let mut text = Vec::new();
         reader.read_to_end(&mut text).map_err(io_error(path))?;
         let end = end_of_numbers(&text);
+        if colours {
+            let count = described.dims.samples() as u64;
+            let mut shares: Vec<f32> = text::numbers(&text[..end], end as u64, Dtype::F32, count)
+                .map_err(|what| format_error(path, what))?;
+            shares.iter_mut().for_each(|share| *share = (*share * 255.0).round());
+            return described.volume(shares);
+        }
         return described.read(path, &text[..end], end as u64);
     }
     let bytes = described.bytes();
@@ -60,8 +67,12 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
     Ok(volume)
 }
 
-/// Reads up to the samples.
-fn header(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Described, VolumeError> {
+/// Reads up to the samples. Says too whether they are `COLOR_SCALARS`, as VTK calls bytes, which
+/// text gives as shares of 255.
+fn header(
+    path: &Path,
+    lines: &mut Lines<BufReader<File>>,
+) -> Result<(Described, bool), VolumeError> {
     let said = |what: String| format_error(path, what);
     let first = lines.next().map_err(io_error(path))?.unwrap_or_default();
     if !first.as_bytes().starts_with(MAGIC) {
@@ -99,7 +110,12 @@ fn header(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Described, 
                 if !table.starts_with("LOOKUP_TABLE") {
                     return Err(said("has no LOOKUP_TABLE line below SCALARS: it is damaged".into()));
                 }
-                return grid.described(path, dtype);
+                return Ok((grid.described(path, dtype)?, false));
+            }
+            "COLOR_SCALARS" => {
+                let components = words.get(2).unwrap_or(&"(missing)");
+                let dtype = scalar(path, Some(&"unsigned_char"), components)?;
+                return Ok((grid.described(path, dtype)?, true));
             }
             "FIELD" => {
                 // VTK writes here whatever is not its active attribute.
@@ -116,7 +132,7 @@ fn header(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Described, 
                         described.dims
                     )));
                 }
-                return Ok(described);
+                return Ok((described, false));
             }
             "METADATA" => {
                 while lines.next().map_err(io_error(path))?.is_some_and(|line| !line.is_empty()) {}
