@@ -4,7 +4,7 @@ use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
 
-use super::{format_error, inr, io_error, metaimage, nifti, npy, nrrd, vtk, vtk_xml};
+use super::{format_error, inr, io_error, metaimage, nifti, npy, nrrd, vtk, VtkXml};
 use crate::volume::VolumeError;
 
 /// Bytes looked at.
@@ -104,7 +104,7 @@ fn by_content(start: &[u8]) -> Option<Kind> {
         Kind::Tiff
     } else if start.starts_with(vtk::MAGIC) {
         Kind::VtkLegacy
-    } else if vtk_xml::is_header(start) {
+    } else if VtkXml::is_header(start) {
         Kind::VtkXml
     } else if nifti::is_header(start) {
         Kind::Nifti

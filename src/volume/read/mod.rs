@@ -30,9 +30,8 @@ pub(crate) use inr::read as read_inr;
 pub(crate) use npy::{MAGIC as NPY_MAGIC, NpyFile};
 pub(crate) use lines::Lines;
 use payload::PayloadError;
-pub(crate) use payload::{Element, Length, Payload};
+pub(crate) use payload::{Element, Length};
 pub use raw::RawLayout;
-pub(crate) use text::numbers as text_numbers;
 pub(crate) use vtk_xml::VtkXml;
 
 use detect::Kind;
@@ -103,7 +102,7 @@ fn read_known(path: &Path) -> Result<Volume, VolumeError> {
 }
 
 /// A [`VolumeError::Format`] for this file.
-pub(crate) fn format_error(path: &Path, what: impl Into<String>) -> VolumeError {
+fn format_error(path: &Path, what: impl Into<String>) -> VolumeError {
     VolumeError::Format { path: path.into(), what: what.into() }
 }
 
@@ -119,7 +118,7 @@ fn payload_error(path: &Path, dims: &Dims, dtype: Dtype) -> impl Fn(PayloadError
 }
 
 /// The error for a file whose header claims something that is not there.
-pub(crate) fn payload_error_of(path: &Path, claim: &str, error: PayloadError) -> VolumeError {
+fn payload_error_of(path: &Path, claim: &str, error: PayloadError) -> VolumeError {
     let what = match error {
         PayloadError::Io(source) if source.kind() == io::ErrorKind::UnexpectedEof => {
             format!("its compressed data (gzip or zlib) end early, inside {claim}: it is truncated; copy it again")

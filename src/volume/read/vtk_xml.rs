@@ -16,13 +16,6 @@ use crate::volume::{Dtype, Endian, VolumeError};
 /// Deflate expands by no more than this.
 const MOST_EXPANSION: u64 = 1032;
 
-/// Whether a file begins as VTK's XML files do.
-pub(super) fn is_header(start: &[u8]) -> bool {
-    let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
-    let holds = |part: &[u8]| start.windows(part.len()).any(|window| window == part);
-    start.starts_with(b"<") && holds(b"<VTKFile")
-}
-
 /// A file of VTK's XML formats (VTK User's Guide, "VTK File Formats"): its elements, and the arrays
 /// they hold, which are read on demand. Arrays may be text, base64, or appended raw or in base64, and
 /// compressed with zlib.
@@ -55,6 +48,13 @@ struct Appended {
 }
 
 impl VtkXml {
+    /// Whether a file begins as VTK's XML files do.
+    pub fn is_header(start: &[u8]) -> bool {
+        let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
+        let holds = |part: &[u8]| start.windows(part.len()).any(|window| window == part);
+        start.starts_with(b"<") && holds(b"<VTKFile")
+    }
+
     /// Reads all but the arrays. The root must be `VTKFile`.
     pub fn open(path: &Path) -> Result<Self, VolumeError> {
         let file = File::open(path).map_err(io_error(path))?;
