@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use walpha::alpha_shape;
-use walpha::export::{Format, Target};
+use walpha::export::{Exporter, Format, Target};
 
 use super::args::{HaarArgs, InputArgs, SelectArgs, ShapeArgs, WeightArgs};
 use super::output::{print, print_json};
@@ -19,7 +19,8 @@ use super::{Global, pipeline};
 pub struct Shape {
     #[command(flatten)]
     input: InputArgs,
-    /// Files to write: .ply, .off, .obj (boundary) or .vtu (all simplices).
+    /// Files to write: .ply, .off, .obj, .stl, .glb, .vtp (boundary), .vtu or .npz (all
+    /// simplices).
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
     /// Write text where a format has a binary form too (PLY).
@@ -57,6 +58,10 @@ impl Shape {
         let options = self.shape.options(alpha);
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
         report.add_shape(&shape);
+        let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
+            Some(format!("{}: {}", target.path().display(), exporter.remark(&shape)?))
+        };
+        let remarks: Vec<String> = targets.iter().filter_map(remark).collect();
         progress.stage("write", || {
             targets
                 .into_iter()
@@ -64,6 +69,9 @@ impl Shape {
         })?;
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
+        if !global.quiet {
+            remarks.iter().for_each(|remark| eprintln!("walpha: {remark}"));
+        }
         if global.json {
             print_json(&report)?;
         } else if !global.quiet {

@@ -1,7 +1,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Obj, Off, Ply, Vtu};
+use super::{Glb, Npz, Obj, Off, Ply, Stl, Vtp, Vtu};
 use crate::shape::AlphaShape;
 
 /// A way to write a shape down.
@@ -11,6 +11,11 @@ pub trait Exporter {
     /// # Errors
     /// Whatever `out` returns.
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()>;
+
+    /// What whoever reads the file should know of this shape, if anything.
+    fn remark(&self, _shape: &AlphaShape) -> Option<String> {
+        None
+    }
 }
 
 /// The formats shapes are written in, chosen by file name extension.
@@ -22,8 +27,16 @@ pub enum Format {
     Off,
     /// Wavefront: boundary, singular edges and vertices in groups.
     Obj,
+    /// Stereolithography: regular facets.
+    Stl,
+    /// glTF in one binary file: boundary, singular edges and vertices, coloured by F.
+    Glb,
     /// VTK unstructured grid: simplices of all dimensions with their data.
     Vtu,
+    /// VTK polygons: boundary, singular edges and vertices with their data.
+    Vtp,
+    /// NumPy arrays of indices and classes of simplices of all dimensions.
+    Npz,
 }
 
 /// No writer has this extension.
@@ -38,8 +51,16 @@ pub struct UnknownFormat {
 
 impl Format {
     /// Every format with its extension.
-    pub const ALL: [(Self, &str); 4] =
-        [(Self::Ply, "ply"), (Self::Off, "off"), (Self::Obj, "obj"), (Self::Vtu, "vtu")];
+    pub const ALL: [(Self, &str); 8] = [
+        (Self::Ply, "ply"),
+        (Self::Off, "off"),
+        (Self::Obj, "obj"),
+        (Self::Stl, "stl"),
+        (Self::Glb, "glb"),
+        (Self::Vtu, "vtu"),
+        (Self::Vtp, "vtp"),
+        (Self::Npz, "npz"),
+    ];
 
     /// The format a path asks for.
     ///
@@ -55,7 +76,11 @@ impl Format {
             Self::Ply => Box::new(Ply { ascii }),
             Self::Off => Box::new(Off),
             Self::Obj => Box::new(Obj),
+            Self::Stl => Box::new(Stl),
+            Self::Glb => Box::new(Glb),
             Self::Vtu => Box::new(Vtu),
+            Self::Vtp => Box::new(Vtp),
+            Self::Npz => Box::new(Npz),
         }
     }
 }
@@ -76,7 +101,11 @@ impl UnknownFormat {
             path: path.display().to_string(),
             extension: path.extension().unwrap_or_default().to_string_lossy().into_owned(),
             thing,
-            known: all.iter().map(|(_, extension)| format!(".{extension}")).collect::<Vec<_>>().join(", "),
+            known: all
+                .iter()
+                .map(|(_, extension)| format!(".{extension}"))
+                .collect::<Vec<_>>()
+                .join(", "),
         })
     }
 }

@@ -11,9 +11,8 @@ pub fn write_volume_vti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> 
     let [x, y, z] = volume.dims().xyz().map(|size| size - 1);
     let extent = format!("0 {x} 0 {y} 0 {z}");
     let frame = volume.frame();
-    let numbers = |numbers: &[f64]| {
-        numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
-    };
+    let numbers =
+        |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
     write!(
         out,
         "<?xml version=\"1.0\"?>\n\

@@ -6,7 +6,8 @@ use crate::volume::{Lines, io_error};
 
 /// Reads CSV, or TSV, whose fields are separated by tabs; the first line names the columns.
 pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
-    let said = |error: csv::Error| format(path, format!("is no CSV or TSV file of points: {error}"));
+    let said =
+        |error: csv::Error| format(path, format!("is no CSV or TSV file of points: {error}"));
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(delimiter(path)?)
         .trim(csv::Trim::All)

@@ -57,12 +57,7 @@ impl Described {
         }
     }
 
-    fn decode(
-        self,
-        path: &Path,
-        reader: impl Read,
-        length: Length,
-    ) -> Result<Volume, VolumeError> {
+    fn decode(self, path: &Path, reader: impl Read, length: Length) -> Result<Volume, VolumeError> {
         let samples = Payload { reader, length }
             .samples(self.dtype, self.endian, self.dims.samples() as u64)
             .map_err(payload_error(path, &self.dims, self.dtype))?;

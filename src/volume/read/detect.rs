@@ -4,7 +4,7 @@ use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
 
-use super::{format_error, inr, io_error, metaimage, nifti, npy, nrrd, vtk, VtkXml};
+use super::{VtkXml, format_error, inr, io_error, metaimage, nifti, npy, nrrd, vtk};
 use crate::volume::VolumeError;
 
 /// Bytes looked at.

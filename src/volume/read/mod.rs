@@ -27,8 +27,8 @@ use std::path::Path;
 use flate2::read::MultiGzDecoder;
 
 pub(crate) use inr::read as read_inr;
-pub(crate) use npy::{MAGIC as NPY_MAGIC, NpyFile};
 pub(crate) use lines::Lines;
+pub(crate) use npy::{MAGIC as NPY_MAGIC, NpyFile};
 use payload::PayloadError;
 pub(crate) use payload::{Element, Length};
 pub use raw::RawLayout;
@@ -90,9 +90,7 @@ fn read_known(path: &Path) -> Result<Volume, VolumeError> {
             inr::read(path, MultiGzDecoder::new(open()?), Length::of_gzip(length))
         }
         Kind::Nifti => nifti::read(path, open()?, Length::Exactly(length)),
-        Kind::NiftiGzip => {
-            nifti::read(path, MultiGzDecoder::new(open()?), Length::of_gzip(length))
-        }
+        Kind::NiftiGzip => nifti::read(path, MultiGzDecoder::new(open()?), Length::of_gzip(length)),
         Kind::Nrrd => nrrd::read(path),
         Kind::MetaImage => metaimage::read(path),
         Kind::VtkLegacy => vtk::read(path),
@@ -121,7 +119,9 @@ fn payload_error(path: &Path, dims: &Dims, dtype: Dtype) -> impl Fn(PayloadError
 fn payload_error_of(path: &Path, claim: &str, error: PayloadError) -> VolumeError {
     let what = match error {
         PayloadError::Io(source) if source.kind() == io::ErrorKind::UnexpectedEof => {
-            format!("its compressed data (gzip or zlib) end early, inside {claim}: it is truncated; copy it again")
+            format!(
+                "its compressed data (gzip or zlib) end early, inside {claim}: it is truncated; copy it again"
+            )
         }
         PayloadError::Io(source)
             if matches!(

@@ -238,7 +238,11 @@ impl Header {
     /// Slope and intercept; a slope of 0 means none.
     fn scaling(&self) -> (f64, f64) {
         let (slope, inter) = (self.real(112, 176, 0), self.real(116, 184, 0));
-        if slope != 0.0 && slope.is_finite() && inter.is_finite() { (slope, inter) } else { (1.0, 0.0) }
+        if slope != 0.0 && slope.is_finite() && inter.is_finite() {
+            (slope, inter)
+        } else {
+            (1.0, 0.0)
+        }
     }
 
     fn frame(&self, path: &Path) -> Result<Frame, VolumeError> {

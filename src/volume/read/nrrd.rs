@@ -31,10 +31,8 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
             let behind = length - lines.bytes();
             let skip = skip.unwrap_or(behind.saturating_sub(described.bytes()));
             let mut reader = lines.into_inner();
-            let skipped = std::io::copy(
-                &mut std::io::Read::take(&mut reader, skip),
-                &mut std::io::sink(),
-            );
+            let skipped =
+                std::io::copy(&mut std::io::Read::take(&mut reader, skip), &mut std::io::sink());
             let bytes = behind - skipped.map_err(io_error(path))?;
             described.read(path, reader, bytes)
         }
@@ -59,10 +57,7 @@ struct Header {
 }
 
 impl Header {
-    fn read(
-        path: &Path,
-        lines: &mut Lines<BufReader<File>>,
-    ) -> Result<Self, VolumeError> {
+    fn read(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Self, VolumeError> {
         let said = |what: String| format_error(path, what);
         let first = lines.next().map_err(io_error(path))?.unwrap_or_default();
         if !first.as_bytes().starts_with(MAGIC) {
@@ -101,7 +96,8 @@ impl Header {
     }
 
     fn needed(&self, path: &Path, name: &str) -> Result<&str, VolumeError> {
-        let missing = || format_error(path, format!("its NRRD header has no {name}: it is damaged"));
+        let missing =
+            || format_error(path, format!("its NRRD header has no {name}: it is damaged"));
         self.field(name).ok_or_else(missing)
     }
 
@@ -147,7 +143,9 @@ impl Header {
 
         let name = self.needed(path, "type")?;
         let dtype = scalar_type(name).ok_or_else(|| {
-            said(format!("holds samples of type {name}: integers of 8 to 64 bits, float and double are read"))
+            said(format!(
+                "holds samples of type {name}: integers of 8 to 64 bits, float and double are read"
+            ))
         })?;
         let encoding = match self.needed(path, "encoding")?.to_lowercase().as_str() {
             "raw" => Encoding::Raw,
@@ -188,9 +186,9 @@ impl Header {
         } else if let Some(text) = self.field("spacings") {
             let spacings: Option<Vec<f64>> =
                 text.split_whitespace().map(|number| number.parse().ok()).collect();
-            let spacings = spacings.filter(|numbers| numbers.len() == all).ok_or_else(|| {
-                said(format!("spacings: {text} are not {all} numbers"))
-            })?;
+            let spacings = spacings
+                .filter(|numbers| numbers.len() == all)
+                .ok_or_else(|| said(format!("spacings: {text} are not {all} numbers")))?;
             for (c, &axis) in kept.iter().enumerate() {
                 // NaN stands for "unknown".
                 if !spacings[axis].is_nan() {
@@ -304,8 +302,13 @@ fn scalar_type(name: &str) -> Option<Dtype> {
         "ushort" | "unsigned short" | "unsigned short int" | "uint16" | "uint16_t" => Dtype::U16,
         "int" | "signed int" | "int32" | "int32_t" => Dtype::I32,
         "uint" | "unsigned int" | "uint32" | "uint32_t" => Dtype::U32,
-        "longlong" | "long long" | "long long int" | "signed long long"
-        | "signed long long int" | "int64" | "int64_t" => Dtype::I64,
+        "longlong"
+        | "long long"
+        | "long long int"
+        | "signed long long"
+        | "signed long long int"
+        | "int64"
+        | "int64_t" => Dtype::I64,
         "ulonglong" | "unsigned long long" | "unsigned long long int" | "uint64" | "uint64_t" => {
             Dtype::U64
         }

@@ -134,10 +134,7 @@ mod tests {
     fn numbers_in_names_count() {
         let mut names = ["s10.png", "s9.png", "s009.png", "s1b.png", "s1.png", "a.png", "s.png"];
         names.sort_by(|a, b| natural(a, b).then(a.cmp(b)));
-        assert_eq!(
-            names,
-            ["a.png", "s.png", "s1.png", "s1b.png", "s009.png", "s9.png", "s10.png"]
-        );
+        assert_eq!(names, ["a.png", "s.png", "s1.png", "s1b.png", "s009.png", "s9.png", "s10.png"]);
         let huge = ["x99999999999999999999999", "x100000000000000000000000"];
         assert_eq!(natural(huge[0], huge[1]), Ordering::Less);
     }

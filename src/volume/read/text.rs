@@ -22,7 +22,10 @@ pub(crate) fn numbers<T: Element + FromStr + Into<f64>>(
         ));
     }
     let mut text = Vec::new();
-    reader.take(bytes).read_to_end(&mut text).map_err(|error| format!("cannot be read: {error}"))?;
+    reader
+        .take(bytes)
+        .read_to_end(&mut text)
+        .map_err(|error| format!("cannot be read: {error}"))?;
     let mut values = Vec::with_capacity(count as usize);
     for word in text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
         if values.len() as u64 == count {

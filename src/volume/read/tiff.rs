@@ -118,12 +118,16 @@ impl<'a> Pages<'a> {
                 return Err(said(format!("has samples of {bits} bits: convert it to 8 or 16")));
             }
             other => {
-                return Err(said(format!("has colours ({other:?}): only gray is read; convert it")));
+                return Err(said(format!(
+                    "has colours ({other:?}): only gray is read; convert it"
+                )));
             }
         }
         let depth = self.decoder.find_tag_unsigned::<u64>(IMAGE_DEPTH).map_err(damaged(path))?;
         if depth.is_some_and(|depth| depth > 1) {
-            return Err(said("is a volume in one page (ImageDepth): save its slices as pages".into()));
+            return Err(said(
+                "is a volume in one page (ImageDepth): save its slices as pages".into(),
+            ));
         }
         self.reserve(0, Dtype::U8)?;
         let (samples, dtype) = match self.decoder.read_image().map_err(damaged(path))? {
@@ -210,7 +214,8 @@ impl About {
         decoder: &mut Decoder<BufReader<File>>,
         text: &str,
     ) -> Result<Self, VolumeError> {
-        let value = |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
+        let value =
+            |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
         let count = |key: &str| value(key).and_then(|text| text.trim().parse::<u64>().ok());
         one_axis(path, ["slices", "channels", "frames"].map(|key| count(key).unwrap_or(1)))?;
         // Pixels a unit.
@@ -239,11 +244,11 @@ impl About {
                 _ => continue,
             };
             let number = |name: &str| -> Result<Option<f64>, VolumeError> {
-                let attribute =
-                    pixels.try_get_attribute(name).map_err(|error| damaged(&error))?;
+                let attribute = pixels.try_get_attribute(name).map_err(|error| damaged(&error))?;
                 let Some(attribute) = attribute else { return Ok(None) };
                 let text = &attribute.value;
-                let number = text.trim().parse().map_err(|_| damaged(&format!("{name}={text:?}")))?;
+                let number =
+                    text.trim().parse().map_err(|_| damaged(&format!("{name}={text:?}")))?;
                 Ok(Some(number))
             };
             let size = |name| number(name).map(|size| size.unwrap_or(1.0) as u64);

@@ -54,7 +54,9 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
             to_centres(&mut dims, &mut corner, axes);
             array
         }
-        (None, None) => return Err(said("has no array of samples: there is no volume in it".into())),
+        (None, None) => {
+            return Err(said("has no array of samples: there is no volume in it".into()));
+        }
     };
     let components = file.components(array);
     if components != "1" {
@@ -65,5 +67,6 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
     let dims = Dims::new(dims[0], dims[1], dims[2])?;
     let (frame, dtype) = (frame(path, corner, axes)?, file.dtype(array)?);
     let samples = file.values(array, dims.samples() as u64)?;
-    Described { dims, dtype, endian: Endian::Little, frame, encoding: Encoding::Raw }.volume(samples)
+    Described { dims, dtype, endian: Endian::Little, frame, encoding: Encoding::Raw }
+        .volume(samples)
 }

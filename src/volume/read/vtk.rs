@@ -108,7 +108,9 @@ fn header(
                 let dtype = scalar(path, words.get(2), components)?;
                 let table = lines.next().map_err(io_error(path))?.unwrap_or_default();
                 if !table.starts_with("LOOKUP_TABLE") {
-                    return Err(said("has no LOOKUP_TABLE line below SCALARS: it is damaged".into()));
+                    return Err(said(
+                        "has no LOOKUP_TABLE line below SCALARS: it is damaged".into(),
+                    ));
                 }
                 return Ok((grid.described(path, dtype)?, false));
             }
@@ -184,8 +186,7 @@ impl Grid {
             return Err(format_error(path, format!("has DIMENSIONS {dims:?}: they are no sizes")));
         }
         let mut dims = dims.map(|size| size as u64);
-        let axes =
-            [0, 1, 2].map(|c| [0, 1, 2].map(|r| self.direction[r][c] * self.spacing[c]));
+        let axes = [0, 1, 2].map(|c| [0, 1, 2].map(|r| self.direction[r][c] * self.spacing[c]));
         let mut origin = self.origin;
         if self.cells {
             to_centres(&mut dims, &mut origin, axes);
@@ -220,7 +221,9 @@ fn scalar(path: &Path, name: Option<&&str>, components: &str) -> Result<Dtype, V
     if components != "1" {
         return Err(format_error(
             path,
-            format!("has {components} values a voxel: only scalar volumes are read; extract one first"),
+            format!(
+                "has {components} values a voxel: only scalar volumes are read; extract one first"
+            ),
         ));
     }
     let name = name.copied().unwrap_or("(missing)");
@@ -236,7 +239,12 @@ fn scalar(path: &Path, name: Option<&&str>, components: &str) -> Result<Dtype, V
         "long" | "vtktypeint64" | "vtkIdType" => Dtype::I64,
         "float" => Dtype::F32,
         "double" => Dtype::F64,
-        _ => return Err(format_error(path, format!("holds samples of type {name}, which is not read"))),
+        _ => {
+            return Err(format_error(
+                path,
+                format!("holds samples of type {name}, which is not read"),
+            ));
+        }
     })
 }
 

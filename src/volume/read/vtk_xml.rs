@@ -150,7 +150,9 @@ impl VtkXml {
             Some("base64") => true,
             other => {
                 let given = other.unwrap_or("(missing)");
-                return Err(self.said(format!("has appended data in encoding {given}, not raw or base64")));
+                return Err(
+                    self.said(format!("has appended data in encoding {given}, not raw or base64"))
+                );
             }
         };
         let mut before = Vec::new();
@@ -171,12 +173,16 @@ impl VtkXml {
         self.endian = match attribute("byte_order") {
             Some("LittleEndian") | None => Endian::Little,
             Some("BigEndian") => Endian::Big,
-            Some(other) => return Err(self.said(format!("has byte_order {other:?}, which is none"))),
+            Some(other) => {
+                return Err(self.said(format!("has byte_order {other:?}, which is none")));
+            }
         };
         self.word = match attribute("header_type") {
             Some("UInt32") | None => 4,
             Some("UInt64") => 8,
-            Some(other) => return Err(self.said(format!("has header_type {other:?}, not UInt32 or UInt64"))),
+            Some(other) => {
+                return Err(self.said(format!("has header_type {other:?}, not UInt32 or UInt64")));
+            }
         };
         self.compressed = match attribute("compressor") {
             None | Some("") => false,
@@ -230,9 +236,10 @@ impl VtkXml {
     /// The element `Piece` of the dataset, of which there must be one.
     pub fn piece(&self) -> Result<(usize, usize), VolumeError> {
         let kind = self.kind();
-        let dataset = self.children(0, kind).next().ok_or_else(|| {
-            self.said(format!("has no element {kind}: it is damaged"))
-        })?;
+        let dataset = self
+            .children(0, kind)
+            .next()
+            .ok_or_else(|| self.said(format!("has no element {kind}: it is damaged")))?;
         let pieces: Vec<usize> = self.children(dataset, "Piece").collect();
         match pieces[..] {
             [piece] => Ok((dataset, piece)),
@@ -278,8 +285,9 @@ impl VtkXml {
         let (start, end) = self.elements[array].content;
         let of_array = |what: String| self.said(format!("its array {} {what}", self.name(array)));
         match self.attribute(array, "format") {
-            Some("ascii") => text::numbers(self.part(start, end)?, end - start, dtype, count)
-                .map_err(of_array),
+            Some("ascii") => {
+                text::numbers(self.part(start, end)?, end - start, dtype, count).map_err(of_array)
+            }
             Some("binary") => {
                 let text = Base64::new(self.part(start, end)?);
                 self.decoded(array, text, (end - start) / 4 * 3, count)
@@ -348,7 +356,8 @@ impl VtkXml {
             let payload = Payload { reader: data.take(first), length: Length::Exactly(first) };
             return payload.samples(dtype, self.endian, count).map_err(located);
         }
-        let [block, last] = [self.word(&mut data).map_err(cut)?, self.word(&mut data).map_err(cut)?];
+        let [block, last] =
+            [self.word(&mut data).map_err(cut)?, self.word(&mut data).map_err(cut)?];
         if first > most / self.word as u64 {
             return Err(self.said(format!(
                 "claims {first} compressed blocks for its array {}, which it cannot hold",
