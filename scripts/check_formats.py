@@ -19,7 +19,7 @@ import sys
 import tempfile
 import venv
 
-PACKAGES = ["numpy", "vtk", "nibabel", "pynrrd", "tifffile", "imagecodecs", "SimpleITK", "pillow", "trimesh"]
+PACKAGES = ["numpy", "vtk", "nibabel", "pynrrd", "tifffile", "imagecodecs", "SimpleITK", "pillow", "trimesh", "scipy"]
 
 
 def enter(folder):
@@ -360,7 +360,7 @@ def write_volumes(check):
     affine = rotation() * SPACING
     for extension in ["nrrd", "nii", "nii.gz", "vti", "npy", "raw"]:
         made = check.run("haar", source, "--rms", "0", "--gray", "0..255", "-o", check.path("out." + extension))
-        check.judge(f"walpha writes .{extension}", made.stderr.strip() or None if made.returncode else None)
+        check.judge(f"walpha writes .{extension}", made.stderr.strip() if made.returncode else None)
     back, header = nrrd.read(check.path("out.nrrd"))
     check.equal("pynrrd reads ours", back.T, data, 1e-4)
     check.equal("pynrrd directions", header["space directions"].T, affine)
@@ -392,6 +392,118 @@ def write_volumes(check):
         check.volume("walpha reads our NIfTI-2", check.path("long.nii"), long)
 
 
+def cloud():
+    positions = np.random.default_rng(7).random((50, 3)) * 10
+    return positions, np.arange(50.0), np.linspace(-1, 1, 50)
+
+
+def read_points(check):
+    positions, weights, values = cloud()
+    points = vtk.vtkPoints()
+    points.SetDataTypeToDouble()
+    points.SetData(numpy_to_vtk(positions, deep=1))
+    for kind, extension, writer_class in [
+        (vtk.vtkUnstructuredGrid, "vtu", vtk.vtkXMLUnstructuredGridWriter),
+        (vtk.vtkPolyData, "vtp", vtk.vtkXMLPolyDataWriter),
+    ]:
+        data = kind()
+        data.SetPoints(points)
+        for name, column in [("weight", weights), ("temperature", values)]:
+            array = numpy_to_vtk(column, deep=1)
+            array.SetName(name)
+            data.GetPointData().AddArray(array)
+        data.GetPointData().SetActiveScalars("temperature")
+        for flavour, writer in xml_flavours(writer_class):
+            file = check.path("p." + extension)
+            save(writer, data, file)
+            check.points(f"{extension} {flavour}", file, positions, weights, values)
+    for text, big in [(True, False), (False, False), (False, True)]:
+        writer = vtk.vtkPLYWriter()
+        writer.SetFileTypeToASCII() if text else writer.SetFileTypeToBinary()
+        writer.SetDataByteOrderToBigEndian() if big else writer.SetDataByteOrderToLittleEndian()
+        sphere = vtk.vtkSphereSource()
+        sphere.Update()
+        save(writer, sphere.GetOutput(), check.path("s.ply"))
+        expected = vtk_to_numpy(sphere.GetOutput().GetPoints().GetData())
+        check.points(f"VTK PLY text={text} big={big}", check.path("s.ply"), expected)
+    for encoding in ["ascii", "binary"]:
+        mesh = trimesh.creation.icosphere(2)
+        mesh.export(check.path("t.ply"), encoding=encoding)
+        check.points(f"trimesh PLY {encoding}", check.path("t.ply"), mesh.vertices)
+    for name, separator in [("p.csv", ","), ("p.tsv", "\t")]:
+        rows = np.column_stack([positions, weights, values])
+        np.savetxt(check.path(name), rows, delimiter=separator, header=separator.join(["x", "y", "z", "weight", "value"]), comments="")
+        check.points(f"numpy {name}", check.path(name), positions, weights, values)
+    np.savetxt(check.path("p.xyz"), np.column_stack([positions, values]))
+    check.points("numpy p.xyz", check.path("p.xyz"), positions, values=values)
+
+
+def scattered(check):
+    """L against SciPy's Delaunay triangulation, which is unique for points in general position."""
+    positions, _, values = cloud()
+    np.savetxt(check.path("s.xyz"), np.column_stack([positions, values]))
+    made = check.run("points", "s.xyz", "--weights", "min-max", "--alpha", "10", "-o", check.path("s.npy"))
+    if made.returncode:
+        return check.judge("scattered values", made.stderr.strip())
+    starts, neighbours = Delaunay(positions).vertex_neighbor_vertices
+    around = [neighbours[starts[i] : starts[i + 1]] for i in range(50)]
+    mean = np.array([np.abs(values[i] - values[n]).mean() for i, n in enumerate(around)])
+    weights = 10 * (mean - mean.min()) / (mean.max() - mean.min())
+    check.equal("scattered values against SciPy", np.load(check.path("s.npy"))[:, 3], weights)
+
+
+def write_shapes(check):
+    files = [check.path("shape." + e) for e in ["ply", "off", "obj", "stl", "glb", "vtu", "vtp", "npz"]]
+    run = check.run("shape", "sample:phantom@24", "--weights", "min-max", "--json", "-o", *files)
+    if run.returncode:
+        return check.judge("walpha writes shapes", run.stderr.strip())
+    arrays = np.load(check.path("shape.npz"))
+    regular = arrays["facets"][arrays["facets_classes"] == 2]
+    singular = arrays["facets"][arrays["facets_classes"] == 3]
+    corners = arrays["positions"][regular]
+    volume = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6
+    cells = arrays["positions"][arrays["cells"]]
+    of_cells = np.abs(np.linalg.det(cells[:, 1:] - cells[:, :1])).sum() / 6
+    check.equal("volume inside the boundary is that of the cells", volume, of_cells)
+    check.equal("and the one reported", json.loads(run.stdout)["shape"]["volume"], of_cells)
+    for extension, count in [("ply", len(regular) + len(singular)), ("off", len(regular) + len(singular)), ("stl", len(regular))]:
+        mesh = trimesh.load(check.path("shape." + extension), process=False)
+        check.equal(f"trimesh counts facets of our {extension}", len(mesh.faces), count)
+        if extension == "stl":
+            check.equal("trimesh finds the volume of our stl", mesh.volume, of_cells, 1e-4)
+    scene = trimesh.load(check.path("shape.glb"))
+    faces = sum(len(g.faces) for g in scene.geometry.values() if hasattr(g, "faces"))
+    check.equal("trimesh counts facets of our glb", faces, len(regular) + len(singular))
+    for extension, reader in [
+        ("vtu", vtk.vtkXMLUnstructuredGridReader()),
+        ("vtp", vtk.vtkXMLPolyDataReader()),
+        ("ply", vtk.vtkPLYReader()),
+        ("stl", vtk.vtkSTLReader()),
+        ("obj", vtk.vtkOBJReader()),
+    ]:
+        reader.SetFileName(check.path("shape." + extension))
+        reader.Update()
+        data = reader.GetOutput()
+        if extension == "vtu":
+            classes = vtk_to_numpy(data.GetCellData().GetArray("class"))
+            expected = np.concatenate([arrays[k + "_classes"] for k in ["vertices", "edges", "facets", "cells"]])
+            check.equal("VTK reads the classes of our vtu", classes, expected)
+            inputs = vtk_to_numpy(data.GetPointData().GetArray("input_index"))
+            check.equal("VTK reads the points of our vtu", vtk_to_numpy(data.GetPoints().GetData()), arrays["positions"][inputs])
+        else:
+            expected = len(regular) + (0 if extension == "stl" else len(singular))
+            found = data.GetNumberOfPolys()
+            check.equal(f"VTK counts facets of our {extension}", found, expected)
+        if extension == "vtp":
+            inputs = vtk_to_numpy(data.GetPointData().GetArray("input_index"))
+            check.equal("VTK reads the values of our vtp", vtk_to_numpy(data.GetPointData().GetArray("value")), arrays["values"][inputs])
+            classes = vtk_to_numpy(data.GetCellData().GetArray("class"))
+            check.equal("VTK reads the classes of our vtp", (classes == 2).sum(), len(regular))
+    for extension in ["ply", "vtu", "vtp"]:
+        made = check.run("points", check.path("shape." + extension), "--weights", "column")
+        check.judge(f"walpha reads our {extension}", made.stderr.strip() if made.returncode else None)
+
+
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     arguments.add_argument("--walpha", default="target/release/walpha")
@@ -409,6 +521,7 @@ def main():
 
 
 PARTS = [read_nrrd, read_itk, read_nifti, read_vtk, read_tiff, read_slices, read_numpy, write_volumes]
+PARTS += [read_points, scattered, write_shapes]
 
 if "--inside" in sys.argv:
     import nibabel as nib
@@ -419,6 +532,7 @@ if "--inside" in sys.argv:
     import trimesh
     import vtk
     from PIL import Image
+    from scipy.spatial import Delaunay
     from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 if __name__ == "__main__":

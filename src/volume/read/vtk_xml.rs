@@ -36,8 +36,9 @@ struct XmlElement {
     name: String,
     parent: Option<usize>,
     attributes: HashMap<String, String>,
-    /// Where its content begins and ends in the file.
-    content: (u64, u64),
+    /// Where its text begins in the file, and where it ends: at its end or its first child.
+    text: u64,
+    text_end: Option<u64>,
 }
 
 /// Where appended arrays begin, and whether they are in base64.
@@ -92,6 +93,7 @@ impl VtkXml {
             })?;
             match event {
                 Event::Start(start) => {
+                    self.end_text(open.last(), before);
                     let after = reader.buffer_position();
                     let element = self.element(&start, open.last().copied(), after)?;
                     if element.name == "AppendedData" {
@@ -102,13 +104,14 @@ impl VtkXml {
                     self.elements.push(element);
                 }
                 Event::Empty(start) => {
+                    self.end_text(open.last(), before);
                     let element =
                         self.element(&start, open.last().copied(), reader.buffer_position())?;
                     self.elements.push(element);
                 }
                 Event::End(_) => {
                     let closed = open.pop().ok_or_else(|| self.said("closes an element twice"))?;
-                    self.elements[closed].content.1 = before;
+                    self.end_text(Some(&closed), before);
                 }
                 Event::Eof => break,
                 _ => {}
@@ -120,6 +123,13 @@ impl VtkXml {
                 let name = &self.elements[inner].name;
                 Err(self.said(format!("ends inside its element {name}: it is truncated")))
             }
+        }
+    }
+
+    /// Ends the text of an element, unless a child has ended it already.
+    fn end_text(&mut self, element: Option<&usize>, position: u64) {
+        if let Some(&element) = element {
+            self.elements[element].text_end.get_or_insert(position);
         }
     }
 
@@ -140,7 +150,7 @@ impl VtkXml {
             attributes.insert(name, value.map_err(|error| damaged(&error))?.into_owned());
         }
         let name = start.name().as_ref().to_owned();
-        Ok(XmlElement { name, parent, attributes, content: (position, position) })
+        Ok(XmlElement { name, parent, attributes, text: position, text_end: None })
     }
 
     /// Finds the underscore before appended arrays.
@@ -156,12 +166,12 @@ impl VtkXml {
             }
         };
         let mut before = Vec::new();
-        let mut reader = self.part(element.content.0, self.length)?;
+        let mut reader = self.part(element.text, self.length)?;
         (&mut reader).take(4096).read_until(b'_', &mut before).map_err(io_error(&self.path))?;
         if before.pop() != Some(b'_') || !before.trim_ascii().is_empty() {
             return Err(self.said("has no underscore before its appended data: it is damaged"));
         }
-        Ok(Appended { start: element.content.0 + before.len() as u64 + 1, base64 })
+        Ok(Appended { start: element.text + before.len() as u64 + 1, base64 })
     }
 
     /// Checks the root, and reads what it says of all arrays.
@@ -282,7 +292,8 @@ impl VtkXml {
         count: u64,
     ) -> Result<Vec<T>, VolumeError> {
         let dtype = self.dtype(array)?;
-        let (start, end) = self.elements[array].content;
+        let XmlElement { text: start, text_end, .. } = self.elements[array];
+        let end = text_end.unwrap_or(start);
         let of_array = |what: String| self.said(format!("its array {} {what}", self.name(array)));
         match self.attribute(array, "format") {
             Some("ascii") => {
