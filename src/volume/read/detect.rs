@@ -134,12 +134,12 @@ fn unpacked(path: &Path) -> Result<Kind, VolumeError> {
             "is a whole file compressed with gzip, which is read for NIfTI and INRIMAGE only: unpack \
              it first",
         )),
-        None if unpacked.is_ok() => Err(format_error(
+        None if name(path).ends_with(".nii.gz") => Ok(Kind::NiftiGzip),
+        None if name(path).ends_with(".inr.gz") || unpacked.is_err() => Ok(Kind::InrimageGzip),
+        None => Err(format_error(
             path,
             "is compressed with gzip, but holds no format known by content: NIfTI and INRIMAGE are \
              read so; unpack it first",
         )),
-        None if name(path).ends_with(".nii.gz") => Ok(Kind::NiftiGzip),
-        None => Ok(Kind::InrimageGzip),
     }
 }
