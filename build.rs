@@ -6,8 +6,20 @@ use std::{env, fs};
 /// The first CGAL whose `Regular_triangulation_3` and `Fixed_alpha_shape_3` the bridge is written for.
 const OLDEST: (u32, u32) = (5, 3);
 
-const SOURCES: [&str; 2] = ["cpp/bridge.cc", "cpp/reference.cc"];
-const HEADERS: [&str; 3] = ["cpp/bridge.h", "cpp/kernel.h", "cpp/reference.h"];
+const SOURCES: [&str; 5] =
+    ["cpp/bridge.cc", "cpp/mesh.cc", "cpp/plane.cc", "cpp/reference.cc", "cpp/slab.cc"];
+const HEADERS: [&str; 10] = [
+    "cpp/bridge.h",
+    "cpp/classes.h",
+    "cpp/kernel.h",
+    "cpp/lattice.h",
+    "cpp/lattice_kernel.h",
+    "cpp/mesh.h",
+    "cpp/plane.h",
+    "cpp/predicates.h",
+    "cpp/reference.h",
+    "cpp/slab.h",
+];
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -32,7 +44,8 @@ fn main() {
     build.files(SOURCES).std("c++17").opt_level(2).debug(false);
     // Interval arithmetic needs the rounding mode left alone; CGAL's assertions, which check it,
     // stay on (no NDEBUG): they cost nothing measurable. No -ffast-math, no -march, no LTO here.
-    for flag in ["-frounding-math", "-ffp-contract=off"] {
+    // With -pthread, CGAL keeps its caches thread-local.
+    for flag in ["-frounding-math", "-ffp-contract=off", "-pthread"] {
         build.flag_if_supported(flag);
     }
     if let Some(include) = &cgal.include {
@@ -42,12 +55,9 @@ fn main() {
     build.flag_if_supported("-Wall").flag_if_supported("-Wextra");
     build.compile("walpha_cgal");
 
-    if let Some(lib) =
-        cgal.include.as_ref().and_then(|include| include.parent()).map(|p| p.join("lib"))
-    {
-        if lib.is_dir() {
-            println!("cargo::rustc-link-search=native={}", lib.display());
-        }
+    let prefix = cgal.include.as_ref().and_then(|include| include.parent());
+    if let Some(lib) = prefix.map(|prefix| prefix.join("lib")).filter(|lib| lib.is_dir()) {
+        println!("cargo::rustc-link-search=native={}", lib.display());
     }
     if cgal.gmp {
         println!("cargo::rustc-link-lib=mpfr");

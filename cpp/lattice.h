@@ -30,11 +30,12 @@ class Lattice {
   bool exact(double bound) const {
     double unit = 1;
     for (int i = 0; i < Degree; ++i) unit *= step_;
-    return bound <= 0x1p53 * unit;
+    // Without a step nothing is, not even a bound that underflowed to 0.
+    return step_ != 0 && bound <= 0x1p53 * unit;
   }
 
  private:
-  double step_ = 0;  // 0 is finer than any double: nothing is known to be exact
+  double step_ = 0;
   bool holds_weights_ = false;
 };
 

@@ -6,9 +6,17 @@
 //! fewer than four points) before the call, in [`Sites`]. C++ never calls back into Rust, because
 //! CGAL changes the rounding mode while it works.
 
+#[allow(unused_qualifications, reason = "in what the macro writes")]
 mod ffi;
+mod lattice;
+mod plane;
 mod reference;
 mod sites;
+mod slab;
 
+pub use lattice::Lattice;
+pub use plane::{PlaneSites, RawTriangulation, farthest_plane, regular_plane};
+use reference::flat;
 pub use reference::{CgalError, RawComplex, reference};
 pub use sites::{Sites, SitesError};
+pub use slab::{HIDDEN, RawSlab, SlabSites, slab};

@@ -36,17 +36,18 @@ pub fn reference(sites: &Sites, alpha: f64) -> Result<RawComplex, CgalError> {
         bridge::reference(sites.positions().as_flattened(), sites.weights(), alpha).map_err(
             |thrown| CgalError::Thrown { stage: "reference engine", text: thrown.what().into() },
         )?;
-    flat(complex.dimension(), sites).map_or(Ok(RawComplex(complex)), |flat| Err(flat.into()))
+    flat(complex.dimension(), sites.positions().len())
+        .map_or(Ok(RawComplex(complex)), |flat| Err(flat.into()))
 }
 
-/// The error for sites whose affine hull has a dimension below 3.
-fn flat(dimension: i32, sites: &Sites) -> Option<SitesError> {
+/// The error for so many sites whose affine hull has a dimension below 3.
+pub(super) fn flat(dimension: i32, points: usize) -> Option<SitesError> {
     let on = match dimension {
         3 => return None,
         2 => "in one plane",
         _ => "on one line",
     };
-    Some(SitesError::Flat { points: sites.positions().len(), on })
+    Some(SitesError::Flat { points, on })
 }
 
 impl RawComplex {

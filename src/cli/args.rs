@@ -1,5 +1,7 @@
 //! Options that several commands share, and how they become options of the library.
 
+use std::num::NonZeroUsize;
+
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use walpha::shape::{Engine, ShapeOptions};
@@ -186,9 +188,26 @@ pub struct ShapeArgs {
     /// A point is a ball of squared radius α + ω (power), or of radius α + ω (radius).
     #[arg(long, value_enum, default_value_t, value_name = "READING")]
     balls: BallsArg,
+    /// Program that computes the shape: slabs (fast), or reference (plain CGAL). Same answer.
+    #[arg(long, value_enum, default_value_t, value_name = "ENGINE")]
+    engine: EngineArg,
+    /// Slabs to cut the points into [default: by threads and memory]; 1 is the whole
+    /// triangulation, which alone knows hidden points.
+    #[arg(long, value_name = "N")]
+    slabs: Option<NonZeroUsize>,
+    /// Memory to plan slabs for, as in 2G or 500M.
+    #[arg(long, value_name = "SIZE", value_parser = bytes, conflicts_with = "slabs")]
+    memory: Option<u64>,
     /// Keep the simplices outside the shape too: the whole triangulation.
     #[arg(long)]
     exterior: bool,
+}
+
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum EngineArg {
+    #[default]
+    Slabs,
+    Reference,
 }
 
 #[derive(Clone, Copy, Default, ValueEnum)]
@@ -205,7 +224,12 @@ impl ShapeArgs {
             BallsArg::Power => Balls::Power,
             BallsArg::Radius => Balls::Radius,
         };
-        ShapeOptions { alpha, balls, engine: Engine::Reference, exterior: self.exterior }
+        let engine = match self.engine {
+            EngineArg::Slabs => Engine::Slabs,
+            EngineArg::Reference => Engine::Reference,
+        };
+        let Self { exterior, slabs, memory, .. } = *self;
+        ShapeOptions { alpha, balls, engine, exterior, slabs, memory }
     }
 }
 
@@ -229,9 +253,19 @@ fn gray_range(text: &str) -> anyhow::Result<GrayRange> {
     Ok(range)
 }
 
+fn bytes(text: &str) -> anyhow::Result<u64> {
+    let units = [("K", 10), ("M", 20), ("G", 30), ("T", 40)];
+    let unit = units.iter().find_map(|(name, bits)| Some((text.strip_suffix(name)?, bits)));
+    let (number, bits) = unit.unwrap_or((text, &0));
+    let Some(bytes) = number.parse().ok().and_then(|n: u64| n.checked_mul(1 << bits)) else {
+        bail!("a whole number of bytes is needed, as in 2G, 500M or 1073741824");
+    };
+    Ok(bytes)
+}
+
 fn not_negative(text: &str) -> anyhow::Result<f64> {
     let number: f64 = text.parse()?;
-    if !(number >= 0.0) {
+    if number.is_nan() || number < 0.0 {
         bail!("a number from 0 up is needed");
     }
     Ok(number)

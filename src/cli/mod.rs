@@ -1,6 +1,9 @@
 //! Floor 7: parse, call the library, print, choose an exit code.
 
 mod args;
+mod check;
+mod compare;
+mod complex_file;
 mod haar;
 mod info;
 mod output;
@@ -59,7 +62,12 @@ enum Command {
     Points(points::Points),
     Haar(haar::Haar),
     Info(info::Info),
+    Check(check::Check),
+    Compare(compare::Compare),
 }
+
+/// The exit code of a check or comparison that found something.
+const DIFFERENT: u8 = 3;
 
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
@@ -69,11 +77,22 @@ pub fn run() -> ExitCode {
         // Whoever reads our output has enough of it.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            // Each message of the library tells its cause itself.
-            eprintln!("walpha: {error}");
+            // Messages of the library tell their causes themselves; a context names the file.
+            eprintln!("walpha: {}", with_contexts(&error));
             ExitCode::FAILURE
         }
     }
+}
+
+/// An error with the contexts it was given, but without causes that its text has already.
+fn with_contexts(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !text.contains(&cause) {
+            text = format!("{text}: {cause}");
+        }
+    }
+    text
 }
 
 fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
@@ -85,6 +104,8 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
         Command::Points(points) => points.run(global)?,
         Command::Haar(haar) => haar.run(global)?,
         Command::Info(info) => info.run(global)?,
+        Command::Check(check) => return check.run(global),
+        Command::Compare(compare) => return compare.run(global),
     }
     Ok(ExitCode::SUCCESS)
 }

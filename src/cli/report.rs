@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 
 use serde::{Serialize, Serializer};
 use walpha::shape::{Betti, Engine};
-use walpha::{Alpha, AlphaShape, Class, GrayRange, Simplices, Truncation};
+use walpha::{Alpha, AlphaShape, Class, GrayRange, Simplices, Truncation, memory};
 
 use super::pipeline::{VolumeFacts, Weighed};
 
@@ -185,7 +185,7 @@ impl Report {
     pub fn finish(&mut self, seconds: Vec<(&'static str, f64)>, files: Vec<String>) {
         self.seconds = seconds.into_iter().collect();
         self.files = files;
-        self.peak_memory_bytes = peak_memory_bytes();
+        self.peak_memory_bytes = memory::peak_bytes();
     }
 }
 
@@ -260,12 +260,4 @@ fn number_or_null_or_name<S: Serializer>(
         Some(number) => number_or_name(number, serializer),
         None => serializer.serialize_none(),
     }
-}
-
-/// The most memory this process ever held, where the system tells (Linux).
-fn peak_memory_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kilobytes * 1024)
 }

@@ -1,7 +1,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Glb, Npz, Obj, Off, Ply, Stl, Vtp, Vtu};
+use super::{Glb, Json, Npz, Obj, Off, Ply, Stl, Vtp, Vtu};
 use crate::shape::AlphaShape;
 
 /// A way to write a shape down.
@@ -37,6 +37,8 @@ pub enum Format {
     Vtp,
     /// NumPy arrays of indices and classes of simplices of all dimensions.
     Npz,
+    /// The whole complex, for `walpha check` and other programs.
+    Json,
 }
 
 /// No writer has this extension.
@@ -51,7 +53,7 @@ pub struct UnknownFormat {
 
 impl Format {
     /// Every format with its extension.
-    pub const ALL: [(Self, &str); 8] = [
+    pub const ALL: [(Self, &str); 9] = [
         (Self::Ply, "ply"),
         (Self::Off, "off"),
         (Self::Obj, "obj"),
@@ -60,6 +62,7 @@ impl Format {
         (Self::Vtu, "vtu"),
         (Self::Vtp, "vtp"),
         (Self::Npz, "npz"),
+        (Self::Json, "json"),
     ];
 
     /// The format a path asks for.
@@ -81,6 +84,7 @@ impl Format {
             Self::Vtu => Box::new(Vtu),
             Self::Vtp => Box::new(Vtp),
             Self::Npz => Box::new(Npz),
+            Self::Json => Box::new(Json),
         }
     }
 }

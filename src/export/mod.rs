@@ -5,6 +5,7 @@
 
 mod format;
 mod glb;
+mod json;
 mod npz;
 mod obj;
 mod off;
@@ -17,6 +18,7 @@ mod vtu;
 
 pub use format::{Exporter, Format, UnknownFormat};
 pub use glb::Glb;
+pub use json::Json;
 pub use npz::Npz;
 pub use obj::Obj;
 pub use off::Off;

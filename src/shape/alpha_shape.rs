@@ -1,6 +1,10 @@
+use std::num::NonZeroUsize;
+
 use serde::{Deserialize, Serialize};
 
 use super::canonical::canonical;
+use super::slabs::{self, Plan, PlanError};
+use super::topology::sheet_betti;
 use super::{Alpha, Balls, Betti, Class, Complex, Measures, Simplices, direct_betti};
 use crate::cgal::{self, CgalError, Sites, SitesError};
 use crate::points::WeightedPoints;
@@ -10,8 +14,11 @@ use crate::points::WeightedPoints;
 #[serde(rename_all = "lowercase")]
 pub enum Engine {
     /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper.
-    #[default]
     Reference,
+    /// The triangulation slab by slab, in parallel or in bounded memory, classified by the same
+    /// exact predicates: several times faster.
+    #[default]
+    Slabs,
 }
 
 /// How to make a shape of weighted points.
@@ -23,14 +30,27 @@ pub struct ShapeOptions {
     pub balls: Balls,
     /// Which program computes it.
     pub engine: Engine,
-    /// Whether the simplices outside the shape are wanted too: the whole triangulation.
+    /// Whether the simplices outside the shape are wanted too: the whole triangulation, which
+    /// takes one slab.
     pub exterior: bool,
+    /// How many slabs the points are cut into, at most; without a word, as few as keep the threads
+    /// at work and the memory bounded. One slab is the whole triangulation.
+    pub slabs: Option<NonZeroUsize>,
+    /// Bytes of memory that the plan for the slabs keeps to.
+    pub memory: Option<u64>,
 }
 
 impl ShapeOptions {
     /// The shape at α, with power balls, by the default engine, without exterior simplices.
     pub fn new(alpha: Alpha) -> Self {
-        Self { alpha, balls: Balls::default(), engine: Engine::default(), exterior: false }
+        Self {
+            alpha,
+            balls: Balls::default(),
+            engine: Engine::default(),
+            exterior: false,
+            slabs: None,
+            memory: None,
+        }
     }
 }
 
@@ -67,6 +87,18 @@ pub enum ShapeError {
         /// Its α + ω.
         radius: f64,
     },
+    /// The memory allowed does not suffice for any number of slabs.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// Exterior simplices are known to the whole triangulation only.
+    #[error(
+        "simplices outside the shape are not local: they need the whole triangulation, and \
+         {slabs} slabs were asked for; give --slabs 1, or leave --exterior away"
+    )]
+    Exterior {
+        /// The slabs asked for.
+        slabs: usize,
+    },
 }
 
 impl From<SitesError> for ShapeError {
@@ -92,16 +124,17 @@ pub fn alpha_shape(
         Balls::Radius => Some(squared_radii(&points.weights, options.alpha)?),
     };
     let sites = Sites::new(&points.positions, squared.as_deref().unwrap_or(&points.weights))?;
-    let raw = cgal::reference(&sites, power_alpha(options))?;
-    let mut complex = canonical(&raw, sites.input());
-    drop(raw);
-    let betti = Some(direct_betti(&complex));
-    let hidden = Some(hidden(sites.input(), &complex.vertices));
+    let Found { mut complex, betti, whole } = match options.engine {
+        Engine::Reference => by_reference(&sites, power_alpha(options))?,
+        Engine::Slabs => by_slabs(&sites, power_alpha(options), options)?,
+    };
+    let hidden = whole.then(|| hidden(sites.input(), &complex.vertices));
     if !options.exterior {
         complex.retain_shape();
     }
     let measures = Measures::of(&complex, &points.positions);
     let duplicates = sites.duplicates().to_vec();
+    let betti = Some(betti);
     Ok(AlphaShape {
         points,
         options: *options,
@@ -112,6 +145,40 @@ pub fn alpha_shape(
         betti,
         measures,
     })
+}
+
+/// What an engine found.
+struct Found {
+    complex: Complex,
+    betti: Betti,
+    /// Whether all vertices of the whole triangulation are there, so that the rest is hidden.
+    whole: bool,
+}
+
+fn by_reference(sites: &Sites, alpha: f64) -> Result<Found, ShapeError> {
+    let raw = cgal::reference(sites, alpha)?;
+    let complex = canonical(&raw, sites.input());
+    let betti = direct_betti(&complex);
+    Ok(Found { complex, betti, whole: true })
+}
+
+fn by_slabs(sites: &Sites, alpha: f64, options: &ShapeOptions) -> Result<Found, ShapeError> {
+    let asked = options.slabs.map_or(1, NonZeroUsize::get);
+    if options.exterior && asked > 1 {
+        return Err(ShapeError::Exterior { slabs: asked });
+    }
+    // Any α below −max ω asks for the empty shape, and doubles hold one.
+    let largest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let alpha = alpha.max(-2.0 * largest.abs() - 1.0);
+    let plan = match options.slabs {
+        _ if options.exterior || alpha.is_infinite() => Plan::WHOLE,
+        Some(slabs) => Plan::of(slabs.get()),
+        None => Plan::new(sites, alpha, options.memory)?,
+    };
+    let whole = plan == Plan::WHOLE;
+    let answer = slabs::run(sites, alpha, &plan, whole)?;
+    let betti = sheet_betti(&answer);
+    Ok(Found { complex: answer.complex, betti, whole })
 }
 
 /// The parameter at which the power weights are judged.

@@ -7,7 +7,7 @@ use crate::cgal::RawComplex;
 
 impl Class {
     /// The class with a number the bridge uses.
-    fn from_number(number: u8) -> Self {
+    pub(super) fn from_number(number: u8) -> Self {
         Self::ALL[usize::from(number)]
     }
 }

@@ -6,6 +6,7 @@ mod canonical;
 mod complex;
 mod manifold;
 mod measure;
+mod slabs;
 mod surface;
 mod topology;
 mod union_find;
@@ -15,5 +16,7 @@ pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape}
 pub use complex::{Class, Complex, Simplices};
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;
+pub use slabs::PlanError;
 pub use surface::Surface;
 pub use topology::{Betti, direct_betti};
+pub(crate) use union_find::UnionFind;

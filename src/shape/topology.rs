@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::slabs::Answer;
 use super::union_find::UnionFind;
 use super::{Class, Complex, Simplices};
 
@@ -51,6 +52,22 @@ pub fn direct_betti(whole: &Complex) -> Betti {
     let b0 = components(whole);
     let b2 = complement_components(whole) - 1;
     let b1 = (b0 + b2) as i64 - whole.euler_characteristic();
+    Betti { b0, b1: u64::try_from(b1).expect("b1 counts something"), b2 }
+}
+
+/// The Betti numbers of a shape by its sheets: the connected pieces of its outside seen closely, or
+/// of the boundary of a thin neighbourhood of it. A component with k voids of its own has k + 1
+/// sheets (Alexander duality), so sheets = b0 + b2, and b1 follows from the Euler characteristic.
+/// Every isolated vertex has a sheet of its own. O(n).
+pub(super) fn sheet_betti(answer: &Answer) -> Betti {
+    let complex = &answer.complex;
+    let b0 = components(complex);
+    let mut sheets: Vec<u32> = [&answer.facet_sheets[..], &answer.edge_sheets].concat();
+    sheets.sort_unstable();
+    sheets.dedup();
+    let lone = complex.vertices.counts()[Class::Singular as usize];
+    let b2 = (sheets.len() + lone) as u64 - b0;
+    let b1 = (b0 + b2) as i64 - complex.euler_characteristic();
     Betti { b0, b1: u64::try_from(b1).expect("b1 counts something"), b2 }
 }
 

@@ -1,0 +1,182 @@
+//! Races the engines on the same points and prints a table.
+//!
+//! `cargo run --release --example race` (about a quarter of an hour); `-- quick` leaves out sets of
+//! more than 128 k points; `-- alpha` raises α instead, until slabs stop paying.
+//!
+//! "CGAL" is the bare call: triangulation, alpha shape, classes copied out. The slabs engine is
+//! timed with everything it gives: canonical order, Betti numbers, measures. Runs are interleaved,
+//! times are medians of five, ratios are of these medians. Peak memory is that of a process of its
+//! own, less what the input took.
+
+use std::num::NonZeroUsize;
+use std::process::Command;
+use std::time::Instant;
+
+use walpha::cgal::{self, Sites};
+use walpha::points::{Points, Selection, Units, difference, select, weigh};
+use walpha::shape::ShapeOptions;
+use walpha::{Alpha, Gray, Volume, WeightedPoints, Weighting, alpha_shape, memory, volume};
+
+type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
+
+const RUNS: usize = 5;
+const THREADS: usize = 2;
+
+fn main() -> Result<()> {
+    rayon::ThreadPoolBuilder::new().num_threads(THREADS).build_global()?;
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["memory", engine, set, weighting, alpha] => memory_of(engine, set, weighting, alpha),
+        [] => races(&["skull@64", "skull@128", "random@128000", "skull@256", "random@1000000"]),
+        ["quick"] => races(&["skull@64", "skull@128", "random@128000"]),
+        ["alpha"] => {
+            header();
+            let race = |alpha| race("skull@128", "common=0", alpha);
+            [2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0].into_iter().try_for_each(race)
+        }
+        _ => Err("usage: race [quick|alpha]".into()),
+    }
+}
+
+fn races(sets: &[&str]) -> Result<()> {
+    header();
+    for set in sets {
+        for weighting in ["common=0", "min-max", "barycentric"] {
+            if weighting == "common=0" || set.starts_with("skull") {
+                race(set, weighting, if set.starts_with("skull") { 10.0 } else { 1.0 })?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn header() {
+    println!(
+        "| set | points | weights | α | CGAL | slabs, 1 thread | ratio | slabs, {THREADS} threads | ratio \
+         | CGAL peak | slabs peak | slabs peak, --memory |"
+    );
+    println!("|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
+}
+
+fn race(set: &str, weighting: &str, alpha: f64) -> Result<()> {
+    let points = weighted(set, weighting, alpha)?;
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let mut times = [[0.0; RUNS]; 3];
+    for run in 0..RUNS {
+        times[0][run] = seconds(|| plain_cgal(&points, alpha))?;
+        times[1][run] = one_thread.install(|| seconds(|| slabs(&points, alpha, None)))?;
+        times[2][run] = seconds(|| slabs(&points, alpha, None))?;
+    }
+    let [cgal, one, two] = times.map(|mut runs| {
+        runs.sort_by(f64::total_cmp);
+        runs[RUNS / 2]
+    });
+    let peak = |engine: &str| -> Result<f64> {
+        let arguments = ["memory", engine, set, weighting, &alpha.to_string()];
+        let output = Command::new(std::env::current_exe()?).args(arguments).output()?;
+        Ok(String::from_utf8(output.stdout)?.trim().parse::<f64>()? / (1 << 20) as f64)
+    };
+    println!(
+        "| {set} | {} | {weighting} | {alpha} | {cgal:.2} s | {one:.2} s | {:.2} | {two:.2} s | {:.2} \
+         | {:.0} MiB | {:.0} MiB | {:.0} MiB |",
+        points.len(),
+        cgal / one,
+        cgal / two,
+        peak("cgal")?,
+        peak("slabs")?,
+        peak("bounded")?,
+    );
+    Ok(())
+}
+
+fn seconds(work: impl FnOnce() -> Result<()>) -> Result<f64> {
+    let started = Instant::now();
+    work()?;
+    Ok(started.elapsed().as_secs_f64())
+}
+
+fn plain_cgal(points: &WeightedPoints, alpha: f64) -> Result<()> {
+    let sites = Sites::new(&points.positions, &points.weights)?;
+    let complex = cgal::reference(&sites, alpha)?;
+    assert!(!complex.cells().0.is_empty());
+    Ok(())
+}
+
+fn slabs(points: &WeightedPoints, alpha: f64, slabs: Option<NonZeroUsize>) -> Result<()> {
+    let options = ShapeOptions { slabs, ..ShapeOptions::new(Alpha::from_squared(alpha)?) };
+    let shape = alpha_shape(points.clone(), &options)?;
+    assert!(shape.betti().is_some());
+    Ok(())
+}
+
+/// Prints the bytes that one engine adds to those of the input at its peak.
+fn memory_of(engine: &str, set: &str, weighting: &str, alpha: &str) -> Result<()> {
+    let alpha: f64 = alpha.parse()?;
+    let points = weighted(set, weighting, alpha)?;
+    let before = memory::resident_bytes().unwrap_or(0);
+    match engine {
+        "cgal" => plain_cgal(&points, alpha)?,
+        "slabs" => slabs(&points, alpha, None)?,
+        // So many slabs, one after the other, as a tight --memory asks for.
+        _ => {
+            let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+            one_thread.install(|| slabs(&points, alpha, NonZeroUsize::new(8)))?;
+        }
+    }
+    println!("{}", memory::peak_bytes().unwrap_or(0).saturating_sub(before));
+    Ok(())
+}
+
+/// A set by name: `skull@N` (the skull upsampled to N³ samples) or `random@N` (N random points).
+fn weighted(set: &str, weighting: &str, alpha: f64) -> Result<WeightedPoints> {
+    let weighting: Weighting = weighting.parse()?;
+    let points = match set.split_once('@') {
+        Some(("skull", size)) => skull(size.parse()?)?,
+        Some((_, count)) => random(count.parse()?),
+        None => return Err("no such set".into()),
+    };
+    Ok(weigh(&points, weighting, alpha)?)
+}
+
+fn skull(size: usize) -> Result<Points> {
+    let (skull, _) = volume::sample("sample:skull")?.into_gray(Gray::Automatic)?;
+    let skull = upsampled(&skull, size)?;
+    let selection = Selection::default();
+    Ok(select(&skull, &skull, &difference(&skull), &selection, Units::Voxel)?)
+}
+
+/// Trilinear, the first and last samples of each axis staying where they are.
+fn upsampled(volume: &Volume, size: usize) -> Result<Volume> {
+    let samples = volume.samples();
+    let place = |i: usize, n: usize| {
+        let at = i as f64 * (n - 1) as f64 / (size - 1) as f64;
+        let low = (at as usize).min(n - 2);
+        (low, at - low as f64)
+    };
+    let [nx, ny, nz] = volume.dims().xyz();
+    let upsampled = ndarray::Array3::from_shape_fn((size, size, size), |(z, y, x)| {
+        let ((z, fz), (y, fy), (x, fx)) = (place(z, nz), place(y, ny), place(x, nx));
+        let mut sum = 0.0;
+        for (dz, wz) in [(0, 1.0 - fz), (1, fz)] {
+            for (dy, wy) in [(0, 1.0 - fy), (1, fy)] {
+                for (dx, wx) in [(0, 1.0 - fx), (1, fx)] {
+                    sum += wz * wy * wx * f64::from(samples[[z + dz, y + dy, x + dx]]);
+                }
+            }
+        }
+        sum as f32
+    });
+    Ok(Volume::new(upsampled, *volume.frame())?.with_gray_levels())
+}
+
+/// Points in a cube, one in each unit of volume on average, from a fixed linear congruence.
+fn random(count: usize) -> Points {
+    let side = (count as f64).cbrt();
+    let mut state = 1u64;
+    let mut next = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64 * side
+    };
+    let positions = (0..count).map(|_| [next(), next(), next()]).collect();
+    Points { positions, ..Points::default() }
+}

@@ -1,0 +1,45 @@
+//! The canonical order of rows, as `Complex` documents it.
+
+use crate::shape::{Class, Complex, Simplices};
+
+/// The vertices in ascending order.
+pub fn sorted<const N: usize>(mut row: [u32; N]) -> [u32; N] {
+    row.sort_unstable();
+    row
+}
+
+/// The faces of a positively oriented cell, each counter-clockwise seen from outside; the i-th is
+/// opposite to the i-th vertex.
+pub fn outward_facets([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
+    [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]
+}
+
+/// The lexicographically smallest even permutation of a row.
+pub fn smallest_even<const N: usize>(row: [u32; N]) -> [u32; N] {
+    let mut smallest = sorted(row);
+    let inversions = |i: usize| (i + 1..N).filter(|&j| row[j] < row[i]).count();
+    if (0..N).map(inversions).sum::<usize>() % 2 == 1 {
+        smallest.swap(N - 2, N - 1);
+    }
+    smallest
+}
+
+/// Adds a simplex.
+pub fn push<const N: usize>(simplices: &mut Simplices<N>, row: [u32; N], class: Class) {
+    simplices.vertices.push(row);
+    simplices.classes.push(class);
+}
+
+/// Puts rows into lexicographic order.
+pub fn sort(complex: &mut Complex) {
+    sort_rows(&mut complex.cells);
+    sort_rows(&mut complex.facets);
+    sort_rows(&mut complex.edges);
+    sort_rows(&mut complex.vertices);
+}
+
+fn sort_rows<const N: usize>(simplices: &mut Simplices<N>) {
+    let mut rows: Vec<_> = simplices.iter().map(|(row, class)| (*row, class)).collect();
+    rows.sort_unstable();
+    (simplices.vertices, simplices.classes) = rows.into_iter().unzip();
+}

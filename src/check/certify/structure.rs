@@ -1,0 +1,125 @@
+use std::collections::BTreeSet;
+
+use rayon::prelude::*;
+
+use super::index::{Index, NONE};
+use super::{Finding, Points};
+use crate::check::canonical::outward_facets;
+use crate::shape::Complex;
+
+/// How the listed simplices hang together.
+pub struct Structure<'a> {
+    pub complex: &'a Complex,
+    pub edges: Index<2>,
+    pub vertices: Index<1>,
+    /// For each facet, the sides that cells have on it: 4 · cell + the number of the opposite
+    /// vertex, ascending; [`NONE`] where there is none. Of a crowded facet the first two.
+    pub sides: Vec<[u32; 2]>,
+    /// The rows of each cell's facets, opposite to its vertices.
+    pub cell_facets: Vec<[u32; 4]>,
+}
+
+/// A cell's side on a facet.
+#[derive(Clone, Copy)]
+pub struct Half {
+    pub cell: usize,
+    /// Which vertex of the cell is opposite.
+    pub opposite: usize,
+}
+
+impl<'a> Structure<'a> {
+    /// Links cells by their facets. Vertices of all rows must be valid.
+    pub fn new(complex: &'a Complex, points: Points) -> (Self, Vec<Finding>) {
+        let n = points.len();
+        let (_, mut findings) = Index::new(&complex.cells.vertices, n);
+        let (facets, found) = Index::new(&complex.facets.vertices, n);
+        findings.extend(found);
+        let (edges, found) = Index::new(&complex.edges.vertices, n);
+        findings.extend(found);
+        let (vertices, found) = Index::new(&complex.vertices.vertices, n);
+        findings.extend(found);
+
+        let cells = &complex.cells.vertices;
+        let cell_facets: Vec<[u32; 4]> = cells
+            .par_iter()
+            .map(|cell| outward_facets(*cell).map(|facet| facets.row(facet)))
+            .collect();
+        let mut crowded = BTreeSet::new();
+        let mut sides = vec![[NONE; 2]; complex.facets.len()];
+        for (cell, rows) in cell_facets.iter().enumerate() {
+            for (opposite, &row) in rows.iter().enumerate() {
+                let half = 4 * cell as u32 + opposite as u32;
+                match sides.get_mut(row as usize) {
+                    Some([first, _]) if *first == NONE => *first = half,
+                    Some([_, second]) if *second == NONE => *second = half,
+                    Some(_) => _ = crowded.insert(row),
+                    None => findings.push(Finding::MissingFace {
+                        face: outward_facets(cells[cell])[opposite].into(),
+                        of: cells[cell].into(),
+                    }),
+                }
+            }
+        }
+        findings.extend(crowded.into_iter().map(|row| Finding::Crowded {
+            facet: complex.facets.vertices[row as usize].into(),
+            cells: cells_with(cells, &cell_facets, row),
+        }));
+        (Self { complex, edges, vertices, sides, cell_facets }, findings)
+    }
+
+    /// The cells on a facet, at most two.
+    pub fn halves(&self, facet: usize) -> impl Iterator<Item = Half> + use<> {
+        let present = self.sides[facet].into_iter().filter(|&half| half != NONE);
+        present.map(|half| Half { cell: half as usize / 4, opposite: half as usize % 4 })
+    }
+
+    /// The facets with exactly one cell, counter-clockwise seen from outside.
+    pub fn hull(&self) -> Vec<[u32; 3]> {
+        (0..self.sides.len())
+            .into_par_iter()
+            .filter_map(|facet| {
+                let mut halves = self.halves(facet);
+                let half = halves.next()?;
+                halves.next().is_none().then(|| self.outward(half))
+            })
+            .collect()
+    }
+
+    /// The facet of a half, counter-clockwise seen from outside its cell.
+    pub fn outward(&self, half: Half) -> [u32; 3] {
+        outward_facets(self.complex.cells.vertices[half.cell])[half.opposite]
+    }
+
+    /// The vertex of a half's cell that is not on its facet.
+    pub fn apex(&self, half: Half) -> u32 {
+        self.complex.cells.vertices[half.cell][half.opposite]
+    }
+}
+
+fn cells_with(cells: &[[u32; 4]], facets: &[[u32; 4]], row: u32) -> Vec<super::Simplex> {
+    let has = |(_, rows): &(&[u32; 4], &[u32; 4])| rows.contains(&row);
+    cells.iter().zip(facets).filter(has).map(|(cell, _)| (*cell).into()).collect()
+}
+
+/// What is wrong with single rows: vertices that do not exist, or come twice.
+pub fn rows(complex: &Complex, points: usize) -> Vec<Finding> {
+    let mut findings = row_findings(&complex.cells.vertices, points);
+    findings.extend(row_findings(&complex.facets.vertices, points));
+    findings.extend(row_findings(&complex.edges.vertices, points));
+    findings.extend(row_findings(&complex.vertices.vertices, points));
+    findings
+}
+
+fn row_findings<const N: usize>(rows: &[[u32; N]], points: usize) -> Vec<Finding> {
+    let judge = |row: &[u32; N]| {
+        let simplex = || (*row).into();
+        if row.iter().any(|&v| v as usize >= points) {
+            Some(Finding::Index { simplex: simplex(), points })
+        } else if (1..N).any(|i| row[..i].contains(&row[i])) {
+            Some(Finding::RepeatedVertex { simplex: simplex() })
+        } else {
+            None
+        }
+    };
+    rows.par_iter().filter_map(judge).collect()
+}

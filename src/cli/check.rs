@@ -1,0 +1,196 @@
+//! `walpha check`: is it the α-complex?
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::bail;
+use clap::Args;
+use serde::Serialize;
+use walpha::alpha_shape;
+use walpha::check::schema::PlacedComplex;
+use walpha::check::{Certificate, Claim, Comparison, Extent, Finding, Placed, compare, enumerate};
+
+use super::args::{HaarArgs, InputArgs, SelectArgs, ShapeArgs, WeightArgs};
+use super::output::{print, print_json};
+use super::progress::Progress;
+use super::report::SCHEMA_VERSION;
+use super::{DIFFERENT, Global, compare as compare_command, complex_file, pipeline};
+
+/// Judge a complex exactly: that of an engine, or one another program wrote.
+///
+/// INPUT is a volume or points, which an engine makes a shape of, or a complex (.json, .npz). The
+/// checker shares no code with the engines and CGAL. Exit code 3 when something is found.
+///
+/// Examples: walpha check sample:skull --weights min-max;
+/// walpha check theirs.json --points cloud.csv
+#[derive(Args)]
+pub struct Check {
+    #[command(flatten)]
+    input: InputArgs,
+    /// Points of the complex, where its file lists none: .csv or .npy.
+    #[arg(long, value_name = "FILE")]
+    points: Option<PathBuf>,
+    /// Build the answer from the definition too, and compare (at most 200 points).
+    #[arg(long)]
+    enumerate: bool,
+    #[command(flatten)]
+    haar: HaarArgs,
+    #[command(flatten)]
+    select: SelectArgs,
+    #[command(flatten)]
+    weights: WeightArgs,
+    #[command(flatten)]
+    shape: ShapeArgs,
+}
+
+/// Points that `--enumerate` takes: more would take hours.
+const MOST_ENUMERATED: usize = 200;
+/// Findings that are printed as text, and as JSON; all are counted.
+const MOST_PRINTED: usize = 20;
+const MOST_LISTED: usize = 1000;
+
+#[derive(Serialize)]
+struct Facts {
+    schema_version: u32,
+    input: String,
+    points: usize,
+    /// Cells, facets, edges, vertices.
+    simplices: [usize; 4],
+    extent: &'static str,
+    valid: bool,
+    findings_total: usize,
+    /// The first of them.
+    findings: Vec<Finding>,
+    certificate: Certificate,
+    enumeration: Option<Comparison>,
+    seconds: f64,
+}
+
+impl Check {
+    pub fn run(self, global: Global) -> anyhow::Result<ExitCode> {
+        let mut progress = Progress::new(global);
+        let judged = self.complex(&mut progress)?;
+        let n = judged.positions.len();
+        if self.enumerate && n > MOST_ENUMERATED {
+            bail!(
+                "--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}: leave it away"
+            );
+        }
+        let extent = Extent::of(&judged.complex, judged.alpha);
+        let claim = Claim {
+            positions: &judged.positions,
+            weights: &judged.weights,
+            alpha: judged.alpha,
+            complex: &judged.complex,
+            extent,
+            hidden: judged.hidden.as_deref(),
+            duplicates: judged.duplicates.as_deref(),
+        };
+        let started = std::time::Instant::now();
+        let (mut findings, certificate) = progress.stage("certify", || claim.findings())?;
+        let seconds = started.elapsed().as_secs_f64();
+        let enumeration = if self.enumerate {
+            Some(progress.stage("enumerate", || by_definition(&judged))?)
+        } else {
+            None
+        };
+        progress.finish();
+
+        let complex = &judged.complex;
+        let total = findings.len();
+        findings.truncate(MOST_LISTED);
+        let facts = Facts {
+            schema_version: SCHEMA_VERSION,
+            input: self.input.input,
+            points: n,
+            simplices: [
+                complex.cells.len(),
+                complex.facets.len(),
+                complex.edges.len(),
+                complex.vertices.len(),
+            ],
+            extent: if extent == Extent::Whole { "whole" } else { "shape" },
+            valid: total == 0 && enumeration.as_ref().is_none_or(Comparison::is_equal),
+            findings_total: total,
+            findings,
+            certificate,
+            enumeration,
+            seconds,
+        };
+        if global.json {
+            print_json(&facts)?;
+        } else if !global.quiet {
+            print(&facts.to_string())?;
+        }
+        Ok(if facts.valid { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
+    }
+
+    /// The complex to judge.
+    fn complex(&self, progress: &mut Progress) -> anyhow::Result<PlacedComplex> {
+        let path = Path::new(&self.input.input);
+        if complex_file::is_complex(path) {
+            return progress.stage("read", || complex_file::read(path, self.points.as_deref()));
+        }
+        if self.points.is_some() {
+            bail!("--points belongs to a complex (.json, .npz), and {} is none", path.display());
+        }
+        let weighed = pipeline::weighted_points(
+            &self.input,
+            &self.haar,
+            &self.select,
+            &self.weights,
+            progress,
+        )?;
+        let mut options = self.shape.options(self.weights.alpha());
+        // The whole triangulation can be judged wholly. Several slabs are judged as they are.
+        options.exterior |=
+            options.slabs.is_none_or(|slabs| slabs.get() == 1) && options.memory.is_none();
+        let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
+        Ok(PlacedComplex {
+            positions: shape.points().positions.clone(),
+            weights: shape.power_weights().to_vec(),
+            alpha: shape.power_alpha(),
+            complex: shape.complex().clone(),
+            hidden: shape.hidden().map(<[u32]>::to_vec),
+            duplicates: Some(shape.duplicates().to_vec()),
+        })
+    }
+}
+
+/// How a complex (A) differs from the one its definition makes (B).
+fn by_definition(judged: &PlacedComplex) -> anyhow::Result<Comparison> {
+    let made = enumerate(&judged.positions, &judged.weights, judged.alpha)?;
+    let a = Placed { positions: &judged.positions, complex: &judged.complex };
+    let b = Placed { positions: &judged.positions, complex: &made.complex };
+    Ok(compare(a, b)?)
+}
+
+impl std::fmt::Display for Facts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [cells, facets, edges, vertices] = self.simplices;
+        writeln!(f, "judged    {}: {} points", self.input, self.points)?;
+        writeln!(
+            f,
+            "          {cells} cells, {facets} facets, {edges} edges, {vertices} vertices"
+        )?;
+        for rule in &self.certificate.not_judged {
+            writeln!(f, "not judged: {rule}")?;
+        }
+        for finding in self.findings.iter().take(MOST_PRINTED) {
+            writeln!(f, "found     {finding}")?;
+        }
+        if self.findings_total > MOST_PRINTED {
+            writeln!(f, "          and {} more", self.findings_total - MOST_PRINTED)?;
+        }
+        if let Some(enumeration) = &self.enumeration {
+            writeln!(f, "against the definition (A: judged, B: made from the definition)")?;
+            compare_command::describe(f, enumeration)?;
+        }
+        let verdict = if self.valid { "certified: no finding" } else { "wrong" };
+        writeln!(
+            f,
+            "verdict   {verdict}, {} findings in {:.2} s",
+            self.findings_total, self.seconds
+        )
+    }
+}

@@ -1,0 +1,30 @@
+use std::io::{self, Write};
+
+use super::Exporter;
+use crate::check::schema::ComplexFile;
+use crate::shape::AlphaShape;
+
+/// JSON: the complex with its points, power weights and α, in the [`schema`](crate::check::schema)
+/// that `walpha check` and `walpha compare` read. α and the weights are those that simplices were
+/// judged by: for `--balls radius` the weights are (α + ω)², and α is 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Json;
+
+impl Exporter for Json {
+    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        let mut file = ComplexFile::new(
+            &shape.points().positions,
+            shape.power_weights(),
+            shape.power_alpha(),
+            shape.complex(),
+            shape.hidden(),
+            Some(shape.duplicates()),
+        );
+        file.info = Some(serde_json::json!({
+            "program": concat!("walpha ", env!("CARGO_PKG_VERSION")),
+            "balls": shape.options().balls,
+            "values": shape.points().values,
+        }));
+        file.write_json(out).map_err(io::Error::other)
+    }
+}

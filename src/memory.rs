@@ -1,0 +1,19 @@
+//! What the system says of this process's memory.
+
+/// The most memory this process ever held, in bytes; `None` where the system does not tell (only
+/// Linux does).
+pub fn peak_bytes() -> Option<u64> {
+    status("VmHWM:")
+}
+
+/// The memory this process holds now, in bytes; `None` where the system does not tell.
+pub fn resident_bytes() -> Option<u64> {
+    status("VmRSS:")
+}
+
+fn status(field: &str) -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix(field))?;
+    let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kilobytes * 1024)
+}

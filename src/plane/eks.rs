@@ -1,0 +1,161 @@
+use super::contact::{self, Contacts, Diagram};
+use super::exact::Exact;
+use super::mesh::Mesh;
+use super::{Curvature, PlaneError};
+use crate::cgal::{self, PlaneSites};
+
+/// The α-shape of a set of points in the plane after Edelsbrunner, Kirkpatrick and Seidel, "On the
+/// shape of a set of points in the plane", 1983, doi:10.1109/TIT.1983.1056714.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EksShape {
+    pub(super) positions: Vec<[f64; 2]>,
+    alpha: Curvature,
+    edges: Vec<[u32; 2]>,
+    extreme: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    duplicates: Vec<[u32; 2]>,
+    no_disc: Option<NoDisc>,
+    /// Candidates for the outline of the α-hull; see [`Contacts::arcs`].
+    pub(super) arcs: Vec<[u32; 2]>,
+}
+
+/// Why a shape of positive α is empty: its discs are too small to contain all points.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the shape is empty: no disc of radius {radius:.6} (α = {alpha}) contains all {points} points, whose smallest enclosing circle has the radius ρ = {enclosing:.6}; choose α ≤ 1/ρ = {most:.6}",
+    most = enclosing.recip()
+)]
+pub struct NoDisc {
+    /// α.
+    pub alpha: f64,
+    /// 1/α, a length.
+    pub radius: f64,
+    /// ρ, a length, rounded.
+    pub enclosing: f64,
+    /// Different places among the input.
+    pub points: usize,
+}
+
+/// The α-shape of points (x, y): which of them, and which pairs, lie on the boundary of one
+/// generalised disc of radius 1/α that contains all points.
+///
+/// For α < 0 it is found in the closest-point Delaunay triangulation, where −1/α is the radius
+/// that CGAL's `Alpha_shape_2` knows as the square root of *its* α; for α > 0 in the
+/// farthest-point one. α beyond 1/ρ, with ρ the radius of the smallest enclosing circle, gives an
+/// empty shape, which says so: [`EksShape::no_disc`]. Every decision is exact, α and the
+/// coordinates being taken as the numbers they are, to the last bit.
+///
+/// Expected O(n log n), unless many points lie on one touching circle or line: all their pairs
+/// are edges.
+///
+/// # Errors
+/// No point; NaN, infinities or absurd magnitudes.
+pub fn eks_shape(points: &[[f64; 2]], alpha: Curvature) -> Result<EksShape, PlaneError> {
+    let sites = PlaneSites::new(points, &vec![0.0; points.len()])?;
+    let value = alpha.value();
+    let raw =
+        if value > 0.0 { cgal::farthest_plane(&sites)? } else { cgal::regular_plane(&sites)? };
+    let mesh = Mesh::new(&raw);
+    let exact = Exact::new(sites.positions());
+    let contacts = if value > 0.0 {
+        contact::of_discs(&mesh, &exact, &exact.curve(value), Diagram::Farthest)
+    } else if value < 0.0 {
+        contact::of_discs(&mesh, &exact, &exact.curve(value), Diagram::Closest)
+    } else {
+        contact::of_half_planes(&mesh, &exact)
+    };
+    let extreme = extreme(&mesh, &contacts, value);
+    let no_disc = extreme.is_empty().then(|| NoDisc {
+        alpha: value,
+        radius: alpha.radius(),
+        enclosing: enclosing_radius(&mesh, &exact),
+        points: sites.positions().len(),
+    });
+    let input = |site: u32| sites.input()[site as usize];
+    Ok(EksShape {
+        positions: points.to_vec(),
+        alpha,
+        // Sites ascend with their input indices, so sorted rows stay sorted.
+        edges: contacts.edges.into_iter().map(|row| row.map(input)).collect(),
+        extreme: extreme.into_iter().map(input).collect(),
+        triangles: contacts.inside.into_iter().map(|row| row.map(input)).collect(),
+        arcs: contacts.arcs.into_iter().map(|row| row.map(input)).collect(),
+        duplicates: sites.duplicates().to_vec(),
+        no_disc,
+    })
+}
+
+/// Points that some disc has on its boundary: those at an edge, and those that a disc can roll
+/// around without touching another point. The latter has either a point alone, or, for α < 0, one
+/// whose whole Voronoi cell is not within reach of the disc, as it is in a triangle of the inside.
+fn extreme(mesh: &Mesh, contacts: &Contacts, alpha: f64) -> Vec<u32> {
+    let end = mesh.vertices.last().map_or(0, |&last| last as usize + 1);
+    let (mut at_edge, mut inside) = (vec![false; end], vec![false; end]);
+    contacts.edges.as_flattened().iter().for_each(|&v| at_edge[v as usize] = true);
+    contacts.inside.as_flattened().iter().for_each(|&v| inside[v as usize] = true);
+    let rolls = alpha < 0.0 || mesh.vertices.len() == 1;
+    let extreme = |&v: &u32| at_edge[v as usize] || rolls && !inside[v as usize];
+    mesh.vertices.iter().copied().filter(extreme).collect()
+}
+
+/// The radius of the smallest enclosing circle, from the farthest-point triangulation: the least
+/// radius of a circle through the ends of an edge that contains all points.
+fn enclosing_radius(mesh: &Mesh, exact: &Exact) -> f64 {
+    let radii = mesh.edges.iter().map(|edge| {
+        let [p, q] = edge.ends;
+        let outside = edge.sides().any(|side| exact.apex(p, q, side.apex).is_gt());
+        let circles = edge.sides().map(|side| mesh.triangles[side.triangle]);
+        if outside {
+            circles.map(|t| exact.length(&exact.circumradius(t))).fold(f64::INFINITY, f64::min)
+        } else {
+            exact.length(&exact.half_distance(p, q))
+        }
+    });
+    radii.fold(f64::INFINITY, f64::min)
+}
+
+impl EksShape {
+    /// The points as they were given.
+    pub fn positions(&self) -> &[[f64; 2]] {
+        &self.positions
+    }
+
+    /// The parameter α.
+    pub fn alpha(&self) -> Curvature {
+        self.alpha
+    }
+
+    /// α-neighbours: pairs that one generalised disc has both on its boundary while it contains
+    /// all points. Each pair ascends, rows are sorted.
+    ///
+    /// This is the definition to the letter. Where one disc touches more than two points, at a
+    /// critical α or along a side of the convex hull (α = 0), *all* their pairs are neighbours;
+    /// drawn, they cross or cover each other. [`EksShape::hull`] has each side once.
+    pub fn edges(&self) -> &[[u32; 2]] {
+        &self.edges
+    }
+
+    /// α-extreme points: those on the boundary of a generalised disc that contains all points.
+    /// Ascending.
+    pub fn extreme(&self) -> &[u32] {
+        &self.extreme
+    }
+
+    /// Triangles of the inside, counter-clockwise from the smallest index, sorted; what one shades.
+    /// For α ≤ 0 Delaunay triangles with a circumradius *below* −1/α: at −1/α exactly the disc
+    /// around the triangle is empty, and takes it away, while CGAL's α-complex, which is closed,
+    /// keeps it. For α > 0 farthest-point triangles with a circumradius of at most 1/α.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Pairs of input indices: a point that went, and the one at the same place that stayed.
+    pub fn duplicates(&self) -> &[[u32; 2]] {
+        &self.duplicates
+    }
+
+    /// Why the shape is empty, if it is.
+    pub fn no_disc(&self) -> Option<&NoDisc> {
+        self.no_disc.as_ref()
+    }
+}

@@ -1,0 +1,24 @@
+use crate::cgal::{CgalError, SitesError};
+
+/// Why there is no shape in the plane.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlaneError {
+    /// CGAL cannot triangulate the points.
+    #[error(transparent)]
+    Cgal(#[from] CgalError),
+    /// Discs of infinite or no size cannot be drawn.
+    #[error(
+        "discs of squared radius α + ω need a finite α, got {given}: give a number; any α above the largest squared circumradius makes the convex hull"
+    )]
+    InfiniteAlpha {
+        /// The α given.
+        given: f64,
+    },
+}
+
+impl From<SitesError> for PlaneError {
+    fn from(error: SitesError) -> Self {
+        Self::Cgal(error.into())
+    }
+}

@@ -1,0 +1,70 @@
+use std::collections::HashMap;
+
+use crate::cgal::RawTriangulation;
+
+/// A triangulation of the plane with what lies on the two sides of each edge, by site index and in
+/// an order of its own: triangles counter-clockwise from their smallest vertex, edges with the
+/// smaller vertex first, rows sorted.
+pub(super) struct Mesh {
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) edges: Vec<Edge>,
+    pub(super) vertices: Vec<u32>,
+}
+
+/// An edge and the triangles on its sides, seen from `ends[0]` towards `ends[1]`.
+pub(super) struct Edge {
+    pub(super) ends: [u32; 2],
+    pub(super) left: Option<Side>,
+    pub(super) right: Option<Side>,
+}
+
+/// A triangle at an edge.
+#[derive(Clone, Copy)]
+pub(super) struct Side {
+    /// Its number.
+    pub(super) triangle: usize,
+    /// Its vertex that the edge has not.
+    pub(super) apex: u32,
+}
+
+impl Mesh {
+    pub(super) fn new(raw: &RawTriangulation) -> Self {
+        let mut triangles: Vec<_> = raw.triangles().iter().map(|&t| from_smallest(t)).collect();
+        triangles.sort_unstable();
+        // Seen along a directed edge of a counter-clockwise triangle, the triangle is on the left.
+        let left_of: HashMap<[u32; 2], Side> = (triangles.iter().enumerate())
+            .flat_map(|(triangle, &[a, b, c])| {
+                [([a, b], c), ([b, c], a), ([c, a], b)]
+                    .map(|(edge, apex)| (edge, Side { triangle, apex }))
+            })
+            .collect();
+        let mut ends: Vec<_> = raw.edges().iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
+        ends.sort_unstable();
+        let edges = ends.into_iter().map(|[a, b]| Edge {
+            ends: [a, b],
+            left: left_of.get(&[a, b]).copied(),
+            right: left_of.get(&[b, a]).copied(),
+        });
+        let mut vertices = raw.vertices().to_vec();
+        vertices.sort_unstable();
+        Self { edges: edges.collect(), triangles, vertices }
+    }
+}
+
+impl Edge {
+    /// Triangles at the edge.
+    pub(super) fn sides(&self) -> impl Iterator<Item = Side> {
+        [self.left, self.right].into_iter().flatten()
+    }
+
+    /// Whether the edge bounds the triangulated region, or there are no triangles at all.
+    pub(super) fn is_outer(&self) -> bool {
+        self.left.is_none() || self.right.is_none()
+    }
+}
+
+fn from_smallest(mut triangle: [u32; 3]) -> [u32; 3] {
+    let first = (0..3).min_by_key(|&i| triangle[i]).unwrap_or(0);
+    triangle.rotate_left(first);
+    triangle
+}

@@ -1,0 +1,91 @@
+use super::Size;
+
+/// What can be wrong with the description of a picture.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// A camera that sees nothing definite.
+    #[error("the camera cannot see: {0}")]
+    Camera(&'static str),
+    /// Bounds that no camera can be fitted to.
+    #[error(
+        "cannot fit a camera to the box {low:?}..{high:?}: its corners must be finite and low ≤ high"
+    )]
+    Bounds {
+        /// The corner of smallest coordinates, (x, y, z).
+        low: [f64; 3],
+        /// The corner of largest coordinates, (x, y, z).
+        high: [f64; 3],
+    },
+    /// A picture without pixels, or with too many.
+    #[error(
+        "a picture of {width}×{height} pixels is impossible: each side must be 1 to {}",
+        Size::MAX_SIDE
+    )]
+    Size {
+        /// Pixels asked for along the rows.
+        width: u32,
+        /// Pixels asked for along the columns.
+        height: u32,
+    },
+    /// A triangle that names a vertex the mesh does not have.
+    #[error("mesh {mesh}: triangle {triangle} names vertex {vertex}, but there are {vertices}")]
+    Index {
+        /// Which mesh of the scene.
+        mesh: usize,
+        /// Which of its triangles.
+        triangle: usize,
+        /// The vertex named.
+        vertex: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// Normals or colours that are not one for each vertex.
+    #[error("mesh {mesh} has {got} {what} for {vertices} vertices: give one each, or none")]
+    Attribute {
+        /// Which mesh of the scene.
+        mesh: usize,
+        /// `normals` or `colours`.
+        what: &'static str,
+        /// How many were given.
+        got: usize,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// A coordinate that is no number, or a radius or an opacity out of its range.
+    #[error(
+        "{what} {index} of the scene is out of range: coordinates must be finite and below 1e100 \
+         in size, radii not negative, opacities from 0 to 1"
+    )]
+    OutOfRange {
+        /// `mesh`, `ball` or `tube`.
+        what: &'static str,
+        /// Which of them.
+        index: usize,
+    },
+    /// A field that has no isosurface.
+    #[error("no isosurface: {0}")]
+    Isosurface(&'static str),
+    /// A value of F for each vertex was expected.
+    #[error("{got} values were given to colour {points} points: give one each")]
+    Values {
+        /// Values given.
+        got: usize,
+        /// Points to colour.
+        points: usize,
+    },
+    /// A shape over other points than those given.
+    #[error("the shape has vertex {vertex}, but {points} points were given: give all input points")]
+    Point {
+        /// The vertex, an input index.
+        vertex: u32,
+        /// Points given.
+        points: usize,
+    },
+    /// PNG encoding failed.
+    #[error("cannot encode the picture as PNG: {0}")]
+    Png(#[from] image::ImageError),
+    /// A drawing that the rasteriser refuses.
+    #[error("cannot rasterise the figure: {0}")]
+    Svg(#[from] resvg::usvg::Error),
+}

@@ -1,0 +1,352 @@
+use std::fmt::Write;
+
+use super::svg::{FAMILIES, base64, escape, num, rasterise};
+use super::ticks::ticks;
+use super::{ColourMap, Drawing, Picture, RenderError, Rgb, Size};
+
+/// A figure as a paper has it: panels in rows, each with its letter, title and caption, under a
+/// common title, with what the colours mean below. One description gives the SVG and the PNG.
+///
+/// Words in a PNG are set in Ubuntu Light, which has Greek and √ ² ₁ × − ≤ ≥ ∞; a line with a sign
+/// that it lacks (arrows, ∈, ⊆, ‖, ₊) is set in Hack as a whole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Above all panels; empty for none.
+    pub title: String,
+    /// Panels in a row.
+    pub columns: usize,
+    /// The pixels of a panel, the same for all, so that equal cameras give equal scales.
+    pub panel: Size,
+    /// In reading order.
+    pub panels: Vec<Panel>,
+    /// What values the colours stand for.
+    pub colour_bar: Option<ColourBar>,
+    /// What classes the colours stand for.
+    pub legend: Vec<(String, Rgb)>,
+    /// Below everything, wrapped to the width; a paragraph each.
+    pub notes: Vec<String>,
+}
+
+/// A part of a figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// Above it, after its letter "(a)"; the letter is left out where there is one panel.
+    pub title: String,
+    /// What it shows.
+    pub content: Content,
+    /// Below it, wrapped to its width; a paragraph each.
+    pub captions: Vec<String>,
+}
+
+/// What a panel shows.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Content {
+    /// Pixels, fitted into the panel.
+    Picture(Picture),
+    /// Lines and words.
+    Drawing(Drawing),
+}
+
+/// What values the colours of a figure stand for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColourBar {
+    /// From values to colours.
+    pub map: ColourMap,
+    /// What is measured, with its unit.
+    pub label: String,
+}
+
+impl Figure {
+    /// PNG files are at least this wide; a narrower figure is enlarged.
+    pub const MIN_WIDTH: u32 = 1600;
+
+    /// The figure as a self-contained SVG file: pictures inside as PNG, words as text.
+    ///
+    /// # Errors
+    /// [`RenderError::Png`] when a picture cannot be encoded.
+    pub fn to_svg(&self) -> Result<String, RenderError> {
+        Ok(self.compose()?.0)
+    }
+
+    /// The figure as a PNG file, set in fonts that come with the library: the same everywhere.
+    ///
+    /// # Errors
+    /// [`RenderError::Size`] when the panels make more pixels than a picture may have.
+    pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
+        self.to_picture()?.to_png()
+    }
+
+    /// The figure as pixels.
+    ///
+    /// # Errors
+    /// As [`Figure::to_png`].
+    pub fn to_picture(&self) -> Result<Picture, RenderError> {
+        let (svg, [width, height]) = self.compose()?;
+        let scale = (f64::from(Self::MIN_WIDTH) / width).max(1.0);
+        let size = Size::new((width * scale).ceil() as u32, (height * scale).ceil() as u32)?;
+        rasterise(&svg, size)
+    }
+
+    /// The file, and its width and height.
+    fn compose(&self) -> Result<(String, [f64; 2]), RenderError> {
+        let columns = self.columns.clamp(1, self.panels.len().max(1));
+        let panel = [f64::from(self.panel.width()), f64::from(self.panel.height())];
+        let mut page = Page::new(panel[0] * columns as f64, columns);
+        page.paragraph(&self.title, page.letters * 1.25, INK);
+        for (row, panels) in self.panels.chunks(columns).enumerate() {
+            self.row(&mut page, panels, row * columns, panel)?;
+        }
+        if let Some(bar) = &self.colour_bar {
+            page.colour_bar(bar);
+        }
+        page.legend(&self.legend);
+        for note in &self.notes {
+            page.paragraph(note, page.letters * 0.85, SOFT_INK);
+        }
+        Ok(page.finish())
+    }
+
+    fn row(
+        &self,
+        page: &mut Page,
+        panels: &[Panel],
+        first: usize,
+        size: [f64; 2],
+    ) -> Result<(), RenderError> {
+        let letters = page.letters;
+        let lefts = |k: usize| page.margin + k as f64 * (size[0] + page.gap);
+        let heads: Vec<String> = (first..)
+            .zip(panels)
+            .map(|(k, panel)| match (self.panels.len(), panel.title.as_str()) {
+                (1, title) => title.to_owned(),
+                (_, title) => format!("({}) {title}", letter(k)),
+            })
+            .collect();
+        let mut svg = String::new();
+        let y = page.y;
+        let heads: Vec<_> = heads.iter().map(|h| wrap(h, size[0], letters)).collect();
+        let lines = heads.iter().map(Vec::len).max().unwrap_or(0) as f64;
+        for (k, head) in heads.iter().enumerate() {
+            write_lines(&mut svg, head, [lefts(k), y], letters, INK);
+        }
+        let y = y + (lines * LEADING + 0.2) * letters;
+        let small = letters * 0.85;
+        let mut lowest = y + size[1];
+        for (k, panel) in panels.iter().enumerate() {
+            let corner = [lefts(k), y];
+            match &panel.content {
+                Content::Picture(picture) => write_picture(&mut svg, picture, corner, size)?,
+                Content::Drawing(drawing) => {
+                    drawing.write(&mut svg, corner, size, &format!("panel{}", first + k));
+                }
+            }
+            let mut y = y + size[1] + small * 0.3;
+            for caption in &panel.captions {
+                let lines = wrap(caption, size[0], small);
+                write_lines(&mut svg, &lines, [lefts(k), y], small, SOFT_INK);
+                y += lines.len() as f64 * LEADING * small;
+            }
+            lowest = lowest.max(y);
+        }
+        page.svg.push_str(&svg);
+        page.y = lowest + letters * 0.8;
+        Ok(())
+    }
+}
+
+const INK: &str = "#111111";
+const SOFT_INK: &str = "#333333";
+/// From line to line, in letter sizes.
+const LEADING: f64 = 1.35;
+
+/// A page that is filled from top to bottom.
+struct Page {
+    svg: String,
+    width: f64,
+    margin: f64,
+    gap: f64,
+    /// The size of letters.
+    letters: f64,
+    y: f64,
+}
+
+impl Page {
+    fn new(panels: f64, columns: usize) -> Self {
+        // Readable still at half size: 1600 pixels give letters of 27.
+        let letters = panels / 58.0;
+        let (margin, gap) = (letters, letters * 1.2);
+        let width = panels + 2.0 * margin + (columns - 1) as f64 * gap;
+        Self { svg: String::new(), width, margin, gap, letters, y: margin * 0.6 }
+    }
+
+    fn inner(&self) -> f64 {
+        self.width - 2.0 * self.margin
+    }
+
+    fn paragraph(&mut self, text: &str, size: f64, colour: &str) {
+        let lines = wrap(text, self.inner(), size);
+        write_lines(&mut self.svg, &lines, [self.margin, self.y], size, colour);
+        if !lines.is_empty() {
+            self.y += (lines.len() as f64 * LEADING + 0.3) * size;
+        }
+    }
+
+    fn colour_bar(&mut self, bar: &ColourBar) {
+        let size = self.letters * 0.85;
+        let width = self.inner() * 0.5;
+        let (left, height) = ((self.width - width) / 2.0, size * 0.9);
+        let y = self.y + size * LEADING;
+        let (low, high) = bar.map.range();
+        let middle = num(self.width / 2.0);
+        let _ = writeln!(
+            self.svg,
+            r#"<text x="{middle}" y="{}" font-size="{}" fill="{INK}" text-anchor="middle">{}</text>"#,
+            num(self.y + size),
+            num(size),
+            escape(&bar.label)
+        );
+        // Each strip reaches under the next, so that no seam shows between them.
+        const STRIPS: usize = 128;
+        let strip = width / STRIPS as f64;
+        for k in 0..STRIPS {
+            let value = low + (high - low) * (k as f64 + 0.5) / STRIPS as f64;
+            let x = left + k as f64 * strip;
+            let _ = writeln!(
+                self.svg,
+                r#"<rect x="{}" y="{}" width="{}" height="{}" fill="{}"/>"#,
+                num(x),
+                num(y),
+                num((strip + 1.0).min(left + width - x)),
+                num(height),
+                bar.map.colour(value).hex()
+            );
+        }
+        for (value, text) in ticks(low, high, 6) {
+            let x = left + width * (value - low) / (high - low);
+            let _ = writeln!(
+                self.svg,
+                r#"<path d="M{x} {}v{}" stroke="{INK}" stroke-width="{}"/><text x="{x}" y="{}" font-size="{}" fill="{INK}" text-anchor="middle">{text}</text>"#,
+                num(y + height),
+                num(size * 0.3),
+                num(size * 0.07),
+                num(y + height + size * 1.3),
+                num(size * 0.9),
+                x = num(x),
+            );
+        }
+        self.y = y + height + size * 2.0;
+    }
+
+    fn legend(&mut self, entries: &[(String, Rgb)]) {
+        let size = self.letters * 0.85;
+        let advance = |text: &str| text_width(text, size) + size * 2.4;
+        let mut rest = entries;
+        while !rest.is_empty() {
+            let mut width = 0.0;
+            let fits = |(text, _): &&(String, Rgb)| {
+                width += advance(text);
+                width <= self.inner()
+            };
+            let count = rest.iter().take_while(fits).count().max(1);
+            let (line, later) = rest.split_at(count);
+            let width: f64 = line.iter().map(|(text, _)| advance(text)).sum();
+            let mut x = ((self.width - width) / 2.0).max(self.margin);
+            for (text, colour) in line {
+                let _ = writeln!(
+                    self.svg,
+                    r#"<rect x="{}" y="{}" width="{s}" height="{s}" fill="{}"/><text x="{}" y="{}" font-size="{}" fill="{INK}">{}</text>"#,
+                    num(x),
+                    num(self.y + size * 0.2),
+                    colour.hex(),
+                    num(x + size * 1.2),
+                    num(self.y + size),
+                    num(size),
+                    escape(text),
+                    s = num(size * 0.85),
+                );
+                x += advance(text);
+            }
+            self.y += size * LEADING;
+            rest = later;
+        }
+        if !entries.is_empty() {
+            self.y += size * 0.5;
+        }
+    }
+
+    fn finish(self) -> (String, [f64; 2]) {
+        let size = [self.width.ceil(), (self.y + self.margin * 0.6).ceil()];
+        let [w, h] = size.map(num);
+        let svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" \
+             viewBox=\"0 0 {w} {h}\" font-family=\"{FAMILIES}\">\n\
+             <rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n{}</svg>\n",
+            self.svg
+        );
+        (svg, size)
+    }
+}
+
+/// a, b, … z, aa, ab, …
+fn letter(index: usize) -> String {
+    let last = (b'a' + (index % 26) as u8) as char;
+    if index < 26 { last.to_string() } else { letter(index / 26 - 1) + &last.to_string() }
+}
+
+fn write_picture(
+    svg: &mut String,
+    picture: &Picture,
+    corner: [f64; 2],
+    size: [f64; 2],
+) -> Result<(), RenderError> {
+    let data = base64(&picture.to_png()?);
+    let [x, y] = corner.map(num);
+    let [w, h] = size.map(num);
+    let _ = writeln!(
+        svg,
+        r#"<image x="{x}" y="{y}" width="{w}" height="{h}" href="data:image/png;base64,{data}"/>"#
+    );
+    Ok(())
+}
+
+fn write_lines(svg: &mut String, lines: &[String], [x, y]: [f64; 2], size: f64, colour: &str) {
+    for (k, line) in lines.iter().enumerate() {
+        let _ = writeln!(
+            svg,
+            r#"<text x="{}" y="{}" font-size="{}" fill="{colour}">{}</text>"#,
+            num(x),
+            num(y + (k as f64 * LEADING + 1.0) * size),
+            num(size),
+            escape(line)
+        );
+    }
+}
+
+/// Words in lines that fit a width; a word that is longer has a line of its own.
+fn wrap(text: &str, width: f64, size: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if text_width(line, size) + text_width(word, size) + 0.3 * size <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// The width of a text, estimated a little generously, as a viewer may have another font.
+fn text_width(text: &str, size: f64) -> f64 {
+    let of = |c: char| match c {
+        'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' | ' ' | '(' | ')' | '·' => 0.3,
+        'm' | 'w' | 'M' | 'W' | '—' => 0.88,
+        'A'..='Z' => 0.68,
+        _ => 0.57,
+    };
+    text.chars().map(of).sum::<f64>() * size
+}
+
+#[cfg(test)]
+mod tests;

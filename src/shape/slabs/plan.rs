@@ -1,0 +1,110 @@
+use super::partition::{longest_axis, rounded_up, sorted_coordinates};
+use crate::cgal::Sites;
+use crate::memory;
+
+/// How many slabs there are, and how many are worked on at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Plan {
+    pub slabs: usize,
+    pub at_once: usize,
+}
+
+/// The memory allowed does not suffice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "--memory {} MiB does not suffice: with {slabs} slabs, one at a time, about {} MiB are needed; \
+     allow more, or select fewer points",
+    asked >> 20,
+    needed >> 20
+)]
+pub struct PlanError {
+    /// Bytes allowed.
+    pub asked: u64,
+    /// Bytes that the smallest plan needs.
+    pub needed: u64,
+    /// Its number of slabs.
+    pub slabs: usize,
+}
+
+/// Bytes for each point of a slab at work: 6 to 7 cells of about 90 bytes in CGAL, later 70 in
+/// flat arrays. Measured peaks lie below.
+const AT_WORK: u64 = 1100;
+/// Bytes for each point of the answer: the rows and classes of about 6 cells, 12 facets and 7
+/// edges, and again those of one dimension while slabs are merged.
+const ANSWER: u64 = 520;
+/// Slabs are made no smaller for the sake of threads: halos would cost more than a thread gains.
+const WORTHWHILE: usize = 2000;
+/// No set has use for more slabs.
+const MOST: usize = 1 << 12;
+
+impl Plan {
+    /// The whole as one slab.
+    pub const WHOLE: Self = Self { slabs: 1, at_once: 1 };
+
+    /// So many slabs, as many at once as there are threads.
+    pub fn of(slabs: usize) -> Self {
+        Self { slabs, at_once: slabs.min(rayon::current_num_threads()) }
+    }
+
+    /// The fewest slabs that keep all threads at work and the memory below a bound, if one is
+    /// given. O(n log n).
+    ///
+    /// # Errors
+    /// [`PlanError`] when the bound cannot be kept.
+    pub fn new(sites: &Sites, alpha: f64, memory: Option<u64>) -> Result<Self, PlanError> {
+        let sizes = Sizes::new(sites, alpha);
+        let threads = rayon::current_num_threads();
+        let useful = threads.min(sites.input().len() / WORTHWHILE).max(1);
+        // More slabs than one pay only if none of them is nearly the whole.
+        let slabs = (1..=useful).min_by_key(|&slabs| sizes.largest(slabs)).unwrap_or(1);
+        let Some(asked) = memory else { return Ok(Self::of(slabs)) };
+        let standing = memory::resident_bytes().unwrap_or(0) + ANSWER * sizes.points() as u64;
+        let needs =
+            |plan: Self| standing + AT_WORK * (plan.at_once * sizes.largest(plan.slabs)) as u64;
+        let mut smallest: Option<(u64, Self)> = None;
+        let mut slabs = slabs;
+        while slabs <= MOST.min(sizes.points()) {
+            for at_once in (1..=threads.min(slabs)).rev() {
+                let plan = Self { slabs, at_once };
+                if needs(plan) <= asked {
+                    return Ok(plan);
+                }
+                smallest =
+                    smallest.filter(|(need, _)| *need <= needs(plan)).or(Some((needs(plan), plan)));
+            }
+            slabs *= 2;
+        }
+        let (needed, plan) = smallest.unwrap_or((needs(Self::WHOLE), Self::WHOLE));
+        Err(PlanError { asked, needed, slabs: plan.slabs })
+    }
+}
+
+/// How large slabs get, halos included.
+struct Sizes {
+    coordinates: Vec<f64>,
+    reach: f64,
+}
+
+impl Sizes {
+    fn new(sites: &Sites, alpha: f64) -> Self {
+        let coordinates = sorted_coordinates(sites.positions(), longest_axis(sites.positions()));
+        let largest = sites.weights().iter().fold(0f64, |most, weight| most.max(alpha + weight));
+        Self { coordinates, reach: rounded_up(2.0 * largest.sqrt()) }
+    }
+
+    fn points(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    /// The most points a slab has, if there are so many slabs.
+    fn largest(&self, slabs: usize) -> usize {
+        let n = self.points();
+        let size = |slab: usize| {
+            let low = self.coordinates[slab * n / slabs] - self.reach;
+            let high = self.coordinates[((slab + 1) * n / slabs).saturating_sub(1)] + self.reach;
+            let before = |end: f64| self.coordinates.partition_point(|&at| at < end);
+            self.coordinates.partition_point(|&at| at <= high) - before(low)
+        };
+        (0..slabs).map(size).max().unwrap_or(0)
+    }
+}

@@ -1,0 +1,166 @@
+//! Two engines, one answer: simplices and classes of all dimensions, and Betti numbers, whatever
+//! the number of slabs.
+
+mod common;
+
+use std::num::NonZeroUsize;
+
+use proptest::prelude::*;
+use walpha::shape::{Engine, ShapeError, ShapeOptions};
+use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
+
+const SLABS: [usize; 5] = [1, 2, 3, 7, 16];
+
+fn by(
+    engine: Engine,
+    points: &WeightedPoints,
+    alpha: f64,
+    slabs: Option<usize>,
+    exterior: bool,
+) -> Result<AlphaShape, ShapeError> {
+    let alpha = Alpha::from_squared(alpha).unwrap();
+    let slabs = slabs.and_then(NonZeroUsize::new);
+    let options = ShapeOptions { engine, slabs, exterior, ..ShapeOptions::new(alpha) };
+    alpha_shape(points.clone(), &options)
+}
+
+/// Compares counts first, which say more when they differ.
+fn assert_same(reference: &AlphaShape, other: &AlphaShape, what: &str) {
+    let counts = |shape: &AlphaShape| {
+        let c = shape.complex();
+        [c.cells.counts(), c.facets.counts(), c.edges.counts(), c.vertices.counts()]
+    };
+    assert_eq!(counts(reference), counts(other), "{what}: counts");
+    assert_eq!(reference.complex(), other.complex(), "{what}: complex");
+    assert_eq!(reference.betti(), other.betti(), "{what}: Betti numbers");
+    assert_eq!(reference.measures(), other.measures(), "{what}: measures");
+    assert_eq!(reference.duplicates(), other.duplicates(), "{what}: duplicates");
+}
+
+fn check(points: &WeightedPoints, alpha: f64) {
+    let reference = match by(Engine::Reference, points, alpha, None, false) {
+        Ok(reference) => reference,
+        Err(error) => {
+            // Flat and small sets are refused alike.
+            for slabs in SLABS {
+                let same = by(Engine::Slabs, points, alpha, Some(slabs), false);
+                assert_eq!(same.unwrap_err(), error);
+            }
+            return;
+        }
+    };
+    for slabs in SLABS {
+        let shape = by(Engine::Slabs, points, alpha, Some(slabs), false).unwrap();
+        assert_same(&reference, &shape, &format!("{slabs} slabs at α = {alpha}"));
+        // The convex hull is not local: it is one slab, whatever was asked for.
+        let whole = slabs == 1 || alpha == f64::INFINITY;
+        assert_eq!(shape.hidden(), if whole { reference.hidden() } else { None });
+    }
+    let whole = by(Engine::Reference, points, alpha, None, true).unwrap();
+    let one = by(Engine::Slabs, points, alpha, None, true).unwrap();
+    assert_same(&whole, &one, "exterior simplices too");
+    assert_eq!(whole.hidden(), one.hidden());
+}
+
+fn weighted(sites: impl IntoIterator<Item = ([f64; 3], f64)>) -> WeightedPoints {
+    let (positions, weights) = sites.into_iter().unzip();
+    WeightedPoints { positions, weights, values: None }
+}
+
+/// Lattice points: everything that can be degenerate is.
+fn lattice() -> impl Strategy<Value = WeightedPoints> {
+    let weight = prop_oneof![
+        4 => Just(0.0),
+        2 => (0..8i32).prop_map(|w| f64::from(w) / 2.0),
+        1 => -2.0..4.0f64,
+    ];
+    let long = ([0..4, 0..4, 0..12i32], weight).prop_map(|(p, w)| (p.map(f64::from), w));
+    prop::collection::vec(long, 4..90).prop_map(weighted)
+}
+
+/// Points anywhere, of uneven density.
+fn scattered() -> impl Strategy<Value = WeightedPoints> {
+    let point = ([0.0..3.0f64, 0.0..3.0, 0.0..9.0], -0.5..1.0f64);
+    prop::collection::vec(point, 4..120).prop_map(weighted)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 250, ..ProptestConfig::default() })]
+
+    #[test]
+    fn lattices(points in lattice(), alpha in -4..24i32) {
+        check(&points, f64::from(alpha) / 4.0);
+    }
+
+    #[test]
+    fn scattered_points(points in scattered(), alpha in -0.5..2.0f64) {
+        check(&points, alpha);
+    }
+}
+
+#[test]
+fn planes_far_apart_have_coplanar_slabs() {
+    let plane = |z: i32| (0..16).map(move |i| [i % 4, i / 4, z]);
+    let points = weighted((0..6).flat_map(|z| plane(40 * z)).map(|p| (p.map(f64::from), 0.0)));
+    for alpha in [0.1, 0.25, 0.5, 1.0, 400.0, 401.0] {
+        check(&points, alpha);
+    }
+}
+
+#[test]
+fn infinite_and_very_negative_alpha() {
+    let cube = |i: i32| ([i & 1, i >> 1 & 1, i >> 2].map(f64::from), f64::from(i % 3));
+    let points = weighted((0..16).map(cube));
+    for alpha in [f64::INFINITY, f64::NEG_INFINITY, -3.0, -1e300] {
+        check(&points, alpha);
+    }
+}
+
+#[test]
+fn hollow_balls_inside_hollow_balls() {
+    // Shells of voxels around one centre: voids in voids.
+    let inside = |p: [i32; 3]| {
+        let r2: i32 = p.iter().map(|v| (v - 9) * (v - 9)).sum();
+        (9..=16).contains(&r2) || (49..=64).contains(&r2)
+    };
+    let all = (0..19 * 19 * 19).map(|i| [i % 19, i / 19 % 19, i / 361]);
+    let points = weighted(all.filter(|&p| inside(p)).map(|p| (p.map(f64::from), 0.0)));
+    let shape = by(Engine::Slabs, &points, 1.0, Some(4), false).unwrap();
+    let betti = shape.betti().unwrap();
+    assert_eq!((betti.b0, betti.b1, betti.b2), (2, 0, 2));
+    check(&points, 1.0);
+}
+
+#[test]
+fn the_skull() {
+    if !common::has_skull() {
+        return;
+    }
+    use walpha::points::{Selection, Units, Weighting, difference, select, weigh};
+    let volume = walpha::volume::sample("sample:skull").unwrap();
+    let (volume, _) = volume.into_gray(walpha::Gray::Automatic).unwrap();
+    let differences = difference(&volume);
+    let points =
+        select(&volume, &volume, &differences, &Selection::default(), Units::Voxel).unwrap();
+    for weighting in [Weighting::Common(0.0), Weighting::MinMax, Weighting::BarycentricN] {
+        check(&weigh(&points, weighting, 10.0).unwrap(), 10.0);
+    }
+}
+
+#[test]
+fn memory_is_planned_for() {
+    let points =
+        weighted((0..40_000).map(|i| ([i % 20, i / 20 % 20, i / 400].map(f64::from), 0.0)));
+    let with = |memory: u64| {
+        let options = ShapeOptions {
+            memory: Some(memory),
+            ..ShapeOptions::new(Alpha::from_squared(1.0).unwrap())
+        };
+        alpha_shape(points.clone(), &options)
+    };
+    let free = by(Engine::Slabs, &points, 1.0, None, false).unwrap();
+    let bounded = with(4 << 30).unwrap();
+    assert_eq!(free.complex(), bounded.complex());
+    let error = with(1 << 20).unwrap_err().to_string();
+    assert!(error.contains("--memory 1 MiB does not suffice"), "{error}");
+}
