@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
-use walpha::export::{Target, write_volume_npy};
+use walpha::export::{Target, VolumeFormat};
 use walpha::haar::smooth;
 
 use super::Global;
@@ -22,7 +22,8 @@ use super::report::{HaarReport, SCHEMA_VERSION};
 pub struct Haar {
     #[command(flatten)]
     input: InputArgs,
-    /// File to write the restored gray levels to: .npy, f32, axes z, y, x.
+    /// File to write the restored gray levels to, as f32: .nrrd, .nii, .nii.gz, .vti, .npy or
+    /// .raw.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -40,10 +41,7 @@ impl Haar {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let target = match &self.output {
             None => None,
-            Some(path) if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy")) => {
-                Some(Target::open(path)?)
-            }
-            Some(path) => bail!("{}: a volume can be written as .npy", path.display()),
+            Some(path) => Some((VolumeFormat::of(path)?, Target::open(path)?)),
         };
         let mut progress = Progress::new(global);
         let Input::Volume(volume, _) = read(&self.input, &mut progress)? else {
@@ -51,8 +49,8 @@ impl Haar {
         };
         let options = self.haar.options();
         let (smoothed, truncation) = progress.stage("haar", || smooth(&volume, &options))?;
-        if let Some(target) = target {
-            progress.stage("write", || target.write(|out| write_volume_npy(&smoothed, out)))?;
+        if let Some((format, target)) = target {
+            progress.stage("write", || target.write(|out| format.write(&smoothed, out)))?;
         }
         progress.finish();
         let haar = HaarReport::from(&truncation);

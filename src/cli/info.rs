@@ -2,6 +2,7 @@
 
 use clap::Args;
 use serde::Serialize;
+use walpha::Frame;
 use walpha::points::read_points;
 use walpha::volume;
 
@@ -34,6 +35,7 @@ enum Content {
         dims: [usize; 3],
         spacing: [f64; 3],
         origin: [f64; 3],
+        direction: [[f64; 3]; 3],
         min: f32,
         max: f32,
         gray_levels: bool,
@@ -79,6 +81,7 @@ impl Info {
             dims: volume.dims().xyz(),
             spacing: volume.frame().spacing,
             origin: volume.frame().origin,
+            direction: volume.frame().direction,
             min,
             max,
             gray_levels: volume.has_gray_levels(),
@@ -89,10 +92,16 @@ impl Info {
 impl std::fmt::Display for Content {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Volume { dims: [x, y, z], spacing, origin, min, max, gray_levels } => {
+            Self::Volume { dims: [x, y, z], spacing, origin, direction, min, max, gray_levels } => {
                 writeln!(f, "volume    {x}×{y}×{z} samples (x, y, z)")?;
                 writeln!(f, "spacing   {} {} {}", spacing[0], spacing[1], spacing[2])?;
                 writeln!(f, "origin    {} {} {}", origin[0], origin[1], origin[2])?;
+                if *direction != Frame::VOXEL.direction {
+                    for (i, axis) in ["x", "y", "z"].iter().enumerate() {
+                        let [r, a, s] = direction.map(|row| row[i]);
+                        writeln!(f, "axis {axis}    {r} {a} {s}")?;
+                    }
+                }
                 let gray = if *gray_levels { ", gray levels as they are" } else { "" };
                 writeln!(f, "values    {min} to {max}{gray}")
             }

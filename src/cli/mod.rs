@@ -27,7 +27,8 @@ use output::is_broken_pipe;
 /// difference become weighted points, and CGAL's regular triangulation and alpha shape turn these
 /// into cells, facets, edges and vertices.
 ///
-/// INPUT is a volume (.inr, .inr.gz, .npy, raw with --dims), a point file (.csv, .npy), or one of
+/// INPUT is a volume (NRRD, NIfTI, MetaImage, VTK, VTI, TIFF, INRIMAGE, NPY, NPZ, a folder of PNG, JPEG
+/// or TIFF slices, raw with --dims), a point file (CSV, TSV, XYZ, PLY, VTU, VTP, NPY), or one of
 /// sample:skull, sample:phantom, sample:phantom@N. α and weights are squared lengths.
 #[derive(Parser)]
 #[command(name = "walpha", version = VERSION, max_term_width = 100, arg_required_else_help = true)]

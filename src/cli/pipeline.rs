@@ -58,7 +58,7 @@ pub fn weighted_points(
     weights: &WeightArgs,
     progress: &mut Progress,
 ) -> anyhow::Result<Weighed> {
-    let (points, volume) = match read(input, progress)? {
+    let (mut points, volume) = match read(input, progress)? {
         Input::Points(points) => (points, None),
         Input::Volume(volume, range) => {
             let options = haar.options();
@@ -79,7 +79,12 @@ pub fn weighted_points(
         }
     };
     let weighting = weights.weighting(points.weights.is_some());
-    let points =
-        progress.stage("points", || weigh(&points, weighting, weights.alpha().squared()))?;
+    let points = progress.stage("points", || {
+        let scattered = points.differences.is_none() && points.values.is_some();
+        if scattered && weighting.needs_differences() {
+            points.differences = Some(points::scattered_difference(&points)?);
+        }
+        weigh(&points, weighting, weights.alpha().squared())
+    })?;
     Ok(Weighed { points, weighting, volume })
 }

@@ -21,7 +21,8 @@ use super::{Global, pipeline};
 pub struct Shape {
     #[command(flatten)]
     input: InputArgs,
-    /// Files to write: .ply, .off, .obj (boundary), .vtu, .json (all simplices) or .png (a picture).
+    /// Files to write: .ply, .off, .obj, .stl, .glb, .vtp (boundary), .vtu, .npz or .json (all
+    /// simplices), .png (a picture).
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
     /// Write text where a format has a binary form too (PLY).
@@ -66,6 +67,10 @@ impl Shape {
         let options = self.shape.options(alpha);
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
         report.add_shape(&shape);
+        let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
+            Some(format!("{}: {}", target.path().display(), exporter.remark(&shape)?))
+        };
+        let remarks: Vec<String> = targets.iter().filter_map(remark).collect();
         progress.stage("write", || {
             targets
                 .into_iter()
@@ -73,6 +78,9 @@ impl Shape {
         })?;
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
+        if !global.quiet {
+            remarks.iter().for_each(|remark| eprintln!("walpha: {remark}"));
+        }
         if global.json {
             print_json(&report)?;
         } else if !global.quiet {

@@ -1,7 +1,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Json, Obj, Off, Ply, Vtu};
+use super::{Glb, Json, Npz, Obj, Off, Ply, Stl, Vtp, Vtu};
 use crate::shape::AlphaShape;
 
 /// A way to write a shape down.
@@ -11,6 +11,11 @@ pub trait Exporter {
     /// # Errors
     /// Whatever `out` returns.
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()>;
+
+    /// What whoever reads the file should know of this shape, if anything.
+    fn remark(&self, _shape: &AlphaShape) -> Option<String> {
+        None
+    }
 }
 
 /// The formats shapes are written in, chosen by file name extension.
@@ -22,28 +27,41 @@ pub enum Format {
     Off,
     /// Wavefront: boundary, singular edges and vertices in groups.
     Obj,
+    /// Stereolithography: regular facets.
+    Stl,
+    /// glTF in one binary file: boundary, singular edges and vertices, coloured by F.
+    Glb,
     /// VTK unstructured grid: simplices of all dimensions with their data.
     Vtu,
+    /// VTK polygons: boundary, singular edges and vertices with their data.
+    Vtp,
+    /// NumPy arrays of indices and classes of simplices of all dimensions.
+    Npz,
     /// The whole complex, for `walpha check` and other programs.
     Json,
 }
 
 /// No writer has this extension.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{path}: no format has the extension `{extension}`; a shape can be written as {known}")]
+#[error("{path}: no format has the extension `{extension}`; {thing} can be written as {known}")]
 pub struct UnknownFormat {
     path: String,
     extension: String,
+    thing: &'static str,
     known: String,
 }
 
 impl Format {
     /// Every format with its extension.
-    pub const ALL: [(Self, &str); 5] = [
+    pub const ALL: [(Self, &str); 9] = [
         (Self::Ply, "ply"),
         (Self::Off, "off"),
         (Self::Obj, "obj"),
+        (Self::Stl, "stl"),
+        (Self::Glb, "glb"),
         (Self::Vtu, "vtu"),
+        (Self::Vtp, "vtp"),
+        (Self::Npz, "npz"),
         (Self::Json, "json"),
     ];
 
@@ -52,13 +70,7 @@ impl Format {
     /// # Errors
     /// [`UnknownFormat`] names the ones there are.
     pub fn of(path: &Path) -> Result<Self, UnknownFormat> {
-        let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        let found = Self::ALL.iter().find(|(_, known)| *known == extension);
-        found.map(|&(format, _)| format).ok_or_else(|| UnknownFormat {
-            path: path.display().to_string(),
-            extension,
-            known: Self::ALL.map(|(_, extension)| format!(".{extension}")).join(", "),
-        })
+        UnknownFormat::find(path, "a shape", &Self::ALL)
     }
 
     /// Its writer. `ascii` asks for text where the format has a binary form too.
@@ -67,8 +79,37 @@ impl Format {
             Self::Ply => Box::new(Ply { ascii }),
             Self::Off => Box::new(Off),
             Self::Obj => Box::new(Obj),
+            Self::Stl => Box::new(Stl),
+            Self::Glb => Box::new(Glb),
             Self::Vtu => Box::new(Vtu),
+            Self::Vtp => Box::new(Vtp),
+            Self::Npz => Box::new(Npz),
             Self::Json => Box::new(Json),
         }
+    }
+}
+
+impl UnknownFormat {
+    /// The format whose extension ends a path.
+    pub(super) fn find<F: Copy>(
+        path: &Path,
+        thing: &'static str,
+        all: &[(F, &str)],
+    ) -> Result<F, Self> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let ends = |extension: &str| {
+            name.strip_suffix(extension).is_some_and(|stem| stem.len() > 1 && stem.ends_with('.'))
+        };
+        let found = all.iter().find(|(_, extension)| ends(extension));
+        found.map(|&(format, _)| format).ok_or_else(|| Self {
+            path: path.display().to_string(),
+            extension: path.extension().unwrap_or_default().to_string_lossy().into_owned(),
+            thing,
+            known: all
+                .iter()
+                .map(|(_, extension)| format!(".{extension}"))
+                .collect::<Vec<_>>()
+                .join(", "),
+        })
     }
 }

@@ -97,13 +97,19 @@ impl Grid {
 
 /// The head of the file, and the arrays it points to.
 #[derive(Default)]
-struct Appended {
-    xml: Vec<u8>,
-    data: Vec<u8>,
+pub(super) struct Appended {
+    pub xml: Vec<u8>,
+    pub data: Vec<u8>,
 }
 
 impl Appended {
-    fn array(&mut self, kind: &str, name: &str, components: u8, bytes: Vec<u8>) -> io::Result<()> {
+    pub fn array(
+        &mut self,
+        kind: &str,
+        name: &str,
+        components: u8,
+        bytes: Vec<u8>,
+    ) -> io::Result<()> {
         writeln!(
             self.xml,
             "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
@@ -116,6 +122,6 @@ impl Appended {
     }
 }
 
-fn bytes<const B: usize>(values: impl Iterator<Item = [u8; B]>) -> Vec<u8> {
+pub(super) fn bytes<const B: usize>(values: impl Iterator<Item = [u8; B]>) -> Vec<u8> {
     values.flatten().collect()
 }

@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use super::Weighting;
+use crate::cgal::CgalError;
 use crate::volume::VolumeError;
 
 /// Why there are no points, or no weights for them.
@@ -47,15 +48,21 @@ pub enum PointsError {
         /// The α given.
         alpha: f64,
     },
-    /// Scattered points have no neighbours to differ from.
+    /// Points without differences.
     #[error(
-        "{weighting} weights need the differences of a volume's voxels, which these points come \
-         without: use column or common=C"
+        "{weighting} weights need the differences of a volume's voxels, or of the values of scattered \
+         points, which these come without: add a column `value`, or use column or common=C"
     )]
     NoDifferences {
         /// The weights asked for.
         weighting: Weighting,
     },
+    /// Scattered points without values have no differences.
+    #[error("differences of scattered points need a column `value` in the input: add it")]
+    NoValues,
+    /// Scattered points whose neighbours cannot be found.
+    #[error("the neighbours of the points cannot be found: {0}")]
+    Neighbours(#[from] CgalError),
     /// The input has no weights.
     #[error("column weights need a column `weight` in the input: add it, or use common=C")]
     NoColumn,

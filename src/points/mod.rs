@@ -20,6 +20,7 @@
 mod difference;
 mod error;
 mod read;
+mod scattered;
 mod select;
 mod weigh;
 mod write;
@@ -27,6 +28,7 @@ mod write;
 pub use difference::{difference, difference_row};
 pub use error::PointsError;
 pub use read::{is_point_file, read_points};
+pub use scattered::scattered_difference;
 pub use select::{Points, Selection, SelectionRule, Units, select};
 pub use weigh::{UnknownWeighting, WeightSummary, WeightedPoints, Weighting, weigh};
 pub use write::{write_csv, write_npy};

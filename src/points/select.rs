@@ -57,7 +57,7 @@ pub struct Points {
     pub positions: Vec<[f64; 3]>,
     /// Values F: the original gray levels, or a column of the input.
     pub values: Option<Vec<f64>>,
-    /// Differences L; none for scattered input.
+    /// Differences L, of a voxel or of scattered values.
     pub differences: Option<Vec<f64>>,
     /// Weights that came with the input.
     pub weights: Option<Vec<f64>>,

@@ -44,6 +44,13 @@ pub struct WeightSummary {
     pub max: f64,
 }
 
+impl Weighting {
+    /// Whether weights come from the differences L.
+    pub fn needs_differences(self) -> bool {
+        matches!(self, Self::MinMax | Self::Barycentric | Self::BarycentricN)
+    }
+}
+
 impl WeightedPoints {
     /// The number of points.
     pub fn len(&self) -> usize {
@@ -71,7 +78,7 @@ impl WeightedPoints {
 ///
 /// # Errors
 /// α is infinite or NaN where weights are proportional to it; points without differences
-/// (scattered input) or without a column of weights where these are asked for; a weight that is
+/// (of scattered ones see [`scattered_difference`](super::scattered_difference)) or without a column of weights where these are asked for; a weight that is
 /// no finite number.
 pub fn weigh(
     points: &Points,

@@ -65,6 +65,23 @@ impl Dtype {
         }
     }
 
+    /// Whether a number read from text is one of this type.
+    pub(crate) fn holds(self, value: f64) -> bool {
+        let (low, high) = match self {
+            Self::U8 => (0.0, f64::from(u8::MAX)),
+            Self::I8 => (f64::from(i8::MIN), f64::from(i8::MAX)),
+            Self::U16 => (0.0, f64::from(u16::MAX)),
+            Self::I16 => (f64::from(i16::MIN), f64::from(i16::MAX)),
+            Self::U32 => (0.0, f64::from(u32::MAX)),
+            Self::I32 => (f64::from(i32::MIN), f64::from(i32::MAX)),
+            // The ends of 64 bits are rounded up to a power of two, as the text's number is.
+            Self::U64 => (0.0, u64::MAX as f64),
+            Self::I64 => (i64::MIN as f64, i64::MAX as f64),
+            Self::F32 | Self::F64 => return true,
+        };
+        (low..=high).contains(&value) && value.fract() == 0.0
+    }
+
     /// The short name, as in `--dtype`.
     pub fn name(self) -> &'static str {
         match self {

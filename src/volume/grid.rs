@@ -93,6 +93,29 @@ impl Frame {
         direction: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     };
 
+    /// The frame whose grid axes step by these vectors from one sample to the next: `axes[c]` is
+    /// the step of grid axis c. `None` where one is zero or not finite.
+    pub fn from_axes(origin: [f64; 3], axes: [[f64; 3]; 3]) -> Option<Self> {
+        let mut frame = Self { origin, ..Self::VOXEL };
+        for (c, axis) in axes.iter().enumerate() {
+            // Scaled, so that an axis along the world's has its length to the last bit.
+            let largest = axis.iter().fold(0f64, |so_far, v| so_far.max(v.abs()));
+            let squares: f64 = axis.iter().map(|v| (v / largest).powi(2)).sum();
+            frame.spacing[c] = largest * squares.sqrt();
+            for (row, component) in frame.direction.iter_mut().zip(axis) {
+                row[c] = component / frame.spacing[c];
+            }
+        }
+        // A zero axis has divided 0 by 0.
+        let numbers = origin.iter().chain(&frame.spacing).chain(frame.direction.as_flattened());
+        numbers.copied().all(f64::is_finite).then_some(frame)
+    }
+
+    /// The steps of the grid's axes, as [`Frame::from_axes`] takes them.
+    pub fn axes(&self) -> [[f64; 3]; 3] {
+        [0, 1, 2].map(|c| [0, 1, 2].map(|r| self.direction[r][c] * self.spacing[c]))
+    }
+
     /// The world position of a (fractional) sample index, both as (x, y, z).
     pub fn to_world(&self, index: [f64; 3]) -> [f64; 3] {
         let step = [0, 1, 2].map(|c| self.spacing[c] * index[c]);

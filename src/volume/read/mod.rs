@@ -1,21 +1,40 @@
 //! Volumes from files: by what the file holds first, then by its extension.
 
+mod base64;
+mod described;
+mod detached;
+mod detect;
 mod inr;
+mod lines;
+mod metaimage;
+mod nifti;
 mod npy;
+mod npz;
+mod nrrd;
 mod payload;
 mod raw;
+mod slices;
+mod text;
+mod tiff;
+mod vti;
+mod vtk;
+mod vtk_xml;
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Read};
 use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
 
 pub(crate) use inr::read as read_inr;
+pub(crate) use lines::Lines;
 pub(crate) use npy::{MAGIC as NPY_MAGIC, NpyFile};
-pub(crate) use payload::Length;
 use payload::PayloadError;
+pub(crate) use payload::{Element, Length};
 pub use raw::RawLayout;
+pub(crate) use vtk_xml::VtkXml;
+
+use detect::Kind;
 
 use super::{Dims, Dtype, Volume, VolumeError};
 
@@ -26,8 +45,12 @@ pub struct ReadOptions {
     pub raw: Option<RawLayout>,
 }
 
-/// Reads a volume from a file: raw samples if a layout is given, else INRIMAGE (also gzipped) or
-/// NPY.
+/// Reads a volume from a file: raw samples if a layout is given, else by what the file begins with,
+/// and where that says nothing by its extension.
+///
+/// INRIMAGE and NIfTI (also gzipped), NRRD, MetaImage, legacy VTK, VTI, TIFF, NPY and NPZ are read,
+/// and folders of PNG, JPEG or TIFF slices in natural order. Spacing, origin and directions are those
+/// of the file, in the space it means; where it says none, spacing is 1 and the origin 0.
 ///
 /// A header's claim is compared with the length of the file before memory is allocated. Samples of
 /// unsigned 8 bits are marked as gray levels. One pass; memory for the samples and a few MB.
@@ -48,29 +71,37 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
 }
 
 fn read_known(path: &Path) -> Result<Volume, VolumeError> {
+    if path.is_dir() {
+        return slices::read(path);
+    }
     let mut file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut start = Vec::new();
-    (&mut file).take(inr::MAGIC.len() as u64).read_to_end(&mut start).map_err(io_error(path))?;
-    file.seek(SeekFrom::Start(0)).map_err(io_error(path))?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    (&mut file).take(detect::BYTES).read_to_end(&mut start).map_err(io_error(path))?;
     if start.is_empty() {
-        let what = "is empty: there is no volume in it; write it again".into();
-        Err(VolumeError::Format { path: path.into(), what })
-    } else if start.starts_with(npy::MAGIC) || name.ends_with(".npy") {
-        npy::read(path)
-    } else if start.starts_with(inr::MAGIC) || name.ends_with(".inr") {
-        inr::read(path, BufReader::new(file), Length::Exactly(length))
-    } else if start.starts_with(&[0x1f, 0x8b]) {
-        inr::read(path, MultiGzDecoder::new(BufReader::new(file)), Length::of_gzip(length))
-    } else if name.ends_with(".gz") {
-        let what = "is not compressed with gzip, whatever its name says: rename it".into();
-        Err(VolumeError::Format { path: path.into(), what })
-    } else {
-        let what = "is of no format known by content: INRIMAGE (.inr, .inr.gz) and NPY (.npy) are \
-                    read; for raw samples give --dims X,Y,Z and --dtype";
-        Err(VolumeError::Format { path: path.into(), what: what.into() })
+        return Err(format_error(path, "is empty: there is no volume in it; write it again"));
     }
+    let open = || File::open(path).map(BufReader::new).map_err(io_error(path));
+    match detect::kind(path, &start)? {
+        Kind::Npy => npy::read(path),
+        Kind::Npz => npz::read(path),
+        Kind::Inrimage => inr::read(path, open()?, Length::Exactly(length)),
+        Kind::InrimageGzip => {
+            inr::read(path, MultiGzDecoder::new(open()?), Length::of_gzip(length))
+        }
+        Kind::Nifti => nifti::read(path, open()?, Length::Exactly(length)),
+        Kind::NiftiGzip => nifti::read(path, MultiGzDecoder::new(open()?), Length::of_gzip(length)),
+        Kind::Nrrd => nrrd::read(path),
+        Kind::MetaImage => metaimage::read(path),
+        Kind::VtkLegacy => vtk::read(path),
+        Kind::VtkXml => vti::read(path),
+        Kind::Tiff => tiff::read(path),
+    }
+}
+
+/// A [`VolumeError::Format`] for this file.
+fn format_error(path: &Path, what: impl Into<String>) -> VolumeError {
+    VolumeError::Format { path: path.into(), what: what.into() }
 }
 
 /// An [`VolumeError::Io`] for this file.
@@ -88,7 +119,9 @@ fn payload_error(path: &Path, dims: &Dims, dtype: Dtype) -> impl Fn(PayloadError
 fn payload_error_of(path: &Path, claim: &str, error: PayloadError) -> VolumeError {
     let what = match error {
         PayloadError::Io(source) if source.kind() == io::ErrorKind::UnexpectedEof => {
-            format!("its gzip stream ends early, inside {claim}: it is truncated; copy it again")
+            format!(
+                "its compressed data (gzip or zlib) end early, inside {claim}: it is truncated; copy it again"
+            )
         }
         PayloadError::Io(source)
             if matches!(
@@ -96,7 +129,7 @@ fn payload_error_of(path: &Path, claim: &str, error: PayloadError) -> VolumeErro
                 io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData
             ) =>
         {
-            format!("its gzip stream is damaged ({source}): copy it again")
+            format!("its encoded data (gzip, zlib or base64) are damaged ({source}): copy it again")
         }
         PayloadError::Io(source) => return VolumeError::Io { path: path.into(), source },
         PayloadError::Memory { needed } => {

@@ -14,7 +14,7 @@ pub(crate) const MAGIC: &[u8] = b"\x93NUMPY";
 const MAX_HEADER: u64 = 10_000;
 
 /// An array as NPY describes it (format versions 1 to 3, numpy.lib.format).
-pub(crate) struct NpyFile {
+pub(crate) struct NpyFile<R = BufReader<File>> {
     /// Lengths of the axes.
     pub shape: Vec<u64>,
     /// The first axis is the fastest in the file.
@@ -23,12 +23,16 @@ pub(crate) struct NpyFile {
     endian: Endian,
     /// Booleans are read as 0 and 1, and are no gray levels.
     boolean: bool,
-    payload: Payload<BufReader<File>>,
+    payload: Payload<R>,
 }
 
 /// Reads a three-dimensional array, axes `[z, y, x]`, in C or Fortran order.
 pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
-    let file = NpyFile::open(path)?;
+    volume(path, NpyFile::open(path)?)
+}
+
+/// The volume an array is.
+pub(super) fn volume<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Volume, VolumeError> {
     let &[z, y, x] = file.shape.as_slice() else {
         return Err(VolumeError::Format {
             path: path.into(),
@@ -49,10 +53,16 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
 impl NpyFile {
     /// Reads and checks the header.
     pub fn open(path: &Path) -> Result<Self, VolumeError> {
-        let said = |what: String| VolumeError::Format { path: path.into(), what };
         let file = File::open(path).map_err(io_error(path))?;
         let length = file.metadata().map_err(io_error(path))?.len();
-        let mut reader = BufReader::new(file);
+        Self::of(path, BufReader::new(file), length)
+    }
+}
+
+impl<R: Read> NpyFile<R> {
+    /// Reads and checks the header of an array of so many bytes in a file.
+    pub fn of(path: &Path, mut reader: R, length: u64) -> Result<Self, VolumeError> {
+        let said = |what: String| VolumeError::Format { path: path.into(), what };
         let cut = |error: std::io::Error| match error.kind() {
             std::io::ErrorKind::UnexpectedEof => {
                 said("ends inside its NPY header: it is truncated; save it again".into())

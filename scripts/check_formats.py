@@ -1,0 +1,539 @@
+#!/usr/bin/env python3
+"""Checks walpha's readers and writers against other programs.
+
+    scripts/check_formats.py [--walpha target/release/walpha] [--env /tmp/walpha-formats]
+
+Makes a Python environment (once) with VTK, nibabel, pynrrd, tifffile, SimpleITK, Pillow and trimesh,
+writes files of every flavour with these and reads them with walpha, then writes files with walpha
+and reads them with these. Prints a line for each; exits with 1 when one is wrong, and with 77 when
+the packages cannot be had.
+"""
+
+import argparse
+import itertools
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import venv
+
+PACKAGES = ["numpy", "vtk", "nibabel", "pynrrd", "tifffile", "imagecodecs", "SimpleITK", "pillow", "trimesh", "scipy"]
+
+
+def enter(folder):
+    """Runs this script again with the Python of an environment that has the packages."""
+    python = pathlib.Path(folder) / "bin" / "python"
+    if not python.exists():
+        venv.create(folder, with_pip=True)
+    installed = subprocess.run([python, "-m", "pip", "install", "--quiet", *PACKAGES])
+    if installed.returncode != 0:
+        print("skipped: the Python packages cannot be had")
+        sys.exit(77)
+    os.execv(python, [str(python), __file__, "--inside", *sys.argv[1:]])
+
+
+class Checker:
+    def __init__(self, walpha, folder):
+        self.walpha = str(pathlib.Path(walpha).resolve())
+        self.folder = pathlib.Path(folder)
+        self.done = self.wrong = 0
+
+    def path(self, name):
+        return str(self.folder / name)
+
+    def run(self, *args):
+        return subprocess.run([self.walpha, *map(str, args)], capture_output=True, text=True, cwd=self.folder)
+
+    def judge(self, name, complaint):
+        self.done += 1
+        self.wrong += complaint is not None
+        print(f"{'ok   ' if complaint is None else 'WRONG'} {name}{'' if complaint is None else ': ' + complaint}")
+
+    def volume(self, name, file, expected, origin=(0, 0, 0), axes=None, spacing=(1, 1, 1)):
+        """walpha reads `file` as these samples [z, y, x] in this frame. `axes` has unit columns."""
+        axes = np.eye(3) if axes is None else np.asarray(axes, float)
+        info = self.run("info", file, "--json")
+        out = self.path("back.npy")
+        read = self.run("haar", file, "--rms", "0", "--gray", "0..255", "-o", out)
+        if info.returncode or read.returncode:
+            return self.judge(name, (info.stderr or read.stderr).strip())
+        info, found = json.loads(info.stdout), np.load(out)
+        if found.shape != expected.shape:
+            return self.judge(name, f"shape {found.shape}, not {expected.shape}")
+        if not np.allclose(found, expected.astype(np.float64), rtol=1e-5, atol=1e-3):
+            return self.judge(name, f"samples differ, e.g. {found.ravel()[:8]}, not {expected.ravel()[:8]}")
+        for key, value in [("origin", origin), ("spacing", spacing), ("direction", axes)]:
+            if not np.allclose(info[key], value, rtol=1e-5, atol=1e-6):
+                return self.judge(name, f"{key} {info[key]}, not {np.asarray(value).tolist()}")
+        self.judge(name, None)
+
+    def points(self, name, file, positions, weights=None, values=None):
+        out = self.path("back-points.npy")
+        options = ["--weights", "column"] if weights is not None else ["--weights", "common=0"]
+        read = self.run("points", file, *options, "-o", out)
+        if read.returncode:
+            return self.judge(name, read.stderr.strip())
+        found = np.load(out)
+        for what, column, expected in [("places", found[:, :3], positions), ("weights", found[:, 3], weights)]:
+            if expected is not None and not np.allclose(column, expected, rtol=1e-6):
+                return self.judge(name, f"{what} differ: {column[:4]}, not {expected[:4]}")
+        if values is not None and (found.shape[1] < 5 or not np.allclose(found[:, 4], values, rtol=1e-6)):
+            return self.judge(name, f"values differ: {found[:4]}, not {values[:4]}")
+        self.judge(name, None)
+
+    def refused(self, name, file, word):
+        info = self.run("info", file)
+        good = info.returncode == 1 and word in info.stderr
+        self.judge(name, None if good else f"exit {info.returncode}, {info.stderr.strip()!r} without {word!r}")
+
+    def equal(self, name, found, expected, tolerance=1e-6):
+        found, expected = np.asarray(found), np.asarray(expected)
+        if found.shape != expected.shape:
+            return self.judge(name, f"shape {found.shape}, not {expected.shape}")
+        good = np.allclose(found, expected, rtol=tolerance, atol=tolerance)
+        self.judge(name, None if good else f"{found.ravel()[:6]}, not {expected.ravel()[:6]}")
+
+
+TYPES = ["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8"]
+ORIGIN, SPACING = (1.5, -2.0, 30.0), (0.5, 0.75, 2.0)
+
+
+def samples(dtype="i2", shape=(3, 4, 5)):
+    """[z, y, x]; numbers of up to 120, so that they fit each type."""
+    return (np.arange(np.prod(shape)).reshape(shape) * 2).astype(dtype)
+
+
+def rotation():
+    """A turn by 30° about z and an odd flip of y; columns are axes."""
+    c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
+    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.diag([1, -1, 1])
+
+
+def read_nrrd(check):
+    directions = rotation() * SPACING
+    for dtype, endian, encoding in itertools.product(TYPES, "<>", ["raw", "gzip", "ASCII"]):
+        data = samples(dtype).astype(np.dtype(dtype).newbyteorder(endian))
+        header = {
+            "encoding": encoding,
+            "space": "left-posterior-superior",
+            "space directions": directions.T,
+            "space origin": np.array(ORIGIN),
+        }
+        for detached in [False, True]:
+            file = check.path("a.nhdr" if detached else "a.nrrd")
+            nrrd.write(file, data.T.copy(order="F"), header, detached_header=detached, index_order="F")
+            name = f"pynrrd {dtype}{endian} {encoding}{' detached' if detached else ''}"
+            check.volume(name, file, data, ORIGIN, rotation(), SPACING)
+    data = samples("f4")
+    nrrd.write(check.path("s.nrrd"), data.T.copy(order="F"), {"spacings": list(SPACING)})
+    check.volume("pynrrd spacings", check.path("s.nrrd"), data, spacing=SPACING)
+    nrrd.write(check.path("b.nrrd"), data.T.copy(order="F"), {"encoding": "bzip2"})
+    check.refused("pynrrd bzip2", check.path("b.nrrd"), "bzip2")
+    colour = np.zeros((3, 4, 5, 6), "u1")
+    nrrd.write(check.path("c.nrrd"), colour, {"kinds": ["RGB-color", "space", "space", "space"]})
+    check.refused("pynrrd colours", check.path("c.nrrd"), "only scalar")
+
+
+def itk_image(data):
+    image = sitk.GetImageFromArray(data)
+    image.SetOrigin(ORIGIN)
+    image.SetSpacing(SPACING)
+    image.SetDirection(rotation().ravel())
+    return image
+
+
+def read_itk(check):
+    for dtype in TYPES:
+        data = samples(dtype)
+        for extension, packed in itertools.product([".mha", ".mhd", ".nrrd", ".nhdr", ".vtk"], [False, True]):
+            if extension == ".vtk" and packed:
+                continue
+            file = check.path("itk" + extension)
+            sitk.WriteImage(itk_image(data), file, useCompression=packed)
+            # ITK writes no directions to VTK files.
+            axes = np.eye(3) if extension == ".vtk" else rotation()
+            check.volume(f"ITK {extension} {dtype}{' packed' if packed else ''}", file, data, ORIGIN, axes, SPACING)
+        file = check.path("itk.nii.gz")
+        sitk.WriteImage(itk_image(data), file)
+        flip = np.diag([-1, -1, 1])
+        check.volume(f"ITK .nii.gz {dtype}", file, data, flip @ ORIGIN, flip @ rotation(), SPACING)
+    slices = [check.path(f"slice{z}.raw") for z in range(3)]
+    data = samples("u2")
+    for z, file in enumerate(slices):
+        data[z].tofile(file)
+    head = "ObjectType = Image\nNDims = 3\nDimSize = 5 4 3\nElementType = MET_USHORT\nElementDataFile = "
+    names = [os.path.basename(file) for file in slices]
+    for tail in ["LIST\n" + "\n".join(names), "slice%d.raw 0 2 1"]:
+        pathlib.Path(check.path("list.mhd")).write_text(head + tail + "\n")
+        theirs = sitk.GetArrayFromImage(sitk.ReadImage(check.path("list.mhd")))
+        check.volume(f"MetaImage {tail.split()[0]}", check.path("list.mhd"), theirs)
+    rgb = sitk.GetImageFromArray(np.zeros((3, 4, 5, 3), "u1"), isVector=True)
+    sitk.WriteImage(rgb, check.path("rgb.mha"))
+    check.refused("ITK colours", check.path("rgb.mha"), "only scalar")
+
+
+def read_nifti(check):
+    affine = np.eye(4)
+    affine[:3, :3] = rotation() * SPACING
+    affine[:3, 3] = ORIGIN
+    kinds = [(nib.Nifti1Image, ".nii"), (nib.Nifti1Image, ".nii.gz"), (nib.Nifti1Pair, ".img"), (nib.Nifti2Image, ".nii")]
+    for dtype, (kind, extension), endian in itertools.product(TYPES, kinds, "<>"):
+        data = samples(dtype)
+        header = kind.header_class(endianness=endian)
+        header.set_data_dtype(np.dtype(dtype).newbyteorder(endian))
+        image = kind(data.T, affine, header)
+        file = check.path("n" + extension)
+        nib.save(image, file)
+        file = file.replace(".img", ".hdr")
+        name = f"nibabel {kind.__name__} {extension} {dtype}{endian}"
+        check.volume(name, file, data, ORIGIN, rotation(), SPACING)
+    for sform, qform in [(0, 1), (0, 0), (2, 0)]:
+        image = nib.Nifti1Image(samples().T, affine)
+        image.set_sform(affine, sform)
+        image.set_qform(affine, qform)
+        nib.save(image, check.path("q.nii"))
+        frame = (ORIGIN, rotation(), SPACING) if sform + qform else ((0, 0, 0), np.eye(3), SPACING)
+        check.volume(f"nibabel sform {sform} qform {qform}", check.path("q.nii"), samples(), *frame)
+    image = nib.Nifti1Image(samples("i2").T, affine)
+    image.header.set_slope_inter(0.25, -7)
+    nib.save(image, check.path("scaled.nii"))
+    theirs = nib.load(check.path("scaled.nii")).get_fdata().T
+    check.volume("nibabel slope and intercept", check.path("scaled.nii"), theirs, ORIGIN, rotation(), SPACING)
+    nib.save(nib.Nifti1Image(samples("c8").T, affine), check.path("complex.nii"))
+    check.refused("nibabel complex", check.path("complex.nii"), "complex")
+    nib.save(nib.Nifti1Image(np.zeros((3, 3, 3, 2), "f4"), affine), check.path("four.nii"))
+    check.refused("nibabel 4D", check.path("four.nii"), "a volume has three")
+
+
+def vtk_image(data, cells=False, extent=None):
+    image = vtk.vtkImageData()
+    shape = np.array(data.shape) + (1 if cells else 0)
+    image.SetDimensions(*map(int, shape[::-1]))
+    if extent:
+        image.SetExtent(*extent)
+    image.SetOrigin(*ORIGIN)
+    image.SetSpacing(*SPACING)
+    image.SetDirectionMatrix(*rotation().ravel())
+    array = numpy_to_vtk(data.ravel(), deep=1)
+    array.SetName("samples")
+    (image.GetCellData() if cells else image.GetPointData()).SetScalars(array)
+    return image
+
+
+def xml_flavours(writer_class):
+    for mode, packed, encode, header, big in itertools.product(
+        ["Ascii", "Binary", "Appended"], [False, True], [False, True], [32, 64], [False, True]
+    ):
+        if (mode == "Ascii" and (packed or header == 64 or big)) or (mode != "Appended" and encode):
+            continue
+        writer = writer_class()
+        getattr(writer, "SetDataModeTo" + mode)()
+        writer.SetCompressorTypeToZLib() if packed else writer.SetCompressorTypeToNone()
+        writer.SetEncodeAppendedData(encode)
+        getattr(writer, f"SetHeaderTypeToUInt{header}")()
+        (writer.SetByteOrderToBigEndian if big else writer.SetByteOrderToLittleEndian)()
+        yield f"{mode}{' zlib' if packed else ''}{' base64' if encode else ''} {header}{' big' if big else ''}", writer
+
+
+def save(writer, data, file):
+    writer.SetInputData(data)
+    writer.SetFileName(file)
+    assert writer.Write() == 1
+
+
+def read_vtk(check):
+    file = check.path("v.vti")
+    for flavour, writer in xml_flavours(vtk.vtkXMLImageDataWriter):
+        save(writer, vtk_image(samples("f4")), file)
+        check.volume(f"VTI {flavour}", file, samples("f4"), ORIGIN, rotation(), SPACING)
+    large = samples("i4", (40, 41, 42)) % 251
+    for flavour, writer in xml_flavours(vtk.vtkXMLImageDataWriter):
+        writer.SetBlockSize(8192)
+        save(writer, vtk_image(large), file)
+        check.volume(f"VTI in blocks {flavour}", file, large, ORIGIN, rotation(), SPACING)
+    for dtype in TYPES:
+        save(vtk.vtkXMLImageDataWriter(), vtk_image(samples(dtype)), file)
+        check.volume(f"VTI {dtype}", file, samples(dtype), ORIGIN, rotation(), SPACING)
+        for text in [True, False]:
+            writer = vtk.vtkStructuredPointsWriter()
+            writer.SetFileTypeToASCII() if text else writer.SetFileTypeToBinary()
+            image = vtk_image(samples(dtype))
+            save(writer, image, check.path("v.vtk"))
+            name = f"legacy VTK {'text' if text else 'binary'} {dtype}"
+            back = vtk.vtkStructuredPointsReader()
+            back.SetFileName(check.path("v.vtk"))
+            back.Update()
+            axes = np.array([back.GetOutput().GetDirectionMatrix().GetElement(i, j) for i in range(3) for j in range(3)])
+            check.volume(name, check.path("v.vtk"), samples(dtype), ORIGIN, axes.reshape(3, 3), SPACING)
+            image.GetPointData().SetActiveScalars(None)
+            save(writer, image, check.path("field.vtk"))
+            check.volume(name + " field", check.path("field.vtk"), samples(dtype), ORIGIN, axes.reshape(3, 3), SPACING)
+    half = rotation() @ (np.array(SPACING) / 2)
+    save(vtk.vtkXMLImageDataWriter(), vtk_image(samples(), cells=True), file)
+    check.volume("VTI of cells", file, samples(), np.array(ORIGIN) + half, rotation(), SPACING)
+    save(vtk.vtkXMLImageDataWriter(), vtk_image(samples(), extent=(2, 6, -1, 2, 3, 5)), file)
+    corner = np.array(ORIGIN) + rotation() @ (np.array(SPACING) * [2, -1, 3])
+    check.volume("VTI with an extent", file, samples(), corner, rotation(), SPACING)
+    writer = vtk.vtkXMLImageDataWriter()
+    writer.SetCompressorTypeToLZ4()
+    save(writer, vtk_image(samples()), file)
+    check.refused("VTI LZ4", file, "LZ4")
+
+
+def read_tiff(check):
+    for dtype in TYPES:
+        for name, options in [
+            ("plain", {}),
+            ("BigTIFF", {"bigtiff": True}),
+            ("big endian", {"byteorder": ">"}),
+            ("deflate", {"compression": "zlib"}),
+            ("deflate with predictor", {"compression": "zlib", "predictor": True}),
+            ("LZW", {"compression": "lzw"}),
+            ("PackBits", {"compression": "packbits"}),
+            ("tiles", {"tile": (16, 16)}),
+            ("strips", {"rowsperstrip": 2}),
+        ]:
+            data = samples(dtype)
+            if "predictor" in options:
+                options = {**options, "predictor": 3 if dtype[0] == "f" else 2}
+            tifffile.imwrite(check.path("t.tif"), data, photometric="minisblack", **options)
+            check.volume(f"tifffile {name} {dtype}", check.path("t.tif"), data)
+    for dtype in ["u1", "u2", "f4"]:
+        data = samples(dtype)
+        options = {"resolution": (1 / 0.5, 1 / 0.75), "metadata": {"spacing": 2.0, "unit": "um", "axes": "ZYX"}}
+        tifffile.imwrite(check.path("ij.tif"), data, imagej=True, **options)
+        check.volume(f"ImageJ {dtype}", check.path("ij.tif"), data, spacing=SPACING)
+        tifffile.imwrite(check.path("ij.tif"), data, imagej=True)
+        check.volume(f"ImageJ without axes {dtype}", check.path("ij.tif"), data)
+        metadata = {"axes": "ZYX", "PhysicalSizeX": 0.5, "PhysicalSizeY": 0.75, "PhysicalSizeZ": 2.0}
+        tifffile.imwrite(check.path("o.ome.tif"), data, metadata=metadata)
+        check.volume(f"OME {dtype}", check.path("o.ome.tif"), data, spacing=SPACING)
+    one_page_imagej(check)
+    tifffile.imwrite(check.path("rgb.tif"), np.zeros((3, 4, 5, 3), "u1"), photometric="rgb")
+    check.refused("tifffile colours", check.path("rgb.tif"), "only gray")
+    tifffile.imwrite(check.path("hyper.tif"), np.zeros((2, 3, 4, 5), "u1"), imagej=True, metadata={"axes": "TZYX"})
+    check.refused("ImageJ hyperstack", check.path("hyper.tif"), "2 times")
+
+
+def one_page_imagej(check):
+    """As ImageJ writes stacks beyond 4 GB: all samples behind the first page."""
+    data = samples("u2").astype(">u2")
+    text = b"ImageJ=1.53t\nimages=3\nslices=3\nspacing=2.0\nloop=false\n\0"
+    tags = [(256, 4, 1, 5), (257, 4, 1, 4), (258, 3, 1, 16 << 16), (259, 3, 1, 1 << 16), (262, 3, 1, 1 << 16)]
+    after = 8 + 2 + 12 * 11 + 4
+    tags += [(270, 2, len(text), after), (273, 4, 1, after + len(text)), (277, 3, 1, 1 << 16), (278, 3, 1, 4 << 16)]
+    tags += [(279, 4, 1, 40), (339, 3, 1, 1 << 16)]
+    head = b"MM\0*" + (8).to_bytes(4, "big") + len(tags).to_bytes(2, "big")
+    for tag, kind, count, value in tags:
+        head += tag.to_bytes(2, "big") + kind.to_bytes(2, "big") + count.to_bytes(4, "big") + value.to_bytes(4, "big")
+    pathlib.Path(check.path("large.tif")).write_bytes(head + bytes(4) + text + data.tobytes())
+    theirs = tifffile.imread(check.path("large.tif"))
+    check.volume("ImageJ behind one page", check.path("large.tif"), theirs, spacing=(1, 1, 2))
+
+
+def read_slices(check):
+    for extension, dtype in [("png", "u1"), ("png", "u2"), ("tif", "u1"), ("tif", "f4"), ("jpg", "u1")]:
+        folder = pathlib.Path(check.path(f"slices-{extension}-{dtype}"))
+        folder.mkdir()
+        data = samples(dtype, (12, 8, 16))
+        data[:] = np.arange(12).reshape(12, 1, 1) * 20
+        for z, page in enumerate(data):
+            Image.fromarray(page).save(folder / f"s{z}.{extension}")
+        (folder / "notes.txt").write_text("not a slice")
+        check.volume(f"folder of {extension} {dtype}", str(folder), data)
+
+
+def read_numpy(check):
+    for save_as in [np.savez, np.savez_compressed]:
+        save_as(check.path("v.npz"), samples("f4"))
+        check.volume(f"numpy {save_as.__name__}", check.path("v.npz"), samples("f4"))
+        save_as(check.path("v.npz"), volume=samples("i2"), other=np.zeros(3))
+        check.volume(f"numpy {save_as.__name__} among others", check.path("v.npz"), samples("i2"))
+
+
+def write_volumes(check):
+    source = check.path("source.nrrd")
+    data = samples("f4")
+    nrrd.write(source, data.T.copy(order="F"), {"space directions": (rotation() * SPACING).T, "space origin": ORIGIN, "space dimension": 3})
+    affine = rotation() * SPACING
+    for extension in ["nrrd", "nii", "nii.gz", "vti", "npy", "raw"]:
+        made = check.run("haar", source, "--rms", "0", "--gray", "0..255", "-o", check.path("out." + extension))
+        check.judge(f"walpha writes .{extension}", made.stderr.strip() if made.returncode else None)
+    back, header = nrrd.read(check.path("out.nrrd"))
+    check.equal("pynrrd reads ours", back.T, data, 1e-4)
+    check.equal("pynrrd directions", header["space directions"].T, affine)
+    check.equal("pynrrd origin", header["space origin"], ORIGIN)
+    for extension in ["nrrd"]:
+        image = sitk.ReadImage(check.path("out." + extension))
+        check.equal(f"ITK reads our {extension}", sitk.GetArrayFromImage(image), data, 1e-4)
+        check.equal(f"ITK directions of our {extension}", np.reshape(image.GetDirection(), (3, 3)), rotation())
+    for extension in ["nii", "nii.gz"]:
+        image = nib.load(check.path("out." + extension))
+        check.equal(f"nibabel reads our {extension}", image.get_fdata().T, data, 1e-4)
+        check.equal(f"nibabel affine of our {extension}", image.affine[:3], np.column_stack([affine, ORIGIN]))
+    reader = vtk.vtkXMLImageDataReader()
+    reader.SetFileName(check.path("out.vti"))
+    reader.Update()
+    image = reader.GetOutput()
+    check.equal("VTK reads our vti", vtk_to_numpy(image.GetPointData().GetScalars()).reshape(data.shape), data, 1e-4)
+    matrix = [image.GetDirectionMatrix().GetElement(i, j) for i in range(3) for j in range(3)]
+    check.equal("VTK frame of our vti", [*image.GetOrigin(), *image.GetSpacing(), *matrix], [*ORIGIN, *SPACING, *rotation().ravel()])
+    check.equal("numpy reads our npy", np.load(check.path("out.npy")), data, 1e-4)
+    check.equal("numpy reads our raw", np.fromfile(check.path("out.raw"), "<f4").reshape(data.shape), data, 1e-4)
+    for z, dtype in [(40000, "f4")]:
+        long = samples(dtype, (1, 2, z)) % 100
+        np.save(check.path("long.npy"), long)
+        check.run("haar", check.path("long.npy"), "--rms", "0", "--gray", "0..255", "-o", check.path("long.nii"))
+        image = nib.load(check.path("long.nii"))
+        check.judge("our long volumes are NIfTI-2", None if isinstance(image, nib.Nifti2Image) else str(type(image)))
+        check.equal("nibabel reads our NIfTI-2", image.get_fdata().T, long, 1e-3)
+        check.volume("walpha reads our NIfTI-2", check.path("long.nii"), long)
+
+
+def cloud():
+    positions = np.random.default_rng(7).random((50, 3)) * 10
+    return positions, np.arange(50.0), np.linspace(-1, 1, 50)
+
+
+def read_points(check):
+    positions, weights, values = cloud()
+    points = vtk.vtkPoints()
+    points.SetDataTypeToDouble()
+    points.SetData(numpy_to_vtk(positions, deep=1))
+    for kind, extension, writer_class in [
+        (vtk.vtkUnstructuredGrid, "vtu", vtk.vtkXMLUnstructuredGridWriter),
+        (vtk.vtkPolyData, "vtp", vtk.vtkXMLPolyDataWriter),
+    ]:
+        data = kind()
+        data.SetPoints(points)
+        for name, column in [("weight", weights), ("temperature", values)]:
+            array = numpy_to_vtk(column, deep=1)
+            array.SetName(name)
+            data.GetPointData().AddArray(array)
+        data.GetPointData().SetActiveScalars("temperature")
+        for flavour, writer in xml_flavours(writer_class):
+            file = check.path("p." + extension)
+            save(writer, data, file)
+            check.points(f"{extension} {flavour}", file, positions, weights, values)
+    for text, big in [(True, False), (False, False), (False, True)]:
+        writer = vtk.vtkPLYWriter()
+        writer.SetFileTypeToASCII() if text else writer.SetFileTypeToBinary()
+        writer.SetDataByteOrderToBigEndian() if big else writer.SetDataByteOrderToLittleEndian()
+        sphere = vtk.vtkSphereSource()
+        sphere.Update()
+        save(writer, sphere.GetOutput(), check.path("s.ply"))
+        expected = vtk_to_numpy(sphere.GetOutput().GetPoints().GetData())
+        check.points(f"VTK PLY text={text} big={big}", check.path("s.ply"), expected)
+    for encoding in ["ascii", "binary"]:
+        mesh = trimesh.creation.icosphere(2)
+        mesh.export(check.path("t.ply"), encoding=encoding)
+        check.points(f"trimesh PLY {encoding}", check.path("t.ply"), mesh.vertices)
+    for name, separator in [("p.csv", ","), ("p.tsv", "\t")]:
+        rows = np.column_stack([positions, weights, values])
+        np.savetxt(check.path(name), rows, delimiter=separator, header=separator.join(["x", "y", "z", "weight", "value"]), comments="")
+        check.points(f"numpy {name}", check.path(name), positions, weights, values)
+    np.savetxt(check.path("p.xyz"), np.column_stack([positions, values]))
+    check.points("numpy p.xyz", check.path("p.xyz"), positions, values=values)
+
+
+def scattered(check):
+    """L against SciPy's Delaunay triangulation, which is unique for points in general position."""
+    positions, _, values = cloud()
+    np.savetxt(check.path("s.xyz"), np.column_stack([positions, values]))
+    made = check.run("points", "s.xyz", "--weights", "min-max", "--alpha", "10", "-o", check.path("s.npy"))
+    if made.returncode:
+        return check.judge("scattered values", made.stderr.strip())
+    starts, neighbours = Delaunay(positions).vertex_neighbor_vertices
+    around = [neighbours[starts[i] : starts[i + 1]] for i in range(50)]
+    mean = np.array([np.abs(values[i] - values[n]).mean() for i, n in enumerate(around)])
+    weights = 10 * (mean - mean.min()) / (mean.max() - mean.min())
+    check.equal("scattered values against SciPy", np.load(check.path("s.npy"))[:, 3], weights)
+
+
+def write_shapes(check):
+    files = [check.path("shape." + e) for e in ["ply", "off", "obj", "stl", "glb", "vtu", "vtp", "npz"]]
+    run = check.run("shape", "sample:phantom@24", "--weights", "min-max", "--json", "-o", *files)
+    if run.returncode:
+        return check.judge("walpha writes shapes", run.stderr.strip())
+    arrays = np.load(check.path("shape.npz"))
+    regular = arrays["facets"][arrays["facets_classes"] == 2]
+    singular = arrays["facets"][arrays["facets_classes"] == 3]
+    corners = arrays["positions"][regular]
+    volume = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6
+    cells = arrays["positions"][arrays["cells"]]
+    of_cells = np.abs(np.linalg.det(cells[:, 1:] - cells[:, :1])).sum() / 6
+    check.equal("volume inside the boundary is that of the cells", volume, of_cells)
+    check.equal("and the one reported", json.loads(run.stdout)["shape"]["volume"], of_cells)
+    for extension, count in [("ply", len(regular) + len(singular)), ("off", len(regular) + len(singular)), ("stl", len(regular))]:
+        mesh = trimesh.load(check.path("shape." + extension), process=False)
+        check.equal(f"trimesh counts facets of our {extension}", len(mesh.faces), count)
+        if extension == "stl":
+            check.equal("trimesh finds the volume of our stl", mesh.volume, of_cells, 1e-4)
+    scene = trimesh.load(check.path("shape.glb"))
+    faces = sum(len(g.faces) for g in scene.geometry.values() if hasattr(g, "faces"))
+    check.equal("trimesh counts facets of our glb", faces, len(regular) + len(singular))
+    for extension, reader in [
+        ("vtu", vtk.vtkXMLUnstructuredGridReader()),
+        ("vtp", vtk.vtkXMLPolyDataReader()),
+        ("ply", vtk.vtkPLYReader()),
+        ("stl", vtk.vtkSTLReader()),
+        ("obj", vtk.vtkOBJReader()),
+    ]:
+        reader.SetFileName(check.path("shape." + extension))
+        reader.Update()
+        data = reader.GetOutput()
+        if extension == "vtu":
+            classes = vtk_to_numpy(data.GetCellData().GetArray("class"))
+            expected = np.concatenate([arrays[k + "_classes"] for k in ["vertices", "edges", "facets", "cells"]])
+            check.equal("VTK reads the classes of our vtu", classes, expected)
+            inputs = vtk_to_numpy(data.GetPointData().GetArray("input_index"))
+            check.equal("VTK reads the points of our vtu", vtk_to_numpy(data.GetPoints().GetData()), arrays["positions"][inputs])
+        else:
+            expected = len(regular) + (0 if extension == "stl" else len(singular))
+            found = data.GetNumberOfPolys()
+            check.equal(f"VTK counts facets of our {extension}", found, expected)
+        if extension == "vtp":
+            inputs = vtk_to_numpy(data.GetPointData().GetArray("input_index"))
+            check.equal("VTK reads the values of our vtp", vtk_to_numpy(data.GetPointData().GetArray("value")), arrays["values"][inputs])
+            classes = vtk_to_numpy(data.GetCellData().GetArray("class"))
+            check.equal("VTK reads the classes of our vtp", (classes == 2).sum(), len(regular))
+    for extension in ["ply", "vtu", "vtp"]:
+        made = check.run("points", check.path("shape." + extension), "--weights", "column")
+        check.judge(f"walpha reads our {extension}", made.stderr.strip() if made.returncode else None)
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    arguments.add_argument("--walpha", default="target/release/walpha")
+    arguments.add_argument("--env", default=os.path.join(tempfile.gettempdir(), "walpha-formats"))
+    arguments.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
+    arguments = arguments.parse_args()
+    if not arguments.inside:
+        enter(arguments.env)
+    with tempfile.TemporaryDirectory() as folder:
+        check = Checker(arguments.walpha, folder)
+        for part in PARTS:
+            part(check)
+    print(f"{check.done} checks, {check.wrong} wrong")
+    sys.exit(1 if check.wrong else 0)
+
+
+PARTS = [read_nrrd, read_itk, read_nifti, read_vtk, read_tiff, read_slices, read_numpy, write_volumes]
+PARTS += [read_points, scattered, write_shapes]
+
+if "--inside" in sys.argv:
+    import nibabel as nib
+    import nrrd
+    import numpy as np
+    import SimpleITK as sitk
+    import tifffile
+    import trimesh
+    import vtk
+    from PIL import Image
+    from scipy.spatial import Delaunay
+    from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+if __name__ == "__main__":
+    main()

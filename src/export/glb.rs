@@ -1,0 +1,161 @@
+use std::io::{self, Write};
+
+use serde_json::{Value, json};
+
+use super::Exporter;
+use crate::shape::{AlphaShape, Surface};
+
+/// GLB, glTF 2.0 in one binary file: the boundary as triangles, singular edges as lines and singular
+/// vertices as points. Vertices are coloured by F from dark blue (least) over green to yellow (most)
+/// where it is known. Coordinates are rounded to `f32`.
+#[derive(Clone, Copy, Debug)]
+pub struct Glb;
+
+/// Five colours of the map "viridis", red, green and blue in linear light, as glTF wants them.
+const COLOURS: [[f32; 3]; 5] = [
+    [0.0578, 0.0003, 0.0887],
+    [0.0437, 0.0844, 0.2582],
+    [0.0152, 0.2831, 0.2623],
+    [0.1119, 0.5841, 0.1221],
+    [0.9823, 0.7991, 0.0185],
+];
+
+/// glTF's numbers: component types, buffer targets, primitive modes.
+const FLOAT: u32 = 5126;
+const UNSIGNED_INT: u32 = 5125;
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+const POINTS: u32 = 0;
+const LINES: u32 = 1;
+const TRIANGLES: u32 = 4;
+
+impl Exporter for Glb {
+    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        let surface = Surface::of(shape);
+        let mut file = File::default();
+        let mut document = json!({
+            "asset": { "version": "2.0", "generator": "walpha" },
+            "scene": 0,
+            "scenes": [{}],
+        });
+        // glTF knows no empty mesh.
+        if !surface.vertices.is_empty() {
+            let primitives = file.primitives(shape, &surface);
+            document["scenes"][0] = json!({ "nodes": [0] });
+            document["nodes"] = json!([{ "mesh": 0 }]);
+            document["meshes"] = json!([{ "primitives": primitives }]);
+            let material = |double: bool| {
+                json!({
+                    "doubleSided": double,
+                    "pbrMetallicRoughness": { "metallicFactor": 0.0, "roughnessFactor": 0.8 },
+                })
+            };
+            document["materials"] = json!([material(false), material(true)]);
+            document["accessors"] = file.accessors.into();
+            document["bufferViews"] = file.views.into();
+            document["buffers"] = json!([{ "byteLength": file.data.len() }]);
+        }
+        let mut text = serde_json::to_vec(&document)?;
+        text.resize(text.len().next_multiple_of(4), b' ');
+        let mut chunks: Vec<(&[u8; 4], &[u8])> = vec![(b"JSON", &text)];
+        if !file.data.is_empty() {
+            chunks.push((b"BIN\0", &file.data));
+        }
+        let length = 12 + chunks.iter().map(|(_, chunk)| 8 + chunk.len()).sum::<usize>();
+        let too_long = |_| io::Error::other("the shape passes the 4 GB that GLB can say");
+        out.write_all(b"glTF")?;
+        out.write_all(&2u32.to_le_bytes())?;
+        out.write_all(&u32::try_from(length).map_err(too_long)?.to_le_bytes())?;
+        for (kind, chunk) in chunks {
+            out.write_all(&(chunk.len() as u32).to_le_bytes())?;
+            out.write_all(kind)?;
+            out.write_all(chunk)?;
+        }
+        Ok(())
+    }
+}
+
+/// What the document points to; everything is of 4-byte numbers, so all is aligned.
+#[derive(Default)]
+struct File {
+    data: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl File {
+    fn primitives(&mut self, shape: &AlphaShape, surface: &Surface) -> Vec<Value> {
+        let points = shape.points();
+        let of_vertex = |&v: &u32| points.positions[v as usize].map(|c| c as f32);
+        let positions: Vec<[f32; 3]> = surface.vertices.iter().map(of_vertex).collect();
+        let bound = |pick: fn(f32, f32) -> f32| {
+            [0, 1, 2].map(|axis| positions.iter().map(|p| p[axis]).reduce(pick))
+        };
+        let bounds = json!({ "min": bound(f32::min), "max": bound(f32::max) });
+        let mut attributes = json!({ "POSITION": self.vectors(&positions, bounds) });
+        if let Some(values) = &points.values {
+            let values: Vec<f64> = surface.vertices.iter().map(|&v| values[v as usize]).collect();
+            attributes["COLOR_0"] = self.vectors(&colours(&values), json!({})).into();
+        }
+        let lists: [(&[u32], u32, u32); 4] = [
+            (surface.regular.as_flattened(), TRIANGLES, 0),
+            (surface.singular.as_flattened(), TRIANGLES, 1),
+            (surface.edges.as_flattened(), LINES, 1),
+            (&surface.points, POINTS, 1),
+        ];
+        let mut primitives = Vec::new();
+        for (indices, mode, material) in
+            lists.into_iter().filter(|(indices, ..)| !indices.is_empty())
+        {
+            let bytes = indices.iter().flat_map(|i| i.to_le_bytes()).collect();
+            let (count, target) = (indices.len(), ELEMENT_ARRAY_BUFFER);
+            let accessor =
+                json!({ "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" });
+            let indices = self.accessor(bytes, target, accessor);
+            primitives.push(json!({
+                "attributes": attributes,
+                "indices": indices,
+                "mode": mode,
+                "material": material,
+            }));
+        }
+        primitives
+    }
+
+    fn vectors(&mut self, rows: &[[f32; 3]], mut accessor: Value) -> usize {
+        accessor["componentType"] = FLOAT.into();
+        accessor["count"] = rows.len().into();
+        accessor["type"] = "VEC3".into();
+        let bytes = rows.as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect();
+        self.accessor(bytes, ARRAY_BUFFER, accessor)
+    }
+
+    fn accessor(&mut self, bytes: Vec<u8>, target: u32, mut accessor: Value) -> usize {
+        accessor["bufferView"] = self.views.len().into();
+        let (offset, length) = (self.data.len(), bytes.len());
+        self.views.push(json!({
+            "buffer": 0,
+            "byteOffset": offset,
+            "byteLength": length,
+            "target": target,
+        }));
+        self.data.extend(bytes);
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+}
+
+/// A colour for each value, linear from the least to the most.
+fn colours(values: &[f64]) -> Vec<[f32; 3]> {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let steps = COLOURS.len() - 1;
+    let colour = |value: &f64| {
+        let share = if high > low { (value - low) / (high - low) } else { 0.0 };
+        let place = share * steps as f64;
+        let from = (place as usize).min(steps - 1);
+        let part = (place - from as f64) as f32;
+        [0, 1, 2].map(|c| COLOURS[from][c] + part * (COLOURS[from + 1][c] - COLOURS[from][c]))
+    };
+    values.iter().map(colour).collect()
+}

@@ -1,0 +1,59 @@
+use std::io::{self, Write};
+
+use super::Exporter;
+use crate::shape::{AlphaShape, Surface};
+
+/// Binary STL: the regular facets, counter-clockwise seen from outside, with their normals.
+/// Coordinates are rounded to `f32`. Singular facets, edges and vertices bound no solid and are left
+/// out.
+#[derive(Clone, Copy, Debug)]
+pub struct Stl;
+
+impl Exporter for Stl {
+    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        let surface = Surface::of(shape);
+        let positions = &shape.points().positions;
+        let mut head = [b' '; 80];
+        // Some readers take a file for text if its head begins with "solid".
+        let about = b"walpha, boundary of an alpha shape";
+        head[..about.len()].copy_from_slice(about);
+        out.write_all(&head)?;
+        let count = u32::try_from(surface.regular.len())
+            .map_err(|_| io::Error::other("more facets than STL can count"))?;
+        out.write_all(&count.to_le_bytes())?;
+        for facet in &surface.regular {
+            let corners = facet.map(|v| positions[surface.vertices[v as usize] as usize]);
+            for vector in [normal(corners), corners[0], corners[1], corners[2]] {
+                for component in vector {
+                    out.write_all(&(component as f32).to_le_bytes())?;
+                }
+            }
+            out.write_all(&[0; 2])?;
+        }
+        Ok(())
+    }
+
+    fn remark(&self, shape: &AlphaShape) -> Option<String> {
+        let defects = Surface::of(shape).manifold_defects();
+        (!defects.is_empty()).then(|| {
+            format!(
+                "the boundary is not manifold: {} edges lie on more than two facets, and parts touch \
+                 at {} other vertices; programs that want a solid may refuse it, and another α may \
+                 help",
+                defects.edges, defects.vertices
+            )
+        })
+    }
+}
+
+/// The unit normal; 0 for a facet of no area.
+fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
+    let from_a = |p: [f64; 3]| [0, 1, 2].map(|i| p[i] - a[i]);
+    let (u, v) = (from_a(b), from_a(c));
+    let cross = [0, 1, 2].map(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        u[j] * v[k] - u[k] * v[j]
+    });
+    let length = cross.iter().map(|n| n * n).sum::<f64>().sqrt();
+    if length > 0.0 { cross.map(|n| n / length) } else { [0.0; 3] }
+}

@@ -1,0 +1,83 @@
+use std::io::{self, Write};
+
+use super::write_volume_raw;
+use crate::volume::Volume;
+
+/// Writes a volume as NIfTI-1, or NIfTI-2 where an axis is longer than version 1 can say. The frame
+/// is its `sform`, as a position in a space of its own ("aligned"); `f32` of version 1 round it.
+///
+/// # Errors
+/// Whatever `out` returns.
+pub fn write_volume_nifti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+    let long = volume.dims().xyz().iter().any(|&size| size > i16::MAX as usize);
+    let header = if long { version_2(volume) } else { version_1(volume) };
+    out.write_all(&header)?;
+    // No extension follows.
+    out.write_all(&[0; 4])?;
+    write_volume_raw(volume, out)
+}
+
+/// NIfTI's number for `float32`, and its bits.
+const FLOAT32: [i16; 2] = [16, 32];
+/// Coordinates of a space that this program aligned to something.
+const ALIGNED: i16 = 2;
+/// In front of version 2's name, so that a transfer as text is found out.
+const MAGIC_2: &[u8; 8] = b"n+2\0\r\n\x1a\n";
+
+fn version_1(volume: &Volume) -> Vec<u8> {
+    let mut header = Header(vec![0; 348]);
+    header.put(0, [348i32.to_le_bytes()]);
+    header.put(40, dims(volume).map(|size| (size as i16).to_le_bytes()));
+    header.put(70, FLOAT32.map(i16::to_le_bytes));
+    header.put(76, pixdim(volume).map(|length| (length as f32).to_le_bytes()));
+    header.put(108, [352f32, 1.0, 0.0].map(f32::to_le_bytes));
+    header.put(254, [ALIGNED.to_le_bytes()]);
+    header.put(280, sform(volume).map(|number| (number as f32).to_le_bytes()));
+    header.put(344, [*b"n+1\0"]);
+    header.0
+}
+
+fn version_2(volume: &Volume) -> Vec<u8> {
+    let mut header = Header(vec![0; 540]);
+    header.put(0, [540i32.to_le_bytes()]);
+    header.put(4, [*MAGIC_2]);
+    header.put(12, FLOAT32.map(i16::to_le_bytes));
+    header.put(16, dims(volume).map(i64::to_le_bytes));
+    header.put(104, pixdim(volume).map(f64::to_le_bytes));
+    header.put(168, [544i64.to_le_bytes()]);
+    header.put(176, [1f64, 0.0].map(f64::to_le_bytes));
+    header.put(348, [i32::from(ALIGNED).to_le_bytes()]);
+    header.put(400, sform(volume).map(f64::to_le_bytes));
+    header.0
+}
+
+struct Header(Vec<u8>);
+
+impl Header {
+    /// Puts numbers one after the other.
+    fn put<const B: usize, const N: usize>(&mut self, place: usize, numbers: [[u8; B]; N]) {
+        self.0[place..place + B * N].copy_from_slice(numbers.as_flattened());
+    }
+}
+
+/// The number of axes, then their sizes; those beyond the third have one sample.
+fn dims(volume: &Volume) -> [i64; 8] {
+    let [x, y, z] = volume.dims().xyz().map(|size| size as i64);
+    [3, x, y, z, 1, 1, 1, 1]
+}
+
+/// A sign that matters to `qform` only, then the spacing.
+fn pixdim(volume: &Volume) -> [f64; 8] {
+    let [x, y, z] = volume.frame().spacing;
+    [1.0, x, y, z, 1.0, 1.0, 1.0, 1.0]
+}
+
+/// The rows of the matrix from indices to positions.
+fn sform(volume: &Volume) -> [f64; 12] {
+    let (axes, origin) = (volume.frame().axes(), volume.frame().origin);
+    let number = |i: usize| match (i / 4, i % 4) {
+        (row, 3) => origin[row],
+        (row, column) => axes[column][row],
+    };
+    std::array::from_fn(number)
+}

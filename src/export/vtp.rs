@@ -1,0 +1,67 @@
+use std::io::{self, Write};
+
+use super::Exporter;
+use super::vtu::{Appended, bytes};
+use crate::shape::{AlphaShape, Class, Surface};
+
+/// VTP, VTK's polygons: the boundary, singular edges and singular vertices, with their class as cell
+/// data (2 regular, 3 singular); `weight`, `value` and `input_index` as point data. Arrays are
+/// appended raw, little-endian, with 64-bit sizes.
+#[derive(Clone, Copy, Debug)]
+pub struct Vtp;
+
+impl Exporter for Vtp {
+    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        let surface = Surface::of(shape);
+        let points = shape.points();
+        let vertices = &surface.vertices;
+        let facets = surface.regular.len() + surface.singular.len();
+        let mut file = Appended::default();
+        write!(
+            file.xml,
+            "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
+             <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
+             <PolyData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" \
+             NumberOfStrips=\"0\" NumberOfPolys=\"{facets}\">\n<PointData>\n",
+            shape.options().alpha,
+            vertices.len(),
+            surface.points.len(),
+            surface.edges.len(),
+        )?;
+        let of = |column: &[f64]| bytes(vertices.iter().map(|&v| column[v as usize].to_le_bytes()));
+        file.array("Float64", "weight", 1, of(&points.weights))?;
+        if let Some(values) = &points.values {
+            file.array("Float64", "value", 1, of(values))?;
+        }
+        file.array("UInt32", "input_index", 1, bytes(vertices.iter().map(|v| v.to_le_bytes())))?;
+        write!(file.xml, "</PointData>\n<CellData>\n")?;
+        // VTK counts cells in this order: vertices, lines, polygons.
+        let thin = surface.points.len() + surface.edges.len();
+        let mut classes = vec![Class::Singular as u8; thin];
+        classes.resize(thin + surface.regular.len(), Class::Regular as u8);
+        classes.resize(thin + facets, Class::Singular as u8);
+        file.array("UInt8", "class", 1, classes)?;
+        write!(file.xml, "</CellData>\n<Points>\n")?;
+        let positions = vertices.iter().flat_map(|&v| points.positions[v as usize]);
+        file.array("Float64", "Points", 3, bytes(positions.map(f64::to_le_bytes)))?;
+        writeln!(file.xml, "</Points>")?;
+        cells(&mut file, "Verts", 1, &surface.points)?;
+        cells(&mut file, "Lines", 2, surface.edges.as_flattened())?;
+        let facets: Vec<u32> = surface.facets().flatten().copied().collect();
+        cells(&mut file, "Polys", 3, &facets)?;
+        write!(file.xml, "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_")?;
+        out.write_all(&file.xml)?;
+        out.write_all(&file.data)?;
+        write!(out, "\n</AppendedData>\n</VTKFile>\n")
+    }
+}
+
+/// Cells of so many vertices each.
+fn cells(file: &mut Appended, name: &str, size: usize, vertices: &[u32]) -> io::Result<()> {
+    writeln!(file.xml, "<{name}>")?;
+    let connectivity = bytes(vertices.iter().map(|&v| i64::from(v).to_le_bytes()));
+    file.array("Int64", "connectivity", 1, connectivity)?;
+    let ends = (1..=vertices.len() / size).map(|cell| ((cell * size) as i64).to_le_bytes());
+    file.array("Int64", "offsets", 1, bytes(ends))?;
+    writeln!(file.xml, "</{name}>")
+}

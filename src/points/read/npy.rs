@@ -1,0 +1,30 @@
+use std::path::Path;
+
+use super::{Points, PointsError, format};
+use crate::volume::NpyFile;
+
+/// Reads an array n×4 (x, y, z, weight) or n×5 (…, value).
+pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
+    let file = NpyFile::open(path)?;
+    let columns = match file.shape.as_slice() {
+        &[_, columns @ (4 | 5)] => columns as usize,
+        other => {
+            let what = format!(
+                "is an array of shape {other:?}: points are n×4 (x, y, z, weight) or n×5 (…, value)"
+            );
+            return Err(format(path, what));
+        }
+    };
+    let (fortran, rows) = (file.fortran, file.shape[0] as usize);
+    let numbers: Vec<f64> = file.values(path)?;
+    let at = |row: usize, column: usize| {
+        numbers[if fortran { column * rows + row } else { row * columns + column }]
+    };
+    let column = |column| (0..rows).map(|row| at(row, column)).collect();
+    Ok(Points {
+        positions: (0..rows).map(|row| [at(row, 0), at(row, 1), at(row, 2)]).collect(),
+        weights: Some(column(3)),
+        values: (columns == 5).then(|| column(4)),
+        differences: None,
+    })
+}

@@ -1,0 +1,238 @@
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use super::{COLUMNS, Points, PointsError, format};
+use crate::volume::{Dtype, Element as _, Endian, Lines, io_error};
+
+/// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z,
+/// perhaps weight and value. All other elements must be there as the header claims.
+pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
+    let said = |what: String| format(path, what);
+    let file = std::fs::File::open(path).map_err(io_error(path))?;
+    let length = file.metadata().map_err(io_error(path))?.len();
+    let mut lines = Lines::new(BufReader::new(file));
+    let header = Header::read(path, &mut lines)?;
+    let left = length - lines.bytes();
+    let mut reader = lines.into_inner();
+    let mut numbers = match header.endian {
+        Some(endian) => Numbers::Binary(reader, endian),
+        None => {
+            let mut text = String::new();
+            reader.read_to_string(&mut text).map_err(io_error(path))?;
+            Numbers::Text { text, at: 0 }
+        }
+    };
+    let mut points = None;
+    for element in &header.elements {
+        element.fits(header.endian.is_some(), left).map_err(said)?;
+        if element.name == "vertex" && points.is_none() {
+            points = Some(vertices(path, element, &mut numbers)?);
+        } else {
+            element.skip(&mut numbers).map_err(said)?;
+        }
+    }
+    if !numbers.at_end() {
+        return Err(said("goes on behind its last element: it is too long or mislabelled".into()));
+    }
+    points.ok_or_else(|| said("has no element vertex: there are no points in it".into()))
+}
+
+fn vertices(path: &Path, element: &Element, numbers: &mut Numbers) -> Result<Points, PointsError> {
+    let said = |what: String| format(path, what);
+    let column = |property: &Property| match property {
+        Property::Scalar(name, _) => {
+            COLUMNS.iter().position(|column| column.eq_ignore_ascii_case(name))
+        }
+        Property::List(..) => None,
+    };
+    let columns: Vec<Option<usize>> = element.properties.iter().map(column).collect();
+    for (place, name) in COLUMNS.iter().enumerate() {
+        let count = columns.iter().filter(|&&column| column == Some(place)).count();
+        if count > 1 || (count == 0 && place < 3) {
+            return Err(said(format!("has {count} vertex properties {name}, and needs one")));
+        }
+    }
+    let mut points = Points::default();
+    let has = |column| columns.contains(&Some(column));
+    (points.weights, points.values) = (has(3).then(Vec::new), has(4).then(Vec::new));
+    for _ in 0..element.count {
+        let mut position = [0.0; 3];
+        for (property, column) in element.properties.iter().zip(&columns) {
+            let number = property.read(numbers).map_err(said)?;
+            match *column {
+                Some(3) => points.weights.get_or_insert_default().push(number),
+                Some(4) => points.values.get_or_insert_default().push(number),
+                Some(axis) => position[axis] = number,
+                None => {}
+            }
+        }
+        points.positions.push(position);
+    }
+    Ok(points)
+}
+
+struct Header {
+    /// `None` for text.
+    endian: Option<Endian>,
+    elements: Vec<Element>,
+}
+
+struct Element {
+    name: String,
+    count: u64,
+    properties: Vec<Property>,
+}
+
+enum Property {
+    /// Its name and type.
+    Scalar(String, Dtype),
+    /// The types of its length and of its items.
+    List(Dtype, Dtype),
+}
+
+impl Header {
+    fn read(path: &Path, lines: &mut Lines<BufReader<std::fs::File>>) -> Result<Self, PointsError> {
+        let said = |what: String| format(path, what);
+        let mut line = || lines.next().map_err(io_error(path));
+        if line()?.as_deref() != Some("ply") {
+            return Err(said("is no PLY file: it does not begin with a line ply".into()));
+        }
+        let mut endian = None;
+        let mut elements: Vec<Element> = Vec::new();
+        while let Some(line) = line()? {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            let damaged = || said(format!("has a header line {line:?}, which is not understood"));
+            match words[..] {
+                ["end_header"] => {
+                    let endian =
+                        endian.ok_or_else(|| said("has no format in its header".into()))?;
+                    return Ok(Self { endian, elements });
+                }
+                ["comment" | "obj_info", ..] | [] => {}
+                ["format", "ascii", "1.0"] => endian = Some(None),
+                ["format", "binary_little_endian", "1.0"] => endian = Some(Some(Endian::Little)),
+                ["format", "binary_big_endian", "1.0"] => endian = Some(Some(Endian::Big)),
+                ["element", name, count] => elements.push(Element {
+                    name: name.into(),
+                    count: count.parse().map_err(|_| damaged())?,
+                    properties: Vec::new(),
+                }),
+                ["property", ref property @ ..] => {
+                    let property = match *property {
+                        ["list", count, item] | ["list", count, item, _] => Property::List(
+                            scalar_type(count).ok_or_else(damaged)?,
+                            scalar_type(item).ok_or_else(damaged)?,
+                        ),
+                        [kind, name] => {
+                            Property::Scalar(name.into(), scalar_type(kind).ok_or_else(damaged)?)
+                        }
+                        _ => return Err(damaged()),
+                    };
+                    elements.last_mut().ok_or_else(damaged)?.properties.push(property);
+                }
+                _ => return Err(damaged()),
+            }
+        }
+        Err(said("ends inside its PLY header: it is truncated; copy it again".into()))
+    }
+}
+
+impl Element {
+    /// Refuses more of this element than the bytes behind the header can hold.
+    fn fits(&self, binary: bool, left: u64) -> Result<(), String> {
+        let least = |property: &Property| match (binary, property) {
+            (true, Property::Scalar(_, dtype) | Property::List(dtype, _)) => dtype.size() as u64,
+            (false, _) => 1,
+        };
+        let row: u64 = self.properties.iter().map(least).sum();
+        if self.count.saturating_mul(row) > left {
+            let Self { name, count, .. } = self;
+            return Err(format!(
+                "claims {count} elements {name}, which {left} bytes cannot hold: it is truncated or \
+                 mislabelled"
+            ));
+        }
+        Ok(())
+    }
+
+    fn skip(&self, numbers: &mut Numbers) -> Result<(), String> {
+        // Without properties there is nothing to pass over, however many there are.
+        let rows = if self.properties.is_empty() { 0 } else { self.count };
+        for _ in 0..rows {
+            for property in &self.properties {
+                property.read(numbers)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Property {
+    /// Reads a number, or passes over a list.
+    fn read(&self, numbers: &mut Numbers) -> Result<f64, String> {
+        match *self {
+            Self::Scalar(_, dtype) => numbers.next(dtype),
+            Self::List(count, item) => {
+                let count = numbers.next(count)?;
+                if !(count >= 0.0 && count.fract() == 0.0) {
+                    return Err(format!("has a list of {count} items: it is damaged"));
+                }
+                (0..count as u64).try_for_each(|_| numbers.next(item).map(drop))?;
+                Ok(count)
+            }
+        }
+    }
+}
+
+/// The numbers behind a header.
+enum Numbers {
+    Text { text: String, at: usize },
+    Binary(BufReader<std::fs::File>, Endian),
+}
+
+impl Numbers {
+    fn next(&mut self, dtype: Dtype) -> Result<f64, String> {
+        const CUT: &str = "ends before all its elements: it is truncated; copy it again";
+        match self {
+            Self::Text { text, at } => {
+                let rest = text[*at..].trim_start();
+                let word = rest.split_whitespace().next().ok_or(CUT)?;
+                *at = text.len() - rest.len() + word.len();
+                let number = word.parse::<f64>().ok().filter(|&number| dtype.holds(number));
+                number.ok_or_else(|| format!("has {word:?}, which is no {dtype}"))
+            }
+            Self::Binary(reader, endian) => {
+                let mut bytes = [0; 8];
+                let bytes = &mut bytes[..dtype.size()];
+                reader.read_exact(bytes).map_err(|error| match error.kind() {
+                    std::io::ErrorKind::UnexpectedEof => CUT.to_owned(),
+                    _ => format!("cannot be read: {error}"),
+                })?;
+                let mut number = [0.0];
+                f64::decode(bytes, dtype, *endian, &mut number);
+                Ok(number[0])
+            }
+        }
+    }
+
+    fn at_end(&mut self) -> bool {
+        match self {
+            Self::Text { text, at } => text[*at..].trim().is_empty(),
+            Self::Binary(reader, _) => !matches!(reader.read(&mut [0]), Ok(1)),
+        }
+    }
+}
+
+fn scalar_type(name: &str) -> Option<Dtype> {
+    Some(match name {
+        "char" | "int8" => Dtype::I8,
+        "uchar" | "uint8" => Dtype::U8,
+        "short" | "int16" => Dtype::I16,
+        "ushort" | "uint16" => Dtype::U16,
+        "int" | "int32" => Dtype::I32,
+        "uint" | "uint32" => Dtype::U32,
+        "float" | "float32" => Dtype::F32,
+        "double" | "float64" => Dtype::F64,
+        _ => return None,
+    })
+}

@@ -1,0 +1,95 @@
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use flate2::read::{MultiGzDecoder, ZlibDecoder};
+use ndarray::Array3;
+
+use super::payload::{Length, Payload};
+use super::{format_error, payload_error, text};
+use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+
+/// A volume as the header of a file describes it, x fastest.
+#[derive(Clone, Debug)]
+pub(super) struct Described {
+    pub dims: Dims,
+    pub dtype: Dtype,
+    pub endian: Endian,
+    pub frame: Frame,
+    pub encoding: Encoding,
+}
+
+/// How samples become bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Encoding {
+    /// As they are.
+    Raw,
+    /// As numbers with white space between them.
+    Text,
+    /// Compressed, with the header of gzip.
+    Gzip,
+    /// Compressed, with the header of zlib.
+    Zlib,
+}
+
+impl Described {
+    /// Bytes of the samples where they are not compressed.
+    pub fn bytes(&self) -> u64 {
+        (self.dims.samples() * self.dtype.size()) as u64
+    }
+
+    /// Reads the samples, which are all there is in `bytes` bytes.
+    pub fn read(self, path: &Path, source: impl Read, bytes: u64) -> Result<Volume, VolumeError> {
+        let compressed = BufReader::new(source);
+        match self.encoding {
+            Encoding::Raw => self.decode(path, compressed, Length::Exactly(bytes)),
+            Encoding::Gzip => {
+                self.decode(path, MultiGzDecoder::new(compressed), Length::of_gzip(bytes))
+            }
+            Encoding::Zlib => {
+                self.decode(path, ZlibDecoder::new(compressed), Length::of_gzip(bytes))
+            }
+            Encoding::Text => {
+                let count = self.dims.samples() as u64;
+                let samples = text::numbers(compressed, bytes, self.dtype, count)
+                    .map_err(|what| format_error(path, what))?;
+                self.volume(samples)
+            }
+        }
+    }
+
+    fn decode(self, path: &Path, reader: impl Read, length: Length) -> Result<Volume, VolumeError> {
+        let samples = Payload { reader, length }
+            .samples(self.dtype, self.endian, self.dims.samples() as u64)
+            .map_err(payload_error(path, &self.dims, self.dtype))?;
+        self.volume(samples)
+    }
+
+    /// The volume of as many samples as were claimed.
+    pub fn volume(self, samples: Vec<f32>) -> Result<Volume, VolumeError> {
+        let samples =
+            Array3::from_shape_vec(self.dims.shape(), samples).expect("count was checked");
+        let volume = Volume::new(samples, self.frame)?;
+        Ok(if self.dtype == Dtype::U8 { volume.with_gray_levels() } else { volume })
+    }
+}
+
+/// The frame a header gives, or the error that says which number is none.
+pub(super) fn frame(
+    path: &Path,
+    origin: [f64; 3],
+    axes: [[f64; 3]; 3],
+) -> Result<Frame, VolumeError> {
+    Frame::from_axes(origin, axes).ok_or_else(|| {
+        let what = format!(
+            "places its grid at {origin:?} with steps {axes:?} along its axes: spacing must not be \
+             0, and all numbers finite; correct its header"
+        );
+        format_error(path, what)
+    })
+}
+
+/// Steps along the world's axes.
+pub(super) fn diagonal(spacing: [f64; 3]) -> [[f64; 3]; 3] {
+    let [x, y, z] = spacing;
+    [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]
+}

@@ -1,0 +1,46 @@
+use std::io::{self, BufRead, Read};
+
+/// Longer lines than this are data taken for a header.
+const MAX_LINE: u64 = 1 << 20;
+
+/// Lines of a header that stands before data of any kind, with the number of bytes they took.
+pub(crate) struct Lines<R> {
+    reader: R,
+    bytes: u64,
+}
+
+impl<R: BufRead> Lines<R> {
+    /// Stands at the first line.
+    pub fn new(reader: R) -> Self {
+        Self { reader, bytes: 0 }
+    }
+
+    /// The next line without its end (LF or CR LF); `None` at the end of the file. Bytes that are
+    /// no UTF-8 are replaced.
+    pub fn next(&mut self) -> io::Result<Option<String>> {
+        let mut line = Vec::new();
+        let found = (&mut self.reader).take(MAX_LINE).read_until(b'\n', &mut line)? as u64;
+        if found == MAX_LINE {
+            let what = "a line of its header has no end within 1 MB";
+            return Err(io::Error::new(io::ErrorKind::InvalidData, what));
+        }
+        self.bytes += found;
+        if line.ends_with(b"\n") {
+            line.pop();
+        }
+        if line.ends_with(b"\r") {
+            line.pop();
+        }
+        Ok((found > 0).then(|| String::from_utf8_lossy(&line).into_owned()))
+    }
+
+    /// Bytes of the lines so far.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// The reader, which stands behind the last line.
+    pub fn into_inner(self) -> R {
+        self.reader
+    }
+}

@@ -1,0 +1,215 @@
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use super::described::{Described, Encoding, frame};
+use super::detached::Detached;
+use super::lines::Lines;
+use super::nrrd::numbered;
+use super::{format_error, io_error};
+use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+
+/// Keys one of which stands in the first line of a MetaImage header.
+const FIRST_KEYS: [&str; 4] = ["ObjectType", "NDims", "Comment", "ObjectSubType"];
+
+/// Whether a file begins as a MetaImage header does.
+pub(super) fn is_header(start: &[u8]) -> bool {
+    let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();
+    let line = String::from_utf8_lossy(line);
+    line.split_once('=').is_some_and(|(key, _)| FIRST_KEYS.contains(&key.trim()))
+}
+
+/// Reads MetaImage, the format of ITK's MetaIO, with its samples behind the header (`.mha`) or in
+/// other files (`.mhd`: one, a `LIST`, or a numbered row), raw, zlib-compressed or text.
+///
+/// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame.
+/// Several channels are refused.
+pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
+    let file = File::open(path).map_err(io_error(path))?;
+    let length = file.metadata().map_err(io_error(path))?.len();
+    let mut lines = Lines::new(BufReader::new(file));
+    let header = Header::read(path, &mut lines)?;
+    let described = header.described(path)?;
+    let words: Vec<&str> = header.data.split_whitespace().collect();
+    if words.first().is_some_and(|word| word.eq_ignore_ascii_case("local")) {
+        let bytes = length - lines.bytes();
+        return described.read(path, lines.into_inner(), bytes);
+    }
+    let names = if words.first() == Some(&"LIST") {
+        let mut names = Vec::new();
+        while let Some(line) = lines.next().map_err(io_error(path))? {
+            if !line.trim().is_empty() {
+                names.push(line.trim().to_owned());
+            }
+        }
+        names
+    } else {
+        match numbered(&words) {
+            Some(names) => names.map_err(|what| format_error(path, what))?,
+            None => vec![header.data.clone()],
+        }
+    };
+    if names.iter().all(String::is_empty) {
+        return Err(format_error(path, "names no data file: its header is damaged"));
+    }
+    let each = described.bytes() / names.len() as u64;
+    let skip = header.skip(path)?;
+    let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
+    let source = Detached::new(path, &names, skip)?;
+    let bytes = source.bytes;
+    described.read(path, source, bytes)
+}
+
+struct Header {
+    fields: Vec<(String, String)>,
+    /// `ElementDataFile`, the last field.
+    data: String,
+}
+
+impl Header {
+    fn read(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Self, VolumeError> {
+        let mut fields = Vec::new();
+        while let Some(line) = lines.next().map_err(io_error(path))? {
+            if line.trim().is_empty() {
+                continue;
+            }
+            let Some((key, value)) = line.split_once('=') else {
+                let line: String = line.chars().take(40).collect();
+                let what = format!("is no MetaImage file: its header has a line {line:?}");
+                return Err(format_error(path, what));
+            };
+            let (key, value) = (key.trim().to_owned(), value.trim().to_owned());
+            if key == "ElementDataFile" {
+                return Ok(Self { fields, data: value });
+            }
+            fields.push((key, value));
+        }
+        let what = "ends before ElementDataFile: it is truncated, or no MetaImage file";
+        Err(format_error(path, what))
+    }
+
+    /// The value of the first of these keys that is there.
+    fn field(&self, keys: &[&str]) -> Option<&str> {
+        let of_key = |(key, _): &&(String, String)| keys.contains(&key.as_str());
+        self.fields.iter().find(of_key).map(|(_, value)| value.as_str())
+    }
+
+    fn flag(&self, keys: &[&str]) -> bool {
+        self.field(keys).is_some_and(|value| value.eq_ignore_ascii_case("true"))
+    }
+
+    /// As many numbers as the key should have.
+    fn numbers<const N: usize>(
+        &self,
+        path: &Path,
+        keys: &[&str],
+        count: usize,
+        default: [f64; N],
+    ) -> Result<[f64; N], VolumeError> {
+        let Some(text) = self.field(keys) else { return Ok(default) };
+        let numbers: Option<Vec<f64>> =
+            text.split_whitespace().map(|number| number.parse().ok()).collect();
+        let mut all = default;
+        match numbers {
+            Some(numbers) if numbers.len() == count => {
+                all[..count].copy_from_slice(&numbers);
+                Ok(all)
+            }
+            _ => {
+                let what = format!("{} = {text} in its header is not {count} numbers", keys[0]);
+                Err(format_error(path, what))
+            }
+        }
+    }
+
+    fn described(&self, path: &Path) -> Result<Described, VolumeError> {
+        let said = |what: String| format_error(path, what);
+        let needed = |key: &str| {
+            self.field(&[key])
+                .ok_or_else(|| said(format!("its MetaImage header has no {key}: it is damaged")))
+        };
+        if let Some(kind) = self.field(&["ObjectType"]).filter(|kind| *kind != "Image") {
+            return Err(said(format!("holds an object of type {kind}: only Image is read")));
+        }
+        let count = match needed("NDims")? {
+            "2" => 2,
+            "3" => 3,
+            other => return Err(said(format!("has NDims = {other}: a volume has 3 axes"))),
+        };
+        let sizes = needed("DimSize")?;
+        let size: Option<Vec<u64>> = sizes.split_whitespace().map(|n| n.parse().ok()).collect();
+        let dims = match size.as_deref() {
+            Some(&[x, y]) if count == 2 => Dims::new(x, y, 1)?,
+            Some(&[x, y, z]) if count == 3 => Dims::new(x, y, z)?,
+            _ => return Err(said(format!("DimSize = {sizes} is not {count} sizes"))),
+        };
+        let channels = self.field(&["ElementNumberOfChannels"]).unwrap_or("1");
+        if channels != "1" {
+            return Err(said(format!(
+                "has {channels} values a voxel (ElementNumberOfChannels): only scalar volumes are \
+                 read; extract one first"
+            )));
+        }
+        let name = needed("ElementType")?;
+        let dtype = scalar_type(name).ok_or_else(|| {
+            said(format!("holds samples of type {name}, which is not read: save it as MET_FLOAT"))
+        })?;
+        let big = self.flag(&["BinaryDataByteOrderMSB", "ElementByteOrderMSB"]);
+        let encoding = if self.field(&["BinaryData"]).is_some() && !self.flag(&["BinaryData"]) {
+            Encoding::Text
+        } else if self.flag(&["CompressedData"]) {
+            Encoding::Zlib
+        } else {
+            Encoding::Raw
+        };
+
+        let keys = ["ElementSpacing", "ElementSize"];
+        let spacing = self.numbers(path, &keys, count, [1.0; 3])?;
+        let keys = ["Offset", "Origin", "Position"];
+        let origin = self.numbers(path, &keys, count, [0.0; 3])?;
+        let keys = ["TransformMatrix", "Rotation", "Orientation"];
+        let mut axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        if count == 3 {
+            let identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+            let matrix = self.numbers::<9>(path, &keys, 9, identity)?;
+            axes.as_flattened_mut().copy_from_slice(&matrix);
+        } else {
+            let matrix = self.numbers::<4>(path, &keys, 4, [1.0, 0.0, 0.0, 1.0])?;
+            axes[0][..2].copy_from_slice(&matrix[..2]);
+            axes[1][..2].copy_from_slice(&matrix[2..]);
+        }
+        for (axis, length) in axes.iter_mut().zip(spacing) {
+            *axis = axis.map(|component| component * length);
+        }
+        let frame = frame(path, origin, axes)?;
+        let endian = if big { Endian::Big } else { Endian::Little };
+        Ok(Described { dims, dtype, endian, frame, encoding })
+    }
+
+    /// Bytes before the samples of each data file; `None` where they stand at its end.
+    fn skip(&self, path: &Path) -> Result<Option<u64>, VolumeError> {
+        let text = self.field(&["HeaderSize"]).unwrap_or("0");
+        match text.parse::<i64>() {
+            Ok(-1) => Ok(None),
+            Ok(skip) if skip >= 0 => Ok(Some(skip as u64)),
+            _ => Err(format_error(path, format!("HeaderSize = {text} is no number of bytes"))),
+        }
+    }
+}
+
+fn scalar_type(name: &str) -> Option<Dtype> {
+    Some(match name {
+        "MET_CHAR" => Dtype::I8,
+        "MET_UCHAR" => Dtype::U8,
+        "MET_SHORT" => Dtype::I16,
+        "MET_USHORT" => Dtype::U16,
+        // Four bytes in MetaIO, on any machine.
+        "MET_INT" | "MET_LONG" => Dtype::I32,
+        "MET_UINT" | "MET_ULONG" => Dtype::U32,
+        "MET_LONG_LONG" => Dtype::I64,
+        "MET_ULONG_LONG" => Dtype::U64,
+        "MET_FLOAT" => Dtype::F32,
+        "MET_DOUBLE" => Dtype::F64,
+        _ => return None,
+    })
+}

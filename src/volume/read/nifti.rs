@@ -1,0 +1,283 @@
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use super::described::{Described, Encoding, diagonal, frame};
+use super::payload::{Length, Payload};
+use super::{format_error, io_error, payload_error};
+use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+
+/// Length of the header of version 1, which its first number repeats.
+const HEADER_1: usize = 348;
+/// Length of the header of version 2.
+const HEADER_2: usize = 540;
+
+/// Whether a file begins as a NIfTI (or Analyze) header does, of either version and byte order.
+pub(super) fn is_header(start: &[u8]) -> bool {
+    start.len() >= HEADER_1 && version(start).is_some()
+}
+
+/// Reads NIfTI-1 and NIfTI-2 (nifti.nimh.nih.gov): `.nii`, `.nii.gz`, or a pair `.hdr` and `.img`.
+///
+/// `scl_slope` and `scl_inter` are applied. The frame is that of `sform`, else of `qform`, else of
+/// `pixdim` alone, in the space the file means (x to the right, y to the front, z up). Axes beyond
+/// the third must have one sample; colours and complex numbers are refused.
+pub(super) fn read(path: &Path, reader: impl Read, length: Length) -> Result<Volume, VolumeError> {
+    let mut reader = reader;
+    let mut header = Vec::new();
+    let mut fill = |size: usize, header: &mut Vec<u8>| -> Result<(), VolumeError> {
+        let left = (size - header.len()) as u64;
+        (&mut reader).take(left).read_to_end(header).map_err(io_error(path))?;
+        if header.len() < size {
+            return Err(format_error(path, "ends inside its NIfTI header: it is truncated"));
+        }
+        Ok(())
+    };
+    fill(HEADER_1, &mut header)?;
+    let Some((version, endian)) = version(&header) else {
+        let what = "is no NIfTI file: it begins with neither 348 nor 540, the length of its header";
+        return Err(format_error(path, what));
+    };
+    if version == 2 {
+        fill(HEADER_2, &mut header)?;
+    }
+    let header = Header { bytes: header, version, endian };
+    let described = header.described(path)?;
+    let (slope, inter) = header.scaling();
+    if header.is_pair(path)? {
+        let image = path.with_extension("img");
+        let mut file = File::open(&image).map_err(io_error(&image))?;
+        let length = file.metadata().map_err(io_error(&image))?.len();
+        let offset = header.vox_offset().clamp(0.0, length as f64) as u64;
+        file.seek(SeekFrom::Start(offset)).map_err(io_error(&image))?;
+        let left = Length::Exactly(length - offset);
+        return samples(path, described, slope, inter, BufReader::new(file), left);
+    }
+    let offset = header.offset(path)?;
+    let skip = offset - header.bytes.len() as u64;
+    let skipped = std::io::copy(&mut (&mut reader).take(skip), &mut std::io::sink());
+    if skipped.map_err(io_error(path))? < skip {
+        return Err(format_error(path, format!("ends before its samples at byte {offset}")));
+    }
+    samples(path, described, slope, inter, reader, length.minus(offset))
+}
+
+/// Reads samples and scales them, in doubles where `f32` does not hold the numbers of the file.
+fn samples(
+    path: &Path,
+    described: Described,
+    slope: f64,
+    inter: f64,
+    reader: impl Read,
+    length: Length,
+) -> Result<Volume, VolumeError> {
+    let Described { dims, dtype, endian, .. } = described;
+    let payload = Payload { reader, length };
+    let fail = payload_error(path, &dims, dtype);
+    let count = dims.samples() as u64;
+    if (slope, inter) == (1.0, 0.0) {
+        let samples = payload.samples(dtype, endian, count).map_err(fail)?;
+        return described.volume(samples);
+    }
+    let scaled: Vec<f32> = if dtype.size() < 4 || dtype == Dtype::F32 {
+        let mut samples: Vec<f32> = payload.samples(dtype, endian, count).map_err(fail)?;
+        samples.iter_mut().for_each(|v| *v = (f64::from(*v) * slope + inter) as f32);
+        samples
+    } else {
+        let samples: Vec<f64> = payload.samples(dtype, endian, count).map_err(fail)?;
+        samples.iter().map(|v| (v * slope + inter) as f32).collect()
+    };
+    // Scaled bytes are no gray levels.
+    Described { dtype: Dtype::F32, ..described }.volume(scaled)
+}
+
+/// Version and byte order, by the first number.
+fn version(start: &[u8]) -> Option<(u8, Endian)> {
+    let first: [u8; 4] = start.get(..4)?.try_into().ok()?;
+    for (size, version) in [(HEADER_1, 1), (HEADER_2, 2)] {
+        if u32::from_le_bytes(first) == size as u32 {
+            return Some((version, Endian::Little));
+        }
+        if u32::from_be_bytes(first) == size as u32 {
+            return Some((version, Endian::Big));
+        }
+    }
+    None
+}
+
+/// The bytes of a header; places are those of version 1 and version 2.
+struct Header {
+    bytes: Vec<u8>,
+    version: u8,
+    endian: Endian,
+}
+
+impl Header {
+    /// As many bytes as asked for, least significant first.
+    fn at<const N: usize>(&self, one: usize, two: usize) -> [u8; N] {
+        let place = if self.version == 1 { one } else { two };
+        let mut bytes: [u8; N] = self.bytes[place..place + N].try_into().expect("inside");
+        if self.endian == Endian::Big {
+            bytes.reverse();
+        }
+        bytes
+    }
+
+    fn short(&self, one: usize, two: usize) -> i16 {
+        i16::from_le_bytes(self.at(one, two))
+    }
+
+    /// A code: 16 bits in version 1, 32 in version 2.
+    fn code(&self, one: usize, two: usize) -> i32 {
+        match self.version {
+            1 => i32::from(self.short(one, two)),
+            _ => i32::from_le_bytes(self.at(one, two)),
+        }
+    }
+
+    /// A real number: `f32` in version 1, `f64` in version 2. `i` counts numbers from the place.
+    fn real(&self, one: usize, two: usize, i: usize) -> f64 {
+        match self.version {
+            1 => f32::from_le_bytes(self.at(one + 4 * i, 0)).into(),
+            _ => f64::from_le_bytes(self.at(0, two + 8 * i)),
+        }
+    }
+
+    fn dim(&self, axis: usize) -> i64 {
+        match self.version {
+            1 => self.short(40 + 2 * axis, 0).into(),
+            _ => i64::from_le_bytes(self.at(0, 16 + 8 * axis)),
+        }
+    }
+
+    /// Whether the samples stand in a file of their own.
+    fn is_pair(&self, path: &Path) -> Result<bool, VolumeError> {
+        let place = if self.version == 1 { 344 } else { 4 };
+        match &self.bytes[place..place + 4] {
+            b"n+1\0" | b"n+2\0" => Ok(false),
+            b"ni1\0" | b"ni2\0" => Ok(true),
+            [0, ..] if self.version == 1 => Err(format_error(
+                path,
+                "is an Analyze 7.5 header, which says nothing of orientation and is not read: \
+                 convert it to NIfTI",
+            )),
+            magic => Err(format_error(
+                path,
+                format!("is no NIfTI file: {:?} stands for n+1", String::from_utf8_lossy(magic)),
+            )),
+        }
+    }
+
+    fn vox_offset(&self) -> f64 {
+        match self.version {
+            1 => f64::from(f32::from_le_bytes(self.at(108, 0))),
+            _ => i64::from_le_bytes(self.at(0, 168)) as f64,
+        }
+    }
+
+    /// Where the samples begin in a file of its own.
+    fn offset(&self, path: &Path) -> Result<u64, VolumeError> {
+        let offset = self.vox_offset();
+        if offset >= self.bytes.len() as f64 && offset.fract() == 0.0 {
+            return Ok(offset as u64);
+        }
+        // Some writers leave 0 for "behind the header", which 4 bytes of extension flags follow.
+        if offset == 0.0 {
+            return Ok(self.bytes.len() as u64 + 4);
+        }
+        Err(format_error(path, format!("has samples at byte {offset} (vox_offset), in its header")))
+    }
+
+    fn described(&self, path: &Path) -> Result<Described, VolumeError> {
+        let said = |what: String| format_error(path, what);
+        let axes = self.dim(0);
+        if !(1..=7).contains(&axes) {
+            return Err(said(format!("has dim[0] = {axes}: 1 to 7 axes are possible")));
+        }
+        let size = |axis: usize| if axis as i64 <= axes { self.dim(axis) } else { 1 };
+        let sizes = [1, 2, 3, 4, 5, 6, 7].map(size);
+        if sizes.iter().any(|&size| size < 0) {
+            return Err(said(format!("has axes of {sizes:?} samples: its header is damaged")));
+        }
+        if sizes[3..].iter().any(|&size| size > 1) {
+            return Err(said(format!(
+                "has axes of {sizes:?} samples: a volume has three; extract one first"
+            )));
+        }
+        let [x, y, z, ..] = sizes.map(|size| size as u64);
+        let dims = Dims::new(x, y, z)?;
+        let dtype = match self.short(70, 12) {
+            2 => Dtype::U8,
+            4 => Dtype::I16,
+            8 => Dtype::I32,
+            16 => Dtype::F32,
+            64 => Dtype::F64,
+            256 => Dtype::I8,
+            512 => Dtype::U16,
+            768 => Dtype::U32,
+            1024 => Dtype::I64,
+            1280 => Dtype::U64,
+            code => {
+                let name = match code {
+                    1 => "single bits",
+                    32 | 1792 | 2048 => "complex numbers",
+                    128 | 2304 => "colours",
+                    1536 => "128-bit floats",
+                    _ => "an unknown type",
+                };
+                return Err(said(format!(
+                    "holds {name} (datatype {code}): integers of 8 to 64 bits, float32 and float64 \
+                     are read; convert it"
+                )));
+            }
+        };
+        let frame = self.frame(path)?;
+        Ok(Described { dims, dtype, endian: self.endian, frame, encoding: Encoding::Raw })
+    }
+
+    /// Slope and intercept; a slope of 0 means none.
+    fn scaling(&self) -> (f64, f64) {
+        let (slope, inter) = (self.real(112, 176, 0), self.real(116, 184, 0));
+        if slope != 0.0 && slope.is_finite() && inter.is_finite() {
+            (slope, inter)
+        } else {
+            (1.0, 0.0)
+        }
+    }
+
+    fn frame(&self, path: &Path) -> Result<Frame, VolumeError> {
+        let pixdim = |i: usize| self.real(76, 104, i);
+        if self.code(254, 348) > 0 {
+            let row = |r: usize| [0, 1, 2, 3].map(|c| self.real(280, 400, 4 * r + c));
+            let rows = [row(0), row(1), row(2)];
+            let column = |c: usize| [0, 1, 2].map(|r| rows[r][c]);
+            return frame(path, column(3), [column(0), column(1), column(2)]);
+        }
+        // 0 stands for "unknown" in some files.
+        let length = |i: usize| if pixdim(i) == 0.0 { 1.0 } else { pixdim(i).abs() };
+        let spacing = [1, 2, 3].map(length);
+        if self.code(252, 344) <= 0 {
+            return frame(path, [0.0; 3], diagonal(spacing));
+        }
+        let mut imaginary = [0, 1, 2].map(|i| self.real(256, 352, i));
+        let square: f64 = imaginary.iter().map(|v| v * v).sum();
+        // A turn of almost 180°: rounding would speak for the real part, as in NIfTI's own library.
+        let half_turn = 1.0 - square < 1e-7;
+        if half_turn && square > 0.0 {
+            imaginary = imaginary.map(|v| v / square.sqrt());
+        }
+        let a = if half_turn { 0.0 } else { (1.0 - square).sqrt() };
+        let [b, c, d] = imaginary;
+        let mut rotation = [
+            [a * a + b * b - c * c - d * d, 2.0 * (b * c - a * d), 2.0 * (b * d + a * c)],
+            [2.0 * (b * c + a * d), a * a + c * c - b * b - d * d, 2.0 * (c * d - a * b)],
+            [2.0 * (b * d - a * c), 2.0 * (c * d + a * b), a * a + d * d - b * b - c * c],
+        ];
+        if pixdim(0) < 0.0 {
+            rotation.iter_mut().for_each(|row| row[2] = -row[2]);
+        }
+        let axis = |c: usize| [0, 1, 2].map(|r| rotation[r][c] * spacing[c]);
+        let origin = [0, 1, 2].map(|i| self.real(268, 376, i));
+        frame(path, origin, [axis(0), axis(1), axis(2)])
+    }
+}

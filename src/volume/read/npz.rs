@@ -1,0 +1,69 @@
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use zip::ZipArchive;
+use zip::result::ZipError;
+
+use super::npy::{self, NpyFile};
+use super::{format_error, io_error};
+use crate::volume::{Volume, VolumeError};
+
+/// Deflate expands by no more than this, and a little for its headers.
+const MOST_EXPANSION: u64 = 1032;
+
+/// Reads NPZ, NumPy's archive of arrays (`savez`, `savez_compressed`): its only array of three axes.
+pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
+    let file = File::open(path).map_err(io_error(path))?;
+    let length = file.metadata().map_err(io_error(path))?.len();
+    let mut archive = ZipArchive::new(BufReader::new(file)).map_err(damaged(path))?;
+    let mut found: Vec<(usize, String)> = Vec::new();
+    for i in 0..archive.len() {
+        let (name, array) = member(path, &mut archive, i, length)?;
+        if array.shape.len() == 3 {
+            found.push((i, name));
+        }
+    }
+    match found.as_slice() {
+        [(i, _)] => npy::volume(path, member(path, &mut archive, *i, length)?.1),
+        [] => Err(format_error(path, "holds no array of three axes: there is no volume in it")),
+        several => {
+            let names: Vec<&str> = several.iter().map(|(_, name)| name.as_str()).collect();
+            Err(format_error(
+                path,
+                format!(
+                    "holds several arrays of three axes, {}: save one of them as .npy",
+                    names.join(", ")
+                ),
+            ))
+        }
+    }
+}
+
+/// An array of the archive, at its first element.
+fn member<'a>(
+    path: &Path,
+    archive: &'a mut ZipArchive<BufReader<File>>,
+    i: usize,
+    length: u64,
+) -> Result<(String, NpyFile<impl std::io::Read + use<'a>>), VolumeError> {
+    let member = archive.by_index(i).map_err(damaged(path))?;
+    let name = member.name().map_err(damaged(path))?.into_owned();
+    let most = member.compressed_size().min(length).saturating_mul(MOST_EXPANSION);
+    if member.size() > most.saturating_add(MOST_EXPANSION) {
+        let what = format!(
+            "claims {} bytes for its array {name}, more than {length} bytes can hold: it is damaged",
+            member.size()
+        );
+        return Err(format_error(path, what));
+    }
+    let size = member.size();
+    Ok((name, NpyFile::of(path, member, size)?))
+}
+
+fn damaged(path: &Path) -> impl Fn(ZipError) -> VolumeError {
+    move |error| match error {
+        ZipError::Io(error) => io_error(path)(error),
+        other => format_error(path, format!("is no NPZ archive that can be read: {other}")),
+    }
+}

@@ -1,0 +1,319 @@
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use super::described::{Described, Encoding, diagonal, frame};
+use super::detached::Detached;
+use super::lines::Lines;
+use super::{format_error, io_error};
+use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+
+/// The first bytes of each NRRD file, before the digit of its version.
+pub(super) const MAGIC: &[u8] = b"NRRD000";
+
+/// Reads NRRD ("nearly raw raster data", teem.sourceforge.net/nrrd/format.html) with its samples
+/// behind the header (`.nrrd`) or in other files (`.nhdr`: one, a `LIST`, or a numbered row).
+///
+/// Encodings raw, gzip and text; every scalar type. `space directions`, or `spacings`, and `space
+/// origin` give the frame, in the space the file names. An axis of one sample beyond the third is
+/// dropped; axes of colours or vectors, `bzip2`, `hex` and `line skip` are refused.
+pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
+    let said = |what: String| format_error(path, what);
+    let file = File::open(path).map_err(io_error(path))?;
+    let length = file.metadata().map_err(io_error(path))?.len();
+    let mut lines = Lines::new(BufReader::new(file));
+    let header = Header::read(path, &mut lines)?;
+    let described = header.described(path)?;
+    let skip = header.skip(path, &described)?;
+    match &header.files {
+        None => {
+            let behind = length - lines.bytes();
+            let skip = skip.unwrap_or(behind.saturating_sub(described.bytes()));
+            let mut reader = lines.into_inner();
+            let skipped =
+                std::io::copy(&mut std::io::Read::take(&mut reader, skip), &mut std::io::sink());
+            let bytes = behind - skipped.map_err(io_error(path))?;
+            described.read(path, reader, bytes)
+        }
+        Some(names) => {
+            if names.is_empty() {
+                return Err(said("names no data file: its header is damaged".into()));
+            }
+            let each = described.bytes() / names.len() as u64;
+            let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
+            let source = Detached::new(path, names, skip)?;
+            let bytes = source.bytes;
+            described.read(path, source, bytes)
+        }
+    }
+}
+
+struct Header {
+    /// By name, in lower case.
+    fields: HashMap<String, String>,
+    /// The files that hold the samples; `None` where they follow the header.
+    files: Option<Vec<String>>,
+}
+
+impl Header {
+    fn read(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Self, VolumeError> {
+        let said = |what: String| format_error(path, what);
+        let first = lines.next().map_err(io_error(path))?.unwrap_or_default();
+        if !first.as_bytes().starts_with(MAGIC) {
+            return Err(said("is no NRRD file: it does not begin with NRRD000".into()));
+        }
+        let mut header = Self { fields: HashMap::new(), files: None };
+        // A header alone may end with its file; samples need the blank line.
+        while let Some(line) = lines.next().map_err(io_error(path))? {
+            if line.is_empty() {
+                return Ok(header);
+            }
+            if line.starts_with('#') || line.contains(":=") {
+                continue;
+            }
+            let Some((name, value)) = line.split_once(':') else {
+                return Err(said(format!("has a header line {line:?}, which is no field")));
+            };
+            let (name, value) = (name.trim().to_lowercase(), value.trim());
+            if name == "data file" || name == "datafile" {
+                header.files = Some(data_files(path, value, lines)?);
+                if value.starts_with("LIST") {
+                    return Ok(header);
+                }
+            } else if header.fields.insert(name.clone(), value.into()).is_some() {
+                return Err(said(format!("gives {name:?} twice in its header")));
+            }
+        }
+        if header.files.is_some() {
+            return Ok(header);
+        }
+        Err(said("ends inside its NRRD header: it is truncated; copy it again".into()))
+    }
+
+    fn field(&self, name: &str) -> Option<&str> {
+        self.fields.get(name).map(String::as_str)
+    }
+
+    fn needed(&self, path: &Path, name: &str) -> Result<&str, VolumeError> {
+        let missing =
+            || format_error(path, format!("its NRRD header has no {name}: it is damaged"));
+        self.field(name).ok_or_else(missing)
+    }
+
+    fn described(&self, path: &Path) -> Result<Described, VolumeError> {
+        let said = |what: String| format_error(path, what);
+        let sizes = self.needed(path, "sizes")?;
+        let mut axes: Vec<(usize, u64)> = sizes
+            .split_whitespace()
+            .map(|size| size.parse().map_err(|_| said(format!("sizes: {sizes} are no numbers"))))
+            .collect::<Result<Vec<u64>, _>>()?
+            .into_iter()
+            .enumerate()
+            .collect();
+        let dimension = self.needed(path, "dimension")?;
+        if dimension.parse() != Ok(axes.len()) {
+            let count = axes.len();
+            return Err(said(format!("has dimension: {dimension}, but {count} sizes")));
+        }
+        let all = axes.len();
+        let kinds: Vec<&str> =
+            self.field("kinds").map(|kinds| kinds.split_whitespace().collect()).unwrap_or_default();
+        for &(axis, size) in &axes {
+            let kind = kinds.get(axis).copied().unwrap_or("none");
+            let scalar = ["domain", "space", "time", "none", "???", "scalar", "stub"];
+            if size > 1 && !scalar.contains(&kind.to_lowercase().as_str()) {
+                return Err(said(format!(
+                    "has {size} values a voxel (axis {axis} is of kind {kind}): only scalar \
+                     volumes are read; extract one first"
+                )));
+            }
+        }
+        while axes.len() > 3 {
+            let Some(single) = axes.iter().position(|&(_, size)| size == 1) else {
+                return Err(said(format!(
+                    "has {all} axes, sizes: {sizes}: a volume has three; extract one first"
+                )));
+            };
+            axes.remove(single);
+        }
+        let size = |axis: usize| axes.get(axis).map_or(1, |&(_, size)| size);
+        let dims = Dims::new(size(0), size(1), size(2))?;
+        let kept: Vec<usize> = axes.iter().map(|&(axis, _)| axis).collect();
+
+        let name = self.needed(path, "type")?;
+        let dtype = scalar_type(name).ok_or_else(|| {
+            said(format!(
+                "holds samples of type {name}: integers of 8 to 64 bits, float and double are read"
+            ))
+        })?;
+        let encoding = match self.needed(path, "encoding")?.to_lowercase().as_str() {
+            "raw" => Encoding::Raw,
+            "gzip" | "gz" => Encoding::Gzip,
+            "text" | "txt" | "ascii" => Encoding::Text,
+            other => {
+                return Err(said(format!(
+                    "is encoded as {other}, which is not read: save it as raw or gzip"
+                )));
+            }
+        };
+        let endian = match self.field("endian").map(str::to_lowercase).as_deref() {
+            Some("little") => Endian::Little,
+            Some("big") => Endian::Big,
+            None if dtype.size() == 1 || encoding == Encoding::Text => Endian::Little,
+            other => {
+                let given = other.unwrap_or("(missing)");
+                return Err(said(format!("endian: {given} is no byte order: give little or big")));
+            }
+        };
+        let frame = self.frame(path, all, &kept)?;
+        Ok(Described { dims, dtype, endian, frame, encoding })
+    }
+
+    /// Where the grid lies; `kept` are the axes that are read, of `all`.
+    fn frame(&self, path: &Path, all: usize, kept: &[usize]) -> Result<Frame, VolumeError> {
+        let said = |what: String| format_error(path, what);
+        let mut steps = diagonal([1.0; 3]);
+        if let Some(text) = self.field("space directions") {
+            let directions = vectors(text).filter(|rows| rows.len() == all).ok_or_else(|| {
+                said(format!("space directions: {text} are not {all} vectors of numbers"))
+            })?;
+            for (step, &axis) in steps.iter_mut().zip(kept) {
+                if let Some(direction) = directions[axis] {
+                    *step = direction;
+                }
+            }
+        } else if let Some(text) = self.field("spacings") {
+            let spacings: Option<Vec<f64>> =
+                text.split_whitespace().map(|number| number.parse().ok()).collect();
+            let spacings = spacings
+                .filter(|numbers| numbers.len() == all)
+                .ok_or_else(|| said(format!("spacings: {text} are not {all} numbers")))?;
+            for (c, &axis) in kept.iter().enumerate() {
+                // NaN stands for "unknown".
+                if !spacings[axis].is_nan() {
+                    steps[c][c] = spacings[axis];
+                }
+            }
+        }
+        let origin = match self.field("space origin") {
+            None => [0.0; 3],
+            Some(text) => match vectors(text).as_deref() {
+                Some([Some(origin)]) => *origin,
+                _ => return Err(said(format!("space origin: {text} is no vector of numbers"))),
+            },
+        };
+        frame(path, origin, steps)
+    }
+
+    /// Bytes before the samples; `None` where they stand at the end of the file.
+    fn skip(&self, path: &Path, described: &Described) -> Result<Option<u64>, VolumeError> {
+        let said = |what: String| format_error(path, what);
+        let lines = self.field("line skip").or(self.field("lineskip")).unwrap_or("0");
+        if lines != "0" {
+            return Err(said(format!("line skip: {lines} is not read: give byte skip instead")));
+        }
+        let bytes = self.field("byte skip").or(self.field("byteskip")).unwrap_or("0");
+        match bytes.parse::<u64>() {
+            Ok(0) => Ok(Some(0)),
+            _ if described.encoding != Encoding::Raw => {
+                Err(said(format!("byte skip: {bytes} is read only where the encoding is raw")))
+            }
+            Ok(skip) => Ok(Some(skip)),
+            Err(_) if bytes == "-1" => Ok(None),
+            Err(_) => Err(said(format!("byte skip: {bytes} is no number of bytes"))),
+        }
+    }
+}
+
+/// The names a `data file` field gives: one, a `LIST` of the lines that follow, or a numbered row
+/// `pattern min max step`, where the pattern has one `%d`, perhaps `%03d`.
+fn data_files(
+    path: &Path,
+    value: &str,
+    lines: &mut Lines<BufReader<File>>,
+) -> Result<Vec<String>, VolumeError> {
+    if value.starts_with("LIST") {
+        let mut names = Vec::new();
+        while let Some(line) = lines.next().map_err(io_error(path))? {
+            if !line.trim().is_empty() {
+                names.push(line.trim().to_owned());
+            }
+        }
+        return Ok(names);
+    }
+    let words: Vec<&str> = value.split_whitespace().collect();
+    match numbered(&words) {
+        Some(names) => names.map_err(|what| format_error(path, what)),
+        None => Ok(vec![value.to_owned()]),
+    }
+}
+
+/// The files of a numbered row; `None` where the words are no such row.
+pub(super) fn numbered(words: &[&str]) -> Option<Result<Vec<String>, String>> {
+    /// A row has a file a slice, at most.
+    const MAX_FILES: i64 = 1 << 20;
+    let &[pattern, first, last, step, ..] = words else { return None };
+    let (before, rest) = pattern.split_once('%')?;
+    let (width, after) = rest.split_once('d')?;
+    let zeros = width.starts_with('0');
+    let width: usize = if width.is_empty() { 0 } else { width.parse().ok()? };
+    let [first, last, step] = [first, last, step].map(|number| number.parse::<i32>().ok());
+    let (first, last, step) = (i64::from(first?), i64::from(last?), i64::from(step?));
+    if step == 0 || (last - first) / step < 0 || (last - first) / step >= MAX_FILES || width > 20 {
+        return Some(Err(format!("numbers its data files {}, which is no row", words.join(" "))));
+    }
+    let name = |i: i64| {
+        let number = first + i * step;
+        let number = if zeros { format!("{number:0width$}") } else { format!("{number:width$}") };
+        format!("{before}{number}{after}")
+    };
+    Some(Ok((0..=(last - first) / step).map(name).collect()))
+}
+
+/// Vectors such as `(1,0,0) none (0,0,2)`, of up to three components.
+fn vectors(text: &str) -> Option<Vec<Option<[f64; 3]>>> {
+    let mut rest = text.trim();
+    let mut rows = Vec::new();
+    while !rest.is_empty() {
+        if let Some(after) = rest.strip_prefix("none") {
+            rows.push(None);
+            rest = after.trim_start();
+            continue;
+        }
+        let (row, after) = rest.strip_prefix('(')?.split_once(')')?;
+        let numbers: Vec<f64> =
+            row.split(',').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?;
+        let mut vector = [0.0; 3];
+        vector.get_mut(..numbers.len())?.copy_from_slice(&numbers);
+        rows.push(Some(vector));
+        rest = after.trim_start();
+    }
+    Some(rows)
+}
+
+fn scalar_type(name: &str) -> Option<Dtype> {
+    Some(match name.to_lowercase().as_str() {
+        "signed char" | "int8" | "int8_t" => Dtype::I8,
+        "uchar" | "unsigned char" | "uint8" | "uint8_t" => Dtype::U8,
+        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => {
+            Dtype::I16
+        }
+        "ushort" | "unsigned short" | "unsigned short int" | "uint16" | "uint16_t" => Dtype::U16,
+        "int" | "signed int" | "int32" | "int32_t" => Dtype::I32,
+        "uint" | "unsigned int" | "uint32" | "uint32_t" => Dtype::U32,
+        "longlong"
+        | "long long"
+        | "long long int"
+        | "signed long long"
+        | "signed long long int"
+        | "int64"
+        | "int64_t" => Dtype::I64,
+        "ulonglong" | "unsigned long long" | "unsigned long long int" | "uint64" | "uint64_t" => {
+            Dtype::U64
+        }
+        "float" => Dtype::F32,
+        "double" => Dtype::F64,
+        _ => return None,
+    })
+}

@@ -1,0 +1,48 @@
+use std::io::Read;
+use std::str::FromStr;
+
+use super::payload::Element;
+use crate::volume::Dtype;
+
+/// Reads exactly `count` numbers of a type, written as text with white space between them, from
+/// `bytes` bytes. The text stands in memory beside the numbers.
+///
+/// The error says what is wrong, in words that follow the name of the file.
+pub(crate) fn numbers<T: Element + FromStr + Into<f64>>(
+    reader: impl Read,
+    bytes: u64,
+    dtype: Dtype,
+    count: u64,
+) -> Result<Vec<T>, String> {
+    // A digit each, and a space between.
+    if bytes.saturating_add(1) / 2 < count {
+        return Err(format!(
+            "claims {count} numbers, which {bytes} bytes of text cannot hold: it is truncated or \
+             mislabelled"
+        ));
+    }
+    let mut text = Vec::new();
+    reader
+        .take(bytes)
+        .read_to_end(&mut text)
+        .map_err(|error| format!("cannot be read: {error}"))?;
+    let mut values = Vec::with_capacity(count as usize);
+    for word in text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
+        if values.len() as u64 == count {
+            return Err(format!("claims {count} numbers, but more follow: it is mislabelled"));
+        }
+        let number = std::str::from_utf8(word).ok().and_then(|word| word.parse::<T>().ok());
+        match number {
+            Some(number) if dtype.holds(number.into()) => values.push(number),
+            _ => {
+                let word = String::from_utf8_lossy(&word[..word.len().min(40)]);
+                let place = values.len() + 1;
+                return Err(format!("has {word:?} as number {place}, which is no {dtype}"));
+            }
+        }
+    }
+    if (values.len() as u64) < count {
+        return Err(format!("claims {count} numbers, but has {}: it is truncated", values.len()));
+    }
+    Ok(values)
+}

@@ -1,0 +1,294 @@
+use std::fs::File;
+use std::io::{BufReader, Seek, SeekFrom};
+use std::path::Path;
+
+use quick_xml::events::Event;
+use tiff::decoder::{Decoder, DecodingResult, Limits, ifd::Value};
+use tiff::tags::{ByteOrder, Tag};
+use tiff::{ColorType, TiffError};
+
+use super::described::{Described, Encoding, diagonal, frame};
+use super::{format_error, io_error};
+use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+
+/// The most a compression that TIFF knows expands by: LZW writes up to 4096 bytes for a code of 12
+/// bits.
+const MOST_EXPANSION: u64 = 2731;
+/// SGI's tag for volumes in one page.
+const IMAGE_DEPTH: Tag = Tag::Unknown(32997);
+
+/// Reads TIFF and BigTIFF: the pages are the slices. Spacing is what ImageJ or OME-XML say of it in
+/// the description of the first page; resolutions of other programs are those of prints.
+///
+/// ImageJ writes large stacks behind one page; they are read too. Colours, palettes, samples of
+/// fewer than 8 bits, and stacks of several channels or times are refused.
+pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
+    let mut pages = Pages::open(path)?;
+    let about = About::of(path, &mut pages.decoder)?;
+    let first = pages.page()?;
+    let mut stack = first.samples;
+    let mut slices = 1;
+    while pages.decoder.more_images() {
+        pages.decoder.next_image().map_err(damaged(path))?;
+        pages.reserve(stack.len(), first.dtype)?;
+        let page = pages.page()?;
+        if (page.size, page.dtype) != (first.size, first.dtype) {
+            return Err(format_error(
+                path,
+                format!(
+                    "has {:?} samples of {} in page {}, but {:?} of {} in the first: slices must \
+                     be alike; save them as one stack",
+                    page.size,
+                    page.dtype,
+                    slices + 1,
+                    first.size,
+                    first.dtype
+                ),
+            ));
+        }
+        stack.extend(page.samples);
+        slices += 1;
+    }
+    if about.images.is_some_and(|images| images > 1) && slices == 1 {
+        drop(stack);
+        return behind_one_page(path, pages, &about, first.size, first.dtype);
+    }
+    let dims = Dims::new(first.size[0], first.size[1], slices)?;
+    about.described(path, dims, first.dtype, Endian::Little)?.volume(stack)
+}
+
+/// Reads one page alone, as a slice.
+pub(super) fn read_page(path: &Path) -> Result<Page, VolumeError> {
+    let mut pages = Pages::open(path)?;
+    let page = pages.page()?;
+    if pages.decoder.more_images() {
+        let what = "holds several pages: it is a stack of its own, and no slice of the folder";
+        return Err(format_error(path, what));
+    }
+    Ok(page)
+}
+
+/// A decoded page.
+pub(super) struct Page {
+    /// Samples along x and y.
+    pub size: [u64; 2],
+    pub dtype: Dtype,
+    pub samples: Vec<f32>,
+}
+
+struct Pages<'a> {
+    path: &'a Path,
+    decoder: Decoder<BufReader<File>>,
+    /// The most bytes all samples can have.
+    most: u64,
+}
+
+impl<'a> Pages<'a> {
+    fn open(path: &'a Path) -> Result<Self, VolumeError> {
+        let file = File::open(path).map_err(io_error(path))?;
+        let length = file.metadata().map_err(io_error(path))?.len();
+        let most = length.saturating_mul(MOST_EXPANSION);
+        // The decoder's own limits are those of photographs; the length of the file is a better one.
+        let mut limits = Limits::default();
+        limits.decoding_buffer_size = usize::try_from(most).unwrap_or(usize::MAX);
+        limits.intermediate_buffer_size = limits.decoding_buffer_size;
+        limits.ifd_value_size = usize::try_from(length).unwrap_or(usize::MAX);
+        let decoder = Decoder::new(BufReader::new(file)).map_err(damaged(path))?;
+        Ok(Self { path, decoder: decoder.with_limits(limits), most })
+    }
+
+    /// Refuses another page where the file cannot hold so many samples.
+    fn reserve(&mut self, samples: usize, dtype: Dtype) -> Result<(), VolumeError> {
+        let (x, y) = self.decoder.dimensions().map_err(damaged(self.path))?;
+        let samples = u64::from(x) * u64::from(y) + samples as u64;
+        if samples > Dims::MAX_SAMPLES || samples.saturating_mul(dtype.size() as u64) > self.most {
+            let what = format!("claims more than {samples} samples, which it cannot hold");
+            return Err(format_error(self.path, what));
+        }
+        Ok(())
+    }
+
+    fn page(&mut self) -> Result<Page, VolumeError> {
+        let path = self.path;
+        let said = |what: String| format_error(path, what);
+        let (x, y) = self.decoder.dimensions().map_err(damaged(path))?;
+        match self.decoder.colortype().map_err(damaged(path))? {
+            ColorType::Gray(8 | 16 | 32 | 64) => {}
+            ColorType::Gray(bits) => {
+                return Err(said(format!("has samples of {bits} bits: convert it to 8 or 16")));
+            }
+            other => {
+                return Err(said(format!(
+                    "has colours ({other:?}): only gray is read; convert it"
+                )));
+            }
+        }
+        let depth = self.decoder.find_tag_unsigned::<u64>(IMAGE_DEPTH).map_err(damaged(path))?;
+        if depth.is_some_and(|depth| depth > 1) {
+            return Err(said(
+                "is a volume in one page (ImageDepth): save its slices as pages".into(),
+            ));
+        }
+        self.reserve(0, Dtype::U8)?;
+        let (samples, dtype) = match self.decoder.read_image().map_err(damaged(path))? {
+            DecodingResult::U8(v) => (v.into_iter().map(f32::from).collect(), Dtype::U8),
+            DecodingResult::I8(v) => (v.into_iter().map(f32::from).collect(), Dtype::I8),
+            DecodingResult::U16(v) => (v.into_iter().map(f32::from).collect(), Dtype::U16),
+            DecodingResult::I16(v) => (v.into_iter().map(f32::from).collect(), Dtype::I16),
+            DecodingResult::U32(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::U32),
+            DecodingResult::I32(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::I32),
+            DecodingResult::U64(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::U64),
+            DecodingResult::I64(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::I64),
+            DecodingResult::F32(v) => (v, Dtype::F32),
+            DecodingResult::F64(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::F64),
+            DecodingResult::F16(_) => {
+                return Err(said("has floats of 16 bits, which are not read: save 32".into()));
+            }
+        };
+        let samples: Vec<f32> = samples;
+        let size = [x.into(), y.into()];
+        if samples.len() as u64 != size[0] * size[1] {
+            let found = samples.len();
+            return Err(said(format!("has {found} samples in a page of {size:?}: it is damaged")));
+        }
+        Ok(Page { size, dtype, samples })
+    }
+}
+
+/// Reads a stack that ImageJ wrote as it is behind its only page.
+fn behind_one_page(
+    path: &Path,
+    mut pages: Pages,
+    about: &About,
+    size: [u64; 2],
+    dtype: Dtype,
+) -> Result<Volume, VolumeError> {
+    let slices = about.images.unwrap_or(1);
+    let compression: Option<u64> =
+        pages.decoder.find_tag_unsigned(Tag::Compression).map_err(damaged(path))?;
+    let offsets: Option<Vec<u64>> =
+        pages.decoder.find_tag_unsigned_vec(Tag::StripOffsets).map_err(damaged(path))?;
+    let (None | Some(1), Some(&offset)) = (compression, offsets.as_ref().and_then(|o| o.first()))
+    else {
+        return Err(format_error(path, format!("claims {slices} images, but has one page")));
+    };
+    let endian = match pages.decoder.byte_order() {
+        ByteOrder::LittleEndian => Endian::Little,
+        ByteOrder::BigEndian => Endian::Big,
+    };
+    let dims = Dims::new(size[0], size[1], slices)?;
+    let described = about.described(path, dims, dtype, endian)?;
+    let mut file = File::open(path).map_err(io_error(path))?;
+    let length = file.metadata().map_err(io_error(path))?.len();
+    file.seek(SeekFrom::Start(offset)).map_err(io_error(path))?;
+    // Tags may follow the samples.
+    let bytes = described.bytes().min(length.saturating_sub(offset));
+    described.read(path, std::io::Read::take(file, bytes), bytes)
+}
+
+/// What the first page says of the stack.
+#[derive(Debug)]
+struct About {
+    spacing: [f64; 3],
+    /// Slices, as ImageJ counts them.
+    images: Option<u64>,
+}
+
+impl About {
+    fn of(path: &Path, decoder: &mut Decoder<BufReader<File>>) -> Result<Self, VolumeError> {
+        let text = match decoder.find_tag(Tag::ImageDescription) {
+            Ok(Some(Value::Ascii(text))) => text,
+            _ => String::new(),
+        };
+        if text.starts_with("ImageJ=") {
+            return Self::of_imagej(path, decoder, &text);
+        }
+        if text.contains("<OME") {
+            return Self::of_ome(path, &text);
+        }
+        Ok(Self { spacing: [1.0; 3], images: None })
+    }
+
+    fn of_imagej(
+        path: &Path,
+        decoder: &mut Decoder<BufReader<File>>,
+        text: &str,
+    ) -> Result<Self, VolumeError> {
+        let value =
+            |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
+        let count = |key: &str| value(key).and_then(|text| text.trim().parse::<u64>().ok());
+        one_axis(path, ["slices", "channels", "frames"].map(|key| count(key).unwrap_or(1)))?;
+        // Pixels a unit.
+        let mut along = |tag| match decoder.find_tag(tag) {
+            Ok(Some(Value::Rational(n, d))) if n > 0 && d > 0 => f64::from(d) / f64::from(n),
+            _ => 1.0,
+        };
+        let slices = value("spacing").and_then(|text| text.trim().parse().ok());
+        let spacing = [along(Tag::XResolution), along(Tag::YResolution), slices.unwrap_or(1.0)];
+        Ok(Self { spacing, images: count("images") })
+    }
+
+    fn of_ome(path: &Path, text: &str) -> Result<Self, VolumeError> {
+        let damaged = |what: &dyn std::fmt::Display| {
+            format_error(path, format!("has OME-XML that cannot be read: {what}"))
+        };
+        let mut reader = quick_xml::Reader::from_str(text);
+        loop {
+            let pixels = match reader.read_event().map_err(|error| damaged(&error))? {
+                Event::Start(start) | Event::Empty(start)
+                    if start.local_name().as_ref() == "Pixels" =>
+                {
+                    start
+                }
+                Event::Eof => return Err(damaged(&"it has no element Pixels")),
+                _ => continue,
+            };
+            let number = |name: &str| -> Result<Option<f64>, VolumeError> {
+                let attribute = pixels.try_get_attribute(name).map_err(|error| damaged(&error))?;
+                let Some(attribute) = attribute else { return Ok(None) };
+                let text = &attribute.value;
+                let number =
+                    text.trim().parse().map_err(|_| damaged(&format!("{name}={text:?}")))?;
+                Ok(Some(number))
+            };
+            let size = |name| number(name).map(|size| size.unwrap_or(1.0) as u64);
+            one_axis(path, [size("SizeZ")?, size("SizeC")?, size("SizeT")?])?;
+            let length = |name| number(name).map(|length| length.unwrap_or(1.0));
+            let spacing =
+                [length("PhysicalSizeX")?, length("PhysicalSizeY")?, length("PhysicalSizeZ")?];
+            return Ok(Self { spacing, images: None });
+        }
+    }
+
+    fn described(
+        &self,
+        path: &Path,
+        dims: Dims,
+        dtype: Dtype,
+        endian: Endian,
+    ) -> Result<Described, VolumeError> {
+        let frame = frame(path, [0.0; 3], diagonal(self.spacing))?;
+        Ok(Described { dims, dtype, endian, frame, encoding: Encoding::Raw })
+    }
+}
+
+/// Pages run along one axis only. Programs name it as they like: a stack of many channels and one
+/// slice is common.
+fn one_axis(path: &Path, sizes: [u64; 3]) -> Result<(), VolumeError> {
+    if sizes.iter().filter(|&&size| size > 1).count() <= 1 {
+        return Ok(());
+    }
+    let [z, c, t] = sizes;
+    let what = format!("has {z} slices, {c} channels and {t} times: save one volume of them alone");
+    Err(format_error(path, what))
+}
+
+fn damaged(path: &Path) -> impl Fn(TiffError) -> VolumeError {
+    move |error| match error {
+        TiffError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+            format_error(path, "ends inside its TIFF pages: it is truncated; copy it again")
+        }
+        TiffError::IoError(error) => io_error(path)(error),
+        other => format_error(path, format!("is a TIFF file that cannot be read: {other}")),
+    }
+}
