@@ -149,9 +149,11 @@ mod tests {
         let (heavy, light) = (shape(0.01, 1.0), shape(-0.01, 1.0));
         assert!(Difference::between(heavy.complex(), light.complex()).boundary > 0);
         assert!(same_set(&heavy, &light));
-        // At this α only the heavier cube has its corner.
-        let (heavy, light) = (shape(0.01, 0.75), shape(-0.01, 0.75));
-        assert!(heavy.measures().volume != light.measures().volume);
+        // The heavy corner's cube is cut into cells of squared radius 0.745; of the light one's
+        // only the corner itself is.
+        let (heavy, light) = (shape(0.01, 0.747), shape(-0.01, 0.747));
+        assert!((heavy.measures().volume - 1.0).abs() < 1e-9, "{:?}", heavy.measures());
+        assert!((light.measures().volume - 1.0 / 6.0).abs() < 1e-9, "{:?}", light.measures());
         assert!(!same_set(&heavy, &light));
     }
 }
