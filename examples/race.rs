@@ -61,11 +61,11 @@ fn header() {
 fn race(set: &str, weighting: &str, alpha: f64) -> Result<()> {
     let points = weighted(set, weighting, alpha)?;
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let mut times = [[0.0; RUNS]; 3];
-    for run in 0..RUNS {
-        times[0][run] = seconds(|| plain_cgal(&points, alpha))?;
-        times[1][run] = one_thread.install(|| seconds(|| slabs(&points, alpha, None)))?;
-        times[2][run] = seconds(|| slabs(&points, alpha, None))?;
+    let mut times = [const { Vec::new() }; 3];
+    for _ in 0..RUNS {
+        times[0].push(seconds(|| plain_cgal(&points, alpha))?);
+        times[1].push(one_thread.install(|| seconds(|| slabs(&points, alpha, None)))?);
+        times[2].push(seconds(|| slabs(&points, alpha, None))?);
     }
     let [cgal, one, two] = times.map(|mut runs| {
         runs.sort_by(f64::total_cmp);

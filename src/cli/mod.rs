@@ -53,6 +53,9 @@ struct Global {
     /// Print nothing but errors (and JSON, if asked for).
     #[arg(short, long, global = true)]
     quiet: bool,
+    /// Say on standard error what is being done, and how the work is cut.
+    #[arg(short, long, global = true, conflicts_with = "quiet")]
+    verbose: bool,
     /// Threads to compute with; the result is the same for any number [default: all].
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -99,6 +102,10 @@ fn with_contexts(error: &anyhow::Error) -> String {
 }
 
 fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
+    if global.verbose {
+        let log = tracing_subscriber::fmt().with_max_level(tracing::Level::DEBUG);
+        log.with_writer(std::io::stderr).without_time().init();
+    }
     if let Some(threads) = global.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
     }

@@ -16,8 +16,11 @@ pub struct Progress {
 impl Progress {
     /// Draws on standard error if that is a terminal and nobody asked for quiet.
     pub fn new(global: Global) -> Self {
-        let target =
-            if global.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let target = if global.quiet || global.verbose {
+            ProgressDrawTarget::hidden()
+        } else {
+            ProgressDrawTarget::stderr()
+        };
         let bar = ProgressBar::with_draw_target(None, target);
         let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
         bar.set_style(style.expect("a template that is right"));
@@ -31,6 +34,7 @@ impl Progress {
         let started = Instant::now();
         let result = work();
         let seconds = started.elapsed().as_secs_f64();
+        tracing::debug!(stage = name, seconds);
         match self.stages.iter_mut().find(|stage| stage.0 == name) {
             Some(stage) => stage.1 += seconds,
             None => self.stages.push((name, seconds)),
