@@ -324,7 +324,7 @@ fn damaged_npy_files_are_refused() {
 fn unknown_and_missing_files_say_what_to_do() {
     let folder = Folder::new();
     folder.refuses("v.raw", &[1, 2, 3], &KNOWN, &["--dims", ".inr", ".npy"]);
-    folder.refuses("v.nii", b"something", &KNOWN, &["no format known"]);
+    folder.refuses("v.dat", b"something", &KNOWN, &["no format known"]);
     let text = read(Path::new("no/such.raw"), &KNOWN).unwrap_err().to_string();
     assert!(text.contains("no/such.raw") && text.contains("sample:phantom"), "{text}");
     let text = read(folder.0.path(), &KNOWN).unwrap_err().to_string();

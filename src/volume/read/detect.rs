@@ -84,8 +84,9 @@ pub(super) fn kind(path: &Path, start: &[u8]) -> Result<Kind, VolumeError> {
     of_extension.map(|&(_, kind)| kind).ok_or_else(|| {
         format_error(
             path,
-            "is of no format known by content: NRRD, NIfTI, MetaImage, VTK, TIFF, INRIMAGE, NPY and \
-             NPZ are read, and folders of slices; for raw samples give --dims X,Y,Z and --dtype",
+            "is of no format known by content: NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), MetaImage \
+             (.mha, .mhd), VTK (.vtk, .vti), TIFF, INRIMAGE (.inr, .inr.gz), NPY, NPZ (.npy, .npz) and \
+             folders of slices are read; for raw samples give --dims X,Y,Z and --dtype",
         )
     })
 }

@@ -32,7 +32,7 @@ pub(super) fn read(folder: &Path) -> Result<Volume, VolumeError> {
         stack.extend(samples);
     }
     let Some((size, dtype)) = first else {
-        let what = "holds no PNG, JPEG or TIFF slices: name a file, or a folder of slices";
+        let what = "holds no PNG, JPEG or TIFF slices: name a file in it, or a folder of slices";
         return Err(format_error(folder, what));
     };
     let dims = Dims::new(size[0], size[1], paths.len() as u64)?;
