@@ -53,7 +53,7 @@ fn races(sets: &[&str]) -> Result<()> {
 fn header() {
     println!(
         "| set | points | weights | α | CGAL | slabs, 1 thread | ratio | slabs, {THREADS} threads | ratio \
-         | CGAL peak | slabs peak | slabs peak, --memory |"
+         | CGAL peak | slabs peak | 8 slabs in turn, peak |"
     );
     println!("|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
 }
