@@ -15,7 +15,7 @@ pub struct PlaneSites {
 
 impl PlaneSites {
     /// Checks points and removes duplicates: of several at one place the largest weight stays, of
-    /// equal weights the lowest index. −0 and 0 are one place. O(n) expected.
+    /// equal weights the lowest index. −0 and 0 are one place. O(n log n).
     ///
     /// # Errors
     /// No point, lists of different lengths, NaN, infinities, magnitudes beyond the limits of

@@ -11,7 +11,7 @@ use walpha::check::schema::PlacedComplex;
 use walpha::check::{Certificate, Claim, Comparison, Extent, Finding, Placed, compare, enumerate};
 
 use super::args::{HaarArgs, InputArgs, SelectArgs, ShapeArgs, WeightArgs};
-use super::output::{print, print_json};
+use super::output::tell;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 use super::{DIFFERENT, Global, compare as compare_command, complex_file, pipeline};
@@ -117,11 +117,7 @@ impl Check {
             enumeration,
             seconds,
         };
-        if global.json {
-            print_json(&facts)?;
-        } else if !global.quiet {
-            print(&facts.to_string())?;
-        }
+        tell(global, &facts)?;
         Ok(if facts.valid { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
     }
 

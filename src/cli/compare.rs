@@ -8,7 +8,7 @@ use clap::Args;
 use serde::Serialize;
 use walpha::check::{Comparison, Differences, Placed, compare};
 
-use super::output::{print, print_json};
+use super::output::tell;
 use super::report::SCHEMA_VERSION;
 use super::{DIFFERENT, Global, complex_file};
 
@@ -53,11 +53,7 @@ impl Compare {
             equal: comparison.is_equal(),
             comparison,
         };
-        if global.json {
-            print_json(&facts)?;
-        } else if !global.quiet {
-            print(&facts.to_string())?;
-        }
+        tell(global, &facts)?;
         Ok(if facts.equal { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
     }
 }

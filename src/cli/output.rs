@@ -1,8 +1,21 @@
 //! What goes to standard output.
 
+use std::fmt::Display;
 use std::io::{self, Write};
 
 use serde::Serialize;
+
+use super::Global;
+
+/// Prints facts as the user wants them: as JSON, as text, or not at all.
+pub fn tell<T: Serialize + Display>(global: Global, facts: &T) -> anyhow::Result<()> {
+    if global.json {
+        print_json(facts)?;
+    } else if !global.quiet {
+        print(&facts.to_string())?;
+    }
+    Ok(())
+}
 
 /// Prints text without the panic of `println!` when nobody reads on.
 pub fn print(text: &str) -> io::Result<()> {

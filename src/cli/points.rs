@@ -8,7 +8,7 @@ use walpha::export::Target;
 use walpha::points::{write_csv, write_npy};
 
 use super::args::{HaarArgs, InputArgs, SelectArgs, WeightArgs};
-use super::output::{print, print_json};
+use super::output::tell;
 use super::progress::Progress;
 use super::report::Report;
 use super::{Global, pipeline};
@@ -66,11 +66,6 @@ impl Points {
         let mut report = Report::of_points(&self.input.input, &weighed, self.weights.alpha());
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
-        if global.json {
-            print_json(&report)?;
-        } else if !global.quiet {
-            print(&report.to_string())?;
-        }
-        Ok(())
+        tell(global, &report)
     }
 }

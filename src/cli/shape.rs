@@ -8,7 +8,7 @@ use walpha::alpha_shape;
 use walpha::export::{Exporter, Format, Target};
 
 use super::args::{HaarArgs, InputArgs, SelectArgs, ShapeArgs, WeightArgs};
-use super::output::{print, print_json};
+use super::output::tell;
 use super::picture::PictureArgs;
 use super::progress::Progress;
 use super::report::Report;
@@ -81,11 +81,6 @@ impl Shape {
         if !global.quiet {
             remarks.iter().for_each(|remark| eprintln!("walpha: {remark}"));
         }
-        if global.json {
-            print_json(&report)?;
-        } else if !global.quiet {
-            print(&report.to_string())?;
-        }
-        Ok(())
+        tell(global, &report)
     }
 }
