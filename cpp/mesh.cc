@@ -10,6 +10,7 @@
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include "walpha/cpp/lattice_kernel.h"
+#include "walpha/cpp/structure.h"
 
 namespace walpha {
 namespace {
@@ -24,14 +25,22 @@ struct No_points {
 };
 
 using Regular_vertex = CGAL::Regular_triangulation_vertex_base_3<Lattice_kernel>;
-using Vertex = CGAL::Triangulation_vertex_base_with_info_3<std::uint32_t, Lattice_kernel,
+using Vertex = CGAL::Triangulation_vertex_base_with_info_3<Vertex_note, Lattice_kernel,
                                                            Regular_vertex>;
 // The info is the cell's number in the flat arrays.
 using Numbered_cell = CGAL::Triangulation_cell_base_with_info_3<std::uint32_t, Lattice_kernel>;
 using Cell = CGAL::Regular_triangulation_cell_base_3<Lattice_kernel, Numbered_cell,
                                                      CGAL::Discard_hidden_points, No_points>;
-using Structure = CGAL::Triangulation_data_structure_3<Vertex, Cell>;
-using Triangulation = CGAL::Regular_triangulation_3<Lattice_kernel, Structure>;
+using Triangulation = CGAL::Regular_triangulation_3<Lattice_kernel, Structure<Vertex, Cell>>;
+
+Extent extent(const std::vector<Site> &sites) {
+  const auto along = [&](double Site::*axis) {
+    const auto before = [&](const Site &a, const Site &b) { return a.*axis < b.*axis; };
+    const auto [low, high] = std::minmax_element(sites.begin(), sites.end(), before);
+    return (*high).*axis - (*low).*axis;
+  };
+  return {along(&Site::x), along(&Site::y), along(&Site::z), along(&Site::weight)};
+}
 
 }  // namespace
 
@@ -44,24 +53,24 @@ Mesh::Mesh(const std::vector<Site> &sites, const std::uint8_t *owned, const Latt
 
 void Mesh::triangulate(const std::vector<Site> &sites, const std::uint8_t *owned,
                        const Lattice &lattice) {
-  std::vector<std::pair<Kernel::Weighted_point_3, std::uint32_t>> points;
+  std::vector<std::pair<Kernel::Weighted_point_3, Vertex_note>> points;
   points.reserve(sites.size());
   for (const Site &site : sites) {
-    points.emplace_back(site.point(), static_cast<std::uint32_t>(points.size()));
+    points.emplace_back(site.point(), Vertex_note{static_cast<std::uint32_t>(points.size())});
   }
-  Triangulation triangulation(points.begin(), points.end(), Lattice_kernel(lattice));
-  std::vector<std::pair<Kernel::Weighted_point_3, std::uint32_t>>().swap(points);
+  Triangulation triangulation(points.begin(), points.end(), Lattice_kernel(lattice, extent(sites)));
+  std::vector<std::pair<Kernel::Weighted_point_3, Vertex_note>>().swap(points);
   dimension_ = triangulation.dimension();
   if (dimension_ != 3) return;
 
-  triangulation.infinite_vertex()->info() = infinite_;
+  triangulation.infinite_vertex()->info().site = infinite_;
   // Count the cells of each smallest vertex, then number them so.
   first_cell_.assign(sites.size() + 2, 0);
   for (auto cell : triangulation.all_cell_handles()) {
     bool touches = false;
     std::uint32_t smallest = infinite_;
     for (int i = 0; i < 4; ++i) {
-      const std::uint32_t v = cell->vertex(i)->info();
+      const std::uint32_t v = cell->vertex(i)->info().site;
       if (v == infinite_) continue;
       touches |= owned[v] != 0;
       smallest = std::min(smallest, v);
@@ -81,7 +90,7 @@ void Mesh::triangulate(const std::vector<Site> &sites, const std::uint8_t *owned
     if (cell->info() == NONE) continue;
     const std::size_t at = 4 * std::size_t{cell->info()};
     for (int i = 0; i < 4; ++i) {
-      vertices_[at + i] = cell->vertex(i)->info();
+      vertices_[at + i] = cell->vertex(i)->info().site;
       neighbours_[at + i] = cell->neighbor(i)->info();
     }
   }
