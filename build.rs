@@ -8,7 +8,7 @@ const OLDEST: (u32, u32) = (5, 3);
 
 const SOURCES: [&str; 5] =
     ["cpp/bridge.cc", "cpp/mesh.cc", "cpp/plane.cc", "cpp/reference.cc", "cpp/slab.cc"];
-const HEADERS: [&str; 10] = [
+const HEADERS: [&str; 12] = [
     "cpp/bridge.h",
     "cpp/classes.h",
     "cpp/kernel.h",
@@ -18,7 +18,9 @@ const HEADERS: [&str; 10] = [
     "cpp/plane.h",
     "cpp/predicates.h",
     "cpp/reference.h",
+    "cpp/sheets.h",
     "cpp/slab.h",
+    "cpp/structure.h",
 ];
 
 fn main() {

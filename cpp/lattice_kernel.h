@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <CGAL/Triangulation_structural_filtering_traits.h>
 #include <CGAL/determinant.h>
 
 #include "walpha/cpp/kernel.h"
@@ -143,9 +142,3 @@ class Lattice_kernel : public Kernel {
 };
 
 }  // namespace walpha
-
-// Points are located by walking with plain doubles first, as CGAL does for its own Epick.
-template <>
-struct CGAL::Triangulation_structural_filtering_traits<walpha::Lattice_kernel> {
-  using Use_structural_filtering_tag = CGAL::Tag_true;
-};

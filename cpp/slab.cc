@@ -432,6 +432,7 @@ std::unique_ptr<Slab> slab(rust::Slice<const double> positions, rust::Slice<cons
       .run();
   for (auto *rows : {&result->cells_, &result->facets_, &result->edges_}) {
     for (std::uint32_t &v : *rows) v = input.data()[v];
+    rows->shrink_to_fit();
   }
   return result;
 }

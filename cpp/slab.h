@@ -39,6 +39,10 @@ class Slab {
   rust::Slice<const std::uint32_t> shared() const { return lend(shared_); }
   std::uint32_t sheets() const { return sheets_; }
 
+  // Give memory back.
+  void drop_cells() { drop(cells_, cell_classes_); }
+  void drop_facets() { drop(facets_, facet_classes_, facet_sheets_); }
+
   int dimension_ = 3;
   std::uint32_t sheets_ = 0;
   std::vector<std::uint32_t> cells_, facets_, edges_, counts_;
@@ -46,6 +50,10 @@ class Slab {
   std::vector<std::uint8_t> cell_classes_, facet_classes_, edge_classes_, vertex_classes_;
 
  private:
+  template <typename... Vectors>
+  static void drop(Vectors &...vectors) {
+    (Vectors().swap(vectors), ...);
+  }
   template <typename T>
   static rust::Slice<const T> lend(const std::vector<T> &values) {
     return {values.data(), values.size()};

@@ -49,17 +49,41 @@ fn check(points: &WeightedPoints, alpha: f64) {
             return;
         }
     };
+    let one = by(Engine::Slabs, points, alpha, None, true).unwrap();
     for slabs in SLABS {
         let shape = by(Engine::Slabs, points, alpha, Some(slabs), false).unwrap();
         assert_same(&reference, &shape, &format!("{slabs} slabs at α = {alpha}"));
         // The convex hull is not local: it is one slab, whatever was asked for.
         let whole = slabs == 1 || alpha == f64::INFINITY;
         assert_eq!(shape.hidden(), if whole { reference.hidden() } else { None });
+        assert_eq!(one.sheets(), shape.sheets(), "{slabs} slabs at α = {alpha}: sheets");
     }
+    check_parts(&one);
     let whole = by(Engine::Reference, points, alpha, None, true).unwrap();
-    let one = by(Engine::Slabs, points, alpha, None, true).unwrap();
     assert_same(&whole, &one, "exterior simplices too");
     assert_eq!(whole.hidden(), one.hidden());
+}
+
+/// Components sum up to the whole; voids by their sheets are those by the cells in them.
+fn check_parts(shape: &AlphaShape) {
+    let betti = shape.betti().unwrap();
+    let components = shape.components();
+    assert_eq!(components.len() as u64, betti.b0);
+    assert_eq!(components.iter().map(|c| c.vertices).sum::<usize>(), shape.points_in_shape());
+    let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-9 * (1.0 + a.abs()), "{a} {b}");
+    close(components.iter().map(|c| c.volume).sum(), shape.measures().volume);
+    close(components.iter().map(|c| c.area).sum(), shape.measures().area);
+    close(components.iter().map(|c| c.singular_area).sum(), shape.measures().singular_area);
+    let shut_in: Vec<_> = components.iter().flat_map(|c| c.voids.iter().flatten()).collect();
+    assert_eq!(shut_in.len() as u64, betti.b2);
+    // What floats in a void counts to what the sheet shuts in, not to the cells outside the shape.
+    if components.len() == 1 {
+        let voids = shape.voids().unwrap();
+        assert_eq!(voids.len(), shut_in.len());
+        for (void, sheet) in voids.iter().zip(shut_in) {
+            close(void.volume, sheet.volume);
+        }
+    }
 }
 
 fn weighted(sites: impl IntoIterator<Item = ([f64; 3], f64)>) -> WeightedPoints {
@@ -128,6 +152,13 @@ fn hollow_balls_inside_hollow_balls() {
     let shape = by(Engine::Slabs, &points, 1.0, Some(4), false).unwrap();
     let betti = shape.betti().unwrap();
     assert_eq!((betti.b0, betti.b1, betti.b2), (2, 0, 2));
+    let [outer, inner] = &shape.components()[..] else { panic!("two shells") };
+    let voids = |c: &walpha::shape::Component| c.voids.clone().unwrap();
+    assert_eq!((voids(outer).len(), voids(inner).len()), (1, 1));
+    assert_eq!((outer.low, outer.high), ([1.0; 3], [17.0; 3]));
+    assert_eq!((inner.low, inner.high), ([5.0; 3], [13.0; 3]));
+    // The inner shell and its own void lie in the outer one's.
+    assert!(voids(outer)[0].volume > inner.volume + voids(inner)[0].volume);
     check(&points, 1.0);
 }
 

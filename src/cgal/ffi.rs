@@ -64,6 +64,8 @@ pub(super) mod bridge {
         fn edge_sheets(self: &Slab) -> &[u32];
         fn shared(self: &Slab) -> &[u32];
         fn sheets(self: &Slab) -> u32;
+        fn drop_cells(self: Pin<&mut Slab>);
+        fn drop_facets(self: Pin<&mut Slab>);
 
         fn slab(
             positions: &[f64],

@@ -23,7 +23,7 @@ pub struct RawSlab(cxx::UniquePtr<bridge::Slab>);
 // SAFETY: the C++ class consists of std::vectors of numbers and owns them alone; nothing in it is
 // bound to a thread.
 unsafe impl Send for bridge::Slab {}
-// SAFETY: all its member functions are const and read these vectors only.
+// SAFETY: what can be called through a shared reference is const and reads these vectors only.
 unsafe impl Sync for bridge::Slab {}
 
 /// Triangulates a slab with its halo and classifies the simplices whose smallest vertex is the
@@ -74,6 +74,16 @@ impl RawSlab {
     /// The class of each owned point, [`HIDDEN`] for those that are no vertices.
     pub fn vertex_classes(&self) -> &[u8] {
         self.0.vertex_classes()
+    }
+
+    /// Gives the memory of the cells back.
+    pub fn drop_cells(&mut self) {
+        self.0.pin_mut().drop_cells();
+    }
+
+    /// Gives the memory of the facets and their sheets back.
+    pub fn drop_facets(&mut self) {
+        self.0.pin_mut().drop_facets();
     }
 
     /// How many cells, facets and edges each owned point is the smallest vertex of.

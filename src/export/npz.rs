@@ -6,11 +6,14 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::Exporter;
-use crate::shape::{AlphaShape, Simplices};
+use crate::shape::{AlphaShape, NO_COMPONENT, Simplices};
 
 /// NPZ, NumPy's archive of arrays: `positions` (n×3), `weights` and, where known, `values` of all
 /// points; `cells` (m×4), `facets` (m×3), `edges` (m×2) and `vertices` (m×1), indices of points, each
-/// with its `…_classes` (0 exterior, 1 interior, 2 regular, 3 singular); `alpha`, a squared length.
+/// with its `…_classes` (0 exterior, 1 interior, 2 regular, 3 singular); `components` (n), the number of
+/// each point's component, −1 for points that are not in the shape; where known `boundary_sheets`
+/// (k×2), the [sheets](crate::shape::Sheets) in front of and behind the regular facets, then the
+/// singular ones, −1 for none; `alpha`, a squared length.
 #[derive(Clone, Copy, Debug)]
 pub struct Npz;
 
@@ -29,6 +32,14 @@ impl Exporter for Npz {
         archive.simplices("facets", &complex.facets)?;
         archive.simplices("edges", &complex.edges)?;
         archive.simplices("vertices", &complex.vertices)?;
+        let number = |n: u32| if n == NO_COMPONENT { -1 } else { i64::from(n) };
+        let components: Vec<i64> = shape.component_numbers().into_iter().map(number).collect();
+        archive.array("components", ArrayView1::from(&components))?;
+        if let Some(sheets) = shape.sheets() {
+            let sides: Vec<[i32; 2]> = sheets.sides().collect();
+            let sides = ArrayView2::from_shape((sides.len(), 2), sides.as_flattened());
+            archive.array("boundary_sheets", sides.map_err(io::Error::other)?)?;
+        }
         archive.array("alpha", ArrayView1::from(&[shape.options().alpha.squared()]))?;
         let bytes = archive.0.finish().map_err(io::Error::other)?.into_inner();
         out.write_all(&bytes)

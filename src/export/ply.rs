@@ -4,7 +4,8 @@ use super::Exporter;
 use crate::shape::{AlphaShape, Class, Surface};
 
 /// PLY: vertices of the boundary with weight, value and input index; facets with their class
-/// (2 regular, 3 singular); singular edges. Coordinates are doubles. Binary little-endian, or
+/// (2 regular, 3 singular), their component and, where known, the [sheets](crate::shape::Sheets) in
+/// front and behind, −1 for none; singular edges. Coordinates are doubles. Binary little-endian, or
 /// text.
 #[derive(Clone, Copy, Debug)]
 pub struct Ply {
@@ -16,6 +17,7 @@ impl Exporter for Ply {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = Surface::of(shape);
         let points = shape.points();
+        let sheets: Option<Vec<_>> = shape.sheets().map(|sheets| sheets.sides().collect());
         let format = if self.ascii { "ascii" } else { "binary_little_endian" };
         write!(
             out,
@@ -30,9 +32,10 @@ impl Exporter for Ply {
         write!(
             out,
             "property uint index\nelement face {}\nproperty list uchar uint vertex_indices\n\
-             property uchar class\nelement edge {}\nproperty uint vertex1\nproperty uint vertex2\n\
-             end_header\n",
+             property uchar class\nproperty uint component\n{}element edge {}\n\
+             property uint vertex1\nproperty uint vertex2\nend_header\n",
             surface.regular.len() + surface.singular.len(),
+            if sheets.is_some() { "property int sheet\nproperty int sheet_behind\n" } else { "" },
             surface.edges.len(),
         )?;
 
@@ -49,17 +52,19 @@ impl Exporter for Ply {
             row.put(v, u32::to_le_bytes)?;
             row.end()?;
         }
-        for (rows, class) in
-            [(&surface.regular, Class::Regular), (&surface.singular, Class::Singular)]
-        {
-            for facet in rows {
-                row.put(3u8, u8::to_le_bytes)?;
-                for &v in facet {
-                    row.put(v, u32::to_le_bytes)?;
-                }
-                row.put(class as u8, u8::to_le_bytes)?;
-                row.end()?;
+        for (i, facet) in surface.facets().enumerate() {
+            row.put(3u8, u8::to_le_bytes)?;
+            for &v in facet {
+                row.put(v, u32::to_le_bytes)?;
             }
+            let regular = i < surface.regular.len();
+            let class = if regular { Class::Regular } else { Class::Singular };
+            row.put(class as u8, u8::to_le_bytes)?;
+            row.put(surface.components[facet[0] as usize], u32::to_le_bytes)?;
+            for &sheet in sheets.iter().flat_map(|sheets| &sheets[i]) {
+                row.put(sheet, i32::to_le_bytes)?;
+            }
+            row.end()?;
         }
         for edge in &surface.edges {
             for &v in edge {

@@ -2,11 +2,13 @@ use std::io::{self, Write};
 
 use super::Exporter;
 use super::vtu::{Appended, bytes};
-use crate::shape::{AlphaShape, Class, Surface};
+use crate::shape::{AlphaShape, Class, Sheets, Surface};
 
-/// VTP, VTK's polygons: the boundary, singular edges and singular vertices, with their class as cell
-/// data (2 regular, 3 singular); `weight`, `value` and `input_index` as point data. Arrays are
-/// appended raw, little-endian, with 64-bit sizes.
+/// VTP, VTK's polygons: the boundary, singular edges and singular vertices. Cell data are their
+/// `class` (2 regular, 3 singular), the `component` of the shape they belong to and, where known, the
+/// [sheets](crate::shape::Sheets) in front (`sheet`) and behind (`sheet_behind`), −1 for none; point
+/// data are `weight`, `value` and `input_index`. Arrays are appended raw, little-endian, with 64-bit
+/// sizes.
 #[derive(Clone, Copy, Debug)]
 pub struct Vtp;
 
@@ -41,6 +43,24 @@ impl Exporter for Vtp {
         classes.resize(thin + surface.regular.len(), Class::Regular as u8);
         classes.resize(thin + facets, Class::Singular as u8);
         file.array("UInt8", "class", 1, classes)?;
+        let firsts = (surface.points.iter().copied())
+            .chain(surface.edges.iter().map(|edge| edge[0]))
+            .chain(surface.facets().map(|facet| facet[0]));
+        let components = firsts.map(|v| surface.components[v as usize].to_le_bytes());
+        file.array("UInt32", "component", 1, bytes(components))?;
+        if let Some(sheets) = shape.sheets() {
+            let none = surface.points.iter().map(|_| [Sheets::NONE; 2]);
+            let edges = sheets.edges.iter().map(|&sheet| [sheet as i32, Sheets::NONE]);
+            let sides: Vec<_> = none.chain(edges).chain(sheets.sides()).collect();
+            for (k, name) in ["sheet", "sheet_behind"].into_iter().enumerate() {
+                file.array(
+                    "Int32",
+                    name,
+                    1,
+                    bytes(sides.iter().map(|side| side[k].to_le_bytes())),
+                )?;
+            }
+        }
         write!(file.xml, "</CellData>\n<Points>\n")?;
         let positions = vertices.iter().flat_map(|&v| points.positions[v as usize]);
         file.array("Float64", "Points", 3, bytes(positions.map(f64::to_le_bytes)))?;

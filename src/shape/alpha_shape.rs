@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::canonical::canonical;
 use super::slabs::{self, Plan, PlanError};
 use super::topology::sheet_betti;
-use super::{Alpha, Balls, Betti, Class, Complex, Measures, Simplices, direct_betti};
+use super::{Alpha, Balls, Betti, Class, Complex, Measures, Sheets, Simplices, direct_betti};
 use crate::cgal::{self, CgalError, Sites, SitesError};
 use crate::points::WeightedPoints;
 
@@ -66,6 +66,7 @@ pub struct AlphaShape {
     duplicates: Vec<[u32; 2]>,
     hidden: Option<Vec<u32>>,
     betti: Option<Betti>,
+    sheets: Option<Sheets>,
     measures: Measures,
 }
 
@@ -124,17 +125,22 @@ pub fn alpha_shape(
         Balls::Radius => Some(squared_radii(&points.weights, options.alpha)?),
     };
     let sites = Sites::new(&points.positions, squared.as_deref().unwrap_or(&points.weights))?;
-    let Found { mut complex, betti, whole } = match options.engine {
+    let Found { mut complex, sheets, whole } = match options.engine {
         Engine::Reference => by_reference(&sites, power_alpha(options))?,
         Engine::Slabs => by_slabs(&sites, power_alpha(options), options)?,
     };
+    let (betti, measures) = rayon::join(
+        || match &sheets {
+            Some(sheets) => sheet_betti(&complex, sheets),
+            None => direct_betti(&complex),
+        },
+        || Measures::of(&complex, &points.positions),
+    );
     let hidden = whole.then(|| hidden(sites.input(), &complex.vertices));
     if !options.exterior {
         complex.retain_shape();
     }
-    let measures = Measures::of(&complex, &points.positions);
     let duplicates = sites.duplicates().to_vec();
-    let betti = Some(betti);
     Ok(AlphaShape {
         points,
         options: *options,
@@ -142,7 +148,8 @@ pub fn alpha_shape(
         complex,
         duplicates,
         hidden,
-        betti,
+        betti: Some(betti),
+        sheets,
         measures,
     })
 }
@@ -150,7 +157,8 @@ pub fn alpha_shape(
 /// What an engine found.
 struct Found {
     complex: Complex,
-    betti: Betti,
+    /// Of the boundary, where the engine tells them.
+    sheets: Option<Sheets>,
     /// Whether all vertices of the whole triangulation are there, so that the rest is hidden.
     whole: bool,
 }
@@ -158,8 +166,7 @@ struct Found {
 fn by_reference(sites: &Sites, alpha: f64) -> Result<Found, ShapeError> {
     let raw = cgal::reference(sites, alpha)?;
     let complex = canonical(&raw, sites.input());
-    let betti = direct_betti(&complex);
-    Ok(Found { complex, betti, whole: true })
+    Ok(Found { complex, sheets: None, whole: true })
 }
 
 fn by_slabs(sites: &Sites, alpha: f64, options: &ShapeOptions) -> Result<Found, ShapeError> {
@@ -177,8 +184,8 @@ fn by_slabs(sites: &Sites, alpha: f64, options: &ShapeOptions) -> Result<Found, 
     };
     let whole = plan == Plan::WHOLE;
     let answer = slabs::run(sites, alpha, &plan, whole)?;
-    let betti = sheet_betti(&answer);
-    Ok(Found { complex: answer.complex, betti, whole })
+    let sheets = Some(Sheets::of(&answer));
+    Ok(Found { complex: answer.complex, sheets, whole })
 }
 
 /// The parameter at which the power weights are judged.
@@ -248,6 +255,12 @@ impl AlphaShape {
     /// Betti numbers of the shape; `None` when the engine cannot know them.
     pub fn betti(&self) -> Option<Betti> {
         self.betti
+    }
+
+    /// The sheets that boundary facets and singular edges are part of; `None` when the engine does
+    /// not tell them ([`Engine::Reference`]).
+    pub fn sheets(&self) -> Option<&Sheets> {
+        self.sheets.as_ref()
     }
 
     /// Volume and areas.

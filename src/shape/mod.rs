@@ -6,6 +6,7 @@ mod canonical;
 mod complex;
 mod manifold;
 mod measure;
+mod parts;
 mod slabs;
 mod surface;
 mod topology;
@@ -17,6 +18,8 @@ pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape}
 pub use complex::{Class, Complex, Simplices};
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;
+pub(crate) use measure::{facet_area, six_volumes};
+pub use parts::{Component, Enclosed, NO_COMPONENT, Sheets};
 pub use slabs::PlanError;
 pub use surface::Surface;
 pub use topology::{Betti, direct_betti};

@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::slabs::Answer;
+use super::parts::connected;
 use super::union_find::UnionFind;
-use super::{Class, Complex, Simplices};
+use super::{Class, Complex, Sheets, Simplices};
 
 /// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -59,27 +59,19 @@ pub fn direct_betti(whole: &Complex) -> Betti {
 /// of the boundary of a thin neighbourhood of it. A component with k voids of its own has k + 1
 /// sheets (Alexander duality), so sheets = b0 + b2, and b1 follows from the Euler characteristic.
 /// Every isolated vertex has a sheet of its own. O(n).
-pub(super) fn sheet_betti(answer: &Answer) -> Betti {
-    let complex = &answer.complex;
+pub(super) fn sheet_betti(complex: &Complex, sheets: &Sheets) -> Betti {
     let b0 = components(complex);
-    let mut sheets: Vec<u32> = [&answer.facet_sheets[..], &answer.edge_sheets].concat();
-    sheets.sort_unstable();
-    sheets.dedup();
     let lone = complex.vertices.counts()[Class::Singular as usize];
-    let b2 = (sheets.len() + lone) as u64 - b0;
+    let b2 = (sheets.count as usize + lone) as u64 - b0;
     let b1 = (b0 + b2) as i64 - complex.euler_characteristic();
     Betti { b0, b1: u64::try_from(b1).expect("b1 counts something"), b2 }
 }
 
 /// Components of the shape, by its edges.
 fn components(complex: &Complex) -> u64 {
-    let of_shape = |class| class != Class::Exterior;
-    let points = complex.vertices.vertices.last().map_or(0, |&[v]| v as usize + 1);
-    let mut sets = UnionFind::new(points);
-    let vertices = complex.vertices.iter().filter(|&(_, class)| of_shape(class)).count();
-    let edges = complex.edges.iter().filter(|&(_, class)| of_shape(class));
-    let united = edges.filter(|&(&[a, b], _)| sets.unite(a, b)).count();
-    (vertices - united) as u64
+    let mut sets = connected(complex);
+    let of_shape = complex.vertices.iter().filter(|&(_, class)| class != Class::Exterior);
+    of_shape.filter(|&(&[v], _)| sets.find(v) == v).count() as u64
 }
 
 /// The complement of a shape within its *whole* triangulation: exterior cells and the outside of the

@@ -1,0 +1,241 @@
+//! Components of a shape, and the sheets of its boundary.
+
+use serde::{Deserialize, Serialize};
+
+use super::slabs::Answer;
+use super::union_find::UnionFind;
+use super::{AlphaShape, Class, Complex, facet_area, six_volumes};
+
+/// The sheets of a shape's boundary: the connected pieces of its outside seen closely. A component
+/// has one around it and one for each of its voids. They are numbered from 0 in the order in which
+/// they appear along the boundary facets, then the singular edges; isolated points, each a sheet of
+/// its own, have no number.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Sheets {
+    /// For each regular facet, in their order, the sheet it is part of.
+    pub regular: Vec<u32>,
+    /// For each singular facet, in their order, the sheet seen from which its sorted row turns
+    /// clockwise, and that on the other side.
+    pub singular: Vec<[u32; 2]>,
+    /// For each singular edge, in their order, the sheet around it.
+    pub edges: Vec<u32>,
+    /// How many there are.
+    pub count: u32,
+}
+
+impl Sheets {
+    /// Gives the sheets of slabs numbers that do not depend on the slabs. O(n).
+    pub(super) fn of(answer: &Answer) -> Self {
+        const NONE: u32 = u32::MAX;
+        let raw = answer.facet_sheets.iter().chain(&answer.edge_sheets);
+        let mut numbers = vec![NONE; raw.clone().max().map_or(0, |&most| most as usize + 1)];
+        let mut count = 0;
+        let mut names = raw.map(|&name| {
+            let number = &mut numbers[name as usize];
+            if *number == NONE {
+                *number = count;
+                count += 1;
+            }
+            *number
+        });
+        let mut next = || names.next().expect("a name for each side of the boundary");
+        let (mut regular, mut singular) = (Vec::new(), Vec::new());
+        for class in &answer.complex.facets.classes {
+            match class {
+                Class::Regular => regular.push(next()),
+                Class::Singular => singular.push([next(), next()]),
+                _ => {}
+            }
+        }
+        let edges = names.collect();
+        Self { regular, singular, edges, count }
+    }
+}
+
+impl Sheets {
+    /// The number that files have where there is no sheet.
+    pub const NONE: i32 = -1;
+
+    /// For each regular and then each singular facet the sheet in front of it, seen from which its
+    /// row turns counter-clockwise, and that behind it: [`Sheets::NONE`] where the shape is solid.
+    pub fn sides(&self) -> impl Iterator<Item = [i32; 2]> + '_ {
+        let regular = self.regular.iter().map(|&front| [front as i32, Self::NONE]);
+        regular.chain(self.singular.iter().map(|&[behind, front]| [front as i32, behind as i32]))
+    }
+}
+
+/// A connected component of a shape.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Component {
+    /// Its vertices.
+    pub vertices: usize,
+    /// Its cells; 0 for one that is nowhere solid.
+    pub cells: usize,
+    /// The volume of its cells, in cubed units of the points.
+    pub volume: f64,
+    /// The area of its regular facets, the boundary of its solid part.
+    pub area: f64,
+    /// The area of its singular facets, one side of each.
+    pub singular_area: f64,
+    /// The smallest coordinates of its box, (x, y, z).
+    pub low: [f64; 3],
+    /// The largest coordinates of its box, (x, y, z).
+    pub high: [f64; 3],
+    /// What its boundary shuts in, largest first; `None` where sheets are not known.
+    pub voids: Option<Vec<Enclosed>>,
+}
+
+/// A void by the sheet around it. Another component may float in it: its volume counts here.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Enclosed {
+    /// The number of the sheet.
+    pub sheet: u32,
+    /// What the sheet shuts in, in cubed units of the points.
+    pub volume: f64,
+    /// The smallest coordinates of its box, (x, y, z).
+    pub low: [f64; 3],
+    /// The largest coordinates of its box, (x, y, z).
+    pub high: [f64; 3],
+}
+
+/// What [`AlphaShape::component_numbers`] says of points that are no vertices of the shape.
+pub const NO_COMPONENT: u32 = u32::MAX;
+
+impl AlphaShape {
+    /// For each input point the number of its component, [`NO_COMPONENT`] if it is not in the shape.
+    /// Components are numbered in the order of their smallest vertices. O(n).
+    pub fn component_numbers(&self) -> Vec<u32> {
+        let mut sets = connected(self.complex());
+        let mut numbers = vec![NO_COMPONENT; self.points().len()];
+        let mut count = 0;
+        for (&[v], class) in self.complex().vertices.iter() {
+            if class == Class::Exterior {
+                continue;
+            }
+            let root = sets.find(v);
+            if root == v {
+                numbers[v as usize] = count;
+                count += 1;
+            } else {
+                numbers[v as usize] = numbers[root as usize];
+            }
+        }
+        numbers
+    }
+
+    /// The components of the shape by their numbers, as many as b0. Rounded sums in a fixed order.
+    /// O(n).
+    pub fn components(&self) -> Vec<Component> {
+        let numbers = self.component_numbers();
+        let positions = &self.points().positions;
+        let at = |v: u32| positions[v as usize];
+        let number = |v: u32| numbers[v as usize] as usize;
+        let mut components: Vec<Component> = Vec::new();
+        for &[v] in &self.complex().vertices.vertices {
+            let point = at(v);
+            match number(v) {
+                n if n == NO_COMPONENT as usize => {}
+                n if n == components.len() => components.push(Component::at(point)),
+                n => components[n].reach(point),
+            }
+        }
+        for cell in self.complex().cells.of(Class::Interior) {
+            let component = &mut components[number(cell[0])];
+            component.cells += 1;
+            component.volume += six_volumes(cell.map(at));
+        }
+        for (facet, class) in self.complex().facets.iter() {
+            let area = || facet_area(facet.map(at));
+            match class {
+                Class::Regular => components[number(facet[0])].area += area(),
+                Class::Singular => components[number(facet[0])].singular_area += area(),
+                _ => {}
+            }
+        }
+        // Divided last: sums of determinants on a lattice are whole numbers.
+        for component in &mut components {
+            component.volume /= 6.0;
+        }
+        if let Some(sheets) = self.sheets() {
+            components.iter_mut().for_each(|component| component.voids = Some(Vec::new()));
+            for (component, void) in self.enclosed(sheets, &numbers) {
+                components[component].voids.get_or_insert_default().push(void);
+            }
+        }
+        components
+    }
+
+    /// Sheets that shut something in, with their components, largest first.
+    fn enclosed(&self, sheets: &Sheets, numbers: &[u32]) -> Vec<(usize, Enclosed)> {
+        let positions = &self.points().positions;
+        let complex = self.complex();
+        let mut found: Vec<Option<(usize, Enclosed)>> = vec![None; sheets.count as usize];
+        // A side of a facet turns counter-clockwise seen from outside the shape.
+        let mut add = |sheet: u32, side: [u32; 3]| {
+            let corners = side.map(|v| positions[v as usize]);
+            let (_, void) = found[sheet as usize].get_or_insert_with(|| {
+                let component = numbers[side[0] as usize] as usize;
+                (component, Enclosed { sheet, volume: 0.0, low: corners[0], high: corners[0] })
+            });
+            // Of all cones over the sides of a sheet from one apex, signed, its inside remains.
+            void.volume -= six_volumes([positions[0], corners[0], corners[1], corners[2]]);
+            corners.iter().for_each(|&corner| widen(&mut void.low, &mut void.high, corner));
+        };
+        for (&sheet, &side) in sheets.regular.iter().zip(complex.facets.of(Class::Regular)) {
+            add(sheet, side);
+        }
+        for (&[clockwise, counter], &[a, b, c]) in
+            sheets.singular.iter().zip(complex.facets.of(Class::Singular))
+        {
+            add(clockwise, [a, c, b]);
+            add(counter, [a, b, c]);
+        }
+        let mut found: Vec<(usize, Enclosed)> = found.into_iter().flatten().collect();
+        found.iter_mut().for_each(|(_, void)| void.volume /= 6.0);
+        // The sheet around a component has what it shuts in on its back: least, and first.
+        found.sort_by(|(a, first), (b, second)| {
+            a.cmp(b).then(first.volume.total_cmp(&second.volume))
+        });
+        let voids = found.chunk_by(|a, b| a.0 == b.0).flat_map(|of_one| of_one[1..].iter().rev());
+        voids.copied().collect()
+    }
+}
+
+impl Component {
+    fn at(point: [f64; 3]) -> Self {
+        Self {
+            vertices: 1,
+            cells: 0,
+            volume: 0.0,
+            area: 0.0,
+            singular_area: 0.0,
+            low: point,
+            high: point,
+            voids: None,
+        }
+    }
+
+    fn reach(&mut self, point: [f64; 3]) {
+        self.vertices += 1;
+        widen(&mut self.low, &mut self.high, point);
+    }
+}
+
+/// The vertices of a shape, united by its edges.
+pub(super) fn connected(complex: &Complex) -> UnionFind {
+    let points = complex.vertices.vertices.last().map_or(0, |&[v]| v as usize + 1);
+    let mut sets = UnionFind::new(points);
+    for (&[a, b], class) in complex.edges.iter() {
+        if class != Class::Exterior {
+            sets.unite(a, b);
+        }
+    }
+    sets
+}
+
+fn widen(low: &mut [f64; 3], high: &mut [f64; 3], point: [f64; 3]) {
+    for k in 0..3 {
+        low[k] = low[k].min(point[k]);
+        high[k] = high[k].max(point[k]);
+    }
+}
