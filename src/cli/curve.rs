@@ -12,12 +12,12 @@ use walpha::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_c
 use walpha::render::error_figure;
 use walpha::{SelectionRule, Volume, Weighting, haar};
 
+use super::Global;
 use super::args::{HaarArgs, InputArgs, SelectArgs, WeightArgs};
 use super::output::tell;
 use super::pipeline::{Input, read};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
-use super::Global;
 
 #[derive(Serialize)]
 struct Facts {
@@ -126,7 +126,8 @@ impl Display for Facts {
             "{:<20}{:<12}{:>8}{:>8}{:>11}{:>13}{:>13}",
             "method", "weights", "count", "hidden", "coverage", "RMSE inside", "RMSE filled"
         )?;
-        let number = |rmse: Option<f64>| rmse.map_or_else(|| "–".into(), |rmse| format!("{rmse:.3}"));
+        let number =
+            |rmse: Option<f64>| rmse.map_or_else(|| "–".into(), |rmse| format!("{rmse:.3}"));
         for point in &self.curve {
             writeln!(
                 f,

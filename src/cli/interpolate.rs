@@ -151,7 +151,10 @@ impl Interpolate {
         let files = self.output.iter().chain(&self.mask).map(|path| path.display().to_string());
         report.finish(progress.finish(), files.collect());
         let grid = grid.dims().xyz();
-        tell(global, &Facts { report, interpolation: Interpolation { grid, on_shape, inside, filled } })
+        tell(
+            global,
+            &Facts { report, interpolation: Interpolation { grid, on_shape, inside, filled } },
+        )
     }
 
     fn sample(

@@ -82,9 +82,7 @@ fn of_offsets<T: Number>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
 fn along_an_axis<T: Number, const N: usize>(parts: [[T; 3]; N]) -> Option<[f64; 4]> {
     let whole = |k: usize| parts.iter().fold(T::zero(), |sum, part| sum.plus(&part[k]));
     let (k, sign) = (0..3).map(|k| (k, whole(k).sign())).find(|(_, sign)| sign.is_ne())?;
-    shares(parts.map(|part| {
-        if sign.is_gt() { part[k].clone() } else { T::zero().minus(&part[k]) }
-    }))
+    shares(parts.map(|part| if sign.is_gt() { part[k].clone() } else { T::zero().minus(&part[k]) }))
 }
 
 /// Parts over their sum; `None` if one is negative.

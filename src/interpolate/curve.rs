@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
 
-use super::{Adaptive, Deviation, Grid, InterpolateError, Interpolant, adaptive_voxels, fill};
+use super::{Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels, fill};
 use crate::cgal::CgalError;
 use crate::haar::{HaarOptions, Tolerance, smooth};
 use crate::points::{

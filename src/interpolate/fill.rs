@@ -25,7 +25,8 @@ pub fn fill(
         add_corners(&mut points, volume, units)?;
     }
     let engine = shape.options().engine;
-    let options = ShapeOptions { balls: Balls::Power, engine, ..ShapeOptions::new(Alpha::INFINITE) };
+    let options =
+        ShapeOptions { balls: Balls::Power, engine, ..ShapeOptions::new(Alpha::INFINITE) };
     Ok(alpha_shape(points, &options)?)
 }
 
@@ -38,9 +39,7 @@ fn add_corners(
     let lightest = points.weights.iter().copied().reduce(f64::min).unwrap_or(0.0);
     let missing: Vec<(f64, [f64; 3])> = corners(volume)
         .into_iter()
-        .map(|voxel| {
-            (f64::from(volume.as_slice()[voxel as usize]), units.position(volume, voxel))
-        })
+        .map(|voxel| (f64::from(volume.as_slice()[voxel as usize]), units.position(volume, voxel)))
         .filter(|(_, corner)| !points.positions.contains(corner))
         .collect();
     for (value, corner) in missing {

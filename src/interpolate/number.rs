@@ -122,17 +122,14 @@ impl Lattice {
         let (_, exponent) = decode(x);
         match lowest_bit(x) {
             None => self,
-            Some(bit) => {
-                Self { unit: self.unit.min(bit), reach: self.reach.max(exponent + 53) }
-            }
+            Some(bit) => Self { unit: self.unit.min(bit), reach: self.reach.max(exponent + 53) },
         }
     }
 
     /// Whether formulas over these places and one more are exact in doubles.
     pub fn is_exact_with(self, place: [f64; 3]) -> bool {
         let Self { unit, reach } = place.into_iter().fold(self, Self::with);
-        reach <= unit.saturating_add(Self::BITS) && unit.abs() <= Self::RANGE
-            || reach == i32::MIN
+        reach <= unit.saturating_add(Self::BITS) && unit.abs() <= Self::RANGE || reach == i32::MIN
     }
 }
 

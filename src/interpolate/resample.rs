@@ -2,7 +2,7 @@ use ndarray::Array3;
 use rayon::prelude::*;
 
 use super::raster::{NOTHING, owners};
-use super::{Grid, InterpolateError, Interpolant};
+use super::{Grid, Interpolant, InterpolateError};
 use crate::volume::{Frame, Volume};
 
 /// F on the samples of a grid.

@@ -66,14 +66,10 @@ fn grow(nodes: &mut Vec<Node>, boxes: &[Bounds], order: &mut [u32], start: u32) 
     let around = order.iter().map(|&i| boxes[i as usize]).reduce(union).expect("a box at least");
     let leaf = order.len() <= LEAF;
     let range = (start, start + order.len() as u32);
-    nodes.push(Node {
-        low: around[0],
-        high: around[1],
-        next: 0,
-        leaf: leaf.then_some(range),
-    });
+    nodes.push(Node { low: around[0], high: around[1], next: 0, leaf: leaf.then_some(range) });
     if !leaf {
-        let middle = |i: u32, k: usize| boxes[i as usize][0][k] / 2.0 + boxes[i as usize][1][k] / 2.0;
+        let middle =
+            |i: u32, k: usize| boxes[i as usize][0][k] / 2.0 + boxes[i as usize][1][k] / 2.0;
         let spread = |k: usize| {
             let ends = order.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &i| {
                 (low.min(middle(i, k)), high.max(middle(i, k)))

@@ -3,8 +3,8 @@ use crate::interpolate::{CurvePoint, Deviation, Method};
 use crate::points::Weighting;
 
 /// The figure of an error curve (see [`error_curve`](crate::interpolate::error_curve)): RMSE of the
-/// filled interpolant, RMSE inside the shape at α (squared), and coverage, over the number of points.
-/// A colour for each method; unweighted lines are solid, weighted ones dashed.
+/// filled interpolant, RMSE inside the shape at α (squared), coverage, and how many points are
+/// hidden, over the number of points. A colour for each method; unweighted lines are solid.
 pub fn error_figure(title: &str, alpha: f64, curve: &[CurvePoint]) -> Figure {
     let size = Size::new(800, 640).expect("a size that is right");
     let panel = |title: &str, unit: &str, value: &dyn Fn(&CurvePoint) -> Option<f64>| Panel {
@@ -22,6 +22,9 @@ pub fn error_figure(title: &str, alpha: f64, curve: &[CurvePoint]) -> Figure {
         panel(&format!("covered by the shape at α = {alpha}"), "samples (%)", &|point| {
             shapes(point).as_ref().map(Deviation::coverage).map(|share| 100.0 * share)
         }),
+        panel("hidden by heavier points, so that they carry no value", "points (%)", &|point| {
+            point.weighting.map(|_| 100.0 * point.hidden as f64 / point.count as f64)
+        }),
     ];
     let legend = Method::ALL.into_iter().filter(|m| curve.iter().any(|point| point.method == *m));
     Figure {
@@ -32,10 +35,10 @@ pub fn error_figure(title: &str, alpha: f64, curve: &[CurvePoint]) -> Figure {
         colour_bar: None,
         legend: legend.map(|method| (method.to_string(), colour(method))).collect(),
         notes: vec![
-            "Error is measured from the original volume. Solid: ω = 0, and coefficients. Long dashes \
-             with dots: min-max weights. Small dots alone: barycentric weights, which average α/N, so \
-             that they lie on ω = 0. Thresholds choose the same points as largest differences do, at \
-             other counts."
+            "Error is measured from the original volume. Solid lines: ω = 0, and coefficients. Dashed \
+             lines: min-max weights. White dots: barycentric weights; they average α/N, and so are \
+             seen only where many points lie on one sphere and any weight decides. Thresholds \
+             choose as largest differences do, at other counts."
                 .into(),
         ],
     }
@@ -51,15 +54,12 @@ fn colour(method: Method) -> Rgb {
     }
 }
 
-fn chart(
-    curve: &[CurvePoint],
-    unit: &str,
-    value: &dyn Fn(&CurvePoint) -> Option<f64>,
-) -> Drawing {
+fn chart(curve: &[CurvePoint], unit: &str, value: &dyn Fn(&CurvePoint) -> Option<f64>) -> Drawing {
     let at = |point: &CurvePoint| Some([point.count as f64, value(point)?]);
-    let high = curve.iter().filter_map(at).fold([1.0f64; 2], |high, p| {
-        [high[0].max(p[0]), high[1].max(p[1])]
-    });
+    let high = curve
+        .iter()
+        .filter_map(at)
+        .fold([1.0f64; 2], |high, p| [high[0].max(p[0]), high[1].max(p[1])]);
     let bounds = [[0.0; 2], high.map(|v| v * 1.04)];
     let mut chart = Drawing::chart(bounds, "points, or coefficients", unit);
     let same = |a: &CurvePoint, b: &CurvePoint| a.method == b.method && a.weighting == b.weighting;
