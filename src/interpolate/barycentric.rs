@@ -173,9 +173,9 @@ mod tests {
 
     #[test]
     fn one_ulp_decides() {
-        let third = 4.0 / 3.0;
+        let third: f64 = 4.0 / 3.0;
         // On the slanted face, rounded to one of its sides.
-        let place = [third, third, 4.0 - 2.0 * third];
+        let place: [f64; 3] = [third, third, 4.0 - 2.0 * third];
         let sum_is_at_most_four = |p: [f64; 3]| {
             let rows = integer_offsets(&[p, [4.0, 0.0, 0.0]], [0.0; 3]);
             &rows[0][0] + &rows[0][1] + &rows[0][2] <= rows[1][0]
