@@ -136,8 +136,8 @@ impl Bench<'_> {
                 let level = |count: u64| f64::from(levels[count as usize - 1]).round().max(1.0);
                 let mut thresholds: Vec<f64> = self.counts().map(level).collect();
                 thresholds.dedup();
-                let some = |&level: &f64| f64::from(levels[0]) >= level;
-                thresholds.retain(some);
+                // A constant volume has no difference of a gray level.
+                thresholds.retain(|&threshold| f64::from(levels[0]) >= threshold);
                 thresholds.into_iter().map(|t| self.by(SelectionRule::Threshold(t))).collect()
             }
             Method::Adaptive => {

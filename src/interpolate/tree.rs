@@ -39,7 +39,7 @@ impl Tree {
         Self { nodes, order }
     }
 
-    /// The least number below `limit` for which `holds`, among the boxes that hold a place.
+    /// The least number for which `holds`, among the boxes that hold a place.
     pub fn first(&self, place: [f64; 3], holds: impl Fn(u32) -> bool) -> Option<u32> {
         let mut first = None;
         let mut at = 0;
