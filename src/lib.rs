@@ -37,6 +37,7 @@ pub mod cgal;
 pub mod check;
 pub mod export;
 pub mod haar;
+pub mod interpolate;
 pub mod memory;
 pub mod plane;
 pub mod points;
@@ -46,6 +47,7 @@ pub mod shape;
 pub mod volume;
 
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
+pub use interpolate::Interpolant;
 pub use points::{Points, PointsError, Selection, SelectionRule, Units, WeightedPoints, Weighting};
 pub use shape::{Alpha, AlphaShape, Balls, Class, Complex, Simplices, alpha_shape};
 pub use volume::{Dims, Frame, Gray, GrayRange, Volume, VolumeError};

@@ -4,6 +4,7 @@ use std::num::NonZeroUsize;
 
 use anyhow::bail;
 use clap::{Args, ValueEnum};
+use walpha::interpolate::Adaptive;
 use walpha::shape::{Engine, ShapeOptions};
 use walpha::volume::{Dtype, Endian, RawLayout, ReadOptions};
 use walpha::{
@@ -50,6 +51,11 @@ pub struct RawArgs {
 }
 
 impl RawArgs {
+    /// The grid that `--dims` asks for where it does not describe a raw file.
+    pub fn grid(&self) -> Option<Dims> {
+        self.dims.filter(|_| self.dtype.is_none())
+    }
+
     /// How to read the file.
     pub fn options(&self) -> ReadOptions {
         let raw = self.dims.zip(self.dtype);
@@ -105,7 +111,15 @@ impl HaarArgs {
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Points")]
 pub struct SelectArgs {
-    /// Keep the N samples of largest gray difference.
+    /// Which samples: those of largest gray difference; or adaptive: from the corners of the volume
+    /// on, those where the interpolant of the ones before is worst.
+    #[arg(long, value_enum, default_value_t, value_name = "HOW")]
+    select: SelectArg,
+    /// Adaptive: stop when the RMSE of the interpolant over all samples is at most E gray levels
+    /// (--rms is that of the wavelet stage). With --count or --ratio: at what comes first.
+    #[arg(long, value_name = "E", value_parser = not_negative)]
+    target_rmse: Option<f64>,
+    /// Keep N samples.
     #[arg(long, value_name = "N", group = "rule")]
     count: Option<u64>,
     /// Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609].
@@ -120,6 +134,13 @@ pub struct SelectArgs {
     /// Coordinates in voxels, or in the file's units; then α, weights and sizes are too.
     #[arg(long, value_enum, default_value_t, value_name = "UNITS")]
     units: UnitsArg,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
+enum SelectArg {
+    #[default]
+    Difference,
+    Adaptive,
 }
 
 #[derive(Clone, Copy, Default, ValueEnum)]
@@ -139,6 +160,34 @@ impl SelectArgs {
             _ => SelectionRule::default(),
         };
         Selection { rule, gray_min: self.gray_min }
+    }
+
+    /// The goal of adaptive selection, if that is asked for, among so many samples.
+    pub fn adaptive(&self, samples: usize) -> anyhow::Result<Option<Adaptive>> {
+        if self.select != SelectArg::Adaptive {
+            if self.target_rmse.is_some() {
+                bail!("--target-rmse belongs to --select adaptive: add it, or use --count");
+            }
+            return Ok(None);
+        }
+        if self.threshold.is_some() || self.gray_min.is_some() {
+            bail!(
+                "--threshold and --gray-min choose by gray levels, which --select adaptive does \
+                 not: use --count, --ratio or --target-rmse"
+            );
+        }
+        let rmse = self.target_rmse.unwrap_or(0.0);
+        let count = match self.selection().rule {
+            SelectionRule::Count(count) => count,
+            SelectionRule::Ratio(_) if self.ratio.is_none() && self.target_rmse.is_some() => {
+                samples as u64
+            }
+            SelectionRule::Ratio(ratio) if ratio > 0.0 && ratio <= 1.0 => {
+                (ratio * samples as f64).round() as u64
+            }
+            _ => bail!("--ratio must be a share above 0 and up to 1, as in 0.0609 for 6.09 %"),
+        };
+        Ok(Some(Adaptive { count, rmse }))
     }
 
     /// What coordinates are measured in.

@@ -4,8 +4,10 @@ mod args;
 mod check;
 mod compare;
 mod complex_file;
+mod curve;
 mod haar;
 mod info;
+mod interpolate;
 mod output;
 mod picture;
 mod pipeline;
@@ -67,6 +69,7 @@ enum Command {
     Shape(shape::Shape),
     Points(points::Points),
     Haar(haar::Haar),
+    Interpolate(interpolate::Interpolate),
     Info(info::Info),
     Check(check::Check),
     Compare(compare::Compare),
@@ -114,6 +117,7 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
         Command::Shape(shape) => shape.run(global)?,
         Command::Points(points) => points.run(global)?,
         Command::Haar(haar) => haar.run(global)?,
+        Command::Interpolate(interpolate) => interpolate.run(global)?,
         Command::Info(info) => info.run(global)?,
         Command::Check(check) => return check.run(global),
         Command::Compare(compare) => return compare.run(global),

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use walpha::interpolate::adaptive_voxels;
 use walpha::points::{is_point_file, read_points, weigh};
 use walpha::{
     GrayRange, Points, Truncation, Volume, WeightedPoints, Weighting, haar, points, volume,
@@ -58,24 +59,27 @@ pub fn weighted_points(
     weights: &WeightArgs,
     progress: &mut Progress,
 ) -> anyhow::Result<Weighed> {
+    Ok(points_and_volume(input, haar, select, weights, progress)?.0)
+}
+
+/// The same, with the gray levels of the volume they come from.
+pub fn points_and_volume(
+    input: &InputArgs,
+    haar: &HaarArgs,
+    select: &SelectArgs,
+    weights: &WeightArgs,
+    progress: &mut Progress,
+) -> anyhow::Result<(Weighed, Option<Volume>)> {
     let (mut points, volume) = match read(input, progress)? {
         Input::Points(points) => (points, None),
         Input::Volume(volume, range) => {
             let options = haar.options();
             let (smoothed, truncation) =
                 progress.stage("haar", || haar::smooth(&volume, &options))?;
-            let selected = progress.stage("points", || {
-                let differences = points::difference(&smoothed);
-                points::select(
-                    &volume,
-                    &smoothed,
-                    &differences,
-                    &select.selection(),
-                    select.units(),
-                )
-            })?;
+            let selected =
+                progress.stage("points", || selected_points(&volume, &smoothed, select))?;
             let facts = VolumeFacts { dims: volume.dims().xyz(), range, truncation };
-            (selected, Some(facts))
+            (selected, Some((facts, volume)))
         }
     };
     let weighting = weights.weighting(points.weights.is_some());
@@ -86,5 +90,22 @@ pub fn weighted_points(
         }
         weigh(&points, weighting, weights.alpha().squared())
     })?;
-    Ok(Weighed { points, weighting, volume })
+    let (facts, volume) = volume.unzip();
+    Ok((Weighed { points, weighting, volume: facts }, volume))
+}
+
+/// Points as asked for: by differences, or adaptively.
+fn selected_points(
+    volume: &Volume,
+    smoothed: &Volume,
+    select: &SelectArgs,
+) -> anyhow::Result<Points> {
+    let differences = points::difference(smoothed);
+    let units = select.units();
+    let Some(goal) = select.adaptive(volume.dims().samples())? else {
+        return Ok(points::select(volume, smoothed, &differences, &select.selection(), units)?);
+    };
+    let mut voxels = adaptive_voxels(volume, &goal, units)?;
+    voxels.sort_unstable();
+    Ok(points::points_at(volume, &differences, &voxels, units))
 }

@@ -12,6 +12,10 @@ use super::pipeline::{VolumeFacts, Weighed};
 /// Counted up when a field changes its meaning or goes; new fields may come at any time.
 pub const SCHEMA_VERSION: u32 = 1;
 
+/// The stages whose times are told, in the order of the work.
+const STAGES: [&str; 8] =
+    ["read", "haar", "points", "shape", "fill", "interpolate", "write", "total"];
+
 /// What `walpha shape` and `walpha points` did. A fact that is not known is null.
 #[derive(Serialize)]
 pub struct Report {
@@ -246,7 +250,7 @@ impl Display for Report {
             writeln!(f, "wrote     {file}")?;
         }
         write!(f, "time     ")?;
-        for stage in ["read", "haar", "points", "shape", "write", "total"] {
+        for stage in STAGES {
             if let Some(seconds) = self.seconds.get(stage) {
                 write!(f, " {stage} {seconds:.2} s")?;
             }
@@ -264,7 +268,8 @@ fn number_or_name<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S
     }
 }
 
-fn number_or_null_or_name<S: Serializer>(
+/// The same where there may be none.
+pub fn number_or_null_or_name<S: Serializer>(
     number: &Option<f64>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {

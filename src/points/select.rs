@@ -63,6 +63,19 @@ pub struct Points {
     pub weights: Option<Vec<f64>>,
 }
 
+impl Units {
+    /// Where a voxel of a volume, by its index x + X·(y + Y·z), stands in these units.
+    pub fn position(self, volume: &Volume, voxel: u32) -> [f64; 3] {
+        let [nx, ny, _] = volume.dims().xyz();
+        let voxel = voxel as usize;
+        let index = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)].map(|i| i as f64);
+        match self {
+            Self::Voxel => index,
+            Self::World => volume.frame().to_world(index),
+        }
+    }
+}
+
 impl Points {
     /// The number of points.
     pub fn len(&self) -> usize {
@@ -96,8 +109,8 @@ pub fn select(
     assert_eq!(volume.dims(), smoothed.dims(), "one grid");
     assert_eq!(volume.dims().shape(), *differences.shape(), "one grid");
     let n = volume.dims().samples();
-    let differences = differences.as_standard_layout();
-    let flat = differences.as_slice().expect("standard layout");
+    let standard = differences.as_standard_layout();
+    let flat = standard.as_slice().expect("standard layout");
     let voxels = match selection.gray_min {
         None => chosen(flat, n as u64, &selection.rule)?,
         Some(least) if least.is_nan() => {
@@ -111,23 +124,29 @@ pub fn select(
             chosen(&masked, available, &selection.rule)?
         }
     };
-    let [nx, ny, _] = volume.dims().xyz();
-    let position = |&voxel: &u32| {
-        let voxel = voxel as usize;
-        let index = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)].map(|i| i as f64);
-        match units {
-            Units::Voxel => index,
-            Units::World => volume.frame().to_world(index),
-        }
-    };
-    let samples = volume.as_slice();
+    Ok(points_at(volume, differences, &voxels, units))
+}
+
+/// The points at some voxels, by their index x + X·(y + Y·z), in the order given: values are those
+/// of `volume`, differences those of `differences` there.
+///
+/// # Panics
+/// When the two are not of one shape, or have no such voxel.
+pub fn points_at(
+    volume: &Volume,
+    differences: &Array3<f32>,
+    voxels: &[u32],
+    units: Units,
+) -> Points {
+    assert_eq!(volume.dims().shape(), *differences.shape(), "one grid");
+    let differences = differences.as_standard_layout();
     let of = |column: &[f32]| voxels.par_iter().map(|&i| f64::from(column[i as usize])).collect();
-    Ok(Points {
-        positions: voxels.par_iter().map(position).collect(),
-        values: Some(of(samples)),
-        differences: Some(of(flat)),
+    Points {
+        positions: voxels.par_iter().map(|&voxel| units.position(volume, voxel)).collect(),
+        values: Some(of(volume.as_slice())),
+        differences: Some(of(differences.as_slice().expect("standard layout"))),
         weights: None,
-    })
+    }
 }
 
 /// The indices the rule chooses, ascending. Masked voxels are NaN, and `available` are not.

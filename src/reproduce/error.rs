@@ -1,5 +1,6 @@
 use super::OffError;
 use crate::haar::HaarError;
+use crate::interpolate::InterpolateError;
 use crate::plane::{NotACurvature, PlaneError};
 use crate::points::PointsError;
 use crate::render::RenderError;
@@ -24,6 +25,9 @@ pub enum ReproduceError {
     /// A curvature that is none.
     #[error(transparent)]
     Curvature(#[from] NotACurvature),
+    /// The points have no interpolant.
+    #[error(transparent)]
+    Interpolate(#[from] InterpolateError),
     /// A picture cannot be drawn.
     #[error(transparent)]
     Render(#[from] RenderError),

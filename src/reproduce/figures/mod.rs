@@ -2,6 +2,7 @@
 
 mod common;
 mod comparison;
+mod extension;
 mod geomview;
 mod isosurface;
 mod plane;
@@ -20,8 +21,8 @@ use crate::render::{Figure, Panel, Picture, plain_colours};
 /// Makes one item, and leaves its files with the bench.
 type Make = fn(&mut Bench<'_>) -> Result<Item, ReproduceError>;
 
-/// All there is, in the paper's order.
-pub(super) const ALL: [(&str, Make); 12] = [
+/// All there is, in the paper's order, and what we add.
+pub(super) const ALL: [(&str, Make); 13] = [
     ("Table 1", table::table_1),
     ("Figure 1", points::figure_1),
     ("Figure 2", plane::figure_2),
@@ -34,6 +35,7 @@ pub(super) const ALL: [(&str, Make); 12] = [
     ("Figure 9", weighted::figure_9),
     ("Figure 10", comparison::figure_10),
     ("Figure 11", geomview::figure_11),
+    ("Extension", extension::error_against_points),
 ];
 
 /// What figures are made from, and where their files go.

@@ -1,0 +1,149 @@
+//! `walpha interpolate --curve`: error against the number of points.
+
+use std::fmt::{self, Display};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use anyhow::{anyhow, bail};
+use serde::Serialize;
+use walpha::export::Target;
+use walpha::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
+use walpha::render::error_figure;
+use walpha::{SelectionRule, Volume, Weighting, haar};
+
+use super::Global;
+use super::args::{HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::output::tell;
+use super::pipeline::{Input, read};
+use super::progress::Progress;
+use super::report::SCHEMA_VERSION;
+
+#[derive(Serialize)]
+struct Facts {
+    schema_version: u32,
+    input: String,
+    /// Squared.
+    alpha: f64,
+    curve: Vec<CurvePoint>,
+    files: Vec<String>,
+    seconds: f64,
+}
+
+/// Measures the curve and writes it as CSV, PNG and SVG.
+pub fn run(
+    global: Global,
+    input: &InputArgs,
+    haar: &HaarArgs,
+    select: &SelectArgs,
+    weights: &WeightArgs,
+    base: &Path,
+) -> anyhow::Result<()> {
+    let paths = paths(base)?;
+    let targets = paths.iter().map(|path| Target::open(path)).collect::<Result<Vec<_>, _>>()?;
+    let mut progress = Progress::new(global);
+    let Input::Volume(volume, _) = read(input, &mut progress)? else {
+        bail!("{} holds points, and --curve needs a volume", input.input);
+    };
+    let (smoothed, _) = progress.stage("haar", || haar::smooth(&volume, &haar.options()))?;
+    let options = CurveOptions {
+        counts: counts(&volume, select)?,
+        weightings: vec![Weighting::Common(0.0), Weighting::MinMax, Weighting::Barycentric],
+        alpha: weights.alpha(),
+        units: select.units(),
+    };
+    let show = |method: Method| match method {
+        Method::Difference => "points of largest difference",
+        Method::Threshold => "points above thresholds",
+        Method::Adaptive => "adaptive points",
+        Method::Lattice => "uniform lattices",
+        Method::Haar => "truncated Haar",
+    };
+    let curve =
+        error_curve(&volume, &smoothed, &options, &mut |method| progress.show(show(method)))?;
+    let mut csv = Vec::new();
+    write_curve_csv(&curve, &mut csv)?;
+    let alpha = options.alpha.squared();
+    let figure = error_figure(&format!("Error against points: {}", input.input), alpha, &curve);
+    let files = [csv, figure.to_png()?, figure.to_svg()?.into_bytes()];
+    for (target, bytes) in targets.into_iter().zip(&files) {
+        target.write(|out| out.write_all(bytes))?;
+    }
+    let seconds = progress.finish().last().map_or(0.0, |(_, seconds)| *seconds);
+    let facts = Facts {
+        schema_version: SCHEMA_VERSION,
+        input: input.input.clone(),
+        alpha,
+        curve,
+        files: paths.map(|path| path.display().to_string()).into(),
+        seconds,
+    };
+    tell(global, &facts)
+}
+
+/// From a sixteenth to twice the points that would be selected.
+fn counts(volume: &Volume, select: &SelectArgs) -> anyhow::Result<Vec<u64>> {
+    let whole = match select.selection().rule {
+        SelectionRule::Count(count) => count as f64,
+        SelectionRule::Ratio(ratio) => ratio * volume.dims().samples() as f64,
+        SelectionRule::Threshold(_) => bail!("--curve needs --count or --ratio"),
+    };
+    Ok([0.0625, 0.125, 0.25, 0.5, 1.0, 2.0].map(|f| (f * whole).round() as u64).into())
+}
+
+/// `curve.csv`, `.png` and `.svg` in a folder, or files whose names begin as given.
+fn paths(base: &Path) -> anyhow::Result<[PathBuf; 3]> {
+    const EXTENSIONS: [&str; 3] = ["csv", "png", "svg"];
+    let text = base.to_string_lossy();
+    if text.ends_with(['/', std::path::MAIN_SEPARATOR]) {
+        match fs::create_dir(base) {
+            Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
+                return Err(anyhow!("cannot make the folder {text}: {error}; choose another"));
+            }
+            _ => {}
+        }
+    }
+    let stem = if base.is_dir() {
+        base.join("curve")
+    } else if EXTENSIONS.iter().any(|known| base.extension().is_some_and(|e| e == *known)) {
+        base.with_extension("")
+    } else {
+        base.to_owned()
+    };
+    Ok(EXTENSIONS.map(|extension| {
+        let mut path = stem.clone().into_os_string();
+        path.push(".");
+        path.push(extension);
+        path.into()
+    }))
+}
+
+impl Display for Facts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "input     {}, α = {} (squared length)", self.input, self.alpha)?;
+        writeln!(
+            f,
+            "{:<20}{:<12}{:>8}{:>8}{:>11}{:>13}{:>13}",
+            "method", "weights", "count", "hidden", "coverage", "RMSE inside", "RMSE filled"
+        )?;
+        let number =
+            |rmse: Option<f64>| rmse.map_or_else(|| "–".into(), |rmse| format!("{rmse:.3}"));
+        for point in &self.curve {
+            writeln!(
+                f,
+                "{:<20}{:<12}{:>8}{:>8}{:>9.2} %{:>13}{:>13}",
+                point.method.to_string(),
+                point.weighting.map_or_else(|| "–".into(), |w| w.to_string()),
+                point.count,
+                point.hidden,
+                100.0 * point.inside.coverage(),
+                number(point.inside.rmse),
+                number(point.filled.rmse)
+            )?;
+        }
+        for file in &self.files {
+            writeln!(f, "wrote     {file}")?;
+        }
+        writeln!(f, "time      total {:.2} s", self.seconds)
+    }
+}

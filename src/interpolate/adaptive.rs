@@ -1,0 +1,143 @@
+use std::collections::HashSet;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use rayon::prelude::*;
+
+use super::fill::corners;
+use super::raster::NOTHING;
+use super::{Deviation, Grid, Interpolant, InterpolateError, Resampled};
+use crate::points::{Units, WeightedPoints};
+use crate::shape::{Alpha, ShapeOptions, alpha_shape};
+use crate::volume::{Dims, Volume};
+
+/// When adaptive selection is done: as soon as either is reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adaptive {
+    /// Points at most.
+    pub count: u64,
+    /// An RMSE over the whole volume, in gray levels, that is good enough; 0 asks for all of
+    /// `count`, or for a perfect interpolant.
+    pub rmse: f64,
+}
+
+/// Points of a batch, over those there are: a batch is large enough for few triangulations, and
+/// small enough that its points are chosen for what is there and not for each other.
+const BATCH: f64 = 0.2;
+/// While there are few points, batches are of this size.
+const FIRST_BATCH: usize = 32;
+
+/// Voxels whose triangulation interpolates a volume well, in the order in which they were chosen:
+/// the first so many are what a smaller count would have chosen.
+///
+/// From the 8 corners on, greedily, after Garland and Heckbert, "Fast polygonal approximation of
+/// terrains and height fields" (CMU-CS-95-181, 1995), in space and in batches:
+///
+/// 1. the unweighted (ω = 0) Delaunay triangulation of the voxels so far is resampled on the grid;
+/// 2. cells are put in order of the squared error summed over their voxels, and each names its
+///    worst voxel;
+/// 3. in that order these join, but none beside one that has just joined (among its 26 neighbours),
+///    because it would repair the same error; at most a fifth as many as there are.
+///
+/// Error is measured from `volume` itself, so give the original, not a truncated one. It is looked
+/// at between batches: when that ends the selection, the last batch may have overshot the target.
+/// Fewer voxels than asked for suffice where their interpolant is perfect. Each batch costs one
+/// triangulation and one pass over the volume, in all a few times the last. The same on any number
+/// of threads.
+///
+/// # Errors
+/// A count below 8 or above the samples, a target that is negative or NaN, or a volume whose
+/// samples lie in one plane.
+pub fn adaptive_voxels(
+    volume: &Volume,
+    goal: &Adaptive,
+    units: Units,
+) -> Result<Vec<u32>, InterpolateError> {
+    let available = volume.dims().samples() as u64;
+    let mut voxels = corners(volume);
+    if goal.count < voxels.len().max(8) as u64 || goal.count > available {
+        return Err(InterpolateError::Count { asked: goal.count, available });
+    }
+    if goal.rmse.is_nan() || goal.rmse < 0.0 {
+        return Err(InterpolateError::Target(goal.rmse));
+    }
+    let grid = Grid::of(volume, units);
+    loop {
+        let points = points(volume, &voxels, units);
+        let shape = alpha_shape(points, &ShapeOptions::new(Alpha::INFINITE))?;
+        let interpolant = Interpolant::new(&shape)?;
+        let resampled = interpolant.resample(&grid)?;
+        let Deviation { rmse: Some(rmse), max: Some(max), .. } = Deviation::of(volume, &resampled)
+        else {
+            return Ok(voxels);
+        };
+        tracing::debug!(points = voxels.len(), rmse, "adaptive");
+        let room = goal.count as usize - voxels.len();
+        let batch = ((voxels.len() as f64 * BATCH).ceil() as usize).max(FIRST_BATCH).min(room);
+        if rmse <= goal.rmse || batch == 0 {
+            return Ok(voxels);
+        }
+        let candidates = worst(volume, &resampled, interpolant.len(), max);
+        let joining = apart(volume.dims(), candidates, batch);
+        voxels.extend(&joining);
+        if joining.is_empty() || voxels.len() as u64 == goal.count {
+            return Ok(voxels);
+        }
+    }
+}
+
+fn points(volume: &Volume, voxels: &[u32], units: Units) -> WeightedPoints {
+    let value = |&voxel: &u32| f64::from(volume.as_slice()[voxel as usize]);
+    WeightedPoints {
+        positions: voxels.iter().map(|&voxel| units.position(volume, voxel)).collect(),
+        weights: vec![0.0; voxels.len()],
+        values: Some(voxels.iter().map(value).collect()),
+    }
+}
+
+/// The worst voxel of each simplex, in order of the squared error of its whole simplex, the
+/// largest first. Voxels without error are none. `max` is the largest error.
+fn worst(volume: &Volume, resampled: &Resampled, simplices: usize, max: f64) -> Vec<u32> {
+    // Sums of integers do not depend on their order: squares in units of max²/2³¹, of which 2³²
+    // samples make less than 2⁶⁴.
+    let units = |error: f64| ((error / max).powi(2) * 2f64.powi(31)) as u64;
+    // Floats that are not negative are ordered as their bits are; of equal ones the lowest voxel.
+    let key = |error: f32, voxel: u32| u64::from(error.to_bits()) << 32 | u64::from(!voxel);
+    let zeros = || (0..simplices).map(|_| AtomicU64::new(0)).collect::<Vec<_>>();
+    let (sums, worst) = (zeros(), zeros());
+    let pairs = volume.as_slice().par_iter().zip(resampled.volume().as_slice());
+    pairs.zip(&resampled.owners).enumerate().for_each(|(voxel, ((f, g), &owner))| {
+        let error = (f - g).abs();
+        if owner != NOTHING && error > 0.0 {
+            sums[owner as usize].fetch_add(units(error.into()), Relaxed);
+            worst[owner as usize].fetch_max(key(error, voxel as u32), Relaxed);
+        }
+    });
+    let pairs = sums.into_iter().zip(worst).map(|(s, w)| (s.into_inner(), w.into_inner()));
+    let mut ranked: Vec<(u64, u64)> = pairs.filter(|&(_, worst)| worst != 0).collect();
+    ranked.par_sort_unstable_by(|a, b| b.cmp(a));
+    ranked.into_iter().map(|(_, key)| !(key as u32)).collect()
+}
+
+/// The first so many of some voxels of which none is beside an earlier one.
+fn apart(dims: Dims, voxels: Vec<u32>, most: usize) -> Vec<u32> {
+    let [nx, ny, nz] = dims.xyz();
+    let mut near = HashSet::new();
+    let mut apart = Vec::with_capacity(most);
+    for voxel in voxels {
+        if apart.len() == most {
+            break;
+        }
+        if near.contains(&voxel) {
+            continue;
+        }
+        apart.push(voxel);
+        let index = voxel as usize;
+        let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
+        for z in around(index / (nx * ny), nz) {
+            for y in around(index / nx % ny, ny) {
+                near.extend(around(index % nx, nx).map(|x| (x + nx * (y + ny * z)) as u32));
+            }
+        }
+    }
+    apart
+}

@@ -1,0 +1,221 @@
+//! Barycentric coordinates of a place in a simplex, if it lies there: decided exactly.
+
+use std::cmp::Ordering;
+
+use super::number::{Number, integer_offsets};
+
+/// The coordinates of a place in a simplex of one to four corners, or `None` where it lies outside;
+/// its boundary is inside. Four corners turn positively: det(b−a, c−a, d−a) > 0. Coordinates beyond
+/// the corners are 0.
+///
+/// With `exact`, no operation on these doubles rounds ([`Lattice`](super::number::Lattice)), and
+/// the coordinates are the doubles nearest to the true ones. Otherwise they are off by at most
+/// [`TOLERANCE`], and zeros and ones are right all the same.
+pub(super) fn coordinates(corners: &[[f64; 3]], place: [f64; 3], exact: bool) -> Option<[f64; 4]> {
+    if !in_box(corners, place) {
+        return None;
+    }
+    match *corners {
+        [a, b, c, d] => {
+            let offsets = [a, b, c, d].map(|p| minus(p, place));
+            if exact {
+                return of_offsets(&offsets);
+            }
+            match filtered(&offsets) {
+                Filtered::Outside => None,
+                Filtered::Inside(coordinates) => Some(coordinates),
+                Filtered::Close => of_offsets(&integer_offsets(corners, place)),
+            }
+        }
+        // Thin simplices are rare.
+        _ => of_offsets(&integer_offsets(corners, place)),
+    }
+}
+
+/// What a coordinate may be off by where doubles round: 2⁻⁴³ ≈ 1.1e-13.
+const TOLERANCE: f64 = f64::from_bits((1023 - 43) << 52);
+
+fn in_box(corners: &[[f64; 3]], place: [f64; 3]) -> bool {
+    (0..3).all(|k| {
+        let (mut below, mut above) = (false, false);
+        for corner in corners {
+            below |= corner[k] <= place[k];
+            above |= corner[k] >= place[k];
+        }
+        below && above
+    })
+}
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// From corners as seen from the place. Each coordinate is the share that the simplex with the
+/// place instead of that corner has of the whole.
+fn of_offsets<T: Number>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
+    let negative = |x: &T| T::zero().minus(x);
+    match offsets {
+        [a, b, c, d] => {
+            let (ab, cd) = (cross(a, b), cross(c, d));
+            shares([dot(b, &cd), negative(&dot(a, &cd)), dot(d, &ab), negative(&dot(c, &ab))])
+        }
+        [a, b, c] => {
+            let parts = [cross(b, c), cross(c, a), cross(a, b)];
+            if dot(a, &parts[0]).sign().is_ne() {
+                return None;
+            }
+            // Seen along an axis in which the triangle does not vanish.
+            along_an_axis(parts)
+        }
+        [a, b] => {
+            if cross(a, b).iter().any(|component| component.sign().is_ne()) {
+                return None;
+            }
+            along_an_axis([b.clone(), a.each_ref().map(negative)])
+        }
+        [a] => a.iter().all(|component| component.sign().is_eq()).then_some([1.0, 0.0, 0.0, 0.0]),
+        _ => None,
+    }
+}
+
+/// Shares by the first component in which the parts do not sum to 0.
+fn along_an_axis<T: Number, const N: usize>(parts: [[T; 3]; N]) -> Option<[f64; 4]> {
+    let whole = |k: usize| parts.iter().fold(T::zero(), |sum, part| sum.plus(&part[k]));
+    let (k, sign) = (0..3).map(|k| (k, whole(k).sign())).find(|(_, sign)| sign.is_ne())?;
+    shares(parts.map(|part| if sign.is_gt() { part[k].clone() } else { T::zero().minus(&part[k]) }))
+}
+
+/// Parts over their sum; `None` if one is negative.
+fn shares<T: Number, const N: usize>(parts: [T; N]) -> Option<[f64; 4]> {
+    if parts.iter().any(|part| part.sign() == Ordering::Less) {
+        return None;
+    }
+    let whole = parts.iter().fold(T::zero(), |sum, part| sum.plus(part));
+    if whole.sign().is_eq() {
+        return None;
+    }
+    let mut shares = [0.0; 4];
+    for (share, part) in shares.iter_mut().zip(&parts) {
+        *share = part.over(&whole);
+    }
+    Some(shares)
+}
+
+/// What doubles alone can say.
+enum Filtered {
+    Outside,
+    Inside([f64; 4]),
+    /// On the boundary or nearly so, or the simplex is too flat for doubles.
+    Close,
+}
+
+fn filtered([a, b, c, d]: &[[f64; 3]; 4]) -> Filtered {
+    // Each part is a sum of six products of three rounded differences: eight roundings in a row.
+    const ROUNDINGS: f64 = 10.0 * f64::EPSILON / 2.0;
+    let (ab, cd) = (cross(a, b), cross(c, d));
+    let parts = [dot(b, &cd), -dot(a, &cd), dot(d, &ab), -dot(c, &ab)];
+    let [pa, pb, pc, pd] = [a, b, c, d].map(|p| p.map(f64::abs));
+    let (ab, cd) = (magnitudes(&pa, &pb), magnitudes(&pc, &pd));
+    let bounds = [dot(&pb, &cd), dot(&pa, &cd), dot(&pd, &ab), dot(&pc, &ab)]
+        .map(|magnitude| magnitude * ROUNDINGS + f64::MIN_POSITIVE);
+    if parts.iter().zip(&bounds).any(|(part, bound)| -part > *bound) {
+        return Filtered::Outside;
+    }
+    let whole: f64 = parts.iter().sum();
+    let error: f64 = bounds.iter().sum();
+    let certain = parts.iter().zip(&bounds).all(|(part, bound)| part > bound);
+    if certain && error <= whole * (TOLERANCE / 4.0) && whole.is_finite() {
+        Filtered::Inside(parts.map(|part| part / whole))
+    } else {
+        Filtered::Close
+    }
+}
+
+fn cross<T: Number>(u: &[T; 3], v: &[T; 3]) -> [T; 3] {
+    let minor = |i: usize, j: usize| u[i].times(&v[j]).minus(&u[j].times(&v[i]));
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
+/// The cross product with sums for differences, of vectors without negative components.
+fn magnitudes(u: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
+    let sum = |i: usize, j: usize| u[i] * v[j] + u[j] * v[i];
+    [sum(1, 2), sum(2, 0), sum(0, 1)]
+}
+
+fn dot<T: Number>(u: &[T; 3], v: &[T; 3]) -> T {
+    u[0].times(&v[0]).plus(&u[1].times(&v[1])).plus(&u[2].times(&v[2]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interpolate::number::Lattice;
+
+    const CELL: [[f64; 3]; 4] = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]];
+
+    #[test]
+    fn ways_agree_on_a_lattice() {
+        let mut inside = 0;
+        for i in 0..6 * 6 * 6 {
+            let place = [i % 6, i / 6 % 6, i / 36].map(|k| f64::from(k) - 0.5);
+            assert!(Lattice::of(&CELL).is_exact_with(place));
+            let quick = coordinates(&CELL, place, true);
+            assert_eq!(quick, coordinates(&CELL, place, false), "{place:?}");
+            let [x, y, z] = place;
+            assert_eq!(quick.is_some(), x >= 0.0 && y >= 0.0 && z >= 0.0 && x + y + z <= 4.0);
+            if let Some(shares) = quick {
+                assert_eq!(shares, [4.0 - x - y - z, x, y, z].map(|v| v / 4.0));
+                inside += 1;
+            }
+        }
+        assert_eq!(inside, 10);
+    }
+
+    #[test]
+    fn one_ulp_decides() {
+        let third: f64 = 4.0 / 3.0;
+        // On the slanted face, rounded to one of its sides.
+        let place: [f64; 3] = [third, third, 4.0 - 2.0 * third];
+        let sum_is_at_most_four = |p: [f64; 3]| {
+            let rows = integer_offsets(&[p, [4.0, 0.0, 0.0]], [0.0; 3]);
+            &rows[0][0] + &rows[0][1] + &rows[0][2] <= rows[1][0]
+        };
+        for step in -2..=2i64 {
+            let z = f64::from_bits((place[2].to_bits() as i64 + step) as u64);
+            let place = [place[0], place[1], z];
+            let inside = coordinates(&CELL, place, false).is_some();
+            assert_eq!(inside, sum_is_at_most_four(place), "{step}");
+        }
+        assert!(coordinates(&CELL, [1.0f64.next_down(), 1.0, 2.0], false).is_some());
+        assert!(coordinates(&CELL, [1.0f64.next_up(), 1.0, 2.0], false).is_none());
+    }
+
+    #[test]
+    fn thin_simplices_hold_what_is_exactly_on_them() {
+        let triangle = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]];
+        let on = |place| coordinates(&triangle, place, false);
+        assert_eq!(on([1.0, 1.0, 1.0]), Some([0.5, 0.25, 0.25, 0.0]));
+        assert_eq!(on([1.0, 1.0, 1.0f64.next_up()]), None);
+        assert_eq!(on([3.0, 3.0, 1.0]), None);
+        let edge = [[4.0, 2.0, 0.0], [0.0, 0.0, 0.0]];
+        let on = |place| coordinates(&edge, place, false);
+        assert_eq!(on([1.0, 0.5, 0.0]), Some([0.25, 0.75, 0.0, 0.0]));
+        assert_eq!(on([1.0, 0.5, 1e-300]), None);
+        assert_eq!(coordinates(&edge[..1], edge[0], false), Some([1.0, 0.0, 0.0, 0.0]));
+        assert_eq!(coordinates(&edge[..1], [4.0, 2.0, 1.0], false), None);
+    }
+
+    #[test]
+    fn slivers_have_coordinates() {
+        // Six volumes of 1e-40, far below what doubles resolve beside the corners.
+        let corners =
+            [[1.0, 1.0, 1.0], [2.0, 1.0, 1.0], [1.0, 2.0, 1.0], [1.5, 1.5, 1.0f64.next_up()]];
+        let centre = [1.25, 1.25, 1.0];
+        assert_eq!(coordinates(&corners, centre, false), Some([0.5, 0.25, 0.25, 0.0]));
+        for corner in 0..4 {
+            let mut unit = [0.0; 4];
+            unit[corner] = 1.0;
+            assert_eq!(coordinates(&corners, corners[corner], false), Some(unit));
+        }
+    }
+}

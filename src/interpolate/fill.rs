@@ -1,0 +1,67 @@
+use super::InterpolateError;
+use crate::points::{Units, WeightedPoints};
+use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, alpha_shape};
+use crate::volume::Volume;
+
+/// The whole regular triangulation of a shape's points (α = ∞) and, given their volume, of its
+/// corner samples too, so that it covers every sample of the grid.
+///
+/// Corners that are no points yet come with their gray level and the least weight there is among
+/// the points. Being corners they are never hidden, and being light they hide little. Weights
+/// decide which points the triangulation has: a point hidden by heavier neighbours is no vertex,
+/// and its value is not used. With [`Balls::Radius`] the weights are (α + ω)² for the α of the
+/// shape.
+///
+/// # Errors
+/// Points without values, and what [`alpha_shape`] refuses.
+pub fn fill(
+    shape: &AlphaShape,
+    volume: Option<&Volume>,
+    units: Units,
+) -> Result<AlphaShape, InterpolateError> {
+    let mut points = shape.points().clone();
+    points.weights = shape.power_weights().to_vec();
+    if let Some(volume) = volume {
+        add_corners(&mut points, volume, units)?;
+    }
+    let engine = shape.options().engine;
+    let options =
+        ShapeOptions { balls: Balls::Power, engine, ..ShapeOptions::new(Alpha::INFINITE) };
+    Ok(alpha_shape(points, &options)?)
+}
+
+fn add_corners(
+    points: &mut WeightedPoints,
+    volume: &Volume,
+    units: Units,
+) -> Result<(), InterpolateError> {
+    let values = points.values.as_mut().ok_or(InterpolateError::NoValues)?;
+    let lightest = points.weights.iter().copied().reduce(f64::min).unwrap_or(0.0);
+    let missing: Vec<(f64, [f64; 3])> = corners(volume)
+        .into_iter()
+        .map(|voxel| (f64::from(volume.as_slice()[voxel as usize]), units.position(volume, voxel)))
+        .filter(|(_, corner)| !points.positions.contains(corner))
+        .collect();
+    for (value, corner) in missing {
+        points.positions.push(corner);
+        points.weights.push(lightest);
+        values.push(value);
+    }
+    Ok(())
+}
+
+/// The corner samples of a volume, ascending: 8, or fewer where an axis has one sample.
+pub(super) fn corners(volume: &Volume) -> Vec<u32> {
+    let [nx, ny, nz] = volume.dims().xyz();
+    let mut corners = Vec::with_capacity(8);
+    for z in [0, nz - 1] {
+        for y in [0, ny - 1] {
+            for x in [0, nx - 1] {
+                corners.push((x + nx * (y + ny * z)) as u32);
+            }
+        }
+    }
+    corners.sort_unstable();
+    corners.dedup();
+    corners
+}

@@ -1,0 +1,167 @@
+use std::ops::Range;
+
+use crate::points::Units;
+use crate::volume::{Dims, Frame, Volume};
+
+/// A grid of places to sample F at.
+///
+/// Its first and last samples along each axis stand on the first and last samples of the volume it
+/// is laid over (or on the sides of a box), the others at equal steps between: the extent is that
+/// of the sample positions, and the grid of a volume's own sizes is the volume's own. An axis of a
+/// single sample stands in the middle. Positions are rounded once, so those that a double can hold
+/// are exact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    dims: Dims,
+    /// Positions along the axes: fractional indices of the volume, or coordinates in a box.
+    axes: [Vec<f64>; 3],
+    /// From there to the points' coordinates; `None` where these are the same.
+    world: Option<World>,
+    frame: Frame,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct World {
+    frame: Frame,
+    /// From the world back to indices, after the origin is taken away; rounded.
+    inverse: [[f64; 3]; 3],
+}
+
+impl Grid {
+    /// The samples of a volume.
+    pub fn of(volume: &Volume, units: Units) -> Self {
+        Self::over(volume, volume.dims(), units)
+    }
+
+    /// As many samples as asked for over the extent of a volume.
+    pub fn over(volume: &Volume, dims: Dims, units: Units) -> Self {
+        let source = *volume.frame();
+        let (counts, n) = (volume.dims().xyz(), dims.xyz());
+        let axes: [Vec<f64>; 3] = [0, 1, 2].map(|k| steps(0.0, (counts[k] - 1) as f64, n[k]));
+        let step = [0, 1, 2].map(|k| step(0.0, (counts[k] - 1) as f64, n[k]));
+        let spacing = [0, 1, 2].map(|k| source.spacing[k] * step[k]);
+        let origin = source.to_world([0, 1, 2].map(|k| axes[k][0]));
+        let world = World { frame: source, inverse: inverse(source.axes()) };
+        Self {
+            dims,
+            axes,
+            world: (units == Units::World).then_some(world),
+            frame: Frame { origin, spacing, direction: source.direction },
+        }
+    }
+
+    /// As many samples as asked for over a box, given by its corners (x, y, z).
+    pub fn spanning(low: [f64; 3], high: [f64; 3], dims: Dims) -> Self {
+        let n = dims.xyz();
+        let axes: [Vec<f64>; 3] = [0, 1, 2].map(|k| steps(low[k], high[k], n[k]));
+        let spacing = [0, 1, 2].map(|k| step(low[k], high[k], n[k]));
+        let origin = [0, 1, 2].map(|k| axes[k][0]);
+        Self { dims, axes, world: None, frame: Frame { origin, spacing, ..Frame::VOXEL } }
+    }
+
+    /// Sizes along the axes.
+    pub fn dims(&self) -> Dims {
+        self.dims
+    }
+
+    /// Where the samples lie in the world, for files.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// The position of a sample, index and position as (x, y, z), in the units of the points.
+    pub fn position(&self, index: [usize; 3]) -> [f64; 3] {
+        let place = [0, 1, 2].map(|k| self.axes[k][index[k]]);
+        self.world.as_ref().map_or(place, |world| world.frame.to_world(place))
+    }
+
+    /// The fractional index of a position, rounded.
+    pub(super) fn index(&self, position: [f64; 3]) -> [f64; 3] {
+        let place = match &self.world {
+            None => position,
+            Some(World { frame, inverse }) => {
+                let from = [0, 1, 2].map(|k| position[k] - frame.origin[k]);
+                inverse.map(|row| row[0] * from[0] + row[1] * from[1] + row[2] * from[2])
+            }
+        };
+        [0, 1, 2].map(|k| {
+            let axis = &self.axes[k];
+            let (first, last) = (axis[0], axis[axis.len() - 1]);
+            let step = if last > first { (last - first) / (axis.len() - 1) as f64 } else { 1.0 };
+            (place[k] - first) / step
+        })
+    }
+
+    /// The indices along an axis from one fractional index to another; all where these are none.
+    pub(super) fn range(&self, axis: usize, low: f64, high: f64) -> Range<usize> {
+        let n = self.dims.xyz()[axis];
+        if !(low.is_finite() && high.is_finite()) {
+            return 0..n;
+        }
+        let (low, high) = (low.ceil().max(0.0), (high.floor() + 1.0).clamp(0.0, n as f64));
+        low as usize..high as usize
+    }
+}
+
+/// So many numbers at equal steps from the first to the last, or the middle.
+fn steps(first: f64, last: f64, n: usize) -> Vec<f64> {
+    if n == 1 {
+        return vec![first / 2.0 + last / 2.0];
+    }
+    let whole = (n - 1) as f64;
+    let at = |i: usize| if i + 1 == n { last } else { first + i as f64 * (last - first) / whole };
+    (0..n).map(at).collect()
+}
+
+/// From one of them to the next; 1 where there is no other place.
+fn step(first: f64, last: f64, n: usize) -> f64 {
+    let length = if last > first { last - first } else { 1.0 };
+    length / (n - 1).max(1) as f64
+}
+
+/// The inverse of the matrix with these columns. Not finite where there is none.
+fn inverse([a, b, c]: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let cross = |u: [f64; 3], v: [f64; 3]| {
+        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    };
+    let rows = [cross(b, c), cross(c, a), cross(a, b)];
+    let determinant = a[0] * rows[0][0] + a[1] * rows[0][1] + a[2] * rows[0][2];
+    rows.map(|row| row.map(|v| v / determinant))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::Array3;
+
+    #[test]
+    fn grids_reach_from_the_first_to_the_last_sample() {
+        let frame = Frame { origin: [10.0, 0.0, -4.0], spacing: [0.5, 2.0, 3.0], ..Frame::VOXEL };
+        let volume = Volume::new(Array3::zeros((5, 4, 3)), frame).unwrap();
+        let own = Grid::of(&volume, Units::Voxel);
+        assert_eq!((own.frame(), own.position([2, 3, 4])), (&frame, [2.0, 3.0, 4.0]));
+
+        let dims = Dims::new(5, 1, 9).unwrap();
+        let finer = Grid::over(&volume, dims, Units::Voxel);
+        assert_eq!(finer.position([1, 0, 8]), [0.5, 1.5, 4.0]);
+        let world = Grid::over(&volume, dims, Units::World);
+        assert_eq!(world.position([1, 0, 8]), [10.25, 3.0, 8.0]);
+        assert_eq!(world.frame().spacing, [0.25, 6.0, 1.5]);
+        assert_eq!(world.frame().to_world([1.0, 0.0, 8.0]), [10.25, 3.0, 8.0]);
+        for (grid, index) in [(&finer, [1, 0, 8]), (&world, [3, 0, 2])] {
+            let back = grid.index(grid.position(index));
+            assert!((0..3).all(|k| (back[k] - index[k] as f64).abs() < 1e-12), "{back:?}");
+        }
+        assert_eq!(finer.range(2, -0.5, 2.5), 0..3);
+        assert_eq!(finer.range(2, 7.5, 99.0), 8..9);
+        assert!(finer.range(2, -9.0, -0.5).is_empty());
+    }
+
+    #[test]
+    fn a_box_is_spanned_from_corner_to_corner() {
+        let dims = Dims::new(2, 3, 1).unwrap();
+        let grid = Grid::spanning([1.0, 2.0, 3.0], [2.0, 4.0, 3.0], dims);
+        assert_eq!(grid.position([1, 1, 0]), [2.0, 3.0, 3.0]);
+        assert_eq!(grid.frame().spacing, [1.0, 1.0, 1.0]);
+    }
+}

@@ -1,0 +1,156 @@
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+
+use super::InterpolateError;
+use super::barycentric::coordinates;
+use super::number::Lattice;
+use super::tree::Tree;
+use crate::shape::{AlphaShape, Class, Simplices};
+
+/// Places located as one piece of work, at least.
+const CHUNK: usize = 256;
+
+/// F on a shape: on each simplex the linear function of the values at its vertices.
+///
+/// The simplices are the interior cells, then the singular facets, edges and vertices: what is a
+/// face of no higher simplex of the shape. A place on several belongs to the first of them, by
+/// that order and by the canonical order of [`Complex`](crate::Complex). Whether a simplex holds a
+/// place is decided exactly from the doubles given, so no place on the shape is missed between two
+/// cells, and the value does not jump across faces.
+///
+/// Values are rounded, by about 1e-13 of the largest value at the vertices; at a vertex they are
+/// its value bit for bit. Where coordinates are small multiples of a power of two, as those of
+/// voxels are, it makes no difference at all which of several simplices a place belongs to.
+///
+/// Of points at one place the one that stayed in the shape has the say; hidden points have none.
+#[derive(Debug)]
+pub struct Interpolant<'a> {
+    positions: &'a [[f64; 3]],
+    values: &'a [f64],
+    parts: Vec<Part>,
+    lattice: Lattice,
+    /// Made when a single place is asked for; grids do without.
+    tree: OnceLock<Tree>,
+}
+
+/// A simplex with a function on it: its vertices, as many as count.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    vertices: [u32; 4],
+    count: u8,
+}
+
+/// Where a place lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place<'a> {
+    /// The simplex it belongs to: input indices of one to four vertices.
+    pub simplex: &'a [u32],
+    /// Its barycentric coordinates there, one for each vertex, then zeros.
+    pub coordinates: [f64; 4],
+}
+
+impl<'a> Interpolant<'a> {
+    /// The interpolant of the values of a shape's points. O(n).
+    ///
+    /// # Errors
+    /// Points without values, or with one that is no finite number.
+    pub fn new(shape: &'a AlphaShape) -> Result<Self, InterpolateError> {
+        let values = shape.points().values.as_deref().ok_or(InterpolateError::NoValues)?;
+        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+            return Err(InterpolateError::Value { index, value: values[index] });
+        }
+        let complex = shape.complex();
+        let mut parts = Vec::with_capacity(complex.cells.len());
+        add(&mut parts, &complex.cells, Class::Interior);
+        add(&mut parts, &complex.facets, Class::Singular);
+        add(&mut parts, &complex.edges, Class::Singular);
+        add(&mut parts, &complex.vertices, Class::Singular);
+        let positions = &shape.points().positions;
+        let lattice = Lattice::of(positions);
+        Ok(Self { positions, values, parts, lattice, tree: OnceLock::new() })
+    }
+
+    /// F at a place (x, y, z) in the units of the points; `None` outside the shape, and for what is
+    /// no place. O(log n) after the first.
+    pub fn value_at(&self, place: [f64; 3]) -> Option<f64> {
+        let part = self.part_at(place)?;
+        Some(self.value(part, &self.coordinates(part, place)?))
+    }
+
+    /// F at many places, in parallel.
+    pub fn values_at(&self, places: &[[f64; 3]]) -> Vec<Option<f64>> {
+        places.par_iter().with_min_len(CHUNK).map(|&place| self.value_at(place)).collect()
+    }
+
+    /// The simplex that a place belongs to, and its coordinates there.
+    pub fn locate(&self, place: [f64; 3]) -> Option<Place<'_>> {
+        let part = self.part_at(place)?;
+        let simplex = self.parts[part as usize].vertices();
+        Some(Place { simplex, coordinates: self.coordinates(part, place)? })
+    }
+
+    /// The number of simplices with a function on them.
+    pub(super) fn len(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// The corners of a simplex; the first so many count.
+    pub(super) fn corners(&self, part: u32) -> ([[f64; 3]; 4], usize) {
+        let part = self.parts[part as usize];
+        (part.vertices.map(|v| self.positions[v as usize]), usize::from(part.count))
+    }
+
+    /// The coordinates of a place in a simplex, if it holds it.
+    pub(super) fn coordinates(&self, part: u32, place: [f64; 3]) -> Option<[f64; 4]> {
+        let (corners, count) = self.corners(part);
+        coordinates(&corners[..count], place, self.lattice.is_exact_with(place))
+    }
+
+    /// F on a simplex.
+    pub(super) fn value(&self, part: u32, coordinates: &[f64; 4]) -> f64 {
+        let part = self.parts[part as usize];
+        let at = |k: usize| self.values[part.vertices[k] as usize];
+        if let Some(vertex) = coordinates.iter().position(|&share| share == 1.0) {
+            return at(vertex);
+        }
+        // Summed in order of size, so that it does not matter in which order the vertices stand.
+        let mut terms = [0, 1, 2, 3].map(|k| coordinates[k] * at(k));
+        terms.sort_unstable_by(f64::total_cmp);
+        terms.iter().sum()
+    }
+
+    fn part_at(&self, place: [f64; 3]) -> Option<u32> {
+        if place.iter().any(|x| !x.is_finite()) {
+            return None;
+        }
+        let tree = self.tree.get_or_init(|| {
+            let bounds = |part: u32| {
+                let (corners, count) = self.corners(part);
+                let ends = |f: fn(f64, f64) -> f64| {
+                    let join = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| f(a[k], b[k]));
+                    corners[..count].iter().copied().reduce(join).expect("a vertex at least")
+                };
+                [ends(f64::min), ends(f64::max)]
+            };
+            let boxes: Vec<_> = (0..self.len() as u32).into_par_iter().map(bounds).collect();
+            Tree::new(&boxes)
+        });
+        tree.first(place, |part| self.coordinates(part, place).is_some())
+    }
+}
+
+impl Part {
+    fn vertices(&self) -> &[u32] {
+        &self.vertices[..usize::from(self.count)]
+    }
+}
+
+/// Adds the simplices of a class, in their order.
+fn add<const N: usize>(parts: &mut Vec<Part>, simplices: &Simplices<N>, class: Class) {
+    parts.extend(simplices.of(class).map(|row| {
+        let mut vertices = [row[0]; 4];
+        vertices[..N].copy_from_slice(row);
+        Part { vertices, count: N as u8 }
+    }));
+}

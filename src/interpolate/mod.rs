@@ -1,0 +1,53 @@
+//! Floor 4: the function F on a shape, what it misses of the volume, and points that miss less.
+//!
+//! F is linear on each simplex of the shape: on interior cells, and on the facets, edges and
+//! vertices that are faces of none, at places exactly on them. Which simplex holds a place is
+//! decided exactly, so F is defined everywhere on the shape and nowhere else, and each sample of a
+//! grid belongs to one simplex, whatever the number of threads.
+//!
+//! ```
+//! use walpha::interpolate::{Deviation, Grid, Interpolant, fill};
+//! use walpha::points::{difference, select, weigh};
+//! use walpha::shape::ShapeOptions;
+//! use walpha::{Alpha, Selection, Units, Weighting, alpha_shape, volume};
+//!
+//! let volume = volume::sample("sample:phantom@24")?;
+//! let points = select(&volume, &volume, &difference(&volume), &Selection::default(), Units::Voxel)?;
+//! let weighted = weigh(&points, Weighting::Common(0.0), 10.0)?;
+//! let shape = alpha_shape(weighted, &ShapeOptions::new(Alpha::from_squared(10.0)?))?;
+//!
+//! let interpolant = Interpolant::new(&shape)?;
+//! // At a point F is the point's value, bit for bit; far away there is none.
+//! let value = interpolant.value_at(points.positions[0]);
+//! assert_eq!(value, Some(points.values.as_ref().unwrap()[0]));
+//! assert_eq!(interpolant.value_at([-5.0, 0.0, 0.0]), None);
+//!
+//! let grid = Grid::of(&volume, Units::Voxel);
+//! let inside = Deviation::of(&volume, &interpolant.resample(&grid)?);
+//! let whole = fill(&shape, Some(&volume), Units::Voxel)?;
+//! let filled = Deviation::of(&volume, &Interpolant::new(&whole)?.resample(&grid)?);
+//! assert!(inside.coverage() < 1.0 && filled.coverage() == 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod adaptive;
+mod barycentric;
+mod curve;
+mod deviation;
+mod error;
+mod fill;
+mod grid;
+mod interpolant;
+mod number;
+mod raster;
+mod resample;
+mod tree;
+
+pub use adaptive::{Adaptive, adaptive_voxels};
+pub use curve::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
+pub use deviation::Deviation;
+pub use error::InterpolateError;
+pub use fill::fill;
+pub use grid::Grid;
+pub use interpolant::{Interpolant, Place};
+pub use resample::Resampled;

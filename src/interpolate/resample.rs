@@ -1,0 +1,68 @@
+use ndarray::Array3;
+use rayon::prelude::*;
+
+use super::raster::{NOTHING, owners};
+use super::{Grid, Interpolant, InterpolateError};
+use crate::volume::{Frame, Volume};
+
+/// F on the samples of a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Resampled {
+    volume: Volume,
+    /// The simplex each sample belongs to.
+    pub(super) owners: Vec<u32>,
+}
+
+impl Interpolant<'_> {
+    /// F on a grid. Each sample belongs to one simplex, decided as [`Interpolant`] says. O(simplices
+    /// + samples), in parallel over both, the same on any number of threads; 8 bytes a sample.
+    ///
+    /// # Errors
+    /// Values that pass the range of `f32`.
+    pub fn resample(&self, grid: &Grid) -> Result<Resampled, InterpolateError> {
+        let owners = owners(self, grid);
+        let [nx, ny, _] = grid.dims().xyz();
+        let mut samples = Array3::<f32>::zeros(grid.dims().shape());
+        let flat = samples.as_slice_mut().expect("standard layout");
+        flat.par_chunks_mut(nx).zip(owners.par_chunks(nx)).enumerate().for_each(
+            |(row, (samples, owners))| {
+                for (i, (sample, &part)) in samples.iter_mut().zip(owners).enumerate() {
+                    let place = || grid.position([i, row % ny, row / ny]);
+                    if part != NOTHING
+                        && let Some(coordinates) = self.coordinates(part, place())
+                    {
+                        *sample = self.value(part, &coordinates) as f32;
+                    }
+                }
+            },
+        );
+        let volume = Volume::new(samples, *grid.frame())?.with_gray_levels();
+        Ok(Resampled { volume, owners })
+    }
+}
+
+impl Resampled {
+    /// The values, 0 outside the shape.
+    pub fn volume(&self) -> &Volume {
+        &self.volume
+    }
+
+    /// Whether a sample, by its index in memory order, is on the shape.
+    pub fn is_inside(&self, sample: usize) -> bool {
+        self.owners[sample] != NOTHING
+    }
+
+    /// Samples on the shape.
+    pub fn covered(&self) -> usize {
+        self.owners.par_iter().filter(|&&part| part != NOTHING).count()
+    }
+
+    /// A volume that is 1 on the shape and 0 outside.
+    pub fn mask(&self) -> Volume {
+        let inside: Vec<f32> =
+            self.owners.par_iter().map(|&part| f32::from(u8::from(part != NOTHING))).collect();
+        let samples = Array3::from_shape_vec(self.volume.dims().shape(), inside);
+        let frame: Frame = *self.volume.frame();
+        Volume::new(samples.expect("one for each sample"), frame).expect("zeros and ones")
+    }
+}
