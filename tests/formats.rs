@@ -300,6 +300,21 @@ fn frames_are_kept() {
     let spaced = nrrd(|h| h + "spacings: 0.5 nan 2\n", &shorts());
     let volume = open(&save(folder.path(), "v.nrrd", spaced)).unwrap();
     assert_eq!(volume.frame().spacing, [0.5, 1.0, 2.0]);
+    // The grid has 3×2×2 samples; cells are wider by half a sample on either side.
+    for (fields, spacing, origin) in [
+        ("axis mins: 1 2 nan\nspacings: 2 4 8\n", [2.0, 4.0, 8.0], [2.0, 4.0, 0.0]),
+        ("axis mins: 0 0 0\naxis maxs: 6 4 1\n", [2.0, 2.0, 0.5], [1.0, 1.0, 0.25]),
+        (
+            "axis mins: 0 1 2\naxis maxs: 6 4 3\ncenterings: node node cell\n",
+            [3.0, 3.0, 0.5],
+            [0.0, 1.0, 2.25],
+        ),
+    ] {
+        let bytes = nrrd(|h| h + fields, &shorts());
+        let volume = open(&save(folder.path(), "v.nrrd", bytes)).unwrap();
+        assert_eq!((volume.frame().spacing, volume.frame().origin), (spacing, origin), "{fields}");
+    }
+    refuses("v.nrrd", nrrd(|h| h + "axis mins: 1 2\n", &shorts()), &["axis mins", "3 numbers"]);
     let header = "ElementSpacing = 0.5 1 2\nOffset = 1.5 -2 30\n\
                   TransformMatrix = 0.6 0.8 0 0.8 -0.6 0 0 0 -1\nElementDataFile = LOCAL\n";
     let bytes = [MHA.as_bytes(), header.as_bytes(), &shorts()].concat();

@@ -7,7 +7,7 @@ use walpha::{
     GrayRange, Points, Truncation, Volume, WeightedPoints, Weighting, haar, points, volume,
 };
 
-use super::args::{HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::args::{InputArgs, PipelineArgs};
 use super::progress::Progress;
 
 /// What INPUT turned out to be.
@@ -51,13 +51,8 @@ pub struct VolumeFacts {
 }
 
 /// Steps 1 to 7: reads INPUT and makes weighted points of it.
-pub fn weighted_points(
-    input: &InputArgs,
-    haar: &HaarArgs,
-    select: &SelectArgs,
-    weights: &WeightArgs,
-    progress: &mut Progress,
-) -> anyhow::Result<Weighed> {
+pub fn weighted_points(args: &PipelineArgs, progress: &mut Progress) -> anyhow::Result<Weighed> {
+    let PipelineArgs { input, haar, select, weights } = args;
     let (mut points, volume) = match read(input, progress)? {
         Input::Points(points) => (points, None),
         Input::Volume(volume, range) => {

@@ -5,6 +5,7 @@ use std::path::Path;
 use flate2::read::MultiGzDecoder;
 
 use super::{VtkXml, format_error, inr, io_error, metaimage, nifti, npy, nrrd, vtk};
+use crate::near::nearest;
 use crate::volume::VolumeError;
 
 /// Bytes looked at.
@@ -82,11 +83,18 @@ pub(super) fn kind(path: &Path, start: &[u8]) -> Result<Kind, VolumeError> {
     }
     let of_extension = EXTENSIONS.iter().find(|(extension, _)| name.ends_with(extension));
     of_extension.map(|&(_, kind)| kind).ok_or_else(|| {
+        let given = path.extension().unwrap_or_default().to_string_lossy();
+        let known = EXTENSIONS.iter().map(|(extension, _)| &extension[1..]);
+        let near = nearest(&given, known).map(|near| format!("is .{near} meant? "));
         format_error(
             path,
-            "is of no format known by content: NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), MetaImage \
-             (.mha, .mhd), VTK (.vtk, .vti), TIFF, INRIMAGE (.inr, .inr.gz), NPY, NPZ (.npy, .npz) and \
-             folders of slices are read; for raw samples give --dims X,Y,Z and --dtype",
+            format!(
+                "is of no format known by content: NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), \
+                 MetaImage (.mha, .mhd), VTK (.vtk, .vti), TIFF, INRIMAGE (.inr, .inr.gz), NPY, NPZ \
+                 (.npy, .npz) and folders of slices are read; {}for raw samples give --dims X,Y,Z and \
+                 --dtype",
+                near.unwrap_or_default()
+            ),
         )
     })
 }
