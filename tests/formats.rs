@@ -100,7 +100,7 @@ fn written_volumes_are_read_back() {
         let options = match format {
             VolumeFormat::Raw => {
                 let (dims, dtype, endian) = (volume.dims(), Dtype::F32, Endian::Little);
-                ReadOptions { raw: Some(RawLayout { dims, dtype, endian, offset: 0 }) }
+                ReadOptions { raw: Some(RawLayout { dims, dtype, endian, offset: 0 }), level: None }
             }
             _ => ReadOptions::default(),
         };

@@ -20,13 +20,21 @@ pub struct InputArgs {
     #[arg(value_name = "INPUT")]
     pub input: String,
     #[command(flatten)]
-    pub raw: RawArgs,
+    raw: RawArgs,
+    /// Level of a pyramid (OME-Zarr) to read; 0 is the finest [default: 0].
+    #[arg(long, value_name = "N", conflicts_with = "dims")]
+    level: Option<u32>,
     /// Values that become gray 0 and 255 [default: as they are for unsigned 8 bits, else min..max].
     #[arg(long, value_name = "LO..HI", value_parser = gray_range, allow_hyphen_values = true)]
     gray: Option<GrayRange>,
 }
 
 impl InputArgs {
+    /// How to read a volume.
+    pub fn options(&self) -> ReadOptions {
+        ReadOptions { raw: self.raw.layout(), level: self.level }
+    }
+
     /// How values become gray levels.
     pub fn gray(&self) -> Gray {
         self.gray.map_or(Gray::Automatic, Gray::Range)
@@ -52,12 +60,11 @@ pub struct RawArgs {
 }
 
 impl RawArgs {
-    /// How to read the file.
-    pub fn options(&self) -> ReadOptions {
-        let raw = self.dims.zip(self.dtype);
+    /// How samples lie in the file, if it is raw.
+    fn layout(&self) -> Option<RawLayout> {
         let layout =
             |(dims, dtype)| RawLayout { dims, dtype, endian: self.endian, offset: self.offset };
-        ReadOptions { raw: raw.map(layout) }
+        self.dims.zip(self.dtype).map(layout)
     }
 }
 

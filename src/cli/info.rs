@@ -70,7 +70,7 @@ impl Info {
                 values: points.values.is_some(),
             });
         }
-        let volume = volume::open(&self.input.input, &self.input.raw.options())?;
+        let volume = volume::open(&self.input.input, &self.input.options())?;
         let (min, max) = volume.value_range();
         Ok(Content::Volume {
             dims: volume.dims().xyz(),

@@ -24,15 +24,14 @@ pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> 
         if is_points(args)? {
             return Ok(Input::Points(read_points(Path::new(&args.input))?));
         }
-        let (volume, range) =
-            volume::open(&args.input, &args.raw.options())?.into_gray(args.gray())?;
+        let (volume, range) = volume::open(&args.input, &args.options())?.into_gray(args.gray())?;
         Ok(Input::Volume(volume, range))
     })
 }
 
 /// Whether INPUT is a point file.
 pub fn is_points(args: &InputArgs) -> anyhow::Result<bool> {
-    let volume = args.input.starts_with("sample:") || args.raw.options().raw.is_some();
+    let volume = args.input.starts_with("sample:") || args.options().raw.is_some();
     Ok(!volume && is_point_file(Path::new(&args.input))?)
 }
 

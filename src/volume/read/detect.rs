@@ -25,6 +25,8 @@ pub(super) enum Kind {
     VtkLegacy,
     VtkXml,
     Tiff,
+    #[cfg(feature = "dicom")]
+    Dicom,
 }
 
 /// What each extension stands for.
@@ -68,10 +70,10 @@ pub(super) fn kind(path: &Path, start: &[u8]) -> Result<Kind, VolumeError> {
         return Err(format_error(path, format!("is {what}")));
     }
     if start.get(128..132) == Some(b"DICM") {
-        return Err(format_error(
-            path,
-            "is a DICOM file, which is not read: convert the series to NRRD or NIfTI",
-        ));
+        #[cfg(feature = "dicom")]
+        return Ok(Kind::Dicom);
+        #[cfg(not(feature = "dicom"))]
+        return Err(format_error(path, format!("is a DICOM file, {}", without("dicom"))));
     }
     if start.starts_with(&[0x1f, 0x8b]) {
         return unpacked(path);
@@ -97,6 +99,15 @@ pub(super) fn kind(path: &Path, start: &[u8]) -> Result<Kind, VolumeError> {
             ),
         )
     })
+}
+
+/// What to say of a format whose feature was left out when walpha was built.
+#[cfg(not(all(feature = "dicom", feature = "zarr")))]
+pub(super) fn without(feature: &str) -> String {
+    format!(
+        "which this walpha was built without; build it with `cargo install --path . --features \
+         {feature}`, or convert the volume to NRRD or NIfTI"
+    )
 }
 
 fn by_content(start: &[u8]) -> Option<Kind> {

@@ -8,14 +8,12 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::described::{Described, Encoding};
-use super::{format_error, io_error};
+use super::folder::dicom_files;
+use super::format_error;
 use crate::progress;
 use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
 use slice::Slice;
 use stack::stacked;
-
-/// The mark behind 128 bytes at the start of each DICOM file.
-pub(super) const MAGIC: &[u8] = b"DICM";
 
 /// Reads the series that a file belongs to: all slices of it in the same folder.
 pub(super) fn read_series_of(path: &Path) -> Result<Volume, VolumeError> {
@@ -24,7 +22,7 @@ pub(super) fn read_series_of(path: &Path) -> Result<Volume, VolumeError> {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
-    let mut slices = slices(&files(folder)?)?;
+    let mut slices = slices(&dicom_files(folder)?)?;
     slices.retain(|slice| slice.series == one.series);
     assemble(path, slices)
 }
@@ -52,26 +50,6 @@ pub(super) fn read_folder(folder: &Path, files: &[PathBuf]) -> Result<Volume, Vo
         return Err(format_error(folder, what));
     }
     assemble(folder, slices)
-}
-
-/// The DICOM files of a folder, by content, in the order of their names.
-pub(super) fn files(folder: &Path) -> Result<Vec<PathBuf>, VolumeError> {
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(io_error(folder))? {
-        let path = entry.map_err(io_error(folder))?.path();
-        if path.is_file() && is_dicom(&path).map_err(io_error(&path))? {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
-}
-
-fn is_dicom(path: &Path) -> std::io::Result<bool> {
-    use std::io::Read;
-    let mut start = Vec::new();
-    std::fs::File::open(path)?.take(132).read_to_end(&mut start)?;
-    Ok(start.get(128..) == Some(MAGIC))
 }
 
 /// The slices among these files; indices of media (DICOMDIR) are none.
