@@ -1,9 +1,10 @@
 //! Which stage is at work, how far it is, and how long each took.
 
+use std::fmt;
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use tracing::field::{Field, Visit};
 use tracing_subscriber::layer::Context;
 
@@ -71,7 +72,17 @@ impl Progress {
 }
 
 fn style(template: &str) -> ProgressStyle {
-    ProgressStyle::with_template(template).expect("a template that is right").progress_chars("=> ")
+    let rate = |state: &ProgressState, out: &mut dyn fmt::Write| {
+        let rate = state.per_sec();
+        // Whoever draws has nobody to tell of an error.
+        let _ = if rate < 10.0 {
+            write!(out, "{rate:.1}/s")
+        } else {
+            write!(out, "{}/s", HumanCount(rate as u64))
+        };
+    };
+    let style = ProgressStyle::with_template(template).expect("a template that is right");
+    style.with_key("rate", rate).progress_chars("=> ")
 }
 
 /// Hears how far the library is: events of the target [`walpha::progress::TARGET`].
@@ -84,7 +95,7 @@ impl<S: tracing::Subscriber> tracing_subscriber::Layer<S> for Listener {
         let Amount { done, total } = amount;
         if BAR.length() != Some(total) {
             BAR.set_style(style(
-                "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left, {per_sec}",
+                "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left, {rate}",
             ));
             BAR.set_length(total);
         }
@@ -108,5 +119,5 @@ impl Visit for Amount {
         }
     }
 
-    fn record_debug(&mut self, _: &Field, _: &dyn std::fmt::Debug) {}
+    fn record_debug(&mut self, _: &Field, _: &dyn fmt::Debug) {}
 }
