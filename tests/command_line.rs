@@ -33,6 +33,7 @@ fn errors_say_what_why_and_what_next() {
     fs::create_dir(f.join("empty")).unwrap();
     let cases = [
         (1, "shape sample:skul", "could not read its input", "did you mean sample:skull?"),
+        (1, "shape skull", "could not read its input", "did you mean sample:skull?"),
         (1, "info missing.nrrd", "could not read its input", "check the path"),
         (1, "info empty", "could not read its input", "a folder of slices"),
         (1, "info notes.txt", "could not read its input", "--dims X,Y,Z"),

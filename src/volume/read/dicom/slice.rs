@@ -82,7 +82,7 @@ impl Slice {
         };
         let bits = header.number(BITS_ALLOCATED)?.unwrap_or(16.0);
         let (columns, rows) = (columns as u64, rows as u64);
-        let claimed = columns * rows * (bits as u64).div_ceil(8);
+        let claimed = columns.saturating_mul(rows).saturating_mul((bits as u64).div_ceil(8));
         let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
         if claimed > length.saturating_mul(MOST_COMPRESSED) {
             return Err(said(format!(
