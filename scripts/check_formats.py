@@ -266,7 +266,7 @@ def read_dicom(check):
     folder = series(check.path("dicom-gap"), samples("i2", (5, 4, 5)))
     # The third of five, by the names given above.
     os.remove(os.path.join(folder, f"{(5 * 2 + 2) % 7}.dcm"))
-    check.refused("DICOM with a slice missing", folder, "1 slices are missing")
+    check.refused("DICOM with a slice missing", folder, "slices missing: 1")
 
 
 def read_zarr(check):

@@ -192,10 +192,7 @@ fn what_makes_no_volume_is_told() {
         ..at(1)
     };
     let cases: [(Slice, &[&str]); 9] = [
-        (
-            Slice { position: [-10.0, 5.5, 5.0], ..at(1) },
-            &["gap of 3.000 mm", "2 slices are missing"],
-        ),
+        (Slice { position: [-10.0, 5.5, 5.0], ..at(1) }, &["gap of 3.000 mm", "slices missing: 1"]),
         (Slice { position: [-10.0, 5.5, 2.0], ..at(1) }, &["two slices at one place"]),
         (Slice { orientation: "0\\1\\0\\0\\0\\1", ..at(1) }, &["different orientations"]),
         (Slice { rows: 1, ..at(1) }, &["3×1 pixels"]),

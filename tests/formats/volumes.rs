@@ -3,7 +3,7 @@ use std::path::Path;
 
 use ndarray::Array3;
 use walpha::export::VolumeFormat;
-use walpha::volume::*;
+use walpha::volume::{Dtype, Endian, Frame, RawLayout, ReadOptions, Volume, read};
 
 use crate::files::*;
 

@@ -6,7 +6,7 @@ use crate::volume::{Frame, VolumeError};
 
 /// Unit vectors this alike are one; headers have six digits or more.
 const SAME_DIRECTION: f64 = 1e-3;
-/// A gap this many times the usual one has slices missing.
+/// A gap this many times the usual one, or more, has slices missing.
 const MISSING: f64 = 1.5;
 /// Distances that differ by more than this share of the usual one are told.
 const UNEVEN: f64 = 0.01;
@@ -69,24 +69,26 @@ fn even(slices: &[Slice], normal: [f64; 3]) -> Result<Option<[f64; 3]>, String> 
     let [first, .., last] = slices else { return Ok(None) };
     let at = |slice: &Slice| dot(slice.position, normal);
     let mut gaps: Vec<f64> = slices.windows(2).map(|two| at(&two[1]) - at(&two[0])).collect();
-    let by_place = gaps.clone();
+    let pairs: Vec<_> = slices.windows(2).zip(gaps.clone()).collect();
+    let names = |two: &[Slice]| format!("{} and {}", two[0].path.display(), two[1].path.display());
     gaps.sort_by(f64::total_cmp);
-    let usual = gaps[gaps.len() / 2];
-    for (two, gap) in slices.windows(2).zip(&by_place) {
-        let [before, after] = [&two[0], &two[1]].map(|slice| slice.path.display());
-        if *gap <= UNEVEN * usual {
-            return Err(format!(
-                "has two slices at one place, {before} and {after}: it has several times or echoes, so \
-                 move those of one into a folder of their own"
-            ));
-        }
-        if *gap > MISSING * usual {
-            let missing = (gap / usual).round() - 1.0;
-            return Err(format!(
-                "has a gap of {gap:.3} mm between {before} and {after}, where {usual:.3} mm are usual, so \
-                 {missing} slices are missing: copy the whole series again"
-            ));
-        }
+    // Of an even number the greater, so that not all places need be doubled; the lesser for what is
+    // usual, so that a gap among few stands out.
+    let [greater, usual] = [gaps[gaps.len() / 2], gaps[(gaps.len() - 1) / 2]];
+    if let Some((two, _)) = pairs.iter().find(|(_, gap)| *gap <= UNEVEN * greater) {
+        return Err(format!(
+            "has two slices at one place, {}: it has several times or echoes; move those of one into a \
+             folder of their own",
+            names(two)
+        ));
+    }
+    if let Some((two, gap)) = pairs.iter().find(|(_, gap)| *gap >= MISSING * usual) {
+        return Err(format!(
+            "has a gap of {gap:.3} mm between {}, where {usual:.3} mm are usual (slices missing: {}): \
+             copy the whole series again",
+            names(two),
+            (gap / usual).round() - 1.0
+        ));
     }
     let (least, most) = (gaps[0], gaps[gaps.len() - 1]);
     if most - least > UNEVEN * usual {
