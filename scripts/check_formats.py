@@ -220,6 +220,9 @@ def read_nifti(check):
 
 
 def read_dicom(check):
+    # Slices are counted along the normal of rows and columns.
+    axes = np.column_stack([*rotation()[:, :2].T, np.cross(*rotation()[:, :2].T)])
+
     def series(folder, data, spoil=lambda ds, z: None):
         os.makedirs(folder)
         uid = pydicom.uid.generate_uid()
@@ -233,7 +236,7 @@ def read_dicom(check):
             ds.Rows, ds.Columns = pixels.shape
             ds.PixelSpacing = [SPACING[1], SPACING[0]]
             ds.ImageOrientationPatient = [round(float(v), 9) for v in rotation()[:, :2].T.ravel()]
-            at = ORIGIN + rotation()[:, 2] * SPACING[2] * z
+            at = ORIGIN + axes[:, 2] * SPACING[2] * z
             ds.ImagePositionPatient = [round(float(v), 9) for v in at]
             ds.SamplesPerPixel, ds.PhotometricInterpretation = 1, "MONOCHROME2"
             ds.BitsAllocated = ds.BitsStored = 8 * pixels.dtype.itemsize
@@ -257,12 +260,13 @@ def read_dicom(check):
         name = f"DICOM {dtype} {spoil.__name__ if spoil else 'raw'}"
         if check.lacks("DICOM", folder):
             return
-        reader = sitk.ImageSeriesReader()
-        reader.SetFileNames(reader.GetGDCMSeriesFileNames(folder))
-        theirs = reader.Execute()
-        frame = (theirs.GetOrigin(), np.reshape(theirs.GetDirection(), (3, 3)), theirs.GetSpacing())
-        check.volume(f"{name}: as ITK", folder, sitk.GetArrayFromImage(theirs), *frame)
-        check.volume(f"{name}: as written", folder, data * 0.5 - 1024 if spoil is rescaled else data, ORIGIN, rotation(), SPACING)
+        if spoil is not packed:
+            reader = sitk.ImageSeriesReader()
+            reader.SetFileNames(reader.GetGDCMSeriesFileNames(folder))
+            theirs = reader.Execute()
+            frame = (theirs.GetOrigin(), np.reshape(theirs.GetDirection(), (3, 3)), theirs.GetSpacing())
+            check.volume(f"{name}: as ITK", folder, sitk.GetArrayFromImage(theirs), *frame)
+        check.volume(f"{name}: as written", folder, data * 0.5 - 1024 if spoil is rescaled else data, ORIGIN, axes, SPACING)
     folder = series(check.path("dicom-gap"), samples("i2", (5, 4, 5)))
     # The third of five, by the names given above.
     os.remove(os.path.join(folder, f"{(5 * 2 + 2) % 7}.dcm"))

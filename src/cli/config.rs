@@ -114,7 +114,7 @@ fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
     for (key, value) in table {
         match (value, command.find_subcommand(&key)) {
             (Value::Table(of_command), Some(subcommand)) => {
-                for key in of_command.keys().filter(|key| option(subcommand, key).is_none()) {
+                if let Some(key) = of_command.keys().find(|key| option(subcommand, key).is_none()) {
                     let known = options(subcommand).filter_map(Arg::get_long).collect();
                     return Err(unknown(
                         file,
