@@ -3,10 +3,10 @@
 
     scripts/check_formats.py [--walpha target/release/walpha] [--env /tmp/walpha-formats]
 
-Makes a Python environment (once) with VTK, nibabel, pynrrd, tifffile, SimpleITK, Pillow and trimesh,
-writes files of every flavour with these and reads them with walpha, then writes files with walpha
-and reads them with these. Prints a line for each; exits with 1 when one is wrong, and with 77 when
-the packages cannot be had.
+Makes a Python environment (once) with VTK, nibabel, pynrrd, tifffile, SimpleITK, Pillow, trimesh,
+pydicom and zarr, writes files of every flavour with these and reads them with walpha, then writes files
+with walpha and reads them with these. Prints a line for each; exits with 1 when one is wrong, and with
+77 when the packages cannot be had. DICOM and Zarr are passed over where walpha was built without them.
 """
 
 import argparse
@@ -20,16 +20,21 @@ import tempfile
 import venv
 
 PACKAGES = ["numpy", "vtk", "nibabel", "pynrrd", "tifffile", "imagecodecs", "SimpleITK", "pillow", "trimesh", "scipy"]
+PACKAGES += ["pydicom", "zarr"]
+# Seconds for the installation of all of them.
+PATIENCE = 150
 
 
 def enter(folder):
     """Runs this script again with the Python of an environment that has the packages."""
     python = pathlib.Path(folder) / "bin" / "python"
-    if not python.exists():
-        venv.create(folder, with_pip=True)
-    installed = subprocess.run([python, "-m", "pip", "install", "--quiet", *PACKAGES])
-    if installed.returncode != 0:
-        print("skipped: the Python packages cannot be had")
+    install = [python, "-m", "pip", "install", "--quiet", "--retries", "1", "--timeout", "20", *PACKAGES]
+    try:
+        if not python.exists():
+            venv.create(folder, with_pip=True)
+        subprocess.run(install, check=True, timeout=PATIENCE)
+    except (OSError, subprocess.SubprocessError) as error:
+        print(f"skipped: the Python packages cannot be had ({error})")
         sys.exit(77)
     os.execv(python, [str(python), __file__, "--inside", *sys.argv[1:]])
 
@@ -87,6 +92,13 @@ class Checker:
         info = self.run("info", file)
         good = info.returncode == 1 and word in info.stderr
         self.judge(name, None if good else f"exit {info.returncode}, {info.stderr.strip()!r} without {word!r}")
+
+    def lacks(self, name, file):
+        """Whether walpha was built without the feature this file needs; says so."""
+        lacks = "was built without" in self.run("info", file).stderr
+        if lacks:
+            print(f"passed over: {name}, which this walpha was built without")
+        return lacks
 
     def equal(self, name, found, expected, tolerance=1e-6):
         found, expected = np.asarray(found), np.asarray(expected)
@@ -205,6 +217,89 @@ def read_nifti(check):
     check.refused("nibabel complex", check.path("complex.nii"), "complex")
     nib.save(nib.Nifti1Image(np.zeros((3, 3, 3, 2), "f4"), affine), check.path("four.nii"))
     check.refused("nibabel 4D", check.path("four.nii"), "a volume has three")
+
+
+def read_dicom(check):
+    # Slices are counted along the normal of rows and columns.
+    axes = np.column_stack([*rotation()[:, :2].T, np.cross(*rotation()[:, :2].T)])
+
+    def series(folder, data, spoil=lambda ds, z: None):
+        os.makedirs(folder)
+        uid = pydicom.uid.generate_uid()
+        for z, pixels in enumerate(data):
+            ds = pydicom.Dataset()
+            ds.file_meta = pydicom.dataset.FileMetaDataset()
+            ds.file_meta.TransferSyntaxUID = pydicom.uid.ExplicitVRLittleEndian
+            ds.SOPClassUID = ds.file_meta.MediaStorageSOPClassUID = pydicom.uid.CTImageStorage
+            ds.SOPInstanceUID = ds.file_meta.MediaStorageSOPInstanceUID = pydicom.uid.generate_uid()
+            ds.SeriesInstanceUID, ds.StudyInstanceUID, ds.Modality = uid, uid, "CT"
+            ds.Rows, ds.Columns = pixels.shape
+            ds.PixelSpacing = [SPACING[1], SPACING[0]]
+            ds.ImageOrientationPatient = [round(float(v), 9) for v in rotation()[:, :2].T.ravel()]
+            at = ORIGIN + axes[:, 2] * SPACING[2] * z
+            ds.ImagePositionPatient = [round(float(v), 9) for v in at]
+            ds.SamplesPerPixel, ds.PhotometricInterpretation = 1, "MONOCHROME2"
+            ds.BitsAllocated = ds.BitsStored = 8 * pixels.dtype.itemsize
+            ds.HighBit, ds.PixelRepresentation = ds.BitsStored - 1, int(pixels.dtype.kind == "i")
+            ds.PixelData = pixels.tobytes() + b"\0" * (pixels.nbytes % 2)
+            spoil(ds, z)
+            # Names in the wrong order.
+            ds.save_as(os.path.join(folder, f"{(5 * z + 2) % 7}.dcm"), enforce_file_format=True)
+        return folder
+
+    def rescaled(ds, z):
+        ds.RescaleSlope, ds.RescaleIntercept = "0.5", "-1024"
+
+    def packed(ds, z):
+        ds.compress(pydicom.uid.RLELossless, encoding_plugin="pydicom")
+
+    flavours = [("u1", None), ("i2", None), ("u2", None), ("i2", rescaled), ("i2", packed), ("u1", packed)]
+    for number, (dtype, spoil) in enumerate(flavours):
+        data = samples(dtype)
+        folder = series(check.path(f"dicom{number}"), data, spoil or (lambda ds, z: None))
+        name = f"DICOM {dtype} {spoil.__name__ if spoil else 'raw'}"
+        if check.lacks("DICOM", folder):
+            return
+        if spoil is not packed:
+            reader = sitk.ImageSeriesReader()
+            reader.SetFileNames(reader.GetGDCMSeriesFileNames(folder))
+            theirs = reader.Execute()
+            frame = (theirs.GetOrigin(), np.reshape(theirs.GetDirection(), (3, 3)), theirs.GetSpacing())
+            check.volume(f"{name}: as ITK", folder, sitk.GetArrayFromImage(theirs), *frame)
+        check.volume(f"{name}: as written", folder, data * 0.5 - 1024 if spoil is rescaled else data, ORIGIN, axes, SPACING)
+    folder = series(check.path("dicom-gap"), samples("i2", (5, 4, 5)))
+    # The third of five, by the names given above.
+    os.remove(os.path.join(folder, f"{(5 * 2 + 2) % 7}.dcm"))
+    check.refused("DICOM with a slice missing", folder, "slices missing: 1")
+
+
+def read_zarr(check):
+    for number, (dtype, version) in enumerate(itertools.product(TYPES, [2, 3])):
+        file = check.path(f"z{number}.zarr")
+        data = samples(dtype)
+        array = zarr.create_array(file, shape=data.shape, chunks=(2, 3, 2), dtype=data.dtype, zarr_format=version)
+        array[:] = data
+        if check.lacks("Zarr", file):
+            return
+        check.volume(f"Zarr {version} {dtype}", file, data)
+    file = check.path("sharded.zarr")
+    array = zarr.create_array(file, shape=(6, 8, 4), shards=(4, 4, 4), chunks=(2, 2, 2), dtype="i2")
+    array[:] = samples("i2", (6, 8, 4))
+    check.volume("Zarr sharded", file, samples("i2", (6, 8, 4)))
+    for version, wrap in [(2, lambda m: {"multiscales": m}), (3, lambda m: {"ome": {"version": "0.5", "multiscales": m}})]:
+        file = check.path(f"ome{version}.zarr")
+        group = zarr.open_group(file, mode="w", zarr_format=version)
+        datasets = []
+        for level in range(2):
+            data = samples("u2", (1, 4 >> level, 4, 6))
+            group.create_array(str(level), shape=data.shape, chunks=data.shape, dtype=data.dtype)[:] = data
+            scale = {"type": "scale", "scale": [1, 2.0 * 2**level, 0.75, 0.5]}
+            datasets.append({"path": str(level), "coordinateTransformations": [scale]})
+        axes = [{"name": n, "type": "channel" if n == "c" else "space"} for n in "czyx"]
+        group.attrs.update(wrap([{"axes": axes, "datasets": datasets}]))
+        check.volume(f"OME-Zarr {version}", file, samples("u2", (4, 4, 6)), spacing=SPACING)
+        info = json.loads(check.run("info", file, "--level", "1", "--json").stdout)
+        check.equal(f"OME-Zarr {version} level 1", [info["dims"], info["spacing"]], [[6, 4, 2], [0.5, 0.75, 4.0]])
 
 
 def vtk_image(data, cells=False, extent=None):
@@ -521,16 +616,18 @@ def main():
 
 
 PARTS = [read_nrrd, read_itk, read_nifti, read_vtk, read_tiff, read_slices, read_numpy, write_volumes]
-PARTS += [read_points, scattered, write_shapes]
+PARTS += [read_points, scattered, write_shapes, read_dicom, read_zarr]
 
 if "--inside" in sys.argv:
     import nibabel as nib
     import nrrd
     import numpy as np
+    import pydicom
     import SimpleITK as sitk
     import tifffile
     import trimesh
     import vtk
+    import zarr
     from PIL import Image
     from scipy.spatial import Delaunay
     from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy

@@ -283,7 +283,7 @@ fn bad_outputs_exit_with_1() {
     fails(f, 1, "shape sample:phantom@8 -o a.xyz", &["`xyz`", ".ply"]);
     fails(f, 1, "shape sample:phantom@8 -o nowhere/a.ply", &["nowhere/a.ply"]);
     fails(f, 1, "shape sample:phantom@8 -o folder.ply", &["folder.ply"]);
-    fails(f, 1, "points sample:phantom@8 -o a.ply", &[".csv or .npy"]);
+    fails(f, 1, "points sample:phantom@8 -o a.ply", &[".csv, .npy"]);
     fails(f, 1, "haar sample:phantom@8 -o a.ply", &[".npy"]);
     // A failure after the target was opened leaves what stood there.
     fs::write(f.join("old.ply"), "precious").unwrap();

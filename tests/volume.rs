@@ -31,11 +31,11 @@ impl Folder {
     }
 }
 
-const KNOWN: ReadOptions = ReadOptions { raw: None };
+const KNOWN: ReadOptions = ReadOptions { raw: None, level: None };
 
 fn raw(dims: [u64; 3], dtype: Dtype, endian: Endian, offset: u64) -> ReadOptions {
     let dims = Dims::new(dims[0], dims[1], dims[2]).unwrap();
-    ReadOptions { raw: Some(RawLayout { dims, dtype, endian, offset }) }
+    ReadOptions { raw: Some(RawLayout { dims, dtype, endian, offset }), level: None }
 }
 
 /// The numbers −3, 0, 100 or, without sign, 3, 0, 100, as a file stores them, and as samples.

@@ -4,6 +4,33 @@
 //! of any size, by rules that are linear in it; [`compare()`] says how two answers differ;
 //! [`schema`] reads and writes the answers of other programs. Every decision is exact, from the
 //! input doubles on.
+//!
+//! ```
+//! use walpha::check::{Claim, Extent, Placed, compare, enumerate};
+//!
+//! let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]];
+//! let weights = [0.0; 5];
+//! let made = enumerate(&positions, &weights, 0.75)?;
+//! let mut claim = Claim {
+//!     positions: &positions,
+//!     weights: &weights,
+//!     alpha: 0.75,
+//!     complex: &made.complex,
+//!     extent: Extent::Whole,
+//!     hidden: Some(&made.hidden),
+//!     duplicates: Some(&made.duplicates),
+//! };
+//! assert!(claim.is_valid()?);
+//! // A cell less, and the checker says what is missing.
+//! let mut damaged = made.complex.clone();
+//! damaged.cells.vertices.pop();
+//! damaged.cells.classes.pop();
+//! claim.complex = &damaged;
+//! assert!(claim.first_finding()?.is_some());
+//! let [a, b] = [&made.complex, &damaged].map(|complex| Placed { positions: &positions, complex });
+//! assert!(!compare(a, b)?.is_equal());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::shape::Class;
 

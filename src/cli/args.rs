@@ -1,9 +1,11 @@
 //! Options that several commands share, and how they become options of the library.
 
 use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
 
-use anyhow::bail;
+use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
+use walpha::export::Target;
 use walpha::interpolate::Adaptive;
 use walpha::shape::{Engine, ShapeOptions};
 use walpha::volume::{Dtype, Endian, RawLayout, ReadOptions};
@@ -19,13 +21,21 @@ pub struct InputArgs {
     #[arg(value_name = "INPUT")]
     pub input: String,
     #[command(flatten)]
-    pub raw: RawArgs,
+    raw: RawArgs,
+    /// Level of a pyramid (OME-Zarr) to read; 0 is the finest [default: 0].
+    #[arg(long, value_name = "N", conflicts_with = "dims")]
+    level: Option<u32>,
     /// Values that become gray 0 and 255 [default: as they are for unsigned 8 bits, else min..max].
     #[arg(long, value_name = "LO..HI", value_parser = gray_range, allow_hyphen_values = true)]
     gray: Option<GrayRange>,
 }
 
 impl InputArgs {
+    /// How to read a volume.
+    pub fn options(&self) -> ReadOptions {
+        ReadOptions { raw: self.raw.layout(), level: self.level }
+    }
+
     /// How values become gray levels.
     pub fn gray(&self) -> Gray {
         self.gray.map_or(Gray::Automatic, Gray::Range)
@@ -56,12 +66,46 @@ impl RawArgs {
         self.dims.filter(|_| self.dtype.is_none())
     }
 
-    /// How to read the file.
-    pub fn options(&self) -> ReadOptions {
-        let raw = self.dims.zip(self.dtype);
+    /// How samples lie in the file, if it is raw.
+    fn layout(&self) -> Option<RawLayout> {
         let layout =
             |(dims, dtype)| RawLayout { dims, dtype, endian: self.endian, offset: self.offset };
-        ReadOptions { raw: raw.map(layout) }
+        self.dims.zip(self.dtype).map(layout)
+    }
+}
+
+/// From an input to weighted points.
+#[derive(Args, Clone)]
+pub struct PipelineArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+    #[command(flatten)]
+    pub haar: HaarArgs,
+    #[command(flatten)]
+    pub select: SelectArgs,
+    #[command(flatten)]
+    pub weights: WeightArgs,
+}
+
+/// Which format goes to standard output.
+#[derive(Args, Clone)]
+pub struct FormatArgs {
+    /// Format of a file whose name has no extension, as of standard output (-o -): --format ply.
+    #[arg(long, value_name = "EXTENSION", requires = "output")]
+    format: Option<String>,
+}
+
+impl FormatArgs {
+    /// A path whose extension tells the format: the path itself, if it has one.
+    pub fn name(&self, path: &Path) -> anyhow::Result<PathBuf> {
+        match &self.format {
+            _ if path.extension().is_some() => Ok(path.to_owned()),
+            Some(format) => Ok(format!("output.{}", format.trim_start_matches('.')).into()),
+            None if path == Path::new(Target::STDOUT) => {
+                bail!("standard output has no extension; name the format, as in --format nrrd")
+            }
+            None => Ok(path.to_owned()),
+        }
     }
 }
 
@@ -72,9 +116,10 @@ pub struct HaarArgs {
     /// Decomposition: all axes once per level, or each axis fully.
     #[arg(long, value_enum, default_value_t, value_name = "KIND")]
     haar: Haar,
-    /// Root mean square error allowed, in gray levels [default: 1].
-    #[arg(long, value_name = "E", group = "tolerance", value_parser = not_negative)]
-    rms: Option<f64>,
+    /// Root mean square error allowed, in gray levels.
+    #[arg(long, value_name = "E", group = "tolerance", value_parser = not_negative,
+          default_value = "1")]
+    rms: f64,
     /// L² norm of the error allowed, in gray levels.
     #[arg(long, value_name = "E", group = "tolerance", value_parser = not_negative)]
     epsilon: Option<f64>,
@@ -93,11 +138,10 @@ enum Haar {
 impl HaarArgs {
     /// The stage's options.
     pub fn options(&self) -> HaarOptions {
-        let tolerance = match (self.rms, self.epsilon, self.coefficients) {
-            (Some(rms), ..) => Tolerance::Rms(rms),
-            (_, Some(epsilon), _) => Tolerance::Epsilon(epsilon),
-            (.., Some(count)) => Tolerance::Coefficients(count),
-            _ => Tolerance::default(),
+        let tolerance = match (self.epsilon, self.coefficients) {
+            (Some(epsilon), _) => Tolerance::Epsilon(epsilon),
+            (_, Some(count)) => Tolerance::Coefficients(count),
+            _ => Tolerance::Rms(self.rms),
         };
         let decomposition = match self.haar {
             Haar::NonStandard => Decomposition::NonStandard,
@@ -153,11 +197,10 @@ enum UnitsArg {
 impl SelectArgs {
     /// The stage's options.
     pub fn selection(&self) -> Selection {
-        let rule = match (self.count, self.ratio, self.threshold) {
-            (Some(count), ..) => SelectionRule::Count(count),
-            (_, Some(ratio), _) => SelectionRule::Ratio(ratio),
-            (.., Some(threshold)) => SelectionRule::Threshold(threshold),
-            _ => SelectionRule::default(),
+        let rule = match (self.count, self.threshold) {
+            (Some(count), _) => SelectionRule::Count(count),
+            (_, Some(threshold)) => SelectionRule::Threshold(threshold),
+            _ => self.ratio.map_or_else(SelectionRule::default, SelectionRule::Ratio),
         };
         Selection { rule, gray_min: self.gray_min }
     }
@@ -203,9 +246,10 @@ impl SelectArgs {
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Weights and α")]
 pub struct WeightArgs {
-    /// The parameter α, a squared length; `inf` gives the convex hull [default: 10].
-    #[arg(long, value_name = "A", value_parser = alpha, group = "parameter", allow_negative_numbers = true)]
-    alpha: Option<Alpha>,
+    /// The parameter α, a squared length; `inf` gives the convex hull.
+    #[arg(long, value_name = "A", value_parser = alpha, group = "parameter", default_value = "10",
+          allow_negative_numbers = true)]
+    alpha: Alpha,
     /// The parameter as a radius: α = R².
     #[arg(long, value_name = "R", value_parser = alpha_radius, group = "parameter")]
     alpha_radius: Option<Alpha>,
@@ -218,9 +262,7 @@ pub struct WeightArgs {
 impl WeightArgs {
     /// The parameter α.
     pub fn alpha(&self) -> Alpha {
-        const PAPER: f64 = 10.0;
-        let given = self.alpha.or(self.alpha_radius);
-        given.unwrap_or_else(|| Alpha::from_squared(PAPER).expect("a number"))
+        self.alpha_radius.unwrap_or(self.alpha)
     }
 
     /// The weights asked for; without a word, those of the input, or else none.
@@ -283,21 +325,24 @@ impl ShapeArgs {
 }
 
 fn dims(text: &str) -> anyhow::Result<Dims> {
-    let sizes: Vec<u64> =
-        text.split(',').map(|size| size.trim().parse()).collect::<Result<_, _>>()?;
+    let size = |size: &str| {
+        let whole = size.trim().parse::<u64>();
+        whole.map_err(|_| anyhow!("{size:?} is no whole number; give sizes as in 64,64,64"))
+    };
+    let sizes: Vec<u64> = text.split(',').map(size).collect::<Result<_, _>>()?;
     let [x, y, z] = sizes[..] else {
-        bail!("three sizes are needed, as in 64,64,64 for x, y and z");
+        bail!("three sizes are needed; give those along x, y and z, as in 64,64,64");
     };
     Ok(Dims::new(x, y, z)?)
 }
 
 fn gray_range(text: &str) -> anyhow::Result<GrayRange> {
     let Some((low, high)) = text.split_once("..") else {
-        bail!("two numbers are needed, as in -1000..2000");
+        bail!("two numbers are needed; give them as in -1000..2000");
     };
-    let range = GrayRange { low: low.trim().parse()?, high: high.trim().parse()? };
+    let range = GrayRange { low: number(low)?, high: number(high)? };
     if !(range.low < range.high && range.low.is_finite() && range.high.is_finite()) {
-        bail!("LO must be less than HI, and both finite");
+        bail!("LO must be less than HI, and both finite; give them as in -1000..2000");
     }
     Ok(range)
 }
@@ -307,23 +352,27 @@ fn bytes(text: &str) -> anyhow::Result<u64> {
     let unit = units.iter().find_map(|(name, bits)| Some((text.strip_suffix(name)?, bits)));
     let (number, bits) = unit.unwrap_or((text, &0));
     let Some(bytes) = number.parse().ok().and_then(|n: u64| n.checked_mul(1 << bits)) else {
-        bail!("a whole number of bytes is needed, as in 2G, 500M or 1073741824");
+        bail!("a whole number of bytes is needed; give it as in 2G, 500M or 1073741824");
     };
     Ok(bytes)
 }
 
+fn number(text: &str) -> anyhow::Result<f64> {
+    text.trim().parse().map_err(|_| anyhow!("{text:?} is no number; give one as in 10 or 2.5"))
+}
+
 fn not_negative(text: &str) -> anyhow::Result<f64> {
-    let number: f64 = text.parse()?;
+    let number = number(text)?;
     if number.is_nan() || number < 0.0 {
-        bail!("a number from 0 up is needed");
+        bail!("a number from 0 up is needed; give it as in 1 or 2.5");
     }
     Ok(number)
 }
 
 fn alpha(text: &str) -> anyhow::Result<Alpha> {
-    Ok(Alpha::from_squared(text.parse()?)?)
+    Ok(Alpha::from_squared(number(text)?)?)
 }
 
 fn alpha_radius(text: &str) -> anyhow::Result<Alpha> {
-    Ok(Alpha::from_radius(text.parse()?)?)
+    Ok(Alpha::from_radius(number(text)?)?)
 }

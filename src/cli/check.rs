@@ -10,7 +10,7 @@ use walpha::alpha_shape;
 use walpha::check::schema::PlacedComplex;
 use walpha::check::{Certificate, Claim, Comparison, Extent, Finding, Placed, compare, enumerate};
 
-use super::args::{HaarArgs, InputArgs, SelectArgs, ShapeArgs, WeightArgs};
+use super::args::{PipelineArgs, ShapeArgs};
 use super::output::tell;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
@@ -26,19 +26,13 @@ use super::{DIFFERENT, Global, compare as compare_command, complex_file, pipelin
 #[derive(Args)]
 pub struct Check {
     #[command(flatten)]
-    input: InputArgs,
+    pipeline: PipelineArgs,
     /// Points of the complex, where its file lists none: .csv or .npy.
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
     /// Build the answer from the definition too, and compare (at most 200 points).
     #[arg(long)]
     enumerate: bool,
-    #[command(flatten)]
-    haar: HaarArgs,
-    #[command(flatten)]
-    select: SelectArgs,
-    #[command(flatten)]
-    weights: WeightArgs,
     #[command(flatten)]
     shape: ShapeArgs,
 }
@@ -73,7 +67,7 @@ impl Check {
         let n = judged.positions.len();
         if self.enumerate && n > MOST_ENUMERATED {
             bail!(
-                "--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}: leave it away"
+                "--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}; leave it away"
             );
         }
         let extent = Extent::of(&judged.complex, judged.alpha);
@@ -101,7 +95,7 @@ impl Check {
         findings.truncate(MOST_LISTED);
         let facts = Facts {
             schema_version: SCHEMA_VERSION,
-            input: self.input.input,
+            input: self.pipeline.input.input,
             points: n,
             simplices: [
                 complex.cells.len(),
@@ -123,21 +117,18 @@ impl Check {
 
     /// The complex to judge.
     fn complex(&self, progress: &mut Progress) -> anyhow::Result<PlacedComplex> {
-        let path = Path::new(&self.input.input);
+        let path = Path::new(&self.pipeline.input.input);
         if complex_file::is_complex(path) {
             return progress.stage("read", || complex_file::read(path, self.points.as_deref()));
         }
         if self.points.is_some() {
-            bail!("--points belongs to a complex (.json, .npz), and {} is none", path.display());
+            bail!(
+                "--points belongs to a complex (.json, .npz), and {} is none; leave it away",
+                path.display()
+            );
         }
-        let weighed = pipeline::weighted_points(
-            &self.input,
-            &self.haar,
-            &self.select,
-            &self.weights,
-            progress,
-        )?;
-        let mut options = self.shape.options(self.weights.alpha());
+        let weighed = pipeline::weighted_points(&self.pipeline, progress)?;
+        let mut options = self.shape.options(self.pipeline.weights.alpha());
         // The whole triangulation can be judged wholly. Several slabs are judged as they are.
         options.exterior |=
             options.slabs.is_none_or(|slabs| slabs.get() == 1) && options.memory.is_none();

@@ -24,7 +24,7 @@ pub fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<PlacedComplex>
         );
     }
     let named = |error: std::io::Error| {
-        let hint = if error.kind() == ErrorKind::NotFound { ": check the path" } else { "" };
+        let hint = if error.kind() == ErrorKind::NotFound { "; check the path" } else { "" };
         anyhow::anyhow!("cannot read {}: {error}{hint}", path.display())
     };
     let file = BufReader::new(File::open(path).map_err(named)?);

@@ -13,7 +13,7 @@ use walpha::render::error_figure;
 use walpha::{SelectionRule, Volume, Weighting, haar};
 
 use super::Global;
-use super::args::{HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::args::{PipelineArgs, SelectArgs};
 use super::output::tell;
 use super::pipeline::{Input, read};
 use super::progress::Progress;
@@ -31,14 +31,8 @@ struct Facts {
 }
 
 /// Measures the curve and writes it as CSV, PNG and SVG.
-pub fn run(
-    global: Global,
-    input: &InputArgs,
-    haar: &HaarArgs,
-    select: &SelectArgs,
-    weights: &WeightArgs,
-    base: &Path,
-) -> anyhow::Result<()> {
+pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Result<()> {
+    let PipelineArgs { input, haar, select, weights } = pipeline;
     let paths = paths(base)?;
     let targets = paths.iter().map(|path| Target::open(path)).collect::<Result<Vec<_>, _>>()?;
     let mut progress = Progress::new(global);

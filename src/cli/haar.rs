@@ -9,8 +9,8 @@ use walpha::export::{Target, VolumeFormat};
 use walpha::haar::smooth;
 
 use super::Global;
-use super::args::{HaarArgs, InputArgs};
-use super::output::{print, print_json};
+use super::args::{FormatArgs, HaarArgs, InputArgs};
+use super::output::tell;
 use super::pipeline::{Input, read};
 use super::progress::Progress;
 use super::report::{HaarReport, SCHEMA_VERSION};
@@ -23,9 +23,11 @@ pub struct Haar {
     #[command(flatten)]
     input: InputArgs,
     /// File to write the restored gray levels to, as f32: .nrrd, .nii, .nii.gz, .vti, .npy or
-    /// .raw.
+    /// .raw; or - (standard output, with --format).
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    format: FormatArgs,
     #[command(flatten)]
     haar: HaarArgs,
 }
@@ -41,11 +43,11 @@ impl Haar {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let target = match &self.output {
             None => None,
-            Some(path) => Some((VolumeFormat::of(path)?, Target::open(path)?)),
+            Some(path) => Some((VolumeFormat::of(&self.format.name(path)?)?, Target::open(path)?)),
         };
         let mut progress = Progress::new(global);
         let Input::Volume(volume, _) = read(&self.input, &mut progress)? else {
-            bail!("{} holds points, and a volume is needed", self.input.input);
+            bail!("{} holds points; name a volume", self.input.input);
         };
         let options = self.haar.options();
         let (smoothed, truncation) = progress.stage("haar", || smooth(&volume, &options))?;
@@ -54,12 +56,12 @@ impl Haar {
         }
         progress.finish();
         let haar = HaarReport::from(&truncation);
-        if global.json {
-            let input = self.input.input;
-            print_json(&Facts { schema_version: SCHEMA_VERSION, input, haar })?;
-        } else if !global.quiet {
-            print(&format!("{haar}\n"))?;
-        }
-        Ok(())
+        tell(global, &Facts { schema_version: SCHEMA_VERSION, input: self.input.input, haar })
+    }
+}
+
+impl std::fmt::Display for Facts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "{}", self.haar)
     }
 }

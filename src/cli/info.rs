@@ -7,7 +7,8 @@ use walpha::points::read_points;
 use walpha::volume;
 
 use super::args::InputArgs;
-use super::output::{print, print_json};
+use super::output::tell;
+use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 use super::{Global, pipeline};
 
@@ -51,14 +52,8 @@ enum Content {
 
 impl Info {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
-        let content = self.look()?;
-        if global.json {
-            let input = self.input.input;
-            print_json(&Facts { schema_version: SCHEMA_VERSION, input, content })?;
-        } else if !global.quiet {
-            print(&content.to_string())?;
-        }
-        Ok(())
+        let content = Progress::new(global).stage("read", || self.look())?;
+        tell(global, &Facts { schema_version: SCHEMA_VERSION, input: self.input.input, content })
     }
 
     fn look(&self) -> anyhow::Result<Content> {
@@ -75,7 +70,7 @@ impl Info {
                 values: points.values.is_some(),
             });
         }
-        let volume = volume::open(&self.input.input, &self.input.raw.options())?;
+        let volume = volume::open(&self.input.input, &self.input.options())?;
         let (min, max) = volume.value_range();
         Ok(Content::Volume {
             dims: volume.dims().xyz(),
@@ -86,6 +81,12 @@ impl Info {
             max,
             gray_levels: volume.has_gray_levels(),
         })
+    }
+}
+
+impl std::fmt::Display for Facts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.content.fmt(f)
     }
 }
 

@@ -10,7 +10,7 @@ use walpha::export::{Target, VolumeFormat};
 use walpha::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
 use walpha::{AlphaShape, Volume, alpha_shape};
 
-use super::args::{HaarArgs, InputArgs, SelectArgs, ShapeArgs, WeightArgs};
+use super::args::{FormatArgs, PipelineArgs, ShapeArgs};
 use super::output::tell;
 use super::progress::Progress;
 use super::report::{Report, number_or_null_or_name};
@@ -38,9 +38,9 @@ use super::{Global, curve, pipeline};
 }))]
 pub struct Interpolate {
     #[command(flatten)]
-    input: InputArgs,
-    /// Volume to write F to, as f32: .nrrd, .nii, .nii.gz, .vti, .npy or .raw. With --curve: a
-    /// folder, or what names of files begin with.
+    pipeline: PipelineArgs,
+    /// Volume to write F to, as f32: .nrrd, .nii, .nii.gz, .vti, .npy or .raw; or - (standard output,
+    /// with --format). With --curve: a folder, or what names of files begin with.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Volume to write 1 to where a sample is on the shape, else 0; the same formats.
@@ -57,11 +57,7 @@ pub struct Interpolate {
     ])]
     curve: bool,
     #[command(flatten)]
-    haar: HaarArgs,
-    #[command(flatten)]
-    select: SelectArgs,
-    #[command(flatten)]
-    weights: WeightArgs,
+    format: FormatArgs,
     #[command(flatten)]
     shape: ShapeArgs,
 }
@@ -105,25 +101,24 @@ impl From<Deviation> for Error {
 impl Interpolate {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         if self.curve {
-            if self.input.raw.grid().is_some() {
+            if self.pipeline.input.raw.grid().is_some() {
                 bail!("--curve measures on the samples of INPUT: leave --dims away");
             }
             let base = self.output.as_deref().expect("clap requires it");
-            return curve::run(global, &self.input, &self.haar, &self.select, &self.weights, base);
+            return curve::run(global, &self.pipeline, base);
         }
-        let output = self.output.as_deref().map(open).transpose()?;
+        let output = match &self.output {
+            None => None,
+            Some(path) => {
+                Some((VolumeFormat::of(&self.format.name(path)?)?, Target::open(path)?))
+            }
+        };
         let mask = self.mask.as_deref().map(open).transpose()?;
         let mut progress = Progress::new(global);
-        let (weighed, volume) = pipeline::points_and_volume(
-            &self.input,
-            &self.haar,
-            &self.select,
-            &self.weights,
-            &mut progress,
-        )?;
+        let (weighed, volume) = pipeline::points_and_volume(&self.pipeline, &mut progress)?;
         let volume = volume.as_ref();
-        let alpha = self.weights.alpha();
-        let mut report = Report::of_points(&self.input.input, &weighed, alpha);
+        let alpha = self.pipeline.weights.alpha();
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, alpha);
         let grid = self.grid(volume, &weighed.points.positions)?;
         let options = self.shape.options(alpha);
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
@@ -132,7 +127,7 @@ impl Interpolate {
         let on_shape = sampled.resampled.covered();
         let mask = mask.map(|(format, target)| (format, target, sampled.resampled.mask()));
         let (inside, filled, resampled) = if self.fill {
-            let units = self.select.units();
+            let units = self.pipeline.select.units();
             let whole = progress.stage("fill", || fill(&shape, volume, units))?;
             let filled = progress.stage("interpolate", || self.sample(&whole, &grid, volume))?;
             (sampled.error, filled.error, filled.resampled)
@@ -169,7 +164,7 @@ impl Interpolate {
             None => None,
             Some(volume) if volume.dims() == grid.dims() => Some(Deviation::of(volume, &resampled)),
             Some(volume) => {
-                let own = Grid::of(volume, self.select.units());
+                let own = Grid::of(volume, self.pipeline.select.units());
                 Some(Deviation::of(volume, &interpolant.resample(&own)?))
             }
         };
@@ -178,8 +173,8 @@ impl Interpolate {
 
     /// The grid asked for.
     fn grid(&self, volume: Option<&Volume>, positions: &[[f64; 3]]) -> anyhow::Result<Grid> {
-        let units = self.select.units();
-        let asked = self.input.raw.grid();
+        let units = self.pipeline.select.units();
+        let asked = self.pipeline.input.raw.grid();
         match (volume, asked) {
             (Some(volume), None) => Ok(Grid::of(volume, units)),
             (Some(volume), Some(dims)) => Ok(Grid::over(volume, dims, units)),
@@ -192,7 +187,7 @@ impl Interpolate {
             }
             (None, None) => bail!(
                 "{} holds points, which have no grid of their own: give --dims X,Y,Z",
-                self.input.input
+                self.pipeline.input.input
             ),
         }
     }

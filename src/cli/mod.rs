@@ -3,11 +3,15 @@
 mod args;
 mod check;
 mod compare;
+mod complaint;
+mod completions;
 mod complex_file;
+mod config;
 mod curve;
 mod haar;
 mod info;
 mod interpolate;
+mod man;
 mod output;
 mod picture;
 mod pipeline;
@@ -17,11 +21,21 @@ mod report;
 mod reproduce;
 mod shape;
 
+use std::ffi::OsString;
+use std::io::IsTerminal;
 use std::process::ExitCode;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
+use tracing::Level;
+use tracing::level_filters::LevelFilter;
+use tracing_subscriber::Layer;
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::layer::SubscriberExt;
+use tracing_subscriber::util::SubscriberInitExt;
+use walpha::export::{Target, abandon};
+use walpha::progress::TARGET;
 
-use output::is_broken_pipe;
+use output::{is_broken_pipe, print};
 
 /// Volume modelling of scattered data with wavelet-weighted alpha shapes.
 ///
@@ -61,6 +75,9 @@ struct Global {
     /// Threads to compute with; the result is the same for any number [default: all].
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Whether a file goes to standard output.
+    #[arg(skip)]
+    piped: bool,
 }
 
 #[derive(Subcommand)]
@@ -73,42 +90,114 @@ enum Command {
     Info(info::Info),
     Check(check::Check),
     Compare(compare::Compare),
+    Completions(completions::Completions),
+    Man(man::Man),
 }
 
+/// The exit code of wrong arguments.
+const USAGE: u8 = 2;
 /// The exit code of a check or comparison that found something.
 const DIFFERENT: u8 = 3;
+/// The exit code after Ctrl-C, as shells have it.
+const INTERRUPTED: i32 = 130;
+
+/// The command line, with all its options in place.
+fn described() -> clap::Command {
+    let mut command = Cli::command().args(config::options_of_it());
+    command.build();
+    command
+}
 
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
-    let Cli { global, command } = Cli::parse();
-    match execute(global, command) {
+    // A handler that cannot be set leaves the system's own.
+    let _ = ctrlc::set_handler(|| {
+        progress::clear();
+        abandon(INTERRUPTED)
+    });
+    let mut command = described();
+    let typed: Vec<OsString> = std::env::args_os().collect();
+    let name = named(&command, &typed);
+    let args = match config::with_file(&command, typed.clone()) {
+        Ok(args) => args,
+        Err(error) => {
+            complaint::tell(&name, &error);
+            return ExitCode::from(USAGE);
+        }
+    };
+    if typed.iter().any(|arg| arg == "--print-config") {
+        // What to work on is no option.
+        command = command.mut_subcommands(|sub| {
+            sub.mut_args(|arg| if arg.is_positional() { arg.required(false) } else { arg })
+        });
+    }
+    let parsed = command.clone().try_get_matches_from(&args).and_then(|matches| {
+        if matches.get_flag(config::PRINT) {
+            return Ok(Err(matches));
+        }
+        Cli::from_arg_matches(&matches).map(|cli| Ok((cli, is_piped(&matches))))
+    });
+    let done = match parsed {
+        Ok(Ok((Cli { global, command }, piped))) => execute(Global { piped, ..global }, command),
+        Ok(Err(matches)) => print_config(&command, &matches),
+        // Help and version are no errors.
+        Err(error) if !error.use_stderr() => {
+            error.print().map(|()| ExitCode::SUCCESS).map_err(Into::into)
+        }
+        Err(error) => {
+            complaint::tell_usage(&name, &error, args.len() > typed.len());
+            return ExitCode::from(USAGE);
+        }
+    };
+    match done {
         Ok(code) => code,
         // Whoever reads our output has enough of it.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            // Messages of the library tell their causes themselves; a context names the file.
-            eprintln!("walpha: {}", with_contexts(&error));
+            progress::clear();
+            complaint::tell(&name, &error);
             ExitCode::FAILURE
         }
     }
 }
 
-/// An error with the contexts it was given, but without causes that its text has already.
-fn with_contexts(error: &anyhow::Error) -> String {
-    let mut text = error.to_string();
-    for cause in error.chain().skip(1).map(ToString::to_string) {
-        if !text.contains(&cause) {
-            text = format!("{text}: {cause}");
-        }
+/// The command as the user calls it: `walpha shape`.
+fn named(command: &clap::Command, args: &[OsString]) -> String {
+    let names =
+        |arg: &&OsString| arg.to_str().is_some_and(|arg| command.find_subcommand(arg).is_some());
+    match args.iter().skip(1).find(names) {
+        Some(name) => format!("walpha {}", name.to_string_lossy()),
+        None => "walpha".into(),
     }
-    text
+}
+
+/// Whether a file goes to standard output.
+fn is_piped(matches: &ArgMatches) -> bool {
+    let Some((_, matches)) = matches.subcommand() else { return false };
+    let output = matches.try_get_raw("output").ok().flatten();
+    output.is_some_and(|mut paths| paths.any(|path| path == Target::STDOUT))
+}
+
+fn print_config(command: &clap::Command, matches: &ArgMatches) -> anyhow::Result<ExitCode> {
+    if let Some((name, matches)) = matches.subcommand()
+        && let Some(command) = command.find_subcommand(name)
+    {
+        print(&config::print(command, matches))?;
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
-    if global.verbose {
-        let log = tracing_subscriber::fmt().with_max_level(tracing::Level::DEBUG);
-        log.with_writer(std::io::stderr).without_time().init();
-    }
+    let listener = (!global.quiet && std::io::stderr().is_terminal())
+        .then(|| progress::Listener.with_filter(Targets::new().with_target(TARGET, Level::TRACE)));
+    let level = match global {
+        Global { quiet: true, .. } => LevelFilter::ERROR,
+        Global { verbose: true, .. } => LevelFilter::DEBUG,
+        _ => LevelFilter::WARN,
+    };
+    let log = tracing_subscriber::fmt::layer().with_ansi(complaint::coloured()).with_target(false);
+    let log = log.with_writer(std::io::stderr).without_time().with_filter(level);
+    tracing_subscriber::registry().with(listener).with(log).init();
     if let Some(threads) = global.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
     }
@@ -119,6 +208,8 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
         Command::Haar(haar) => haar.run(global)?,
         Command::Interpolate(interpolate) => interpolate.run(global)?,
         Command::Info(info) => info.run(global)?,
+        Command::Completions(completions) => completions.run(global)?,
+        Command::Man(man) => man.run(global)?,
         Command::Check(check) => return check.run(global),
         Command::Compare(compare) => return compare.run(global),
     }

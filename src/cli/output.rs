@@ -7,14 +7,19 @@ use serde::Serialize;
 
 use super::Global;
 
-/// Prints facts as the user wants them: as JSON, as text, or not at all.
+/// Prints facts as the user wants them: as JSON, as text, or not at all; to standard error when
+/// standard output has a file (`-o -`).
 pub fn tell<T: Serialize + Display>(global: Global, facts: &T) -> anyhow::Result<()> {
     if global.json {
-        print_json(facts)?;
+        say(global, &json(facts)?)?;
     } else if !global.quiet {
-        print(&facts.to_string())?;
+        say(global, &facts.to_string())?;
     }
     Ok(())
+}
+
+fn say(global: Global, text: &str) -> io::Result<()> {
+    if global.piped { io::stderr().lock().write_all(text.as_bytes()) } else { print(text) }
 }
 
 /// Prints text without the panic of `println!` when nobody reads on.
@@ -26,7 +31,11 @@ pub fn print(text: &str) -> io::Result<()> {
 
 /// Prints one JSON object.
 pub fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
-    Ok(print(&(serde_json::to_string_pretty(value)? + "\n"))?)
+    Ok(print(&json(value)?)?)
+}
+
+fn json(value: &impl Serialize) -> serde_json::Result<String> {
+    Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
 /// Whether an error means that our reader has gone.

@@ -122,7 +122,9 @@ fn camera(text: &str) -> anyhow::Result<Camera> {
     let numbers: Vec<f64> =
         text.split(',').map(|number| number.trim().parse()).collect::<Result<_, _>>()?;
     let [ex, ey, ez, tx, ty, tz] = numbers[..] else {
-        bail!("six numbers are needed: where the eye is and what it looks at");
+        bail!(
+            "six numbers are needed; give where the eye is and what it looks at, as in 99,0,9,0,0,0"
+        );
     };
     let (eye, target) = ([ex, ey, ez], [tx, ty, tz]);
     if eye == target || !numbers.iter().all(|v| v.is_finite()) {
@@ -133,7 +135,7 @@ fn camera(text: &str) -> anyhow::Result<Camera> {
 
 fn size(text: &str) -> anyhow::Result<Size> {
     let Some((width, height)) = text.split_once(['x', '×']) else {
-        bail!("two numbers are needed, as in 1600x1360");
+        bail!("two numbers are needed; give them as in 1600x1360");
     };
     Ok(Size::new(width.trim().parse()?, height.trim().parse()?)?)
 }

@@ -8,7 +8,7 @@ use walpha::{
     GrayRange, Points, Truncation, Volume, WeightedPoints, Weighting, haar, points, volume,
 };
 
-use super::args::{HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::args::{InputArgs, PipelineArgs};
 use super::progress::Progress;
 
 /// What INPUT turned out to be.
@@ -25,15 +25,14 @@ pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> 
         if is_points(args)? {
             return Ok(Input::Points(read_points(Path::new(&args.input))?));
         }
-        let (volume, range) =
-            volume::open(&args.input, &args.raw.options())?.into_gray(args.gray())?;
+        let (volume, range) = volume::open(&args.input, &args.options())?.into_gray(args.gray())?;
         Ok(Input::Volume(volume, range))
     })
 }
 
 /// Whether INPUT is a point file.
 pub fn is_points(args: &InputArgs) -> anyhow::Result<bool> {
-    let volume = args.input.starts_with("sample:") || args.raw.options().raw.is_some();
+    let volume = args.input.starts_with("sample:") || args.options().raw.is_some();
     Ok(!volume && is_point_file(Path::new(&args.input))?)
 }
 
@@ -52,24 +51,16 @@ pub struct VolumeFacts {
 }
 
 /// Steps 1 to 7: reads INPUT and makes weighted points of it.
-pub fn weighted_points(
-    input: &InputArgs,
-    haar: &HaarArgs,
-    select: &SelectArgs,
-    weights: &WeightArgs,
-    progress: &mut Progress,
-) -> anyhow::Result<Weighed> {
-    Ok(points_and_volume(input, haar, select, weights, progress)?.0)
+pub fn weighted_points(args: &PipelineArgs, progress: &mut Progress) -> anyhow::Result<Weighed> {
+    Ok(points_and_volume(args, progress)?.0)
 }
 
 /// The same, with the gray levels of the volume they come from.
 pub fn points_and_volume(
-    input: &InputArgs,
-    haar: &HaarArgs,
-    select: &SelectArgs,
-    weights: &WeightArgs,
+    args: &PipelineArgs,
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Volume>)> {
+    let PipelineArgs { input, haar, select, weights } = args;
     let (mut points, volume) = match read(input, progress)? {
         Input::Points(points) => (points, None),
         Input::Volume(volume, range) => {

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::Args;
-use walpha::export::Target;
+use walpha::export::{Target, UnknownFormat};
 use walpha::points::{write_csv, write_npy};
 
-use super::args::{HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::args::{FormatArgs, PipelineArgs};
 use super::output::tell;
 use super::progress::Progress;
 use super::report::Report;
@@ -19,16 +19,13 @@ use super::{Global, pipeline};
 #[derive(Args)]
 pub struct Points {
     #[command(flatten)]
-    input: InputArgs,
-    /// File to write: .csv (header x,y,z,weight,value) or .npy (the same columns).
+    pipeline: PipelineArgs,
+    /// File to write: .csv (header x,y,z,weight,value) or .npy (the same columns); or - (standard
+    /// output, with --format).
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    haar: HaarArgs,
-    #[command(flatten)]
-    select: SelectArgs,
-    #[command(flatten)]
-    weights: WeightArgs,
+    format: FormatArgs,
 }
 
 impl Points {
@@ -36,22 +33,17 @@ impl Points {
         let target = match &self.output {
             None => None,
             Some(path) => {
-                let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+                let name = self.format.name(path)?;
+                let extension = name.extension().unwrap_or_default().to_ascii_lowercase();
                 let csv = extension == "csv";
                 if !csv && extension != "npy" {
-                    bail!("{}: points can be written as .csv or .npy", path.display());
+                    bail!(UnknownFormat::new(&name, "points", ["csv", "npy"]));
                 }
                 Some((Target::open(path)?, csv))
             }
         };
         let mut progress = Progress::new(global);
-        let weighed = pipeline::weighted_points(
-            &self.input,
-            &self.haar,
-            &self.select,
-            &self.weights,
-            &mut progress,
-        )?;
+        let weighed = pipeline::weighted_points(&self.pipeline, &mut progress)?;
         if let Some((target, csv)) = target {
             progress.stage("write", || {
                 target.write(|out| {
@@ -63,7 +55,8 @@ impl Points {
                 })
             })?;
         }
-        let mut report = Report::of_points(&self.input.input, &weighed, self.weights.alpha());
+        let mut report =
+            Report::of_points(&self.pipeline.input.input, &weighed, self.pipeline.weights.alpha());
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         tell(global, &report)

@@ -1,36 +1,51 @@
-//! Which stage is at work, and how long each took.
+//! Which stage is at work, how far it is, and how long each took.
 
+use std::fmt;
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use tracing::field::{Field, Visit};
+use tracing_subscriber::layer::Context;
 
 use super::Global;
 
+/// What a terminal shows. There is one, as there is one standard error.
+static BAR: LazyLock<ProgressBar> =
+    LazyLock::new(|| ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()));
+
 /// Times stages by name and shows the running one on a terminal.
 pub struct Progress {
-    bar: ProgressBar,
     started: Instant,
     stages: Vec<(&'static str, f64)>,
+}
+
+/// The stage that was announced last, or "".
+pub fn current() -> String {
+    BAR.message()
+}
+
+/// Takes the bar away, so that something can be said.
+pub fn clear() {
+    BAR.finish_and_clear();
 }
 
 impl Progress {
     /// Draws on standard error if that is a terminal and nobody asked for quiet.
     pub fn new(global: Global) -> Self {
-        let target = if global.quiet || global.verbose {
-            ProgressDrawTarget::hidden()
-        } else {
-            ProgressDrawTarget::stderr()
-        };
-        let bar = ProgressBar::with_draw_target(None, target);
-        let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
-        bar.set_style(style.expect("a template that is right"));
-        bar.enable_steady_tick(Duration::from_millis(100));
-        Self { bar, started: Instant::now(), stages: Vec::new() }
+        if !global.quiet && !global.verbose {
+            BAR.set_draw_target(ProgressDrawTarget::stderr());
+            BAR.enable_steady_tick(Duration::from_millis(100));
+        }
+        Self { started: Instant::now(), stages: Vec::new() }
     }
 
     /// Runs a stage. Calls with the same name add up.
     pub fn stage<T>(&mut self, name: &'static str, work: impl FnOnce() -> T) -> T {
-        self.bar.set_message(name);
+        BAR.reset();
+        BAR.unset_length();
+        BAR.set_style(style("{spinner} {msg} {elapsed}"));
+        self.show(name);
         let started = Instant::now();
         let result = work();
         let seconds = started.elapsed().as_secs_f64();
@@ -42,16 +57,67 @@ impl Progress {
         result
     }
 
-    /// Shows what is at work, without timing it.
+    /// Shows what is at work, without timing it: a step of the stage before.
     pub fn show(&self, name: &'static str) {
-        self.bar.set_message(name);
+        BAR.set_message(name);
     }
 
     /// Ends the show: seconds per stage, and in all.
     pub fn finish(self) -> Vec<(&'static str, f64)> {
-        self.bar.finish_and_clear();
+        clear();
         let mut stages = self.stages;
         stages.push(("total", self.started.elapsed().as_secs_f64()));
         stages
     }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    let rate = |state: &ProgressState, out: &mut dyn fmt::Write| {
+        let rate = state.per_sec();
+        // Whoever draws has nobody to tell of an error.
+        let _ = if rate < 10.0 {
+            write!(out, "{rate:.1}/s")
+        } else {
+            write!(out, "{}/s", HumanCount(rate as u64))
+        };
+    };
+    let style = ProgressStyle::with_template(template).expect("a template that is right");
+    style.with_key("rate", rate).progress_chars("=> ")
+}
+
+/// Hears how far the library is: events of the target [`walpha::progress::TARGET`].
+pub struct Listener;
+
+impl<S: tracing::Subscriber> tracing_subscriber::Layer<S> for Listener {
+    fn on_event(&self, event: &tracing::Event<'_>, _: Context<'_, S>) {
+        let mut amount = Amount::default();
+        event.record(&mut amount);
+        let Amount { done, total } = amount;
+        if BAR.length() != Some(total) {
+            BAR.set_style(style(
+                "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left, {rate}",
+            ));
+            BAR.set_length(total);
+        }
+        BAR.set_position(done);
+    }
+}
+
+/// So much is done of so much.
+#[derive(Default)]
+struct Amount {
+    done: u64,
+    total: u64,
+}
+
+impl Visit for Amount {
+    fn record_u64(&mut self, field: &Field, value: u64) {
+        match field.name() {
+            "done" => self.done = value,
+            "total" => self.total = value,
+            _ => {}
+        }
+    }
+
+    fn record_debug(&mut self, _: &Field, _: &dyn fmt::Debug) {}
 }

@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use anyhow::anyhow;
 use clap::Args;
 use walpha::alpha_shape;
-use walpha::export::{Exporter, Format, Target};
+use walpha::export::{Exporter, Format, Target, UnknownFormat};
 
-use super::args::{HaarArgs, InputArgs, SelectArgs, ShapeArgs, WeightArgs};
+use super::args::{FormatArgs, PipelineArgs, ShapeArgs};
 use super::output::tell;
 use super::picture::PictureArgs;
 use super::progress::Progress;
@@ -20,20 +19,16 @@ use super::{Global, pipeline};
 #[derive(Args)]
 pub struct Shape {
     #[command(flatten)]
-    input: InputArgs,
+    pipeline: PipelineArgs,
     /// Files to write: .ply, .off, .obj, .stl, .glb, .vtp (boundary), .vtu, .npz or .json (all
-    /// simplices), .png (a picture).
+    /// simplices), .png (a picture); or - (standard output, with --format).
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
+    #[command(flatten)]
+    format: FormatArgs,
     /// Write text where a format has a binary form too (PLY).
     #[arg(long)]
     ascii: bool,
-    #[command(flatten)]
-    haar: HaarArgs,
-    #[command(flatten)]
-    select: SelectArgs,
-    #[command(flatten)]
-    weights: WeightArgs,
     #[command(flatten)]
     shape: ShapeArgs,
     #[command(flatten)]
@@ -45,25 +40,21 @@ impl Shape {
         // Before the long work: a bad extension or place costs nothing yet.
         let mut targets = Vec::new();
         for path in &self.output {
-            let exporter: Box<dyn Exporter> = if PictureArgs::wanted(path) {
+            let name = self.format.name(path)?;
+            let exporter: Box<dyn Exporter> = if PictureArgs::wanted(&name) {
                 Box::new(self.picture)
             } else {
-                let format = Format::of(path).map_err(|unknown| anyhow!("{unknown}, or .png"))?;
-                format.exporter(self.ascii)
+                let known = Format::ALL.into_iter().map(|(_, extension)| extension);
+                let unknown = |_| UnknownFormat::new(path, "a shape", known.chain(["png"]));
+                Format::of(&name).map_err(unknown)?.exporter(self.ascii)
             };
             targets.push((Target::open(path)?, exporter));
         }
 
         let mut progress = Progress::new(global);
-        let weighed = pipeline::weighted_points(
-            &self.input,
-            &self.haar,
-            &self.select,
-            &self.weights,
-            &mut progress,
-        )?;
-        let alpha = self.weights.alpha();
-        let mut report = Report::of_points(&self.input.input, &weighed, alpha);
+        let weighed = pipeline::weighted_points(&self.pipeline, &mut progress)?;
+        let alpha = self.pipeline.weights.alpha();
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, alpha);
         let options = self.shape.options(alpha);
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
         report.add_shape(&shape);

@@ -2,6 +2,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::{Glb, Json, Npz, Obj, Off, Ply, Stl, Vtp, Vtu};
+use crate::near::nearest;
 use crate::shape::AlphaShape;
 
 /// A way to write a shape down.
@@ -43,12 +44,23 @@ pub enum Format {
 
 /// No writer has this extension.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{path}: no format has the extension `{extension}`; {thing} can be written as {known}")]
+#[error(
+    "{path}: no format has the extension `{extension}`, {thing} can be written as {known}; {}",
+    advice(near.as_deref())
+)]
 pub struct UnknownFormat {
     path: String,
     extension: String,
     thing: &'static str,
     known: String,
+    near: Option<String>,
+}
+
+fn advice(near: Option<&str>) -> String {
+    match near {
+        Some(near) => format!("did you mean .{near}?"),
+        None => "choose one of these".into(),
+    }
 }
 
 impl Format {
@@ -101,15 +113,26 @@ impl UnknownFormat {
             name.strip_suffix(extension).is_some_and(|stem| stem.len() > 1 && stem.ends_with('.'))
         };
         let found = all.iter().find(|(_, extension)| ends(extension));
-        found.map(|&(format, _)| format).ok_or_else(|| Self {
+        found
+            .map(|&(format, _)| format)
+            .ok_or_else(|| Self::new(path, thing, all.iter().map(|&(_, extension)| extension)))
+    }
+
+    /// Says that `thing` cannot be written to `path`, only under the `known` extensions (without their
+    /// dots).
+    pub fn new<'a>(
+        path: &Path,
+        thing: &'static str,
+        known: impl IntoIterator<Item = &'a str> + Clone,
+    ) -> Self {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().into_owned();
+        let dotted: Vec<String> = known.clone().into_iter().map(|e| format!(".{e}")).collect();
+        Self {
             path: path.display().to_string(),
-            extension: path.extension().unwrap_or_default().to_string_lossy().into_owned(),
+            near: nearest(&extension, known).map(str::to_owned),
+            extension,
             thing,
-            known: all
-                .iter()
-                .map(|(_, extension)| format!(".{extension}"))
-                .collect::<Vec<_>>()
-                .join(", "),
-        })
+            known: dotted.join(", "),
+        }
     }
 }

@@ -1,7 +1,7 @@
 use std::io::{self, Write};
 
 use super::Exporter;
-use crate::check::schema::ComplexFile;
+use crate::check::schema::{ComplexFile, SchemaError};
 use crate::shape::AlphaShape;
 
 /// JSON: the complex with its points, power weights and α, in the [`schema`](crate::check::schema)
@@ -25,6 +25,10 @@ impl Exporter for Json {
             "balls": shape.options().balls,
             "values": shape.points().values,
         }));
-        file.write_json(out).map_err(io::Error::other)
+        file.write_json(out).map_err(|error| match error {
+            // What the system said stays what it is: a pipe may be broken.
+            SchemaError::Json(error) if error.is_io() => error.into(),
+            other => io::Error::other(other),
+        })
     }
 }

@@ -2,6 +2,27 @@
 //!
 //! A writer turns a shape into bytes behind one trait and knows no paths; [`Target`] gives it a
 //! file that appears under its name only when it is complete.
+//!
+//! ```
+//! use std::path::Path;
+//! use walpha::export::{Format, Target};
+//! use walpha::points::{Points, Weighting, weigh};
+//! use walpha::shape::{Alpha, ShapeOptions, alpha_shape};
+//!
+//! let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let points = weigh(&Points { positions, ..Points::default() }, Weighting::Common(0.0), 1.0)?;
+//! let shape = alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(1.0)?))?;
+//!
+//! let exporter = Format::of(Path::new("tetrahedron.off"))?.exporter(false);
+//! let mut bytes = Vec::new();
+//! exporter.write(&shape, &mut bytes)?;
+//! assert!(bytes.starts_with(b"OFF"));
+//! // Into a file: nothing stands under the name before the last byte is written.
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("tetrahedron.off");
+//! Target::open(&path)?.write(|out| exporter.write(&shape, out))?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod format;
 mod glb;
@@ -9,6 +30,7 @@ mod json;
 mod npz;
 mod obj;
 mod off;
+mod part;
 mod ply;
 mod stl;
 mod target;
@@ -22,6 +44,7 @@ pub use json::Json;
 pub use npz::Npz;
 pub use obj::Obj;
 pub use off::Off;
+pub use part::abandon;
 pub use ply::Ply;
 pub use stl::Stl;
 pub use target::{Target, TargetError};

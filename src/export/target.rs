@@ -1,47 +1,50 @@
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
+use super::part::{Part, plain};
 
 /// A file to be: opened before the long work, so that a bad place is known at once, and put under
 /// its name only when it is complete. Dropped before that, it leaves nothing behind.
+///
+/// `-` is standard output. That, and what is no ordinary file (a pipe, a device), is written to as it
+/// comes.
 #[derive(Debug)]
 pub struct Target {
     path: PathBuf,
-    file: BufWriter<NamedTempFile>,
+    sink: Sink,
+}
+
+#[derive(Debug)]
+enum Sink {
+    Part(Part),
+    Stream,
 }
 
 /// A file cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write {}: {why}; nothing was left behind, choose a place with room that you may write to", path.display())]
+#[error("cannot write {}: {source}; nothing was left behind, choose a place with room that you may write to", path.display())]
 pub struct TargetError {
     path: PathBuf,
-    why: io::Error,
+    source: io::Error,
 }
 
 impl Target {
+    /// The path that is standard output.
+    pub const STDOUT: &str = "-";
+
     /// Opens a temporary file in the folder of `path`.
     ///
     /// # Errors
     /// When the folder does not exist or cannot be written, or `path` is a folder itself.
     pub fn open(path: &Path) -> Result<Self, TargetError> {
-        let fail = |why| TargetError { path: path.to_owned(), why };
+        let named = |source| TargetError { path: path.to_owned(), source };
         if path.is_dir() {
-            return Err(fail(io::Error::from(io::ErrorKind::IsADirectory)));
+            return Err(named(io::Error::from(io::ErrorKind::IsADirectory)));
         }
-        let folder = match path.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".walpha-").suffix(".part");
-        // Temporary files are private by default; this one becomes an ordinary file.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        // The name of the temporary file, which the error tells, means nothing to anybody.
-        let file = builder.tempfile_in(folder).map_err(|why| fail(why.kind().into()))?;
-        Ok(Self { path: path.to_owned(), file: BufWriter::new(file) })
+        let stream = path == Path::new(Self::STDOUT) || (path.exists() && !path.is_file());
+        let sink =
+            if stream { Sink::Stream } else { Sink::Part(Part::beside(path).map_err(named)?) };
+        Ok(Self { path: path.to_owned(), sink })
     }
 
     /// Where the file will stand.
@@ -52,26 +55,77 @@ impl Target {
     /// Writes the content and puts the file in its place, replacing what stood there.
     ///
     /// # Errors
-    /// What the system said, with the path; the place is then as it was.
+    /// What the system said, with the path; the place is then as it was, unless it is a stream.
     pub fn write(
         self,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), TargetError> {
-        let Self { path, mut file } = self;
-        let finish = || -> io::Result<()> {
-            content(&mut file)?;
-            file.flush()
+        let Self { path, sink } = self;
+        let written = match sink {
+            Sink::Part(part) => part.fill(content).and_then(|part| part.put(&path)),
+            Sink::Stream if path == Path::new(Self::STDOUT) => {
+                through(io::stdout().lock(), content)
+            }
+            Sink::Stream => std::fs::OpenOptions::new()
+                .write(true)
+                .open(&path)
+                .and_then(|stream| through(stream, content)),
         };
-        if let Err(why) = finish() {
-            return Err(TargetError { path, why });
+        written.map_err(|source| TargetError { path, source: plain(source) })
+    }
+}
+
+fn through(
+    stream: impl Write,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut buffered = BufWriter::new(stream);
+    content(&mut buffered)?;
+    buffered.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_disk_names_the_file_and_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shape.ply");
+        let target = Target::open(&path).unwrap();
+        let error = target.write(|_| Err(io::ErrorKind::StorageFull.into())).unwrap_err();
+        let text = error.to_string();
+        assert!(text.contains("shape.ply") && !text.contains(".part"), "{text}");
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn errors_of_temporary_files_lose_their_names() {
+        let path = Path::new("/dev/full");
+        if !path.exists() {
+            return;
         }
-        let persisted: Result<File, io::Error> = file
-            .into_inner()
-            .map_err(|e| e.into_error())
-            .and_then(|temporary| temporary.persist(&path).map_err(|refused| refused.error));
-        match persisted {
-            Ok(_) => Ok(()),
-            Err(why) => Err(TargetError { path, why }),
+        let target = Target::open(path).unwrap();
+        let error = target.write(|out| out.write_all(b"text")).unwrap_err();
+        let source = std::error::Error::source(&error).unwrap();
+        let os = source.downcast_ref::<io::Error>().unwrap().raw_os_error();
+        assert_eq!(os, Some(28));
+        // As the crate of temporary files wraps errors: with a name, and the cause behind it.
+        #[derive(Debug, thiserror::Error)]
+        #[error("{cause} at /tmp/.walpha-x.part")]
+        struct Wrapped {
+            #[source]
+            cause: io::Error,
         }
+        let wrapped = io::Error::other(Wrapped { cause: io::Error::from_raw_os_error(28) });
+        assert_eq!(plain(wrapped).raw_os_error(), Some(28));
+    }
+
+    #[test]
+    fn a_place_that_cannot_be_is_known_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let text = Target::open(&folder.path().join("no/a.ply")).unwrap_err().to_string();
+        assert!(text.contains("no/a.ply") && !text.contains(".part"), "{text}");
+        assert!(Target::open(folder.path()).unwrap_err().to_string().contains("directory"));
     }
 }

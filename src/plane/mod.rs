@@ -9,6 +9,23 @@
 //! Points are (x, y), in any one unit; results name them by input index. Any number of points from
 //! one up will do, on one line too. Of several points at one place the heaviest stays, of equal
 //! ones the first.
+//!
+//! ```
+//! use walpha::Alpha;
+//! use walpha::plane::{Curvature, eks_shape, weighted_plane_shape};
+//!
+//! let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]];
+//! // α = 0 makes half-planes of the discs, and the convex hull of the shape.
+//! assert_eq!(eks_shape(&square, Curvature::new(0.0)?)?.edges().len(), 4);
+//! // Discs of squared radius 1/4 about corners and middle cover the square; small ones do not meet.
+//! let betti = |alpha| -> Result<_, Box<dyn std::error::Error>> {
+//!     let shape = weighted_plane_shape(&square, &[0.0; 5], Alpha::from_squared(alpha)?)?;
+//!     Ok(shape.complex().betti())
+//! };
+//! assert_eq!(betti(0.25)?, [1, 0]);
+//! assert_eq!(betti(0.1)?, [5, 0]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod contact;
 mod curvature;

@@ -4,6 +4,21 @@
 //! Every picture is a function of its description alone: the same bytes on any number of threads
 //! and in each run. In the three-dimensional part nothing but + − × ÷ √ touches a pixel, which
 //! IEEE 754 fixes to the bit, and text is set in fonts that come with the library.
+//!
+//! ```
+//! use walpha::check::enumerate;
+//! use walpha::render::{Background, Camera, Projection, Scene, ShapeStyle, Size, View};
+//!
+//! let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let tetrahedron = enumerate(&positions, &[0.0; 4], 1.0)?.complex;
+//! let scene = Scene::of_shape(&positions, &tetrahedron, &ShapeStyle::default())?;
+//! let size = Size::new(64, 48)?;
+//! let bounds = scene.bounds().expect("there is something to see");
+//! let camera = Camera::fit(bounds, View::ThreeQuarter, Projection::Perspective, size)?;
+//! let png = scene.render(&camera, size, Background::White)?.to_png()?;
+//! assert!(png.starts_with(b"\x89PNG"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod camera;
 mod capsule;

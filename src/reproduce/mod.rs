@@ -25,6 +25,7 @@ pub use numbers::{ByClass, ShapeNumbers};
 pub use off::{OffError, OffMesh};
 pub use report::{Fact, Finding, Input, Item, Report, Table, Verdict};
 
+use crate::progress;
 use crate::volume::{GrayRange, Volume};
 use study::{Shapes, Study};
 
@@ -75,8 +76,9 @@ pub fn reproduce(
     let shapes = Shapes::new(&study, &mut clock)?;
     let mut bench = figures::Bench::new(&study, &shapes);
     let mut items = Vec::new();
-    for (name, make) in figures::ALL {
+    for (done, (name, make)) in figures::ALL.into_iter().enumerate() {
         clock.enter(name);
+        progress::report(done as u64, figures::ALL.len() as u64);
         items.push(make(&mut bench)?);
     }
     let files = bench.files;

@@ -1,6 +1,7 @@
-use std::path::PathBuf;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
 
-use super::Dims;
+use super::{Dims, SAMPLES};
 
 /// What can be wrong with a volume or the file it comes from.
 #[derive(Debug, thiserror::Error)]
@@ -50,7 +51,7 @@ pub enum VolumeError {
         high: f64,
     },
     /// The operating system refused.
-    #[error("cannot read {path}: {source}{}", next_step(source.kind()))]
+    #[error("cannot read {path}: {source}{}", next_step(path, source.kind()))]
     Io {
         /// The file.
         path: PathBuf,
@@ -79,11 +80,15 @@ pub enum VolumeError {
 }
 
 /// What to do about an error of the system.
-fn next_step(kind: std::io::ErrorKind) -> &'static str {
+fn next_step(path: &Path, kind: ErrorKind) -> String {
+    let sample = format!("sample:{}", path.display());
     match kind {
-        std::io::ErrorKind::NotFound => "; check the path, or try sample:phantom",
-        std::io::ErrorKind::PermissionDenied => "; make it readable first",
-        std::io::ErrorKind::IsADirectory => "; name a file in it",
-        _ => "",
+        ErrorKind::NotFound if SAMPLES.contains(&sample.as_str()) => {
+            format!("; did you mean {sample}?")
+        }
+        ErrorKind::NotFound => "; check the path, or try sample:phantom".into(),
+        ErrorKind::PermissionDenied => "; make it readable first".into(),
+        ErrorKind::IsADirectory => "; name a file in it".into(),
+        _ => String::new(),
     }
 }

@@ -1,4 +1,16 @@
 //! Floor 0: a grid of samples, where it comes from, and how its values become gray levels.
+//!
+//! ```
+//! use walpha::Gray;
+//! use walpha::volume::{ReadOptions, open};
+//!
+//! // A sample by its name; a file or folder by its path.
+//! let volume = open("sample:phantom@16", &ReadOptions::default())?;
+//! assert_eq!(volume.dims().xyz(), [16, 16, 16]);
+//! let (volume, range) = volume.into_gray(Gray::Automatic)?;
+//! assert!(volume.value_range().1 <= 255.0 && range.low < range.high);
+//! # Ok::<(), walpha::VolumeError>(())
+//! ```
 
 mod dtype;
 mod error;

@@ -5,6 +5,7 @@ use std::path::Path;
 use flate2::read::MultiGzDecoder;
 
 use super::{VtkXml, format_error, inr, io_error, metaimage, nifti, npy, nrrd, vtk};
+use crate::near::nearest;
 use crate::volume::VolumeError;
 
 /// Bytes looked at.
@@ -24,6 +25,8 @@ pub(super) enum Kind {
     VtkLegacy,
     VtkXml,
     Tiff,
+    #[cfg(feature = "dicom")]
+    Dicom,
 }
 
 /// What each extension stands for.
@@ -67,10 +70,10 @@ pub(super) fn kind(path: &Path, start: &[u8]) -> Result<Kind, VolumeError> {
         return Err(format_error(path, format!("is {what}")));
     }
     if start.get(128..132) == Some(b"DICM") {
-        return Err(format_error(
-            path,
-            "is a DICOM file, which is not read: convert the series to NRRD or NIfTI",
-        ));
+        #[cfg(feature = "dicom")]
+        return Ok(Kind::Dicom);
+        #[cfg(not(feature = "dicom"))]
+        return Err(format_error(path, format!("is a DICOM file, {}", without("dicom"))));
     }
     if start.starts_with(&[0x1f, 0x8b]) {
         return unpacked(path);
@@ -82,13 +85,29 @@ pub(super) fn kind(path: &Path, start: &[u8]) -> Result<Kind, VolumeError> {
     }
     let of_extension = EXTENSIONS.iter().find(|(extension, _)| name.ends_with(extension));
     of_extension.map(|&(_, kind)| kind).ok_or_else(|| {
+        let given = path.extension().unwrap_or_default().to_string_lossy();
+        let known = EXTENSIONS.iter().map(|(extension, _)| &extension[1..]);
+        let near = nearest(&given, known).map(|near| format!("is .{near} meant? "));
         format_error(
             path,
-            "is of no format known by content: NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), MetaImage \
-             (.mha, .mhd), VTK (.vtk, .vti), TIFF, INRIMAGE (.inr, .inr.gz), NPY, NPZ (.npy, .npz) and \
-             folders of slices are read; for raw samples give --dims X,Y,Z and --dtype",
+            format!(
+                "is of no format known by content: NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), \
+                 MetaImage (.mha, .mhd), VTK (.vtk, .vti), TIFF, INRIMAGE (.inr, .inr.gz), NPY, NPZ \
+                 (.npy, .npz) and folders of slices are read; {}for raw samples give --dims X,Y,Z and \
+                 --dtype",
+                near.unwrap_or_default()
+            ),
         )
     })
+}
+
+/// What to say of a format whose feature was left out when walpha was built.
+#[cfg(not(all(feature = "dicom", feature = "zarr")))]
+pub(super) fn without(feature: &str) -> String {
+    format!(
+        "which this walpha was built without; build it with `cargo install --path . --features \
+         {feature}`, or convert the volume to NRRD or NIfTI"
+    )
 }
 
 fn by_content(start: &[u8]) -> Option<Kind> {

@@ -4,6 +4,9 @@ mod base64;
 mod described;
 mod detached;
 mod detect;
+#[cfg(feature = "dicom")]
+mod dicom;
+mod folder;
 mod inr;
 mod lines;
 mod metaimage;
@@ -19,6 +22,8 @@ mod tiff;
 mod vti;
 mod vtk;
 mod vtk_xml;
+#[cfg(feature = "zarr")]
+mod zarr;
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -43,13 +48,16 @@ use super::{Dims, Dtype, Volume, VolumeError};
 pub struct ReadOptions {
     /// Reads the file as bare samples in this layout, whatever it looks like.
     pub raw: Option<RawLayout>,
+    /// The level of a pyramid to read (OME-Zarr), 0 being the finest. Files without levels refuse it.
+    pub level: Option<u32>,
 }
 
 /// Reads a volume from a file: raw samples if a layout is given, else by what the file begins with,
 /// and where that says nothing by its extension.
 ///
 /// INRIMAGE and NIfTI (also gzipped), NRRD, MetaImage, legacy VTK, VTI, TIFF, NPY and NPZ are read,
-/// and folders of PNG, JPEG or TIFF slices in natural order. Spacing, origin and directions are those
+/// and folders of PNG, JPEG or TIFF slices in natural order; with the feature `dicom` DICOM series (a
+/// folder, or one file of it), with the feature `zarr` Zarr arrays and OME-Zarr pyramids. Spacing, origin and directions are those
 /// of the file, in the space it means; where it says none, spacing is 1 and the origin 0.
 ///
 /// A header's claim is compared with the length of the file before memory is allocated. Samples of
@@ -62,7 +70,8 @@ pub struct ReadOptions {
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
     let volume = match &options.raw {
         Some(layout) => raw::read(path, layout),
-        None => read_known(path),
+        None if path.is_dir() => folder::read(path, options.level),
+        None => read_file(path, options.level),
     };
     volume.map_err(|error| match error {
         VolumeError::Io { .. } | VolumeError::Format { .. } | VolumeError::InFile { .. } => error,
@@ -70,16 +79,17 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
     })
 }
 
-fn read_known(path: &Path) -> Result<Volume, VolumeError> {
-    if path.is_dir() {
-        return slices::read(path);
-    }
+fn read_file(path: &Path, level: Option<u32>) -> Result<Volume, VolumeError> {
     let mut file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut start = Vec::new();
     (&mut file).take(detect::BYTES).read_to_end(&mut start).map_err(io_error(path))?;
     if start.is_empty() {
         return Err(format_error(path, "is empty: there is no volume in it; write it again"));
+    }
+    if let Some(level) = level {
+        let what = format!("is no pyramid and has no level {level}; leave --level away");
+        return Err(format_error(path, what));
     }
     let open = || File::open(path).map(BufReader::new).map_err(io_error(path));
     match detect::kind(path, &start)? {
@@ -96,6 +106,8 @@ fn read_known(path: &Path) -> Result<Volume, VolumeError> {
         Kind::VtkLegacy => vtk::read(path),
         Kind::VtkXml => vti::read(path),
         Kind::Tiff => tiff::read(path),
+        #[cfg(feature = "dicom")]
+        Kind::Dicom => dicom::read_series_of(path),
     }
 }
 

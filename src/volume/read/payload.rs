@@ -2,6 +2,7 @@ use std::io::{self, Read};
 
 use rayon::prelude::*;
 
+use crate::progress;
 use crate::volume::{Dtype, Endian};
 
 /// Decoded at a time, so that a file never stands in memory beside its samples.
@@ -87,6 +88,7 @@ impl<R: Read> Payload<R> {
             let start = samples.len();
             samples.resize(start + chunk.len() / dtype.size(), T::default());
             T::decode(chunk, dtype, endian, &mut samples[start..]);
+            progress::report(needed - left as u64, needed);
         }
         if read_up_to(&mut self.reader, &mut [0]).map_err(PayloadError::Io)? > 0 {
             return Err(PayloadError::Length { needed, found: needed + 1, bound: "at least " });

@@ -8,6 +8,7 @@ use std::path::Path;
 pub use phantom::phantom;
 
 use super::{ReadOptions, Volume, VolumeError, read};
+use crate::near::nearest;
 
 /// The samples there are, as a user writes them.
 pub const SAMPLES: [&str; 3] = ["sample:skull", "sample:phantom", "sample:phantom@N"];
@@ -37,7 +38,10 @@ pub fn sample(name: &str) -> Result<Volume, VolumeError> {
             Ok(size) => phantom(size),
             Err(_) => Err(unknown(name, "N is a number of samples along each axis, as in @128")),
         },
-        _ => Err(unknown(name, "see `walpha --help`")),
+        _ => {
+            let meant = nearest(name, SAMPLES).map(|near| format!("did you mean {near}?"));
+            Err(unknown(name, &meant.unwrap_or_else(|| "name one of these, or a file".into())))
+        }
     }
 }
 
@@ -56,6 +60,8 @@ mod tests {
             let text = sample(name).unwrap_err().to_string();
             assert!(text.contains(name) && text.contains("sample:phantom@N"), "{text}");
         }
+        let text = sample("sample:skul").unwrap_err().to_string();
+        assert!(text.ends_with("did you mean sample:skull?"), "{text}");
         assert!(matches!(sample("sample:phantom@0"), Err(VolumeError::EmptyAxis { .. })));
         assert!(matches!(sample("sample:phantom@99999"), Err(VolumeError::TooManySamples { .. })));
     }

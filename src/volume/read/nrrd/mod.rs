@@ -1,13 +1,18 @@
+mod files;
+mod space;
+
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-use super::described::{Described, Encoding, diagonal, frame};
+use super::described::{Described, Encoding};
 use super::detached::Detached;
 use super::lines::Lines;
 use super::{format_error, io_error};
-use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+use files::data_files;
+pub(super) use files::numbered;
 
 /// The first bytes of each NRRD file, before the digit of its version.
 pub(super) const MAGIC: &[u8] = b"NRRD000";
@@ -15,8 +20,8 @@ pub(super) const MAGIC: &[u8] = b"NRRD000";
 /// Reads NRRD ("nearly raw raster data", teem.sourceforge.net/nrrd/format.html) with its samples
 /// behind the header (`.nrrd`) or in other files (`.nhdr`: one, a `LIST`, or a numbered row).
 ///
-/// Encodings raw, gzip and text; every scalar type. `space directions`, or `spacings`, and `space
-/// origin` give the frame, in the space the file names. An axis of one sample beyond the third is
+/// Encodings raw, gzip and text; every scalar type. `space directions` and `space origin`, or
+/// `spacings` and `axis mins`, give the frame, in the space the file names. An axis of one sample beyond the third is
 /// dropped; axes of colours or vectors, `bzip2`, `hex` and `line skip` are refused.
 pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
     let said = |what: String| format_error(path, what);
@@ -166,44 +171,8 @@ impl Header {
                 return Err(said(format!("endian: {given} is no byte order: give little or big")));
             }
         };
-        let frame = self.frame(path, all, &kept)?;
+        let frame = self.frame(path, all, &kept, dims.xyz())?;
         Ok(Described { dims, dtype, endian, frame, encoding })
-    }
-
-    /// Where the grid lies; `kept` are the axes that are read, of `all`.
-    fn frame(&self, path: &Path, all: usize, kept: &[usize]) -> Result<Frame, VolumeError> {
-        let said = |what: String| format_error(path, what);
-        let mut steps = diagonal([1.0; 3]);
-        if let Some(text) = self.field("space directions") {
-            let directions = vectors(text).filter(|rows| rows.len() == all).ok_or_else(|| {
-                said(format!("space directions: {text} are not {all} vectors of numbers"))
-            })?;
-            for (step, &axis) in steps.iter_mut().zip(kept) {
-                if let Some(direction) = directions[axis] {
-                    *step = direction;
-                }
-            }
-        } else if let Some(text) = self.field("spacings") {
-            let spacings: Option<Vec<f64>> =
-                text.split_whitespace().map(|number| number.parse().ok()).collect();
-            let spacings = spacings
-                .filter(|numbers| numbers.len() == all)
-                .ok_or_else(|| said(format!("spacings: {text} are not {all} numbers")))?;
-            for (c, &axis) in kept.iter().enumerate() {
-                // NaN stands for "unknown".
-                if !spacings[axis].is_nan() {
-                    steps[c][c] = spacings[axis];
-                }
-            }
-        }
-        let origin = match self.field("space origin") {
-            None => [0.0; 3],
-            Some(text) => match vectors(text).as_deref() {
-                Some([Some(origin)]) => *origin,
-                _ => return Err(said(format!("space origin: {text} is no vector of numbers"))),
-            },
-        };
-        frame(path, origin, steps)
     }
 
     /// Bytes before the samples; `None` where they stand at the end of the file.
@@ -224,72 +193,6 @@ impl Header {
             Err(_) => Err(said(format!("byte skip: {bytes} is no number of bytes"))),
         }
     }
-}
-
-/// The names a `data file` field gives: one, a `LIST` of the lines that follow, or a numbered row
-/// `pattern min max step`, where the pattern has one `%d`, perhaps `%03d`.
-fn data_files(
-    path: &Path,
-    value: &str,
-    lines: &mut Lines<BufReader<File>>,
-) -> Result<Vec<String>, VolumeError> {
-    if value.starts_with("LIST") {
-        let mut names = Vec::new();
-        while let Some(line) = lines.next().map_err(io_error(path))? {
-            if !line.trim().is_empty() {
-                names.push(line.trim().to_owned());
-            }
-        }
-        return Ok(names);
-    }
-    let words: Vec<&str> = value.split_whitespace().collect();
-    match numbered(&words) {
-        Some(names) => names.map_err(|what| format_error(path, what)),
-        None => Ok(vec![value.to_owned()]),
-    }
-}
-
-/// The files of a numbered row; `None` where the words are no such row.
-pub(super) fn numbered(words: &[&str]) -> Option<Result<Vec<String>, String>> {
-    /// A row has a file a slice, at most.
-    const MAX_FILES: i64 = 1 << 20;
-    let &[pattern, first, last, step, ..] = words else { return None };
-    let (before, rest) = pattern.split_once('%')?;
-    let (width, after) = rest.split_once('d')?;
-    let zeros = width.starts_with('0');
-    let width: usize = if width.is_empty() { 0 } else { width.parse().ok()? };
-    let [first, last, step] = [first, last, step].map(|number| number.parse::<i32>().ok());
-    let (first, last, step) = (i64::from(first?), i64::from(last?), i64::from(step?));
-    if step == 0 || (last - first) / step < 0 || (last - first) / step >= MAX_FILES || width > 20 {
-        return Some(Err(format!("numbers its data files {}, which is no row", words.join(" "))));
-    }
-    let name = |i: i64| {
-        let number = first + i * step;
-        let number = if zeros { format!("{number:0width$}") } else { format!("{number:width$}") };
-        format!("{before}{number}{after}")
-    };
-    Some(Ok((0..=(last - first) / step).map(name).collect()))
-}
-
-/// Vectors such as `(1,0,0) none (0,0,2)`, of up to three components.
-fn vectors(text: &str) -> Option<Vec<Option<[f64; 3]>>> {
-    let mut rest = text.trim();
-    let mut rows = Vec::new();
-    while !rest.is_empty() {
-        if let Some(after) = rest.strip_prefix("none") {
-            rows.push(None);
-            rest = after.trim_start();
-            continue;
-        }
-        let (row, after) = rest.strip_prefix('(')?.split_once(')')?;
-        let numbers: Vec<f64> =
-            row.split(',').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?;
-        let mut vector = [0.0; 3];
-        vector.get_mut(..numbers.len())?.copy_from_slice(&numbers);
-        rows.push(Some(vector));
-        rest = after.trim_start();
-    }
-    Some(rows)
 }
 
 fn scalar_type(name: &str) -> Option<Dtype> {

@@ -1,0 +1,216 @@
+#!/usr/bin/env python3
+"""Small valid files for every fuzz target, in corpus/TARGET: `python3 fuzz/seeds.py fuzz/corpus`.
+
+Standard library only. The fuzzer finds the rest from these.
+"""
+
+import base64
+import gzip
+import io
+import struct
+import sys
+import zipfile
+import zlib
+from pathlib import Path
+
+N = 2 * 3 * 2
+U8 = bytes(range(N))
+F32 = struct.pack(f"<{N}f", *range(N))
+F64 = struct.pack(f"<{3 * 4}d", *range(12))
+
+
+def inrimage():
+    head = "#INRIMAGE-4#{\nXDIM=2\nYDIM=3\nZDIM=2\nVDIM=1\nTYPE=float\nPIXSIZE=32 bits\nCPU=decm\nVX=1\n"
+    head += "\n" * (252 - len(head)) + "##}\n"
+    whole = head.encode() + F32
+    short = head.replace("float", "unsigned fixed").replace("32 bits", "8 bits")
+    short = short.replace("\n\n", "\n", 0).encode()
+    short = short[: short.index(b"##}")].rstrip(b"\n")
+    return [whole, gzip.compress(whole), short + b"\n" * (252 - len(short)) + b"##}\n" + U8]
+
+
+def npy(descr, shape, data, fortran=False):
+    head = f"{{'descr': '{descr}', 'fortran_order': {fortran}, 'shape': {shape}, }}"
+    head += " " * (63 - (10 + len(head)) % 64) + "\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode() + data
+
+
+def npys():
+    return [npy("<f4", (2, 3, 2), F32), npy("|u1", (2, 3, 2), U8, True), npy("<f8", (3, 4), F64)]
+
+
+def npz():
+    files = []
+    for method in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        out = io.BytesIO()
+        with zipfile.ZipFile(out, "w", method) as archive:
+            archive.writestr("volume.npy", npys()[0])
+            archive.writestr("other.npy", npy("<f8", (12,), F64))
+        files.append(out.getvalue())
+    return files
+
+
+def nrrd():
+    head = "NRRD0004\n# a comment\ntype: {}\ndimension: 3\nsizes: 2 3 2\nendian: little\nencoding: {}\n{}\n"
+    world = "space: left-posterior-superior\nspace directions: (1,0,0) (0,2,0) (0,0,3)\nspace origin: (1,2,3)\n"
+    text = " ".join(map(str, range(N)))
+    return [
+        head.format("float", "raw", "spacings: 1 2 3\n").encode() + F32,
+        head.format("uint8", "gzip", world).encode() + gzip.compress(U8),
+        head.format("unsigned char", "ascii", world).encode() + text.encode(),
+        head.format("uint8", "raw", "axis mins: 1 2 3\nkinds: domain domain domain\n").encode() + U8,
+        head.format("uint8", "raw", "data file: LIST\na.raw\nb.raw\n").encode(),
+        head.format("uint8", "raw", "data file: v%d.raw 0 1 1 2\n").encode(),
+    ]
+
+
+def metaimage():
+    head = "ObjectType = Image\nNDims = 3\nDimSize = 2 3 2\nElementSpacing = 1 2 3\nOffset = 0 1 2\n"
+    head += "TransformMatrix = 1 0 0 0 1 0 0 0 1\nElementType = {}\n{}ElementDataFile = {}\n"
+    return [
+        head.format("MET_FLOAT", "BinaryData = True\nBinaryDataByteOrderMSB = False\n", "LOCAL").encode() + F32,
+        head.format("MET_UCHAR", "CompressedData = True\nCompressedDataSize = 20\n", "LOCAL").encode()
+        + zlib.compress(U8),
+        head.format("MET_UCHAR", "BinaryData = False\n", "LOCAL").encode() + b"0 1 2 3 4 5 6 7 8 9 10 11",
+        head.format("MET_UCHAR", "", "LIST").encode() + b"a.raw\nb.raw\n",
+        head.format("MET_UCHAR", "HeaderSize = -1\n", "a.raw").encode(),
+    ]
+
+
+def nifti():
+    one = bytearray(352)
+    struct.pack_into("<i", one, 0, 348)
+    struct.pack_into("<8h", one, 40, 3, 2, 3, 2, 1, 1, 1, 1)
+    struct.pack_into("<hh", one, 70, 16, 32)
+    struct.pack_into("<8f", one, 76, 1, 1, 2, 3, 0, 0, 0, 0)
+    struct.pack_into("<fff", one, 108, 352, 2, 1)
+    struct.pack_into("<hh", one, 252, 1, 0)
+    one[344:348] = b"n+1\0"
+    two = bytearray(544)
+    struct.pack_into("<i", two, 0, 540)
+    two[4:12] = b"n+2\0\r\n\x1a\n"
+    struct.pack_into("<hh8q", two, 12, 2, 8, 3, 2, 3, 2, 1, 1, 1, 1)
+    struct.pack_into("<8d", two, 104, 1, 1, 1, 1, 0, 0, 0, 0)
+    struct.pack_into("<q", two, 168, 544)
+    return [bytes(one) + F32, bytes(two) + U8]
+
+
+def vtk_legacy():
+    head = "# vtk DataFile Version {}\ntitle\n{}\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 3 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 12\n"
+    numbers = " ".join(map(str, range(N)))
+    return [
+        (head.format("3.0", "ASCII") + "SCALARS f float 1\nLOOKUP_TABLE default\n" + numbers).encode(),
+        (head.format("5.1", "BINARY") + "METADATA\nINFORMATION 0\n\nSCALARS f unsigned_char 1\nLOOKUP_TABLE default\n").encode() + U8,
+        (head.format("4.2", "BINARY") + "FIELD FieldData 1\nf 1 12 float\n").encode()
+        + struct.pack(f">{N}f", *range(N)),
+    ]
+
+
+def xml(kind, body, tail=b"", attributes=""):
+    head = f'<?xml version="1.0"?>\n<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt32"{attributes}>\n'
+    return head.encode() + body.encode() + tail + b"</VTKFile>\n"
+
+
+def blocks(data):
+    packed = zlib.compress(data)
+    head = struct.pack("<4I", 1, len(data), 0, len(packed))
+    return (base64.b64encode(head) + base64.b64encode(packed)).decode()
+
+
+def vti():
+    image = '<ImageData WholeExtent="0 1 0 2 0 1" Origin="0 0 0" Spacing="1 1 1" Direction="1 0 0 0 1 0 0 0 1"><Piece Extent="0 1 0 2 0 1"><PointData Scalars="f">{}</PointData></Piece></ImageData>\n'
+    array = '<DataArray type="{}" Name="f" format="{}"{}>{}</DataArray>'
+    inline = base64.b64encode(struct.pack("<I", len(F32)) + F32).decode()
+    appended = b'<AppendedData encoding="raw">_' + struct.pack("<I", len(F32)) + F32 + b"</AppendedData>"
+    coded = b'<AppendedData encoding="base64">_' + inline.encode() + b"</AppendedData>"
+    zlib_ = ' compressor="vtkZLibDataCompressor"'
+    return [
+        xml("ImageData", image.format(array.format("Float32", "ascii", "", " ".join(map(str, range(N)))))),
+        xml("ImageData", image.format(array.format("Float32", "binary", "", inline))),
+        xml("ImageData", image.format(array.format("Float32", "appended", ' offset="0"', "")), appended),
+        xml("ImageData", image.format(array.format("Float32", "appended", ' offset="0"', "")), coded),
+        xml("ImageData", image.format(array.format("Float32", "binary", "", blocks(F32))), b"", zlib_),
+    ]
+
+
+def vtk_geometry():
+    points = " ".join(map(str, range(12)))
+    body = '<{0}><Piece NumberOfPoints="4" {1}="0"><PointData Scalars="value"><DataArray type="Float64" Name="value" format="ascii">1 2 3 4</DataArray></PointData><Points><DataArray type="Float64" NumberOfComponents="3" format="{2}">{3}</DataArray></Points></Piece></{0}>\n'
+    inline = base64.b64encode(struct.pack("<I", len(F64)) + F64).decode()
+    return [
+        xml("PolyData", body.format("PolyData", "NumberOfPolys", "ascii", points)),
+        xml("UnstructuredGrid", body.format("UnstructuredGrid", "NumberOfCells", "ascii", points)),
+        xml("PolyData", body.format("PolyData", "NumberOfPolys", "binary", inline)),
+        xml("PolyData", body.format("PolyData", "NumberOfPolys", "binary", blocks(F64)), b"", ' compressor="vtkZLibDataCompressor"').replace(
+            b'format="ascii">1 2 3 4', b'format="ascii">1 2 3 4'
+        ),
+    ]
+
+
+def tiff(big=False, text=b"", packed=False):
+    """Two pages of 2x3 bytes."""
+    word, mark = ("<Q", b"II+\0\x08\0\0\0") if big else ("<I", b"II*\0")
+    size = struct.calcsize(word)
+    pages = [zlib.compress(U8[:6]), zlib.compress(U8[6:])] if packed else [U8[:6], U8[6:]]
+    out = bytearray(mark + struct.pack(word, 0))
+    link = len(mark)
+    for page in pages:
+        data = len(out)
+        out += page
+        note = len(out)
+        out += text
+        here = len(out)
+        struct.pack_into(word, out, link, here)
+        tags = [(256, 3, 2), (257, 3, 3), (258, 3, 8), (259, 3, 8 if packed else 1), (262, 3, 1)]
+        if text:
+            tags.append((270, 2, note))
+        tags += [(273, 4, data), (277, 3, 1), (278, 3, 3), (279, 4, len(page)), (339, 3, 1)]
+        out += struct.pack("<Q" if big else "<H", len(tags))
+        for tag, kind, value in tags:
+            count = len(text) if tag == 270 else 1
+            out += struct.pack("<HH", tag, kind) + struct.pack(word, count)
+            out += struct.pack("<H" if kind == 3 else word, value).ljust(size, b"\0")
+        link = len(out)
+        out += struct.pack(word, 0)
+    return bytes(out)
+
+
+def tiffs():
+    imagej = b"ImageJ=1.53\nimages=2\nslices=2\nunit=mm\nspacing=2.5\n\0"
+    ome = (
+        b'<?xml version="1.0"?><OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06"><Image ID="Image:0">'
+        b'<Pixels ID="P:0" DimensionOrder="XYZCT" Type="uint8" SizeX="2" SizeY="3" SizeZ="2" SizeC="1" SizeT="1" '
+        b'PhysicalSizeX="0.5" PhysicalSizeZ="2"><TiffData/></Pixels></Image></OME>\0'
+    )
+    return [tiff(), tiff(big=True), tiff(packed=True), tiff(text=imagej), tiff(text=ome)]
+
+
+def table():
+    return [b"x,y,z,weight,value\n0,0,0,1,2\n1,0,0,1,3\n0,1e3,-2.5,0,4\n", b"x\ty\tz\n1\t2\t3\n", b'"x","y","z"\r\n1,2,3\r\n']
+
+
+def xyz():
+    return [b"0 0 0\n1 0 0\n", b"x y z value\n1 2 3 4\n", b"2\nwater\nH 0 0 0\nO 1 0 0\n", b"# a comment\n1 2 3 4\n"]
+
+
+def ply():
+    head = "ply\nformat {} 1.0\ncomment made\nelement vertex 2\nproperty {t} x\nproperty {t} y\nproperty {t} z\nproperty uchar value\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    files = [head.replace("{t}", "float").format("ascii").encode() + b"0 0 0 1\n1 2 3 4\n3 0 1 1\n"]
+    for name, order in (("binary_little_endian", "<"), ("binary_big_endian", ">")):
+        rows = b"".join(struct.pack(order + "dddB", *row) for row in ((0, 0, 0, 1), (1, 2, 3, 4)))
+        files.append(head.replace("{t}", "double").format(name).encode() + rows + struct.pack(order + "Biii", 3, 0, 1, 1))
+    return files
+
+
+TARGETS = {
+    "inrimage": inrimage, "npy": npys, "npz": npz, "nrrd": nrrd, "metaimage": metaimage, "nifti": nifti,
+    "nifti_gzip": lambda: [gzip.compress(file) for file in nifti()], "vtk_legacy": vtk_legacy, "vti": vti,
+    "tiff": tiffs, "table": table, "xyz": xyz, "ply": ply, "vtk_geometry": vtk_geometry,
+}
+
+if __name__ == "__main__":
+    for name, files in TARGETS.items():
+        folder = Path(sys.argv[1]) / name
+        folder.mkdir(parents=True, exist_ok=True)
+        for number, data in enumerate(files()):
+            (folder / f"seed{number}").write_bytes(data)

@@ -1,0 +1,146 @@
+//! Errors in three lines: what could not be done, why, and what to do next.
+
+use std::io::IsTerminal;
+
+use clap::error::ErrorKind;
+
+use super::progress;
+
+/// Whether standard error takes colours: a terminal, and NO_COLOR is not set (<https://no-color.org>).
+pub fn coloured() -> bool {
+    let forbidden = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    std::io::stderr().is_terminal() && !forbidden
+}
+
+/// Three lines for standard error.
+struct Complaint {
+    what: String,
+    why: String,
+    next: String,
+}
+
+/// Tells why a command failed. The work that was going on is the one last announced.
+pub fn tell(command: &str, error: &anyhow::Error) {
+    let what = match progress::current().as_str() {
+        "" => "could not start".to_owned(),
+        "read" => "could not read its input".into(),
+        "haar" => "could not transform the volume".into(),
+        "points" => "could not make weighted points".into(),
+        "shape" => "could not compute the shape".into(),
+        "write" => "could not write its result".into(),
+        other => format!("could not finish: {other}"),
+    };
+    let (why, next) = parted(&with_contexts(error));
+    let next = next.unwrap_or_else(|| help(command));
+    Complaint { what: format!("{command} {what}"), why, next }.print();
+}
+
+/// Tells what is wrong with a command line; `configured` if some of it comes from a file.
+pub fn tell_usage(command: &str, error: &clap::Error, configured: bool) {
+    if matches!(error.kind(), ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand) {
+        let _ = error.print();
+        return;
+    }
+    let text = error.render().to_string();
+    let (mut said, mut tips, mut usage) = (Vec::new(), Vec::new(), None);
+    for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
+        if let Some(tip) = line.strip_prefix("tip: ") {
+            tips.push(tip.to_owned());
+        } else if let Some(line) = line.strip_prefix("Usage: ") {
+            usage = Some(line.to_owned());
+        } else if !line.starts_with("For more information") && usage.is_none() {
+            said.push(line);
+        }
+    }
+    let mut what = said.first().map_or("", |line| line.trim_start_matches("error: ")).to_owned();
+    let mut rest = said.get(1..).unwrap_or_default().join(" ");
+    // "invalid value 'x' for '--option <X>': what its parser says".
+    if rest.is_empty()
+        && let Some((head, tail)) = what.split_once("': ")
+    {
+        (what, rest) = (format!("{head}'"), tail.to_owned());
+    }
+    if what.ends_with(':') {
+        what = format!("{what} {rest}");
+        rest = String::new();
+    }
+    let (why, next) = match rest.strip_prefix("[possible values: ") {
+        Some(values) => (format!("it is one of {}", values.trim_end_matches(']')), None),
+        None => parted(&rest),
+    };
+    let why = if !why.is_empty() {
+        why
+    } else {
+        usage.map_or_else(|| format!("{command} does not take it"), |u| format!("the usage is {u}"))
+    };
+    tips.extend(next);
+    if configured {
+        tips.push("mind that --config sets options, too".into());
+    }
+    let next = if tips.is_empty() { help(command) } else { tips.join("; ") };
+    Complaint { what, why, next }.print();
+}
+
+impl Complaint {
+    fn print(&self) {
+        let (red, bold, plain) =
+            if coloured() { ("\x1b[1;31m", "\x1b[1m", "\x1b[0m") } else { ("", "", "") };
+        let Self { what, why, next } = self;
+        eprintln!("{red}error:{plain} {what}");
+        eprintln!("{bold}  why:{plain} {why}");
+        eprintln!("{bold} next:{plain} {next}");
+    }
+}
+
+fn help(command: &str) -> String {
+    format!("`{command} --help` tells what it takes")
+}
+
+/// An error with the contexts it was given, but without causes that its text has already.
+fn with_contexts(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !text.contains(&cause) {
+            text = format!("{text}: {cause}");
+        }
+    }
+    text.replace('\n', " ")
+}
+
+/// The reason in a message, and its advice: what follows the last semicolon, or else the last colon,
+/// as all messages of the library are built. A colon behind a file's name parts nothing.
+fn parted(text: &str) -> (String, Option<String>) {
+    let semicolon = text.rsplit_once("; ");
+    let colon = || {
+        text.rsplit_once(": ")
+            .filter(|(head, _)| head.contains(' ') && !std::path::Path::new(head).exists())
+    };
+    match semicolon.or_else(colon) {
+        Some((why, next)) => (why.to_owned(), Some(next.to_owned())),
+        None => (text.to_owned(), None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_part_at_their_advice() {
+        let cases = [
+            ("cannot read a.csv: not there; check the path", Some("check the path")),
+            ("gray range 1..0 is empty: give LO < HI", Some("give LO < HI")),
+            ("a.csv: holds no point", None),
+            ("it failed", None),
+        ];
+        for (text, advice) in cases {
+            assert_eq!(parted(text).1.as_deref(), advice, "{text}");
+        }
+    }
+
+    #[test]
+    fn causes_are_told_once() {
+        let error = anyhow::anyhow!("no room").context("cannot write a: no room").context("shape");
+        assert_eq!(with_contexts(&error), "shape: cannot write a: no room");
+    }
+}

@@ -1,0 +1,233 @@
+//! Options from a file, and as a file: `--config` and `--print-config`.
+//!
+//! What a file says becomes arguments of the command line, behind those the user gave, so each option
+//! is checked once and in one place; a new command or option takes part by itself.
+
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow, bail};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
+use toml::{Table, Value};
+use walpha::near::nearest;
+
+/// The option that names the file.
+const FILE: &str = "config";
+/// The option that prints one.
+pub const PRINT: &str = "print-config";
+/// Options that speak of the configuration itself, or of nothing but this call.
+const NOT_CONFIGURED: [&str; 4] = [FILE, PRINT, "help", "version"];
+
+/// The two options, for every command.
+pub fn options_of_it() -> [Arg; 2] {
+    let file = Arg::new(FILE).long(FILE).global(true).value_name("FILE");
+    let print = Arg::new(PRINT).long(PRINT).global(true).action(ArgAction::SetTrue);
+    [
+        file.value_parser(clap::value_parser!(PathBuf)).help(
+            "TOML file with options by their long names, as in alpha = 4; the command line wins",
+        ),
+        print.help("Print the options in force as a file for --config, and do nothing else"),
+    ]
+}
+
+/// The arguments with those of the file that `--config` names, if it is there.
+///
+/// Keys are the long names of options. Those at the top are for every command that has such an option;
+/// a table named like a command is for that command, and wins. The command line wins over both, and
+/// silences what it excludes.
+pub fn with_file(command: &Command, mut args: Vec<OsString>) -> anyhow::Result<Vec<OsString>> {
+    // What is wrong with the arguments is told when all of them are parsed.
+    let lenient = command.clone().ignore_errors(true).try_get_matches_from(&args);
+    let Some((given, (name, of_command))) =
+        lenient.as_ref().ok().and_then(|given| Some((given, given.subcommand()?)))
+    else {
+        return Ok(args);
+    };
+    let Some(file) = path(given).or_else(|| path(of_command)) else { return Ok(args) };
+    let settings = read(command, &file, name)?;
+    let subcommand = command.find_subcommand(name).context("a command that was parsed")?;
+    let said = |arg: &Arg| {
+        of_command.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine)
+    };
+    let mut more = Vec::new();
+    for (key, value) in settings {
+        let Some(arg) = option(subcommand, &key) else { continue };
+        if said(arg) || rivals(subcommand, arg).into_iter().any(said) {
+            continue;
+        }
+        let text = texts(arg, &value)
+            .with_context(|| format!("{}: {key} = {value} makes no sense", file.display()))?;
+        // A default needs no saying, and may not be said where it depends on another option.
+        let defaults = arg.get_default_values();
+        if matches!((&text[..], defaults), ([one], [default]) if *one == default_text(arg, default))
+        {
+            continue;
+        }
+        more.extend(text.into_iter().map(OsString::from));
+    }
+    let end = args.iter().position(|arg| arg == "--").unwrap_or(args.len());
+    args.splice(end..end, more);
+    Ok(args)
+}
+
+/// The options in force as a file for `--config`: what was given, and defaults.
+pub fn print(subcommand: &Command, matches: &ArgMatches) -> String {
+    let mut text = format!("# walpha {}\n", subcommand.get_name());
+    let is_default =
+        |arg: &Arg| matches.value_source(arg.get_id().as_str()) == Some(ValueSource::DefaultValue);
+    let is_given = |arg: &Arg| matches!(matches.value_source(arg.get_id().as_str()), Some(source) if source != ValueSource::DefaultValue);
+    for arg in options(subcommand) {
+        // A default that something given excludes is not in force.
+        if is_default(arg) && rivals(subcommand, arg).into_iter().any(is_given) {
+            continue;
+        }
+        let Some(values) = matches.get_raw(arg.get_id().as_str()) else { continue };
+        let mut values: Vec<Value> = values.map(|raw| value(arg, &raw.to_string_lossy())).collect();
+        let value = if takes_many(arg) { Value::Array(values) } else { values.remove(0) };
+        let key = arg.get_long().unwrap_or_default();
+        text += &format!("{key} = {value}\n");
+    }
+    text
+}
+
+fn path(matches: &ArgMatches) -> Option<PathBuf> {
+    matches.try_get_one::<PathBuf>(FILE).ok().flatten().cloned()
+}
+
+/// The file's settings for this command.
+fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
+    let text = std::fs::read_to_string(file).map_err(|error| {
+        anyhow!("cannot read {}: {error}; give --config the name of a TOML file", file.display())
+    })?;
+    let table: Table = text.parse().map_err(|error: toml::de::Error| {
+        let said = error.to_string();
+        let lines = said.lines().map(str::trim).filter(|line| !line.is_empty());
+        let said: Vec<&str> = lines.collect();
+        anyhow!(
+            "{} is no TOML file: {}; walpha {name} --print-config shows how one looks",
+            file.display(),
+            said.join(" ")
+        )
+    })?;
+    let (mut settings, mut own) = (Table::new(), Table::new());
+    for (key, value) in table {
+        match (value, command.find_subcommand(&key)) {
+            (Value::Table(of_command), Some(subcommand)) => {
+                if let Some(key) = of_command.keys().find(|key| option(subcommand, key).is_none()) {
+                    let known = options(subcommand).filter_map(Arg::get_long).collect();
+                    return Err(unknown(
+                        file,
+                        &format!("[{}] {key}", subcommand.get_name()),
+                        key,
+                        known,
+                    ));
+                }
+                if key == name {
+                    own = of_command;
+                }
+            }
+            (value, _) => {
+                if !command.get_subcommands().any(|each| option(each, &key).is_some()) {
+                    let names = command.get_subcommands().map(Command::get_name);
+                    let options = command.get_subcommands().flat_map(options);
+                    let known = options.filter_map(Arg::get_long).chain(names).collect();
+                    return Err(unknown(file, &key, &key, known));
+                }
+                settings.insert(key, value);
+            }
+        }
+    }
+    settings.extend(own);
+    Ok(settings)
+}
+
+fn unknown(file: &Path, shown: &str, key: &str, known: Vec<&str>) -> anyhow::Error {
+    let next = match nearest(key, known) {
+        Some(near) => format!("did you mean {near}?"),
+        None => "take it away, or see --print-config".to_owned(),
+    };
+    anyhow!("{}: no option has the name {shown}; {next}", file.display())
+}
+
+/// The options a file may set.
+fn options(subcommand: &Command) -> impl Iterator<Item = &Arg> {
+    subcommand.get_arguments().filter(|arg| {
+        arg.get_long().is_some_and(|long| !NOT_CONFIGURED.contains(&long)) && !arg.is_positional()
+    })
+}
+
+fn option<'a>(subcommand: &'a Command, key: &str) -> Option<&'a Arg> {
+    options(subcommand).find(|arg| arg.get_long() == Some(key))
+}
+
+/// The options that cannot go with this one.
+fn rivals<'a>(subcommand: &'a Command, arg: &Arg) -> Vec<&'a Arg> {
+    let of_groups = subcommand
+        .get_groups()
+        .filter(|group| !ArgGroup::clone(group).is_multiple())
+        .filter(|group| group.get_args().any(|id| id == arg.get_id()))
+        .flat_map(ArgGroup::get_args)
+        .filter(|&id| id != arg.get_id());
+    let of_groups =
+        of_groups.filter_map(|id| subcommand.get_arguments().find(|a| a.get_id() == id));
+    let told = subcommand.get_arguments().filter(|other| {
+        let excludes = |one, two: &Arg| {
+            let conflicts = subcommand.get_arg_conflicts_with(one);
+            conflicts.iter().any(|arg| arg.get_id() == two.get_id())
+        };
+        !arg.is_global_set()
+            && !other.is_global_set()
+            && (excludes(arg, other) || excludes(other, arg))
+    });
+    of_groups.chain(told).collect()
+}
+
+fn takes_many(arg: &Arg) -> bool {
+    arg.get_num_args().is_some_and(|range| range.max_values() > 1)
+        || matches!(arg.get_action(), ArgAction::Append)
+}
+
+/// The arguments that say what a key and its value say.
+fn texts(arg: &Arg, value: &Value) -> anyhow::Result<Vec<String>> {
+    let long = arg.get_long().unwrap_or_default();
+    let one = |value: &Value| match value {
+        Value::String(text) => Ok(text.clone()),
+        Value::Integer(_) | Value::Float(_) => Ok(value.to_string()),
+        _ => bail!("a text or a number is needed"),
+    };
+    if !arg.get_action().takes_values() {
+        return match value {
+            Value::Boolean(true) => Ok(vec![format!("--{long}")]),
+            Value::Boolean(false) => Ok(Vec::new()),
+            _ => bail!("the option {long} is either true or false"),
+        };
+    }
+    let values = match value {
+        Value::Array(values) => values.iter().map(one).collect::<anyhow::Result<Vec<_>>>()?,
+        value => vec![one(value)?],
+    };
+    if takes_many(arg) && arg.get_value_delimiter().is_none() {
+        return Ok(std::iter::once(format!("--{long}")).chain(values).collect());
+    }
+    // Sizes and places are written with commas on the command line.
+    Ok(vec![format!("--{long}={}", values.join(","))])
+}
+
+fn default_text(arg: &Arg, default: &OsStr) -> String {
+    format!("--{}={}", arg.get_long().unwrap_or_default(), default.to_string_lossy())
+}
+
+/// A value as TOML has it: a number where it reads as one, else a text.
+fn value(arg: &Arg, raw: &str) -> Value {
+    if !arg.get_action().takes_values() {
+        return Value::Boolean(raw == "true");
+    }
+    let number =
+        format!("number = {raw}").parse::<Table>().ok().and_then(|mut t| t.remove("number"));
+    match number {
+        // Only if nothing is lost on the way back.
+        Some(number @ (Value::Integer(_) | Value::Float(_))) if number.to_string() == raw => number,
+        _ => Value::String(raw.to_owned()),
+    }
+}

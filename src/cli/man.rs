@@ -1,0 +1,42 @@
+//! `walpha man`: pages for `man`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap_mangen::Man as Page;
+use walpha::export::Target;
+
+use super::output::print;
+use super::{Global, described};
+
+/// Print the manual page, or write one for each command.
+///
+/// Example: walpha man -o ~/.local/share/man/man1
+#[derive(Args)]
+pub struct Man {
+    /// Folder to write walpha.1, walpha-shape.1 and so on to [default: walpha.1 to standard output].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+impl Man {
+    pub fn run(self, global: Global) -> anyhow::Result<()> {
+        // The long form names the licence, too, which has its place elsewhere in a page.
+        let command = described().version(env!("CARGO_PKG_VERSION"));
+        let Some(folder) = self.output else {
+            let mut page = Vec::new();
+            Page::new(command).render(&mut page)?;
+            return Ok(print(&String::from_utf8(page)?)?);
+        };
+        let documented = command.get_subcommands().filter(|sub| sub.get_name() != "help");
+        for command in std::iter::once(&command).chain(documented) {
+            let page = Page::new(command.clone());
+            let path = folder.join(page.get_filename());
+            Target::open(&path)?.write(|mut out| page.render(&mut out))?;
+            if !global.quiet {
+                print(&format!("wrote     {}\n", path.display()))?;
+            }
+        }
+        Ok(())
+    }
+}

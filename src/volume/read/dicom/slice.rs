@@ -1,0 +1,169 @@
+use std::path::{Path, PathBuf};
+
+use dicom_object::{DefaultDicomObject, OpenFileOptions, Tag};
+use dicom_pixeldata::PixelDecoder;
+
+use crate::volume::VolumeError;
+use crate::volume::read::format_error;
+
+// By their names in part 6 of the standard.
+const SLICE_THICKNESS: Tag = Tag(0x0018, 0x0050);
+const SPACING_BETWEEN_SLICES: Tag = Tag(0x0018, 0x0088);
+const SERIES_INSTANCE_UID: Tag = Tag(0x0020, 0x000E);
+const IMAGE_POSITION: Tag = Tag(0x0020, 0x0032);
+const IMAGE_ORIENTATION: Tag = Tag(0x0020, 0x0037);
+const SAMPLES_PER_PIXEL: Tag = Tag(0x0028, 0x0002);
+const NUMBER_OF_FRAMES: Tag = Tag(0x0028, 0x0008);
+const ROWS: Tag = Tag(0x0028, 0x0010);
+const COLUMNS: Tag = Tag(0x0028, 0x0011);
+const PIXEL_SPACING: Tag = Tag(0x0028, 0x0030);
+const BITS_ALLOCATED: Tag = Tag(0x0028, 0x0100);
+const PIXEL_REPRESENTATION: Tag = Tag(0x0028, 0x0103);
+const RESCALE_INTERCEPT: Tag = Tag(0x0028, 0x1052);
+const RESCALE_SLOPE: Tag = Tag(0x0028, 0x1053);
+const PIXEL_DATA: Tag = Tag(0x7FE0, 0x0010);
+
+/// No lossless code makes a picture smaller than this, so a claim beyond is a lie.
+const MOST_COMPRESSED: u64 = 1032;
+
+/// One slice of a series: all but its pixels.
+#[derive(Clone, Debug)]
+pub(super) struct Slice {
+    pub path: PathBuf,
+    /// The unique name of its series.
+    pub series: String,
+    pub columns: u64,
+    pub rows: u64,
+    /// Where its first pixel lies, in mm: x to the patient's left, y to the back, z to the head.
+    pub position: [f64; 3],
+    /// Unit vectors along which the column and the row index grow.
+    pub orientation: [[f64; 3]; 2],
+    /// Distance of neighbouring columns and rows in mm.
+    pub spacing: [f64; 2],
+    /// Distance to the next slice as the header has it, for a series of one.
+    pub thickness: f64,
+    /// Whether its values are gray levels 0 to 255 as they stand.
+    pub gray_levels: bool,
+}
+
+impl Slice {
+    /// Reads what stands before the pixels.
+    pub fn open(path: &Path) -> Result<Self, VolumeError> {
+        let said = |what: String| format_error(path, what);
+        let object = OpenFileOptions::new()
+            .read_until(PIXEL_DATA)
+            .open_file(path)
+            .map_err(|error| damaged(path, &error))?;
+        let header = Header { path, object: &object };
+        let text = |tag| object.get(tag).and_then(|e| e.to_str().ok()).map(|t| t.trim().to_owned());
+        let frames = header.number(NUMBER_OF_FRAMES)?.unwrap_or(1.0);
+        if frames > 1.0 {
+            return Err(said(format!(
+                "holds {frames} frames, and series of single slices are read: convert it to NRRD or \
+                 NIfTI"
+            )));
+        }
+        if header.number(SAMPLES_PER_PIXEL)?.unwrap_or(1.0) != 1.0 {
+            return Err(said("has pixels of colours, and only gray is read: convert it".into()));
+        }
+        let [column, row] = [COLUMNS, ROWS].map(|tag| header.number(tag));
+        let (Some(columns), Some(rows)) = (column?, row?) else {
+            return Err(said("holds no image: move what is no slice out of the folder".into()));
+        };
+        let placed = "which a slice of a volume needs: move localisers and reports away";
+        let position = header.vector::<3>(IMAGE_POSITION, "Image Position (Patient)", placed)?;
+        let [a, b, c, d, e, f] =
+            header.vector::<6>(IMAGE_ORIENTATION, "Image Orientation (Patient)", placed)?;
+        // The standard gives the distance of rows first.
+        let [of_rows, of_columns] = header.vector::<2>(PIXEL_SPACING, "Pixel Spacing", placed)?;
+        let thickness = match header.number(SPACING_BETWEEN_SLICES)? {
+            Some(spacing) => spacing.abs(),
+            None => header.number(SLICE_THICKNESS)?.unwrap_or(1.0),
+        };
+        let bits = header.number(BITS_ALLOCATED)?.unwrap_or(16.0);
+        let (columns, rows) = (columns as u64, rows as u64);
+        let claimed = columns.saturating_mul(rows).saturating_mul((bits as u64).div_ceil(8));
+        let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
+        if claimed > length.saturating_mul(MOST_COMPRESSED) {
+            return Err(said(format!(
+                "claims {columns}×{rows} pixels, which {length} bytes cannot hold: it is truncated or \
+                 damaged"
+            )));
+        }
+        let unsigned = header.number(PIXEL_REPRESENTATION)?.unwrap_or(0.0) == 0.0;
+        let slope = header.number(RESCALE_SLOPE)?.unwrap_or(1.0);
+        let intercept = header.number(RESCALE_INTERCEPT)?.unwrap_or(0.0);
+        Ok(Self {
+            path: path.to_owned(),
+            series: text(SERIES_INSTANCE_UID).unwrap_or_default(),
+            columns,
+            rows,
+            position,
+            orientation: [[a, b, c], [d, e, f]],
+            spacing: [of_columns, of_rows],
+            thickness,
+            gray_levels: bits == 8.0 && unsigned && (slope, intercept) == (1.0, 0.0),
+        })
+    }
+
+    /// The pixels, row by row, in the units of the modality (rescaled, as Hounsfield units are).
+    pub fn pixels(&self) -> Result<Vec<f32>, VolumeError> {
+        let path = &self.path;
+        let object = dicom_object::open_file(path).map_err(|error| damaged(path, &error))?;
+        let pixels = object.decode_pixel_data().and_then(|pixels| pixels.to_vec::<f32>());
+        let pixels = pixels.map_err(|error| damaged(path, &error))?;
+        let (found, claimed) = (pixels.len() as u64, self.columns * self.rows);
+        if found != claimed {
+            let (columns, rows) = (self.columns, self.rows);
+            let what = format!(
+                "claims {columns}×{rows} pixels and holds {found}: it is truncated or damaged"
+            );
+            return Err(format_error(path, what));
+        }
+        Ok(pixels)
+    }
+}
+
+fn damaged(path: &Path, error: &dyn std::error::Error) -> VolumeError {
+    let mut what = error.to_string();
+    let mut cause = error.source();
+    while let Some(inner) = cause {
+        what = format!("{what}, {inner}");
+        cause = inner.source();
+    }
+    let what = format!(
+        "is a DICOM file that cannot be read ({what}); copy it again, or convert the series to NRRD"
+    );
+    format_error(path, what)
+}
+
+struct Header<'a> {
+    path: &'a Path,
+    object: &'a DefaultDicomObject,
+}
+
+impl Header<'_> {
+    fn number(&self, tag: Tag) -> Result<Option<f64>, VolumeError> {
+        let Some(element) = self.object.get(tag) else { return Ok(None) };
+        if element.value().multiplicity() == 0 {
+            return Ok(None);
+        }
+        let number = element.to_float64().ok().filter(|number| number.is_finite());
+        number.map(Some).ok_or_else(|| {
+            format_error(self.path, format!("has no number at {tag}: it is damaged"))
+        })
+    }
+
+    fn vector<const N: usize>(
+        &self,
+        tag: Tag,
+        name: &str,
+        why: &str,
+    ) -> Result<[f64; N], VolumeError> {
+        let numbers = self.object.get(tag).and_then(|element| element.to_multi_float64().ok());
+        let numbers = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
+        numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite())).ok_or_else(|| {
+            format_error(self.path, format!("has no {name} {tag} of {N} numbers, {why}"))
+        })
+    }
+}

@@ -1,0 +1,155 @@
+//! The arrays of a file, in each of their codings.
+
+use std::io::{self, Read};
+use std::str::FromStr;
+
+use flate2::read::ZlibDecoder;
+
+use super::{Appended, VtkXml, XmlElement};
+use crate::volume::read::base64::Base64;
+use crate::volume::read::payload::{Element, Length, Payload};
+use crate::volume::read::{payload_error_of, text};
+use crate::volume::{Endian, VolumeError};
+
+/// Deflate expands by no more than this.
+const MOST_EXPANSION: u64 = 1032;
+
+impl VtkXml {
+    /// Reads an array, which must have exactly `count` numbers.
+    pub fn values<T: Element + FromStr + Into<f64>>(
+        &self,
+        array: usize,
+        count: u64,
+    ) -> Result<Vec<T>, VolumeError> {
+        let dtype = self.dtype(array)?;
+        let XmlElement { text: start, text_end, .. } = self.elements[array];
+        let end = text_end.unwrap_or(start);
+        let of_array = |what: String| self.said(format!("its array {} {what}", self.name(array)));
+        match self.attribute(array, "format") {
+            Some("ascii") => {
+                text::numbers(self.part(start, end)?, end - start, dtype, count).map_err(of_array)
+            }
+            Some("binary") => {
+                let text = Base64::new(self.part(start, end)?);
+                self.decoded(array, text, (end - start) / 4 * 3, count)
+            }
+            Some("appended") => {
+                let Some(Appended { start, base64 }) = self.appended else {
+                    return Err(of_array("is appended, but there are no appended data".into()));
+                };
+                let offset = self.attribute(array, "offset").and_then(|text| text.parse().ok());
+                let Some(from) = offset.and_then(|offset: u64| start.checked_add(offset)) else {
+                    return Err(of_array("has no offset in the appended data".into()));
+                };
+                let left = self.length.saturating_sub(from);
+                let data = self.part(from, self.length)?;
+                if base64 {
+                    self.decoded(array, Base64::new(data), left / 4 * 3, count)
+                } else {
+                    self.decoded(array, data, left, count)
+                }
+            }
+            other => {
+                let given = other.unwrap_or("(missing)");
+                Err(of_array(format!("has format {given}, not ascii, binary or appended")))
+            }
+        }
+    }
+
+    /// Reads an array behind its length, or behind the lengths of its compressed blocks; there are
+    /// at most `most` bytes.
+    fn decoded<T: Element>(
+        &self,
+        array: usize,
+        mut data: impl Read,
+        most: u64,
+        count: u64,
+    ) -> Result<Vec<T>, VolumeError> {
+        let dtype = self.dtype(array)?;
+        let claim = format!("an array {} of {count} numbers of type {dtype}", self.name(array));
+        let located = |error| payload_error_of(&self.path, &claim, error);
+        let cut = |error: io::Error| match error.kind() {
+            io::ErrorKind::UnexpectedEof => {
+                self.said(format!("ends before its array {}: it is truncated", self.name(array)))
+            }
+            _ => self.said(format!("has a damaged array {}: {error}", self.name(array))),
+        };
+        let first = self.word(&mut data).map_err(cut)?;
+        if !self.compressed {
+            if first > most {
+                return Err(self.said(format!(
+                    "claims {first} bytes for its array {}, but at most {most} follow: it is \
+                     truncated",
+                    self.name(array)
+                )));
+            }
+            let payload = Payload { reader: data.take(first), length: Length::Exactly(first) };
+            return payload.samples(dtype, self.endian, count).map_err(located);
+        }
+        let [block, last] =
+            [self.word(&mut data).map_err(cut)?, self.word(&mut data).map_err(cut)?];
+        if first > most / self.word as u64 {
+            return Err(self.said(format!(
+                "claims {first} compressed blocks for its array {}, which it cannot hold",
+                self.name(array)
+            )));
+        }
+        let whole = if last > 0 { first.saturating_sub(1) } else { first };
+        let bytes = whole.checked_mul(block).and_then(|bytes| bytes.checked_add(last));
+        let bytes = bytes.filter(|&bytes| bytes <= most.saturating_mul(MOST_EXPANSION));
+        let Some(bytes) = bytes else {
+            return Err(self.said(format!(
+                "claims {first} compressed blocks of {block} bytes for its array {}, more than it \
+                 can hold",
+                self.name(array)
+            )));
+        };
+        let sizes = (0..first).map(|_| self.word(&mut data)).collect::<io::Result<Vec<u64>>>();
+        let sizes = sizes.map_err(cut)?.into_iter();
+        let reader = Blocks { data, sizes, block: block.max(last), ready: io::Cursor::default() };
+        let payload = Payload { reader, length: Length::Exactly(bytes) };
+        payload.samples(dtype, self.endian, count).map_err(located)
+    }
+
+    /// A length in front of an array.
+    fn word(&self, data: &mut impl Read) -> io::Result<u64> {
+        let mut bytes = [0; 8];
+        let bytes = &mut bytes[..self.word];
+        data.read_exact(bytes)?;
+        let add = |sum: u64, &byte: &u8| sum << 8 | u64::from(byte);
+        Ok(match self.endian {
+            Endian::Big => bytes.iter().fold(0, add),
+            Endian::Little => bytes.iter().rev().fold(0, add),
+        })
+    }
+}
+
+/// Blocks compressed one by one with zlib.
+struct Blocks<R> {
+    data: R,
+    /// Compressed bytes of those to come.
+    sizes: std::vec::IntoIter<u64>,
+    /// The most bytes of one.
+    block: u64,
+    ready: io::Cursor<Vec<u8>>,
+}
+
+impl<R: Read> Read for Blocks<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            let found = self.ready.read(buffer)?;
+            if found > 0 || buffer.is_empty() {
+                return Ok(found);
+            }
+            let Some(size) = self.sizes.next() else { return Ok(0) };
+            let mut packed = Vec::new();
+            (&mut self.data).take(size).read_to_end(&mut packed)?;
+            if (packed.len() as u64) < size {
+                return Err(io::ErrorKind::UnexpectedEof.into());
+            }
+            let mut bytes = Vec::new();
+            ZlibDecoder::new(&packed[..]).take(self.block).read_to_end(&mut bytes)?;
+            self.ready = io::Cursor::new(bytes);
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Zarr arrays, and pyramids of them as OME-Zarr lays them out.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use serde_json::Value;
+use zarrs::array::{Array, DataType, ElementOwned};
+use zarrs::array_subset::ArraySubset;
+use zarrs::filesystem::FilesystemStore;
+use zarrs::group::Group;
+
+use super::described::{Described, Encoding, diagonal, frame};
+use super::folder::is_zarr;
+use super::format_error;
+use crate::progress;
+use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+
+/// Reads a Zarr array of version 2 or 3 in a folder, or a level of an OME-Zarr pyramid (0, the finest,
+/// unless `level` says otherwise).
+///
+/// The last three axes are z, y and x, and those before them must have one entry. Scale and translation
+/// of a pyramid give the frame. Memory for the samples and a row of chunks at a time.
+pub(super) fn read(path: &Path, level: Option<u32>) -> Result<Volume, VolumeError> {
+    let said = |what: String| format_error(path, what);
+    let damaged = |error: &dyn std::fmt::Display| {
+        said(format!("is a Zarr store that cannot be read ({error}): copy it again"))
+    };
+    let store = Arc::new(FilesystemStore::new(path).map_err(|error| damaged(&error))?);
+    if is_array(path) {
+        if let Some(level) = level {
+            return Err(said(format!("is one array and has no level {level}; leave --level away")));
+        }
+        let array = Array::open(store, "/").map_err(|error| damaged(&error))?;
+        return volume(path, &array, &[]);
+    }
+    let group = Group::open(Arc::clone(&store), "/").map_err(|error| damaged(&error))?;
+    let attributes = Value::Object(group.attributes().clone());
+    let pyramid = ["/ome/multiscales/0", "/multiscales/0"];
+    let Some(pyramid) = pyramid.iter().find_map(|at| attributes.pointer(at)) else {
+        return Err(said(format!(
+            "is a Zarr group without the levels of OME-Zarr, of {}; name one of these",
+            children(path)
+        )));
+    };
+    let levels = pyramid["datasets"].as_array().map_or(&[][..], Vec::as_slice);
+    let wanted = level.unwrap_or(0);
+    let Some(dataset) = levels.get(wanted as usize) else {
+        let count = levels.len();
+        return Err(said(format!(
+            "has no level {wanted}, there are {count}; give --level 0 (the finest) to {}",
+            count.saturating_sub(1)
+        )));
+    };
+    let Some(name) = dataset["path"].as_str() else {
+        return Err(said(format!("names no array for level {wanted}: its metadata are damaged")));
+    };
+    let array = Array::open(store, &format!("/{}", name.trim_matches('/')))
+        .map_err(|error| damaged(&error))?;
+    let transforms = [&dataset["coordinateTransformations"], &pyramid["coordinateTransformations"]];
+    let transforms: Vec<&Value> =
+        transforms.into_iter().filter_map(Value::as_array).flatten().collect();
+    volume(path, &array, &transforms)
+}
+
+fn is_array(folder: &Path) -> bool {
+    let node = || -> Option<Value> {
+        serde_json::from_slice(&std::fs::read(folder.join("zarr.json")).ok()?).ok()
+    };
+    folder.join(".zarray").is_file() || node().is_some_and(|node| node["node_type"] == "array")
+}
+
+/// The stores in a store, for a message.
+fn children(folder: &Path) -> String {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.path())
+        .filter(|path| is_zarr(path))
+        .map(|path| path.display().to_string())
+        .collect();
+    names.sort();
+    if names.is_empty() { "nothing".to_owned() } else { names.join(", ") }
+}
+
+/// A volume of an array, placed by the transformations of OME-Zarr, the first first.
+fn volume(
+    path: &Path,
+    array: &Array<FilesystemStore>,
+    transforms: &[&Value],
+) -> Result<Volume, VolumeError> {
+    let said = |what: String| format_error(path, what);
+    let shape = array.shape().to_vec();
+    let [before @ .., z, y, x] = &shape[..] else {
+        return Err(said(format!("has the shape {shape:?}: a volume has three axes, z, y and x")));
+    };
+    if before.iter().any(|&size| size != 1) {
+        return Err(said(format!(
+            "has the shape {shape:?}, several channels or times: extract one volume first"
+        )));
+    }
+    let dims = Dims::new(*x, *y, *z)?;
+    let (mut scale, mut origin) = ([1.0; 3], [0.0; 3]);
+    for transform in transforms {
+        let numbers = |name: &str| -> Option<[f64; 3]> {
+            let numbers: Vec<f64> =
+                transform[name].as_array()?.iter().filter_map(Value::as_f64).collect();
+            let [.., z, y, x] = numbers[..] else { return None };
+            (numbers.len() == shape.len()).then_some([x, y, z])
+        };
+        let kind = transform["type"].as_str().unwrap_or_default();
+        match (kind, numbers("scale"), numbers("translation")) {
+            ("scale", Some(by), _) => {
+                (0..3).for_each(|k| (scale[k], origin[k]) = (scale[k] * by[k], origin[k] * by[k]));
+            }
+            ("translation", _, Some(by)) => (0..3).for_each(|k| origin[k] += by[k]),
+            ("identity", ..) => {}
+            _ => {
+                return Err(said(format!(
+                    "is placed by {transform}, which is not read: only scale and translation of as \
+                     many numbers as axes are"
+                )));
+            }
+        }
+    }
+    let frame = frame(path, origin, diagonal(scale))?;
+    let (dtype, samples) = samples(path, array, dims)?;
+    let (endian, encoding) = (Endian::Little, Encoding::Raw);
+    Described { dims, dtype, endian, frame, encoding }.volume(samples)
+}
+
+fn samples(
+    path: &Path,
+    array: &Array<FilesystemStore>,
+    dims: Dims,
+) -> Result<(Dtype, Vec<f32>), VolumeError> {
+    let read = Read { path, array, dims };
+    Ok(match array.data_type() {
+        DataType::UInt8 => (Dtype::U8, read.all(|v: u8| v.into())?),
+        DataType::Int8 => (Dtype::I8, read.all(|v: i8| v.into())?),
+        DataType::UInt16 => (Dtype::U16, read.all(|v: u16| v.into())?),
+        DataType::Int16 => (Dtype::I16, read.all(|v: i16| v.into())?),
+        DataType::UInt32 => (Dtype::U32, read.all(|v: u32| v as f32)?),
+        DataType::Int32 => (Dtype::I32, read.all(|v: i32| v as f32)?),
+        DataType::UInt64 => (Dtype::U64, read.all(|v: u64| v as f32)?),
+        DataType::Int64 => (Dtype::I64, read.all(|v: i64| v as f32)?),
+        DataType::Float32 => (Dtype::F32, read.all(|v: f32| v)?),
+        DataType::Float64 => (Dtype::F64, read.all(|v: f64| v as f32)?),
+        other => {
+            let what = format!(
+                "holds samples of type {other}: integers of 8 to 64 bits, float32 and float64 are read"
+            );
+            return Err(format_error(path, what));
+        }
+    })
+}
+
+struct Read<'a> {
+    path: &'a Path,
+    array: &'a Array<FilesystemStore>,
+    dims: Dims,
+}
+
+impl Read<'_> {
+    /// All samples, by as many slices at once as a chunk is thick.
+    fn all<T: ElementOwned + Copy + Send + Sync>(
+        &self,
+        convert: impl Fn(T) -> f32 + Send + Sync,
+    ) -> Result<Vec<f32>, VolumeError> {
+        let Self { path, array, dims } = self;
+        let said = |what: String| format_error(path, what);
+        let axes = array.dimensionality();
+        let damaged = |error: &dyn std::fmt::Display| {
+            said(format!("is a Zarr array that cannot be read ({error}): copy it again"))
+        };
+        let chunk = array.chunk_shape(&vec![0; axes]).map_err(|error| damaged(&error))?;
+        let thick = chunk[axes - 3].get();
+        let mut samples = Vec::new();
+        samples.try_reserve_exact(dims.samples()).map_err(|_| {
+            let bytes = dims.samples() * size_of::<f32>();
+            said(format!(
+                "needs {bytes} bytes of memory, which cannot be had: choose a coarser --level"
+            ))
+        })?;
+        let [x, y, z] = dims.xyz().map(|size| size as u64);
+        let mut start = 0;
+        while start < z {
+            let end = start.saturating_add(thick).min(z);
+            let mut ranges = vec![0..1; axes];
+            ranges[axes - 3..].clone_from_slice(&[start..end, 0..y, 0..x]);
+            let part = ArraySubset::new_with_ranges(&ranges);
+            let part: Vec<T> =
+                array.retrieve_array_subset_elements(&part).map_err(|error| damaged(&error))?;
+            samples.par_extend(part.into_par_iter().map(&convert));
+            progress::report(end, z);
+            start = end;
+        }
+        Ok(samples)
+    }
+}

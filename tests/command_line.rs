@@ -1,0 +1,244 @@
+//! What people expect of a command: configuration, pipes, near misses, three lines of error, manual
+//! pages, interrupts.
+
+mod common;
+
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use common::{json, ok, run};
+
+/// The three lines of an error: what, why, next.
+fn complaint(folder: &Path, code: i32, args: &str) -> [String; 3] {
+    let (got, stdout, stderr) = run(folder, &args.split(' ').collect::<Vec<_>>());
+    assert_eq!(got, code, "walpha {args}\n{stderr}");
+    assert_eq!(stdout, "", "walpha {args}");
+    let lines: Vec<&str> = stderr.lines().collect();
+    assert_eq!(lines.len(), 3, "walpha {args}\n{stderr}");
+    [("error: ", 0), ("  why: ", 1), (" next: ", 2)].map(|(label, line)| {
+        let text = lines[line].strip_prefix(label);
+        text.unwrap_or_else(|| panic!("walpha {args}: no {label:?}\n{stderr}")).to_owned()
+    })
+}
+
+#[test]
+fn errors_say_what_why_and_what_next() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    fs::write(f.join("skull.raw"), vec![0; 262_143]).unwrap();
+    fs::write(f.join("flat.csv"), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n1,1,0\n").unwrap();
+    fs::write(f.join("notes.txt"), "hello").unwrap();
+    fs::create_dir(f.join("empty")).unwrap();
+    let cases = [
+        (1, "shape sample:skul", "could not read its input", "did you mean sample:skull?"),
+        (1, "shape skull", "could not read its input", "did you mean sample:skull?"),
+        (1, "info missing.nrrd", "could not read its input", "check the path"),
+        (1, "info empty", "could not read its input", "a folder of slices"),
+        (1, "info notes.txt", "could not read its input", "--dims X,Y,Z"),
+        (1, "shape skull.raw --dims 64,64,64 --dtype u8", "could not read its input", "--dims"),
+        (1, "haar flat.csv", "could not read its input", "name a volume"),
+        (1, "shape flat.csv", "could not compute the shape", "select more points"),
+        (1, "shape sample:phantom@8 -o a.plx", "could not start", "did you mean .ply?"),
+        (1, "points sample:phantom@8 -o a.cvs", "could not start", "did you mean .csv?"),
+        (1, "haar sample:phantom@8 -o a.nrd", "could not start", "did you mean .nrrd?"),
+        (1, "haar sample:phantom@8 -o -", "could not start", "--format nrrd"),
+        (1, "haar sample:phantom@8 -o no/a.npy", "could not start", "choose a place"),
+        (1, "check flat.csv --points flat.csv", "could not start", "leave it away"),
+        (1, "compare a.txt b.txt", "could not start", "docs/cross-checking.md"),
+        (1, "points sample:phantom@8 --count 0", "could not make weighted points", "from 1 to 512"),
+        (1, "reproduce --input sample:fantom", "could not read its input", "sample:phantom?"),
+        (2, "shpe sample:phantom", "unrecognized subcommand 'shpe'", "'shape'"),
+        (2, "shape sample:phantom --alpa 3", "unexpected argument '--alpa'", "'--alpha'"),
+        (2, "shape sample:phantom --balls pwer", "invalid value 'pwer'", "'power'"),
+        (2, "shape sample:phantom --alpha ten", "invalid value 'ten'", "as in 10"),
+        (2, "shape sample:phantom --weights minmax", "invalid value 'minmax'", "min-max"),
+        (2, "shape sample:phantom --count 1 --ratio 0.5", "cannot be used with", "--help"),
+        (2, "shape", "required arguments", "walpha shape --help"),
+        (2, "shape a.raw --dims 2,2 --dtype u8", "invalid value '2,2'", "64,64,64"),
+        (2, "completions basch", "invalid value 'basch'", "'bash'"),
+    ];
+    for (code, args, what, next) in cases {
+        let [got_what, why, got_next] = complaint(f, code, args);
+        assert!(got_what.contains(what), "walpha {args}: {got_what}");
+        assert!(!why.is_empty(), "walpha {args}");
+        assert!(got_next.contains(next), "walpha {args}: {got_next}");
+    }
+}
+
+#[test]
+fn a_file_sets_options_and_the_command_line_wins() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let text = "alpha = 4\nrms = 2.5\nweights = 'min-max'\nquiet = false\n\n\
+                [shape]\nalpha = 5.5\nexterior = true\n\n[points]\ncount = 100\n";
+    fs::write(f.join("walpha.toml"), text).unwrap();
+    let with = |args: &[&str]| json(f, &[args, &["--config", "walpha.toml"]].concat());
+    let shape = with(&["shape", "sample:phantom@16"]);
+    assert_eq!(shape["alpha"]["squared"], 5.5);
+    assert_eq!(shape["weights"]["kind"], "min-max");
+    assert!(shape["shape"]["voids"].is_array(), "exterior was set");
+    let points = with(&["points", "sample:phantom@16"]);
+    assert_eq!(points["alpha"]["squared"], 4.0);
+    assert_eq!(points["points"]["selected"], 100);
+    // What is given wins, over what it excludes, too.
+    let given = with(&["points", "sample:phantom@16", "--alpha-radius", "3", "--ratio", "0.5"]);
+    assert_eq!(given["alpha"]["squared"], 9.0);
+    assert_eq!(given["points"]["selected"], 2048);
+    let epsilon = with(&["haar", "sample:phantom@16", "--epsilon", "0"]);
+    assert_eq!(epsilon["haar"]["rms"], 0.0);
+}
+
+#[test]
+fn what_a_file_says_wrongly_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let cases = [
+        ("alhpa = 4", "alhpa", "did you mean alpha?"),
+        ("[shape]\nalhpa = 4", "[shape] alhpa", "did you mean alpha?"),
+        ("[shape]\ninput = 'a.nrrd'", "[shape] input", ""),
+        ("[shap]\nalpha = 4", "shap", "did you mean shape?"),
+        ("config = 'b.toml'", "config", ""),
+        ("alpha = ", "is no TOML file", "--print-config"),
+        ("exterior = 3", "exterior = 3 makes no sense", "either true or false"),
+        ("alpha = true", "alpha = true makes no sense", "a text or a number is needed"),
+    ];
+    for (text, why, next) in cases {
+        fs::write(f.join("c.toml"), text).unwrap();
+        let [_, got_why, got_next] = complaint(f, 2, "shape sample:phantom@8 --config c.toml");
+        assert!(got_why.contains("c.toml") && got_why.contains(why), "{text}: {got_why}");
+        assert!(got_next.contains(next), "{text}: {got_next}");
+    }
+    let [_, why, _] = complaint(f, 2, "shape sample:phantom@8 --config d.toml");
+    assert!(why.contains("d.toml"), "{why}");
+    fs::write(f.join("c.toml"), "alpha = 'ten'").unwrap();
+    let [what, _, next] = complaint(f, 2, "shape sample:phantom@8 --config c.toml");
+    assert!(what.contains("'ten'") && next.contains("--config"), "{what} {next}");
+}
+
+#[test]
+fn what_is_printed_can_be_fed_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let given: [&[&str]; 5] = [
+        &["shape"],
+        &[
+            "shape",
+            "--alpha-radius",
+            "3",
+            "--count",
+            "99",
+            "-o",
+            "a.ply",
+            "b file.vtu",
+            "--exterior",
+        ],
+        &["points", "a.raw", "--dims", "2,3,4", "--dtype", "u8", "--gray=-10..20", "--alpha=-1"],
+        &["haar", "--epsilon", "1e3", "--threads", "1", "--json"],
+        &["reproduce", "--out", "it's"],
+    ];
+    for args in given {
+        let first = ok(f, &[args, &["--print-config"]].concat());
+        let table: toml::Table = first.parse().unwrap();
+        assert!(!table.is_empty(), "{first}");
+        fs::write(f.join("walpha.toml"), &first).unwrap();
+        let again = ok(f, &[args[0], "--config", "walpha.toml", "--print-config"]);
+        assert_eq!(first, again);
+    }
+    let text = ok(f, &["shape", "--count", "99", "--print-config"]);
+    assert!(text.contains("alpha = 10\n") && text.contains("count = 99\n"), "{text}");
+    assert!(!text.contains("ratio"), "excluded by --count: {text}");
+}
+
+#[test]
+fn files_go_into_pipes() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let piped = |args: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_walpha"));
+        let done = command.args(args).current_dir(f).output().unwrap();
+        assert!(done.status.success(), "{args:?}: {}", String::from_utf8_lossy(&done.stderr));
+        (done.stdout, String::from_utf8(done.stderr).unwrap())
+    };
+    let cases: [(&[&str], &str); 4] = [
+        (&["shape", "sample:phantom@12"], "ply"),
+        (&["shape", "sample:phantom@12"], "npz"),
+        (&["points", "sample:phantom@12"], "csv"),
+        (&["haar", "sample:phantom@12"], "nii.gz"),
+    ];
+    for (args, format) in cases {
+        let file = format!("a.{format}");
+        ok(f, &[args, &["-o", &file]].concat());
+        let (bytes, report) = piped(&[args, &["-o", "-", "--format", format]].concat());
+        assert_eq!(bytes, fs::read(f.join(&file)).unwrap(), "{args:?}");
+        assert!(report.contains("coefficients kept"), "the report is elsewhere: {report}");
+        let (_, report) = piped(&[args, &["-o", "-", "--format", format, "--quiet"]].concat());
+        assert_eq!(report, "");
+    }
+    assert_eq!(fs::read_dir(f).unwrap().count(), 4, "nothing is called -");
+}
+
+/// A reader that goes away early, as `head` does.
+#[test]
+fn a_broken_pipe_is_no_error() {
+    let folder = tempfile::tempdir().unwrap();
+    for args in [
+        &["shape", "sample:phantom@24", "-o", "-", "--format", "json"][..],
+        &["man"],
+        &["completions", "zsh"],
+    ] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_walpha"));
+        command.args(args).current_dir(&folder).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        drop(child.stdout.take());
+        let mut said = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+        assert!(child.wait().unwrap().success(), "{args:?}: {said}");
+        assert_eq!(said, "", "{args:?}");
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn an_interrupt_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    for signal in ["-INT", "-TERM"] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_walpha"));
+        let args = ["shape", "sample:phantom@128", "--ratio", "0.3", "-o", "a.ply", "b.vtu"];
+        let mut child = command.args(args).current_dir(&folder).spawn().unwrap();
+        let count = || fs::read_dir(&folder).unwrap().count();
+        while count() < 2 {
+            assert!(child.try_wait().unwrap().is_none(), "done before it was interrupted");
+        }
+        let id = child.id().to_string();
+        assert!(Command::new("kill").args([signal, &id]).status().unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{signal}");
+        assert_eq!(count(), 0, "{signal}");
+    }
+}
+
+#[test]
+fn pages_and_completions_know_every_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let page = ok(f, &["man"]);
+    assert!(page.contains(".TH walpha 1") && page.contains("shape"), "{page}");
+    ok(f, &["man", "-o", "."]);
+    let shape = fs::read_to_string(f.join("walpha-shape.1")).unwrap();
+    assert!(shape.contains("alpha\\-radius"), "{shape}");
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = ok(f, &["completions", shell]);
+        assert!(script.contains("alpha-radius") && script.contains("compare"), "{shell}");
+    }
+}
+
+/// Errors and help are plain where nobody can see colours.
+#[test]
+fn colours_stay_out_of_files() {
+    let folder = tempfile::tempdir().unwrap();
+    for args in [&["shape", "sample:skul", "-v"][..], &["shape", "--help"], &["shape", "--x"]] {
+        let (_, stdout, stderr) = run(folder.path(), args);
+        assert!(!stdout.contains('\x1b') && !stderr.contains('\x1b'), "{args:?}");
+    }
+}

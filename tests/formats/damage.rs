@@ -1,0 +1,80 @@
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use proptest::prelude::*;
+use walpha::points::read_points;
+
+use crate::files::*;
+
+/// The system's allocator, which remembers the largest piece asked for.
+struct Remembering;
+
+static LARGEST: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: everything is handed to the system's allocator as it came.
+unsafe impl GlobalAlloc for Remembering {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        LARGEST.fetch_max(layout.size(), Ordering::Relaxed);
+        // SAFETY: the caller's promises are those the system's allocator asks for.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        LARGEST.fetch_max(layout.size(), Ordering::Relaxed);
+        // SAFETY: as above.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, at: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        LARGEST.fetch_max(size, Ordering::Relaxed);
+        // SAFETY: as above.
+        unsafe { System.realloc(at, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(at, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Remembering = Remembering;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(4000))]
+
+    /// Bytes changed anywhere and files cut anywhere make errors or other numbers: no panic, no
+    /// hang, and no allocation beyond what the file can hold.
+    #[test]
+    fn no_damage_does_harm(
+        which in any::<prop::sample::Index>(),
+        edits in prop::collection::vec(
+            (any::<prop::sample::Index>(), prop_oneof![any::<u8>(), b'0'..=b'9', Just(0), Just(0xff)]),
+            0..5,
+        ),
+        // Headers are where damage matters most.
+        in_head in any::<bool>(),
+        keep in prop::option::weighted(0.2, any::<prop::sample::Index>()),
+    ) {
+        let volumes = examples();
+        let files = [&volumes[..], &point_examples()[..]].concat();
+        let (name, mut bytes) = which.get(&files).clone();
+        for (place, value) in edits {
+            let length = if in_head { bytes.len().min(400) } else { bytes.len() };
+            bytes[place.index(length)] = value;
+        }
+        if let Some(keep) = keep {
+            bytes.truncate(keep.index(bytes.len()));
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = save(folder.path(), name, bytes);
+        let started = Instant::now();
+        let _ = open(&path);
+        let _ = walpha::points::is_point_file(&path);
+        let _ = read_points(&path);
+        prop_assert!(started.elapsed() < Duration::from_secs(10), "{name} hangs");
+        let largest = LARGEST.load(Ordering::Relaxed);
+        prop_assert!(largest < 1 << 30, "{name} asks for {largest} bytes");
+    }
+}

@@ -1,0 +1,10 @@
+//! Files of each format and damage, written here byte by byte, and our own read back.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod damage;
+mod damaged;
+mod files;
+mod points;
+mod shapes;
+mod volumes;

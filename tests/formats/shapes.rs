@@ -1,0 +1,97 @@
+use std::fs;
+use std::path::Path;
+
+use walpha::Points;
+use walpha::export::Format;
+use walpha::points::{WeightedPoints, read_points};
+use walpha::shape::{Alpha, ShapeOptions, alpha_shape};
+
+use crate::common;
+use crate::files::save;
+use crate::points::scattered;
+
+fn shape() -> walpha::AlphaShape {
+    let Points { positions, values, .. } = scattered();
+    let points = WeightedPoints { weights: vec![0.0; positions.len()], positions, values };
+    alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(f64::INFINITY).unwrap())).unwrap()
+}
+
+fn exported(format: Format, shape: &walpha::AlphaShape) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    format.exporter(false).write(shape, &mut bytes).unwrap();
+    bytes
+}
+
+/// The hull of a tetrahedron with a point inside: four facets, no point of them the inner one.
+#[test]
+fn written_shapes_are_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let shape = shape();
+    for (format, extension, corners) in
+        [(Format::Ply, "ply", 4), (Format::Vtp, "vtp", 4), (Format::Vtu, "vtu", 5)]
+    {
+        let path = save(folder.path(), &format!("s.{extension}"), exported(format, &shape));
+        let back = read_points(&path).unwrap();
+        assert_eq!(back.positions, shape.points().positions[..corners], "{extension}");
+        assert_eq!(back.values.unwrap(), [1.0, 2.0, 3.0, 5.0, 10.0][..corners], "{extension}");
+        assert_eq!(back.weights, Some(vec![0.0; corners]), "{extension}");
+    }
+
+    let stl = exported(Format::Stl, &shape);
+    assert_eq!(stl.len(), 84 + 4 * 50);
+    assert_eq!(stl[80..84], 4u32.to_le_bytes());
+    let number = |place: usize| f32::from_le_bytes(stl[place..place + 4].try_into().unwrap());
+    let mut volume = 0.0;
+    for facet in 0..4 {
+        let vector = |v: usize| [0, 1, 2].map(|c| number(84 + 50 * facet + 12 * v + 4 * c));
+        let [n, a, b, c] = [0, 1, 2, 3].map(vector);
+        let cross = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
+        volume += (a[0] * cross(1, 2) + a[1] * cross(2, 0) + a[2] * cross(0, 1)) / 6.0;
+        assert!((n.iter().map(|v| v * v).sum::<f32>() - 1.0).abs() < 1e-6);
+    }
+    assert!((volume - 64.0 / 6.0).abs() < 1e-5, "outward: {volume}");
+
+    let glb = exported(Format::Glb, &shape);
+    let length =
+        |place: usize| u32::from_le_bytes(glb[place..place + 4].try_into().unwrap()) as usize;
+    assert_eq!((&glb[..4], length(4), length(8)), (&b"glTF"[..], 2, glb.len()));
+    let document: serde_json::Value = serde_json::from_slice(&glb[20..20 + length(12)]).unwrap();
+    assert_eq!(document["accessors"][0]["max"], serde_json::json!([4.0, 4.0, 4.0]));
+    assert_eq!(document["accessors"][2]["count"], 12);
+
+    let path = save(folder.path(), "s.npz", exported(Format::Npz, &shape));
+    let mut archive = payloads(&path);
+    let cells = archive("cells");
+    assert_eq!(cells.len(), shape.complex().cells.len() * 16);
+    assert_eq!(archive("cells_classes"), vec![1; 4]);
+    assert_eq!(archive("positions").len(), 6 * 24);
+}
+
+/// The payload of an array of an NPZ archive.
+fn payloads(path: &Path) -> impl FnMut(&str) -> Vec<u8> {
+    let mut archive = zip::ZipArchive::new(fs::File::open(path).unwrap()).unwrap();
+    move |name| {
+        let mut bytes = Vec::new();
+        let mut member = archive.by_name(&format!("{name}.npy")).unwrap();
+        std::io::copy(&mut member, &mut bytes).unwrap();
+        let header = u16::from_le_bytes([bytes[8], bytes[9]]) as usize;
+        bytes.split_off(10 + header)
+    }
+}
+
+#[test]
+fn stl_says_when_the_boundary_is_no_manifold() {
+    assert_eq!(Format::Stl.exporter(false).remark(&shape()), None);
+    // Two tetrahedra that touch at a vertex.
+    let folder = tempfile::tempdir().unwrap();
+    let text = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n-1 -1 0\n-1 0 -1\n0 -1 -1\n";
+    save(folder.path(), "two.xyz", text);
+    let args = ["shape", "two.xyz", "--alpha", "0.75", "-o", "two.stl", "two.ply"];
+    let (code, _, said) = common::run(folder.path(), &args);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("two.stl: the boundary is not manifold"), "{said}");
+    assert!(said.contains("0 edges") && said.contains("1 other vert"), "{said}");
+    assert!(!said.contains("two.ply"), "{said}");
+    let (_, _, said) = common::run(folder.path(), &[&args[..], &["--quiet"]].concat());
+    assert_eq!(said, "");
+}

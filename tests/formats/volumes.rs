@@ -1,0 +1,164 @@
+use std::fs;
+use std::path::Path;
+
+use ndarray::Array3;
+use walpha::export::VolumeFormat;
+use walpha::volume::{Dtype, Endian, Frame, RawLayout, ReadOptions, Volume, read};
+
+use crate::files::*;
+
+#[test]
+fn written_volumes_are_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let samples = Array3::from_shape_fn((3, 4, 5), |(z, y, x)| (100 * z + 10 * y + x) as f32 / 3.0);
+    let volume = Volume::new(samples, turned()).unwrap();
+    for (format, extension) in VolumeFormat::ALL {
+        let path = folder.path().join(format!("v.{extension}"));
+        assert_eq!(VolumeFormat::of(&path), Ok(format));
+        let mut bytes = Vec::new();
+        format.write(&volume, &mut bytes).unwrap();
+        fs::write(&path, bytes).unwrap();
+        let options = match format {
+            VolumeFormat::Raw => {
+                let (dims, dtype, endian) = (volume.dims(), Dtype::F32, Endian::Little);
+                ReadOptions { raw: Some(RawLayout { dims, dtype, endian, offset: 0 }), level: None }
+            }
+            _ => ReadOptions::default(),
+        };
+        let back = read(&path, &options).unwrap();
+        assert_eq!(back.as_slice(), volume.as_slice(), "{extension}");
+        let has_frame = !matches!(format, VolumeFormat::Npy | VolumeFormat::Raw);
+        let frame = if has_frame { turned() } else { Frame::VOXEL };
+        assert!(close(back.frame(), &frame), "{extension}: {:?}", back.frame());
+        // By content too.
+        if format != VolumeFormat::Raw {
+            let renamed = folder.path().join("unnamed");
+            fs::copy(&path, &renamed).unwrap();
+            assert_eq!(open(&renamed).unwrap().as_slice(), volume.as_slice(), "{extension}");
+        }
+    }
+    let long = Volume::new(Array3::ones((1, 1, 40_000)), turned()).unwrap();
+    let mut bytes = Vec::new();
+    VolumeFormat::Nifti.write(&long, &mut bytes).unwrap();
+    assert_eq!(bytes[0..4], 540u32.to_le_bytes(), "version 2");
+    let back = open(&save(folder.path(), "long.nii", bytes)).unwrap();
+    assert_eq!(back.dims().x(), 40_000);
+    let text = VolumeFormat::of(Path::new("a.mha")).unwrap_err().to_string();
+    assert!(text.contains("a volume") && text.contains(".nii.gz"), "{text}");
+}
+
+#[test]
+fn small_files_of_every_flavour_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in examples() {
+        let volume = open(&save(folder.path(), name, bytes)).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(volume.dims().xyz(), [3, 2, 2], "{name}");
+        assert_eq!(volume.as_slice(), numbers(), "{name}");
+        if name.ends_with(".vtk") || name.ends_with(".vti") {
+            let frame = Frame { origin: [4.0, 5.0, 6.0], spacing: [1.0, 2.0, 3.0], ..Frame::VOXEL };
+            assert_eq!(*volume.frame(), frame, "{name}");
+        }
+    }
+}
+
+#[test]
+fn detached_samples_are_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    fs::create_dir(f.join("data")).unwrap();
+    save(f, "data/all.raw", [b"head", &shorts()[..]].concat());
+    save(f, "data/all.gz", gzip(&shorts()));
+    save(f, "s1.raw", &shorts()[..12]);
+    save(f, "s2.raw", &shorts()[12..]);
+    for tail in [
+        "byte skip: 4\ndata file: data/all.raw\n",
+        "byte skip: -1\ndata file: data/all.raw\n",
+        "data file: LIST\ns1.raw\ns2.raw\n",
+        "data file: s%d.raw 1 2 1\n",
+        "data file: s%d.raw 1 2 1 2\n\n",
+    ] {
+        let volume = open(&save(f, "v.nhdr", [NRRD, tail].concat())).unwrap();
+        assert_eq!(volume.as_slice(), numbers(), "{tail}");
+    }
+    let packed = [&NRRD.replace("raw", "gz"), "datafile: data/all.gz\n"].concat();
+    assert_eq!(open(&save(f, "v.nhdr", packed)).unwrap().as_slice(), numbers());
+    for tail in [
+        "HeaderSize = 4\nElementDataFile = data/all.raw\n",
+        "HeaderSize = -1\nElementDataFile = data/all.raw\n",
+        "ElementDataFile = LIST\ns1.raw\ns2.raw\n",
+        "ElementDataFile = s%d.raw 1 2 1\n",
+    ] {
+        let volume = open(&save(f, "v.mhd", [MHA, tail].concat())).unwrap();
+        assert_eq!(volume.as_slice(), numbers(), "{tail}");
+    }
+    let missing = open(&save(f, "v.nhdr", [NRRD, "data file: no.raw\n"].concat()));
+    assert!(missing.unwrap_err().to_string().contains("no.raw"));
+    let short = open(&save(f, "v.nhdr", [NRRD, "data file: s1.raw\n"].concat())).unwrap_err();
+    assert!(short.to_string().contains("24 bytes, but 12 follow"), "{short}");
+}
+
+#[test]
+fn frames_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let steps = "space dimension: 3\nspace directions: (0.3,0.4,0) (0.8,-0.6,0) (0,0,-2)\n\
+                 space origin: (1.5,-2,30)\n";
+    let volume = open(&save(folder.path(), "v.nrrd", nrrd(|h| h + steps, &shorts()))).unwrap();
+    assert!(close(volume.frame(), &turned()));
+    let spaced = nrrd(|h| h + "spacings: 0.5 nan 2\n", &shorts());
+    let volume = open(&save(folder.path(), "v.nrrd", spaced)).unwrap();
+    assert_eq!(volume.frame().spacing, [0.5, 1.0, 2.0]);
+    // The grid has 3×2×2 samples; cells are wider by half a sample on either side.
+    for (fields, spacing, origin) in [
+        ("axis mins: 1 2 nan\nspacings: 2 4 8\n", [2.0, 4.0, 8.0], [2.0, 4.0, 0.0]),
+        ("axis mins: 0 0 0\naxis maxs: 6 4 1\n", [2.0, 2.0, 0.5], [1.0, 1.0, 0.25]),
+        (
+            "axis mins: 0 1 2\naxis maxs: 6 4 3\ncenterings: node node cell\n",
+            [3.0, 3.0, 0.5],
+            [0.0, 1.0, 2.25],
+        ),
+    ] {
+        let bytes = nrrd(|h| h + fields, &shorts());
+        let volume = open(&save(folder.path(), "v.nrrd", bytes)).unwrap();
+        assert_eq!((volume.frame().spacing, volume.frame().origin), (spacing, origin), "{fields}");
+    }
+    refuses("v.nrrd", nrrd(|h| h + "axis mins: 1 2\n", &shorts()), &["axis mins", "3 numbers"]);
+    let header = "ElementSpacing = 0.5 1 2\nOffset = 1.5 -2 30\n\
+                  TransformMatrix = 0.6 0.8 0 0.8 -0.6 0 0 0 -1\nElementDataFile = LOCAL\n";
+    let bytes = [MHA.as_bytes(), header.as_bytes(), &shorts()].concat();
+    let volume = open(&save(folder.path(), "v.mha", bytes)).unwrap();
+    assert!(close(volume.frame(), &turned()), "{:?}", volume.frame());
+    let imagej = "ImageJ=1.53\nimages=2\nslices=2\nspacing=2.5\n";
+    let volume = open(&save(folder.path(), "v.tif", tiff(2, Some(imagej)))).unwrap();
+    assert_eq!(volume.frame().spacing, [1.0, 1.0, 2.5]);
+    let ome = "<?xml version=\"1.0\"?><OME><Image><Pixels SizeZ=\"2\" PhysicalSizeX=\"0.5\" \
+               PhysicalSizeY=\"0.75\" PhysicalSizeZ=\"2\"/></Image></OME>";
+    let volume = open(&save(folder.path(), "v.tif", tiff(2, Some(ome)))).unwrap();
+    assert_eq!(volume.frame().spacing, [0.5, 0.75, 2.0]);
+}
+
+#[test]
+fn folders_of_slices_are_read_in_natural_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    for i in [1u8, 2, 9, 10, 11] {
+        image::GrayImage::from_pixel(3, 2, image::Luma([i]))
+            .save(f.join(format!("s{i}.png")))
+            .unwrap();
+    }
+    save(f, "notes.txt", "no slice");
+    let volume = open(f).unwrap();
+    assert_eq!(volume.dims().xyz(), [3, 2, 5]);
+    let along: Vec<f32> = volume.samples().slice(ndarray::s![.., 0, 0]).to_vec();
+    assert_eq!(along, [1.0, 2.0, 9.0, 10.0, 11.0]);
+    assert!(volume.has_gray_levels());
+    image::GrayImage::new(2, 2).save(f.join("s12.png")).unwrap();
+    assert!(open(f).unwrap_err().to_string().contains("must be alike"));
+    image::RgbImage::new(3, 2).save(f.join("s12.png")).unwrap();
+    assert!(open(f).unwrap_err().to_string().contains("only gray"));
+    save(f, "s12.png", "no image");
+    assert!(open(f).unwrap_err().to_string().contains("s12.png"));
+    save(f, "s12.jpg", "");
+    assert!(open(f).unwrap_err().to_string().contains("several kinds"));
+    let empty = tempfile::tempdir().unwrap();
+    assert!(open(empty.path()).unwrap_err().to_string().contains("holds no PNG"));
+}

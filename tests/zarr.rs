@@ -1,0 +1,150 @@
+//! Zarr arrays and OME-Zarr pyramids, written with the zarrs crate or by hand.
+#![cfg(feature = "zarr")]
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use serde_json::json;
+use walpha::Volume;
+use walpha::volume::{ReadOptions, VolumeError, read};
+use zarrs::array::{ArrayBuilder, DataType, FillValue};
+use zarrs::array_subset::ArraySubset;
+use zarrs::filesystem::FilesystemStore;
+use zarrs::group::GroupBuilder;
+
+fn open(path: &Path, level: Option<u32>) -> Result<Volume, VolumeError> {
+    read(path, &ReadOptions { raw: None, level })
+}
+
+fn numbers(shape: &[u64]) -> Vec<u16> {
+    (0..shape.iter().product::<u64>()).map(|i| 3 * i as u16).collect()
+}
+
+/// An array of version 3 in chunks that do not divide it.
+fn array(folder: &Path, at: &str, shape: &[u64]) {
+    let store = Arc::new(FilesystemStore::new(folder).unwrap());
+    let chunks: Vec<u64> = shape.iter().map(|size| (*size).min(2)).collect();
+    let array = ArrayBuilder::new(shape.to_vec(), chunks, DataType::UInt16, FillValue::from(0u16))
+        .bytes_to_bytes_codecs(vec![Arc::new(zarrs::array::codec::GzipCodec::new(5).unwrap())])
+        .build(store, at)
+        .unwrap();
+    array.store_metadata().unwrap();
+    let all = ArraySubset::new_with_shape(shape.to_vec());
+    array.store_array_subset_elements(&all, &numbers(shape)).unwrap();
+}
+
+/// An uncompressed array of version 2, by hand: one chunk.
+fn array_v2(folder: &Path, shape: [u64; 3], dtype: &str, bytes: &[u8]) {
+    fs::create_dir_all(folder).unwrap();
+    let metadata = json!({
+        "zarr_format": 2, "shape": shape, "chunks": shape, "dtype": dtype, "compressor": null,
+        "fill_value": 0, "order": "C", "filters": null
+    });
+    fs::write(folder.join(".zarray"), metadata.to_string()).unwrap();
+    fs::write(folder.join("0.0.0"), bytes).unwrap();
+}
+
+fn pyramid(folder: &Path, version: u8, datasets: serde_json::Value) {
+    let multiscales = json!([{
+        "axes": [
+            {"name": "c", "type": "channel"},
+            {"name": "z", "type": "space"}, {"name": "y", "type": "space"}, {"name": "x", "type": "space"}
+        ],
+        "datasets": datasets,
+        "coordinateTransformations": [{"type": "scale", "scale": [1, 1, 1, 10]}]
+    }]);
+    if version == 2 {
+        fs::write(folder.join(".zgroup"), json!({"zarr_format": 2}).to_string()).unwrap();
+        fs::write(folder.join(".zattrs"), json!({"multiscales": multiscales}).to_string()).unwrap();
+        return;
+    }
+    let store = Arc::new(FilesystemStore::new(folder).unwrap());
+    let mut group = GroupBuilder::new().build(store, "/").unwrap();
+    group
+        .attributes_mut()
+        .insert("ome".into(), json!({"version": "0.5", "multiscales": multiscales}));
+    group.store_metadata().unwrap();
+}
+
+fn levels() -> serde_json::Value {
+    json!([
+        {"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [1, 4, 2, 0.5]}]},
+        {"path": "1", "coordinateTransformations": [
+            {"type": "scale", "scale": [1, 8, 4, 1]}, {"type": "translation", "translation": [0, 2, 1, 0.25]}
+        ]}
+    ])
+}
+
+#[test]
+fn arrays_of_both_versions_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    array(f, "/", &[3, 4, 5]);
+    let volume = open(f, None).unwrap();
+    assert_eq!(volume.dims().xyz(), [5, 4, 3]);
+    let expected: Vec<f32> = numbers(&[3, 4, 5]).into_iter().map(f32::from).collect();
+    assert_eq!(volume.as_slice(), expected);
+    let second = f.join("v2");
+    array_v2(&second, [1, 2, 3], "|u1", &[1, 2, 3, 4, 5, 255]);
+    let volume = open(&second, None).unwrap();
+    assert_eq!(volume.as_slice(), [1.0, 2.0, 3.0, 4.0, 5.0, 255.0]);
+    assert!(volume.has_gray_levels());
+    let big: Vec<u8> = [-1.5f64, 2.0].iter().flat_map(|v| v.to_be_bytes()).collect();
+    array_v2(&second, [1, 1, 2], ">f8", &big);
+    assert_eq!(open(&second, None).unwrap().as_slice(), [-1.5, 2.0]);
+}
+
+#[test]
+fn levels_of_a_pyramid_are_chosen_and_placed() {
+    for version in [2, 3] {
+        let folder = tempfile::tempdir().unwrap();
+        let f = folder.path();
+        pyramid(f, version, levels());
+        array(f, "/0", &[1, 3, 4, 5]);
+        array(f, "/1", &[1, 2, 2, 3]);
+        let fine = open(f, None).unwrap();
+        assert_eq!((fine.dims().xyz(), fine.frame().spacing), ([5, 4, 3], [5.0, 2.0, 4.0]));
+        let coarse = open(f, Some(1)).unwrap();
+        assert_eq!((coarse.dims().xyz(), coarse.frame().spacing), ([3, 2, 2], [10.0, 4.0, 8.0]));
+        assert_eq!(coarse.frame().origin, [2.5, 1.0, 2.0]);
+        let text = open(f, Some(2)).unwrap_err().to_string();
+        assert!(text.contains("no level 2, there are 2"), "{text}");
+        // A level by its own name.
+        assert_eq!(open(&f.join("1"), None).unwrap().dims().xyz(), [3, 2, 2]);
+        let text = open(&f.join("1"), Some(0)).unwrap_err().to_string();
+        assert!(text.contains("leave --level away"), "{text}");
+    }
+}
+
+#[test]
+fn what_is_no_volume_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let refuses = |path: &Path, part: &str| {
+        let text = open(path, None).unwrap_err().to_string();
+        assert!(text.contains(part), "{part:?} is missing in {text}");
+    };
+    fs::write(f.join(".zgroup"), "{\"zarr_format\": 2}").unwrap();
+    refuses(f, "of nothing");
+    array_v2(&f.join("a"), [1, 1, 2], "<f4", &[0; 8]);
+    refuses(f, "name one of these");
+    array_v2(&f.join("a"), [1, 1, 2], "<f4", &[0; 7]);
+    refuses(&f.join("a"), "cannot be read");
+    array_v2(&f.join("a"), [1, 1, 2], "<c8", &[0; 16]);
+    refuses(&f.join("a"), "type");
+    array_v2(&f.join("a"), [1, 1, 2], "<f4", &f32::NAN.to_le_bytes().repeat(2));
+    refuses(&f.join("a"), "NaN");
+    array_v2(&f.join("a"), [1 << 20, 1 << 20, 2], "<f4", &[]);
+    refuses(&f.join("a"), "too many");
+    fs::write(f.join("a/.zarray"), "{").unwrap();
+    refuses(&f.join("a"), "cannot be read");
+    array(f, "/flat", &[4, 5]);
+    refuses(&f.join("flat"), "three axes");
+    array(f, "/colours", &[3, 2, 2, 2]);
+    refuses(&f.join("colours"), "several channels");
+    let turned = json!([{"path": "colours", "coordinateTransformations": [{"type": "affine"}]}]);
+    array(f, "/colours", &[1, 2, 2, 2]);
+    pyramid(f, 2, turned);
+    refuses(f, "affine");
+}
