@@ -171,6 +171,7 @@ class Classifier {
       order[count++] = k;
       foreign += !owned_[v[k]];
     }
+    if (foreign == 3) return;  // seen across from two owned points, and not known well here
     const std::uint32_t first = corner(c, opposite);
     for (const int k : order) {
       if (owned_[v[k]]) sheets_.unite(first, 4 * c + k);

@@ -129,17 +129,16 @@ pub fn alpha_shape(
         Engine::Reference => by_reference(&sites, power_alpha(options))?,
         Engine::Slabs => by_slabs(&sites, power_alpha(options), options)?,
     };
-    let (betti, measures) = rayon::join(
-        || match &sheets {
-            Some(sheets) => sheet_betti(&complex, sheets),
-            None => direct_betti(&complex),
-        },
-        || Measures::of(&complex, &points.positions),
-    );
     let hidden = whole.then(|| hidden(sites.input(), &complex.vertices));
+    // Counted over what is outside, too.
+    let direct = sheets.is_none().then(|| direct_betti(&complex));
     if !options.exterior {
         complex.retain_shape();
     }
+    let (counted, measures) = rayon::join(
+        || sheets.as_ref().map(|sheets| sheet_betti(&complex, sheets)),
+        || Measures::of(&complex, &points.positions),
+    );
     let duplicates = sites.duplicates().to_vec();
     Ok(AlphaShape {
         points,
@@ -148,7 +147,7 @@ pub fn alpha_shape(
         complex,
         duplicates,
         hidden,
-        betti: Some(betti),
+        betti: direct.or(counted),
         sheets,
         measures,
     })
