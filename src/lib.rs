@@ -37,6 +37,7 @@ pub mod cgal;
 pub mod check;
 pub mod export;
 pub mod haar;
+pub mod ladder;
 pub mod memory;
 pub mod plane;
 pub mod points;

@@ -18,25 +18,33 @@ impl Measures {
     /// Measures a shape. Rounded sums; the same on any number of threads. O(n).
     pub fn of(complex: &Complex, positions: &[[f64; 3]]) -> Self {
         let at = |v: u32| positions[v as usize];
-        // Divided last: sums of determinants on a lattice are whole numbers.
         let area = |class| {
             fixed_order_sum(&complex.facets.vertices, |i, facet| {
                 if complex.facets.classes[i] != class {
                     return 0.0;
                 }
-                let [a, b, c] = facet.map(at);
-                norm(cross(sub(b, a), sub(c, a)))
-            }) / 2.0
+                facet_area(facet.map(at))
+            })
         };
+        // Divided last: sums of determinants on a lattice are whole numbers.
         let volume = fixed_order_sum(&complex.cells.vertices, |i, cell| {
             if complex.cells.classes[i] != Class::Interior {
                 return 0.0;
             }
-            let [a, b, c, d] = cell.map(at);
-            dot(cross(sub(b, a), sub(c, a)), sub(d, a))
+            six_volumes(cell.map(at))
         }) / 6.0;
         Self { volume, area: area(Class::Regular), singular_area: area(Class::Singular) }
     }
+}
+
+/// The area of a triangle.
+pub(crate) fn facet_area([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    norm(cross(sub(b, a), sub(c, a))) / 2.0
+}
+
+/// Six times the volume of a positively oriented cell: a determinant, a whole number on a lattice.
+pub(crate) fn six_volumes([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
+    dot(cross(sub(b, a), sub(c, a)), sub(d, a))
 }
 
 /// Σ `term(i, row)` by chunks whose size does not depend on the number of threads.
