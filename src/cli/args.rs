@@ -1,6 +1,7 @@
 //! Options that several commands share, and how they become options of the library.
 
 use std::num::NonZeroUsize;
+use std::str::FromStr;
 
 use anyhow::bail;
 use clap::{Args, ValueEnum};
@@ -181,6 +182,46 @@ impl WeightArgs {
     }
 }
 
+/// Weights in proportion to an α at which they are frozen.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Weights, frozen")]
+pub struct FrozenArgs {
+    /// The α, a squared length, for which weights are computed; they stay the same at every level,
+    /// so that levels are nested [default: 10].
+    #[arg(long, value_name = "A", value_parser = alpha, allow_negative_numbers = true)]
+    alpha_ref: Option<Alpha>,
+    /// Weights ω (squared lengths): common=C, min-max (eq. 4.1), barycentric (eq. 4.2),
+    /// barycentric-n (N times that) or column (from the input).
+    #[arg(long, value_name = "KIND", allow_hyphen_values = true)]
+    weights: Option<Weighting>,
+}
+
+impl From<FrozenArgs> for WeightArgs {
+    fn from(FrozenArgs { alpha_ref, weights }: FrozenArgs) -> Self {
+        Self { alpha: alpha_ref, alpha_radius: None, weights }
+    }
+}
+
+/// The α of a ladder.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Alphas {
+    /// Critical values, chosen to be readable.
+    Auto,
+    /// These.
+    Given(Vec<Alpha>),
+}
+
+impl FromStr for Alphas {
+    type Err = anyhow::Error;
+
+    fn from_str(text: &str) -> anyhow::Result<Self> {
+        if text == "auto" {
+            return Ok(Self::Auto);
+        }
+        Ok(Self::Given(text.split(',').map(|item| alpha(item.trim())).collect::<Result<_, _>>()?))
+    }
+}
+
 /// How the shape is computed.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Shape")]
@@ -263,7 +304,7 @@ fn bytes(text: &str) -> anyhow::Result<u64> {
     Ok(bytes)
 }
 
-fn not_negative(text: &str) -> anyhow::Result<f64> {
+pub fn not_negative(text: &str) -> anyhow::Result<f64> {
     let number: f64 = text.parse()?;
     if number.is_nan() || number < 0.0 {
         bail!("a number from 0 up is needed");

@@ -4,8 +4,10 @@ mod args;
 mod check;
 mod compare;
 mod complex_file;
+mod folder;
 mod haar;
 mod info;
+mod ladder;
 mod output;
 mod picture;
 mod pipeline;
@@ -70,6 +72,7 @@ enum Command {
     Info(info::Info),
     Check(check::Check),
     Compare(compare::Compare),
+    Ladder(ladder::Ladder),
 }
 
 /// The exit code of a check or comparison that found something.
@@ -117,6 +120,7 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
         Command::Info(info) => info.run(global)?,
         Command::Check(check) => return check.run(global),
         Command::Compare(compare) => return compare.run(global),
+        Command::Ladder(ladder) => ladder.run(global)?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -20,7 +20,6 @@ pub struct Curve {
     pub solid_components: Vec<u64>,
     /// Vertices of the triangulation that no cell of the shape has, from each value on.
     pub loose: Vec<u64>,
-    /// The largest weight: below minus this there is nothing.
     largest_weight: f64,
 }
 
@@ -192,6 +191,11 @@ impl Curve {
     /// α just above each critical value, ascending: the rest of a step of the curve lies between.
     pub fn alphas(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
         self.values.iter().map(|value| value.high)
+    }
+
+    /// The largest weight: what α must be raised by to have the squared radius of the largest balls.
+    pub fn largest_weight(&self) -> f64 {
+        self.largest_weight
     }
 
     /// The squared radius of the largest balls at a value.

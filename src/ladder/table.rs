@@ -187,7 +187,10 @@ fn by_class(spans: &[Span], levels: usize) -> Vec<ByClass> {
 }
 
 /// ∞ has no JSON number: it is written as the string "inf" or "-inf".
-pub(super) fn number_or_name<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn number_or_name<S: Serializer>(
+    number: &f64,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     if number.is_finite() {
         serializer.serialize_f64(*number)
     } else {

@@ -50,7 +50,8 @@ impl Hollow {
     /// One cell, with its squared radius.
     pub fn of(cell: u32, radius: Interval, corners: [[f64; 3]; 4]) -> Self {
         let end = |choose: fn(f64, f64) -> f64| {
-            [0, 1, 2].map(|k| corners[1..].iter().fold(corners[0][k], |so_far, p| choose(so_far, p[k])))
+            [0, 1, 2]
+                .map(|k| corners[1..].iter().fold(corners[0][k], |so_far, p| choose(so_far, p[k])))
         };
         let six_volumes = six_volumes(corners);
         Self { cells: 1, six_volumes, low: end(f64::min), high: end(f64::max), top: cell, radius }
@@ -162,7 +163,9 @@ mod tests {
             assert_eq!(small.filling_alpha, 1.0);
             for void in [large, small] {
                 let left = |alpha| hollow(engine, alpha, true).voids().unwrap();
-                let inside = |other: &Void| (0..3).all(|k| other.low[k] >= void.low[k] && other.high[k] <= void.high[k]);
+                let inside = |other: &Void| {
+                    (0..3).all(|k| other.low[k] >= void.low[k] && other.high[k] <= void.high[k])
+                };
                 assert!(!left(void.filling_alpha).iter().any(inside));
                 assert!(left(void.filling_alpha.next_down()).iter().any(inside));
             }

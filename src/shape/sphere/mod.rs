@@ -228,10 +228,7 @@ impl Size {
         let powers = self.power * self.power;
         match vertices {
             2 => Bounds { numerator: powers, denominator: 3.0 * square },
-            3 => Bounds {
-                numerator: 12.0 * square * powers,
-                denominator: 18.0 * square * square,
-            },
+            3 => Bounds { numerator: 12.0 * square * powers, denominator: 18.0 * square * square },
             _ => Bounds {
                 numerator: 108.0 * square * square * powers,
                 denominator: 36.0 * square * square * square,
