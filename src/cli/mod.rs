@@ -16,6 +16,7 @@ mod progress;
 mod report;
 mod reproduce;
 mod shape;
+mod view;
 
 use std::process::ExitCode;
 
@@ -73,6 +74,7 @@ enum Command {
     Check(check::Check),
     Compare(compare::Compare),
     Ladder(ladder::Ladder),
+    View(view::View),
 }
 
 /// The exit code of a check or comparison that found something.
@@ -121,6 +123,7 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
         Command::Check(check) => return check.run(global),
         Command::Compare(compare) => return compare.run(global),
         Command::Ladder(ladder) => ladder.run(global)?,
+        Command::View(view) => view.run(global)?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -64,7 +64,19 @@ pub fn weighted_points(
     weights: &WeightArgs,
     progress: &mut Progress,
 ) -> anyhow::Result<Weighed> {
-    let (mut points, volume) = match read(input, progress)? {
+    weigh_input(read(input, progress)?, haar, select, weights, progress).map(|(weighed, _)| weighed)
+}
+
+/// The same from what was read already; gives the volume back, if it is one.
+pub fn weigh_input(
+    input: Input,
+    haar: &HaarArgs,
+    select: &SelectArgs,
+    weights: &WeightArgs,
+    progress: &mut Progress,
+) -> anyhow::Result<(Weighed, Option<Volume>)> {
+    let mut original = None;
+    let (mut points, volume) = match input {
         Input::Points(points) => (points, None),
         Input::Volume(volume, range) => {
             let options = haar.options();
@@ -82,6 +94,7 @@ pub fn weighted_points(
             })?;
             let boxes = [Units::Voxel, Units::World].map(|units| box_volume(&volume, units));
             let facts = VolumeFacts { dims: volume.dims().xyz(), boxes, range, truncation };
+            original = Some(volume);
             (selected, Some(facts))
         }
     };
@@ -93,7 +106,7 @@ pub fn weighted_points(
         }
         weigh(&points, weighting, weights.alpha().squared())
     })?;
-    Ok(Weighed { points, weighting, volume })
+    Ok((Weighed { points, weighting, volume }, original))
 }
 
 /// The volume that coverage is a share of.

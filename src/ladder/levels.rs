@@ -2,15 +2,16 @@ use rayon::prelude::*;
 
 use super::Filtration;
 use super::incidence::Incidence;
+use crate::points::WeightedPoints;
 use crate::shape::{Alpha, Class, Interval, Spheres};
 
 /// From which level on a simplex is what: levels count from 0, and as many as there are means
 /// never.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Span {
+pub struct Span {
     /// In the shape.
     pub first: u32,
-    /// A face of another simplex of the shape.
+    /// A face of another simplex of the shape; singular before.
     pub regular: u32,
     /// No more on the boundary.
     pub interior: u32,
@@ -36,6 +37,7 @@ impl Span {
         self.first = own.unwrap_or(self.regular);
     }
 
+    /// The class at a level.
     pub fn class(&self, level: u32) -> Class {
         if level < self.first {
             Class::Exterior
@@ -112,6 +114,11 @@ impl Filtration {
 }
 
 impl Levels<'_> {
+    /// The points and their frozen weights.
+    pub fn points(&self) -> &WeightedPoints {
+        self.filtration.points()
+    }
+
     /// The α of each level, ascending.
     pub fn alphas(&self) -> &[Alpha] {
         &self.alphas

@@ -36,6 +36,6 @@ mod voids;
 
 pub use critical::{Curve, Suggestions};
 pub use filtration::Filtration;
-pub use levels::Levels;
+pub use levels::{Levels, Span};
 pub use region::{Region, focus};
 pub use table::{ByClass, Ladder, Level};

@@ -16,6 +16,28 @@ impl Levels<'_> {
         self.filtration.whole.at(alpha, exterior, self.complex(level, exterior), betti)
     }
 
+    /// The facets that are on the boundary of some level or singular there, counter-clockwise seen
+    /// from where the shape comes later: each once for all levels. O(n).
+    pub fn facets(&self) -> Vec<([u32; 3], Span)> {
+        let incidence = &self.filtration.incidence;
+        let shown = self.facets.par_iter().enumerate();
+        let shown = shown.filter(|(_, span)| span.first < span.interior);
+        shown.map(|(row, span)| (self.turned(row, incidence.facet_cells[row]), *span)).collect()
+    }
+
+    /// The edges that are singular at some level. O(n).
+    pub fn singular_edges(&self) -> Vec<([u32; 2], Span)> {
+        let rows = &self.filtration.whole.complex().edges.vertices;
+        let edges = rows.iter().copied().zip(self.edges.iter().copied());
+        edges.filter(|(_, span)| span.first < span.regular).collect()
+    }
+
+    /// All vertices of the triangulation. O(n).
+    pub fn vertices(&self) -> Vec<(u32, Span)> {
+        let rows = &self.filtration.whole.complex().vertices.vertices;
+        rows.iter().map(|&[v]| v).zip(self.vertices.iter().copied()).collect()
+    }
+
     /// The classified complex of a level, in canonical order.
     fn complex(&self, level: usize, exterior: bool) -> Complex {
         let whole = self.filtration.whole.complex();
@@ -44,7 +66,7 @@ impl Levels<'_> {
 
     /// The regular facets, counter-clockwise seen from outside, smallest vertex first, in the order
     /// of their sorted rows.
-    pub(super) fn outward(&self, level: u32) -> Vec<[u32; 3]> {
+    fn outward(&self, level: u32) -> Vec<[u32; 3]> {
         let incidence = &self.filtration.incidence;
         let regular = self.facets.par_iter().enumerate();
         let regular = regular.filter(|(_, span)| span.class(level) == Class::Regular);
@@ -52,7 +74,7 @@ impl Levels<'_> {
     }
 
     /// A facet as seen from the side on which a cell comes later, or never.
-    pub(super) fn turned(&self, row: usize, sides: [u32; 2]) -> [u32; 3] {
+    fn turned(&self, row: usize, sides: [u32; 2]) -> [u32; 3] {
         let incidence = &self.filtration.incidence;
         let comes = |cell: u32| match cell {
             Incidence::OUTSIDE => u32::MAX,

@@ -27,6 +27,7 @@ mod tile;
 mod tiles;
 mod triangle;
 mod vector;
+mod view;
 
 pub use camera::{Camera, Projection, View};
 pub use colour::{ColourMap, PALETTE, Rgb};
@@ -39,3 +40,4 @@ pub use picture::{Picture, Size};
 pub use scene::{Background, Ball, Colours, Mesh, Scene, Shading, Tube};
 pub use shape::{Colouring, ShapeStyle, class_colours, plain_colours};
 pub(crate) use svg::base64;
+pub use view::{Original, Page, Subject};
