@@ -282,3 +282,170 @@ fn fifty_levels_cost_less_than_two_shapes() {
     println!("shape {shape:.3} s, ladder {ladder:.3} s, ratio {:.2}", ladder / shape);
     assert!(ladder < 2.0 * shape, "{ladder} s against {shape} s");
 }
+
+/// Full detail in a region and few points elsewhere are one triangulation: no crack at the border.
+#[test]
+fn a_region_of_full_detail_leaves_no_crack() {
+    use std::collections::{BTreeMap, BTreeSet};
+    use walpha::ladder::{Region, focus};
+    use walpha::points::{Selection, SelectionRule, Units, difference, select};
+
+    let volume = walpha::volume::sample("sample:phantom@32").unwrap();
+    let (volume, _) = volume.into_gray(walpha::Gray::Automatic).unwrap();
+    let differences = difference(&volume);
+    let points = |count| {
+        let selection = Selection { rule: SelectionRule::Count(count), gray_min: None };
+        select(&volume, &volume, &differences, &selection, Units::Voxel).unwrap()
+    };
+    let (fine, coarse) = (points(4000), points(900));
+    let region = Region { low: [0.0, 8.0, 10.0], high: [31.0, 31.0, 20.0] };
+    let both = focus(&fine, &coarse, &region);
+
+    let key = |p: [f64; 3]| [2, 1, 0].map(|k| p[k] as i64);
+    let inside = fine.positions.iter().filter(|p| region.contains(**p));
+    let outside = coarse.positions.iter().filter(|p| !region.contains(**p));
+    let union: BTreeSet<[i64; 3]> = inside.chain(outside).map(|&p| key(p)).collect();
+    assert!(union.len() > 1000 && union.len() < 4000, "{}", union.len());
+    assert!(both.positions.iter().map(|&p| key(p)).eq(union.iter().copied()));
+
+    let alpha = Alpha::from_squared(10.0).unwrap();
+    let of = |positions: Vec<[f64; 3]>| {
+        let weights = vec![0.0; positions.len()];
+        one_by_one(
+            &WeightedPoints { positions, weights, values: None },
+            alpha,
+            false,
+            Engine::Slabs,
+        )
+    };
+    let shape = of(both.positions.clone());
+    let plain = of(union.iter().map(|&[z, y, x]| [x, y, z].map(|k| k as f64)).collect());
+    assert_eq!(shape.complex(), plain.complex());
+    // Cells reach across the border, and the boundary of the solid has no end there or anywhere.
+    let within = |v: &u32| region.contains(both.positions[*v as usize]);
+    let mut cells = shape.complex().cells.of(Class::Interior);
+    assert!(cells.any(|cell| cell.iter().any(within) && !cell.iter().all(within)));
+    let mut sides = BTreeMap::<[u32; 2], usize>::new();
+    for &[a, b, c] in shape.complex().facets.of(Class::Regular) {
+        for [a, b] in [[a, b], [b, c], [a, c]] {
+            *sides.entry([a.min(b), a.max(b)]).or_default() += 1;
+        }
+    }
+    assert!(sides.values().all(|count| count % 2 == 0));
+}
+
+#[test]
+fn the_command_writes_tables_plots_and_meshes() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = common::json(
+        folder.path(),
+        &[
+            "ladder",
+            "sample:phantom@24",
+            "--weights",
+            "min-max",
+            "--alphas",
+            "10,2,inf,2",
+            "--mesh",
+            "ply,off",
+            "-o",
+            "out",
+        ],
+    );
+    let alphas: Vec<_> = made["levels"].as_array().unwrap().iter().map(|l| &l["alpha"]).collect();
+    assert_eq!(
+        alphas,
+        [&serde_json::json!(2.0), &serde_json::json!(10.0), &serde_json::json!("inf")]
+    );
+    let names: std::collections::BTreeSet<String> = std::fs::read_dir(folder.path().join("out"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    let expected = [
+        "ladder.csv",
+        "ladder.json",
+        "ladder.png",
+        "ladder.svg",
+        "voids.csv",
+        "level-1-alpha-2.off",
+        "level-1-alpha-2.ply",
+        "level-2-alpha-10.off",
+        "level-2-alpha-10.ply",
+        "level-3-alpha-inf.off",
+        "level-3-alpha-inf.ply",
+    ];
+    assert_eq!(names, expected.map(String::from).into());
+    let read = |name: &str| std::fs::read(folder.path().join("out").join(name)).unwrap();
+    // Weights frozen at 10 by default are those `shape` has at α = 10.
+    common::ok(
+        folder.path(),
+        &[
+            "shape",
+            "sample:phantom@24",
+            "--weights",
+            "min-max",
+            "--alpha",
+            "10",
+            "-o",
+            "one.ply",
+            "-q",
+        ],
+    );
+    assert_eq!(read("level-2-alpha-10.ply"), std::fs::read(folder.path().join("one.ply")).unwrap());
+    let json: serde_json::Value = serde_json::from_slice(&read("ladder.json")).unwrap();
+    assert_eq!(json["levels"], made["levels"]);
+    let csv = String::from_utf8(read("ladder.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 4);
+    let voids: u64 =
+        made["levels"].as_array().unwrap().iter().map(|l| l["betti"][2].as_u64().unwrap()).sum();
+    assert_eq!(String::from_utf8(read("voids.csv")).unwrap().lines().count() as u64, 1 + voids);
+}
+
+#[test]
+fn the_command_makes_levels_of_detail() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = [
+        "ladder",
+        "sample:phantom@24",
+        "--counts",
+        "200,600",
+        "--roi",
+        "0:23,0:23,8:12",
+        "-o",
+        "out",
+    ];
+    let made = common::json(folder.path(), &args);
+    let points: Vec<_> =
+        made["levels"].as_array().unwrap().iter().map(|l| l["points"].as_u64().unwrap()).collect();
+    let region = made["points_in_region"].as_u64().unwrap();
+    assert!(points[0] > region && points[0] < points[1] && points[0] < region + 200, "{points:?}");
+    for (level, name) in ["detail-200.ply", "detail-600.ply"].iter().enumerate() {
+        let size = std::fs::metadata(folder.path().join("out").join(name)).unwrap().len();
+        assert_eq!(made["levels"][level]["bytes"], size);
+    }
+    let made = common::json(
+        folder.path(),
+        &["ladder", "sample:phantom@24", "--epsilons", "100,1000", "-o", "eps"],
+    );
+    let epsilon = |k: usize| made["levels"][k]["epsilon"].as_f64().unwrap();
+    assert!(epsilon(0) <= 100.0 && epsilon(1) > 100.0 && epsilon(1) <= 1000.0);
+}
+
+#[test]
+fn bad_wishes_leave_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let phantom = "sample:phantom@16";
+    for (args, code, word) in [
+        (&["ladder", phantom, "-o", "out", "--alphas", "1,x"][..], 2, "--alphas"),
+        (&["ladder", phantom, "-o", "out", "--mesh", "doc"], 1, "--mesh"),
+        (&["ladder", phantom, "-o", "out", "--roi", "1:2,1:2,1:2"], 1, "--counts"),
+        (&["ladder", phantom, "-o", "out", "--counts", "9", "--roi", "2:1,1:2,1:2"], 2, "no range"),
+        (&["ladder", phantom, "-o", "out", "--counts", "9", "--roi", "90:99,1:2,1:2"], 1, "--roi"),
+        (&["ladder", phantom, "-o", "out", "--counts", "9", "--alphas", "1"], 2, "--counts"),
+    ] {
+        let (got, _, stderr) = common::run(folder.path(), args);
+        assert_eq!(got, code, "{stderr}");
+        assert!(stderr.contains(word), "{stderr}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "{args:?}");
+    }
+}
