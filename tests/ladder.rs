@@ -257,8 +257,10 @@ fn the_skull_level_by_level() {
     }
 }
 
-/// What the room promises: all levels together cost about one more shape.
+/// What the ladder promises: all levels together cost less than one more shape. By itself on a quiet
+/// machine: `cargo test --release --test ladder -- --ignored --nocapture`.
 #[test]
+#[ignore = "a measurement"]
 fn fifty_levels_cost_less_than_two_shapes() {
     let Some(points) = skull(walpha::Weighting::MinMax) else { return };
     let squared: Vec<f64> = (0..50).map(|k| 0.25 * 1.17f64.powi(k)).collect();

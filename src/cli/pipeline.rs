@@ -160,9 +160,15 @@ fn box_volume(volume: &Volume, units: Units) -> f64 {
     steps * cell
 }
 
-/// Readable critical values, and those suggested.
-pub fn readable(filtration: &Filtration, curve: &Curve, count: usize) -> Vec<Alpha> {
+/// Readable critical values, those suggested, and the α that the weights are meant for.
+pub fn readable(
+    filtration: &Filtration,
+    curve: &Curve,
+    count: usize,
+    reference: Alpha,
+) -> Vec<Alpha> {
     let mut alphas = filtration.readable(curve, count);
+    alphas.push(reference);
     let suggested = filtration.suggest(curve);
     let [low, high] = suggested.plateau;
     let also = [suggested.all_points, suggested.one_region, suggested.no_void, low, high];

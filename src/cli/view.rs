@@ -84,8 +84,9 @@ impl View {
         let filtration = progress.stage("filtration", || Filtration::new(points))?;
         let alphas = match &self.alphas {
             Alphas::Given(alphas) => alphas.clone(),
-            Alphas::Auto => progress
-                .stage("curve", || pipeline::readable(&filtration, &filtration.curve(), READABLE)),
+            Alphas::Auto => progress.stage("curve", || {
+                pipeline::readable(&filtration, &filtration.curve(), READABLE, weights.alpha())
+            }),
         };
         let levels = filtration.levels(&alphas);
         if levels.len() > Page::MOST_LEVELS {

@@ -71,11 +71,6 @@ impl Facts {
         }
     }
 
-    /// The volume that coverage is a share of.
-    pub fn domain(&self) -> f64 {
-        self.domain.volume
-    }
-
     /// Adds what was found.
     pub fn add(
         &mut self,

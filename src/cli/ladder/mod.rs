@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
 use clap::Args;
-use walpha::WeightedPoints;
 use walpha::export::{Exporter, Format};
 use walpha::ladder::{Filtration, Ladder as Levels, Level, Region};
 use walpha::render::ladder_figure;
@@ -85,6 +84,15 @@ impl Ladder {
         if detail {
             return self.over_detail(global, meshes, folder);
         }
+        self.over_alpha(global, meshes, folder)
+    }
+
+    fn over_alpha(
+        &self,
+        global: Global,
+        meshes: Vec<Mesh>,
+        mut folder: Folder,
+    ) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
         let weights = WeightArgs::from(self.weights);
         let weighed = pipeline::weighted_points(
@@ -96,32 +104,21 @@ impl Ladder {
         )?;
         let domain = pipeline::domain(&weighed, self.select.units());
         let mut facts = Facts::new(&self.input.input, &weighed, weights.alpha(), domain);
-        self.over_alpha(global, meshes, folder, progress, weighed.points, &mut facts)
-    }
-
-    fn over_alpha(
-        &self,
-        global: Global,
-        meshes: Vec<Mesh>,
-        mut folder: Folder,
-        mut progress: Progress,
-        points: WeightedPoints,
-        facts: &mut Facts,
-    ) -> anyhow::Result<()> {
+        let points = weighed.points;
         let filtration = progress.stage("filtration", || Filtration::new(points))?;
         let curve = progress.stage("curve", || filtration.curve());
         let suggested = progress.stage("curve", || filtration.suggest(&curve));
         let alphas = match &self.alphas {
             Alphas::Given(alphas) => alphas.clone(),
-            Alphas::Auto => {
-                progress.stage("curve", || pipeline::readable(&filtration, &curve, READABLE))
-            }
+            Alphas::Auto => progress.stage("curve", || {
+                pipeline::readable(&filtration, &curve, READABLE, weights.alpha())
+            }),
         };
-        let levels = filtration.levels(&alphas);
-        let ladder = progress.stage("ladder", || levels.ladder(facts.domain()));
+        let levels = progress.stage("ladder", || filtration.levels(&alphas));
+        let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
 
         let title = format!("Ladder of {}, ω frozen", self.input.input);
-        let figure = ladder_figure(&title, &ladder, &curve, &suggested, facts.domain())?;
+        let figure = ladder_figure(&title, &ladder, &curve, &suggested, domain.volume)?;
         progress.stage("write", || -> anyhow::Result<()> {
             folder.write("ladder.csv", |out| write_levels(&ladder, out))?;
             folder.write("voids.csv", |out| write_voids(&ladder, out))?;
@@ -145,7 +142,7 @@ impl Ladder {
         files.push(self.output.join("ladder.json").display().to_string());
         facts.finish(progress.finish(), files);
         folder.write("ladder.json", |out| Ok(serde_json::to_writer_pretty(out, &facts)?))?;
-        tell(global, facts)
+        tell(global, &facts)
     }
 }
 

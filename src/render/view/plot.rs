@@ -1,8 +1,9 @@
 use plotly::color::Rgb;
 use plotly::common::{
-    ColorBar, ColorScale, ColorScalePalette, Font, HoverInfo, Line, Marker, Mode, Orientation,
-    Title, Visible,
+    Anchor, ColorBar, ColorScale, ColorScalePalette, Font, HoverInfo, Line, Marker, Mode,
+    Orientation, Side, Title, Visible,
 };
+use plotly::configuration::DisplayModeBar;
 use plotly::layout::{
     AspectMode, Axis, Camera, CameraCenter, Eye, ItemSizing, LayoutScene, Legend, Margin,
 };
@@ -19,10 +20,11 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
     let valued = subject.levels.points().values.is_some();
     let colour_bar = || {
         ColorBar::new()
-            .title(Title::with_text("F"))
+            .title(Title::with_text("F").side(Side::Top))
             .orientation(Orientation::Horizontal)
             .thickness(12)
-            .y(-0.02)
+            .y(0.0)
+            .y_anchor(Anchor::Top)
             .tick_font(Font::new().size(11))
     };
     let mesh = |name: &str, colour: Rgb| {
@@ -31,7 +33,7 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
             .show_legend(true)
             .color(colour)
             .flat_shading(true)
-            .lighting(Lighting::new().ambient(0.55).diffuse(0.6).specular(0.1).roughness(0.8))
+            .lighting(Lighting::new().ambient(0.8).diffuse(0.9).specular(0.1).roughness(0.8))
             .light_position(LightPosition::new().x(vec![-1e4]).y(vec![-2e4]).z(vec![2e4]))
             .hover_info(HoverInfo::Text)
     };
@@ -65,7 +67,9 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
         );
     }
     plot.set_layout(layout(subject.unit));
-    plot.set_configuration(Configuration::new().responsive(true).display_logo(false));
+    plot.set_configuration(
+        Configuration::new().responsive(true).display_mode_bar(DisplayModeBar::False),
+    );
     plot
 }
 
@@ -89,13 +93,14 @@ fn layout(unit: &str) -> Layout {
     Layout::new()
         .scene(scene)
         .auto_size(true)
-        .margin(Margin::new().left(0).right(0).top(0).bottom(0))
+        .margin(Margin::new().left(0).right(0).top(8).bottom(60))
         .show_legend(true)
         .legend(
             Legend::new()
                 .orientation(Orientation::Horizontal)
                 .item_sizing(ItemSizing::Constant)
                 .x(0.0)
-                .y(1.0),
+                .y(1.0)
+                .y_anchor(Anchor::Bottom),
         )
 }
