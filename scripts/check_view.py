@@ -5,7 +5,7 @@
 
 From a file: URL, at the width of a desk and of a phone: no error on the console, no request to a network,
 the scene is not blank, moving the slider and changing the colour change the picture, pointing at the
-shape tells index, weight and class, and nothing is wider than the screen. Leaves two screenshots.
+shape tells index, weight and class, points and isosurface can be shown, and nothing is wider than the screen. Leaves two screenshots.
 Prints a line for each check; exits with 1 when one fails, and with 77 without Chromium.
 """
 
@@ -219,6 +219,15 @@ def look(browser, checks, page, screen, out):
         said = hover(browser)
         right = said.startswith("point ") and "ω = " in said
         checks.say(f"{screen}: pointing tells of a point", right, repr(said))
+    for trace in ["points", "isosurface"]:
+        before = picture(browser)
+        shown = browser.evaluate(
+            "(async () => { const s = document.getElementById('scene');"
+            f" const k = s.data.findIndex((t) => t.name.startsWith('{trace}'));"
+            " if (k < 0) return false; await Plotly.restyle(s, { visible: true }, [k]); return true })()"
+        )
+        if shown:
+            checks.say(f"{screen}: {trace} can be shown", picture(browser) != before)
     found = faults(browser.events)
     checks.say(f"{screen}: console and network are quiet", not found, "; ".join(found))
 

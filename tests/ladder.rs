@@ -5,9 +5,9 @@ mod common;
 use std::time::Instant;
 
 use proptest::prelude::*;
-use walpha::ladder::{ByClass, Filtration, Level};
+use walpha::ladder::{Filtration, Level};
 use walpha::shape::{Engine, ShapeError, ShapeOptions};
-use walpha::{Alpha, AlphaShape, Class, Simplices, WeightedPoints, alpha_shape};
+use walpha::{Alpha, AlphaShape, Class, WeightedPoints, alpha_shape};
 
 fn alphas(squared: &[f64]) -> Vec<Alpha> {
     squared.iter().map(|&alpha| Alpha::from_squared(alpha).unwrap()).collect()
@@ -16,13 +16,6 @@ fn alphas(squared: &[f64]) -> Vec<Alpha> {
 fn one_by_one(points: &WeightedPoints, alpha: Alpha, exterior: bool, engine: Engine) -> AlphaShape {
     let options = ShapeOptions { exterior, engine, ..ShapeOptions::new(alpha) };
     alpha_shape(points.clone(), &options).unwrap()
-}
-
-fn by_class<const N: usize>(simplices: &Simplices<N>) -> ByClass {
-    let counts = simplices.counts();
-    let [interior, regular, singular] =
-        [Class::Interior, Class::Regular, Class::Singular].map(|class| counts[class as usize]);
-    ByClass { interior, regular, singular }
 }
 
 fn close(a: f64, b: f64) -> bool {
@@ -56,9 +49,9 @@ fn check(points: &WeightedPoints, squared: &[f64], engine: Engine) -> Option<Fil
 fn check_numbers(level: &Level, shape: &AlphaShape) {
     let complex = shape.complex();
     assert_eq!(level.cells, complex.cells.counts()[Class::Interior as usize]);
-    assert_eq!(level.facets, by_class(&complex.facets));
-    assert_eq!(level.edges, by_class(&complex.edges));
-    assert_eq!(level.vertices, by_class(&complex.vertices));
+    assert_eq!(level.facets, complex.facets.by_class());
+    assert_eq!(level.edges, complex.edges.by_class());
+    assert_eq!(level.vertices, complex.vertices.by_class());
     assert_eq!(Some(level.betti), shape.betti());
     let measures = shape.measures();
     assert!(close(level.measures.volume, measures.volume));

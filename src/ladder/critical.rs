@@ -172,7 +172,7 @@ fn raise<const N: usize>(
     for (&row, radius) in rows.iter().zip(radii) {
         let within = value.low <= radius.low && radius.high <= value.high;
         if within && !spheres.fits(row, radius, *alpha) {
-            *alpha = spheres.first_alpha(row, radius);
+            *alpha = spheres.first_alpha(row);
         }
     }
 }

@@ -38,4 +38,4 @@ pub use critical::{Curve, Suggestions};
 pub use filtration::Filtration;
 pub use levels::{Levels, Span};
 pub use region::{Region, focus};
-pub use table::{ByClass, Ladder, Level};
+pub use table::{Ladder, Level};

@@ -3,7 +3,7 @@ use serde::{Serialize, Serializer};
 
 use super::levels::{ByLevel, Span};
 use super::{Filtration, Levels};
-use crate::shape::{Alpha, Betti, Class, Measures, Void, facet_area, six_volumes};
+use crate::shape::{Alpha, Betti, ByClass, Class, Measures, Void, facet_area, six_volumes};
 
 /// What is measured of each level of a filtration, by ascending α.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -37,24 +37,6 @@ pub struct Level {
     pub coverage: f64,
     /// The voids, largest first.
     pub voids: Vec<Void>,
-}
-
-/// Simplices of a shape by class.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct ByClass {
-    /// Inside.
-    pub interior: usize,
-    /// On the boundary of something higher.
-    pub regular: usize,
-    /// On their own.
-    pub singular: usize,
-}
-
-impl ByClass {
-    /// All of them.
-    pub fn total(&self) -> usize {
-        self.interior + self.regular + self.singular
-    }
 }
 
 impl Level {

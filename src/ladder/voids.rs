@@ -96,7 +96,7 @@ impl Complement<'_> {
         let void = |&root: &u32| {
             let hollow = &self.hollows[root as usize];
             let top = hollow.top() as usize;
-            let first = || self.spheres.first_alpha(cells[top], filtration.cells[top]);
+            let first = || self.spheres.first_alpha(cells[top]);
             hollow.void(*self.known.entry(hollow.top()).or_insert_with(first))
         };
         let mut voids: Vec<Void> = roots.iter().map(void).collect();

@@ -15,7 +15,7 @@ mod voids;
 
 pub use alpha::{Alpha, Balls, NotAnAlpha};
 pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
-pub use complex::{Class, Complex, Simplices};
+pub use complex::{ByClass, Class, Complex, Simplices};
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;
 pub(crate) use measure::{facet_area, six_volumes};

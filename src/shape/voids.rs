@@ -114,9 +114,8 @@ fn voids(shape: &AlphaShape) -> Vec<Void> {
             empty => *empty = Some(hollow),
         }
     }
-    let void = |hollow: Hollow| {
-        hollow.void(spheres.first_alpha(cells.vertices[hollow.top as usize], hollow.radius))
-    };
+    let void =
+        |hollow: Hollow| hollow.void(spheres.first_alpha(cells.vertices[hollow.top as usize]));
     let mut voids: Vec<Void> = found.into_iter().flatten().map(void).collect();
     voids.sort_by(Void::order);
     voids

@@ -6,8 +6,8 @@ use std::io;
 
 use serde::Serialize;
 use walpha::Alpha;
-use walpha::ladder::{ByClass, Curve, Filtration, Ladder, Level, Suggestions};
-use walpha::shape::{Betti, Measures, Void};
+use walpha::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
+use walpha::shape::{Betti, ByClass, Measures, Void};
 
 use super::super::pipeline::{Domain, Weighed};
 use super::super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport, number_or_name};

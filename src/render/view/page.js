@@ -24,18 +24,26 @@
   for (const weight of data.weights) [least, most] = [Math.min(least, weight), Math.max(most, weight)];
   const sizes = Array.from(data.weights, (weight) =>
     most > least ? 2 + 7 * Math.sqrt((weight - least) / (most - least)) : 3);
-  const column = (rows, k, width) => rows.filter((_, at) => at % width === k);
+  const corners = (facets, rows) => {
+    const corner = (k) => Uint32Array.from(rows, (row) => facets[3 * row + k]);
+    return { i: corner(0), j: corner(1), k: corner(2) };
+  };
   const short = (number) => Number(number.toPrecision(6)).toString();
 
+  const facetCount = data.facets.length / 3;
   function facetsAt(level, wanted) {
     const rows = [];
-    for (let row = 0; 3 * row < data.facets.length; row++) {
-      if (classAt(data.facetSpans, row, level) !== wanted) continue;
-      rows.push(data.facets[3 * row], data.facets[3 * row + 1], data.facets[3 * row + 2]);
+    for (let row = 0; row < facetCount; row++) {
+      if (classAt(data.facetSpans, row, level) === wanted) rows.push(row);
     }
-    const flat = Uint32Array.from(rows);
-    return { i: column(flat, 0, 3), j: column(flat, 1, 3), k: column(flat, 2, 3) };
+    return corners(data.facets, rows);
   }
+
+  // The same at all levels.
+  const isosurface = data.isoFacets && {
+    x: data.isoX, y: data.isoY, z: data.isoZ,
+    ...corners(data.isoFacets, [...Array(data.isoFacets.length / 3).keys()]),
+  };
 
   function linesAt(level) {
     const line = { x: [], y: [], z: [] };
@@ -82,11 +90,7 @@
     }
     Object.assign(traces[EDGES], linesAt(level));
     Object.assign(traces[POINTS], pointsAt(level, text, byValue));
-    if (traces[ISOSURFACE]) {
-      const column3 = (k) => column(data.isoFacets, k, 3);
-      Object.assign(traces[ISOSURFACE], { x: data.isoX, y: data.isoY, z: data.isoZ,
-        i: column3(0), j: column3(1), k: column3(2) });
-    }
+    if (isosurface) Object.assign(traces[ISOSURFACE], isosurface);
     return traces;
   }
 
@@ -111,6 +115,8 @@
   }
 
   plot.layout.uirevision = "the same scene";
+  // As many pixels as the screen has; without a word plotly draws four times as many.
+  plot.config.plotGlPixelRatio = Math.min(2, devicePixelRatio);
   // While one level is being drawn only the last asked for waits.
   let [busy, again] = [false, false];
   async function refresh() {

@@ -68,7 +68,8 @@ impl<'a> Spheres<'a> {
         let above = error(bounds.numerator, 2 * N, self.lattice.holds_weights);
         let below = error(bounds.denominator, 2 * N - 2, true);
         if !(size.is_sane() && denominator > 2.0 * below) {
-            return self.exact_squared_radius(simplex);
+            let high = self.first_alpha(simplex);
+            return Interval { low: high.next_down(), high };
         }
         let quotient = numerator / (4.0 * denominator);
         let radius = quotient - p.weight;
@@ -92,19 +93,11 @@ impl<'a> Spheres<'a> {
         self.decide(simplex, alpha)
     }
 
-    /// The smallest double that is not below the squared radius: the first α at which it fits.
-    pub fn first_alpha<const N: usize>(&self, simplex: [u32; N], radius: Interval) -> f64 {
-        // Bisection over doubles in their order.
-        let (mut out, mut fits) = (ordinal(radius.low) - 1, ordinal(radius.high));
-        while fits - out > 1 {
-            let middle = out + (fits - out) / 2;
-            if self.fits(simplex, radius, from_ordinal(middle)) {
-                fits = middle;
-            } else {
-                out = middle;
-            }
-        }
-        from_ordinal(fits)
+    /// The smallest double that is not below the squared radius: the first α at which it fits. By
+    /// division of integers; some microseconds.
+    pub fn first_alpha<const N: usize>(&self, simplex: [u32; N]) -> f64 {
+        let sites = simplex.map(|v| self.site(v));
+        if N == 1 { -sites[0].weight } else { exact::squared_radius(sites[0], &sites[1..]) }
     }
 
     /// Whether a point lies strictly inside the smallest orthogonal sphere of a vertex, an edge or
@@ -126,14 +119,6 @@ impl<'a> Spheres<'a> {
         } else {
             exact::inside(p, &sites[1..], x)
         }
-    }
-
-    /// Where doubles say nothing.
-    #[cold]
-    fn exact_squared_radius<const N: usize>(&self, simplex: [u32; N]) -> Interval {
-        let anything = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
-        let first = self.first_alpha(simplex, anything);
-        Interval { low: first.next_down(), high: first }
     }
 
     /// Whether a simplex that is no vertex fits a finite α.
@@ -246,17 +231,6 @@ impl Size {
             _ => 54.0 * self.power * square * square,
         }
     }
-}
-
-/// Doubles in their order as integers.
-fn ordinal(value: f64) -> i128 {
-    let bits = i128::from(value.to_bits() & !(1 << 63));
-    if value.is_sign_negative() { -bits } else { bits }
-}
-
-fn from_ordinal(ordinal: i128) -> f64 {
-    let magnitude = f64::from_bits(ordinal.unsigned_abs() as u64);
-    if ordinal < 0 { -magnitude } else { magnitude }
 }
 
 #[cfg(test)]
