@@ -38,6 +38,7 @@ pub mod check;
 pub mod export;
 pub mod haar;
 pub mod interpolate;
+pub mod ladder;
 pub mod memory;
 pub mod near;
 pub mod plane;

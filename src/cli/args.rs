@@ -2,6 +2,7 @@
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
@@ -21,7 +22,7 @@ pub struct InputArgs {
     #[arg(value_name = "INPUT")]
     pub input: String,
     #[command(flatten)]
-    raw: RawArgs,
+    pub raw: RawArgs,
     /// Level of a pyramid (OME-Zarr) to read; 0 is the finest [default: 0].
     #[arg(long, value_name = "N", conflicts_with = "dims")]
     level: Option<u32>,
@@ -272,6 +273,47 @@ impl WeightArgs {
     }
 }
 
+/// Weights in proportion to an α at which they are frozen.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Weights, frozen")]
+pub struct FrozenArgs {
+    /// The α, a squared length, for which weights are computed; they stay the same at every level,
+    /// so that levels are nested.
+    #[arg(long, value_name = "A", value_parser = alpha, default_value = "10",
+          allow_negative_numbers = true)]
+    alpha_ref: Alpha,
+    /// Weights ω (squared lengths): common=C, min-max (eq. 4.1), barycentric (eq. 4.2),
+    /// barycentric-n (N times that) or column (from the input).
+    #[arg(long, value_name = "KIND", allow_hyphen_values = true)]
+    weights: Option<Weighting>,
+}
+
+impl From<FrozenArgs> for WeightArgs {
+    fn from(FrozenArgs { alpha_ref, weights }: FrozenArgs) -> Self {
+        Self { alpha: alpha_ref, alpha_radius: None, weights }
+    }
+}
+
+/// The α of a ladder.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Alphas {
+    /// Critical values, chosen to be readable.
+    Auto,
+    /// These.
+    Given(Vec<Alpha>),
+}
+
+impl FromStr for Alphas {
+    type Err = anyhow::Error;
+
+    fn from_str(text: &str) -> anyhow::Result<Self> {
+        if text == "auto" {
+            return Ok(Self::Auto);
+        }
+        Ok(Self::Given(text.split(',').map(|item| alpha(item.trim())).collect::<Result<_, _>>()?))
+    }
+}
+
 /// How the shape is computed.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Shape")]
@@ -361,7 +403,7 @@ fn number(text: &str) -> anyhow::Result<f64> {
     text.trim().parse().map_err(|_| anyhow!("{text:?} is no number; give one as in 10 or 2.5"))
 }
 
-fn not_negative(text: &str) -> anyhow::Result<f64> {
+pub fn not_negative(text: &str) -> anyhow::Result<f64> {
     let number = number(text)?;
     if number.is_nan() || number < 0.0 {
         bail!("a number from 0 up is needed; give it as in 1 or 2.5");

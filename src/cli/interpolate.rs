@@ -109,9 +109,7 @@ impl Interpolate {
         }
         let output = match &self.output {
             None => None,
-            Some(path) => {
-                Some((VolumeFormat::of(&self.format.name(path)?)?, Target::open(path)?))
-            }
+            Some(path) => Some((VolumeFormat::of(&self.format.name(path)?)?, Target::open(path)?)),
         };
         let mask = self.mask.as_deref().map(open).transpose()?;
         let mut progress = Progress::new(global);

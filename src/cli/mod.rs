@@ -8,9 +8,11 @@ mod completions;
 mod complex_file;
 mod config;
 mod curve;
+mod folder;
 mod haar;
 mod info;
 mod interpolate;
+mod ladder;
 mod man;
 mod output;
 mod picture;
@@ -20,6 +22,7 @@ mod progress;
 mod report;
 mod reproduce;
 mod shape;
+mod view;
 
 use std::ffi::OsString;
 use std::io::IsTerminal;
@@ -90,6 +93,8 @@ enum Command {
     Info(info::Info),
     Check(check::Check),
     Compare(compare::Compare),
+    Ladder(ladder::Ladder),
+    View(view::View),
     Completions(completions::Completions),
     Man(man::Man),
 }
@@ -212,6 +217,8 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
         Command::Man(man) => man.run(global)?,
         Command::Check(check) => return check.run(global),
         Command::Compare(compare) => return compare.run(global),
+        Command::Ladder(ladder) => ladder.run(global)?,
+        Command::View(view) => view.run(global)?,
     }
     Ok(ExitCode::SUCCESS)
 }

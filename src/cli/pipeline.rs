@@ -1,14 +1,18 @@
 //! From an input to weighted points, with what is to be told about the way.
 
+use std::fmt::{self, Display};
 use std::path::Path;
 
+use serde::Serialize;
 use walpha::interpolate::adaptive_voxels;
+use walpha::ladder::{Curve, Filtration};
 use walpha::points::{is_point_file, read_points, weigh};
 use walpha::{
-    GrayRange, Points, Truncation, Volume, WeightedPoints, Weighting, haar, points, volume,
+    Alpha, GrayRange, Points, Truncation, Units, Volume, WeightedPoints, Weighting, haar, points,
+    volume,
 };
 
-use super::args::{InputArgs, PipelineArgs};
+use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, WeightArgs};
 use super::progress::Progress;
 
 /// What INPUT turned out to be.
@@ -46,6 +50,8 @@ pub struct Weighed {
 /// What is to be told about a volume.
 pub struct VolumeFacts {
     pub dims: [usize; 3],
+    /// The samples' box in voxels, and in the file's units.
+    pub boxes: [f64; 2],
     pub range: GrayRange,
     pub truncation: Truncation,
 }
@@ -61,7 +67,19 @@ pub fn points_and_volume(
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Volume>)> {
     let PipelineArgs { input, haar, select, weights } = args;
-    let (mut points, volume) = match read(input, progress)? {
+    weigh_input(read(input, progress)?, haar, select, weights, progress)
+}
+
+/// The same from what was read already.
+pub fn weigh_input(
+    input: Input,
+    haar: &HaarArgs,
+    select: &SelectArgs,
+    weights: &WeightArgs,
+    progress: &mut Progress,
+) -> anyhow::Result<(Weighed, Option<Volume>)> {
+    let mut original = None;
+    let (mut points, volume) = match input {
         Input::Points(points) => (points, None),
         Input::Volume(volume, range) => {
             let options = haar.options();
@@ -69,8 +87,10 @@ pub fn points_and_volume(
                 progress.stage("haar", || haar::smooth(&volume, &options))?;
             let selected =
                 progress.stage("points", || selected_points(&volume, &smoothed, select))?;
-            let facts = VolumeFacts { dims: volume.dims().xyz(), range, truncation };
-            (selected, Some((facts, volume)))
+            let boxes = [Units::Voxel, Units::World].map(|units| box_volume(&volume, units));
+            let facts = VolumeFacts { dims: volume.dims().xyz(), boxes, range, truncation };
+            original = Some(volume);
+            (selected, Some(facts))
         }
     };
     let weighting = weights.weighting(points.weights.is_some());
@@ -81,8 +101,7 @@ pub fn points_and_volume(
         }
         weigh(&points, weighting, weights.alpha().squared())
     })?;
-    let (facts, volume) = volume.unzip();
-    Ok((Weighed { points, weighting, volume: facts }, volume))
+    Ok((Weighed { points, weighting, volume }, original))
 }
 
 /// Points as asked for: by differences, or adaptively.
@@ -99,4 +118,71 @@ fn selected_points(
     let mut voxels = adaptive_voxels(volume, &goal, units)?;
     voxels.sort_unstable();
     Ok(points::points_at(volume, &differences, &voxels, units))
+}
+
+/// The volume that coverage is a share of.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Domain {
+    pub volume: f64,
+    /// What it is the volume of.
+    pub of: &'static str,
+}
+
+impl Domain {
+    /// The box between the outermost samples of a grid.
+    pub fn of_grid(volume: &Volume, units: Units) -> Self {
+        Self { volume: box_volume(volume, units), of: "the box of the samples" }
+    }
+}
+
+impl Display for Domain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, volume {}", self.of, self.volume)
+    }
+}
+
+/// The domain of weighted points: that of the grid they come from, or their own box.
+pub fn domain(weighed: &Weighed, units: Units) -> Domain {
+    if let Some(volume) = &weighed.volume {
+        let volume = volume.boxes[usize::from(units == Units::World)];
+        return Domain { volume, of: "the box of the samples" };
+    }
+    let extent = |k: usize| {
+        let ends = (weighed.points.positions.iter())
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| [l.min(p[k]), h.max(p[k])]);
+        ends[1] - ends[0]
+    };
+    Domain { volume: extent(0) * extent(1) * extent(2), of: "the box of the points" }
+}
+
+/// The box between the outermost samples.
+fn box_volume(volume: &Volume, units: Units) -> f64 {
+    let steps: f64 = volume.dims().xyz().map(|n| (n - 1) as f64).iter().product();
+    let cell = match units {
+        Units::Voxel => 1.0,
+        Units::World => {
+            let frame = volume.frame();
+            let [a, b, c] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+                .map(|step| [0, 1, 2].map(|k| frame.to_world(step)[k] - frame.origin[k]));
+            let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
+            (a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)).abs()
+        }
+    };
+    steps * cell
+}
+
+/// Readable critical values, those suggested, and the α that the weights are meant for.
+pub fn readable(
+    filtration: &Filtration,
+    curve: &Curve,
+    count: usize,
+    reference: Alpha,
+) -> Vec<Alpha> {
+    let mut alphas = filtration.readable(curve, count);
+    alphas.push(reference);
+    let suggested = filtration.suggest(curve);
+    let [low, high] = suggested.plateau;
+    let also = [suggested.all_points, suggested.one_region, suggested.no_void, low, high];
+    alphas.extend(also.iter().filter_map(|&alpha| Alpha::from_squared(alpha).ok()));
+    alphas
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 use serde::{Serialize, Serializer};
+use walpha::points::WeightSummary;
 use walpha::shape::{Betti, Engine, Void};
 use walpha::{Alpha, AlphaShape, Class, GrayRange, Simplices, Truncation, memory};
 
@@ -59,16 +60,18 @@ struct PointsReport {
     in_shape: Option<usize>,
 }
 
+/// α as a squared length and as a radius.
 #[derive(Serialize)]
-struct AlphaReport {
+pub struct AlphaReport {
     #[serde(serialize_with = "number_or_name")]
     squared: f64,
     #[serde(serialize_with = "number_or_null_or_name")]
     radius: Option<f64>,
 }
 
+/// What the weights are.
 #[derive(Serialize)]
-struct WeightsReport {
+pub struct WeightsReport {
     kind: String,
     min: f64,
     mean: f64,
@@ -120,6 +123,33 @@ impl Display for Counts {
     }
 }
 
+impl From<Alpha> for AlphaReport {
+    fn from(alpha: Alpha) -> Self {
+        Self { squared: alpha.squared(), radius: alpha.radius() }
+    }
+}
+
+impl Display for AlphaReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Alpha::from_squared(self.squared).map_err(|_| fmt::Error)?.fmt(f)
+    }
+}
+
+impl WeightsReport {
+    /// The weights of some points.
+    pub fn of(weighed: &Weighed) -> Self {
+        let WeightSummary { min, mean, max } = weighed.points.summary();
+        Self { kind: weighed.weighting.to_string(), min, mean, max }
+    }
+}
+
+impl Display for WeightsReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, min, mean, max } = self;
+        write!(f, "{kind}: min {min:.6}, mean {mean:.6}, max {max:.6}")
+    }
+}
+
 impl From<&Truncation> for HaarReport {
     fn from(t: &Truncation) -> Self {
         Self { kept: t.kept, total: t.total, epsilon: t.epsilon, rms: t.rms }
@@ -136,7 +166,6 @@ impl Display for HaarReport {
 impl Report {
     /// What is known before there is a shape.
     pub fn of_points(name: &str, weighed: &Weighed, alpha: Alpha) -> Self {
-        let summary = weighed.points.summary();
         let volume = weighed.volume.as_ref();
         Self {
             schema_version: SCHEMA_VERSION,
@@ -153,13 +182,8 @@ impl Report {
                 hidden: None,
                 in_shape: None,
             },
-            alpha: AlphaReport { squared: alpha.squared(), radius: alpha.radius() },
-            weights: WeightsReport {
-                kind: weighed.weighting.to_string(),
-                min: summary.min,
-                mean: summary.mean,
-                max: summary.max,
-            },
+            alpha: AlphaReport::from(alpha),
+            weights: WeightsReport::of(weighed),
             shape: None,
             engine: None,
             files: Vec::new(),
@@ -219,13 +243,8 @@ impl Display for Report {
         if self.shape.is_some() && self.points.hidden.is_none() {
             write!(f, " (--slabs 1 counts hidden points)")?;
         }
-        let WeightsReport { kind, min, mean, max } = &self.weights;
-        writeln!(
-            f,
-            "\nweights   {kind}: min {min:.6}, mean {mean:.6}, max {max:.6} (squared lengths)"
-        )?;
-        let alpha = Alpha::from_squared(self.alpha.squared).map_err(|_| fmt::Error)?;
-        writeln!(f, "parameter {alpha}")?;
+        writeln!(f, "\nweights   {} (squared lengths)", self.weights)?;
+        writeln!(f, "parameter {}", self.alpha)?;
         if let Some(shape) = &self.shape {
             writeln!(f, "cells     {:>9} interior", shape.cells.interior)?;
             writeln!(f, "facets    {}", shape.facets)?;
@@ -240,7 +259,11 @@ impl Display for Report {
                 && let Some(largest) = voids.first()
             {
                 let sum = voids.iter().fold(0.0, |sum, void| sum + void.volume);
-                writeln!(f, "voids     {sum:.6} in all, the largest {:.6}", largest.volume)?;
+                writeln!(
+                    f,
+                    "voids     {sum:.6} in all, the largest {:.6}, filled at α = {}",
+                    largest.volume, largest.filling_alpha
+                )?;
             }
             if self.points.in_shape == Some(0) {
                 writeln!(f, "the shape is empty: every α + ω is negative; raise --alpha")?;
@@ -260,7 +283,7 @@ impl Display for Report {
 }
 
 /// ∞ has no JSON number: it is written as the string "inf" or "-inf".
-fn number_or_name<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+pub fn number_or_name<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     if number.is_finite() {
         serializer.serialize_f64(*number)
     } else {

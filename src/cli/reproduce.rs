@@ -1,17 +1,14 @@
 //! `walpha reproduce`: the paper, made again.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
-use anyhow::anyhow;
 use clap::Args;
-use walpha::export::Target;
 use walpha::reproduce::{File, Report, Subject, page, reproduce};
 use walpha::volume::{ReadOptions, open};
 use walpha::{Gray, Volume, VolumeError};
 
 use super::Global;
+use super::folder::Folder;
 use super::output::{print, print_json};
 use super::progress::Progress;
 
@@ -40,7 +37,7 @@ impl Reproduce {
         let mut progress = Progress::new(global);
         let (name, volume) = progress.stage("read", || self.volume(global))?;
         let (volume, range) = volume.into_gray(Gray::Automatic)?;
-        let folder = Folder::open(&self.out)?;
+        let mut folder = Folder::open(&self.out, "--out")?;
         let subject = Subject { volume: &volume, range, name: &name };
         let made = reproduce(&subject, &mut |stage| progress.show(stage))?;
         let mut files = made.files;
@@ -52,7 +49,12 @@ impl Reproduce {
             name: "report.json".into(),
             bytes: (serde_json::to_string_pretty(&made.report)? + "\n").into_bytes(),
         });
-        progress.stage("write", || folder.write(&files))?;
+        progress.stage("write", || -> anyhow::Result<()> {
+            for file in &files {
+                folder.write(&file.name, |out| out.write_all(&file.bytes))?;
+            }
+            Ok(())
+        })?;
         progress.finish();
         if global.json {
             print_json(&made.report)?;
@@ -77,51 +79,6 @@ impl Reproduce {
                 Ok((PHANTOM.into(), open(PHANTOM, &ReadOptions::default())?))
             }
             other => Ok((SKULL.into(), other?)),
-        }
-    }
-}
-
-/// The folder results go to: found writable before the long work.
-struct Folder<'a> {
-    path: &'a Path,
-    /// Whether it is ours, to be taken away again if nothing comes of it.
-    made: bool,
-    written: bool,
-}
-
-impl<'a> Folder<'a> {
-    fn open(path: &'a Path) -> anyhow::Result<Self> {
-        let made = match fs::create_dir(path) {
-            Ok(()) => true,
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && path.is_dir() => false,
-            Err(error) => {
-                let path = path.display();
-                return Err(anyhow!(
-                    "cannot make the folder {path}: {error}; choose another with --out"
-                ));
-            }
-        };
-        let folder = Self { path, made, written: false };
-        Target::open(&path.join("report.html"))?;
-        Ok(folder)
-    }
-
-    /// Writes all files, each complete or not at all.
-    fn write(mut self, files: &[File]) -> anyhow::Result<()> {
-        for file in files {
-            let target = Target::open(&self.path.join(&file.name))?;
-            target.write(|out| out.write_all(&file.bytes))?;
-        }
-        self.written = true;
-        Ok(())
-    }
-}
-
-impl Drop for Folder<'_> {
-    fn drop(&mut self) {
-        if self.made && !self.written {
-            // Only if it is empty; what was written stays.
-            let _ = fs::remove_dir(self.path);
         }
     }
 }

@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use super::text::number;
-use super::{ByClass, File, Finding, Item, Report, ShapeNumbers, Table, Verdict};
+use super::{File, Finding, Item, Report, ShapeNumbers, Table, Verdict};
 use crate::render::base64;
+use crate::shape::ByClass;
 
 const STYLE: &str = include_str!("page.css");
 

@@ -21,7 +21,7 @@ use std::time::Instant;
 
 pub use error::ReproduceError;
 pub use html::page;
-pub use numbers::{ByClass, ShapeNumbers};
+pub use numbers::ShapeNumbers;
 pub use off::{OffError, OffMesh};
 pub use report::{Fact, Finding, Input, Item, Report, Table, Verdict};
 

@@ -1,7 +1,7 @@
 use serde::{Serialize, Serializer};
 
 use crate::points::WeightSummary;
-use crate::shape::{AlphaShape, Balls, Betti, Class, Simplices, Void};
+use crate::shape::{AlphaShape, Balls, Betti, ByClass, Class, Void};
 
 /// What is measured of a shape.
 #[derive(Clone, Debug, Serialize)]
@@ -47,28 +47,6 @@ pub struct ShapeNumbers {
     pub singular_area: f64,
 }
 
-/// Simplices of a shape by class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct ByClass {
-    /// Inside.
-    pub interior: usize,
-    /// On the boundary of something higher.
-    pub regular: usize,
-    /// On their own.
-    pub singular: usize,
-}
-
-impl ByClass {
-    fn of<const N: usize>(simplices: &Simplices<N>) -> Self {
-        let counts = simplices.counts();
-        Self {
-            interior: counts[Class::Interior as usize],
-            regular: counts[Class::Regular as usize],
-            singular: counts[Class::Singular as usize],
-        }
-    }
-}
-
 impl ShapeNumbers {
     /// As many voids are listed at most.
     pub const VOIDS: usize = 10;
@@ -88,9 +66,9 @@ impl ShapeNumbers {
             hidden: shape.hidden().expect("the whole triangulation").len(),
             points_in_shape: shape.points_in_shape(),
             cells: complex.cells.counts()[Class::Interior as usize],
-            facets: ByClass::of(&complex.facets),
-            edges: ByClass::of(&complex.edges),
-            vertices: ByClass::of(&complex.vertices),
+            facets: complex.facets.by_class(),
+            edges: complex.edges.by_class(),
+            vertices: complex.vertices.by_class(),
             betti: shape.betti().expect("the whole triangulation"),
             void_volume: voids.iter().fold(0.0, |sum, void| sum + void.volume),
             largest_voids: voids.into_iter().take(Self::VOIDS).collect(),

@@ -215,6 +215,23 @@ fn hidden(sites: &[u32], vertices: &Simplices<1>) -> Vec<u32> {
 }
 
 impl AlphaShape {
+    /// The shape of the same points with the same power weights at another α, which somebody has
+    /// found within this one's triangulation.
+    pub(crate) fn at(&self, alpha: Alpha, exterior: bool, complex: Complex, betti: Betti) -> Self {
+        let measures = Measures::of(&complex, &self.points.positions);
+        Self {
+            points: self.points.clone(),
+            options: ShapeOptions { alpha, exterior, ..self.options },
+            squared: self.squared.clone(),
+            complex,
+            duplicates: self.duplicates.clone(),
+            hidden: self.hidden.clone(),
+            betti: Some(betti),
+            sheets: None,
+            measures,
+        }
+    }
+
     /// The points as they were given, duplicates and hidden ones included.
     pub fn points(&self) -> &WeightedPoints {
         &self.points

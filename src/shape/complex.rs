@@ -64,10 +64,36 @@ impl<const N: usize> Simplices<N> {
         counts
     }
 
+    /// How many of these are in the shape, by class.
+    pub fn by_class(&self) -> ByClass {
+        let counts = self.counts();
+        let [interior, regular, singular] =
+            [Class::Interior, Class::Regular, Class::Singular].map(|class| counts[class as usize]);
+        ByClass { interior, regular, singular }
+    }
+
     fn retain_shape(&mut self) {
         let mut classes = self.classes.iter();
         self.vertices.retain(|_| classes.next() != Some(&Class::Exterior));
         self.classes.retain(|&class| class != Class::Exterior);
+    }
+}
+
+/// How many simplices of one dimension a shape has, by class.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ByClass {
+    /// Inside.
+    pub interior: usize,
+    /// On the boundary of something higher.
+    pub regular: usize,
+    /// On their own.
+    pub singular: usize,
+}
+
+impl ByClass {
+    /// All of them.
+    pub fn total(&self) -> usize {
+        self.interior + self.regular + self.singular
     }
 }
 

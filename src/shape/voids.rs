@@ -1,5 +1,9 @@
+use std::cmp::Ordering;
+
 use serde::{Deserialize, Serialize};
 
+use super::measure::six_volumes;
+use super::sphere::{Interval, Spheres};
 use super::topology::Complement;
 use super::{AlphaShape, Class};
 
@@ -14,6 +18,69 @@ pub struct Void {
     pub low: [f64; 3],
     /// The largest coordinates of its box, (x, y, z).
     pub high: [f64; 3],
+    /// The α that fills it, a squared length: the squared radius of the largest orthogonal sphere
+    /// of its cells, rounded up. It may fall into several voids before. With
+    /// [`Balls::Radius`](super::Balls::Radius), where weights follow α, it is the parameter of the
+    /// power weights instead, as [`AlphaShape::power_alpha`].
+    pub filling_alpha: f64,
+}
+
+impl Void {
+    /// Largest first, ties by box.
+    pub(crate) fn order(&self, other: &Self) -> Ordering {
+        let boxes = || self.low.partial_cmp(&other.low).unwrap_or(Ordering::Equal);
+        other.volume.total_cmp(&self.volume).then_with(boxes)
+    }
+}
+
+/// Cells of a complement that hang together, and what is summed over them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hollow {
+    cells: usize,
+    /// Divided last: sums of determinants on a lattice are whole numbers.
+    six_volumes: f64,
+    low: [f64; 3],
+    high: [f64; 3],
+    /// The cell of the largest sphere, the first of those that are alike.
+    top: u32,
+    radius: Interval,
+}
+
+impl Hollow {
+    /// One cell, with its squared radius.
+    pub fn of(cell: u32, radius: Interval, corners: [[f64; 3]; 4]) -> Self {
+        let end = |choose: fn(f64, f64) -> f64| {
+            [0, 1, 2]
+                .map(|k| corners[1..].iter().fold(corners[0][k], |so_far, p| choose(so_far, p[k])))
+        };
+        let six_volumes = six_volumes(corners);
+        Self { cells: 1, six_volumes, low: end(f64::min), high: end(f64::max), top: cell, radius }
+    }
+
+    /// Takes in another.
+    pub fn join(&mut self, other: &Self) {
+        self.cells += other.cells;
+        self.six_volumes += other.six_volumes;
+        for k in 0..3 {
+            self.low[k] = self.low[k].min(other.low[k]);
+            self.high[k] = self.high[k].max(other.high[k]);
+        }
+        let larger = other.radius.high.total_cmp(&self.radius.high);
+        if larger.then_with(|| self.top.cmp(&other.top)).is_gt() {
+            (self.top, self.radius) = (other.top, other.radius);
+        }
+    }
+
+    /// The cell that goes last.
+    pub fn top(&self) -> u32 {
+        self.top
+    }
+
+    /// The void it is, given when its last cell goes.
+    pub fn void(&self, filling_alpha: f64) -> Void {
+        let Self { cells, six_volumes, low, high, .. } = *self;
+        Void { cells, volume: six_volumes / 6.0, low, high, filling_alpha }
+    }
 }
 
 impl AlphaShape {
@@ -32,45 +99,26 @@ fn voids(shape: &AlphaShape) -> Vec<Void> {
     let positions = &shape.points().positions;
     let mut complement = Complement::of(shape.complex());
     let outside = complement.outside();
+    let spheres = Spheres::new(positions, shape.power_weights());
     // By the component's number, which is its first cell's.
-    let mut found: Vec<Option<Void>> = vec![None; cells.len() + 1];
-    for (id, (cell, class)) in cells.iter().enumerate() {
+    let mut found: Vec<Option<Hollow>> = vec![None; cells.len() + 1];
+    for (id, (&cell, class)) in cells.iter().enumerate() {
         let component = complement.component(id as u32);
         if class != Class::Exterior || component == outside {
             continue;
         }
         let corners = cell.map(|v| positions[v as usize]);
-        let void = found[component as usize].get_or_insert(Void {
-            cells: 0,
-            volume: 0.0,
-            low: corners[0],
-            high: corners[0],
-        });
-        void.cells += 1;
-        void.volume += determinant(corners);
-        for k in 0..3 {
-            for corner in corners {
-                void.low[k] = void.low[k].min(corner[k]);
-                void.high[k] = void.high[k].max(corner[k]);
-            }
+        let hollow = Hollow::of(id as u32, spheres.squared_radius(cell), corners);
+        match &mut found[component as usize] {
+            Some(found) => found.join(&hollow),
+            empty => *empty = Some(hollow),
         }
     }
-    let mut voids: Vec<Void> = found.into_iter().flatten().collect();
-    // Divided last: sums of determinants on a lattice are whole numbers.
-    voids.iter_mut().for_each(|void| void.volume /= 6.0);
-    voids.sort_by(|a, b| {
-        let boxes = || a.low.partial_cmp(&b.low).unwrap_or(std::cmp::Ordering::Equal);
-        b.volume.total_cmp(&a.volume).then_with(boxes)
-    });
+    let void =
+        |hollow: Hollow| hollow.void(spheres.first_alpha(cells.vertices[hollow.top as usize]));
+    let mut voids: Vec<Void> = found.into_iter().flatten().map(void).collect();
+    voids.sort_by(Void::order);
     voids
-}
-
-/// Six times the volume of a positively oriented cell.
-fn determinant([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
-    let [u, v, w] = [b, c, d].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
-    u[0] * (v[1] * w[2] - v[2] * w[1])
-        + u[1] * (v[2] * w[0] - v[0] * w[2])
-        + u[2] * (v[0] * w[1] - v[1] * w[0])
 }
 
 #[cfg(test)]
@@ -110,6 +158,16 @@ mod tests {
             let whole = 11.0 * 6.0 * 6.0;
             let filled = shape.measures().volume + large.volume + small.volume;
             assert!((filled - whole).abs() < 1e-9, "{filled} of {whole}");
+            // The octahedron's sphere; and one that touches what remains around the large hollow.
+            assert_eq!(small.filling_alpha, 1.0);
+            for void in [large, small] {
+                let left = |alpha| hollow(engine, alpha, true).voids().unwrap();
+                let inside = |other: &Void| {
+                    (0..3).all(|k| other.low[k] >= void.low[k] && other.high[k] <= void.high[k])
+                };
+                assert!(!left(void.filling_alpha).iter().any(inside));
+                assert!(left(void.filling_alpha.next_down()).iter().any(inside));
+            }
         }
     }
 

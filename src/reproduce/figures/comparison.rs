@@ -154,12 +154,15 @@ fn voids(shown: &[&Shaped]) -> Table {
                 void.cells.to_string(),
                 text::number(void.volume),
                 format!("({}) to ({})", corner(void.low), corner(void.high)),
+                text::number(void.filling_alpha),
             ]
         })
     });
     Table {
         caption: format!("The largest voids of each, at most {MOST} (voxels)"),
-        head: ["shape", "cells", "volume", "box (x, y, z)"].map(String::from).into(),
+        head: ["shape", "cells", "volume", "box (x, y, z)", "α that fills it"]
+            .map(String::from)
+            .into(),
         rows: rows.collect(),
     }
 }

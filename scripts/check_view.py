@@ -1,0 +1,260 @@
+#!/usr/bin/env python3
+"""Opens a page of `walpha view` in a real headless Chromium and checks what a user would see.
+
+    scripts/check_view.py page.html [--chromium /usr/bin/chromium] [--out DIR]
+
+From a file: URL, at the width of a desk and of a phone: no error on the console, no request to a network,
+the scene is not blank, moving the slider and changing the colour change the picture, pointing at the
+shape tells index, weight and class, points and isosurface can be shown, and nothing is wider than the screen. Leaves two screenshots.
+Prints a line for each check; exits with 1 when one fails, and with 77 without Chromium.
+"""
+
+import argparse
+import base64
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+FLAGS = [
+    "--headless=new", "--no-sandbox", "--enable-unsafe-swiftshader", "--use-gl=angle",
+    "--use-angle=swiftshader", "--disable-gpu-sandbox", "--hide-scrollbars", "--no-first-run",
+    "--disable-background-networking", "--remote-debugging-pipe",
+]
+SCREENS = {"desk": (1280, 900, False), "phone": (400, 800, True)}
+
+
+class Browser:
+    """Speaks the DevTools protocol over two pipes."""
+
+    def __init__(self, chromium, profile):
+        to_read, self.write_end = os.pipe()
+        self.read_end, to_write = os.pipe()
+        # Chromium reads commands from descriptor 3 and answers on 4.
+        shell = f'exec "$@" 3<&{to_read} 4>&{to_write}'
+        command = ["bash", "-c", shell, "chromium", chromium, *FLAGS, f"--user-data-dir={profile}"]
+        self.process = subprocess.Popen(
+            command, pass_fds=[to_read, to_write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        os.close(to_read)
+        os.close(to_write)
+        self.buffer, self.last, self.session, self.events = b"", 0, None, []
+
+    def message(self):
+        while b"\0" not in self.buffer:
+            more = os.read(self.read_end, 1 << 20)
+            if not more:
+                raise RuntimeError("Chromium has gone")
+            self.buffer += more
+        text, self.buffer = self.buffer.split(b"\0", 1)
+        return json.loads(text)
+
+    def call(self, method, **params):
+        self.last += 1
+        command = {"id": self.last, "method": method, "params": params}
+        if self.session:
+            command["sessionId"] = self.session
+        os.write(self.write_end, json.dumps(command).encode() + b"\0")
+        while True:
+            message = self.message()
+            if message.get("id") == self.last:
+                if "error" in message:
+                    raise RuntimeError(f"{method}: {message['error']}")
+                return message["result"]
+            self.events.append(message)
+
+    def attach(self):
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ["Runtime", "Log", "Page", "Network"]:
+            self.call(f"{domain}.enable")
+
+    def evaluate(self, expression):
+        answer = self.call(
+            "Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True
+        )
+        if "exceptionDetails" in answer:
+            raise RuntimeError(answer["exceptionDetails"])
+        return answer["result"].get("value")
+
+    def wait(self, expression, seconds=60):
+        started = time.monotonic()
+        while time.monotonic() - started < seconds:
+            if self.evaluate(expression):
+                return True
+            time.sleep(0.05)
+        return False
+
+    def close(self):
+        try:
+            self.session = None
+            self.call("Browser.close")
+        except (RuntimeError, OSError):
+            pass
+        self.process.wait(timeout=20)
+
+
+class Checks:
+    def __init__(self):
+        self.failed = 0
+
+    def say(self, name, right, detail=""):
+        self.failed += not right
+        print(f"{'ok   ' if right else 'WRONG'} {name} {detail}")
+
+
+def faults(events):
+    """Errors on the console, exceptions, and requests that leave the machine."""
+    found = []
+    for event in events:
+        method, params = event.get("method"), event.get("params", {})
+        if method == "Runtime.exceptionThrown":
+            found.append(params["exceptionDetails"].get("text", "exception"))
+        elif method == "Runtime.consoleAPICalled" and params["type"] in ("error", "assert"):
+            found.append(str([argument.get("value") for argument in params["args"]]))
+        elif method == "Log.entryAdded" and params["entry"]["level"] == "error":
+            found.append(params["entry"]["text"])
+        elif method == "Network.requestWillBeSent":
+            url = params["request"]["url"]
+            if not url.startswith(("file:", "data:", "blob:", "about:")):
+                found.append(f"a request to {url}")
+    return found
+
+
+def picture(browser):
+    """The scene as PNG, in base64."""
+    box = browser.evaluate(
+        "(() => { const b = document.getElementById('scene').getBoundingClientRect();"
+        " return [b.x + scrollX, b.y + scrollY, b.width, b.height] })()"
+    )
+    clip = dict(zip(["x", "y", "width", "height"], box), scale=1)
+    return browser.call("Page.captureScreenshot", format="png", clip=clip)["data"]
+
+
+COLOURS = """(async () => {
+  const image = await createImageBitmap(await (await fetch('data:image/png;base64,%s')).blob());
+  const canvas = new OffscreenCanvas(image.width, image.height);
+  const context = canvas.getContext('2d');
+  context.drawImage(image, 0, 0);
+  const pixels = new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer);
+  const counts = new Map();
+  for (const pixel of pixels) counts.set(pixel, (counts.get(pixel) ?? 0) + 1);
+  return [counts.size, 1 - Math.max(...counts.values()) / pixels.length];
+})()"""
+
+
+def drawn(level):
+    return f"document.getElementById('scene').dataset.level === '{level}'"
+
+
+def move(browser, level):
+    browser.evaluate(
+        "(() => { const s = document.getElementById('level'); delete document.getElementById('scene')"
+        f".dataset.level; s.value = {level}; s.dispatchEvent(new Event('input')) }})()"
+    )
+    return browser.wait(drawn(level))
+
+
+def hover(browser):
+    """What is said about the first place near the middle where something is said."""
+    box = browser.evaluate(
+        "(() => { const b = document.getElementById('scene').getBoundingClientRect();"
+        " return [b.x + b.width / 2, b.y + b.height / 2] })()"
+    )
+    for step in range(12):
+        place = {"x": box[0] + 9 * step - 50, "y": box[1] + 7 * step - 40}
+        browser.call("Input.dispatchMouseEvent", type="mouseMoved", **place)
+        time.sleep(0.4)
+        said = browser.evaluate(
+            "[...document.querySelectorAll('.hovertext')].map((t) => t.textContent).join(' ')"
+        )
+        if said:
+            return said
+    return ""
+
+
+def look(browser, checks, page, screen, out):
+    width, height, mobile = SCREENS[screen]
+    browser.call(
+        "Emulation.setDeviceMetricsOverride",
+        width=width, height=height, deviceScaleFactor=1, mobile=mobile,
+    )
+    browser.events.clear()
+    started = time.monotonic()
+    browser.call("Page.navigate", url=pathlib.Path(page).resolve().as_uri())
+    there = browser.wait("document.getElementById('scene')?.dataset.level !== undefined")
+    seconds = time.monotonic() - started
+    checks.say(f"{screen}: opens", there, f"in {seconds:.2f} s")
+    if not there:
+        checks.say(f"{screen}: console", False, str(faults(browser.events)))
+        return
+    wide = browser.evaluate("document.documentElement.scrollWidth")
+    checks.say(f"{screen}: fits the width", wide <= width, f"{wide} of {width} pixels")
+    first = picture(browser)
+    colours, share = browser.evaluate(COLOURS % first)
+    checks.say(
+        f"{screen}: not blank", colours > 100 and share > 0.1,
+        f"{colours} colours, {100 * share:.0f} % of the pixels not background",
+    )
+    whole = browser.call("Page.captureScreenshot", format="png")["data"]
+    (out / f"{screen}.png").write_bytes(base64.b64decode(whole))
+    last = int(browser.evaluate("document.getElementById('level').max"))
+    start = int(browser.evaluate("document.getElementById('level').value"))
+    other = last // 2 if start != last // 2 else last
+    moved = move(browser, other)
+    second = picture(browser)
+    checks.say(f"{screen}: the slider changes the picture", moved and second != first)
+    checks.say(f"{screen}: and back", move(browser, start) and picture(browser) == first)
+    browser.evaluate(
+        "(() => { const c = document.getElementById('colour'); c.value = 'class';"
+        " c.dispatchEvent(new Event('change')) })()"
+    )
+    browser.wait("document.getElementById('scene').dataset.colour === 'class'")
+    checks.say(f"{screen}: the colour changes the picture", picture(browser) != first)
+    if not mobile:
+        said = hover(browser)
+        right = said.startswith("point ") and "ω = " in said
+        checks.say(f"{screen}: pointing tells of a point", right, repr(said))
+    for trace in ["points", "isosurface"]:
+        before = picture(browser)
+        shown = browser.evaluate(
+            "(async () => { const s = document.getElementById('scene');"
+            f" const k = s.data.findIndex((t) => t.name.startsWith('{trace}'));"
+            " if (k < 0) return false; await Plotly.restyle(s, { visible: true }, [k]); return true })()"
+        )
+        if shown:
+            checks.say(f"{screen}: {trace} can be shown", picture(browser) != before)
+    found = faults(browser.events)
+    checks.say(f"{screen}: console and network are quiet", not found, "; ".join(found))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("page")
+    parser.add_argument("--chromium", default="/usr/bin/chromium")
+    parser.add_argument("--out", default=".", type=pathlib.Path)
+    options = parser.parse_args()
+    if shutil.which(options.chromium) is None:
+        print(f"skipped: there is no {options.chromium}")
+        sys.exit(77)
+    options.out.mkdir(parents=True, exist_ok=True)
+    checks = Checks()
+    size = pathlib.Path(options.page).stat().st_size
+    checks.say("size", size < 15e6, f"{size / 1e6:.1f} MB")
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        browser = Browser(options.chromium, profile)
+        try:
+            browser.attach()
+            for screen in SCREENS:
+                look(browser, checks, options.page, screen, options.out)
+        finally:
+            browser.close()
+    sys.exit(min(checks.failed, 1))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,253 @@
+//! Levels of detail: fewer points, or a coarser volume, and full detail in a region.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+use std::io;
+
+use anyhow::bail;
+use serde::Serialize;
+use walpha::ladder::focus;
+use walpha::points::{Points, Units, difference, select, weigh};
+use walpha::shape::{Betti, Measures, ShapeOptions};
+use walpha::{
+    HaarOptions, Selection, SelectionRule, Tolerance, Truncation, Volume, alpha_shape, haar,
+};
+
+use super::super::Global;
+use super::super::args::WeightArgs;
+use super::super::folder::Folder;
+use super::super::output::tell;
+use super::super::pipeline::{Domain, Input, read};
+use super::super::progress::Progress;
+use super::super::report::{AlphaReport, SCHEMA_VERSION};
+use super::{Ladder, Mesh};
+
+/// What `walpha ladder` did over detail.
+#[derive(Serialize)]
+struct Facts {
+    schema_version: u32,
+    input: String,
+    alpha: AlphaReport,
+    weights: String,
+    domain: Domain,
+    /// Points with full detail; null without a region.
+    points_in_region: Option<usize>,
+    levels: Vec<Row>,
+    seconds: BTreeMap<&'static str, f64>,
+}
+
+#[derive(Serialize)]
+struct Row {
+    points: usize,
+    /// Of the wavelet stage: coefficients kept, ‖f − f̂‖ and its root mean square, gray levels.
+    kept: u64,
+    epsilon: f64,
+    rms: f64,
+    cells: usize,
+    boundary_facets: usize,
+    betti: Option<Betti>,
+    #[serde(flatten)]
+    measures: Measures,
+    coverage: f64,
+    /// Of all meshes of this level.
+    bytes: u64,
+    files: Vec<String>,
+}
+
+/// What a level asks for.
+struct Wanted {
+    name: String,
+    haar: HaarOptions,
+    selection: Selection,
+}
+
+impl Ladder {
+    pub(super) fn over_detail(
+        &self,
+        global: Global,
+        meshes: Vec<Mesh>,
+        mut folder: Folder,
+    ) -> anyhow::Result<()> {
+        let mut progress = Progress::new(global);
+        let Input::Volume(volume, _) = read(&self.input, &mut progress)? else {
+            bail!("levels of detail are made of a volume, and this is a point file; use --alphas");
+        };
+        let weights = WeightArgs::from(self.weights);
+        let units = self.select.units();
+        let domain = Domain::of_grid(&volume, units);
+        let mut stages = Stages { volume: &volume, units, smoothed: None };
+        let full = match &self.roi {
+            None => None,
+            Some(region) => {
+                let wanted = (self.haar.options(), self.select.selection());
+                let points = progress.stage("points", || stages.points(&wanted.0, &wanted.1))?.0;
+                if !points.positions.iter().any(|&p| region.contains(p)) {
+                    bail!("no point lies in --roi: it is in the units of the points, x first");
+                }
+                Some((points, region))
+            }
+        };
+        let mut rows = Vec::new();
+        for wanted in self.wanted() {
+            let (coarse, truncation) =
+                progress.stage("points", || stages.points(&wanted.haar, &wanted.selection))?;
+            let points = match &full {
+                Some((full, region)) => focus(full, &coarse, region),
+                None => coarse,
+            };
+            let weighted = weigh(&points, weights.weighting(false), weights.alpha().squared())?;
+            let options = ShapeOptions::new(weights.alpha());
+            let shape = progress.stage("shape", || alpha_shape(weighted, &options))?;
+            let mut row = Row {
+                points: points.len(),
+                kept: truncation.kept,
+                epsilon: truncation.epsilon,
+                rms: truncation.rms,
+                cells: shape.complex().cells.len(),
+                boundary_facets: walpha::shape::Surface::of(&shape).facets().count(),
+                betti: shape.betti(),
+                measures: *shape.measures(),
+                coverage: shape.measures().volume / domain.volume,
+                bytes: 0,
+                files: Vec::new(),
+            };
+            progress.stage("write", || -> anyhow::Result<()> {
+                for mesh in &meshes {
+                    let name = format!("detail-{}.{}", wanted.name, mesh.extension);
+                    row.bytes += folder.write(&name, |out| mesh.exporter.write(&shape, out))?;
+                    row.files.push(name);
+                }
+                Ok(())
+            })?;
+            rows.push(row);
+        }
+        let in_region = |(points, region): &(Points, &walpha::ladder::Region)| {
+            points.positions.iter().filter(|&&p| region.contains(p)).count()
+        };
+        let facts = Facts {
+            schema_version: SCHEMA_VERSION,
+            input: self.input.input.clone(),
+            alpha: AlphaReport::from(weights.alpha()),
+            weights: weights.weighting(false).to_string(),
+            domain,
+            points_in_region: full.as_ref().map(in_region),
+            levels: rows,
+            seconds: progress.finish().into_iter().collect(),
+        };
+        folder.write("detail.csv", |out| write_rows(&facts.levels, out))?;
+        folder.write("detail.json", |out| Ok(serde_json::to_writer_pretty(out, &facts)?))?;
+        tell(global, &facts)
+    }
+
+    fn wanted(&self) -> Vec<Wanted> {
+        let (haar, selection) = (self.haar.options(), self.select.selection());
+        let by_count = self.counts.iter().map(|&count| Wanted {
+            name: count.to_string(),
+            haar,
+            selection: Selection { rule: SelectionRule::Count(count), ..selection },
+        });
+        let by_epsilon = self.epsilons.iter().map(|&epsilon| Wanted {
+            name: format!("epsilon-{epsilon}"),
+            haar: HaarOptions { tolerance: Tolerance::Epsilon(epsilon), ..haar },
+            selection,
+        });
+        by_count.chain(by_epsilon).collect()
+    }
+}
+
+/// The stages before weights; the truncated volume is kept for the next level.
+struct Stages<'a> {
+    volume: &'a Volume,
+    units: Units,
+    smoothed: Option<(HaarOptions, Volume, Truncation)>,
+}
+
+impl Stages<'_> {
+    fn points(
+        &mut self,
+        options: &HaarOptions,
+        selection: &Selection,
+    ) -> anyhow::Result<(Points, Truncation)> {
+        let (_, smoothed, truncation) = match self.smoothed.take().filter(|s| s.0 == *options) {
+            Some(known) => self.smoothed.insert(known),
+            None => {
+                let (smoothed, truncation) = haar::smooth(self.volume, options)?;
+                self.smoothed.insert((*options, smoothed, truncation))
+            }
+        };
+        let points = select(self.volume, smoothed, &difference(smoothed), selection, self.units)?;
+        Ok((points, *truncation))
+    }
+}
+
+impl Display for Facts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "input     {}", self.input)?;
+        writeln!(f, "weights   {}", self.weights)?;
+        writeln!(f, "parameter {}", self.alpha)?;
+        if let Some(points) = self.points_in_region {
+            writeln!(f, "region    {points} points, in each level")?;
+        }
+        writeln!(
+            f,
+            "{:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>10}  files",
+            "points", "rms", "cells", "boundary", "volume", "coverage", "bytes"
+        )?;
+        for row in &self.levels {
+            writeln!(
+                f,
+                "{:>9} {:>9.4} {:>9} {:>9} {:>12.1} {:>8.2}% {:>10}  {}",
+                row.points,
+                row.rms,
+                row.cells,
+                row.boundary_facets,
+                row.measures.volume,
+                100.0 * row.coverage,
+                row.bytes,
+                row.files.join(", ")
+            )?;
+        }
+        writeln!(f, "rms: the error of the wavelet stage, in gray levels")
+    }
+}
+
+/// `detail.csv`: a row for each level.
+fn write_rows(rows: &[Row], out: &mut dyn io::Write) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(out);
+    csv.write_record([
+        "points",
+        "kept",
+        "epsilon",
+        "rms",
+        "cells",
+        "boundary_facets",
+        "b0",
+        "b1",
+        "b2",
+        "volume",
+        "area",
+        "coverage",
+        "bytes",
+    ])?;
+    for row in rows {
+        let betti = row.betti.map(<[u64; 3]>::from);
+        let betti = [0, 1, 2].map(|k| betti.map_or(String::new(), |betti| betti[k].to_string()));
+        let [b0, b1, b2] = betti;
+        csv.write_record([
+            row.points.to_string(),
+            row.kept.to_string(),
+            row.epsilon.to_string(),
+            row.rms.to_string(),
+            row.cells.to_string(),
+            row.boundary_facets.to_string(),
+            b0,
+            b1,
+            b2,
+            row.measures.volume.to_string(),
+            row.measures.area.to_string(),
+            row.coverage.to_string(),
+            row.bytes.to_string(),
+        ])?;
+    }
+    csv.flush()
+}

@@ -1,0 +1,259 @@
+//! What a ladder tells: JSON, text, and tables.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display, Write as _};
+use std::io;
+
+use serde::Serialize;
+use walpha::Alpha;
+use walpha::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
+use walpha::shape::{Betti, ByClass, Measures, Void};
+
+use super::super::pipeline::{Domain, Weighed};
+use super::super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport, number_or_name};
+
+/// What `walpha ladder` did over α.
+#[derive(Serialize)]
+pub struct Facts {
+    schema_version: u32,
+    input: String,
+    points: usize,
+    hidden: usize,
+    duplicates: usize,
+    alpha_ref: AlphaReport,
+    weights: WeightsReport,
+    domain: Domain,
+    /// Cells, facets, edges, vertices of the triangulation.
+    simplices: [usize; 4],
+    /// Critical values that doubles tell apart.
+    critical_values: usize,
+    suggested: Option<Suggestions>,
+    levels: Vec<Row>,
+    files: Vec<String>,
+    seconds: BTreeMap<&'static str, f64>,
+}
+
+#[derive(Serialize)]
+struct Row {
+    #[serde(serialize_with = "number_or_name")]
+    alpha: f64,
+    cells: usize,
+    facets: ByClass,
+    edges: ByClass,
+    vertices: ByClass,
+    betti: Betti,
+    solid_components: u64,
+    #[serde(flatten)]
+    measures: Measures,
+    coverage: f64,
+    void_volume: f64,
+    /// All are in voids.csv.
+    largest_void: Option<Void>,
+}
+
+impl Facts {
+    pub fn new(input: &str, weighed: &Weighed, alpha_ref: Alpha, domain: Domain) -> Self {
+        Self {
+            schema_version: SCHEMA_VERSION,
+            input: input.to_owned(),
+            points: weighed.points.len(),
+            hidden: 0,
+            duplicates: 0,
+            alpha_ref: AlphaReport::from(alpha_ref),
+            weights: WeightsReport::of(weighed),
+            domain,
+            simplices: [0; 4],
+            critical_values: 0,
+            suggested: None,
+            levels: Vec::new(),
+            files: Vec::new(),
+            seconds: BTreeMap::new(),
+        }
+    }
+
+    /// Adds what was found.
+    pub fn add(
+        &mut self,
+        filtration: &Filtration,
+        curve: &Curve,
+        suggested: Suggestions,
+        ladder: &Ladder,
+    ) {
+        let whole = filtration.whole();
+        let complex = whole.complex();
+        self.hidden = whole.hidden().map_or(0, <[u32]>::len);
+        self.duplicates = whole.duplicates().len();
+        self.simplices = [
+            complex.cells.len(),
+            complex.facets.len(),
+            complex.edges.len(),
+            complex.vertices.len(),
+        ];
+        self.critical_values = curve.len();
+        self.suggested = Some(suggested);
+        let row = |level: &Level| Row {
+            alpha: level.alpha,
+            cells: level.cells,
+            facets: level.facets,
+            edges: level.edges,
+            vertices: level.vertices,
+            betti: level.betti,
+            solid_components: level.solid_components,
+            measures: level.measures,
+            coverage: level.coverage,
+            void_volume: level.void_volume(),
+            largest_void: level.voids.first().copied(),
+        };
+        self.levels = ladder.levels.iter().map(row).collect();
+    }
+
+    /// Adds what it cost and what it left.
+    pub fn finish(&mut self, seconds: Vec<(&'static str, f64)>, files: Vec<String>) {
+        self.seconds = seconds.into_iter().collect();
+        self.files = files;
+    }
+}
+
+impl Display for Facts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [cells, facets, edges, vertices] = self.simplices;
+        writeln!(f, "input     {}", self.input)?;
+        writeln!(
+            f,
+            "points    {}, {} duplicates, {} hidden",
+            self.points, self.duplicates, self.hidden
+        )?;
+        writeln!(f, "weights   {} (squared lengths), frozen at {}", self.weights, self.alpha_ref)?;
+        writeln!(
+            f,
+            "whole     {cells} cells, {facets} facets, {edges} edges, {vertices} vertices"
+        )?;
+        writeln!(f, "domain    {}", self.domain)?;
+        if let Some(s) = &self.suggested {
+            writeln!(f, "curve     {} critical values; α to try:", self.critical_values)?;
+            writeln!(f, "          {:<12} every point in a cell", s.all_points)?;
+            writeln!(f, "          {:<12} and one solid component", s.one_region)?;
+            writeln!(f, "          {:<12} and no void", s.no_void)?;
+            let [low, high] = s.plateau;
+            writeln!(f, "          {low:<12} to {high}: the longest stretch without a change")?;
+        }
+        writeln!(
+            f,
+            "{:>12} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} {:>6} {:>12} {:>9} {:>12}",
+            "α",
+            "cells",
+            "facets",
+            "edges",
+            "b0",
+            "b1",
+            "b2",
+            "solids",
+            "volume",
+            "coverage",
+            "voids"
+        )?;
+        for level in &self.levels {
+            let Betti { b0, b1, b2 } = level.betti;
+            let mut alpha = String::new();
+            // Digits that do not fit the column are in the files.
+            write!(alpha, "{}", (level.alpha * 1e6).round() / 1e6)?;
+            writeln!(
+                f,
+                "{alpha:>12} {:>8} {:>8} {:>8} {b0:>6} {b1:>6} {b2:>6} {:>6} {:>12.1} {:>8.2}% {:>12.1}",
+                level.cells,
+                level.facets.total(),
+                level.edges.total(),
+                level.solid_components,
+                level.measures.volume,
+                100.0 * level.coverage,
+                level.void_volume,
+            )?;
+        }
+        for file in &self.files {
+            writeln!(f, "wrote     {file}")?;
+        }
+        write!(f, "time     ")?;
+        for stage in ["read", "haar", "points", "filtration", "curve", "ladder", "write", "total"] {
+            if let Some(seconds) = self.seconds.get(stage) {
+                write!(f, " {stage} {seconds:.2} s")?;
+            }
+        }
+        writeln!(f)
+    }
+}
+
+/// `ladder.csv`: a row for each level. α, volumes and areas are in the units of the points, squared
+/// and cubed.
+pub fn write_levels(ladder: &Ladder, out: &mut dyn io::Write) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(out);
+    csv.write_record([
+        "alpha",
+        "cells",
+        "facets_interior",
+        "facets_regular",
+        "facets_singular",
+        "edges_interior",
+        "edges_regular",
+        "edges_singular",
+        "vertices_interior",
+        "vertices_regular",
+        "vertices_singular",
+        "b0",
+        "b1",
+        "b2",
+        "solid_components",
+        "volume",
+        "area",
+        "singular_area",
+        "coverage",
+        "void_volume",
+        "largest_void",
+        "filling_alpha",
+    ])?;
+    for level in &ladder.levels {
+        let classes = [level.facets, level.edges, level.vertices]
+            .map(|c| [c.interior, c.regular, c.singular]);
+        let counts = std::iter::once(level.cells).chain(classes.into_iter().flatten());
+        let topology = <[u64; 3]>::from(level.betti).into_iter().chain([level.solid_components]);
+        let Measures { volume, area, singular_area } = level.measures;
+        let sizes = [volume, area, singular_area, level.coverage, level.void_volume()];
+        // Without a void both fields are empty.
+        let largest = level.voids.first().map(|void| [void.volume, void.filling_alpha]);
+        let field = |k: usize| largest.map_or(String::new(), |largest| largest[k].to_string());
+        let record = std::iter::once(level.alpha.to_string())
+            .chain(counts.map(|count| count.to_string()))
+            .chain(topology.map(|count| count.to_string()))
+            .chain(sizes.map(|size| size.to_string()))
+            .chain([field(0), field(1)]);
+        csv.write_record(record)?;
+    }
+    csv.flush()
+}
+
+/// `voids.csv`, the hole ledger: a row for each void of each level, largest first.
+pub fn write_voids(ladder: &Ladder, out: &mut dyn io::Write) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(out);
+    csv.write_record([
+        "alpha",
+        "cells",
+        "volume",
+        "x_low",
+        "y_low",
+        "z_low",
+        "x_high",
+        "y_high",
+        "z_high",
+        "filling_alpha",
+    ])?;
+    for level in &ladder.levels {
+        for void in &level.voids {
+            let numbers =
+                [&[void.volume][..], &void.low, &void.high, &[void.filling_alpha]].concat();
+            let record = [level.alpha.to_string(), void.cells.to_string()]
+                .into_iter()
+                .chain(numbers.iter().map(|number| number.to_string()));
+            csv.write_record(record)?;
+        }
+    }
+    csv.flush()
+}

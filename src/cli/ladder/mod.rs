@@ -1,0 +1,168 @@
+//! `walpha ladder`: many α, or many levels of detail.
+
+mod detail;
+mod facts;
+mod regions;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{anyhow, bail};
+use clap::Args;
+use walpha::export::{Exporter, Format};
+use walpha::ladder::{Filtration, Ladder as Levels, Level, Region};
+use walpha::render::ladder_figure;
+
+use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::folder::Folder;
+use super::output::tell;
+use super::progress::Progress;
+use super::{Global, pipeline};
+use facts::{Facts, write_levels, write_voids};
+use regions::region;
+
+/// Shapes at many α from one triangulation, or at several levels of detail.
+///
+/// Over α, weights are frozen, so that the shapes are nested: ladder.csv and ladder.json have counts,
+/// Betti numbers, volume and area of each level, voids.csv has every void with the α that fills it,
+/// ladder.png and ladder.svg draw it. The α to try are suggested. Over points (--counts) or the
+/// error of the wavelet stage (--epsilons) there is a mesh for each level of detail, at α = --alpha-ref,
+/// and detail.csv and detail.json tell error and size.
+///
+/// Examples: walpha ladder sample:skull --alphas 1,2,5,10,20,50 -o ladder;
+/// walpha ladder sample:skull --counts 1000,4000,16000 --roi 20:40,20:40,20:40 -o detail
+#[derive(Args)]
+pub struct Ladder {
+    #[command(flatten)]
+    input: InputArgs,
+    /// Folder to write to; made if it is not there.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Squared lengths, as in 1,2,5,inf; or auto, for critical values of the topology.
+    #[arg(
+        long,
+        value_name = "A,A,…",
+        default_value = "auto",
+        group = "levels",
+        allow_hyphen_values = true
+    )]
+    alphas: Alphas,
+    /// Levels of detail: so many points each, of largest gray difference.
+    #[arg(long, value_name = "N,N,…", value_delimiter = ',', group = "levels")]
+    counts: Vec<u64>,
+    /// Levels of detail: the L² norm of the error allowed to the wavelet stage, in gray levels.
+    #[arg(long, value_name = "E,E,…", value_delimiter = ',', group = "levels",
+          value_parser = super::args::not_negative)]
+    epsilons: Vec<f64>,
+    /// A region that keeps full detail (the points of --count, --ratio or --threshold) at every level
+    /// of detail; borders belong to it. In the units of the points.
+    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = region,
+          allow_hyphen_values = true)]
+    roi: Option<Region>,
+    /// Meshes to write for each level, by extension, as in ply,vtu [default: none for α, ply for
+    /// levels of detail].
+    #[arg(long, value_name = "EXT,EXT,…", value_delimiter = ',')]
+    mesh: Vec<String>,
+    #[command(flatten)]
+    haar: HaarArgs,
+    #[command(flatten)]
+    select: SelectArgs,
+    #[command(flatten)]
+    weights: FrozenArgs,
+}
+
+/// Levels that `--alphas auto` chooses, suggested ones not counted.
+const READABLE: usize = 24;
+
+impl Ladder {
+    pub fn run(self, global: Global) -> anyhow::Result<()> {
+        let detail = !(self.counts.is_empty() && self.epsilons.is_empty());
+        if self.roi.is_some() && !detail {
+            bail!("--roi belongs to levels of detail: give --counts or --epsilons too");
+        }
+        let meshes = meshes(&self.mesh, if detail { &["ply"] } else { &[] })?;
+        let folder = Folder::open(&self.output, "--output")?;
+        if detail {
+            return self.over_detail(global, meshes, folder);
+        }
+        self.over_alpha(global, meshes, folder)
+    }
+
+    fn over_alpha(
+        &self,
+        global: Global,
+        meshes: Vec<Mesh>,
+        mut folder: Folder,
+    ) -> anyhow::Result<()> {
+        let mut progress = Progress::new(global);
+        let weights = WeightArgs::from(self.weights);
+        let read = pipeline::read(&self.input, &mut progress)?;
+        let (weighed, _) =
+            pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
+        let domain = pipeline::domain(&weighed, self.select.units());
+        let mut facts = Facts::new(&self.input.input, &weighed, weights.alpha(), domain);
+        let points = weighed.points;
+        let filtration = progress.stage("filtration", || Filtration::new(points))?;
+        let curve = progress.stage("curve", || filtration.curve());
+        let suggested = progress.stage("curve", || filtration.suggest(&curve));
+        let alphas = match &self.alphas {
+            Alphas::Given(alphas) => alphas.clone(),
+            Alphas::Auto => progress.stage("curve", || {
+                pipeline::readable(&filtration, &curve, READABLE, weights.alpha())
+            }),
+        };
+        let levels = progress.stage("ladder", || filtration.levels(&alphas));
+        let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
+
+        let title = format!("Ladder of {}, ω frozen", self.input.input);
+        let figure = ladder_figure(&title, &ladder, &curve, &suggested, domain.volume)?;
+        progress.stage("write", || -> anyhow::Result<()> {
+            folder.write("ladder.csv", |out| write_levels(&ladder, out))?;
+            folder.write("voids.csv", |out| write_voids(&ladder, out))?;
+            let (png, svg) = (figure.to_png()?, figure.to_svg()?);
+            folder.write("ladder.png", |out| out.write_all(&png))?;
+            folder.write("ladder.svg", |out| out.write_all(svg.as_bytes()))?;
+            for (k, level) in ladder.levels.iter().enumerate() {
+                if meshes.is_empty() {
+                    break;
+                }
+                let shape = levels.shape(k, false, level.betti);
+                for mesh in &meshes {
+                    let name = level_name(&ladder, k, level, &mesh.extension);
+                    folder.write(&name, |out| mesh.exporter.write(&shape, out))?;
+                }
+            }
+            Ok(())
+        })?;
+        facts.add(&filtration, &curve, suggested, &ladder);
+        let mut files = folder.written().to_vec();
+        files.push(self.output.join("ladder.json").display().to_string());
+        facts.finish(progress.finish(), files);
+        folder.write("ladder.json", |out| Ok(serde_json::to_writer_pretty(out, &facts)?))?;
+        tell(global, &facts)
+    }
+}
+
+/// The name of a level's mesh: its place in the ladder, and its α.
+fn level_name(ladder: &Levels, k: usize, level: &Level, extension: &str) -> String {
+    let digits = ladder.levels.len().to_string().len();
+    format!("level-{:0digits$}-alpha-{}.{extension}", k + 1, level.alpha)
+}
+
+/// A format of meshes.
+struct Mesh {
+    extension: String,
+    exporter: Box<dyn Exporter>,
+}
+
+fn meshes(asked: &[String], silent: &[&str]) -> anyhow::Result<Vec<Mesh>> {
+    let asked: Vec<&str> = asked.iter().map(|extension| extension.trim()).collect();
+    let extensions = if asked.is_empty() { silent } else { &asked[..] };
+    let mesh = |extension: &&str| {
+        let extension = extension.trim_start_matches('.').to_ascii_lowercase();
+        let name = format!("level.{extension}");
+        let format =
+            Format::of(Path::new(&name)).map_err(|unknown| anyhow!("--mesh: {unknown}"))?;
+        Ok(Mesh { exporter: format.exporter(false), extension })
+    };
+    extensions.iter().map(mesh).collect()
+}

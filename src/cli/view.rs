@@ -1,0 +1,179 @@
+//! `walpha view`: a page to look at.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+use std::path::PathBuf;
+
+use anyhow::bail;
+use clap::Args;
+use serde::Serialize;
+use walpha::export::Target;
+use walpha::ladder::Filtration;
+use walpha::points::Units;
+use walpha::render::{Original, Page, Subject};
+
+use super::Global;
+use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::output::tell;
+use super::pipeline::{self, Weighed};
+use super::progress::Progress;
+use super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport};
+
+/// Make a page that shows the shapes in a browser: self-contained, no network needed.
+///
+/// A slider goes over α with the weights frozen; the boundary is coloured by F or by class, singular
+/// facets and edges, points sized by weight and an isosurface of the volume can be shown and hidden.
+///
+/// Example: walpha view sample:skull --weights min-max -o skull.html
+#[derive(Args)]
+pub struct View {
+    #[command(flatten)]
+    input: InputArgs,
+    /// Page to write (.html).
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Levels of the slider: squared lengths, as in 1,2,5,inf; or auto, for critical values of the
+    /// topology.
+    #[arg(long, value_name = "A,A,…", default_value = "auto", allow_hyphen_values = true)]
+    alphas: Alphas,
+    /// Gray level of the isosurface to compare, for volumes.
+    #[arg(long, value_name = "G", default_value_t = 50.0, allow_negative_numbers = true)]
+    isovalue: f64,
+    #[command(flatten)]
+    haar: HaarArgs,
+    #[command(flatten)]
+    select: SelectArgs,
+    #[command(flatten)]
+    weights: FrozenArgs,
+}
+
+/// Levels that `--alphas auto` chooses, suggested ones not counted.
+const READABLE: usize = 16;
+
+#[derive(Serialize)]
+struct Facts {
+    schema_version: u32,
+    input: String,
+    points: usize,
+    levels: usize,
+    bytes: usize,
+    /// What was left out for display, if anything.
+    simplified: Option<String>,
+    file: String,
+    seconds: BTreeMap<&'static str, f64>,
+}
+
+impl View {
+    pub fn run(self, global: Global) -> anyhow::Result<()> {
+        let html = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("html"));
+        if !html {
+            bail!("{}: a page can be written as .html", self.output.display());
+        }
+        if !self.isovalue.is_finite() {
+            bail!("--isovalue must be a finite gray level");
+        }
+        let target = Target::open(&self.output)?;
+        let mut progress = Progress::new(global);
+        let weights = WeightArgs::from(self.weights);
+        let read = pipeline::read(&self.input, &mut progress)?;
+        let (weighed, volume) =
+            pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
+        let told = self.told(&weighed, &weights);
+        let domain = pipeline::domain(&weighed, self.select.units());
+        let points = weighed.points;
+        let filtration = progress.stage("filtration", || Filtration::new(points))?;
+        let alphas = match &self.alphas {
+            Alphas::Given(alphas) => alphas.clone(),
+            Alphas::Auto => progress.stage("curve", || {
+                pipeline::readable(&filtration, &filtration.curve(), READABLE, weights.alpha())
+            }),
+        };
+        let levels = filtration.levels(&alphas);
+        if levels.len() > Page::MOST_LEVELS {
+            bail!("{} levels are too many for a page: at most {}", levels.len(), Page::MOST_LEVELS);
+        }
+        let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
+        // The level the weights are meant for, or the last below it.
+        let first = levels.alphas().partition_point(|alpha| *alpha <= weights.alpha());
+        let title = format!("Alpha shapes of {}", self.input.input);
+        let subject = Subject {
+            title: &title,
+            facts: &told,
+            unit: match self.select.units() {
+                Units::Voxel if volume.is_some() => "voxels",
+                _ => "units of the input",
+            },
+            levels: &levels,
+            ladder: &ladder,
+            first: first.saturating_sub(1),
+            original: volume.as_ref().map(|volume| Original {
+                volume,
+                isovalue: self.isovalue,
+                units: self.select.units(),
+            }),
+        };
+        let page = progress.stage("page", || Page::new(&subject))?;
+        if !global.quiet {
+            let size = page.html.len() as f64 / 1e6;
+            eprintln!("walpha: {} takes {size:.1} MB", self.output.display());
+            if let Some(told) = &page.simplified {
+                eprintln!("walpha: {told}");
+            }
+        }
+        progress.stage("write", || target.write(|out| out.write_all(page.html.as_bytes())))?;
+        let facts = Facts {
+            schema_version: SCHEMA_VERSION,
+            input: self.input.input,
+            points: filtration.points().len(),
+            levels: levels.len(),
+            bytes: page.html.len(),
+            simplified: page.simplified,
+            file: self.output.display().to_string(),
+            seconds: progress.finish().into_iter().collect(),
+        };
+        tell(global, &facts)
+    }
+
+    /// What the page tells besides the levels' numbers.
+    fn told(&self, weighed: &Weighed, weights: &WeightArgs) -> Vec<(String, String)> {
+        let mut told = vec![("input".to_owned(), self.input.input.clone())];
+        if let Some(volume) = &weighed.volume {
+            let [x, y, z] = volume.dims;
+            let (low, high) = (volume.range.low, volume.range.high);
+            told.push((
+                "volume".into(),
+                format!("{x}×{y}×{z} samples, values {low} to {high} are gray 0 to 255"),
+            ));
+            let t = &volume.truncation;
+            told.push((
+                "Haar".into(),
+                format!(
+                    "{} of {} coefficients kept, rms {:.4} gray levels",
+                    t.kept, t.total, t.rms
+                ),
+            ));
+        }
+        told.push(("points".into(), weighed.points.len().to_string()));
+        let alpha = AlphaReport::from(weights.alpha());
+        told.push((
+            "weights ω".into(),
+            format!("{}, frozen at {alpha}", WeightsReport::of(weighed)),
+        ));
+        told.push(("made by".into(), format!("walpha {}", env!("CARGO_PKG_VERSION"))));
+        told
+    }
+}
+
+impl Display for Facts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "input     {}", self.input)?;
+        writeln!(f, "points    {}", self.points)?;
+        writeln!(f, "levels    {}", self.levels)?;
+        if let Some(told) = &self.simplified {
+            writeln!(f, "page      {told}")?;
+        }
+        writeln!(f, "wrote     {}, {:.1} MB", self.file, self.bytes as f64 / 1e6)?;
+        let total = self.seconds.get("total").copied().unwrap_or_default();
+        writeln!(f, "time      total {total:.2} s")
+    }
+}

@@ -1,0 +1,221 @@
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::Filtration;
+use super::levels::ByLevel;
+use crate::shape::{Alpha, Betti, Interval, Spheres};
+
+/// The topology of a filtration at every α at which a simplex comes.
+///
+/// Critical values are numbers with rounding bounds here; where two of them might be equal they are
+/// one entry. On a voxel grid, where they are equal by the thousand, that leaves few.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// Each critical value lies in its interval, and the next one above it: the shape at an upper
+    /// end has what comes at the value.
+    values: Vec<Interval>,
+    /// The Betti numbers from each value on.
+    pub betti: Vec<Betti>,
+    /// The solid components from each value on.
+    pub solid_components: Vec<u64>,
+    /// Vertices of the triangulation that no cell of the shape has, from each value on.
+    pub loose: Vec<u64>,
+    largest_weight: f64,
+}
+
+/// Values of α to try, squared lengths, each the first double at which the shape has the property.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Suggestions {
+    /// Every vertex of the triangulation is one of a cell: MATLAB's
+    /// `criticalAlpha(shp, 'all-points')`, CGAL's `Alpha_shape_3::find_alpha_solid`.
+    pub all_points: f64,
+    /// That, and the cells are one solid component: MATLAB's `criticalAlpha(shp, 'one-region')`,
+    /// CGAL's `Alpha_shape_3::find_optimal_alpha(1)`, which searches by halving and may find a
+    /// larger one, as the number of components goes up and down.
+    pub one_region: f64,
+    /// That, and there is no void.
+    pub no_void: f64,
+    /// From where to where the Betti numbers stay the same longest, as a ratio of the squared radii
+    /// of the largest balls, from `all_points` on.
+    pub plateau: [f64; 2],
+}
+
+impl Filtration {
+    /// The topology at all critical values. O(n log n).
+    pub fn curve(&self) -> Curve {
+        let lower = self.facets.par_iter().chain(&self.edges).chain(&self.vertices);
+        let mut radii: Vec<Interval> = lower.flatten().chain(&self.cells).copied().collect();
+        radii.par_sort_unstable_by(|a, b| a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)));
+        let mut values: Vec<Interval> = Vec::new();
+        for radius in radii {
+            match values.last_mut() {
+                Some(value) if radius.low <= value.high => value.high = value.high.max(radius.high),
+                _ => values.push(radius),
+            }
+        }
+        let alphas: Vec<Alpha> = values
+            .iter()
+            .map(|value| Alpha::from_squared(value.high).expect("radii are numbers"))
+            .collect();
+        let levels = self.levels(&alphas);
+        // Upper ends that are equal would be one level; a gap lies between any two.
+        assert_eq!(levels.len(), values.len(), "one level for each value");
+        let (betti, solid_components) =
+            rayon::join(|| levels.betti(), || levels.solid_components());
+        let weights = &self.points().weights;
+        Curve {
+            betti,
+            solid_components,
+            loose: self.loose(&levels.cells, levels.len()),
+            largest_weight: weights.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            values,
+        }
+    }
+
+    fn loose(&self, first: &[u32], levels: usize) -> Vec<u64> {
+        let vertices = self.whole.complex().vertices.len();
+        let mut covered = vec![levels as u32; vertices];
+        for (cell, &level) in self.whole.complex().cells.vertices.iter().zip(first) {
+            for &v in cell {
+                let at = &mut covered[self.incidence.vertex_rows[v as usize] as usize];
+                *at = level.min(*at);
+            }
+        }
+        let by_level = ByLevel::new(levels, covered.iter().copied());
+        let mut loose = vertices as u64;
+        let less = |level| {
+            loose -= by_level.at(level).len() as u64;
+            loose
+        };
+        (0..levels).map(less).collect()
+    }
+
+    /// What α to try. O(n).
+    pub fn suggest(&self, curve: &Curve) -> Suggestions {
+        let last = curve.values.len() - 1;
+        let from = |start: usize, holds: &dyn Fn(usize) -> bool| {
+            (start..=last).find(|&k| holds(k)).expect("the whole triangulation is one solid")
+        };
+        let all_points = from(0, &|k| curve.loose[k] == 0);
+        let one_region = from(all_points, &|k| curve.solid_components[k] == 1);
+        let no_void = from(one_region, &|k| curve.betti[k].b2 == 0);
+        let plateau = curve.plateau(all_points);
+        let [all_points, one_region, no_void, low, high] =
+            self.alphas_at(curve, [all_points, one_region, no_void, plateau[0], plateau[1]]);
+        Suggestions { all_points, one_region, no_void, plateau: [low, high] }
+    }
+
+    /// At most `count` critical values at which Betti numbers change, as evenly as they come in the
+    /// logarithm of the squared radius α + max ω of the largest balls. Each is the first double
+    /// at which the shape is the new one. O(n·count).
+    ///
+    /// # Panics
+    /// When `count` is less than 2.
+    pub fn readable(&self, curve: &Curve, count: usize) -> Vec<Alpha> {
+        assert!(count >= 2, "two ends are needed");
+        let changes: Vec<usize> = (0..curve.values.len())
+            .filter(|&k| curve.size(k) > 0.0 && (k == 0 || curve.betti[k] != curve.betti[k - 1]))
+            .collect();
+        let (Some(&first), Some(&last)) = (changes.first(), changes.last()) else {
+            return Vec::new();
+        };
+        let (low, high) = (curve.size(first).ln(), curve.size(last).ln());
+        let nearest = |step: usize| {
+            let wanted = low + (high - low) * step as f64 / (count - 1) as f64;
+            let away = |k: usize| (curve.size(k).ln() - wanted).abs();
+            let above = changes.partition_point(|&k| curve.size(k).ln() < wanted);
+            let sides = [above.saturating_sub(1), above.min(changes.len() - 1)];
+            let [a, b] = sides.map(|at| changes[at]);
+            if away(a) <= away(b) { a } else { b }
+        };
+        let mut chosen: Vec<usize> = (0..count).map(nearest).collect();
+        chosen.dedup();
+        let alpha = |&k: &usize| {
+            let [alpha] = self.alphas_at(curve, [k]);
+            Alpha::from_squared(alpha).expect("radii are numbers")
+        };
+        chosen.par_iter().map(alpha).collect()
+    }
+
+    /// The first doubles that are not below critical values.
+    fn alphas_at<const M: usize>(&self, curve: &Curve, values: [usize; M]) -> [f64; M] {
+        let spheres = self.spheres();
+        let whole = self.whole.complex();
+        values.map(|k| {
+            let value = curve.values[k];
+            let mut alpha = f64::NEG_INFINITY;
+            raise(&mut alpha, value, &spheres, &whole.cells.vertices, self.cells.iter().copied());
+            let lower = self.facets.iter().map(known);
+            raise(&mut alpha, value, &spheres, &self.incidence.facets, lower);
+            let lower = self.edges.iter().map(known);
+            raise(&mut alpha, value, &spheres, &whole.edges.vertices, lower);
+            let lower = self.vertices.iter().map(known);
+            raise(&mut alpha, value, &spheres, &whole.vertices.vertices, lower);
+            alpha
+        })
+    }
+}
+
+/// What has no sphere of its own lies above everything.
+fn known(radius: &Option<Interval>) -> Interval {
+    radius.unwrap_or(Interval { low: f64::INFINITY, high: f64::INFINITY })
+}
+
+/// Raises α until every simplex whose radius lies in `value` fits.
+fn raise<const N: usize>(
+    alpha: &mut f64,
+    value: Interval,
+    spheres: &Spheres<'_>,
+    rows: &[[u32; N]],
+    radii: impl Iterator<Item = Interval>,
+) {
+    for (&row, radius) in rows.iter().zip(radii) {
+        let within = value.low <= radius.low && radius.high <= value.high;
+        if within && !spheres.fits(row, radius, *alpha) {
+            *alpha = spheres.first_alpha(row);
+        }
+    }
+}
+
+impl Curve {
+    /// The number of critical values.
+    pub fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// α just above each critical value, ascending: the rest of a step of the curve lies between.
+    pub fn alphas(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        self.values.iter().map(|value| value.high)
+    }
+
+    /// The largest weight: what α must be raised by to have the squared radius of the largest balls.
+    pub fn largest_weight(&self) -> f64 {
+        self.largest_weight
+    }
+
+    /// The squared radius of the largest balls at a value.
+    fn size(&self, k: usize) -> f64 {
+        self.values[k].high + self.largest_weight
+    }
+
+    /// The value at which the longest stretch without a change begins, and the one that ends it.
+    fn plateau(&self, start: usize) -> [usize; 2] {
+        let mut best = [start, start];
+        let ratio = |[a, b]: [usize; 2]| self.size(b) / self.size(a);
+        let mut begin = start;
+        for k in start + 1..self.values.len() {
+            if self.betti[k] != self.betti[begin] {
+                if ratio([begin, k]) > ratio(best) {
+                    best = [begin, k];
+                }
+                begin = k;
+            }
+        }
+        best
+    }
+}

@@ -1,0 +1,135 @@
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+
+use super::incidence::Incidence;
+use crate::points::WeightedPoints;
+use crate::shape::{
+    Alpha, AlphaShape, Complex, Interval, ShapeError, ShapeOptions, Spheres, alpha_shape,
+};
+
+/// All alpha shapes of a set of points at once: the regular triangulation, and for each simplex
+/// when it comes.
+///
+/// The weights are what they are, for every α: with weights in proportion to α shapes would not
+/// be nested. A simplex comes at the squared radius of its smallest orthogonal sphere if no point
+/// lies strictly inside (it is *Gabriel*), else with the first simplex it is a face of
+/// (Edelsbrunner and Mücke 1994, doi:10.1145/174462.156635; CGAL's `Alpha_shape_3` keeps the same
+/// intervals, in rounded numbers). Here a radius is an interval of doubles, and where an α lies in
+/// one, exact arithmetic decides: a shape taken from a filtration is the one
+/// [`alpha_shape`] makes.
+pub struct Filtration {
+    pub(super) whole: AlphaShape,
+    pub(super) incidence: Incidence,
+    /// Squared radii of the smallest orthogonal spheres, by row; of all cells, …
+    pub(super) cells: Vec<Interval>,
+    /// … and of what is Gabriel among lower simplices.
+    pub(super) facets: Vec<Option<Interval>>,
+    pub(super) edges: Vec<Option<Interval>>,
+    pub(super) vertices: Vec<Option<Interval>>,
+}
+
+impl Filtration {
+    /// Triangulates points and finds when each simplex comes. About as dear as one shape of the
+    /// whole triangulation and half of one more; expected O(n log n).
+    ///
+    /// # Errors
+    /// As [`alpha_shape`].
+    pub fn new(points: WeightedPoints) -> Result<Self, ShapeError> {
+        let options = ShapeOptions { exterior: true, ..ShapeOptions::new(Alpha::INFINITE) };
+        let whole = alpha_shape(points, &options)?;
+        let complex = whole.complex();
+        let incidence = Incidence::of(complex, whole.points().len());
+        let spheres = Spheres::new(&whole.points().positions, &whole.points().weights);
+        let cells =
+            complex.cells.vertices.par_iter().map(|&cell| spheres.squared_radius(cell)).collect();
+        let facets = gabriel_facets(complex, &incidence, &spheres);
+        let edges = gabriel_edges(complex, &incidence, &spheres);
+        let vertices = gabriel_vertices(complex, &incidence, &spheres);
+        Ok(Self { whole, incidence, cells, facets, edges, vertices })
+    }
+
+    /// The points and their frozen weights.
+    pub fn points(&self) -> &WeightedPoints {
+        self.whole.points()
+    }
+
+    /// The shape at α = ∞: all simplices of the triangulation.
+    pub fn whole(&self) -> &AlphaShape {
+        &self.whole
+    }
+
+    pub(super) fn spheres(&self) -> Spheres<'_> {
+        Spheres::new(&self.points().positions, &self.points().weights)
+    }
+}
+
+fn gabriel_facets(
+    whole: &Complex,
+    incidence: &Incidence,
+    spheres: &Spheres<'_>,
+) -> Vec<Option<Interval>> {
+    let facets = incidence.facets.par_iter().zip(&incidence.facet_cells);
+    // In a regular triangulation a sphere that holds a point holds one of the two beside it.
+    let radius = |(&facet, sides): (&[u32; 3], &[u32; 2])| {
+        let held = sides.iter().filter(|&&cell| cell != Incidence::OUTSIDE).any(|&cell| {
+            let cell = whole.cells.vertices[cell as usize];
+            let apex = cell.into_iter().find(|v| !facet.contains(v)).expect("a fourth corner");
+            spheres.inside(facet, apex)
+        });
+        (!held).then(|| spheres.squared_radius(facet))
+    };
+    facets.map(radius).collect()
+}
+
+fn gabriel_edges(
+    whole: &Complex,
+    incidence: &Incidence,
+    spheres: &Spheres<'_>,
+) -> Vec<Option<Interval>> {
+    let held = flags(whole.edges.len());
+    incidence.facets.par_iter().zip(&incidence.facet_edges).for_each(|(facet, edges)| {
+        for (&apex, &edge) in facet.iter().zip(edges) {
+            let row = whole.edges.vertices[edge as usize];
+            raise(&held[edge as usize], || spheres.inside(row, apex));
+        }
+    });
+    radii(&whole.edges.vertices, &held, spheres)
+}
+
+fn gabriel_vertices(
+    whole: &Complex,
+    incidence: &Incidence,
+    spheres: &Spheres<'_>,
+) -> Vec<Option<Interval>> {
+    let held = flags(whole.vertices.len());
+    whole.edges.vertices.par_iter().for_each(|&[a, b]| {
+        for (v, neighbour) in [(a, b), (b, a)] {
+            let row = incidence.vertex_rows[v as usize];
+            raise(&held[row as usize], || spheres.inside([v], neighbour));
+        }
+    });
+    radii(&whole.vertices.vertices, &held, spheres)
+}
+
+/// Flags only ever go up, so their final state does not depend on the order of threads.
+fn flags(count: usize) -> Vec<AtomicBool> {
+    (0..count).map(|_| AtomicBool::new(false)).collect()
+}
+
+fn raise(flag: &AtomicBool, wanted: impl FnOnce() -> bool) {
+    if !flag.load(Ordering::Relaxed) && wanted() {
+        flag.store(true, Ordering::Relaxed);
+    }
+}
+
+fn radii<const N: usize>(
+    rows: &[[u32; N]],
+    held: &[AtomicBool],
+    spheres: &Spheres<'_>,
+) -> Vec<Option<Interval>> {
+    let radius = |(&row, held): (&[u32; N], &AtomicBool)| {
+        (!held.load(Ordering::Relaxed)).then(|| spheres.squared_radius(row))
+    };
+    rows.par_iter().zip(held).map(radius).collect()
+}

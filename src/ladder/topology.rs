@@ -1,0 +1,82 @@
+//! Betti numbers and solid parts of all levels, by adding what comes at each.
+
+use super::Levels;
+use super::incidence::Incidence;
+use super::levels::ByLevel;
+use crate::shape::{Betti, UnionFind};
+
+impl Levels<'_> {
+    /// Connected components of each level. O(n α(n)).
+    pub(super) fn components(&self) -> Vec<u64> {
+        let complex = self.filtration.whole.complex();
+        let vertices = ByLevel::new(self.len(), self.vertices.iter().map(|span| span.first));
+        let edges = ByLevel::new(self.len(), self.edges.iter().map(|span| span.first));
+        let mut sets = UnionFind::new(self.filtration.points().len());
+        let mut count = 0;
+        let grow = |level| {
+            count += vertices.at(level).len() as u64;
+            for &edge in edges.at(level) {
+                let [a, b] = complex.edges.vertices[edge as usize];
+                count -= u64::from(sets.unite(a, b));
+            }
+            count
+        };
+        (0..self.len()).map(grow).collect()
+    }
+
+    /// Solid components of each level: cells joined through facets, as CGAL's
+    /// `Alpha_shape_3::number_of_solid_components` counts them. O(n α(n)).
+    pub fn solid_components(&self) -> Vec<u64> {
+        let incidence = &self.filtration.incidence;
+        let cells = ByLevel::new(self.len(), self.cells.iter().copied());
+        let mut sets = UnionFind::new(self.cells.len());
+        let mut count = 0;
+        let grow = |level| {
+            for &cell in cells.at(level) {
+                count += 1;
+                for &facet in &incidence.cell_facets[cell as usize] {
+                    let [a, b] = incidence.facet_cells[facet as usize];
+                    let there = |side: u32| {
+                        side != Incidence::OUTSIDE && self.cells[side as usize] <= level as u32
+                    };
+                    if there(a) && there(b) {
+                        count -= u64::from(sets.unite(a, b));
+                    }
+                }
+            }
+            count
+        };
+        (0..self.len()).map(grow).collect()
+    }
+
+    /// The Euler characteristic of each level.
+    fn euler_characteristics(&self) -> Vec<i64> {
+        let mut change = vec![0; self.len() + 1];
+        self.vertices.iter().for_each(|span| change[span.first as usize] += 1);
+        self.edges.iter().for_each(|span| change[span.first as usize] -= 1);
+        self.facets.iter().for_each(|span| change[span.first as usize] += 1);
+        self.cells.iter().for_each(|&first| change[first as usize] -= 1);
+        let sums = change.iter().scan(0, |sum, change| {
+            *sum += change;
+            Some(*sum)
+        });
+        sums.take(self.len()).collect()
+    }
+
+    /// The Betti numbers of each level, given the number of its voids: b1 = b0 + b2 − χ.
+    pub(super) fn betti_with(&self, voids: &[u64]) -> Vec<Betti> {
+        let parts = self.components().into_iter().zip(voids).zip(self.euler_characteristics());
+        let betti = |((b0, &b2), euler): ((u64, &u64), i64)| {
+            let b1 = (b0 + b2) as i64 - euler;
+            Betti { b0, b1: u64::try_from(b1).expect("b1 counts something"), b2 }
+        };
+        parts.map(betti).collect()
+    }
+
+    /// The Betti numbers of each level. O(n α(n)).
+    pub fn betti(&self) -> Vec<Betti> {
+        let mut voids = vec![0; self.len()];
+        self.descend(|level, complement| voids[level] = complement.bounded());
+        self.betti_with(&voids)
+    }
+}

@@ -1,0 +1,133 @@
+"use strict";
+(() => {
+  const json = (id) => JSON.parse(document.getElementById(id).textContent);
+  const plot = json("plot");
+  const { arrays, levels, colours } = json("data");
+  const unpack = ({ kind, base64 }) => {
+    const text = atob(base64);
+    const bytes = new Uint8Array(text.length);
+    for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+    return new globalThis[kind](bytes.buffer);
+  };
+  const data = Object.fromEntries(Object.entries(arrays).map(([name, array]) => [name, unpack(array)]));
+  const [BOUNDARY, SINGULAR, EDGES, POINTS, ISOSURFACE] = [0, 1, 2, 3, 4];
+  const CLASSES = ["exterior", "interior", "regular", "singular"];
+  const classAt = (spans, row, level) => {
+    const [first, regular, interior] = [spans[3 * row], spans[3 * row + 1], spans[3 * row + 2]];
+    return level < first ? 0 : level < regular ? 3 : level < interior ? 2 : 1;
+  };
+  const count = data.x.length;
+  const valued = data.values !== undefined;
+
+  // Marker diameters: the weight as an area, from 2 to 9 pixels.
+  let [least, most] = [Infinity, -Infinity];
+  for (const weight of data.weights) [least, most] = [Math.min(least, weight), Math.max(most, weight)];
+  const sizes = Array.from(data.weights, (weight) =>
+    most > least ? 2 + 7 * Math.sqrt((weight - least) / (most - least)) : 3);
+  const corners = (facets, rows) => {
+    const corner = (k) => Uint32Array.from(rows, (row) => facets[3 * row + k]);
+    return { i: corner(0), j: corner(1), k: corner(2) };
+  };
+  const short = (number) => Number(number.toPrecision(6)).toString();
+
+  const facetCount = data.facets.length / 3;
+  function facetsAt(level, wanted) {
+    const rows = [];
+    for (let row = 0; row < facetCount; row++) {
+      if (classAt(data.facetSpans, row, level) === wanted) rows.push(row);
+    }
+    return corners(data.facets, rows);
+  }
+
+  // The same at all levels.
+  const isosurface = data.isoFacets && {
+    x: data.isoX, y: data.isoY, z: data.isoZ,
+    ...corners(data.isoFacets, [...Array(data.isoFacets.length / 3).keys()]),
+  };
+
+  function linesAt(level) {
+    const line = { x: [], y: [], z: [] };
+    for (let row = 0; 2 * row < data.edges.length; row++) {
+      if (classAt(data.edgeSpans, row, level) !== 3) continue;
+      for (const axis of ["x", "y", "z"]) {
+        line[axis].push(data[axis][data.edges[2 * row]], data[axis][data.edges[2 * row + 1]], null);
+      }
+    }
+    return line;
+  }
+
+  function words(level) {
+    const text = new Array(count);
+    for (let v = 0; v < count; v++) {
+      const value = valued ? `<br>F = ${short(data.values[v])}` : "";
+      const kind = CLASSES[classAt(data.pointSpans, v, level)];
+      text[v] = `point ${v}${value}<br>ω = ${short(data.weights[v])}<br>${kind}`;
+    }
+    return text;
+  }
+
+  function pointsAt(level, text, byValue) {
+    const shown = [];
+    for (let v = 0; v < count; v++) if (classAt(data.pointSpans, v, level) !== 0) shown.push(v);
+    const pick = (values) => shown.map((v) => values[v]);
+    const kind = (v) => colours[classAt(data.pointSpans, v, level) - 1];
+    const colour = byValue
+      ? { color: pick(data.values), colorscale: "Viridis" }
+      : { color: shown.map(kind) };
+    return {
+      x: pick(data.x), y: pick(data.y), z: pick(data.z), text: pick(text),
+      marker: { ...colour, size: pick(sizes), line: { width: 0 } },
+    };
+  }
+
+  function fill(level, byValue) {
+    const text = words(level);
+    const traces = plot.data.map((trace) => ({ ...trace }));
+    for (const [trace, wanted] of [[BOUNDARY, 2], [SINGULAR, 3]]) {
+      Object.assign(traces[trace], { x: data.x, y: data.y, z: data.z, text }, facetsAt(level, wanted));
+      if (byValue) traces[trace].intensity = data.values;
+      else traces[trace].showscale = false;
+    }
+    Object.assign(traces[EDGES], linesAt(level));
+    Object.assign(traces[POINTS], pointsAt(level, text, byValue));
+    if (isosurface) Object.assign(traces[ISOSURFACE], isosurface);
+    return traces;
+  }
+
+  const scene = document.getElementById("scene");
+  const slider = document.getElementById("level");
+  const colour = document.getElementById("colour");
+  function show() {
+    const level = Number(slider.value);
+    const { name, rows } = levels[level];
+    document.getElementById("name").textContent = name;
+    const table = document.getElementById("numbers");
+    table.replaceChildren(...rows.map(([head, value]) => {
+      const row = document.createElement("tr");
+      row.append(document.createElement("th"), document.createElement("td"));
+      [row.firstChild.textContent, row.lastChild.textContent] = [head, value];
+      return row;
+    }));
+    const traces = fill(level, colour.value === "value");
+    // What was switched on or off stays so, and the camera where it is.
+    (scene.data ?? []).forEach((trace, k) => { traces[k].visible = trace.visible; });
+    return Plotly.react(scene, traces, plot.layout, plot.config);
+  }
+
+  plot.layout.uirevision = "the same scene";
+  // As many pixels as the screen has; without a word plotly draws four times as many.
+  plot.config.plotGlPixelRatio = Math.min(2, devicePixelRatio);
+  // While one level is being drawn only the last asked for waits.
+  let [busy, again] = [false, false];
+  async function refresh() {
+    if (busy) { again = true; return; }
+    busy = true;
+    do { again = false; await show(); } while (again);
+    busy = false;
+    scene.dataset.level = slider.value;
+    scene.dataset.colour = colour.value;
+  }
+  slider.addEventListener("input", refresh);
+  colour.addEventListener("change", refresh);
+  refresh();
+})();

@@ -1,0 +1,106 @@
+use plotly::color::Rgb;
+use plotly::common::{
+    Anchor, ColorBar, ColorScale, ColorScalePalette, Font, HoverInfo, Line, Marker, Mode,
+    Orientation, Side, Title, Visible,
+};
+use plotly::configuration::DisplayModeBar;
+use plotly::layout::{
+    AspectMode, Axis, Camera, CameraCenter, Eye, ItemSizing, LayoutScene, Legend, Margin,
+};
+use plotly::traces::mesh3d::{IntensityMode, LightPosition, Lighting};
+use plotly::{Configuration, Layout, Mesh3D, Plot, Scatter3D};
+
+use super::Subject;
+use crate::render::PALETTE;
+
+/// The traces in the order in which the page's script fills them, and the layout. Traces without
+/// data: the arrays of a level are put together in the browser.
+pub(super) fn plot(subject: &Subject<'_>) -> Plot {
+    let mut plot = Plot::new();
+    let valued = subject.levels.points().values.is_some();
+    let colour_bar = || {
+        ColorBar::new()
+            .title(Title::with_text("F").side(Side::Top))
+            .orientation(Orientation::Horizontal)
+            .thickness(12)
+            .y(0.0)
+            .y_anchor(Anchor::Top)
+            .tick_font(Font::new().size(11))
+    };
+    let mesh = |name: &str, colour: Rgb| {
+        Mesh3D::<f64, f64, f64>::new(vec![], vec![], vec![], None::<Vec<usize>>, None, None)
+            .name(name)
+            .show_legend(true)
+            .color(colour)
+            .flat_shading(true)
+            .lighting(Lighting::new().ambient(0.8).diffuse(0.9).specular(0.1).roughness(0.8))
+            .light_position(LightPosition::new().x(vec![-1e4]).y(vec![-2e4]).z(vec![2e4]))
+            .hover_info(HoverInfo::Text)
+    };
+    let by_value = |mesh: Box<Mesh3D<f64, f64, f64>>| {
+        mesh.intensity_mode(IntensityMode::Vertex)
+            .color_scale(ColorScale::Palette(ColorScalePalette::Viridis))
+    };
+    plot.add_trace(by_value(mesh("boundary", rgb(1))).show_scale(valued).color_bar(colour_bar()));
+    plot.add_trace(by_value(mesh("singular facets", rgb(0))).show_scale(false));
+    plot.add_trace(
+        Scatter3D::<f64, f64, f64>::new(vec![], vec![], vec![])
+            .name("singular edges")
+            .mode(Mode::Lines)
+            .line(Line::new().color(rgb(3)).width(2.0))
+            .hover_info(HoverInfo::Skip),
+    );
+    plot.add_trace(
+        Scatter3D::<f64, f64, f64>::new(vec![], vec![], vec![])
+            .name("points, by weight")
+            .mode(Mode::Markers)
+            .marker(Marker::new().color(rgb(5)))
+            .visible(Visible::LegendOnly)
+            .hover_info(HoverInfo::Text),
+    );
+    if let Some(original) = &subject.original {
+        plot.add_trace(
+            mesh(&format!("isosurface at {}", original.isovalue), Rgb::new(190, 190, 190))
+                .opacity(0.5)
+                .visible(Visible::LegendOnly)
+                .hover_info(HoverInfo::Skip),
+        );
+    }
+    plot.set_layout(layout(subject.unit));
+    plot.set_configuration(
+        Configuration::new().responsive(true).display_mode_bar(DisplayModeBar::False),
+    );
+    plot
+}
+
+fn rgb(index: usize) -> Rgb {
+    let [r, g, b] = PALETTE[index].0;
+    Rgb::new(r, g, b)
+}
+
+fn layout(unit: &str) -> Layout {
+    let axis =
+        |name: &str| Axis::new().title(Title::with_text(format!("{name} ({unit})"))).n_ticks(6);
+    let camera = Camera::new()
+        .center(CameraCenter::from((0.0, 0.0, -0.08)))
+        .eye(Eye::from((0.9, -1.45, 0.55)));
+    let scene = LayoutScene::new()
+        .aspect_mode(AspectMode::Data)
+        .camera(camera)
+        .x_axis(axis("x"))
+        .y_axis(axis("y"))
+        .z_axis(axis("z"));
+    Layout::new()
+        .scene(scene)
+        .auto_size(true)
+        .margin(Margin::new().left(0).right(0).top(8).bottom(60))
+        .show_legend(true)
+        .legend(
+            Legend::new()
+                .orientation(Orientation::Horizontal)
+                .item_sizing(ItemSizing::Constant)
+                .x(0.0)
+                .y(1.0)
+                .y_anchor(Anchor::Bottom),
+        )
+}

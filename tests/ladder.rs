@@ -1,0 +1,446 @@
+//! The ladder against shapes made one by one: every simplex, every class, at every level.
+
+mod common;
+
+use std::time::Instant;
+
+use proptest::prelude::*;
+use walpha::ladder::{Filtration, Level};
+use walpha::shape::{Engine, ShapeError, ShapeOptions};
+use walpha::{Alpha, AlphaShape, Class, WeightedPoints, alpha_shape};
+
+fn alphas(squared: &[f64]) -> Vec<Alpha> {
+    squared.iter().map(|&alpha| Alpha::from_squared(alpha).unwrap()).collect()
+}
+
+fn one_by_one(points: &WeightedPoints, alpha: Alpha, exterior: bool, engine: Engine) -> AlphaShape {
+    let options = ShapeOptions { exterior, engine, ..ShapeOptions::new(alpha) };
+    alpha_shape(points.clone(), &options).unwrap()
+}
+
+fn close(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1.0)
+}
+
+/// Level by level against a shape of its own, exterior simplices included; `None` for flat input.
+fn check(points: &WeightedPoints, squared: &[f64], engine: Engine) -> Option<Filtration> {
+    let filtration = match Filtration::new(points.clone()) {
+        Ok(filtration) => filtration,
+        Err(ShapeError::Cgal(walpha::cgal::CgalError::Sites(_))) => return None,
+        Err(error) => panic!("{error}"),
+    };
+    let levels = filtration.levels(&alphas(squared));
+    let ladder = levels.ladder(2.0);
+    assert_eq!(levels.betti(), ladder.levels.iter().map(|l| l.betti).collect::<Vec<_>>());
+    for (k, level) in ladder.levels.iter().enumerate() {
+        let alpha = levels.alphas()[k];
+        let whole = one_by_one(points, alpha, true, engine);
+        assert_eq!(levels.shape(k, true, level.betti).complex(), whole.complex(), "{alpha}");
+        let shape = one_by_one(points, alpha, false, Engine::Slabs);
+        let taken = levels.shape(k, false, level.betti);
+        assert_eq!(taken.complex(), shape.complex());
+        assert_eq!(taken.measures(), shape.measures());
+        check_numbers(level, &whole);
+    }
+    assert!(ladder.levels.windows(2).all(|pair| nested(&pair[0], &pair[1])));
+    Some(filtration)
+}
+
+fn check_numbers(level: &Level, shape: &AlphaShape) {
+    let complex = shape.complex();
+    assert_eq!(level.cells, complex.cells.counts()[Class::Interior as usize]);
+    assert_eq!(level.facets, complex.facets.by_class());
+    assert_eq!(level.edges, complex.edges.by_class());
+    assert_eq!(level.vertices, complex.vertices.by_class());
+    assert_eq!(Some(level.betti), shape.betti());
+    let measures = shape.measures();
+    assert!(close(level.measures.volume, measures.volume));
+    assert!(close(level.measures.area, measures.area));
+    assert!(close(level.measures.singular_area, measures.singular_area));
+    assert!(close(2.0 * level.coverage, measures.volume));
+    let voids = shape.voids().unwrap();
+    assert_eq!(level.voids.len(), voids.len());
+    for (void, other) in level.voids.iter().zip(&voids) {
+        assert!(close(void.volume, other.volume));
+    }
+    let mut filled: Vec<_> = level.voids.iter().map(|void| void.filling_alpha).collect();
+    let mut others: Vec<_> = voids.iter().map(|void| void.filling_alpha).collect();
+    filled.sort_by(f64::total_cmp);
+    others.sort_by(f64::total_cmp);
+    assert_eq!(filled, others);
+    assert_eq!(level.solid_components, solid_components(shape));
+}
+
+/// By flooding.
+fn solid_components(shape: &AlphaShape) -> u64 {
+    let cells: Vec<_> = shape.complex().cells.of(Class::Interior).collect();
+    let mut seen = vec![false; cells.len()];
+    let mut at_facet = std::collections::HashMap::<[u32; 3], Vec<usize>>::new();
+    let facets = |cell: &[u32; 4]| {
+        let mut cell = *cell;
+        cell.sort_unstable();
+        let [a, b, c, d] = cell;
+        [[a, b, c], [a, b, d], [a, c, d], [b, c, d]]
+    };
+    for (k, cell) in cells.iter().enumerate() {
+        facets(cell).iter().for_each(|&facet| at_facet.entry(facet).or_default().push(k));
+    }
+    let mut count = 0;
+    for start in 0..cells.len() {
+        count += u64::from(!seen[start]);
+        let mut open = vec![start];
+        while let Some(k) = open.pop() {
+            if !std::mem::replace(&mut seen[k], true) {
+                open.extend(facets(cells[k]).iter().flat_map(|facet| &at_facet[facet]));
+            }
+        }
+    }
+    count
+}
+
+fn nested(small: &Level, large: &Level) -> bool {
+    let total = |level: &Level| {
+        [level.cells, level.facets.total(), level.edges.total(), level.vertices.total()]
+    };
+    total(small).iter().zip(total(large)).all(|(&a, b)| a <= b)
+}
+
+fn weighted(sites: impl IntoIterator<Item = ([f64; 3], f64)>) -> WeightedPoints {
+    let (positions, weights) = sites.into_iter().unzip();
+    WeightedPoints { positions, weights, values: None }
+}
+
+/// Lattice points: everything that can be degenerate is.
+fn lattice() -> impl Strategy<Value = WeightedPoints> {
+    let weight = prop_oneof![
+        4 => Just(0.0),
+        2 => (0..8i32).prop_map(|w| f64::from(w) / 2.0),
+        1 => -2.0..4.0f64,
+    ];
+    let site = ([0..4, 0..4, 0..8i32], weight).prop_map(|(p, w)| (p.map(f64::from), w));
+    prop::collection::vec(site, 4..70).prop_map(weighted)
+}
+
+fn scattered() -> impl Strategy<Value = WeightedPoints> {
+    let point = ([0.0..3.0f64, 0.0..3.0, 0.0..9.0], -0.5..1.0f64);
+    prop::collection::vec(point, 4..90).prop_map(weighted)
+}
+
+/// A 4-sided block with a hole, whose squared radii are quarters.
+fn hollow_lattice() -> WeightedPoints {
+    let at = |i: i32| [i % 6, i / 6 % 6, i / 36];
+    let outer = (0..216).map(at).filter(|p| !p.iter().all(|k| (2..4).contains(k)));
+    weighted(outer.map(|p| (p.map(f64::from), 0.0)))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 120, ..ProptestConfig::default() })]
+
+    #[test]
+    fn lattices(points in lattice()) {
+        // Squared radii of lattice simplices are multiples of small fractions: α hits them.
+        let squared: Vec<f64> = (-6..30).map(|k| f64::from(k) / 4.0).chain([10.0, f64::INFINITY]).collect();
+        check(&points, &squared, Engine::Reference);
+    }
+
+    #[test]
+    fn scattered_points(points in scattered()) {
+        let squared: Vec<f64> = (-4..20).map(|k| f64::from(k) / 8.0).collect();
+        check(&points, &squared, Engine::Slabs);
+    }
+
+    /// At the first doubles of critical values shapes change, and just below they do not.
+    #[test]
+    fn critical_values_are_sharp(points in lattice()) {
+        let Ok(filtration) = Filtration::new(points.clone()) else { return Ok(()) };
+        let curve = filtration.curve();
+        for alpha in filtration.readable(&curve, 6) {
+            let below = Alpha::from_squared(alpha.squared().next_down()).unwrap();
+            let [at, below] = [alpha, below]
+                .map(|alpha| one_by_one(&points, alpha, true, Engine::Slabs).betti().unwrap());
+            prop_assert_ne!(at, below);
+        }
+    }
+
+    /// The curve says what shapes between critical values are.
+    #[test]
+    fn the_curve_is_the_ladder(points in scattered()) {
+        let Ok(filtration) = Filtration::new(points.clone()) else { return Ok(()) };
+        let curve = filtration.curve();
+        for (k, alpha) in curve.alphas().enumerate().step_by(1 + curve.len() / 9) {
+            let shape = one_by_one(&points, Alpha::from_squared(alpha).unwrap(), true, Engine::Reference);
+            prop_assert_eq!(Some(curve.betti[k]), shape.betti());
+            prop_assert_eq!(curve.solid_components[k], solid_components(&shape));
+        }
+    }
+}
+
+#[test]
+fn a_tie_is_in() {
+    // R² = 10 exactly: a 2×6 rectangle doubled up to a box has 1 + 9 = 10 under its diagonal.
+    let corner = |i: i32| [2 * (i & 1), 6 * (i >> 1 & 1), (i >> 2) * 20].map(f64::from);
+    let points = weighted((0..8).map(|i| (corner(i), 0.0)));
+    let filtration =
+        check(&points, &[10f64.next_down(), 10.0, 110.0, 110f64.next_down()], Engine::Reference)
+            .unwrap();
+    let ladder = filtration.ladder(&alphas(&[10f64.next_down(), 10.0]), 1.0);
+    let [below, at] = &ladder.levels[..] else { panic!() };
+    assert_eq!((below.facets.total(), at.facets.singular), (0, 4));
+    assert_eq!(filtration.suggest(&filtration.curve()).all_points, 110.0);
+}
+
+#[test]
+fn a_hollow_block_and_what_is_suggested_for_it() {
+    let points = hollow_lattice();
+    let squared = [0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.75, 3.0];
+    let filtration = check(&points, &squared, Engine::Reference).unwrap();
+    let curve = filtration.curve();
+    let suggested = filtration.suggest(&curve);
+    assert_eq!(suggested.all_points, 0.75);
+    assert_eq!(suggested.one_region, 0.75);
+    // The hole is a box of three with its corners cut: the sphere in its middle meets (1, 2, 2) and alike.
+    assert_eq!(suggested.no_void, 2.75);
+    assert_eq!(suggested.plateau, [0.75, 2.75]);
+    let chosen = filtration.readable(&curve, 24);
+    let chosen: Vec<f64> = chosen.iter().map(|alpha| alpha.squared()).collect();
+    // Where a corner is missing three points make a triangle: 2/3, rounded up.
+    assert_eq!(chosen, [0.25, 0.5, 0.6666666666666667, 0.75, 2.75]);
+}
+
+#[test]
+fn a_shift_of_weights_shifts_the_ladder() {
+    let mut points = hollow_lattice();
+    let plain = Filtration::new(points.clone()).unwrap();
+    points.weights.iter_mut().for_each(|weight| *weight = 0.5);
+    let shifted = Filtration::new(points).unwrap();
+    let (a, b) = (plain.suggest(&plain.curve()), shifted.suggest(&shifted.curve()));
+    assert_eq!(a.no_void - 0.5, b.no_void);
+    let ladder = |f: &Filtration, at: f64| f.ladder(&alphas(&[at]), 1.0).levels[0].betti;
+    assert_eq!(ladder(&plain, 1.0), ladder(&shifted, 0.5));
+}
+
+#[test]
+fn huge_and_tiny_units_change_nothing() {
+    for factor in [2f64.powi(-120), 2f64.powi(130)] {
+        let mut points = hollow_lattice();
+        points.positions.iter_mut().flatten().for_each(|x| *x *= factor);
+        let filtration = Filtration::new(points).unwrap();
+        let suggested = filtration.suggest(&filtration.curve());
+        assert_eq!(suggested.no_void, 2.75 * factor * factor);
+    }
+}
+
+fn skull(weighting: walpha::Weighting) -> Option<WeightedPoints> {
+    use walpha::points::{Selection, Units, difference, select, weigh};
+    common::has_skull().then(|| {
+        let volume = walpha::volume::sample("sample:skull").unwrap();
+        let (volume, _) = volume.into_gray(walpha::Gray::Automatic).unwrap();
+        let differences = difference(&volume);
+        let selection = Selection::default();
+        let points = select(&volume, &volume, &differences, &selection, Units::Voxel).unwrap();
+        weigh(&points, weighting, 10.0).unwrap()
+    })
+}
+
+#[test]
+fn the_skull_level_by_level() {
+    for weighting in [walpha::Weighting::Common(0.0), walpha::Weighting::MinMax] {
+        let Some(points) = skull(weighting) else { return };
+        check(&points, &[-1.0, 0.5, 0.75, 2.0, 10.0, 50.0], Engine::Slabs);
+    }
+}
+
+/// What the ladder promises: all levels together cost less than one more shape. By itself on a quiet
+/// machine: `cargo test --release --test ladder -- --ignored --nocapture`.
+#[test]
+#[ignore = "a measurement"]
+fn fifty_levels_cost_less_than_two_shapes() {
+    let Some(points) = skull(walpha::Weighting::MinMax) else { return };
+    let squared: Vec<f64> = (0..50).map(|k| 0.25 * 1.17f64.powi(k)).collect();
+    let alphas = alphas(&squared);
+    let seconds = |work: &dyn Fn()| {
+        let started = Instant::now();
+        work();
+        started.elapsed().as_secs_f64()
+    };
+    let shape = || drop(one_by_one(&points, Alpha::INFINITE, true, Engine::Slabs));
+    let ladder = || {
+        let filtration = Filtration::new(points.clone()).unwrap();
+        assert_eq!(filtration.ladder(&alphas, 63f64.powi(3)).levels.len(), 50);
+    };
+    let mut times: Vec<[f64; 2]> = (0..5).map(|_| [seconds(&shape), seconds(&ladder)]).collect();
+    let median = |times: &mut Vec<[f64; 2]>, k: usize| {
+        times.sort_by(|a, b| a[k].total_cmp(&b[k]));
+        times[2][k]
+    };
+    let (shape, ladder) = (median(&mut times, 0), median(&mut times, 1));
+    println!("shape {shape:.3} s, ladder {ladder:.3} s, ratio {:.2}", ladder / shape);
+    assert!(ladder < 2.0 * shape, "{ladder} s against {shape} s");
+}
+
+/// Full detail in a region and few points elsewhere are one triangulation: no crack at the border.
+#[test]
+fn a_region_of_full_detail_leaves_no_crack() {
+    use std::collections::{BTreeMap, BTreeSet};
+    use walpha::ladder::{Region, focus};
+    use walpha::points::{Selection, SelectionRule, Units, difference, select};
+
+    let volume = walpha::volume::sample("sample:phantom@32").unwrap();
+    let (volume, _) = volume.into_gray(walpha::Gray::Automatic).unwrap();
+    let differences = difference(&volume);
+    let points = |count| {
+        let selection = Selection { rule: SelectionRule::Count(count), gray_min: None };
+        select(&volume, &volume, &differences, &selection, Units::Voxel).unwrap()
+    };
+    let (fine, coarse) = (points(4000), points(900));
+    let region = Region { low: [0.0, 8.0, 10.0], high: [31.0, 31.0, 20.0] };
+    let both = focus(&fine, &coarse, &region);
+
+    let key = |p: [f64; 3]| [2, 1, 0].map(|k| p[k] as i64);
+    let inside = fine.positions.iter().filter(|p| region.contains(**p));
+    let outside = coarse.positions.iter().filter(|p| !region.contains(**p));
+    let union: BTreeSet<[i64; 3]> = inside.chain(outside).map(|&p| key(p)).collect();
+    assert!(union.len() > 1000 && union.len() < 4000, "{}", union.len());
+    assert!(both.positions.iter().map(|&p| key(p)).eq(union.iter().copied()));
+
+    let alpha = Alpha::from_squared(10.0).unwrap();
+    let of = |positions: Vec<[f64; 3]>| {
+        let weights = vec![0.0; positions.len()];
+        one_by_one(
+            &WeightedPoints { positions, weights, values: None },
+            alpha,
+            false,
+            Engine::Slabs,
+        )
+    };
+    let shape = of(both.positions.clone());
+    let plain = of(union.iter().map(|&[z, y, x]| [x, y, z].map(|k| k as f64)).collect());
+    assert_eq!(shape.complex(), plain.complex());
+    // Cells reach across the border, and the boundary of the solid has no end there or anywhere.
+    let within = |v: &u32| region.contains(both.positions[*v as usize]);
+    let mut cells = shape.complex().cells.of(Class::Interior);
+    assert!(cells.any(|cell| cell.iter().any(within) && !cell.iter().all(within)));
+    let mut sides = BTreeMap::<[u32; 2], usize>::new();
+    for &[a, b, c] in shape.complex().facets.of(Class::Regular) {
+        for [a, b] in [[a, b], [b, c], [a, c]] {
+            *sides.entry([a.min(b), a.max(b)]).or_default() += 1;
+        }
+    }
+    assert!(sides.values().all(|count| count % 2 == 0));
+}
+
+#[test]
+fn the_command_writes_tables_plots_and_meshes() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = common::json(
+        folder.path(),
+        &[
+            "ladder",
+            "sample:phantom@24",
+            "--weights",
+            "min-max",
+            "--alphas",
+            "10,2,inf,2",
+            "--mesh",
+            "ply,off",
+            "-o",
+            "out",
+        ],
+    );
+    let alphas: Vec<_> = made["levels"].as_array().unwrap().iter().map(|l| &l["alpha"]).collect();
+    assert_eq!(
+        alphas,
+        [&serde_json::json!(2.0), &serde_json::json!(10.0), &serde_json::json!("inf")]
+    );
+    let names: std::collections::BTreeSet<String> = std::fs::read_dir(folder.path().join("out"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    let expected = [
+        "ladder.csv",
+        "ladder.json",
+        "ladder.png",
+        "ladder.svg",
+        "voids.csv",
+        "level-1-alpha-2.off",
+        "level-1-alpha-2.ply",
+        "level-2-alpha-10.off",
+        "level-2-alpha-10.ply",
+        "level-3-alpha-inf.off",
+        "level-3-alpha-inf.ply",
+    ];
+    assert_eq!(names, expected.map(String::from).into());
+    let read = |name: &str| std::fs::read(folder.path().join("out").join(name)).unwrap();
+    // Weights frozen at 10 by default are those `shape` has at α = 10.
+    common::ok(
+        folder.path(),
+        &[
+            "shape",
+            "sample:phantom@24",
+            "--weights",
+            "min-max",
+            "--alpha",
+            "10",
+            "-o",
+            "one.ply",
+            "-q",
+        ],
+    );
+    assert_eq!(read("level-2-alpha-10.ply"), std::fs::read(folder.path().join("one.ply")).unwrap());
+    let json: serde_json::Value = serde_json::from_slice(&read("ladder.json")).unwrap();
+    assert_eq!(json["levels"], made["levels"]);
+    let csv = String::from_utf8(read("ladder.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 4);
+    let voids: u64 =
+        made["levels"].as_array().unwrap().iter().map(|l| l["betti"][2].as_u64().unwrap()).sum();
+    assert_eq!(String::from_utf8(read("voids.csv")).unwrap().lines().count() as u64, 1 + voids);
+}
+
+#[test]
+fn the_command_makes_levels_of_detail() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = [
+        "ladder",
+        "sample:phantom@24",
+        "--counts",
+        "200,600",
+        "--roi",
+        "0:23,0:23,8:12",
+        "-o",
+        "out",
+    ];
+    let made = common::json(folder.path(), &args);
+    let points: Vec<_> =
+        made["levels"].as_array().unwrap().iter().map(|l| l["points"].as_u64().unwrap()).collect();
+    let region = made["points_in_region"].as_u64().unwrap();
+    assert!(points[0] > region && points[0] < points[1] && points[0] < region + 200, "{points:?}");
+    for (level, name) in ["detail-200.ply", "detail-600.ply"].iter().enumerate() {
+        let size = std::fs::metadata(folder.path().join("out").join(name)).unwrap().len();
+        assert_eq!(made["levels"][level]["bytes"], size);
+    }
+    let made = common::json(
+        folder.path(),
+        &["ladder", "sample:phantom@24", "--epsilons", "100,1000", "-o", "eps"],
+    );
+    let epsilon = |k: usize| made["levels"][k]["epsilon"].as_f64().unwrap();
+    assert!(epsilon(0) <= 100.0 && epsilon(1) > 100.0 && epsilon(1) <= 1000.0);
+}
+
+#[test]
+fn bad_wishes_leave_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let phantom = "sample:phantom@16";
+    for (args, code, word) in [
+        (&["ladder", phantom, "-o", "out", "--alphas", "1,x"][..], 2, "--alphas"),
+        (&["ladder", phantom, "-o", "out", "--mesh", "doc"], 1, "--mesh"),
+        (&["ladder", phantom, "-o", "out", "--roi", "1:2,1:2,1:2"], 1, "--counts"),
+        (&["ladder", phantom, "-o", "out", "--counts", "9", "--roi", "2:1,1:2,1:2"], 2, "no range"),
+        (&["ladder", phantom, "-o", "out", "--counts", "9", "--roi", "90:99,1:2,1:2"], 1, "--roi"),
+        (&["ladder", phantom, "-o", "out", "--counts", "9", "--alphas", "1"], 2, "--counts"),
+    ] {
+        let (got, _, stderr) = common::run(folder.path(), args);
+        assert_eq!(got, code, "{stderr}");
+        assert!(stderr.contains(word), "{stderr}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "{args:?}");
+    }
+}
