@@ -1,40 +1,42 @@
 //! Races the engines on the same points and prints a table.
 //!
-//! `cargo run --release --example race` (about a quarter of an hour); `-- quick` leaves out sets of
-//! more than 128 k points; `-- alpha` raises α instead, until slabs stop paying.
+//! `cargo run --release --example race` (about a quarter of an hour); `-- quick` for sets of up to
+//! 128 k points, `-- large` for the others; `-- alpha` raises α instead, until slabs stop paying.
 //!
-//! "CGAL" is the bare call: triangulation, alpha shape, classes copied out. The slabs engine is
-//! timed with everything it gives: canonical order, Betti numbers, measures. Runs are interleaved,
-//! times are medians of five, ratios are of these medians. Peak memory is that of a process of its
-//! own, less what the input took.
+//! Both engines are timed with everything they give: classes, canonical order, Betti numbers,
+//! measures. The reference engine is CGAL's `Fixed_alpha_shape_3` with these added; of its time
+//! nine tenths are CGAL's. Runs are interleaved, times are medians of five, ratios are of these
+//! medians. Peak memory is that of a process of its own, less what the input took.
 
 use std::num::NonZeroUsize;
 use std::process::Command;
 use std::time::Instant;
 
-use walpha::cgal::{self, Sites};
 use walpha::points::{Points, Selection, Units, difference, select, weigh};
-use walpha::shape::ShapeOptions;
+use walpha::shape::{Engine, ShapeOptions};
 use walpha::{Alpha, Gray, Volume, WeightedPoints, Weighting, alpha_shape, memory, volume};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
 const RUNS: usize = 5;
 const THREADS: usize = 2;
+const SMALL: [&str; 3] = ["skull@64", "skull@128", "random@128000"];
+const LARGE: [&str; 2] = ["skull@256", "random@1000000"];
 
 fn main() -> Result<()> {
     rayon::ThreadPoolBuilder::new().num_threads(THREADS).build_global()?;
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["memory", engine, set, weighting, alpha] => memory_of(engine, set, weighting, alpha),
-        [] => races(&["skull@64", "skull@128", "random@128000", "skull@256", "random@1000000"]),
-        ["quick"] => races(&["skull@64", "skull@128", "random@128000"]),
+        [] => races(&[&SMALL[..], &LARGE].concat()),
+        ["quick"] => races(&SMALL),
+        ["large"] => races(&LARGE),
         ["alpha"] => {
             header();
             let race = |alpha| race("skull@128", "common=0", alpha);
             [2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0].into_iter().try_for_each(race)
         }
-        _ => Err("usage: race [quick|alpha]".into()),
+        _ => Err("usage: race [quick|large|alpha]".into()),
     }
 }
 
@@ -52,8 +54,8 @@ fn races(sets: &[&str]) -> Result<()> {
 
 fn header() {
     println!(
-        "| set | points | weights | α | CGAL | slabs, 1 thread | ratio | slabs, {THREADS} threads | ratio \
-         | CGAL peak | slabs peak | 8 slabs in turn, peak |"
+        "| set | points | weights | α | reference | slabs, 1 thread | ratio | slabs, {THREADS} threads | ratio \
+         | reference peak | slabs peak | 8 slabs in turn, peak |"
     );
     println!("|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
 }
@@ -63,11 +65,11 @@ fn race(set: &str, weighting: &str, alpha: f64) -> Result<()> {
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let mut times = [const { Vec::new() }; 3];
     for _ in 0..RUNS {
-        times[0].push(seconds(|| plain_cgal(&points, alpha))?);
-        times[1].push(one_thread.install(|| seconds(|| slabs(&points, alpha, None)))?);
-        times[2].push(seconds(|| slabs(&points, alpha, None))?);
+        times[0].push(seconds(|| run(Engine::Reference, &points, alpha, None))?);
+        times[1].push(one_thread.install(|| seconds(|| run(Engine::Slabs, &points, alpha, None)))?);
+        times[2].push(seconds(|| run(Engine::Slabs, &points, alpha, None))?);
     }
-    let [cgal, one, two] = times.map(|mut runs| {
+    let [reference, one, two] = times.map(|mut runs| {
         runs.sort_by(f64::total_cmp);
         runs[RUNS / 2]
     });
@@ -77,12 +79,12 @@ fn race(set: &str, weighting: &str, alpha: f64) -> Result<()> {
         Ok(String::from_utf8(output.stdout)?.trim().parse::<f64>()? / (1 << 20) as f64)
     };
     println!(
-        "| {set} | {} | {weighting} | {alpha} | {cgal:.2} s | {one:.2} s | {:.2} | {two:.2} s | {:.2} \
+        "| {set} | {} | {weighting} | {alpha} | {reference:.2} s | {one:.2} s | {:.2} | {two:.2} s | {:.2} \
          | {:.0} MiB | {:.0} MiB | {:.0} MiB |",
         points.len(),
-        cgal / one,
-        cgal / two,
-        peak("cgal")?,
+        reference / one,
+        reference / two,
+        peak("reference")?,
         peak("slabs")?,
         peak("bounded")?,
     );
@@ -95,15 +97,14 @@ fn seconds(work: impl FnOnce() -> Result<()>) -> Result<f64> {
     Ok(started.elapsed().as_secs_f64())
 }
 
-fn plain_cgal(points: &WeightedPoints, alpha: f64) -> Result<()> {
-    let sites = Sites::new(&points.positions, &points.weights)?;
-    let complex = cgal::reference(&sites, alpha)?;
-    assert!(!complex.cells().0.is_empty());
-    Ok(())
-}
-
-fn slabs(points: &WeightedPoints, alpha: f64, slabs: Option<NonZeroUsize>) -> Result<()> {
-    let options = ShapeOptions { slabs, ..ShapeOptions::new(Alpha::from_squared(alpha)?) };
+fn run(
+    engine: Engine,
+    points: &WeightedPoints,
+    alpha: f64,
+    slabs: Option<NonZeroUsize>,
+) -> Result<()> {
+    let alpha = Alpha::from_squared(alpha)?;
+    let options = ShapeOptions { engine, slabs, ..ShapeOptions::new(alpha) };
     let shape = alpha_shape(points.clone(), &options)?;
     assert!(shape.betti().is_some());
     Ok(())
@@ -115,12 +116,12 @@ fn memory_of(engine: &str, set: &str, weighting: &str, alpha: &str) -> Result<()
     let points = weighted(set, weighting, alpha)?;
     let before = memory::resident_bytes().unwrap_or(0);
     match engine {
-        "cgal" => plain_cgal(&points, alpha)?,
-        "slabs" => slabs(&points, alpha, None)?,
+        "reference" => run(Engine::Reference, &points, alpha, None)?,
+        "slabs" => run(Engine::Slabs, &points, alpha, None)?,
         // So many slabs, one after the other, as a tight --memory asks for.
         _ => {
             let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-            one_thread.install(|| slabs(&points, alpha, NonZeroUsize::new(8)))?;
+            one_thread.install(|| run(Engine::Slabs, &points, alpha, NonZeroUsize::new(8)))?;
         }
     }
     println!("{}", memory::peak_bytes().unwrap_or(0).saturating_sub(before));

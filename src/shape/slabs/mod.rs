@@ -22,6 +22,7 @@ use rayon::prelude::*;
 use super::union_find::UnionFind;
 use super::{Complex, ShapeError};
 use crate::cgal::{self, CgalError, Lattice, RawSlab, Sites};
+use crate::progress;
 
 use merge::merge;
 use partition::Partition;
@@ -57,6 +58,7 @@ pub(super) fn run(
             .map(|&slab| decide(sites, alpha, &partition, slab, lattice, exterior))
             .collect();
         raw.extend(done?);
+        progress::report(raw.len() as u64, partition.len() as u64);
     }
     Ok(merge(sites, &partition, raw, exterior))
 }
