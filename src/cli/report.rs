@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 
 use serde::{Serialize, Serializer};
 use walpha::points::WeightSummary;
-use walpha::shape::{Betti, Engine, Void};
+use walpha::shape::{Betti, Component, Engine, Void};
 use walpha::{Alpha, AlphaShape, Class, GrayRange, Simplices, Truncation, memory};
 
 use super::pipeline::{VolumeFacts, Weighed};
@@ -88,6 +88,8 @@ struct ShapeReport {
     volume: f64,
     area: f64,
     singular_area: f64,
+    /// The largest by volume, each with what its boundary shuts in.
+    components: Vec<Component>,
     /// Null unless the simplices outside the shape are kept.
     voids: Option<Vec<Void>>,
 }
@@ -208,6 +210,7 @@ impl Report {
             volume: shape.measures().volume,
             area: shape.measures().area,
             singular_area: shape.measures().singular_area,
+            components: largest_components(shape),
             voids: shape.voids(),
         });
     }
@@ -218,6 +221,16 @@ impl Report {
         self.files = files;
         self.peak_memory_bytes = memory::peak_bytes();
     }
+}
+
+/// Components told at most.
+const TOLD: usize = 20;
+
+fn largest_components(shape: &AlphaShape) -> Vec<Component> {
+    let mut components = shape.components();
+    components.sort_by(|a, b| b.volume.total_cmp(&a.volume).then(b.vertices.cmp(&a.vertices)));
+    components.truncate(TOLD);
+    components
 }
 
 impl Display for Report {
@@ -255,6 +268,10 @@ impl Display for Report {
             }
             writeln!(f, "volume    {:.6}", shape.volume)?;
             writeln!(f, "area      {:.6}, singular facets {:.6}", shape.area, shape.singular_area)?;
+            if let [largest, _, ..] = &shape.components[..] {
+                let Component { vertices, volume, .. } = largest;
+                writeln!(f, "largest   component: {vertices} vertices, volume {volume:.6}")?;
+            }
             if let Some(voids) = &shape.voids
                 && let Some(largest) = voids.first()
             {

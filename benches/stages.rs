@@ -1,0 +1,75 @@
+//! Each stage alone: `cargo bench`. The front end on the phantom at 128³, the engines on the points
+//! of the phantom at 64³. `cargo run --release --example race` compares the engines on large sets,
+//! `scripts/race_wavelets.py` the front end with PyWavelets.
+
+use divan::Bencher;
+use walpha::haar::{HaarOptions, smooth};
+use walpha::points::{Selection, Units, difference, select, weigh};
+use walpha::shape::{Engine, ShapeOptions};
+use walpha::{Alpha, Gray, Points, Volume, Weighting, alpha_shape, volume};
+
+const WEIGHTINGS: [&str; 3] = ["common=0", "min-max", "barycentric"];
+
+fn main() {
+    divan::main();
+}
+
+fn phantom(size: usize) -> Volume {
+    let phantom = volume::sample(&format!("sample:phantom@{size}")).expect("a sample");
+    phantom.into_gray(Gray::Automatic).expect("gray levels").0
+}
+
+fn selected(size: usize) -> Points {
+    let volume = phantom(size);
+    let differences = difference(&volume);
+    select(&volume, &volume, &differences, &Selection::default(), Units::Voxel).expect("points")
+}
+
+#[divan::bench]
+fn haar(bencher: Bencher) {
+    let volume = phantom(128);
+    bencher.bench_local(|| smooth(&volume, &HaarOptions::default()));
+}
+
+#[divan::bench]
+fn differences(bencher: Bencher) {
+    let volume = phantom(128);
+    bencher.bench_local(|| difference(&volume));
+}
+
+#[divan::bench]
+fn selection(bencher: Bencher) {
+    let volume = phantom(128);
+    let differences = difference(&volume);
+    let options = Selection::default();
+    bencher.bench_local(|| select(&volume, &volume, &differences, &options, Units::Voxel));
+}
+
+#[divan::bench(args = WEIGHTINGS)]
+fn weights(bencher: Bencher, weighting: &str) {
+    let (points, weighting) = (selected(128), parsed(weighting));
+    bencher.bench_local(|| weigh(&points, weighting, 10.0));
+}
+
+#[divan::bench(args = WEIGHTINGS)]
+fn reference(bencher: Bencher, weighting: &str) {
+    engine(bencher, Engine::Reference, weighting);
+}
+
+#[divan::bench(args = WEIGHTINGS)]
+fn slabs(bencher: Bencher, weighting: &str) {
+    engine(bencher, Engine::Slabs, weighting);
+}
+
+fn engine(bencher: Bencher, engine: Engine, weighting: &str) {
+    let alpha = Alpha::from_squared(10.0).expect("an alpha");
+    let points = weigh(&selected(64), parsed(weighting), alpha.squared()).expect("weights");
+    let options = ShapeOptions { engine, ..ShapeOptions::new(alpha) };
+    bencher
+        .with_inputs(|| points.clone())
+        .bench_local_values(|points| alpha_shape(points, &options));
+}
+
+fn parsed(weighting: &str) -> Weighting {
+    weighting.parse().expect("a weighting")
+}
