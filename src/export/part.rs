@@ -28,7 +28,7 @@ pub fn abandon(code: i32) -> ! {
 /// A temporary file beside the one it is to become.
 #[derive(Debug)]
 pub(super) struct Part {
-    file: Option<BufWriter<NamedTempFile>>,
+    file: Option<NamedTempFile>,
     path: PathBuf,
 }
 
@@ -44,10 +44,11 @@ impl Part {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let mut parts = parts();
-        let file = builder.tempfile_in(folder).map_err(plain)?;
+        // Without the name of the temporary file, which means nothing to anybody.
+        let file = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
         let path = file.path().to_owned();
         parts.insert(path.clone());
-        Ok(Self { file: Some(BufWriter::new(file)), path })
+        Ok(Self { file: Some(file), path })
     }
 
     pub fn fill(
@@ -55,8 +56,10 @@ impl Part {
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> io::Result<Self> {
         if let Some(file) = &mut self.file {
-            content(file)?;
-            file.flush()?;
+            // The file itself: its errors do not name it.
+            let mut buffered = BufWriter::new(file.as_file_mut());
+            content(&mut buffered)?;
+            buffered.flush()?;
         }
         Ok(self)
     }
@@ -64,7 +67,6 @@ impl Part {
     /// Gives the file its name.
     pub fn put(mut self, path: &Path) -> io::Result<()> {
         let Some(file) = self.file.take() else { return Ok(()) };
-        let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
         let mut parts = parts();
         file.persist(path).map_err(|refused| refused.error)?;
         parts.remove(&self.path);
@@ -78,18 +80,4 @@ impl Drop for Part {
         self.file = None;
         parts.remove(&self.path);
     }
-}
-
-/// What the system said, without the name of a temporary file, which means nothing to anybody.
-pub(super) fn plain(error: io::Error) -> io::Error {
-    let of_system = error.get_ref().and_then(|inner| {
-        let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(inner);
-        std::iter::from_fn(|| {
-            let this = cause?;
-            cause = this.source();
-            Some(this)
-        })
-        .find_map(|cause| cause.downcast_ref::<io::Error>()?.raw_os_error())
-    });
-    of_system.map_or(error, io::Error::from_raw_os_error)
 }
