@@ -48,6 +48,8 @@ pub(super) mod bridge {
         ) -> Result<UniquePtr<PlaneTriangulation>>;
         fn farthest_plane(positions: &[f64]) -> Result<UniquePtr<PlaneTriangulation>>;
 
+        fn give_back();
+
         /// The simplices a slab owns, classified.
         type Slab;
 

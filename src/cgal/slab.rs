@@ -54,6 +54,12 @@ pub fn slab(
     flat(raw.dimension(), sites.input.len()).map_or(Ok(RawSlab(raw)), |flat| Err(flat.into()))
 }
 
+/// Gives freed memory back to the system, where the allocator would keep it for itself (glibc): before
+/// more slabs, and before they are merged.
+pub fn give_back() {
+    bridge::give_back();
+}
+
 /// Rows of input indices in canonical order, with class numbers beside them.
 impl RawSlab {
     /// Tetrahedra and their classes.

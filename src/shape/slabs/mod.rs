@@ -59,6 +59,9 @@ pub(super) fn run(
             .collect();
         raw.extend(done?);
         progress::report(raw.len() as u64, partition.len() as u64);
+        if partition.len() > plan.at_once {
+            cgal::give_back();
+        }
     }
     Ok(merge(sites, &partition, raw, exterior))
 }
