@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 
 use serde::{Serialize, Serializer};
 use walpha::points::WeightSummary;
-use walpha::shape::{Betti, Component, Engine, Void};
+use walpha::shape::{Betti, Component, Engine, Void, number_or_name};
 use walpha::{Alpha, AlphaShape, Class, GrayRange, Simplices, Truncation, memory};
 
 use super::pipeline::{VolumeFacts, Weighed};
@@ -296,15 +296,6 @@ impl Display for Report {
             }
         }
         writeln!(f)
-    }
-}
-
-/// ∞ has no JSON number: it is written as the string "inf" or "-inf".
-pub fn number_or_name<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    if number.is_finite() {
-        serializer.serialize_f64(*number)
-    } else {
-        serializer.serialize_str(&number.to_string())
     }
 }
 

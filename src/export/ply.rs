@@ -52,6 +52,7 @@ impl Exporter for Ply {
             row.put(v, u32::to_le_bytes)?;
             row.end()?;
         }
+        let (components, vertices) = (shape.component_numbers(), &surface.vertices);
         for (i, facet) in surface.facets().enumerate() {
             row.put(3u8, u8::to_le_bytes)?;
             for &v in facet {
@@ -60,7 +61,7 @@ impl Exporter for Ply {
             let regular = i < surface.regular.len();
             let class = if regular { Class::Regular } else { Class::Singular };
             row.put(class as u8, u8::to_le_bytes)?;
-            row.put(surface.components[facet[0] as usize], u32::to_le_bytes)?;
+            row.put(components[vertices[facet[0] as usize] as usize], u32::to_le_bytes)?;
             for &sheet in sheets.iter().flat_map(|sheets| &sheets[i]) {
                 row.put(sheet, i32::to_le_bytes)?;
             }

@@ -46,8 +46,9 @@ impl Exporter for Vtp {
         let firsts = (surface.points.iter().copied())
             .chain(surface.edges.iter().map(|edge| edge[0]))
             .chain(surface.facets().map(|facet| facet[0]));
-        let components = firsts.map(|v| surface.components[v as usize].to_le_bytes());
-        file.array("UInt32", "component", 1, bytes(components))?;
+        let components = shape.component_numbers();
+        let component = |v: u32| components[vertices[v as usize] as usize].to_le_bytes();
+        file.array("UInt32", "component", 1, bytes(firsts.map(component)))?;
         if let Some(sheets) = shape.sheets() {
             let none = surface.points.iter().map(|_| [Sheets::NONE; 2]);
             let edges = sheets.edges.iter().map(|&sheet| [sheet as i32, Sheets::NONE]);

@@ -1,9 +1,11 @@
 use rayon::prelude::*;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::levels::{ByLevel, Span};
 use super::{Filtration, Levels};
-use crate::shape::{Alpha, Betti, ByClass, Class, Measures, Void, facet_area, six_volumes};
+use crate::shape::{
+    Alpha, Betti, ByClass, Class, Measures, Void, facet_area, number_or_name, six_volumes,
+};
 
 /// What is measured of each level of a filtration, by ascending α.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -166,16 +168,4 @@ fn by_class(spans: &[Span], levels: usize) -> Vec<ByClass> {
         ByClass { interior, regular, singular }
     };
     change[..levels].iter().map(level).collect()
-}
-
-/// ∞ has no JSON number: it is written as the string "inf" or "-inf".
-pub(super) fn number_or_name<S: Serializer>(
-    number: &f64,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    if number.is_finite() {
-        serializer.serialize_f64(*number)
-    } else {
-        serializer.serialize_str(&number.to_string())
-    }
 }

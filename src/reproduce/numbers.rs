@@ -1,7 +1,7 @@
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::points::WeightSummary;
-use crate::shape::{AlphaShape, Balls, Betti, ByClass, Class, Void};
+use crate::shape::{AlphaShape, Balls, Betti, ByClass, Class, Void, number_or_name};
 
 /// What is measured of a shape.
 #[derive(Clone, Debug, Serialize)]
@@ -81,14 +81,5 @@ impl ShapeNumbers {
     /// Tunnels and voids together: what one may call holes.
     pub(super) fn holes(&self) -> u64 {
         self.betti.b1 + self.betti.b2
-    }
-}
-
-/// ∞ has no JSON number: it is written as the string "inf".
-fn number_or_name<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    if number.is_finite() {
-        serializer.serialize_f64(*number)
-    } else {
-        serializer.serialize_str(&number.to_string())
     }
 }

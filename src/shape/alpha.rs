@@ -1,4 +1,4 @@
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// The parameter α of a shape: a **squared** length, as in CGAL and in Edelsbrunner 1992.
 ///
@@ -65,4 +65,17 @@ pub enum Balls {
     /// A ball of radius α + ω, as a sentence of the paper's section 4.2 reads: the power weight
     /// (α + ω)² at parameter 0.
     Radius,
+}
+
+/// Writes a number that may be infinite, as α is, where there is no number for ∞ (JSON): as the string "inf"
+/// or "-inf". For `#[serde(serialize_with)]`.
+///
+/// # Errors
+/// Those of the serializer.
+pub fn number_or_name<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    if number.is_finite() {
+        serializer.serialize_f64(*number)
+    } else {
+        serializer.serialize_str(&number.to_string())
+    }
 }

@@ -30,7 +30,7 @@ mod topology;
 mod union_find;
 mod voids;
 
-pub use alpha::{Alpha, Balls, NotAnAlpha};
+pub use alpha::{Alpha, Balls, NotAnAlpha, number_or_name};
 pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
 pub use complex::{ByClass, Class, Complex, Simplices};
 pub use manifold::ManifoldDefects;

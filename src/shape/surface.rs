@@ -19,9 +19,6 @@ pub struct Surface {
     pub edges: Vec<[u32; 2]>,
     /// Singular vertices.
     pub points: Vec<u32>,
-    /// The component of each of `vertices`, as numbered by
-    /// [`component_numbers`](AlphaShape::component_numbers).
-    pub components: Vec<u32>,
 }
 
 impl Surface {
@@ -39,11 +36,9 @@ impl Surface {
             .copied()
             .collect();
         let vertices: Vec<u32> = used.into_iter().collect();
-        let components = shape.component_numbers();
         let number =
             |v: u32| vertices.binary_search(&v).expect("every vertex used was collected") as u32;
         Self {
-            components: vertices.iter().map(|&v| components[v as usize]).collect(),
             regular: regular.into_iter().map(|row| row.map(number)).collect(),
             singular: singular.into_iter().map(|row| row.map(number)).collect(),
             edges: edges.into_iter().map(|row| row.map(number)).collect(),

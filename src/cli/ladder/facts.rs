@@ -7,10 +7,10 @@ use std::io;
 use serde::Serialize;
 use walpha::Alpha;
 use walpha::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
-use walpha::shape::{Betti, ByClass, Measures, Void};
+use walpha::shape::{Betti, ByClass, Measures, Void, number_or_name};
 
 use super::super::pipeline::{Domain, Weighed};
-use super::super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport, number_or_name};
+use super::super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport};
 
 /// What `walpha ladder` did over α.
 #[derive(Serialize)]
