@@ -87,7 +87,7 @@ class Classifier {
         ++count;
       }
     }
-    slab_.cells_.reserve(4 * count);
+    slab_.cells_.reserve(3 * count);
     slab_.cell_classes_.reserve(count);
   }
 
@@ -117,7 +117,7 @@ class Classifier {
         }
       }
     }
-    slab_.facets_.reserve(3 * facets);
+    slab_.facets_.reserve(2 * facets);
     slab_.facet_classes_.reserve(facets);
   }
 
@@ -227,7 +227,7 @@ class Classifier {
     }
     std::sort(rows_.begin(), rows_.end());
     for (const Row &row : rows_) {
-      append(slab_.cells_, {v, row.a(), row.b(), row.third});
+      append(slab_.cells_, {row.a(), row.b(), row.third});
       slab_.cell_classes_.push_back(static_cast<std::uint8_t>(row.data));
     }
     slab_.counts_.push_back(static_cast<std::uint32_t>(rows_.size()));
@@ -296,7 +296,7 @@ class Classifier {
   void emit_facet(std::uint32_t v, const Row &row) {
     const std::uint32_t c = row.data / 4;
     const int j = row.data & 3;
-    append(slab_.facets_, {v, row.a(), row.b()});
+    append(slab_.facets_, {row.a(), row.b()});
     const Class facet_class = facet(c, j);
     slab_.facet_classes_.push_back(facet_class);
     if (facet_class != REGULAR && facet_class != SINGULAR) return;
@@ -349,7 +349,7 @@ class Classifier {
     }
     std::sort(rows_.begin(), rows_.end());
     for (const Row &row : rows_) {
-      append(slab_.edges_, {v, row.a()});
+      slab_.edges_.push_back(row.a());
       slab_.edge_classes_.push_back(static_cast<std::uint8_t>(row.data));
       if (row.data == SINGULAR) slab_.edge_sheets_.push_back(row.b());
     }

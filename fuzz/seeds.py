@@ -7,6 +7,7 @@ Standard library only. The fuzzer finds the rest from these.
 import base64
 import gzip
 import io
+import json
 import struct
 import sys
 import zipfile
@@ -202,10 +203,57 @@ def ply():
     return files
 
 
+def dicom():
+    """A slice of 3 columns and 2 rows, explicit little endian; the second one in a deflated file."""
+
+    def element(group, number, kind, value):
+        value += (b"\0" if kind in (b"UI", b"OB") else b" ") * (len(value) % 2)
+        length = struct.pack("<xxI" if kind in (b"OB", b"OW") else "<H", len(value))
+        return struct.pack("<HH", group, number) + kind + length + value
+
+    def us(value):
+        return struct.pack("<H", value)
+
+    body = [
+        (0x8, 0x16, b"UI", b"1.2.840.10008.5.1.4.1.1.2"), (0x8, 0x18, b"UI", b"1.2.3.4"), (0x18, 0x50, b"DS", b"2.5"),
+        (0x20, 0xE, b"UI", b"1.2.3"), (0x20, 0x32, b"DS", b"-10\\5.5\\30"), (0x20, 0x37, b"DS", b"1\\0\\0\\0\\1\\0"),
+        (0x28, 2, b"US", us(1)), (0x28, 4, b"CS", b"MONOCHROME2"), (0x28, 0x10, b"US", us(2)), (0x28, 0x11, b"US", us(3)),
+        (0x28, 0x30, b"DS", b"0.5\\0.75"), (0x28, 0x100, b"US", us(16)), (0x28, 0x101, b"US", us(16)),
+        (0x28, 0x102, b"US", us(15)), (0x28, 0x103, b"US", us(1)), (0x28, 0x1052, b"DS", b"-1024"),
+        (0x28, 0x1053, b"DS", b"1"), (0x7FE0, 0x10, b"OW", bytes(12)),
+    ]
+    body = b"".join(element(*row) for row in body)
+    files = []
+    for syntax in (b"1.2.840.10008.1.2.1", b"1.2.840.10008.1.2.1.99"):
+        meta = element(2, 1, b"OB", b"\0\1") + element(2, 2, b"UI", b"1.2.840.10008.5.1.4.1.1.2")
+        meta += element(2, 3, b"UI", b"1.2.3.4") + element(2, 0x10, b"UI", syntax) + element(2, 0x12, b"UI", b"1.2.3.5")
+        packer = zlib.compressobj(wbits=-15)
+        data = packer.compress(body) + packer.flush() if syntax.endswith(b".99") else body
+        files.append(bytes(128) + b"DICM" + element(2, 0, b"UL", struct.pack("<I", len(meta))) + meta + data)
+    return files
+
+
+def zarr():
+    two = {"zarr_format": 2, "shape": [2, 3, 2], "chunks": [2, 3, 2], "dtype": "|u1", "compressor": None,
+           "fill_value": 0, "order": "C", "filters": None}
+    three = {"zarr_format": 3, "node_type": "array", "shape": [2, 3, 2], "data_type": "float32", "fill_value": 0.0,
+             "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": [2, 3, 2]}},
+             "chunk_key_encoding": {"name": "default", "configuration": {"separator": "/"}},
+             "codecs": [{"name": "bytes", "configuration": {"endian": "little"}}], "attributes": {}}
+    packed = dict(three, codecs=three["codecs"] + [{"name": "gzip", "configuration": {"level": 5}}])
+    levels = [{"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [1, 2, 3]},
+                                                           {"type": "translation", "translation": [4, 5, 6]}]}]
+    group = {"zarr_format": 3, "node_type": "group", "attributes": {"ome": {"multiscales": [{"datasets": levels}]}}}
+    parts = [(two, U8), (dict(two, compressor={"id": "zlib", "level": 1}), zlib.compress(U8)), (three, F32),
+             (packed, gzip.compress(F32)), (group, three, F32)]
+    return [b"\xff".join(part if isinstance(part, bytes) else json.dumps(part).encode() for part in file) for file in parts]
+
+
 TARGETS = {
     "inrimage": inrimage, "npy": npys, "npz": npz, "nrrd": nrrd, "metaimage": metaimage, "nifti": nifti,
     "nifti_gzip": lambda: [gzip.compress(file) for file in nifti()], "vtk_legacy": vtk_legacy, "vti": vti,
     "tiff": tiffs, "table": table, "xyz": xyz, "ply": ply, "vtk_geometry": vtk_geometry,
+    "dicom": dicom, "zarr": zarr,
 }
 
 if __name__ == "__main__":

@@ -66,6 +66,7 @@ pub(super) mod bridge {
         fn edge_sheets(self: &Slab) -> &[u32];
         fn shared(self: &Slab) -> &[u32];
         fn sheets(self: &Slab) -> u32;
+        fn drop_shared(self: Pin<&mut Slab>);
         fn drop_cells(self: Pin<&mut Slab>);
         fn drop_facets(self: Pin<&mut Slab>);
 

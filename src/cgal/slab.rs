@@ -60,26 +60,32 @@ pub fn give_back() {
     bridge::give_back();
 }
 
-/// Rows of input indices in canonical order, with class numbers beside them.
+/// Rows of input indices in canonical order, without their smallest, which [`counts`](Self::counts)
+/// tell, and with class numbers beside them.
 impl RawSlab {
     /// Tetrahedra and their classes.
-    pub fn cells(&self) -> (&[[u32; 4]], &[u8]) {
+    pub fn cells(&self) -> (&[[u32; 3]], &[u8]) {
         (self.0.cells().as_chunks().0, self.0.cell_classes())
     }
 
     /// Triangles and their classes.
-    pub fn facets(&self) -> (&[[u32; 3]], &[u8]) {
+    pub fn facets(&self) -> (&[[u32; 2]], &[u8]) {
         (self.0.facets().as_chunks().0, self.0.facet_classes())
     }
 
     /// Edges and their classes.
-    pub fn edges(&self) -> (&[[u32; 2]], &[u8]) {
+    pub fn edges(&self) -> (&[[u32; 1]], &[u8]) {
         (self.0.edges().as_chunks().0, self.0.edge_classes())
     }
 
     /// The class of each owned point, [`HIDDEN`] for those that are no vertices.
     pub fn vertex_classes(&self) -> &[u8] {
         self.0.vertex_classes()
+    }
+
+    /// Gives the memory of what other slabs know too back.
+    pub fn drop_shared(&mut self) {
+        self.0.pin_mut().drop_shared();
     }
 
     /// Gives the memory of the cells back.

@@ -26,12 +26,15 @@ pub struct PlanError {
     pub slabs: usize,
 }
 
-/// Bytes for each point of a slab at work: 6 to 7 cells of about 90 bytes in CGAL, later 70 in
-/// flat arrays. Measured peaks lie below.
-const AT_WORK: u64 = 1100;
-/// Bytes for each point of the answer: the rows and classes of about 6 cells, 12 facets and 7
-/// edges, and again those of one dimension while slabs are merged.
-const ANSWER: u64 = 520;
+/// Bytes for each point of a slab at work: 6 to 7 cells of 80 bytes in CGAL, and half as much when
+/// they are copied into flat arrays. Measured peaks lie below this and the next two.
+const AT_WORK: u64 = 950;
+/// Bytes for each point of slabs that are done: the rows and classes of 6 to 7 cells, 12 to 14
+/// facets and 7 to 8 edges, without their smallest vertices, and the sides that slabs share.
+const DONE: u64 = 340;
+/// Bytes for each point while slabs are merged: what is done, and the whole rows of one dimension
+/// after the other.
+const MERGED: u64 = 465;
 /// Slabs are made no smaller for the sake of threads: halos would cost more than a thread gains.
 const WORTHWHILE: usize = 2000;
 /// No set has use for more slabs.
@@ -58,9 +61,12 @@ impl Plan {
         // More slabs than one pay only if none of them is nearly the whole.
         let slabs = (1..=useful).min_by_key(|&slabs| sizes.largest(slabs)).unwrap_or(1);
         let Some(asked) = memory else { return Ok(Self::of(slabs)) };
-        let standing = memory::resident_bytes().unwrap_or(0) + ANSWER * sizes.points() as u64;
-        let needs =
-            |plan: Self| standing + AT_WORK * (plan.at_once * sizes.largest(plan.slabs)) as u64;
+        let resident = memory::resident_bytes().unwrap_or(0);
+        let points = sizes.points() as u64;
+        let needs = |plan: Self| {
+            let at_work = (plan.at_once * sizes.largest(plan.slabs)) as u64;
+            resident + (DONE * points + AT_WORK * at_work).max(MERGED * points)
+        };
         let mut smallest: Option<(u64, Self)> = None;
         let mut slabs = slabs;
         while slabs <= MOST.min(sizes.points()) {
