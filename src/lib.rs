@@ -41,6 +41,7 @@ pub mod interpolate;
 pub mod ladder;
 pub mod memory;
 pub mod near;
+mod number;
 pub mod plane;
 pub mod points;
 pub mod progress;

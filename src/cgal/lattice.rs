@@ -1,3 +1,5 @@
+use crate::number::lowest_bit;
+
 /// What the numbers of a set have in common, so that C++ knows when doubles are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
@@ -5,14 +7,6 @@ pub struct Lattice {
     pub step: f64,
     /// Whether every weight is a multiple of the squared step.
     pub holds_weights: bool,
-}
-
-/// The exponent of the lowest bit set in a finite number; `None` for 0.
-fn lowest_bit(value: f64) -> Option<i32> {
-    let (bits, subnormal) = (value.to_bits() & ((1 << 52) - 1), value.abs() < f64::MIN_POSITIVE);
-    let exponent = (value.to_bits() >> 52 & 0x7ff) as i32;
-    let mantissa = if subnormal { bits } else { bits | 1 << 52 };
-    (value != 0.0).then(|| exponent.max(1) - 1075 + mantissa.trailing_zeros() as i32)
 }
 
 impl Lattice {
@@ -50,7 +44,5 @@ mod tests {
         assert_eq!(of(3.0, 0.5), Lattice { step: 0.5, holds_weights: true });
         assert_eq!(of(3.0, 0.1), Lattice { step: 1.0, holds_weights: false });
         assert_eq!(of(1e-300, 0.0), Lattice { step: 0.0, holds_weights: false });
-        assert_eq!(lowest_bit(f64::from_bits(1)), Some(-1074));
-        assert_eq!(lowest_bit(-12.0), Some(2));
     }
 }

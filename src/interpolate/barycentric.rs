@@ -2,7 +2,8 @@
 
 use std::cmp::Ordering;
 
-use super::number::{Number, integer_offsets};
+use super::number::{Part, integer_offsets};
+use crate::number::{cross, dot};
 
 /// The coordinates of a place in a simplex of one to four corners, or `None` where it lies outside;
 /// its boundary is inside. Four corners turn positively: det(b−a, c−a, d−a) > 0. Coordinates beyond
@@ -52,7 +53,7 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 /// From corners as seen from the place. Each coordinate is the share that the simplex with the
 /// place instead of that corner has of the whole.
-fn of_offsets<T: Number>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
+fn of_offsets<T: Part>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
     let negative = |x: &T| T::zero().minus(x);
     match offsets {
         [a, b, c, d] => {
@@ -79,14 +80,14 @@ fn of_offsets<T: Number>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
 }
 
 /// Shares by the first component in which the parts do not sum to 0.
-fn along_an_axis<T: Number, const N: usize>(parts: [[T; 3]; N]) -> Option<[f64; 4]> {
+fn along_an_axis<T: Part, const N: usize>(parts: [[T; 3]; N]) -> Option<[f64; 4]> {
     let whole = |k: usize| parts.iter().fold(T::zero(), |sum, part| sum.plus(&part[k]));
     let (k, sign) = (0..3).map(|k| (k, whole(k).sign())).find(|(_, sign)| sign.is_ne())?;
     shares(parts.map(|part| if sign.is_gt() { part[k].clone() } else { T::zero().minus(&part[k]) }))
 }
 
 /// Parts over their sum; `None` if one is negative.
-fn shares<T: Number, const N: usize>(parts: [T; N]) -> Option<[f64; 4]> {
+fn shares<T: Part, const N: usize>(parts: [T; N]) -> Option<[f64; 4]> {
     if parts.iter().any(|part| part.sign() == Ordering::Less) {
         return None;
     }
@@ -131,19 +132,10 @@ fn filtered([a, b, c, d]: &[[f64; 3]; 4]) -> Filtered {
     }
 }
 
-fn cross<T: Number>(u: &[T; 3], v: &[T; 3]) -> [T; 3] {
-    let minor = |i: usize, j: usize| u[i].times(&v[j]).minus(&u[j].times(&v[i]));
-    [minor(1, 2), minor(2, 0), minor(0, 1)]
-}
-
 /// The cross product with sums for differences, of vectors without negative components.
 fn magnitudes(u: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
     let sum = |i: usize, j: usize| u[i] * v[j] + u[j] * v[i];
     [sum(1, 2), sum(2, 0), sum(0, 1)]
-}
-
-fn dot<T: Number>(u: &[T; 3], v: &[T; 3]) -> T {
-    u[0].times(&v[0]).plus(&u[1].times(&v[1])).plus(&u[2].times(&v[2]))
 }
 
 #[cfg(test)]

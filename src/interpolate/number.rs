@@ -4,30 +4,20 @@ use std::cmp::Ordering;
 
 use dashu_int::IBig;
 
-/// What the formulas need. Exact for big integers; for doubles only where no operation rounds,
-/// which [`Lattice`] tells.
-pub(super) trait Number: Clone {
+use crate::number::{Number, decode, integer, lowest_bit};
+
+/// A number of which barycentric coordinates are made; doubles are exact only where [`Lattice`] says
+/// that no operation rounds.
+pub(super) trait Part: Number + Clone {
     fn zero() -> Self;
-    fn plus(&self, other: &Self) -> Self;
-    fn minus(&self, other: &Self) -> Self;
-    fn times(&self, other: &Self) -> Self;
     fn sign(&self) -> Ordering;
     /// The share of a positive whole, from 0 to 1, as the double nearest to it or beside that.
     fn over(&self, whole: &Self) -> f64;
 }
 
-impl Number for f64 {
+impl Part for f64 {
     fn zero() -> Self {
         0.0
-    }
-    fn plus(&self, other: &Self) -> Self {
-        self + other
-    }
-    fn minus(&self, other: &Self) -> Self {
-        self - other
-    }
-    fn times(&self, other: &Self) -> Self {
-        self * other
     }
     fn sign(&self) -> Ordering {
         self.partial_cmp(&0.0).expect("products of bounded numbers")
@@ -37,18 +27,9 @@ impl Number for f64 {
     }
 }
 
-impl Number for IBig {
+impl Part for IBig {
     fn zero() -> Self {
         Self::ZERO
-    }
-    fn plus(&self, other: &Self) -> Self {
-        self + other
-    }
-    fn minus(&self, other: &Self) -> Self {
-        self - other
-    }
-    fn times(&self, other: &Self) -> Self {
-        self * other
     }
     fn sign(&self) -> Ordering {
         self.cmp(&Self::ZERO)
@@ -62,38 +43,14 @@ impl Number for IBig {
 
 /// Differences of a place from others, in one unit that makes all of them integers.
 pub(super) fn integer_offsets(corners: &[[f64; 3]], from: [f64; 3]) -> Vec<[IBig; 3]> {
-    let numbers = || corners.iter().chain([&from]).flatten().copied();
-    let unit = numbers().filter_map(lowest_bit).min().unwrap_or(0);
-    let integer = |x: f64| {
-        let (mantissa, exponent) = decode(x);
-        // What is shifted out to the right are zeros.
-        if exponent >= unit {
-            IBig::from(mantissa) << (exponent - unit) as usize
-        } else {
-            IBig::from(mantissa >> (unit - exponent).min(63))
-        }
-    };
-    let origin = from.map(integer);
+    let numbers = corners.iter().chain([&from]).flatten().copied();
+    let unit = numbers.filter_map(lowest_bit).min().unwrap_or(0);
+    let origin = from.map(|x| integer(x, unit));
     let offset = |corner: &[f64; 3]| {
-        let [x, y, z] = corner.map(integer);
+        let [x, y, z] = corner.map(|x| integer(x, unit));
         [x - &origin[0], y - &origin[1], z - &origin[2]]
     };
     corners.iter().map(offset).collect()
-}
-
-/// A finite double as mantissa·2^exponent.
-fn decode(x: f64) -> (i64, i32) {
-    let bits = x.to_bits();
-    let exponent = (bits >> 52 & 0x7ff) as i32;
-    let fraction = (bits & ((1 << 52) - 1)) as i64;
-    let mantissa = if exponent == 0 { fraction } else { fraction | 1 << 52 };
-    (if x < 0.0 { -mantissa } else { mantissa }, exponent.max(1) - 1075)
-}
-
-/// The exponent of the lowest bit set; `None` for 0.
-fn lowest_bit(x: f64) -> Option<i32> {
-    let (mantissa, exponent) = decode(x);
-    (mantissa != 0).then(|| exponent + mantissa.trailing_zeros() as i32)
 }
 
 /// What a set of coordinates has in common, so that one knows where doubles do not round.
@@ -119,11 +76,12 @@ impl Lattice {
     }
 
     fn with(self, x: f64) -> Self {
-        let (_, exponent) = decode(x);
-        match lowest_bit(x) {
-            None => self,
-            Some(bit) => Self { unit: self.unit.min(bit), reach: self.reach.max(exponent + 53) },
+        let (mantissa, bit) = decode(x);
+        if mantissa == 0 {
+            return self;
         }
+        let bits = (mantissa.unsigned_abs().ilog2() + 1) as i32;
+        Self { unit: self.unit.min(bit), reach: self.reach.max(bit + bits) }
     }
 
     /// Whether formulas over these places and one more are exact in doubles.

@@ -4,7 +4,8 @@ use dashu_int::IBig;
 use dashu_int::ops::{BitTest, DivEuclid, UnsignedAbs};
 
 use super::Site;
-use super::formulas::{Ray, dot, quotient, side};
+use super::formulas::{Ray, quotient, side};
+use crate::number::{dot, integer, lowest_bit};
 
 /// Whether the squared radius of the smallest orthogonal sphere is at most a finite α.
 pub(super) fn fits(p: Site, others: &[Site], alpha: f64) -> bool {
@@ -70,9 +71,7 @@ struct Units {
 
 impl Units {
     fn of<'a>(sites: impl Iterator<Item = &'a Site> + Clone, alpha: f64) -> Self {
-        let lowest = |numbers: &mut dyn Iterator<Item = f64>| {
-            numbers.map(decode).filter(|d| d.0 != 0).map(|d| d.1).min()
-        };
+        let lowest = |numbers: &mut dyn Iterator<Item = f64>| numbers.filter_map(lowest_bit).min();
         let coordinate = lowest(&mut sites.clone().flat_map(|s| s.position)).unwrap_or(0);
         let weight = lowest(&mut sites.map(|s| s.weight).chain([alpha]));
         let height = weight.map_or(2 * coordinate, |bit| bit.min(2 * coordinate));
@@ -95,23 +94,4 @@ impl Units {
         let power = (dot(&vector, &vector) << self.finer) + self.height(p.weight);
         Ray { power: power - self.height(q.weight), vector }
     }
-}
-
-/// Mantissa and exponent of a finite double; the mantissa is odd or 0.
-fn decode(value: f64) -> (i64, i32) {
-    let bits = value.to_bits();
-    let (biased, fraction) = ((bits >> 52 & 0x7ff) as i32, (bits & ((1 << 52) - 1)) as i64);
-    let magnitude = if biased == 0 { fraction } else { fraction | 1 << 52 };
-    if magnitude == 0 {
-        return (0, 0);
-    }
-    let zeros = magnitude.trailing_zeros();
-    let odd = magnitude >> zeros;
-    (if value < 0.0 { -odd } else { odd }, biased.max(1) - 1075 + zeros as i32)
-}
-
-/// A double in units of 2^`unit`, which must not exceed its lowest bit.
-fn integer(value: f64, unit: i32) -> IBig {
-    let (mantissa, exponent) = decode(value);
-    if mantissa == 0 { IBig::ZERO } else { IBig::from(mantissa) << (exponent - unit) as usize }
 }

@@ -4,41 +4,7 @@
 //! the others, the centre is p + c where 2c·a = t for each ray and c lies in the span of the rays;
 //! the squared radius is |c|² − ω(p). A point at the ray e is inside if its power < 2c·e.
 
-use dashu_int::IBig;
-
-/// What the polynomials are computed in.
-pub(super) trait Number {
-    fn plus(&self, other: &Self) -> Self;
-    fn minus(&self, other: &Self) -> Self;
-    fn times(&self, other: &Self) -> Self;
-}
-
-impl Number for f64 {
-    #[inline(always)]
-    fn plus(&self, other: &Self) -> Self {
-        self + other
-    }
-    #[inline(always)]
-    fn minus(&self, other: &Self) -> Self {
-        self - other
-    }
-    #[inline(always)]
-    fn times(&self, other: &Self) -> Self {
-        self * other
-    }
-}
-
-impl Number for IBig {
-    fn plus(&self, other: &Self) -> Self {
-        self + other
-    }
-    fn minus(&self, other: &Self) -> Self {
-        self - other
-    }
-    fn times(&self, other: &Self) -> Self {
-        self * other
-    }
-}
+use crate::number::{Number, cross, dot};
 
 /// From the first vertex to another.
 pub(super) struct Ray<T> {
@@ -57,7 +23,8 @@ pub(super) fn quotient<T: Number>(rays: &[Ray<T>]) -> (T, T) {
             (u.times(&a.power).plus(&v.times(&b.power)), d)
         }
         [a, b, c] => {
-            let normals = [cross(b, c), cross(c, a), cross(a, b)];
+            let normal = |u: &Ray<T>, v: &Ray<T>| cross(&u.vector, &v.vector);
+            let normals = [normal(b, c), normal(c, a), normal(a, b)];
             let component = |k: usize| {
                 let [x, y, z] = [0, 1, 2].map(|i| rays[i].power.times(&normals[i][k]));
                 x.plus(&y).plus(&z)
@@ -98,16 +65,4 @@ fn gram<T: Number>(a: &Ray<T>, b: &Ray<T>) -> ([T; 2], T) {
     let u = bb.times(&a.power).minus(&ab.times(&b.power));
     let v = aa.times(&b.power).minus(&ab.times(&a.power));
     ([u, v], aa.times(&bb).minus(&ab.times(&ab)))
-}
-
-#[inline(always)]
-pub(super) fn dot<T: Number>(u: &[T; 3], v: &[T; 3]) -> T {
-    u[0].times(&v[0]).plus(&u[1].times(&v[1])).plus(&u[2].times(&v[2]))
-}
-
-#[inline(always)]
-fn cross<T: Number>(a: &Ray<T>, b: &Ray<T>) -> [T; 3] {
-    let (u, v) = (&a.vector, &b.vector);
-    let minor = |i: usize, j: usize| u[i].times(&v[j]).minus(&u[j].times(&v[i]));
-    [minor(1, 2), minor(2, 0), minor(0, 1)]
 }

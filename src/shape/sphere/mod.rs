@@ -9,7 +9,8 @@ mod exact;
 mod formulas;
 
 use crate::cgal::Lattice;
-use formulas::{Ray, dot, quotient, side};
+use crate::number::dot;
+use formulas::{Ray, quotient, side};
 
 /// A weighted point.
 #[derive(Clone, Copy)]
