@@ -45,12 +45,12 @@ Extent extent(const std::vector<Site> &sites) {
 
 }  // namespace
 
-Mesh::Mesh(const std::vector<Site> &sites, const std::uint8_t *owned, const Lattice &lattice)
+Mesh::Mesh(const std::vector<Site> &sites, const std::uint8_t *owned, const Lattice &lattice,
+           bool frugal)
     : infinite_(static_cast<std::uint32_t>(sites.size())) {
-  // In a function of its own, so that the triangulation is gone before the next arrays come, and
-  // not kept by the allocator either: that is a fourth off the peak.
+  // In a function of its own, so that the triangulation is gone before the next arrays come.
   triangulate(sites, owned, lattice);
-  give_back();
+  if (frugal) give_back();
   if (dimension_ == 3) make_stars(sites.size(), owned);
 }
 

@@ -423,7 +423,7 @@ std::unique_ptr<Slab> slab(rust::Slice<const double> positions, rust::Slice<cons
   }
   auto result = std::make_unique<Slab>();
   const Lattice lattice(question.step, question.on_lattice);
-  const Mesh mesh(sites, owned.data(), lattice);
+  const Mesh mesh(sites, owned.data(), lattice, question.frugal);
   result->dimension_ = mesh.dimension();
   if (mesh.dimension() != 3) return result;
   const Predicates predicates(question.alpha, lattice);

@@ -103,12 +103,7 @@ fn seconds(work: impl FnOnce() -> Result<()>) -> Result<f64> {
     Ok(started.elapsed().as_secs_f64())
 }
 
-fn run(
-    engine: Engine,
-    points: &WeightedPoints,
-    alpha: f64,
-    memory: Option<u64>,
-) -> Result<()> {
+fn run(engine: Engine, points: &WeightedPoints, alpha: f64, memory: Option<u64>) -> Result<()> {
     let alpha = Alpha::from_squared(alpha)?;
     let options = ShapeOptions { engine, memory, ..ShapeOptions::new(alpha) };
     let shape = alpha_shape(points.clone(), &options)?;

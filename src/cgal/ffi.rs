@@ -12,6 +12,8 @@ pub(super) mod bridge {
         on_lattice: bool,
         /// Whether exterior simplices are wanted too.
         exterior: bool,
+        /// Whether memory matters more than time.
+        frugal: bool,
     }
 
     unsafe extern "C++" {

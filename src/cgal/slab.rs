@@ -26,20 +26,30 @@ unsafe impl Send for bridge::Slab {}
 // SAFETY: what can be called through a shared reference is const and reads these vectors only.
 unsafe impl Sync for bridge::Slab {}
 
+/// What is asked about all slabs of a set.
+#[derive(Clone, Copy, Debug)]
+pub struct SlabQuestion {
+    /// A squared length or +∞.
+    pub alpha: f64,
+    /// The lattice of the whole set.
+    pub lattice: Lattice,
+    /// Whether exterior simplices are wanted too, which mean something in a triangulation of all
+    /// points only.
+    pub exterior: bool,
+    /// Whether memory that comes free goes back to the system at once. That takes a tenth of the
+    /// time, as it must be asked for again.
+    pub frugal: bool,
+}
+
 /// Triangulates a slab with its halo and classifies the simplices whose smallest vertex is the
-/// slab's own, at `alpha`, a squared length or +∞. With `exterior`, exterior simplices are
-/// returned too.
+/// slab's own.
 ///
 /// # Errors
 /// [`SitesError::Flat`](super::SitesError::Flat) when the points span no volume.
-pub fn slab(
-    sites: &SlabSites,
-    alpha: f64,
-    lattice: Lattice,
-    exterior: bool,
-) -> Result<RawSlab, CgalError> {
-    let question =
-        bridge::Question { alpha, step: lattice.step, on_lattice: lattice.holds_weights, exterior };
+pub fn slab(sites: &SlabSites, question: &SlabQuestion) -> Result<RawSlab, CgalError> {
+    let &SlabQuestion { alpha, lattice, exterior, frugal } = question;
+    let (step, on_lattice) = (lattice.step, lattice.holds_weights);
+    let question = bridge::Question { alpha, step, on_lattice, exterior, frugal };
     let raw = bridge::slab(
         sites.positions.as_flattened(),
         &sites.weights,
@@ -54,8 +64,7 @@ pub fn slab(
     flat(raw.dimension(), sites.input.len()).map_or(Ok(RawSlab(raw)), |flat| Err(flat.into()))
 }
 
-/// Gives freed memory back to the system, where the allocator would keep it for itself (glibc): before
-/// more slabs, and before they are merged.
+/// Gives freed memory back to the system, where the allocator would keep it for itself (glibc).
 pub fn give_back() {
     bridge::give_back();
 }

@@ -6,7 +6,7 @@ use super::canonical::canonical;
 use super::slabs::{self, Plan, PlanError};
 use super::topology::sheet_betti;
 use super::{Alpha, Balls, Betti, Class, Complex, Measures, Sheets, Simplices, direct_betti};
-use crate::cgal::{self, CgalError, Sites, SitesError};
+use crate::cgal::{self, CgalError, Lattice, Sites, SitesError, SlabQuestion};
 use crate::points::WeightedPoints;
 
 /// Which program computes the shape; all give the same answer.
@@ -182,7 +182,13 @@ fn by_slabs(sites: &Sites, alpha: f64, options: &ShapeOptions) -> Result<Found, 
         None => Plan::new(sites, alpha, options.memory)?,
     };
     let whole = plan == Plan::WHOLE;
-    let answer = slabs::run(sites, alpha, &plan, whole)?;
+    let question = SlabQuestion {
+        alpha,
+        lattice: Lattice::of(sites.positions(), sites.weights()),
+        exterior: whole,
+        frugal: options.memory.is_some(),
+    };
+    let answer = slabs::run(sites, &plan, &question)?;
     let sheets = Some(Sheets::of(&answer));
     Ok(Found { complex: answer.complex, sheets, whole })
 }

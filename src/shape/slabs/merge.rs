@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::partition::Partition;
 use super::{Answer, common_sheets};
-use crate::cgal::{self, HIDDEN, RawSlab, Sites};
+use crate::cgal::{self, HIDDEN, RawSlab, Sites, SlabQuestion};
 use crate::shape::{Class, Complex, Simplices};
 
 /// Puts the rows of slabs in order of their smallest vertices, which they come without. Each slab's
@@ -16,21 +16,26 @@ pub(super) fn merge(
     sites: &Sites,
     partition: &Partition,
     mut slabs: Vec<RawSlab>,
-    exterior: bool,
+    question: &SlabQuestion,
 ) -> Answer {
+    let give_back = || {
+        if question.frugal {
+            cgal::give_back();
+        }
+    };
     let sheets = common_sheets(&slabs);
     slabs.iter_mut().for_each(RawSlab::drop_shared);
-    cgal::give_back();
+    give_back();
     let blocks = blocks(sites.input(), partition.owner(), &slabs);
-    let vertices = vertices(&blocks, &slabs, exterior);
+    let vertices = vertices(&blocks, &slabs, question.exterior);
     let facets = rows(&blocks, &slabs, 1, RawSlab::facets);
     let facet_sheets =
         boundary(&blocks, &slabs, 1, |slab| (slab.facets().1, slab.facet_sheets()), &sheets);
     slabs.iter_mut().for_each(RawSlab::drop_facets);
-    cgal::give_back();
+    give_back();
     let cells = rows(&blocks, &slabs, 0, RawSlab::cells);
     slabs.iter_mut().for_each(RawSlab::drop_cells);
-    cgal::give_back();
+    give_back();
     let edges = rows(&blocks, &slabs, 2, RawSlab::edges);
     let edge_sheets =
         boundary(&blocks, &slabs, 2, |slab| (slab.edges().1, slab.edge_sheets()), &sheets);

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 use super::union_find::UnionFind;
 use super::{Complex, ShapeError};
-use crate::cgal::{self, CgalError, Lattice, RawSlab, Sites};
+use crate::cgal::{self, CgalError, RawSlab, Sites, SlabQuestion};
 use crate::progress;
 
 use merge::merge;
@@ -38,52 +38,45 @@ pub(super) struct Answer {
     pub edge_sheets: Vec<u32>,
 }
 
-/// The α-complex of sites at a squared radius, or +∞; with `exterior`, which needs one slab, the
-/// whole triangulation.
+/// The α-complex of sites; with exterior simplices, which need one slab, the whole triangulation.
 pub(super) fn run(
     sites: &Sites,
-    alpha: f64,
     plan: &Plan,
-    exterior: bool,
+    question: &SlabQuestion,
 ) -> Result<Answer, ShapeError> {
-    let lattice = Lattice::of(sites.positions(), sites.weights());
     let partition = Partition::new(sites, plan.slabs);
     tracing::debug!(slabs = partition.len(), at_once = plan.at_once, "cut");
     // So many slabs at once, each giving its memory back before the next.
     let slabs: Vec<usize> = (0..partition.len()).collect();
     let mut raw = Vec::with_capacity(slabs.len());
     for batch in slabs.chunks(plan.at_once) {
-        let done: Result<Vec<_>, ShapeError> = batch
-            .par_iter()
-            .map(|&slab| decide(sites, alpha, &partition, slab, lattice, exterior))
-            .collect();
+        let done: Result<Vec<_>, ShapeError> =
+            batch.par_iter().map(|&slab| decide(sites, &partition, slab, question)).collect();
         raw.extend(done?);
         progress::report(raw.len() as u64, partition.len() as u64);
-        if partition.len() > plan.at_once {
+        if question.frugal {
             cgal::give_back();
         }
     }
-    Ok(merge(sites, &partition, raw, exterior))
+    Ok(merge(sites, &partition, raw, question))
 }
 
 /// Triangulates a slab with its halo, or, where these span no volume, with all other sites.
 fn decide(
     sites: &Sites,
-    alpha: f64,
     partition: &Partition,
     slab: usize,
-    lattice: Lattice,
-    exterior: bool,
+    question: &SlabQuestion,
 ) -> Result<RawSlab, ShapeError> {
     if partition.len() > 1 {
-        let points = partition.points(sites, alpha, slab);
-        match cgal::slab(&points, alpha, lattice, exterior) {
+        let points = partition.points(sites, question.alpha, slab);
+        match cgal::slab(&points, question) {
             Err(CgalError::Sites(_)) => {}
             decided => return Ok(decided?),
         }
     }
     let points = partition.all_points(sites, slab);
-    Ok(cgal::slab(&points, alpha, lattice, exterior)?)
+    Ok(cgal::slab(&points, question)?)
 }
 
 /// Makes one numbering of the sheets of all slabs: those that share a side of a facet, or a
