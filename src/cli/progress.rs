@@ -11,8 +11,14 @@ use tracing_subscriber::layer::Context;
 use super::Global;
 
 /// What a terminal shows. There is one, as there is one standard error.
-static BAR: LazyLock<ProgressBar> =
-    LazyLock::new(|| ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()));
+static BAR: LazyLock<ProgressBar> = LazyLock::new(|| {
+    ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(style(STAGE))
+});
+
+/// Of a stage that does not tell how far it is.
+const STAGE: &str = "{spinner} {msg} {elapsed}";
+/// Of one that does.
+const PART: &str = "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left, {rate}";
 
 /// Times stages by name and shows the running one on a terminal.
 pub struct Progress {
@@ -42,10 +48,11 @@ impl Progress {
 
     /// Runs a stage. Calls with the same name add up.
     pub fn stage<T>(&mut self, name: &'static str, work: impl FnOnce() -> T) -> T {
-        BAR.reset();
-        BAR.unset_length();
-        BAR.set_style(style("{spinner} {msg} {elapsed}"));
+        // In this order: each of them draws.
+        BAR.set_style(style(STAGE));
         self.show(name);
+        BAR.unset_length();
+        BAR.reset();
         let started = Instant::now();
         let result = work();
         let seconds = started.elapsed().as_secs_f64();
@@ -94,9 +101,7 @@ impl<S: tracing::Subscriber> tracing_subscriber::Layer<S> for Listener {
         event.record(&mut amount);
         let Amount { done, total } = amount;
         if BAR.length() != Some(total) {
-            BAR.set_style(style(
-                "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left, {rate}",
-            ));
+            BAR.set_style(style(PART));
             BAR.set_length(total);
         }
         BAR.set_position(done);
