@@ -553,11 +553,11 @@ def write_shapes(check):
     if run.returncode:
         return check.judge("walpha writes shapes", run.stderr.strip())
     arrays = np.load(check.path("shape.npz"))
-    regular = arrays["facets"][arrays["facets_classes"] == 2]
-    singular = arrays["facets"][arrays["facets_classes"] == 3]
-    corners = arrays["positions"][regular]
+    regular = arrays["facets"][arrays["facet_classes"] == 2]
+    singular = arrays["facets"][arrays["facet_classes"] == 3]
+    corners = arrays["points"][regular]
     volume = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6
-    cells = arrays["positions"][arrays["cells"]]
+    cells = arrays["points"][arrays["cells"]]
     of_cells = np.abs(np.linalg.det(cells[:, 1:] - cells[:, :1])).sum() / 6
     check.equal("volume inside the boundary is that of the cells", volume, of_cells)
     check.equal("and the one reported", json.loads(run.stdout)["shape"]["volume"], of_cells)
@@ -581,10 +581,10 @@ def write_shapes(check):
         data = reader.GetOutput()
         if extension == "vtu":
             classes = vtk_to_numpy(data.GetCellData().GetArray("class"))
-            expected = np.concatenate([arrays[k + "_classes"] for k in ["vertices", "edges", "facets", "cells"]])
+            expected = np.concatenate([arrays[k + "_classes"] for k in ["vertex", "edge", "facet", "cell"]])
             check.equal("VTK reads the classes of our vtu", classes, expected)
             inputs = vtk_to_numpy(data.GetPointData().GetArray("input_index"))
-            check.equal("VTK reads the points of our vtu", vtk_to_numpy(data.GetPoints().GetData()), arrays["positions"][inputs])
+            check.equal("VTK reads the points of our vtu", vtk_to_numpy(data.GetPoints().GetData()), arrays["points"][inputs])
         else:
             expected = len(regular) + (0 if extension == "stl" else len(singular))
             found = data.GetNumberOfPolys()

@@ -63,8 +63,8 @@ fn written_shapes_are_read_back() {
     let mut archive = payloads(&path);
     let cells = archive("cells");
     assert_eq!(cells.len(), shape.complex().cells.len() * 16);
-    assert_eq!(archive("cells_classes"), vec![1; 4]);
-    assert_eq!(archive("positions").len(), 6 * 24);
+    assert_eq!(archive("cell_classes"), vec![1; 4]);
+    assert_eq!(archive("points").len(), 6 * 24);
 }
 
 /// The payload of an array of an NPZ archive.

@@ -33,7 +33,7 @@
 //! `facets` m×3, `edges` m×2, `vertices` m, `hidden` m, `duplicates` m×2, of any integer or
 //! floating type; classes are arrays `cell_classes`, `facet_classes`, `edge_classes` and
 //! `vertex_classes` of the numbers 0 exterior, 1 interior, 2 regular, 3 singular. Write it with
-//! `numpy.savez`, not compressed.
+//! `numpy.savez` or `numpy.savez_compressed`.
 
 mod build;
 mod npz;
@@ -115,12 +115,9 @@ pub enum SchemaError {
     /// Not JSON, or not of this form.
     #[error("the complex cannot be read as JSON: {0}")]
     Json(#[from] serde_json::Error),
-    /// Not NPZ, or written compressed.
+    /// Not NPZ.
     #[error("the complex cannot be read as NPZ: {0}; write it with numpy.savez")]
     Npz(#[from] ndarray_npy::ReadNpzError),
-    /// Writing NPZ failed.
-    #[error("the complex cannot be written as NPZ: {0}")]
-    WriteNpz(#[from] ndarray_npy::WriteNpzError),
     /// A needed array is missing.
     #[error("the NPZ file has no array `{0}`, which is needed")]
     Missing(&'static str),

@@ -1,7 +1,7 @@
-use std::io::{Read, Seek, Write};
+use std::io::{Read, Seek};
 
-use ndarray::{Array, ArrayD, Axis, Ix0, Ix1, Ix2};
-use ndarray_npy::{NpzReader, NpzWriter, ReadNpzError, ReadableElement};
+use ndarray::{ArrayD, Axis, Ix0, Ix1, Ix2};
+use ndarray_npy::{NpzReader, ReadNpzError, ReadableElement};
 
 use super::{Classes, ComplexFile, SchemaError};
 use crate::shape::Class;
@@ -40,55 +40,6 @@ impl ComplexFile {
             info: None,
         })
     }
-
-    /// Writes NPZ; `info` has no place in it.
-    ///
-    /// # Errors
-    /// [`SchemaError::WriteNpz`] if `writer` fails.
-    pub fn write_npz(&self, writer: impl Write + Seek) -> Result<(), SchemaError> {
-        let mut npz = NpzWriter::new(writer);
-        npz.add_array("points", &matrix(&self.points))?;
-        npz.add_array("alpha", &Array::from_elem((), self.alpha))?;
-        if let Some(weights) = &self.weights {
-            npz.add_array("weights", &Array::from(weights.clone()))?;
-        }
-        if let Some(cells) = &self.cells {
-            npz.add_array("cells", &matrix(cells))?;
-        }
-        if let Some(facets) = &self.facets {
-            npz.add_array("facets", &matrix(facets))?;
-        }
-        let pairs = [("edges", &self.edges), ("duplicates", &self.duplicates)];
-        for (name, rows) in pairs {
-            if let Some(rows) = rows {
-                npz.add_array(name, &matrix(rows))?;
-            }
-        }
-        for (name, list) in [("vertices", &self.vertices), ("hidden", &self.hidden)] {
-            if let Some(list) = list {
-                npz.add_array(name, &Array::from(list.clone()))?;
-            }
-        }
-        let classes = [
-            ("cell_classes", &self.classes.cells),
-            ("facet_classes", &self.classes.facets),
-            ("edge_classes", &self.classes.edges),
-            ("vertex_classes", &self.classes.vertices),
-        ];
-        for (name, classes) in classes {
-            if let Some(classes) = classes {
-                let numbers = classes.iter().map(|&class| class as u8);
-                npz.add_array(name, &Array::from_iter(numbers))?;
-            }
-        }
-        npz.finish()?;
-        Ok(())
-    }
-}
-
-fn matrix<T: Clone, const N: usize>(rows: &[[T; N]]) -> Array<T, Ix2> {
-    let flat = rows.as_flattened().to_vec();
-    Array::from_shape_vec((rows.len(), N), flat).expect("every row has N entries")
 }
 
 /// The arrays of a file, read as doubles: they hold every index and class exactly.
