@@ -233,6 +233,44 @@ def dicom():
     return files
 
 
+def slices():
+    """Gray PNG of 8 and 16 bits, and the smallest baseline JPEG: one gray block."""
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    files = []
+    for bits in (8, 16):
+        rows = b"".join(b"\0" + bytes(range(3 * bits // 8)) for _ in range(2))
+        head = struct.pack(">IIBBBBB", 3, 2, bits, 0, 0, 0, 0)
+        files.append(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+    def segment(mark, data):
+        return b"\xff" + bytes([mark]) + struct.pack(">H", len(data) + 2) + data
+
+    one_code = bytes([1]) + bytes(15) + b"\0"
+    jpeg = segment(0xDB, b"\0" + bytes([1] * 64)) + segment(0xC0, struct.pack(">BHHB", 8, 8, 8, 1) + b"\1\x11\0")
+    jpeg += segment(0xC4, b"\0" + one_code) + segment(0xC4, b"\x10" + one_code) + segment(0xDA, b"\1\1\0\0\x3f\0")
+    return [*files, b"\xff\xd8" + jpeg + b"\x3f\xff\xd9"]
+
+
+def complexes():
+    """A tetrahedron with its simplices, as JSON and as NPZ."""
+    points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    facets = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]
+    edges = [[a, b] for a in range(4) for b in range(a + 1, 4)]
+    whole = {"points": points, "weights": [0, 0, 0, 0], "alpha": 1, "cells": [[0, 1, 2, 3]], "facets": facets,
+             "edges": edges, "vertices": [0, 1, 2, 3], "hidden": [], "duplicates": []}
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
+        coordinates = struct.pack("<12d", *sum(points, []))
+        archive.writestr("points.npy", npy("<f8", (4, 3), coordinates))
+        archive.writestr("alpha.npy", npy("<f8", (), struct.pack("<d", 1)))
+        archive.writestr("cells.npy", npy("<u4", (1, 4), struct.pack("<4I", 0, 1, 2, 3)))
+        archive.writestr("vertices.npy", npy("<i8", (4,), struct.pack("<4q", 0, 1, 2, 3)))
+    return [json.dumps(whole).encode(), json.dumps(dict(points=points, alpha="inf", cells=[[3, 2, 1, 0]])).encode(), out.getvalue()]
+
+
 def zarr():
     two = {"zarr_format": 2, "shape": [2, 3, 2], "chunks": [2, 3, 2], "dtype": "|u1", "compressor": None,
            "fill_value": 0, "order": "C", "filters": None}
@@ -253,7 +291,7 @@ TARGETS = {
     "inrimage": inrimage, "npy": npys, "npz": npz, "nrrd": nrrd, "metaimage": metaimage, "nifti": nifti,
     "nifti_gzip": lambda: [gzip.compress(file) for file in nifti()], "vtk_legacy": vtk_legacy, "vti": vti,
     "tiff": tiffs, "table": table, "xyz": xyz, "ply": ply, "vtk_geometry": vtk_geometry,
-    "dicom": dicom, "zarr": zarr,
+    "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes,
 }
 
 if __name__ == "__main__":

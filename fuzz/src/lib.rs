@@ -1,8 +1,10 @@
 //! What the fuzz targets share: bytes become a file of a name, and the file is read. Whatever comes
 //! out is right, as long as it comes out.
 
+use std::io::Cursor;
 use std::path::PathBuf;
 
+use walpha::check::schema::ComplexFile;
 use walpha::points::{is_point_file, read_points};
 use walpha::volume::{ReadOptions, read};
 
@@ -17,6 +19,23 @@ pub fn points(name: &str, bytes: &[u8]) {
     let (_folder, path) = file(name, bytes);
     let _ = is_point_file(&path);
     let _ = read_points(&path);
+}
+
+/// Reads bytes as the one slice of a folder, PNG or else JPEG.
+pub fn slices(bytes: &[u8]) {
+    let name = if bytes.starts_with(b"\x89PNG") { "1.png" } else { "1.jpg" };
+    let (folder, _path) = file(name, bytes);
+    let _ = read(folder.path(), &ReadOptions::default());
+}
+
+/// Reads bytes as a complex to be checked, NPZ or else JSON.
+pub fn complex(bytes: &[u8]) {
+    let file = if bytes.starts_with(b"PK") {
+        ComplexFile::read_npz(Cursor::new(bytes))
+    } else {
+        ComplexFile::read_json(bytes)
+    };
+    let _ = file.and_then(ComplexFile::into_complex);
 }
 
 /// Reads bytes as a Zarr store: the metadata of an array, then its first chunk; of a group, if they
