@@ -215,4 +215,16 @@ fn what_makes_no_volume_is_told() {
         let text = open(&folder.path().join("a.dcm")).unwrap_err().to_string();
         assert!(text.contains("a.dcm"), "{length}: {text}");
     }
+    // An element that claims more than there is: of the data, and of the file's own table.
+    let lies = |mark: &[u8], length: usize, claim: &[u8]| {
+        let mut bytes = at(0).bytes();
+        let place = bytes.windows(mark.len()).position(|part| part == mark).unwrap();
+        bytes[place + length..place + length + claim.len()].copy_from_slice(claim);
+        fs::write(folder.path().join("a.dcm"), bytes).unwrap();
+        open(&folder.path().join("a.dcm")).unwrap_err().to_string()
+    };
+    let text = lies(b"\xe0\x7f\x10\x00OW", 8, &[0, 0, 0, 0x4e]);
+    assert!(text.contains("claims an element of 1308622848 bytes"), "{text}");
+    let text = lies(b"\x02\x00\x01\x00OB", 8, &[0, 0, 0, 0x4e]);
+    assert!(text.contains("claims an element of 1308622848 bytes"), "{text}");
 }

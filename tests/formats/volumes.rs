@@ -159,6 +159,15 @@ fn folders_of_slices_are_read_in_natural_order() {
     assert!(open(f).unwrap_err().to_string().contains("s12.png"));
     save(f, "s12.jpg", "");
     assert!(open(f).unwrap_err().to_string().contains("several kinds"));
+    // A small file whose header has been changed to claim a huge picture.
+    let huge = tempfile::tempdir().unwrap();
+    let path = huge.path().join("s.jpg");
+    image::GrayImage::new(8, 8).save(&path).unwrap();
+    let mut bytes = fs::read(&path).unwrap();
+    let frame = bytes.windows(2).position(|mark| mark == [0xff, 0xc0]).unwrap();
+    bytes[frame + 5..frame + 9].fill(0x7f);
+    fs::write(&path, bytes).unwrap();
+    assert!(open(huge.path()).unwrap_err().to_string().contains("claims 32639×32639 pixels"));
     let empty = tempfile::tempdir().unwrap();
     assert!(open(empty.path()).unwrap_err().to_string().contains("holds no PNG"));
 }

@@ -6,11 +6,9 @@ use zip::ZipArchive;
 use zip::result::ZipError;
 
 use super::npy::{self, NpyFile};
+use super::payload::MOST_EXPANSION;
 use super::{format_error, io_error};
 use crate::volume::{Volume, VolumeError};
-
-/// Deflate expands by no more than this, and a little for its headers.
-const MOST_EXPANSION: u64 = 1032;
 
 /// Reads NPZ, NumPy's archive of arrays (`savez`, `savez_compressed`): its only array of three axes.
 pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {

@@ -16,6 +16,10 @@ pub(crate) struct Payload<R> {
     pub length: Length,
 }
 
+/// Deflate expands by no more than this (zlib's technical details), nor does another code that
+/// loses nothing: a claim beyond is a lie.
+pub(crate) const MOST_EXPANSION: u64 = 1032;
+
 /// What is known of the number of bytes left to read.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Length {
@@ -26,10 +30,9 @@ pub(crate) enum Length {
 }
 
 impl Length {
-    /// Deflate expands by no more than 1032 : 1 (zlib's technical details), so a small gzip file
-    /// that claims a huge volume is refused before anything is allocated.
+    /// A small gzip file that claims a huge volume is refused before anything is allocated.
     pub fn of_gzip(compressed: u64) -> Self {
-        Self::AtMost(compressed.saturating_mul(1032))
+        Self::AtMost(compressed.saturating_mul(MOST_EXPANSION))
     }
 
     /// What is left after a header.

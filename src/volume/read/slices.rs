@@ -1,9 +1,10 @@
 use std::cmp::Ordering;
 use std::path::{Path, PathBuf};
 
-use image::{DynamicImage, ImageError, ImageReader};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
 
 use super::described::{Described, Encoding};
+use super::payload::MOST_EXPANSION;
 use super::tiff::{self, Page};
 use super::{format_error, io_error};
 use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
@@ -66,17 +67,30 @@ fn page(path: &Path) -> Result<Page, VolumeError> {
     if EXTENSIONS[2].iter().any(|&name| extension == name) {
         return tiff::read_page(path);
     }
-    let image = ImageReader::open(path)
+    let damaged = |error| match error {
+        ImageError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
+            io_error(path)(error)
+        }
+        other => format_error(path, format!("is no image that can be read: {other}")),
+    };
+    let length = std::fs::metadata(path).map_err(io_error(path))?.len();
+    let decoder = ImageReader::open(path)
         .and_then(ImageReader::with_guessed_format)
         .map_err(io_error(path))?
-        .decode()
-        .map_err(|error| match error {
-            ImageError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
-                io_error(path)(error)
-            }
-            other => format_error(path, format!("is no image that can be read: {other}")),
-        })?;
-    let size = [image.width().into(), image.height().into()];
+        .into_decoder()
+        .map_err(damaged)?;
+    let (width, height) = decoder.dimensions();
+    let size = [width, height].map(u64::from);
+    // PNG may have eight samples in a byte; JPEG has 64 in two bits at best.
+    let most = length.saturating_mul(8 * MOST_EXPANSION);
+    if size[0] * size[1] > most {
+        let what = format!(
+            "claims {width}×{height} pixels, which {length} bytes cannot hold: it is truncated or \
+             damaged"
+        );
+        return Err(format_error(path, what));
+    }
+    let image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
     match image {
         DynamicImage::ImageLuma8(image) => {
             let samples = image.into_raw().into_iter().map(f32::from).collect();

@@ -1,5 +1,6 @@
 //! DICOM series: the slices of one series as a volume.
 
+mod claims;
 mod slice;
 mod stack;
 

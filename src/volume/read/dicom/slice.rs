@@ -3,8 +3,10 @@ use std::path::{Path, PathBuf};
 use dicom_object::{DefaultDicomObject, OpenFileOptions, Tag};
 use dicom_pixeldata::PixelDecoder;
 
+use super::claims;
 use crate::volume::VolumeError;
 use crate::volume::read::format_error;
+use crate::volume::read::payload::MOST_EXPANSION;
 
 // By their names in part 6 of the standard.
 const SLICE_THICKNESS: Tag = Tag(0x0018, 0x0050);
@@ -22,9 +24,6 @@ const PIXEL_REPRESENTATION: Tag = Tag(0x0028, 0x0103);
 const RESCALE_INTERCEPT: Tag = Tag(0x0028, 0x1052);
 const RESCALE_SLOPE: Tag = Tag(0x0028, 0x1053);
 const PIXEL_DATA: Tag = Tag(0x7FE0, 0x0010);
-
-/// No lossless code makes a picture smaller than this, so a claim beyond is a lie.
-const MOST_COMPRESSED: u64 = 1032;
 
 /// One slice of a series: all but its pixels.
 #[derive(Clone, Debug)]
@@ -50,6 +49,7 @@ impl Slice {
     /// Reads what stands before the pixels.
     pub fn open(path: &Path) -> Result<Self, VolumeError> {
         let said = |what: String| format_error(path, what);
+        claims::check(path)?;
         let object = OpenFileOptions::new()
             .read_until(PIXEL_DATA)
             .open_file(path)
@@ -84,7 +84,7 @@ impl Slice {
         let (columns, rows) = (columns as u64, rows as u64);
         let claimed = columns.saturating_mul(rows).saturating_mul((bits as u64).div_ceil(8));
         let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-        if claimed > length.saturating_mul(MOST_COMPRESSED) {
+        if claimed > length.saturating_mul(MOST_EXPANSION) {
             return Err(said(format!(
                 "claims {columns}×{rows} pixels, which {length} bytes cannot hold: it is truncated or \
                  damaged"
@@ -124,7 +124,7 @@ impl Slice {
     }
 }
 
-fn damaged(path: &Path, error: &dyn std::error::Error) -> VolumeError {
+pub(super) fn damaged(path: &Path, error: &dyn std::error::Error) -> VolumeError {
     let mut what = error.to_string();
     let mut cause = error.source();
     while let Some(inner) = cause {

@@ -7,12 +7,9 @@ use flate2::read::ZlibDecoder;
 
 use super::{Appended, VtkXml, XmlElement};
 use crate::volume::read::base64::Base64;
-use crate::volume::read::payload::{Element, Length, Payload};
+use crate::volume::read::payload::{Element, Length, MOST_EXPANSION, Payload};
 use crate::volume::read::{payload_error_of, text};
 use crate::volume::{Endian, VolumeError};
-
-/// Deflate expands by no more than this.
-const MOST_EXPANSION: u64 = 1032;
 
 impl VtkXml {
     /// Reads an array, which must have exactly `count` numbers.
