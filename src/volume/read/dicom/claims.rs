@@ -5,6 +5,8 @@ use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use dicom_encoding::decode::Decode;
+use dicom_encoding::decode::explicit_le::ExplicitVRLittleEndianDecoder;
 use dicom_encoding::transfer_syntax::Codec;
 use dicom_encoding::{TransferSyntax, TransferSyntaxIndex};
 use dicom_object::FileMetaTable;
@@ -19,17 +21,14 @@ use crate::volume::read::{format_error, io_error};
 
 /// Bytes before the mark `DICM`.
 const PREAMBLE: u64 = 128;
-/// The encoding of the table that every file begins with.
-const EXPLICIT_LITTLE_ENDIAN: &str = "1.2.840.10008.1.2.1";
 
 /// Refuses a file with an element longer than the file. Values are passed over; what else may be
 /// wrong is for the reader to say.
 pub(super) fn check(path: &Path) -> Result<(), VolumeError> {
     let mut file = BufReader::new(File::open(path).map_err(io_error(path))?);
     let length = file.get_ref().metadata().map_err(io_error(path))?.len();
-    let table = TransferSyntaxRegistry.get(EXPLICIT_LITTLE_ENDIAN).expect("the default encoding");
     file.seek(SeekFrom::Start(PREAMBLE + 4)).map_err(io_error(path))?;
-    walk(path, &mut file, table, length, |group| group == 2)?;
+    check_table(path, &mut file, length)?;
     file.seek(SeekFrom::Start(PREAMBLE)).map_err(io_error(path))?;
     let table = FileMetaTable::from_reader(&mut file).map_err(|error| damaged(path, &error))?;
     let Some(syntax) = TransferSyntaxRegistry.get(table.transfer_syntax()) else { return Ok(()) };
@@ -39,32 +38,43 @@ pub(super) fn check(path: &Path) -> Result<(), VolumeError> {
         // A stream that breaks off is walked as far as it goes.
         let _ = adapter.adapt_reader(Box::new(file)).take(most).read_to_end(&mut data);
         let length = data.len() as u64;
-        return walk(path, Cursor::new(data), syntax, length, |_| true);
+        return check_elements(path, Cursor::new(data), syntax, length);
     }
-    walk(path, file, syntax, length, |_| true)
+    check_elements(path, file, syntax, length)
 }
 
-/// Walks over elements as long as they are of groups wanted.
-fn walk(
+/// Of the table that every file begins with: it tells its own length, then come elements.
+fn check_table(path: &Path, mut file: impl Read + Seek, length: u64) -> Result<(), VolumeError> {
+    let decoder = ExplicitVRLittleEndianDecoder::default();
+    let mut size = [0; 4];
+    if decoder.decode_header(&mut file).is_err() || file.read_exact(&mut size).is_err() {
+        return Ok(());
+    }
+    let (size, mut read) = (u64::from(u32::from_le_bytes(size)), 0);
+    while read < size {
+        let Ok((header, bytes)) = decoder.decode_header(&mut file) else { break };
+        let claimed = header.len.get().unwrap_or(0);
+        believe(path, claimed, length)?;
+        file.seek_relative(claimed.into()).map_err(io_error(path))?;
+        read += bytes as u64 + u64::from(claimed);
+    }
+    Ok(())
+}
+
+fn check_elements(
     path: &Path,
     source: impl Read + Seek,
     syntax: &TransferSyntax,
     length: u64,
-    wanted: impl Fn(u16) -> bool,
 ) -> Result<(), VolumeError> {
     let Ok(mut reader) = LazyDataSetReader::new_with_ts(source, syntax) else { return Ok(()) };
     while let Some(Ok(token)) = reader.advance() {
-        let claimed = match &token {
-            LazyDataToken::ElementHeader(header) if !wanted(header.tag.group()) => return Ok(()),
-            LazyDataToken::ElementHeader(header) => header.len.get().unwrap_or(0),
-            LazyDataToken::LazyItemValue { len, .. } => *len,
-            _ => 0,
-        };
-        if u64::from(claimed) > length {
-            let what = format!(
-                "claims an element of {claimed} bytes and has {length} in all: it is truncated or damaged"
-            );
-            return Err(format_error(path, what));
+        match &token {
+            LazyDataToken::ElementHeader(header) => {
+                believe(path, header.len.get().unwrap_or(0), length)?;
+            }
+            LazyDataToken::LazyItemValue { len, .. } => believe(path, *len, length)?,
+            _ => {}
         }
         let is_value =
             matches!(token, LazyDataToken::LazyValue { .. } | LazyDataToken::LazyItemValue { .. });
@@ -73,4 +83,14 @@ fn walk(
         }
     }
     Ok(())
+}
+
+fn believe(path: &Path, claimed: u32, length: u64) -> Result<(), VolumeError> {
+    if u64::from(claimed) <= length {
+        return Ok(());
+    }
+    let what = format!(
+        "claims an element of {claimed} bytes and has {length} in all: it is truncated or damaged"
+    );
+    Err(format_error(path, what))
 }
