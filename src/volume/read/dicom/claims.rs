@@ -10,8 +10,8 @@ use dicom_encoding::decode::explicit_le::ExplicitVRLittleEndianDecoder;
 use dicom_encoding::transfer_syntax::Codec;
 use dicom_encoding::{TransferSyntax, TransferSyntaxIndex};
 use dicom_object::FileMetaTable;
-use dicom_parser::dataset::LazyDataToken;
-use dicom_parser::dataset::lazy_read::LazyDataSetReader;
+use dicom_parser::DataSetReader;
+use dicom_parser::dataset::DataToken;
 use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
 
 use super::slice::damaged;
@@ -22,8 +22,7 @@ use crate::volume::read::{format_error, io_error};
 /// Bytes before the mark `DICM`.
 const PREAMBLE: u64 = 128;
 
-/// Refuses a file with an element longer than the file. Values are passed over; what else may be
-/// wrong is for the reader to say.
+/// Refuses a file with an element longer than the file. What else may be wrong is for the reader to say.
 pub(super) fn check(path: &Path) -> Result<(), VolumeError> {
     let mut file = BufReader::new(File::open(path).map_err(io_error(path))?);
     let length = file.get_ref().metadata().map_err(io_error(path))?.len();
@@ -61,26 +60,21 @@ fn check_table(path: &Path, mut file: impl Read + Seek, length: u64) -> Result<(
     Ok(())
 }
 
+/// Reads as the reader of the series does: an element's header comes before its value is read.
 fn check_elements(
     path: &Path,
-    source: impl Read + Seek,
+    source: impl Read,
     syntax: &TransferSyntax,
     length: u64,
 ) -> Result<(), VolumeError> {
-    let Ok(mut reader) = LazyDataSetReader::new_with_ts(source, syntax) else { return Ok(()) };
-    while let Some(Ok(token)) = reader.advance() {
-        match &token {
-            LazyDataToken::ElementHeader(header) => {
-                believe(path, header.len.get().unwrap_or(0), length)?;
-            }
-            LazyDataToken::LazyItemValue { len, .. } => believe(path, *len, length)?,
-            _ => {}
-        }
-        let is_value =
-            matches!(token, LazyDataToken::LazyValue { .. } | LazyDataToken::LazyItemValue { .. });
-        if is_value && token.skip().is_err() {
-            break;
-        }
+    let Ok(reader) = DataSetReader::new_with_ts(source, syntax) else { return Ok(()) };
+    for token in reader.map_while(Result::ok) {
+        let claimed = match token {
+            DataToken::ElementHeader(header) => header.len.get(),
+            DataToken::ItemStart { len } => len.get(),
+            _ => None,
+        };
+        believe(path, claimed.unwrap_or(0), length)?;
     }
     Ok(())
 }
