@@ -17,7 +17,7 @@ class Mesh {
   static constexpr std::uint32_t NONE = UINT32_MAX;
 
   // Triangulates `sites`; `owned` has a flag for each. Only the arrays outlive the call. A frugal
-  // mesh gives the memory of the triangulation back at once: a fourth off the peak, for some time.
+  // mesh gives the memory of the triangulation back at once: a fourth off the peak, but slower.
   Mesh(const std::vector<Site> &sites, const std::uint8_t *owned, const Lattice &lattice,
        bool frugal);
 

@@ -19,4 +19,4 @@ pub use plane::{PlaneSites, RawTriangulation, farthest_plane, regular_plane};
 use reference::flat;
 pub use reference::{CgalError, RawComplex, reference};
 pub use sites::{Sites, SitesError};
-pub use slab::{HIDDEN, RawSlab, SlabQuestion, SlabSites, give_back, slab};
+pub use slab::{HIDDEN, RawSlab, SlabQuestion, SlabSites, slab};

@@ -64,9 +64,14 @@ pub fn slab(sites: &SlabSites, question: &SlabQuestion) -> Result<RawSlab, CgalE
     flat(raw.dimension(), sites.input.len()).map_or(Ok(RawSlab(raw)), |flat| Err(flat.into()))
 }
 
-/// Gives freed memory back to the system, where the allocator would keep it for itself (glibc).
-pub fn give_back() {
-    bridge::give_back();
+impl SlabQuestion {
+    /// Gives freed memory back to the system, where the allocator would keep it for itself (glibc);
+    /// does nothing where time matters more.
+    pub fn give_back(&self) {
+        if self.frugal {
+            bridge::give_back();
+        }
+    }
 }
 
 /// Rows of input indices in canonical order, without their smallest, which [`counts`](Self::counts)

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::partition::Partition;
 use super::{Answer, common_sheets};
-use crate::cgal::{self, HIDDEN, RawSlab, Sites, SlabQuestion};
+use crate::cgal::{HIDDEN, RawSlab, Sites, SlabQuestion};
 use crate::shape::{Class, Complex, Simplices};
 
 /// Puts the rows of slabs in order of their smallest vertices, which they come without. Each slab's
@@ -18,24 +18,19 @@ pub(super) fn merge(
     mut slabs: Vec<RawSlab>,
     question: &SlabQuestion,
 ) -> Answer {
-    let give_back = || {
-        if question.frugal {
-            cgal::give_back();
-        }
-    };
     let sheets = common_sheets(&slabs);
     slabs.iter_mut().for_each(RawSlab::drop_shared);
-    give_back();
+    question.give_back();
     let blocks = blocks(sites.input(), partition.owner(), &slabs);
     let vertices = vertices(&blocks, &slabs, question.exterior);
     let facets = rows(&blocks, &slabs, 1, RawSlab::facets);
     let facet_sheets =
         boundary(&blocks, &slabs, 1, |slab| (slab.facets().1, slab.facet_sheets()), &sheets);
     slabs.iter_mut().for_each(RawSlab::drop_facets);
-    give_back();
+    question.give_back();
     let cells = rows(&blocks, &slabs, 0, RawSlab::cells);
     slabs.iter_mut().for_each(RawSlab::drop_cells);
-    give_back();
+    question.give_back();
     let edges = rows(&blocks, &slabs, 2, RawSlab::edges);
     let edge_sheets =
         boundary(&blocks, &slabs, 2, |slab| (slab.edges().1, slab.edge_sheets()), &sheets);

@@ -54,9 +54,7 @@ pub(super) fn run(
             batch.par_iter().map(|&slab| decide(sites, &partition, slab, question)).collect();
         raw.extend(done?);
         progress::report(raw.len() as u64, partition.len() as u64);
-        if question.frugal {
-            cgal::give_back();
-        }
+        question.give_back();
     }
     Ok(merge(sites, &partition, raw, question))
 }
