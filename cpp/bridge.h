@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -15,6 +16,8 @@ template <typename Try, typename Fail>
 static void trycatch(Try &&func, Fail &&fail) noexcept {
   try {
     func();
+  } catch (const std::bad_alloc &) {
+    fail("out of memory");  // src/cgal/mod.rs knows these words
   } catch (const std::exception &error) {
     fail(error.what());
   } catch (...) {

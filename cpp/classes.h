@@ -5,6 +5,6 @@
 
 namespace walpha {
 
-enum Class : std::uint8_t { EXTERIOR = 0, INTERIOR = 1, REGULAR = 2, SINGULAR = 3, HIDDEN = 4 };
+enum Class : std::uint8_t { EXTERIOR = 0, INTERIOR = 1, REGULAR = 2, SINGULAR = 3 };
 
 }  // namespace walpha

@@ -120,15 +120,9 @@ std::unique_ptr<Complex> copy(const Triangulation &triangulation, const Classify
 std::unique_ptr<Complex> reference(rust::Slice<const double> positions,
                                    rust::Slice<const double> weights, double alpha) {
   throw_quietly();
-  std::vector<std::pair<Triangulation::Weighted_point, std::uint32_t>> points;
-  points.reserve(weights.size());
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    const double *p = positions.data() + 3 * i;
-    points.emplace_back(Triangulation::Weighted_point({p[0], p[1], p[2]}, weights[i]),
-                        static_cast<std::uint32_t>(i));
-  }
+  auto points = numbered<Triangulation::Weighted_point>(positions, weights);
   Triangulation triangulation(points.begin(), points.end());
-  std::vector<std::pair<Triangulation::Weighted_point, std::uint32_t>>().swap(points);
+  decltype(points)().swap(points);
   // Fixed_alpha_shape_3 leaves its classes uninitialised in lower dimensions.
   if (triangulation.dimension() != 3) {
     auto nothing = std::make_unique<Complex>();

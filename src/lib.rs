@@ -33,7 +33,8 @@
 
 pub use ndarray;
 
-pub mod cgal;
+#[cfg(feature = "cgal")]
+pub(crate) mod cgal;
 pub mod check;
 pub mod export;
 pub mod haar;
@@ -48,6 +49,7 @@ pub mod progress;
 pub mod render;
 pub mod reproduce;
 pub mod shape;
+pub mod triangulation;
 pub mod volume;
 
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};

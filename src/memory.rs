@@ -11,6 +11,16 @@ pub fn resident_bytes() -> Option<u64> {
     status("VmRSS:")
 }
 
+/// Bytes as people read them: a whole number of the largest unit that leaves at least one.
+pub(crate) fn readable(bytes: u64) -> String {
+    let (unit, name) = match bytes {
+        ..0x400 => (1, "bytes"),
+        ..0x10_0000 => (0x400, "KiB"),
+        _ => (0x10_0000, "MiB"),
+    };
+    format!("{} {name}", bytes / unit)
+}
+
 fn status(field: &str) -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix(field))?;

@@ -37,6 +37,50 @@ impl Number for IBig {
     }
 }
 
+impl Number for i128 {
+    #[inline(always)]
+    fn plus(&self, other: &Self) -> Self {
+        self + other
+    }
+    #[inline(always)]
+    fn minus(&self, other: &Self) -> Self {
+        self - other
+    }
+    #[inline(always)]
+    fn times(&self, other: &Self) -> Self {
+        self * other
+    }
+}
+
+/// Integers that doubles are turned into: of 128 bits where these suffice, else of any length.
+pub(crate) trait Integer: Number + Ord {
+    const ZERO: Self;
+    /// A double in units of 2^`unit`, which must not exceed its lowest bit.
+    fn of(value: f64, unit: i32) -> Self;
+    fn shifted(self, bits: usize) -> Self;
+}
+
+impl Integer for i128 {
+    const ZERO: Self = 0;
+    fn of(value: f64, unit: i32) -> Self {
+        let (mantissa, exponent) = decode(value);
+        if mantissa == 0 { 0 } else { Self::from(mantissa) << (exponent - unit) }
+    }
+    fn shifted(self, bits: usize) -> Self {
+        self << bits
+    }
+}
+
+impl Integer for IBig {
+    const ZERO: Self = Self::ZERO;
+    fn of(value: f64, unit: i32) -> Self {
+        integer(value, unit)
+    }
+    fn shifted(self, bits: usize) -> Self {
+        self << bits
+    }
+}
+
 #[inline(always)]
 pub(crate) fn dot<T: Number>(u: &[T; 3], v: &[T; 3]) -> T {
     u[0].times(&v[0]).plus(&u[1].times(&v[1])).plus(&u[2].times(&v[2]))
@@ -61,6 +105,12 @@ pub(crate) fn decode(value: f64) -> (i64, i32) {
     (if value < 0.0 { -odd } else { odd }, biased.max(1) - 1075 + zeros as i32)
 }
 
+/// The exponent above the highest bit set in a finite double: |value| < 2 to that power; `None` for 0.
+pub(crate) fn highest_bit(value: f64) -> Option<i32> {
+    let (mantissa, exponent) = decode(value);
+    (mantissa != 0).then(|| exponent + 64 - mantissa.unsigned_abs().leading_zeros() as i32)
+}
+
 /// The exponent of the lowest bit set in a finite double; `None` for 0.
 pub(crate) fn lowest_bit(value: f64) -> Option<i32> {
     let (mantissa, exponent) = decode(value);
@@ -83,6 +133,8 @@ mod tests {
         assert_eq!(decode(f64::from_bits(3)), (3, -1074));
         assert_eq!((decode(-0.0), lowest_bit(0.0)), ((0, 0), None));
         assert_eq!(lowest_bit(f64::from_bits(1)), Some(-1074));
+        assert_eq!([0.5, -3.0, 4.0, 0.0].map(highest_bit), [Some(0), Some(2), Some(3), None]);
+        assert_eq!(<i128 as Integer>::of(-0.75, -4), -12);
         assert_eq!(integer(0.75, -4), IBig::from(12));
         assert_eq!(integer(0.0, 5), IBig::ZERO);
     }

@@ -73,12 +73,12 @@ fn a_grid_with_min_max_weights_is_certified() {
 #[test]
 fn shapes_made_slab_by_slab_are_certified() {
     let mut random = Random::new(8);
-    for slabs in [2, 5] {
+    for blocks in [2, 5] {
         let mut positions = grid(14);
         positions.retain(|_| random.unit() < 0.5);
         let weights: Vec<_> = positions.iter().map(|_| random.below(4) as f64 / 2.0).collect();
         let mut options = ShapeOptions::new(Alpha::from_squared(1.5).unwrap());
-        (options.engine, options.slabs) = (Engine::Slabs, NonZeroUsize::new(slabs));
+        (options.engine, options.blocks) = (Engine::Native, NonZeroUsize::new(blocks));
         let points = WeightedPoints { positions, weights, values: None };
         let shape = alpha_shape(points, &options).unwrap();
         let claim = Claim {

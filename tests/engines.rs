@@ -1,5 +1,5 @@
-//! Two engines, one answer: simplices and classes of all dimensions, and Betti numbers, whatever
-//! the number of slabs.
+//! Three engines, one answer: simplices and classes of all dimensions, and Betti numbers, whatever
+//! the number of blocks.
 
 mod common;
 
@@ -9,18 +9,19 @@ use proptest::prelude::*;
 use walpha::shape::{Engine, ShapeError, ShapeOptions};
 use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
 
-const SLABS: [usize; 5] = [1, 2, 3, 7, 16];
+const BLOCKS: [usize; 5] = [1, 2, 3, 7, 16];
+const MAKERS: [Engine; 2] = [Engine::Cgal, Engine::Native];
 
 fn by(
     engine: Engine,
     points: &WeightedPoints,
     alpha: f64,
-    slabs: Option<usize>,
+    blocks: Option<usize>,
     exterior: bool,
 ) -> Result<AlphaShape, ShapeError> {
     let alpha = Alpha::from_squared(alpha).unwrap();
-    let slabs = slabs.and_then(NonZeroUsize::new);
-    let options = ShapeOptions { engine, slabs, exterior, ..ShapeOptions::new(alpha) };
+    let blocks = blocks.and_then(NonZeroUsize::new);
+    let options = ShapeOptions { engine, blocks, exterior, ..ShapeOptions::new(alpha) };
     alpha_shape(points.clone(), &options)
 }
 
@@ -38,30 +39,33 @@ fn assert_same(reference: &AlphaShape, other: &AlphaShape, what: &str) {
 }
 
 fn check(points: &WeightedPoints, alpha: f64) {
-    let reference = match by(Engine::Reference, points, alpha, None, false) {
-        Ok(reference) => reference,
-        Err(error) => {
-            // Flat and small sets are refused alike.
-            for slabs in SLABS {
-                let same = by(Engine::Slabs, points, alpha, Some(slabs), false);
-                assert_eq!(same.unwrap_err(), error);
+    let reference = by(Engine::Reference, points, alpha, None, false);
+    for engine in MAKERS {
+        let reference = match &reference {
+            Ok(reference) => reference,
+            Err(error) => {
+                // Flat and small sets are refused alike.
+                for blocks in BLOCKS {
+                    let same = by(engine, points, alpha, Some(blocks), false);
+                    assert_eq!(same.unwrap_err(), *error);
+                }
+                continue;
             }
-            return;
+        };
+        let one = by(engine, points, alpha, None, true).unwrap();
+        for blocks in BLOCKS {
+            let shape = by(engine, points, alpha, Some(blocks), false).unwrap();
+            assert_same(reference, &shape, &format!("{engine:?}, {blocks} blocks at α = {alpha}"));
+            // The convex hull is not local: it is one block, whatever was asked for.
+            let whole = blocks == 1 || alpha == f64::INFINITY;
+            assert_eq!(shape.hidden(), if whole { reference.hidden() } else { None });
+            assert_eq!(one.sheets(), shape.sheets(), "{blocks} blocks at α = {alpha}: sheets");
         }
-    };
-    let one = by(Engine::Slabs, points, alpha, None, true).unwrap();
-    for slabs in SLABS {
-        let shape = by(Engine::Slabs, points, alpha, Some(slabs), false).unwrap();
-        assert_same(&reference, &shape, &format!("{slabs} slabs at α = {alpha}"));
-        // The convex hull is not local: it is one slab, whatever was asked for.
-        let whole = slabs == 1 || alpha == f64::INFINITY;
-        assert_eq!(shape.hidden(), if whole { reference.hidden() } else { None });
-        assert_eq!(one.sheets(), shape.sheets(), "{slabs} slabs at α = {alpha}: sheets");
+        check_parts(&one);
+        let whole = by(Engine::Reference, points, alpha, None, true).unwrap();
+        assert_same(&whole, &one, "exterior simplices too");
+        assert_eq!(whole.hidden(), one.hidden());
     }
-    check_parts(&one);
-    let whole = by(Engine::Reference, points, alpha, None, true).unwrap();
-    assert_same(&whole, &one, "exterior simplices too");
-    assert_eq!(whole.hidden(), one.hidden());
 }
 
 /// Components sum up to the whole; voids by their sheets are those by the cells in them.
@@ -123,7 +127,7 @@ proptest! {
 }
 
 #[test]
-fn planes_far_apart_have_coplanar_slabs() {
+fn planes_far_apart_have_coplanar_blocks() {
     let plane = |z: i32| (0..16).map(move |i| [i % 4, i / 4, z]);
     let points = weighted((0..6).flat_map(|z| plane(40 * z)).map(|p| (p.map(f64::from), 0.0)));
     for alpha in [0.1, 0.25, 0.5, 1.0, 400.0, 401.0] {
@@ -149,7 +153,7 @@ fn hollow_balls_inside_hollow_balls() {
     };
     let all = (0..19 * 19 * 19).map(|i| [i % 19, i / 19 % 19, i / 361]);
     let points = weighted(all.filter(|&p| inside(p)).map(|p| (p.map(f64::from), 0.0)));
-    let shape = by(Engine::Slabs, &points, 1.0, Some(4), false).unwrap();
+    let shape = by(Engine::Native, &points, 1.0, Some(4), false).unwrap();
     let betti = shape.betti().unwrap();
     assert_eq!((betti.b0, betti.b1, betti.b2), (2, 0, 2));
     let [outer, inner] = &shape.components()[..] else { panic!("two shells") };
@@ -189,7 +193,7 @@ fn memory_is_planned_for() {
         };
         alpha_shape(points.clone(), &options)
     };
-    let free = by(Engine::Slabs, &points, 1.0, None, false).unwrap();
+    let free = by(Engine::Native, &points, 1.0, None, false).unwrap();
     let bounded = with(4 << 30).unwrap();
     assert_eq!(free.complex(), bounded.complex());
     let error = with(1 << 20).unwrap_err().to_string();

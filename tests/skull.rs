@@ -27,7 +27,7 @@ fn plain_cgal_counts_the_same() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    let args = "shape sample:skull --rms 0 --count 15956 --weights common=0 --alpha 10 --slabs 1";
+    let args = "shape sample:skull --rms 0 --count 15956 --weights common=0 --alpha 10 --blocks 1";
     let report = json(folder.path(), &args.split(' ').collect::<Vec<_>>());
     assert_eq!(report["shape"]["cells"]["interior"], 80756);
     assert_eq!(report["shape"]["facets"]["regular"], 13188);
@@ -36,18 +36,18 @@ fn plain_cgal_counts_the_same() {
     assert_eq!(report["points"]["hidden"], 0);
 }
 
-/// The exact checker on the whole triangulation, and on what two slabs say.
+/// The exact checker on the whole triangulation, and on what two blocks say.
 #[test]
 fn the_checker_certifies_both_engines() {
     if !has_skull() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    for engine in ["--engine=slabs", "--engine=reference", "--slabs=2"] {
+    for engine in ["--engine=native", "--engine=reference", "--blocks=2"] {
         let args = ["check", "sample:skull", "--weights", "min-max", "--alpha", "10", engine];
         let report = json(folder.path(), &args);
         assert_eq!(report["valid"], true, "{report:#}");
-        let extent = if engine == "--slabs=2" { "shape" } else { "whole" };
+        let extent = if engine == "--blocks=2" { "shape" } else { "whole" };
         assert_eq!(report["extent"], extent);
     }
 }

@@ -1,63 +1,9 @@
 use super::ffi::bridge;
-use super::sites::{check, keep_heaviest};
-use super::{CgalError, SitesError};
-
-/// Weighted points of the plane that CGAL can stand: all numbers finite and of sane magnitude, no
-/// two places equal, at least one point. Checked once, then trusted. Unlike in space, points on
-/// one line, two points and one point are all welcome.
-#[derive(Clone, Debug)]
-pub struct PlaneSites {
-    positions: Vec<[f64; 2]>,
-    weights: Vec<f64>,
-    input: Vec<u32>,
-    duplicates: Vec<[u32; 2]>,
-}
-
-impl PlaneSites {
-    /// Checks points and removes duplicates: of several at one place the largest weight stays, of
-    /// equal weights the lowest index. −0 and 0 are one place. O(n log n).
-    ///
-    /// # Errors
-    /// No point, lists of different lengths, NaN, infinities, magnitudes beyond the limits of
-    /// [`Sites`](super::Sites).
-    pub fn new(positions: &[[f64; 2]], weights: &[f64]) -> Result<Self, SitesError> {
-        check(positions, weights)?;
-        let (input, duplicates) = keep_heaviest(positions, weights);
-        if input.is_empty() {
-            return Err(SitesError::Empty);
-        }
-        Ok(Self {
-            positions: input.iter().map(|&i| positions[i as usize]).collect(),
-            weights: input.iter().map(|&i| weights[i as usize]).collect(),
-            input,
-            duplicates,
-        })
-    }
-
-    /// Positions, one per site.
-    pub fn positions(&self) -> &[[f64; 2]] {
-        &self.positions
-    }
-
-    /// Power weights, one per site.
-    pub fn weights(&self) -> &[f64] {
-        &self.weights
-    }
-
-    /// The input index of each site, ascending.
-    pub fn input(&self) -> &[u32] {
-        &self.input
-    }
-
-    /// Pairs of input indices: a point that went, and the one at the same place that stayed.
-    /// Ascending.
-    pub fn duplicates(&self) -> &[[u32; 2]] {
-        &self.duplicates
-    }
-}
+use super::thrown;
+use crate::triangulation::{Sites, TriangulationError};
 
 /// A triangulation of the plane as C++ lends it: rows of *site* indices in no particular order.
-pub struct RawTriangulation(cxx::UniquePtr<bridge::PlaneTriangulation>);
+pub(crate) struct RawTriangulation(cxx::UniquePtr<bridge::PlaneTriangulation>);
 
 /// CGAL's `Regular_triangulation_2` of the sites: the Delaunay triangulation when all weights are
 /// equal. A function of the set of sites: which of several triangulations of cocircular points
@@ -66,11 +12,11 @@ pub struct RawTriangulation(cxx::UniquePtr<bridge::PlaneTriangulation>);
 /// Expected O(n log n).
 ///
 /// # Errors
-/// Only [`CgalError::Thrown`]: a fault of the program.
-pub fn regular_plane(sites: &PlaneSites) -> Result<RawTriangulation, CgalError> {
-    bridge::regular_plane(sites.positions.as_flattened(), &sites.weights)
+/// No memory, or a fault of the program.
+pub(crate) fn regular_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, TriangulationError> {
+    bridge::regular_plane(sites.positions().as_flattened(), sites.weights())
         .map(RawTriangulation)
-        .map_err(|thrown| thrown_in("regular triangulation of the plane", &thrown))
+        .map_err(thrown("regular triangulation of the plane"))
 }
 
 /// The farthest-point Delaunay triangulation of the positions, weights left aside: its triangles
@@ -86,15 +32,11 @@ pub fn regular_plane(sites: &PlaneSites) -> Result<RawTriangulation, CgalError> 
 /// Expected O(n log n).
 ///
 /// # Errors
-/// Only [`CgalError::Thrown`]: a fault of the program.
-pub fn farthest_plane(sites: &PlaneSites) -> Result<RawTriangulation, CgalError> {
-    bridge::farthest_plane(sites.positions.as_flattened())
+/// No memory, or a fault of the program.
+pub(crate) fn farthest_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, TriangulationError> {
+    bridge::farthest_plane(sites.positions().as_flattened())
         .map(RawTriangulation)
-        .map_err(|thrown| thrown_in("farthest-point triangulation", &thrown))
-}
-
-fn thrown_in(stage: &'static str, thrown: &cxx::Exception) -> CgalError {
-    CgalError::Thrown { stage, text: thrown.what().into() }
+        .map_err(thrown("farthest-point triangulation"))
 }
 
 impl RawTriangulation {

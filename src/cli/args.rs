@@ -321,15 +321,15 @@ pub struct ShapeArgs {
     /// A point is a ball of squared radius α + ω (power), or of radius α + ω (radius).
     #[arg(long, value_enum, default_value_t, value_name = "READING")]
     balls: BallsArg,
-    /// Program that computes the shape: slabs (fast), or reference (plain CGAL). Same answer.
+    /// Program that computes the shape; all give the same answer.
     #[arg(long, value_enum, default_value_t, value_name = "ENGINE")]
     engine: EngineArg,
-    /// Slabs to cut the points into [default: by threads and memory]; 1 is the whole
+    /// Blocks to cut the points into [default: by threads and memory]; 1 is the whole
     /// triangulation, which alone knows hidden points.
     #[arg(long, value_name = "N")]
-    slabs: Option<NonZeroUsize>,
-    /// Memory to plan slabs for, as in 2G or 500M.
-    #[arg(long, value_name = "SIZE", value_parser = bytes, conflicts_with = "slabs")]
+    blocks: Option<NonZeroUsize>,
+    /// Memory to plan blocks for, as in 2G or 500M.
+    #[arg(long, value_name = "SIZE", value_parser = bytes, conflicts_with = "blocks")]
     memory: Option<u64>,
     /// Keep the simplices outside the shape too: the whole triangulation.
     #[arg(long)]
@@ -338,8 +338,13 @@ pub struct ShapeArgs {
 
 #[derive(Clone, Copy, Default, ValueEnum)]
 enum EngineArg {
-    #[default]
-    Slabs,
+    /// CGAL's triangulation in blocks.
+    #[cfg_attr(feature = "cgal", default)]
+    Cgal,
+    /// Our own triangulation in blocks: the fastest.
+    #[cfg_attr(not(feature = "cgal"), default)]
+    Native,
+    /// Plain CGAL, as in the paper.
     Reference,
 }
 
@@ -358,11 +363,12 @@ impl ShapeArgs {
             BallsArg::Radius => Balls::Radius,
         };
         let engine = match self.engine {
-            EngineArg::Slabs => Engine::Slabs,
+            EngineArg::Cgal => Engine::Cgal,
+            EngineArg::Native => Engine::Native,
             EngineArg::Reference => Engine::Reference,
         };
-        let Self { exterior, slabs, memory, .. } = *self;
-        ShapeOptions { alpha, balls, engine, exterior, slabs, memory }
+        let Self { exterior, blocks, memory, .. } = *self;
+        ShapeOptions { alpha, balls, engine, exterior, blocks, memory }
     }
 }
 

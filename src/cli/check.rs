@@ -129,9 +129,9 @@ impl Check {
         }
         let weighed = pipeline::weighted_points(&self.pipeline, progress)?;
         let mut options = self.shape.options(self.pipeline.weights.alpha());
-        // The whole triangulation can be judged wholly. Several slabs are judged as they are.
+        // The whole triangulation can be judged wholly. Several blocks are judged as they are.
         options.exterior |=
-            options.slabs.is_none_or(|slabs| slabs.get() == 1) && options.memory.is_none();
+            options.blocks.is_none_or(|blocks| blocks.get() == 1) && options.memory.is_none();
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
         Ok(PlacedComplex {
             positions: shape.points().positions.clone(),

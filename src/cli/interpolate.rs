@@ -53,7 +53,7 @@ pub struct Interpolate {
     /// Measure error against the number of points.
     #[arg(long, requires = "output", conflicts_with_all = [
         "mask", "fill", "select", "target_rmse", "threshold", "gray_min", "weights", "balls", "engine",
-        "slabs", "memory", "exterior",
+        "blocks", "memory", "exterior",
     ])]
     curve: bool,
     #[command(flatten)]

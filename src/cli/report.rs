@@ -254,7 +254,7 @@ impl Display for Report {
             }
         }
         if self.shape.is_some() && self.points.hidden.is_none() {
-            write!(f, " (--slabs 1 counts hidden points)")?;
+            write!(f, " (--blocks 1 counts hidden points)")?;
         }
         writeln!(f, "\nweights   {} (squared lengths)", self.weights)?;
         writeln!(f, "parameter {}", self.alpha)?;

@@ -5,12 +5,12 @@ use ndarray::Array3;
 use serde::{Deserialize, Serialize};
 
 use super::{Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels, fill};
-use crate::cgal::CgalError;
 use crate::haar::{HaarOptions, Tolerance, smooth};
 use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, points_at, select, weigh,
 };
 use crate::shape::{Alpha, ShapeError, ShapeOptions, alpha_shape};
+use crate::triangulation::TriangulationError;
 use crate::volume::Volume;
 
 /// Where the numbers of an error curve come from.
@@ -192,7 +192,7 @@ impl Bench<'_> {
         let Self { volume, options: &CurveOptions { alpha, units, .. }, .. } = *self;
         let weighted = weigh(points, weighting, alpha.squared())?;
         let shape = match alpha_shape(weighted, &ShapeOptions::new(alpha)) {
-            Err(ShapeError::Cgal(CgalError::Sites(_))) => return Ok(None),
+            Err(ShapeError::Triangulation(TriangulationError::Sites(_))) => return Ok(None),
             other => other?,
         };
         let whole = fill(&shape, Some(volume), units)?;

@@ -3,7 +3,8 @@ use serde::Serialize;
 
 use super::Filtration;
 use super::levels::ByLevel;
-use crate::shape::{Alpha, Betti, Interval, Spheres};
+use crate::shape::{Alpha, Betti};
+use crate::triangulation::{Interval, Predicates};
 
 /// The topology of a filtration at every α at which a simplex comes.
 ///
@@ -165,13 +166,13 @@ fn known(radius: &Option<Interval>) -> Interval {
 fn raise<const N: usize>(
     alpha: &mut f64,
     value: Interval,
-    spheres: &Spheres<'_>,
+    spheres: &Predicates<'_>,
     rows: &[[u32; N]],
     radii: impl Iterator<Item = Interval>,
 ) {
     for (&row, radius) in rows.iter().zip(radii) {
         let within = value.low <= radius.low && radius.high <= value.high;
-        if within && !spheres.fits(row, radius, *alpha) {
+        if within && !spheres.fits_by(row, radius, *alpha) {
             *alpha = spheres.first_alpha(row);
         }
     }

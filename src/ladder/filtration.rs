@@ -4,9 +4,8 @@ use rayon::prelude::*;
 
 use super::incidence::Incidence;
 use crate::points::WeightedPoints;
-use crate::shape::{
-    Alpha, AlphaShape, Complex, Interval, ShapeError, ShapeOptions, Spheres, alpha_shape,
-};
+use crate::shape::{Alpha, AlphaShape, Complex, ShapeError, ShapeOptions, alpha_shape};
+use crate::triangulation::{Interval, Predicates};
 
 /// All alpha shapes of a set of points at once: the regular triangulation, and for each simplex
 /// when it comes.
@@ -40,7 +39,7 @@ impl Filtration {
         let whole = alpha_shape(points, &options)?;
         let complex = whole.complex();
         let incidence = Incidence::of(complex, whole.points().len());
-        let spheres = Spheres::new(&whole.points().positions, &whole.points().weights);
+        let spheres = Predicates::new(&whole.points().positions, &whole.points().weights);
         let cells =
             complex.cells.vertices.par_iter().map(|&cell| spheres.squared_radius(cell)).collect();
         let facets = gabriel_facets(complex, &incidence, &spheres);
@@ -59,15 +58,15 @@ impl Filtration {
         &self.whole
     }
 
-    pub(super) fn spheres(&self) -> Spheres<'_> {
-        Spheres::new(&self.points().positions, &self.points().weights)
+    pub(super) fn spheres(&self) -> Predicates<'_> {
+        Predicates::new(&self.points().positions, &self.points().weights)
     }
 }
 
 fn gabriel_facets(
     whole: &Complex,
     incidence: &Incidence,
-    spheres: &Spheres<'_>,
+    spheres: &Predicates<'_>,
 ) -> Vec<Option<Interval>> {
     let facets = incidence.facets.par_iter().zip(&incidence.facet_cells);
     // In a regular triangulation a sphere that holds a point holds one of the two beside it.
@@ -85,7 +84,7 @@ fn gabriel_facets(
 fn gabriel_edges(
     whole: &Complex,
     incidence: &Incidence,
-    spheres: &Spheres<'_>,
+    spheres: &Predicates<'_>,
 ) -> Vec<Option<Interval>> {
     let held = flags(whole.edges.len());
     incidence.facets.par_iter().zip(&incidence.facet_edges).for_each(|(facet, edges)| {
@@ -100,7 +99,7 @@ fn gabriel_edges(
 fn gabriel_vertices(
     whole: &Complex,
     incidence: &Incidence,
-    spheres: &Spheres<'_>,
+    spheres: &Predicates<'_>,
 ) -> Vec<Option<Interval>> {
     let held = flags(whole.vertices.len());
     whole.edges.vertices.par_iter().for_each(|&[a, b]| {
@@ -126,7 +125,7 @@ fn raise(flag: &AtomicBool, wanted: impl FnOnce() -> bool) {
 fn radii<const N: usize>(
     rows: &[[u32; N]],
     held: &[AtomicBool],
-    spheres: &Spheres<'_>,
+    spheres: &Predicates<'_>,
 ) -> Vec<Option<Interval>> {
     let radius = |(&row, held): (&[u32; N], &AtomicBool)| {
         (!held.load(Ordering::Relaxed)).then(|| spheres.squared_radius(row))

@@ -3,7 +3,8 @@ use rayon::prelude::*;
 use super::Filtration;
 use super::incidence::Incidence;
 use crate::points::WeightedPoints;
-use crate::shape::{Alpha, Class, Interval, Spheres};
+use crate::shape::{Alpha, Class};
+use crate::triangulation::{Interval, Predicates};
 
 /// From which level on a simplex is what: levels count from 0, and as many as there are means
 /// never.
@@ -137,14 +138,14 @@ impl Levels<'_> {
 
 /// How many of the α, which ascend, a simplex does not fit.
 fn level<const N: usize>(
-    spheres: &Spheres<'_>,
+    spheres: &Predicates<'_>,
     simplex: [u32; N],
     radius: Interval,
     alphas: &[Alpha],
 ) -> u32 {
     let out = alphas.partition_point(|alpha| alpha.squared() < radius.low);
     let doubtful = &alphas[out..];
-    let unfit = |alpha: &Alpha| !spheres.fits(simplex, radius, alpha.squared());
+    let unfit = |alpha: &Alpha| !spheres.fits_by(simplex, radius, alpha.squared());
     (out + doubtful.iter().take_while(|alpha| unfit(alpha)).count()) as u32
 }
 

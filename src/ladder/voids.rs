@@ -6,12 +6,13 @@ use std::collections::BTreeMap;
 use super::Levels;
 use super::incidence::Incidence;
 use super::levels::ByLevel;
-use crate::shape::{Hollow, Spheres, UnionFind, Void};
+use crate::shape::{Hollow, UnionFind, Void};
+use crate::triangulation::Predicates;
 
 /// The components of a level's complement.
 pub(super) struct Complement<'a> {
     levels: &'a Levels<'a>,
-    spheres: Spheres<'a>,
+    spheres: Predicates<'a>,
     sets: UnionFind,
     /// The hollow of each component, at its root.
     hollows: Vec<Hollow>,

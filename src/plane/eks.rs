@@ -2,7 +2,7 @@ use super::contact::{self, Contacts, Diagram};
 use super::exact::Exact;
 use super::mesh::Mesh;
 use super::{Curvature, PlaneError};
-use crate::cgal::{self, PlaneSites};
+use crate::triangulation::Sites;
 
 /// The α-shape of a set of points in the plane after Edelsbrunner, Kirkpatrick and Seidel, "On the
 /// shape of a set of points in the plane", 1983, doi:10.1109/TIT.1983.1056714.
@@ -51,11 +51,10 @@ pub struct NoDisc {
 /// # Errors
 /// No point; NaN, infinities or absurd magnitudes.
 pub fn eks_shape(points: &[[f64; 2]], alpha: Curvature) -> Result<EksShape, PlaneError> {
-    let sites = PlaneSites::new(points, &vec![0.0; points.len()])?;
+    let unweighted = vec![0.0; points.len()];
+    let sites = Sites::in_plane(points, &unweighted)?;
     let value = alpha.value();
-    let raw =
-        if value > 0.0 { cgal::farthest_plane(&sites)? } else { cgal::regular_plane(&sites)? };
-    let mesh = Mesh::new(&raw);
+    let mesh = if value > 0.0 { Mesh::farthest(&sites)? } else { Mesh::closest(&sites)? };
     let exact = Exact::new(sites.positions());
     let contacts = if value > 0.0 {
         contact::of_discs(&mesh, &exact, &exact.curve(value), Diagram::Farthest)

@@ -1,12 +1,12 @@
-use crate::cgal::{CgalError, SitesError};
+use crate::triangulation::{SitesError, TriangulationError};
 
 /// Why there is no shape in the plane.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlaneError {
-    /// CGAL cannot triangulate the points.
+    /// The points cannot be triangulated.
     #[error(transparent)]
-    Cgal(#[from] CgalError),
+    Triangulation(#[from] TriangulationError),
     /// Discs of infinite or no size cannot be drawn.
     #[error(
         "discs of squared radius α + ω need a finite α, got {given}: give a number; any α above the largest squared circumradius makes the convex hull"
@@ -19,6 +19,6 @@ pub enum PlaneError {
 
 impl From<SitesError> for PlaneError {
     fn from(error: SitesError) -> Self {
-        Self::Cgal(error.into())
+        Self::Triangulation(error.into())
     }
 }

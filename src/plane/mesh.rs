@@ -1,6 +1,8 @@
 use std::collections::HashMap;
 
-use crate::cgal::RawTriangulation;
+#[cfg(feature = "cgal")]
+use crate::cgal;
+use crate::triangulation::{Sites, TriangulationError};
 
 /// A triangulation of the plane with what lies on the two sides of each edge, by site index and in
 /// an order of its own: triangles counter-clockwise from their smallest vertex, edges with the
@@ -27,8 +29,30 @@ pub(super) struct Side {
     pub(super) apex: u32,
 }
 
+#[cfg(not(feature = "cgal"))]
 impl Mesh {
-    pub(super) fn new(raw: &RawTriangulation) -> Self {
+    pub(super) fn closest(_: &Sites<'_, 2>) -> Result<Self, TriangulationError> {
+        Err(TriangulationError::WithoutCgal)
+    }
+
+    pub(super) fn farthest(_: &Sites<'_, 2>) -> Result<Self, TriangulationError> {
+        Err(TriangulationError::WithoutCgal)
+    }
+}
+
+#[cfg(feature = "cgal")]
+impl Mesh {
+    /// The regular triangulation.
+    pub(super) fn closest(sites: &Sites<'_, 2>) -> Result<Self, TriangulationError> {
+        Ok(Self::new(&cgal::regular_plane(sites)?))
+    }
+
+    /// The farthest-point Delaunay triangulation.
+    pub(super) fn farthest(sites: &Sites<'_, 2>) -> Result<Self, TriangulationError> {
+        Ok(Self::new(&cgal::farthest_plane(sites)?))
+    }
+
+    fn new(raw: &cgal::RawTriangulation) -> Self {
         let mut triangles: Vec<_> = raw.triangles().iter().map(|&t| from_smallest(t)).collect();
         triangles.sort_unstable();
         // Seen along a directed edge of a counter-clockwise triangle, the triangle is on the left.

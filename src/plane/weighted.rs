@@ -1,8 +1,8 @@
 use super::PlaneError;
 use super::exact::Exact;
 use super::mesh::{Edge, Mesh};
-use crate::cgal::{self, PlaneSites};
 use crate::shape::{Alpha, Class, Simplices, UnionFind};
+use crate::triangulation::Sites;
 
 /// The weighted α-shape of points in the plane: discs of squared radius α + ω, and the complex
 /// dual to their union (Edelsbrunner 1992).
@@ -51,8 +51,8 @@ pub fn weighted_plane_shape(
     if alpha.squared().is_infinite() {
         return Err(PlaneError::InfiniteAlpha { given: alpha.squared() });
     }
-    let sites = PlaneSites::new(points, weights)?;
-    let mesh = Mesh::new(&cgal::regular_plane(&sites)?);
+    let sites = Sites::in_plane(points, weights)?;
+    let mesh = Mesh::closest(&sites)?;
     let exact = Exact::weighted(sites.positions(), sites.weights(), alpha.squared());
     let input = |site: u32| sites.input()[site as usize];
     let mut vertices = mesh.vertices.iter().peekable();

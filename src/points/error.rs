@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
 use super::Weighting;
-use crate::cgal::CgalError;
+use crate::triangulation::TriangulationError;
 use crate::volume::VolumeError;
 
 /// Why there are no points, or no weights for them.
@@ -62,7 +62,7 @@ pub enum PointsError {
     NoValues,
     /// Scattered points whose neighbours cannot be found.
     #[error("the neighbours of the points cannot be found: {0}")]
-    Neighbours(#[from] CgalError),
+    Neighbours(#[from] TriangulationError),
     /// The input has no weights.
     #[error("column weights need a column `weight` in the input: add it, or use common=C")]
     NoColumn,

@@ -1,13 +1,14 @@
 use super::{Points, PointsError};
-use crate::cgal::{self, Sites};
+use crate::triangulation::{Maker, Sites, Triangulation, TriangulationError, triangulate};
 
 /// The difference L of each scattered point: the mean of |F(point) − F(neighbour)| over its
 /// neighbours in the Delaunay triangulation of the places.
 ///
 /// Of several points at one place the first stands in the triangulation; each differs from the
 /// neighbours of that place by its own value. On a regular grid, where neighbours on one sphere are
-/// many, CGAL's symbolic perturbation chooses among them. Sums in f64 in ascending order of the
-/// neighbours. The time and memory of the reference engine.
+/// many, the symbolic perturbation chooses among them. Sums in f64 in ascending order of the
+/// neighbours. The time and memory of a
+/// triangulation.
 ///
 /// # Errors
 /// Points without values, and what [`Sites`] refuses: numbers that are not finite, fewer than four
@@ -15,11 +16,8 @@ use crate::cgal::{self, Sites};
 pub fn scattered_difference(points: &Points) -> Result<Vec<f64>, PointsError> {
     let values = points.values.as_deref().ok_or(PointsError::NoValues)?;
     let unweighted = vec![0.0; points.len()];
-    let sites = Sites::new(&points.positions, &unweighted).map_err(cgal::CgalError::from)?;
-    // At an infinite α every edge of the triangulation is of the shape.
-    let delaunay = cgal::reference(&sites, f64::INFINITY)?;
-    let neighbours = Neighbours::of(delaunay.edges().0, sites.input().len());
-    drop(delaunay);
+    let sites = Sites::new(&points.positions, &unweighted).map_err(TriangulationError::from)?;
+    let neighbours = Neighbours::of(&triangulate(&sites, Maker::Native)?);
 
     let mut place: Vec<u32> = vec![0; points.len()];
     for (site, &point) in sites.input().iter().enumerate() {
@@ -43,10 +41,17 @@ struct Neighbours {
 }
 
 impl Neighbours {
-    fn of(edges: &[[u32; 2]], sites: usize) -> Self {
-        let mut pairs: Vec<[u32; 2]> = edges.iter().flat_map(|&[a, b]| [[a, b], [b, a]]).collect();
+    fn of(delaunay: &Triangulation) -> Self {
+        let ghost = delaunay.ghost();
+        let beside = |cell: &[u32; 4]| {
+            let [a, b, c, d] = *cell;
+            [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]]
+        };
+        let edges = delaunay.cells().iter().flat_map(beside).filter(|edge| !edge.contains(&ghost));
+        let mut pairs: Vec<[u32; 2]> = edges.flat_map(|[a, b]| [[a, b], [b, a]]).collect();
         pairs.sort_unstable();
-        let mut ends = vec![0; sites];
+        pairs.dedup();
+        let mut ends = vec![0; ghost as usize];
         for (i, &[site, _]) in pairs.iter().enumerate() {
             ends[site as usize] = i + 1;
         }

@@ -2,12 +2,13 @@ use std::num::NonZeroUsize;
 
 use serde::{Deserialize, Serialize};
 
+use super::blocks::{self, Limits, Plan, PlanError, Question};
+#[cfg(feature = "cgal")]
 use super::canonical::canonical;
-use super::slabs::{self, Plan, PlanError};
 use super::topology::sheet_betti;
 use super::{Alpha, Balls, Betti, Class, Complex, Measures, Sheets, Simplices, direct_betti};
-use crate::cgal::{self, CgalError, Lattice, Sites, SitesError, SlabQuestion};
 use crate::points::WeightedPoints;
+use crate::triangulation::{Lattice, Maker, Sites, SitesError, TriangulationError};
 
 /// Which program computes the shape; all give the same answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -15,10 +16,13 @@ use crate::points::WeightedPoints;
 pub enum Engine {
     /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper.
     Reference,
-    /// The triangulation slab by slab, in parallel or in bounded memory, classified by the same
-    /// exact predicates: several times faster.
-    #[default]
-    Slabs,
+    /// CGAL's `Regular_triangulation_3` in blocks, in parallel or in bounded memory, classified by
+    /// exact predicates of our own.
+    #[cfg_attr(feature = "cgal", default)]
+    Cgal,
+    /// The same with our own triangulation: no C++, and the fastest.
+    #[cfg_attr(not(feature = "cgal"), default)]
+    Native,
 }
 
 /// How to make a shape of weighted points.
@@ -31,12 +35,12 @@ pub struct ShapeOptions {
     /// Which program computes it.
     pub engine: Engine,
     /// Whether the simplices outside the shape are wanted too: the whole triangulation, which
-    /// takes one slab.
+    /// takes one block.
     pub exterior: bool,
-    /// How many slabs the points are cut into, at most; without a word, as few as keep the threads
-    /// at work and the memory bounded. One slab is the whole triangulation.
-    pub slabs: Option<NonZeroUsize>,
-    /// Bytes of memory that the plan for the slabs keeps to.
+    /// How many blocks the points are cut into, at most one for each; by default, as few as keep the
+    /// threads at work and the memory bounded. One block is the whole triangulation.
+    pub blocks: Option<NonZeroUsize>,
+    /// Bytes of memory that the plan for the blocks keeps to.
     pub memory: Option<u64>,
 }
 
@@ -48,7 +52,7 @@ impl ShapeOptions {
             balls: Balls::default(),
             engine: Engine::default(),
             exterior: false,
-            slabs: None,
+            blocks: None,
             memory: None,
         }
     }
@@ -74,9 +78,9 @@ pub struct AlphaShape {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeError {
-    /// CGAL cannot triangulate the points.
+    /// The points cannot be triangulated.
     #[error(transparent)]
-    Cgal(#[from] CgalError),
+    Triangulation(#[from] TriangulationError),
     /// The `radius` reading asks for a ball of negative or infinite radius.
     #[error(
         "point {index} would be a ball of radius α + ω = {radius}: with `--balls radius` it must be \
@@ -88,23 +92,23 @@ pub enum ShapeError {
         /// Its α + ω.
         radius: f64,
     },
-    /// The memory allowed does not suffice for any number of slabs.
+    /// The memory allowed does not suffice for any number of blocks.
     #[error(transparent)]
     Plan(#[from] PlanError),
     /// Exterior simplices are known to the whole triangulation only.
     #[error(
         "simplices outside the shape are not local: they need the whole triangulation, and \
-         {slabs} slabs were asked for; give --slabs 1, or leave --exterior away"
+         {blocks} blocks were asked for; give --blocks 1, or omit --exterior"
     )]
     Exterior {
-        /// The slabs asked for.
-        slabs: usize,
+        /// The blocks asked for.
+        blocks: usize,
     },
 }
 
 impl From<SitesError> for ShapeError {
     fn from(error: SitesError) -> Self {
-        Self::Cgal(error.into())
+        Self::Triangulation(error.into())
     }
 }
 
@@ -125,21 +129,24 @@ pub fn alpha_shape(
         Balls::Radius => Some(squared_radii(&points.weights, options.alpha)?),
     };
     let sites = Sites::new(&points.positions, squared.as_deref().unwrap_or(&points.weights))?;
-    let Found { mut complex, sheets, whole } = match options.engine {
+    let found = match options.engine {
         Engine::Reference => by_reference(&sites, power_alpha(options))?,
-        Engine::Slabs => by_slabs(&sites, power_alpha(options), options)?,
+        Engine::Cgal => by_blocks(&sites, power_alpha(options), Maker::Cgal, options)?,
+        Engine::Native => by_blocks(&sites, power_alpha(options), Maker::Native, options)?,
     };
+    let Found { mut complex, boundary, whole } = found;
     let hidden = whole.then(|| hidden(sites.input(), &complex.vertices));
     // Counted over what is outside, too.
-    let direct = sheets.is_none().then(|| direct_betti(&complex));
+    let direct = boundary.is_none().then(|| direct_betti(&complex));
     if !options.exterior {
         complex.retain_shape();
     }
     let (counted, measures) = rayon::join(
-        || sheets.as_ref().map(|sheets| sheet_betti(&complex, sheets)),
+        || boundary.as_ref().map(|(b0, sheets)| sheet_betti(&complex, *b0, sheets)),
         || Measures::of(&complex, &points.positions),
     );
     let duplicates = sites.duplicates().to_vec();
+    drop(sites);
     Ok(AlphaShape {
         points,
         options: *options,
@@ -148,7 +155,7 @@ pub fn alpha_shape(
         duplicates,
         hidden,
         betti: direct.or(counted),
-        sheets,
+        sheets: boundary.map(|(_, sheets)| sheets),
         measures,
     })
 }
@@ -156,41 +163,48 @@ pub fn alpha_shape(
 /// What an engine found.
 struct Found {
     complex: Complex,
-    /// Of the boundary, where the engine tells them.
-    sheets: Option<Sheets>,
+    /// The number of components and the sheets of the boundary, where the engine tells them.
+    boundary: Option<(u64, Sheets)>,
     /// Whether all vertices of the whole triangulation are there, so that the rest is hidden.
     whole: bool,
 }
 
-fn by_reference(sites: &Sites, alpha: f64) -> Result<Found, ShapeError> {
-    let raw = cgal::reference(sites, alpha)?;
+#[cfg(feature = "cgal")]
+fn by_reference(sites: &Sites<'_>, alpha: f64) -> Result<Found, ShapeError> {
+    let raw = crate::cgal::reference(sites, alpha)?;
     let complex = canonical(&raw, sites.input());
-    Ok(Found { complex, sheets: None, whole: true })
+    Ok(Found { complex, boundary: None, whole: true })
 }
 
-fn by_slabs(sites: &Sites, alpha: f64, options: &ShapeOptions) -> Result<Found, ShapeError> {
-    let asked = options.slabs.map_or(1, NonZeroUsize::get);
-    if options.exterior && asked > 1 {
-        return Err(ShapeError::Exterior { slabs: asked });
+#[cfg(not(feature = "cgal"))]
+fn by_reference(_: &Sites<'_>, _: f64) -> Result<Found, ShapeError> {
+    Err(TriangulationError::WithoutCgal.into())
+}
+
+fn by_blocks(
+    sites: &Sites<'_>,
+    alpha: f64,
+    maker: Maker,
+    options: &ShapeOptions,
+) -> Result<Found, ShapeError> {
+    let asked = options.blocks.map(NonZeroUsize::get);
+    if let Some(blocks) = asked.filter(|&blocks| options.exterior && blocks > 1) {
+        return Err(ShapeError::Exterior { blocks });
     }
     // Any α below −max ω asks for the empty shape, and doubles hold one.
     let largest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let alpha = alpha.max(-2.0 * largest.abs() - 1.0);
-    let plan = match options.slabs {
-        _ if options.exterior || alpha.is_infinite() => Plan::WHOLE,
-        Some(slabs) => Plan::of(slabs.get()),
-        None => Plan::new(sites, alpha, options.memory)?,
+    let plan = if options.exterior || alpha.is_infinite() {
+        Plan::whole(sites)
+    } else {
+        Plan::new(sites, alpha, maker, Limits { blocks: asked, memory: options.memory })?
     };
-    let whole = plan == Plan::WHOLE;
-    let question = SlabQuestion {
-        alpha,
-        lattice: Lattice::of(sites.positions(), sites.weights()),
-        exterior: whole,
-        frugal: options.memory.is_some(),
-    };
-    let answer = slabs::run(sites, &plan, &question)?;
-    let sheets = Some(Sheets::of(&answer));
-    Ok(Found { complex: answer.complex, sheets, whole })
+    let whole = plan.partition.len() == 1;
+    let lattice = Lattice::of(sites.positions(), sites.weights());
+    let question = Question { alpha, lattice, exterior: whole, maker };
+    let answer = blocks::run(sites, &plan, &question)?;
+    let boundary = Some((answer.b0, Sheets::of(&answer)));
+    Ok(Found { complex: answer.complex, boundary, whole })
 }
 
 /// The parameter at which the power weights are judged.

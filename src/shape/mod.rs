@@ -18,13 +18,13 @@
 
 mod alpha;
 mod alpha_shape;
+mod blocks;
+#[cfg(feature = "cgal")]
 mod canonical;
 mod complex;
 mod manifold;
 mod measure;
 mod parts;
-mod slabs;
-mod sphere;
 mod surface;
 mod topology;
 mod union_find;
@@ -32,13 +32,12 @@ mod voids;
 
 pub use alpha::{Alpha, Balls, NotAnAlpha, number_or_name};
 pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
+pub use blocks::PlanError;
 pub use complex::{ByClass, Class, Complex, Simplices};
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;
 pub(crate) use measure::{facet_area, six_volumes};
 pub use parts::{Component, Enclosed, NO_COMPONENT, Sheets};
-pub use slabs::PlanError;
-pub(crate) use sphere::{Interval, Spheres};
 pub use surface::Surface;
 pub use topology::{Betti, direct_betti};
 pub(crate) use union_find::UnionFind;

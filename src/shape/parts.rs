@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::slabs::Answer;
+use super::blocks::Answer;
 use super::union_find::UnionFind;
 use super::{AlphaShape, Class, Complex, facet_area, six_volumes};
 
@@ -24,7 +24,7 @@ pub struct Sheets {
 }
 
 impl Sheets {
-    /// Gives the sheets of slabs numbers that do not depend on the slabs. O(n).
+    /// Gives the sheets of blocks numbers that do not depend on the blocks. O(n).
     pub(super) fn of(answer: &Answer) -> Self {
         const NONE: u32 = u32::MAX;
         let raw = answer.facet_sheets.iter().chain(&answer.edge_sheets);

@@ -59,8 +59,7 @@ pub fn direct_betti(whole: &Complex) -> Betti {
 /// of the boundary of a thin neighbourhood of it. A component with k voids of its own has k + 1
 /// sheets (Alexander duality), so sheets = b0 + b2, and b1 follows from the Euler characteristic.
 /// Every isolated vertex has a sheet of its own. O(n).
-pub(super) fn sheet_betti(complex: &Complex, sheets: &Sheets) -> Betti {
-    let b0 = components(complex);
+pub(super) fn sheet_betti(complex: &Complex, b0: u64, sheets: &Sheets) -> Betti {
     let lone = complex.vertices.counts()[Class::Singular as usize];
     let b2 = (sheets.count as usize + lone) as u64 - b0;
     let b1 = (b0 + b2) as i64 - complex.euler_characteristic();

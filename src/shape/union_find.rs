@@ -10,6 +10,11 @@ impl UnionFind {
         Self { parent: (0..n as u32).collect() }
     }
 
+    /// How many members all sets have.
+    pub(crate) fn len(&self) -> usize {
+        self.parent.len()
+    }
+
     /// The smallest member of the set that holds `member`.
     pub(crate) fn find(&mut self, mut member: u32) -> u32 {
         while self.parent[member as usize] != member {

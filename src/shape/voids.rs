@@ -3,9 +3,9 @@ use std::cmp::Ordering;
 use serde::{Deserialize, Serialize};
 
 use super::measure::six_volumes;
-use super::sphere::{Interval, Spheres};
 use super::topology::Complement;
 use super::{AlphaShape, Class};
+use crate::triangulation::{Interval, Predicates};
 
 /// A void of a shape: a bounded component of its complement, made of exterior cells.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -99,7 +99,7 @@ fn voids(shape: &AlphaShape) -> Vec<Void> {
     let positions = &shape.points().positions;
     let mut complement = Complement::of(shape.complex());
     let outside = complement.outside();
-    let spheres = Spheres::new(positions, shape.power_weights());
+    let spheres = Predicates::new(positions, shape.power_weights());
     // By the component's number, which is its first cell's.
     let mut found: Vec<Option<Hollow>> = vec![None; cells.len() + 1];
     for (id, (&cell, class)) in cells.iter().enumerate() {

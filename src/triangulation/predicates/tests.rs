@@ -27,25 +27,25 @@ fn draw(state: &mut u64, wild: bool) -> (Vec<[f64; 3]>, Vec<f64>) {
     (positions, (0..5).map(|_| number(state, wild)).collect())
 }
 
-fn agree<const N: usize>(spheres: &Spheres<'_>, simplex: [u32; N], alpha: f64) -> [bool; 2] {
-    let sites = simplex.map(|v| spheres.site(v));
-    let radius = spheres.squared_radius(simplex);
-    let truth = exact::fits(sites[0], &sites[1..], alpha);
-    assert_eq!(spheres.fits(simplex, radius, alpha), truth, "{radius:?} {alpha}");
+fn agree<const N: usize>(predicates: &Predicates<'_>, simplex: [u32; N], alpha: f64) -> [bool; 2] {
+    let sites = simplex.map(|v| predicates.site(v));
+    let radius = predicates.squared_radius(simplex);
+    let truth = exact::fits(sites, alpha);
+    assert_eq!(predicates.fits_by(simplex, radius, alpha), truth, "{radius:?} {alpha}");
     let bounded = radius.high.is_finite();
     if bounded {
-        assert!(exact::fits(sites[0], &sites[1..], radius.high));
-        assert!(!exact::fits(sites[0], &sites[1..], radius.low.next_down()));
+        assert!(exact::fits(sites, radius.high));
+        assert!(!exact::fits(sites, radius.low.next_down()));
     }
-    let first = spheres.first_alpha(simplex);
+    let first = predicates.first_alpha(simplex);
     if first.abs() < 1e300 {
-        assert!(exact::fits(sites[0], &sites[1..], first));
-        assert!(!exact::fits(sites[0], &sites[1..], first.next_down()), "{first}");
+        assert!(exact::fits(sites, first));
+        assert!(!exact::fits(sites, first.next_down()), "{first}");
     }
     if N < 4 {
-        let x = spheres.site(4);
-        let truth = exact::inside(sites[0], &sites[1..], x);
-        assert_eq!(spheres.inside(simplex, 4), truth);
+        let x = predicates.site(4);
+        let truth = exact::inside(sites, x);
+        assert_eq!(predicates.inside(simplex, 4), truth);
     }
     [bounded, truth]
 }
@@ -57,19 +57,22 @@ fn doubles_and_integers_agree() {
     for round in 0..6000 {
         let wild = round % 2 == 1;
         let (positions, weights) = draw(&mut state, wild);
-        let spheres = Spheres::new(&positions, &weights);
+        let predicates = Predicates::new(&positions, &weights);
         let flat = |rays: &[u32]| {
             let rays: Vec<_> =
-                rays.iter().map(|&v| ray(spheres.site(0), spheres.site(v)).0).collect();
+                rays.iter().map(|&v| ray(predicates.site(0), predicates.site(v)).0).collect();
             quotient(&rays).1 <= 1e-6
         };
         let alpha = number(&mut state, wild);
         // Simplices without volume have no sphere; triangulations have none of them.
         if !flat(&[1]) && !flat(&[1, 2]) && !flat(&[1, 2, 3]) {
-            bounded += usize::from(agree(&spheres, [0, 1], alpha)[0]);
-            agree(&spheres, [0, 1, 2], alpha);
-            agree(&spheres, [0, 1, 2, 3], alpha);
-            assert_eq!(spheres.inside([0], 4), exact::hides(spheres.site(0), spheres.site(4)));
+            bounded += usize::from(agree(&predicates, [0, 1], alpha)[0]);
+            agree(&predicates, [0, 1, 2], alpha);
+            agree(&predicates, [0, 1, 2, 3], alpha);
+            assert_eq!(
+                predicates.inside([0], 4),
+                exact::inside([predicates.site(0)], predicates.site(4))
+            );
         }
     }
     assert!(bounded > 2000, "{bounded}");
@@ -80,13 +83,15 @@ fn a_radius_on_a_lattice_is_a_round_number() {
     let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|k| k as f64);
     let positions: Vec<_> = (0..8).map(corner).collect();
     let weights = vec![0.0; 8];
-    let spheres = Spheres::new(&positions, &weights);
+    let predicates = Predicates::new(&positions, &weights);
     let cell = [0, 1, 2, 4];
-    let radius = spheres.squared_radius(cell);
+    let radius = predicates.squared_radius(cell);
     assert!(radius.low < 0.75 && radius.high > 0.75);
-    assert_eq!(spheres.first_alpha(cell), 0.75);
-    assert!(spheres.fits(cell, radius, 0.75) && !spheres.fits(cell, radius, 0.75f64.next_down()));
+    assert_eq!(predicates.first_alpha(cell), 0.75);
+    assert!(
+        predicates.fits(cell, radius, 0.75) && !predicates.fits(cell, radius, 0.75f64.next_down())
+    );
     // The far corners lie on the sphere, not inside.
-    assert!(!spheres.inside([0, 1, 2], 4) && !spheres.inside([0, 1, 2], 3));
-    assert_eq!(spheres.squared_radius([3]), Interval { low: 0.0, high: 0.0 });
+    assert!(!predicates.inside([0, 1, 2], 4) && !predicates.inside([0, 1, 2], 3));
+    assert_eq!(predicates.squared_radius([3]), Interval { low: 0.0, high: 0.0 });
 }

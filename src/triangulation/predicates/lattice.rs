@@ -1,8 +1,13 @@
 use crate::number::lowest_bit;
 
-/// What the numbers of a set have in common, so that C++ knows when doubles are exact.
+/// What the numbers of a set have in common.
+///
+/// A polynomial of degree k in coordinate differences (weights count as degree 2) whose terms stay
+/// below 2⁵³ stepᵏ in sum of magnitudes is computed without any rounding. On voxel grids that decides
+/// every tie; without it, each of the many cospherical and coplanar tuples there would go to
+/// integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lattice {
+pub(crate) struct Lattice {
     /// A power of two of which every coordinate is an integer multiple; 0 when none is useful.
     pub step: f64,
     /// Whether every weight is a multiple of the squared step.

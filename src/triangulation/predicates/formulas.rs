@@ -1,4 +1,6 @@
-//! The polynomials behind smallest orthogonal spheres, written once for doubles and for integers.
+//! The polynomials behind every geometric decision, written once for doubles and for integers.
+//!
+//! Orientation and power test are determinants of rays from one of the points to the others.
 //!
 //! Seen from a simplex's first vertex p, with rays a = q − p and powers t = |a|² + ω(p) − ω(q) of
 //! the others, the centre is p + c where 2c·a = t for each ray and c lies in the span of the rays;
@@ -10,6 +12,29 @@ use crate::number::{Number, cross, dot};
 pub(super) struct Ray<T> {
     pub vector: [T; 3],
     pub power: T,
+}
+
+/// The determinant of three vectors: positive if they turn like the axes x, y, z.
+#[inline(always)]
+pub(super) fn determinant<T: Number>([a, b, c]: [&[T; 3]; 3]) -> T {
+    dot(a, &cross(b, c))
+}
+
+/// The determinant of four rays as rows (x, y, z, power), by 2×2 minors. For the rays from a point t
+/// to the corners of a positively oriented cell it is negative if t lies strictly inside the cell's
+/// orthogonal sphere. Powers may also be differences of lifted heights |p|² − ω, which adds
+/// multiples of the other columns.
+#[inline(always)]
+pub(super) fn power_determinant<T: Number>([a, b, c, d]: &[Ray<T>; 4]) -> T {
+    let xy = |p: &Ray<T>, q: &Ray<T>| {
+        p.vector[0].times(&q.vector[1]).minus(&q.vector[0].times(&p.vector[1]))
+    };
+    let zp =
+        |p: &Ray<T>, q: &Ray<T>| p.vector[2].times(&q.power).minus(&q.vector[2].times(&p.power));
+    let positive = (xy(a, b).times(&zp(c, d)))
+        .plus(&xy(a, d).times(&zp(b, c)))
+        .plus(&xy(b, c).times(&zp(a, d)).plus(&xy(c, d).times(&zp(a, b))));
+    positive.minus(&xy(a, c).times(&zp(b, d)).plus(&xy(b, d).times(&zp(a, c))))
 }
 
 /// 4 d·|c|² and d, where d ≥ 0 depends on the rays alone: of degree 2 for one ray, 4 for two, 6

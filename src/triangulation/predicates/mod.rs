@@ -1,16 +1,22 @@
-//! Smallest orthogonal spheres of simplices: their squared radii with bounds on the rounding, and
-//! exact answers to the two questions an α-complex is made of.
+//! Exact answers to every geometric question that a regular triangulation and an α-complex are made
+//! of: orientation, power test, radius of the smallest orthogonal sphere, and whether it is empty.
 //!
 //! Each answer is the sign of a polynomial. It is computed in doubles and believed when it passes a
 //! forward error bound, or when the arithmetic was exact because all numbers are small multiples of
-//! a power of two, as on voxel grids. Otherwise integers of any length decide.
+//! a power of two, as on voxel grids. Otherwise integers decide.
 
 mod exact;
 mod formulas;
+mod lattice;
+mod screen;
+mod size;
 
-use crate::cgal::Lattice;
-use crate::number::dot;
-use formulas::{Ray, quotient, side};
+use std::cmp::Ordering;
+
+use formulas::{determinant, power_determinant, quotient, side};
+pub(crate) use lattice::Lattice;
+pub(crate) use screen::Screen;
+use size::{Size, View, ray};
 
 /// A weighted point.
 #[derive(Clone, Copy)]
@@ -27,25 +33,29 @@ pub(crate) struct Interval {
 }
 
 /// Weighted points, asked about by index.
-pub(crate) struct Spheres<'a> {
+pub(crate) struct Predicates<'a> {
     positions: &'a [[f64; 3]],
     weights: &'a [f64],
     lattice: Lattice,
-    /// Below these, polynomials of degree 2, 4, 6 and 8 in coordinates are exact in doubles.
-    exact: [f64; 4],
+    /// Below these, polynomials of degree 1 to 8 in coordinates are exact in doubles; 0 off a
+    /// lattice.
+    exact: [f64; 8],
 }
 
 /// Every number is the result of fewer than 32 roundings, so a polynomial is off by less than 2⁻⁴⁸
 /// of the sum of the magnitudes of its terms.
 const ROUNDING: f64 = 1.0 / (1u64 << 48) as f64;
 
-impl<'a> Spheres<'a> {
+impl<'a> Predicates<'a> {
     /// Looks for what the numbers have in common. O(n).
     pub fn new(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Self {
-        let lattice = Lattice::of(positions, weights);
-        let square = lattice.step * lattice.step;
+        Self::on(Lattice::of(positions, weights), positions, weights)
+    }
+
+    /// The same, where a lattice of all numbers is known.
+    pub fn on(lattice: Lattice, positions: &'a [[f64; 3]], weights: &'a [f64]) -> Self {
         let most = (1u64 << 53) as f64;
-        let exact = [1, 2, 3, 4].map(|half| most * square.powi(half));
+        let exact = [1, 2, 3, 4, 5, 6, 7, 8].map(|degree| most * lattice.step.powi(degree));
         Self { positions, weights, lattice, exact }
     }
 
@@ -84,21 +94,21 @@ impl<'a> Spheres<'a> {
     /// Whether a simplex fits α: the squared radius of its smallest orthogonal sphere, of which the
     /// interval is known, is at most α. Exact.
     #[inline]
-    pub fn fits<const N: usize>(&self, simplex: [u32; N], radius: Interval, alpha: f64) -> bool {
+    pub fn fits_by<const N: usize>(&self, simplex: [u32; N], radius: Interval, alpha: f64) -> bool {
         if radius.high <= alpha || alpha == f64::INFINITY {
             return true;
         }
         if radius.low > alpha || alpha == f64::NEG_INFINITY {
             return false;
         }
-        self.decide(simplex, alpha)
+        self.fits(simplex, alpha)
     }
 
     /// The smallest double that is not below the squared radius: the first α at which it fits. By
     /// division of integers; some microseconds.
     pub fn first_alpha<const N: usize>(&self, simplex: [u32; N]) -> f64 {
         let sites = simplex.map(|v| self.site(v));
-        if N == 1 { -sites[0].weight } else { exact::squared_radius(sites[0], &sites[1..]) }
+        if N == 1 { -sites[0].weight } else { exact::squared_radius(sites) }
     }
 
     /// Whether a point lies strictly inside the smallest orthogonal sphere of a vertex, an edge or
@@ -115,17 +125,55 @@ impl<'a> Spheres<'a> {
         let exact = self.lattice.holds_weights && self.holds(bound, 2 * N);
         if exact || (size.is_sane() && value.abs() > bound * ROUNDING) {
             value < 0.0
-        } else if N == 1 {
-            exact::hides(p, x)
         } else {
-            exact::inside(p, &sites[1..], x)
+            exact::inside(sites, x)
         }
     }
 
-    /// Whether a simplex that is no vertex fits a finite α.
-    fn decide<const N: usize>(&self, simplex: [u32; N], alpha: f64) -> bool {
+    /// The sign of the determinant of b − a, c − a, d − a. Exact.
+    pub fn orientation(&self, corners: [u32; 4]) -> Ordering {
+        let sites = corners.map(|v| self.site(v));
+        let View { rays: [_, b, c, d], size } = View::of(sites[0], sites);
+        let value = determinant([&b.vector, &c.vector, &d.vector]);
+        let bound = 6.0 * size.length * size.length * size.length;
+        if self.holds(bound, 3) || (size.is_sane() && value.abs() > bound * ROUNDING) {
+            sign(value)
+        } else {
+            exact::orientation(sites)
+        }
+    }
+
+    /// Whether three points lie on one line. Exact, by integers.
+    pub fn collinear(&self, corners: [u32; 3]) -> bool {
+        exact::collinear(corners.map(|v| self.site(v)))
+    }
+
+    /// Whether a point lies inside (`Less`), on (`Equal`) or outside the orthogonal sphere of a
+    /// positively oriented cell. Exact.
+    pub fn power(&self, cell: [u32; 4], t: u32) -> Ordering {
+        let t = self.site(t);
+        let sites = cell.map(|v| self.site(v));
+        let View { rays, size } = View::of(t, sites);
+        let value = power_determinant(&rays);
+        let bound = 24.0 * size.length * size.length * size.length * size.power;
+        let alike = sites.iter().all(|site| site.weight == t.weight);
+        let exact = (alike || self.lattice.holds_weights) && self.holds(bound, 5);
+        if exact || (size.is_sane() && value.abs() > bound * ROUNDING) {
+            sign(value)
+        } else {
+            exact::power([sites[0], sites[1], sites[2], sites[3], t])
+        }
+    }
+
+    /// Whether a simplex fits a finite α: the squared radius of its smallest orthogonal sphere is at
+    /// most α. Exact.
+    #[inline]
+    pub fn fits<const N: usize>(&self, simplex: [u32; N], alpha: f64) -> bool {
         let sites = simplex.map(|v| self.site(v));
         let p = sites[0];
+        if N == 1 {
+            return -p.weight <= alpha;
+        }
         let View { rays, size } = View::<N>::of(p, sites);
         let (numerator, denominator) = quotient(&rays[1..]);
         let ball = alpha + p.weight;
@@ -137,13 +185,15 @@ impl<'a> Spheres<'a> {
         if (exact && self.holds(bound, 2 * N)) || (sane && value.abs() > bound * ROUNDING) {
             value <= 0.0
         } else {
-            exact::fits(p, &sites[1..], alpha)
+            exact::fits(sites, alpha)
         }
     }
 
     /// Whether doubles hold a polynomial of this degree whose terms sum to `bound` in magnitude.
+    #[inline]
     fn holds(&self, bound: f64, degree: usize) -> bool {
-        self.lattice.step != 0.0 && bound <= self.exact[degree / 2 - 1]
+        // Without a step nothing is exact, not even a bound that underflowed to 0.
+        self.lattice.step != 0.0 && bound <= self.exact[degree - 1]
     }
 
     fn on_lattice(&self, square: f64) -> bool {
@@ -154,84 +204,16 @@ impl<'a> Spheres<'a> {
     }
 }
 
-/// A simplex from its first vertex; the first ray is 0.
-struct View<const N: usize> {
-    rays: [Ray<f64>; N],
-    size: Size,
+/// The smallest and largest coordinates of points; of none, +∞ and −∞. O(n).
+pub(crate) fn extent(positions: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
+    let nothing = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    positions.iter().fold(nothing, |(low, high), p| {
+        ([0, 1, 2].map(|k| p[k].min(low[k])), [0, 1, 2].map(|k| p[k].max(high[k])))
+    })
 }
 
-impl<const N: usize> View<N> {
-    #[inline(always)]
-    fn of(p: Site, sites: [Site; N]) -> Self {
-        let mut size = Size { length: 0.0, power: 0.0 };
-        let rays = sites.map(|q| {
-            let (ray, reach) = ray(p, q);
-            size = size.larger(reach);
-            ray
-        });
-        Self { rays, size }
-    }
-}
-
-#[inline(always)]
-fn ray(p: Site, q: Site) -> (Ray<f64>, Size) {
-    let vector = [0, 1, 2].map(|k| q.position[k] - p.position[k]);
-    let length = vector.iter().fold(0f64, |most, x| most.max(x.abs()));
-    let heavier = p.weight - q.weight;
-    let size = Size { length, power: 3.0 * length * length + heavier.abs() };
-    (Ray { power: dot(&vector, &vector) + heavier, vector }, size)
-}
-
-/// Magnitudes: the largest coordinate of a ray, and the terms of the largest power.
-#[derive(Clone, Copy)]
-struct Size {
-    length: f64,
-    power: f64,
-}
-
-struct Bounds {
-    numerator: f64,
-    denominator: f64,
-}
-
-impl Size {
-    const LARGEST_SQUARE: f64 = 1e60;
-
-    #[inline(always)]
-    fn larger(self, other: Self) -> Self {
-        Self { length: self.length.max(other.length), power: self.power.max(other.power) }
-    }
-
-    /// Whether nothing overflows or loses digits to underflow; degrees go up to 8.
-    fn is_sane(self) -> bool {
-        self.length > 1e-30 && self.length < 1e30 && self.power < Self::LARGEST_SQUARE
-    }
-
-    /// The terms of the two polynomials behind a radius, for so many vertices.
-    #[inline(always)]
-    fn bounds(self, vertices: usize) -> Bounds {
-        let square = self.length * self.length;
-        let powers = self.power * self.power;
-        match vertices {
-            2 => Bounds { numerator: powers, denominator: 3.0 * square },
-            3 => Bounds { numerator: 12.0 * square * powers, denominator: 18.0 * square * square },
-            _ => Bounds {
-                numerator: 108.0 * square * square * powers,
-                denominator: 36.0 * square * square * square,
-            },
-        }
-    }
-
-    /// The terms of the polynomial that tells inside from outside.
-    #[inline(always)]
-    fn side_bound(self, vertices: usize) -> f64 {
-        let square = self.length * self.length;
-        match vertices {
-            1 => self.power,
-            2 => 6.0 * self.power * square,
-            _ => 54.0 * self.power * square * square,
-        }
-    }
+fn sign(value: f64) -> Ordering {
+    value.partial_cmp(&0.0).expect("no NaN passes a bound")
 }
 
 #[cfg(test)]

@@ -1,0 +1,149 @@
+use super::{Local, Owned, Sheets};
+use crate::shape::Class;
+
+/// What is known of a cell: the classes of its facets, two bits each, three flags, and which of its
+/// facets it gives out, a bit each.
+#[derive(Clone, Copy, Default)]
+pub(super) struct State(u16);
+
+impl State {
+    const INSIDE: u16 = 0x100;
+    const INFINITE: u16 = 0x200;
+    const FAR: u16 = 0x400;
+    const GIVES: usize = 12;
+
+    #[inline(always)]
+    pub fn is_inside(self) -> bool {
+        self.0 & Self::INSIDE != 0
+    }
+
+    #[inline(always)]
+    pub fn is_infinite(self) -> bool {
+        self.0 & Self::INFINITE != 0
+    }
+
+    /// Whether none of its corners is the block's own: nobody asks about it.
+    #[inline(always)]
+    pub fn is_far(self) -> bool {
+        self.0 & Self::FAR != 0
+    }
+
+    /// The class of the facet opposite a corner.
+    #[inline(always)]
+    pub fn facet(self, opposite: usize) -> Class {
+        Class::ALL[usize::from(self.0 >> (2 * opposite) & 3)]
+    }
+
+    /// Bits 2·opposite for the facets that are in the shape.
+    #[inline(always)]
+    pub fn covered(self) -> u16 {
+        (self.0 | self.0 >> 1) & 0x55
+    }
+
+    /// Bits 2·opposite for the facets that are not interior.
+    #[inline(always)]
+    pub fn open(self) -> u16 {
+        (self.0 >> 1 | !self.0) & 0x55
+    }
+
+    /// Whether it is this cell, of the two beside a facet, whose row the facet becomes.
+    #[inline(always)]
+    pub fn gives(self, opposite: usize) -> bool {
+        self.0 >> (Self::GIVES + opposite) & 1 != 0
+    }
+
+    fn set_facet(&mut self, opposite: usize, class: Class) {
+        self.0 |= (class as u16) << (2 * opposite);
+    }
+
+    fn set_gives(&mut self, opposite: usize) {
+        self.0 |= 1 << (Self::GIVES + opposite);
+    }
+}
+
+impl Local<'_> {
+    pub(super) fn classify_cells(&self) -> Vec<State> {
+        let ghost = self.mesh.ghost();
+        let state = |&cell: &[u32; 4]| {
+            if !cell.iter().any(|&v| self.owned(v)) {
+                State(State::FAR)
+            } else if cell.contains(&ghost) {
+                State(State::INFINITE)
+            } else if self.fits(cell) {
+                State(State::INSIDE)
+            } else {
+                State(0)
+            }
+        };
+        self.mesh.cells().iter().map(state).collect()
+    }
+
+    /// Classifies each facet that has an owned corner, and unites what it says of the outside.
+    pub(super) fn classify_facets(
+        &self,
+        states: &mut [State],
+        sheets: &mut Sheets,
+        owned: &mut Owned,
+    ) {
+        for cell in 0..states.len() as u32 {
+            let state = states[cell as usize];
+            if state.is_far() {
+                continue;
+            }
+            let across = self.mesh.beside()[cell as usize];
+            for (here, there) in (4 * cell..).zip(across) {
+                let next = states[there as usize / 4];
+                // Each pair once. No facet of a cell that is far has an owned corner.
+                if there < here || next.is_far() {
+                    continue;
+                }
+                let class = match (state.is_inside(), next.is_inside()) {
+                    (true, true) => Class::Interior,
+                    (false, false) => self.classify_lone_facet(here, there),
+                    _ => Class::Regular,
+                };
+                states[cell as usize].set_facet(here as usize % 4, class);
+                states[there as usize / 4].set_facet(there as usize % 4, class);
+                if class != Class::Exterior || self.exterior {
+                    // One of the two cells at a finite facet is finite.
+                    let giver = if state.is_infinite() { there } else { here };
+                    states[giver as usize / 4].set_gives(giver as usize % 4);
+                }
+                match class {
+                    Class::Interior => {}
+                    Class::Exterior => self.pass(here, there, sheets),
+                    Class::Regular | Class::Singular => {
+                        for (side, state) in [(here, state), (there, next)] {
+                            if !state.is_inside() {
+                                self.join_side(side, sheets, owned);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// A facet between two cells that are not in the shape: 4·cell + corner on both sides.
+    fn classify_lone_facet(&self, here: u32, there: u32) -> Class {
+        let ghost = self.mesh.ghost();
+        let facet = self.facet(here);
+        if facet.contains(&ghost) || !self.fits(facet) {
+            return Class::Exterior;
+        }
+        // In a regular triangulation a sphere that holds a point holds one of the two beside it.
+        let apex = |side: u32| self.mesh.cells()[side as usize / 4][side as usize % 4];
+        let held = [here, there]
+            .into_iter()
+            .map(apex)
+            .any(|v| v != ghost && self.predicates.inside(facet, v));
+        if held { Class::Exterior } else { Class::Singular }
+    }
+
+    /// The corners of a facet, of 4·cell + corner opposite.
+    #[inline(always)]
+    pub(super) fn facet(&self, side: u32) -> [u32; 3] {
+        let (cell, opposite) = (self.mesh.cells()[side as usize / 4], side as usize % 4);
+        [1, 2, 3].map(|step| cell[(opposite + step) % 4])
+    }
+}

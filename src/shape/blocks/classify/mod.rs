@@ -1,0 +1,94 @@
+//! What a block owns of the shape, from its triangulation.
+//!
+//! 1. [`cells`]: which cells are inside, then the class of each facet, by the two cells beside it or,
+//!    where both are outside, by its own sphere.
+//! 2. [`sheets`]: while facets are classified, the corners of exterior cells are united into sheets.
+//! 3. [`around`]: one walk around each of the block's points gives edges, the point's class, and the
+//!    rows of the simplices that it is the smallest vertex of.
+
+mod around;
+mod cells;
+mod rows;
+mod sheets;
+mod stars;
+
+use super::{Block, Question};
+use crate::shape::UnionFind;
+use crate::triangulation::{Predicates, Triangulation};
+
+use around::Walker;
+use cells::State;
+pub(super) use rows::{Dimension, Owned, Rows};
+use sheets::Sheets;
+use stars::Stars;
+
+/// Classifies the simplices whose smallest vertex is the block's own. O(cells).
+pub(super) fn classify(block: &Block, mesh: &Triangulation, question: &Question) -> Owned {
+    let local = Local {
+        block,
+        mesh,
+        predicates: Predicates::on(question.lattice, &block.positions, &block.weights),
+        alpha: question.alpha,
+        exterior: question.exterior,
+    };
+    let mut states = local.classify_cells();
+    let mut sheets = Sheets::new(&states);
+    let mut owned = Owned::default();
+    local.classify_facets(&mut states, &mut sheets, &mut owned);
+    let stars = Stars::new(mesh, block.own, &states);
+    let mut walker = Walker::new(&local, &states, &stars, &mut sheets, &mut owned);
+    (0..block.own).for_each(|v| walker.visit(v));
+    let mut components = walker.finish();
+    owned.joined = joined(&mut components, &block.input);
+    sheets.number(&mut owned);
+    owned
+}
+
+/// A block with its triangulation, and what is asked about it. Vertices are its points' numbers.
+struct Local<'a> {
+    block: &'a Block,
+    mesh: &'a Triangulation,
+    predicates: Predicates<'a>,
+    alpha: f64,
+    exterior: bool,
+}
+
+impl Local<'_> {
+    /// Whether a vertex is one of the block's own points; the ghost is nobody's.
+    #[inline(always)]
+    fn owned(&self, v: u32) -> bool {
+        v < self.block.own
+    }
+
+    /// The place of simplices is decided by input indices.
+    #[inline(always)]
+    fn input(&self, v: u32) -> u32 {
+        self.block.input[v as usize]
+    }
+
+    fn fits<const N: usize>(&self, simplex: [u32; N]) -> bool {
+        self.alpha == f64::INFINITY || self.predicates.fits(simplex, self.alpha)
+    }
+}
+
+/// The points that hang together with another one, and that one, by input index.
+fn joined(components: &mut UnionFind, input: &[u32]) -> Vec<[u32; 2]> {
+    let pair = |v: u32| {
+        let root = components.find(v);
+        (root != v).then(|| [input[v as usize], input[root as usize]])
+    };
+    (0..input.len() as u32).filter_map(pair).collect()
+}
+
+/// Whether a permutation of 0..4 that begins with three places is even.
+#[inline(always)]
+fn even(a: usize, b: usize, c: usize) -> bool {
+    let d = 6 - a - b - c;
+    let inversions = u8::from(a > b)
+        + u8::from(a > c)
+        + u8::from(a > d)
+        + u8::from(b > c)
+        + u8::from(b > d)
+        + u8::from(c > d);
+    inversions % 2 == 0
+}

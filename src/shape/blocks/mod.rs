@@ -1,0 +1,109 @@
+//! The α-complex block by block.
+//!
+//! It is local. A simplex of the shape has an orthogonal sphere of squared radius at most α, so each
+//! of its vertices v lies within √(α + ω(v)) of the sphere's centre, and a point q that could refute
+//! it, by lying inside, within √(α + ω(q)). The points of a block and those within
+//! √(α + ω(q)) + √(α + max ω of the block) of its box, its *halo*, therefore decide every simplex that
+//! has a vertex in the block. Ties too: a face of the lower hull of all lifted points is one of any
+//! subset that has its vertices, and ties are broken by raising lifted points in an order of their
+//! coordinates, which does not depend on what other points there are.
+//!
+//! With `Balls::Radius` the weights are (α + ω)² and α is 0, and the same bound reads: the sum of
+//! the two radii.
+//!
+//! A block owns the simplices whose smallest input index lies in it. [`partition`] cuts, [`plan`]
+//! says into how many, [`classify`] finds what a block owns, and [`merge`] puts that together.
+
+mod classify;
+mod merge;
+mod partition;
+mod plan;
+
+use rayon::prelude::*;
+
+use super::{Complex, ShapeError};
+use crate::progress;
+use crate::triangulation::{Lattice, Maker, Sites, SitesError, TriangulationError};
+
+use classify::{Owned, classify};
+use merge::merge;
+pub(super) use partition::Partition;
+pub use plan::PlanError;
+pub(super) use plan::{Limits, Plan};
+
+/// What is asked about all blocks of a set.
+#[derive(Clone, Copy)]
+pub(super) struct Question {
+    /// A squared length or +∞.
+    pub alpha: f64,
+    /// The lattice of the whole set.
+    pub lattice: Lattice,
+    /// Whether exterior simplices are wanted too, which mean something in a triangulation of all
+    /// points only.
+    pub exterior: bool,
+    /// Who triangulates.
+    pub maker: Maker,
+}
+
+/// What the blocks say together.
+pub(super) struct Answer {
+    pub complex: Complex,
+    /// Components.
+    pub b0: u64,
+    /// The sheet of each regular facet, in the order of the facets, two of each singular one.
+    pub facet_sheets: Vec<u32>,
+    /// The sheet of each singular edge, in their order.
+    pub edge_sheets: Vec<u32>,
+}
+
+/// Some sites and those around them, each along the curve.
+pub(super) struct Block {
+    /// The block's own points, then its halo.
+    pub positions: Vec<[f64; 3]>,
+    /// Power weights.
+    pub weights: Vec<f64>,
+    /// Input indices.
+    pub input: Vec<u32>,
+    /// How many are the block's own.
+    pub own: u32,
+}
+
+/// The α-complex of sites; with exterior simplices, which need one block, the whole triangulation.
+pub(super) fn run(
+    sites: &Sites<'_>,
+    plan: &Plan,
+    question: &Question,
+) -> Result<Answer, ShapeError> {
+    let partition = &plan.partition;
+    tracing::debug!(blocks = partition.len(), at_once = plan.at_once, "cut");
+    // So many blocks at once, each giving its memory back before the next.
+    let blocks: Vec<usize> = (0..partition.len()).collect();
+    let mut owned = Vec::with_capacity(blocks.len());
+    for batch in blocks.chunks(plan.at_once) {
+        let done: Result<Vec<_>, ShapeError> =
+            batch.par_iter().map(|&block| decide(sites, partition, block, question)).collect();
+        owned.extend(done?);
+        progress::report(owned.len() as u64, partition.len() as u64);
+        plan.give_back();
+    }
+    Ok(merge(sites, plan, owned, question.exterior))
+}
+
+/// Triangulates a block with its halo, or, where these span no volume, with all other sites.
+fn decide(
+    sites: &Sites<'_>,
+    partition: &Partition,
+    block: usize,
+    question: &Question,
+) -> Result<Owned, ShapeError> {
+    if partition.len() > 1 {
+        let points = partition.block(sites, question.alpha, block);
+        match question.maker.make(&points.positions, &points.weights) {
+            Err(TriangulationError::Sites(SitesError::Flat { .. })) => {}
+            made => return Ok(classify(&points, &made?, question)),
+        }
+    }
+    let points = partition.block(sites, f64::INFINITY, block);
+    let made = question.maker.make(&points.positions, &points.weights)?;
+    Ok(classify(&points, &made, question))
+}

@@ -1,0 +1,165 @@
+//! Sites cut into blocks by a k-d tree.
+
+use std::ops::Range;
+
+use super::Block;
+use crate::triangulation::Sites;
+
+/// Boxes of about equally many sites: each cut across its longest side.
+pub(crate) struct Partition {
+    /// A tree in which children come after their parents; the first is the root.
+    nodes: Vec<Node>,
+    /// The leaf of each block.
+    leaves: Vec<usize>,
+    /// Places on the curve, those of a block side by side and ascending.
+    members: Vec<u32>,
+}
+
+struct Node {
+    members: Range<usize>,
+    low: [f64; 3],
+    high: [f64; 3],
+    /// The largest weight.
+    heaviest: f64,
+    /// The nodes it is cut into; none for a block.
+    halves: Option<[usize; 2]>,
+}
+
+impl Partition {
+    /// Cuts sites into so many blocks, but no more than there are sites. O(n log blocks).
+    pub fn new(sites: &Sites<'_>, blocks: usize) -> Self {
+        let count = sites.curve().len();
+        let mut members: Vec<u32> = (0..count as u32).collect();
+        let mut nodes = vec![Node::around(sites, &members, 0)];
+        let mut leaves = Vec::new();
+        // From the last to the first, so that blocks are numbered from low to high.
+        let mut pending = vec![(0, blocks.clamp(1, count.max(1)))];
+        while let Some((at, blocks)) = pending.pop() {
+            let Range { start, end } = nodes[at].members;
+            let here = &mut members[start..end];
+            if blocks == 1 {
+                here.sort_unstable();
+                leaves.push(at);
+                continue;
+            }
+            let axis = nodes[at].longest_side();
+            let left = blocks / 2;
+            let middle = here.len() * left / blocks;
+            let along =
+                |&place: &u32| sites.positions()[sites.curve()[place as usize] as usize][axis];
+            here.select_nth_unstable_by(middle, |a, b| {
+                along(a).total_cmp(&along(b)).then(a.cmp(b))
+            });
+            let (low, high) = here.split_at(middle);
+            let halves = [nodes.len(), nodes.len() + 1];
+            nodes.push(Node::around(sites, low, start));
+            nodes.push(Node::around(sites, high, start + middle));
+            nodes[at].halves = Some(halves);
+            pending.extend([(halves[1], blocks - left), (halves[0], left)]);
+        }
+        Self { nodes, leaves, members }
+    }
+
+    /// The number of blocks.
+    pub fn len(&self) -> usize {
+        self.leaves.len()
+    }
+
+    /// The sites of a block, along the curve.
+    pub fn own<'a>(&'a self, sites: &'a Sites<'_>, block: usize) -> impl Iterator<Item = u32> + 'a {
+        let members = &self.members[self.nodes[self.leaves[block]].members.clone()];
+        members.iter().map(|&place| sites.curve()[place as usize])
+    }
+
+    /// How many points the largest block has, those around it included.
+    pub fn largest(&self, sites: &Sites<'_>, alpha: f64) -> usize {
+        use rayon::prelude::*;
+        let size = |block: usize| {
+            let mut count = self.nodes[self.leaves[block]].members.len();
+            self.halo(sites, alpha, block, |_| count += 1);
+            count
+        };
+        (0..self.len()).into_par_iter().map(size).max().unwrap_or(0)
+    }
+
+    /// The points of a block and of its halo, which at α = ∞ is all others.
+    pub fn block(&self, sites: &Sites<'_>, alpha: f64, block: usize) -> Block {
+        let own = self.nodes[self.leaves[block]].members.clone();
+        let mut halo = Vec::new();
+        self.halo(sites, alpha, block, |place| halo.push(place));
+        halo.sort_unstable();
+        let places = || self.members[own.clone()].iter().chain(&halo);
+        let site = |&place: &u32| sites.curve()[place as usize] as usize;
+        Block {
+            positions: places().map(|place| sites.positions()[site(place)]).collect(),
+            weights: places().map(|place| sites.weights()[site(place)]).collect(),
+            input: places().map(|place| sites.input()[site(place)]).collect(),
+            own: own.len() as u32,
+        }
+    }
+
+    /// Visits the places on the curve of the points around a block, in no particular order.
+    ///
+    /// Points with α + ω < 0 have no ball and refute nothing: they are left out.
+    fn halo(&self, sites: &Sites<'_>, alpha: f64, block: usize, mut visit: impl FnMut(u32)) {
+        let leaf = self.leaves[block];
+        let own = &self.nodes[leaf];
+        let radius = (alpha + own.heaviest).max(0.0).sqrt();
+        let mut pending = vec![0];
+        while let Some(at) = pending.pop() {
+            let node = &self.nodes[at];
+            if at == leaf || !own.reaches(node.low, node.high, radius, alpha + node.heaviest) {
+                continue;
+            }
+            if let Some(halves) = node.halves {
+                pending.extend(halves);
+                continue;
+            }
+            for &place in &self.members[node.members.clone()] {
+                let site = sites.curve()[place as usize] as usize;
+                let (at, ball) = (sites.positions()[site], alpha + sites.weights()[site]);
+                if own.reaches(at, at, radius, ball) {
+                    visit(place);
+                }
+            }
+        }
+    }
+}
+
+impl Node {
+    fn around(sites: &Sites<'_>, members: &[u32], start: usize) -> Self {
+        let mut node = Self {
+            members: start..start + members.len(),
+            low: [f64::INFINITY; 3],
+            high: [f64::NEG_INFINITY; 3],
+            heaviest: f64::NEG_INFINITY,
+            halves: None,
+        };
+        for &place in members {
+            let site = sites.curve()[place as usize] as usize;
+            let at = sites.positions()[site];
+            for k in 0..3 {
+                node.low[k] = node.low[k].min(at[k]);
+                node.high[k] = node.high[k].max(at[k]);
+            }
+            node.heaviest = node.heaviest.max(sites.weights()[site]);
+        }
+        node
+    }
+
+    fn longest_side(&self) -> usize {
+        let side = |k: usize| self.high[k] - self.low[k];
+        // Of equals the last, the slowest in a volume's memory.
+        (0..3).max_by(|&a, &b| side(a).total_cmp(&side(b))).unwrap_or(2)
+    }
+
+    /// Whether a box is within √ball plus a radius of this one; not where there is no ball.
+    fn reaches(&self, low: [f64; 3], high: [f64; 3], radius: f64, ball: f64) -> bool {
+        let away = |k: usize| (low[k] - self.high[k]).max(self.low[k] - high[k]).max(0.0);
+        let apart = away(0) * away(0) + away(1) * away(1) + away(2) * away(2);
+        let reach = ball.sqrt() + radius;
+        // NaN for a point without a ball, which compares false. Both sides come out of a few
+        // operations, each off by at most 2⁻⁵³ of its result: a point too many does no harm.
+        apart <= reach * reach * (1.0 + 16.0 * f64::EPSILON)
+    }
+}

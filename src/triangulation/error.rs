@@ -1,0 +1,99 @@
+use super::Triangulation;
+
+/// Why points make no sites.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SitesError {
+    /// Positions and weights do not pair up.
+    #[error("{positions} positions but {weights} weights: each point needs one weight")]
+    Lengths {
+        /// Positions given.
+        positions: usize,
+        /// Weights given.
+        weights: usize,
+    },
+    /// More points than 32-bit indices.
+    #[error("{0} points are too many: at most {max} fit a 32-bit index; select fewer", max = u32::MAX)]
+    TooMany(usize),
+    /// NaN, infinity or an absurd magnitude.
+    #[error(
+        "point {index} has {what} {value}: it must be a finite number of magnitude at most {limit:e}; clean or rescale the input"
+    )]
+    Value {
+        /// Input index of the point.
+        index: usize,
+        /// Which of its numbers.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// The largest magnitude accepted.
+        limit: f64,
+    },
+    /// No point at all, where one would do.
+    #[error("there is no point: at least 1 is needed; select some")]
+    Empty,
+    /// Fewer than four different places.
+    #[error(
+        "{distinct} distinct points cannot span a tetrahedron: at least 4 are needed; select more points"
+    )]
+    TooFew {
+        /// Different places among the input.
+        distinct: usize,
+    },
+    /// All points in one plane or on one line.
+    #[error(
+        "all {points} points lie {on}: a 3D triangulation needs points that span a volume; select more points, or perturb them knowingly"
+    )]
+    Flat {
+        /// Different places among the input.
+        points: usize,
+        /// "in one plane" or "on one line".
+        on: &'static str,
+    },
+}
+
+impl SitesError {
+    /// So many points whose affine hull has a dimension below 3.
+    pub(crate) fn flat(points: usize, dimension: i32) -> Self {
+        Self::Flat { points, on: if dimension == 2 { "in one plane" } else { "on one line" } }
+    }
+}
+
+/// Why there is no triangulation.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TriangulationError {
+    /// The points cannot be triangulated.
+    #[error(transparent)]
+    Sites(#[from] SitesError),
+    /// More cells than the arrays can name.
+    #[error(
+        "the triangulation has more than {} cells: that is more than its arrays can name; use more \
+         blocks, or select fewer points",
+        Triangulation::MOST_CELLS
+    )]
+    TooManyCells,
+    /// The system gives no more memory.
+    #[error("no memory for the {stage}: {needed}; allow more, use more blocks, or select fewer points",
+        needed = needed.map_or("C++ ran out of it".to_owned(), |bytes| format!("{} MiB are needed at once", bytes >> 20)))]
+    Memory {
+        /// What was made.
+        stage: &'static str,
+        /// Bytes asked for, where known.
+        needed: Option<usize>,
+    },
+    /// CGAL threw. This is a fault of walpha or CGAL, not of the input.
+    #[error("CGAL failed in the {stage} stage: {text}; please report this with the input")]
+    Thrown {
+        /// The stage that asked.
+        stage: &'static str,
+        /// What C++ said.
+        text: String,
+    },
+    /// This program was built without CGAL.
+    #[error(
+        "this walpha was built without CGAL: there is no reference engine, no cgal engine and no \
+         triangulation of the plane; use the native engine, or build with the feature `cgal`"
+    )]
+    WithoutCgal,
+}

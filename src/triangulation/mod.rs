@@ -1,0 +1,146 @@
+//! Floor 2: regular triangulations as flat arrays, and the exact predicates behind them.
+//!
+//! Two makers give the same triangulation: our own, and CGAL's `Regular_triangulation_3` copied out.
+//! Ties are broken as CGAL does, by raising each point by an infinitely small height, the larger the
+//! later it comes in the order of (x, y, z): so the triangulation is a function of the set of points.
+//!
+//! ```
+//! use walpha::triangulation::{Maker, Sites, triangulate};
+//!
+//! let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|c| c as f64);
+//! let (positions, weights): (Vec<_>, Vec<_>) = (0..8).map(|i| (corner(i), 0.0)).unzip();
+//! let cube = triangulate(&Sites::new(&positions, &weights)?, Maker::Native)?;
+//! let finite = cube.cells().iter().filter(|cell| !cell.contains(&cube.ghost()));
+//! assert_eq!(finite.count(), 6);
+//! assert!(cube.hidden().is_empty());
+//! # Ok::<(), walpha::triangulation::TriangulationError>(())
+//! ```
+
+mod curve;
+mod error;
+mod native;
+mod predicates;
+mod sites;
+
+pub use error::{SitesError, TriangulationError};
+pub(crate) use predicates::{Interval, Lattice, Predicates};
+pub use sites::{MAX_COORDINATE, MAX_WEIGHT, Sites};
+
+/// A regular triangulation: its cells, and which lie beside each other.
+///
+/// The outside of the convex hull is made of infinite cells, one on each facet of the hull, whose
+/// fourth corner is the *ghost*, the number one past the last point. Cells are positively oriented:
+/// a, b, c turn counter-clockwise seen from d, where the ghost counts as a point far outside.
+///
+/// For four points a maker may give the cell `[0, 1, 2, 3]` and four infinite ones, among them
+/// `[0, 2, 1, 4]` with the ghost 4 as its corner 3. If that one has number 2, `beside()[0][3]` is
+/// 4·2 + 3: across the facet opposite corner 3 of cell 0 lies cell 2, of which it is opposite
+/// corner 3.
+#[derive(Clone, Debug)]
+pub struct Triangulation {
+    cells: Vec<[u32; 4]>,
+    beside: Vec<[u32; 4]>,
+    ghost: u32,
+}
+
+impl Triangulation {
+    /// The most cells that 4·cell + corner can name.
+    pub const MOST_CELLS: usize = 1 << 30;
+
+    /// So many cells of so many points, written by another program.
+    #[cfg(feature = "cgal")]
+    pub(crate) fn filled(
+        count: usize,
+        ghost: u32,
+        write: impl FnOnce(&mut [[u32; 4]], &mut [[u32; 4]]) -> Result<(), TriangulationError>,
+    ) -> Result<Self, TriangulationError> {
+        if count > Self::MOST_CELLS {
+            return Err(TriangulationError::TooManyCells);
+        }
+        let (mut cells, mut beside) = (room(count)?, room(count)?);
+        cells.resize(count, [0; 4]);
+        beside.resize(count, [0; 4]);
+        write(&mut cells, &mut beside)?;
+        Ok(Self { cells, beside, ghost })
+    }
+
+    /// The corners of each cell, infinite cells included, in no particular order.
+    pub fn cells(&self) -> &[[u32; 4]] {
+        &self.cells
+    }
+
+    /// What lies across the facet opposite each corner of each cell: 4·cell + corner, that cell and
+    /// its own corner opposite the facet.
+    pub fn beside(&self) -> &[[u32; 4]] {
+        &self.beside
+    }
+
+    /// The corner of infinite cells that is no point: the number of points.
+    pub fn ghost(&self) -> u32 {
+        self.ghost
+    }
+
+    /// The points that are no vertices, ascending. O(cells).
+    pub fn hidden(&self) -> Vec<u32> {
+        let mut seen = vec![false; self.ghost as usize + 1];
+        for &v in self.cells.as_flattened() {
+            seen[v as usize] = true;
+        }
+        (0..self.ghost).filter(|&v| !seen[v as usize]).collect()
+    }
+}
+
+/// A vector with room for so many elements.
+fn room<T>(count: usize) -> Result<Vec<T>, TriangulationError> {
+    let mut room = Vec::new();
+    match room.try_reserve_exact(count) {
+        Ok(()) => Ok(room),
+        Err(_) => Err(no_memory(count.saturating_mul(size_of::<T>()))),
+    }
+}
+
+fn no_memory(bytes: usize) -> TriangulationError {
+    TriangulationError::Memory { stage: "triangulation", needed: Some(bytes) }
+}
+
+/// Which program makes a triangulation; both make the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Maker {
+    /// Our own, in Rust.
+    Native,
+    /// CGAL's `Regular_triangulation_3`; needs the feature `cgal`.
+    Cgal,
+}
+
+impl Maker {
+    /// The triangulation of points that are sites, or some of them. [`Maker::Native`] is fast where
+    /// points near each other in the slices are near each other in space.
+    pub(crate) fn make(
+        self,
+        positions: &[[f64; 3]],
+        weights: &[f64],
+    ) -> Result<Triangulation, TriangulationError> {
+        match self {
+            Self::Native => native::native(positions, weights),
+            #[cfg(feature = "cgal")]
+            Self::Cgal => crate::cgal::regular(positions, weights),
+            #[cfg(not(feature = "cgal"))]
+            Self::Cgal => Err(TriangulationError::WithoutCgal),
+        }
+    }
+}
+
+/// The regular triangulation of sites, by site index. Expected O(n log n) for points of even density.
+///
+/// # Errors
+/// Sites that span no volume, no memory, more than [`Triangulation::MOST_CELLS`] cells.
+pub fn triangulate(sites: &Sites<'_>, maker: Maker) -> Result<Triangulation, TriangulationError> {
+    let along = sites.curve();
+    let positions: Vec<_> = along.iter().map(|&i| sites.positions()[i as usize]).collect();
+    let weights: Vec<_> = along.iter().map(|&i| sites.weights()[i as usize]).collect();
+    let mut triangulation = maker.make(&positions, &weights)?;
+    for v in triangulation.cells.as_flattened_mut() {
+        *v = along.get(*v as usize).copied().unwrap_or(*v);
+    }
+    Ok(triangulation)
+}

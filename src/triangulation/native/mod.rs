@@ -1,0 +1,162 @@
+//! Our own maker: incremental insertion (Bowyer 1981, doi:10.1093/comjnl/24.2.162; Watson 1981,
+//! doi:10.1093/comjnl/24.2.167) with weights, over flat arrays.
+//!
+//! 1. Points come in rounds, each a few times as large as all before it (a biased randomized
+//!    insertion order: Amenta, Choi and Rote 2003, doi:10.1145/777792.777824), in the order given within
+//!    a round. Points along a curve ([`Sites`](super::Sites) know one) find their cells, and the
+//!    numbers these are made of, in the cache.
+//! 2. A walk from the last new cell finds the one that holds the point ([`locate`]). If the point
+//!    does not lie inside that cell's orthogonal sphere it is hidden.
+//! 3. The cells whose spheres hold the point are one cavity; new cells join the point to the
+//!    cavity's boundary ([`cavity`]), in the places of the old ones.
+
+mod cavity;
+mod locate;
+mod start;
+
+use std::cmp::Ordering;
+
+use super::predicates::{Predicates, Screen};
+use super::{Triangulation, TriangulationError};
+use cavity::Cavity;
+
+/// The regular triangulation of points: finite numbers of sane magnitude, no two places equal.
+/// Expected O(n log n) for points of even density.
+///
+/// # Errors
+/// Points that span no volume, too many cells, no memory.
+pub(super) fn native(
+    positions: &[[f64; 3]],
+    weights: &[f64],
+) -> Result<Triangulation, TriangulationError> {
+    let predicates = Predicates::new(positions, weights);
+    let screen = Screen::new(&predicates)?;
+    let mut native = Native::start(&screen)?;
+    for v in rounds(screen.len() as u32) {
+        if !native.first.contains(&v) {
+            native.insert(v)?;
+        }
+    }
+    Ok(native.finish())
+}
+
+/// A triangulation that grows.
+struct Native<'a> {
+    screen: &'a Screen<'a>,
+    mesh: Mesh,
+    /// What the last insertions said of each cell, see [`Cavity`].
+    marks: Vec<u32>,
+    /// Places of cells that are gone.
+    free: Vec<u32>,
+    /// The corners of the first cell.
+    first: [u32; 4],
+    /// A cell near the last point.
+    near: u32,
+    cavity: Cavity,
+}
+
+impl Native<'_> {
+    /// Makes a point a vertex, or leaves it hidden.
+    fn insert(&mut self, v: u32) -> Result<(), TriangulationError> {
+        let cell = self.locate(v);
+        if self.mesh.conflicts(self.screen, cell, v) {
+            self.dig(cell, v);
+            self.fill()?;
+        }
+        Ok(())
+    }
+
+    /// Moves the last cells into places that are free.
+    fn finish(mut self) -> Triangulation {
+        const GONE: [u32; 4] = [u32::MAX; 4];
+        let Mesh { mut cells, mut beside, ghost } = self.mesh;
+        for &place in &self.free {
+            cells[place as usize] = GONE;
+        }
+        self.free.sort_unstable();
+        for &place in &self.free {
+            while cells.last() == Some(&GONE) {
+                cells.pop();
+            }
+            let last = cells.len();
+            if place as usize >= last {
+                break;
+            }
+            cells.swap_remove(place as usize);
+            beside[place as usize] = beside[last - 1];
+            for corner in 0..4 {
+                let across = beside[place as usize][corner];
+                beside[across as usize / 4][across as usize % 4] = 4 * place + corner as u32;
+            }
+        }
+        beside.truncate(cells.len());
+        Triangulation { cells, beside, ghost }
+    }
+}
+
+/// Cells and their neighbours, as [`Triangulation`] has them.
+struct Mesh {
+    cells: Vec<[u32; 4]>,
+    beside: Vec<[u32; 4]>,
+    ghost: u32,
+}
+
+impl Mesh {
+    /// Whether a point lies inside the orthogonal sphere of a cell.
+    #[inline(always)]
+    fn conflicts(&self, screen: &Screen<'_>, cell: u32, v: u32) -> bool {
+        let quick = screen.conflicts(self.cells[cell as usize], v);
+        quick.unwrap_or_else(|| self.conflicts_closely(screen, cell, v))
+    }
+
+    /// The sphere of an infinite cell is the half-space beyond its facet, and that of the finite
+    /// cell behind where both meet.
+    #[inline(never)]
+    fn conflicts_closely(&self, screen: &Screen<'_>, cell: u32, v: u32) -> bool {
+        let mut corners = self.cells[cell as usize];
+        let Some(corner) = self.ghost_corner(cell) else {
+            return screen.conflicts_closely(corners, v);
+        };
+        corners[corner] = v;
+        match screen.orientation(corners) {
+            Ordering::Greater => true,
+            Ordering::Less => false,
+            Ordering::Equal => {
+                let behind = self.cells[self.beside[cell as usize][corner] as usize / 4];
+                let quick = screen.conflicts(behind, v);
+                quick.unwrap_or_else(|| screen.conflicts_closely(behind, v))
+            }
+        }
+    }
+
+    /// The place of the ghost in an infinite cell.
+    #[inline(always)]
+    fn ghost_corner(&self, cell: u32) -> Option<usize> {
+        self.cells[cell as usize].iter().position(|&v| v == self.ghost)
+    }
+
+    /// Joins two facets, each 4·cell + corner.
+    #[inline(always)]
+    fn join(&mut self, a: u32, b: u32) {
+        self.beside[a as usize / 4][a as usize % 4] = b;
+        self.beside[b as usize / 4][b as usize % 4] = a;
+    }
+}
+
+/// The numbers 0..n in rounds, ascending in each.
+fn rounds(n: u32) -> impl Iterator<Item = u32> {
+    // Below this many points a round is not worth its walks.
+    let last = n.checked_ilog2().unwrap_or(0).saturating_sub(10) / ROUND;
+    (0..=last).rev().flat_map(move |round| (0..n).filter(move |&v| late(v).min(last) == round))
+}
+
+/// The logarithm of how many times as many points there are after a round as before it.
+const ROUND: u32 = 2;
+
+/// A round for a point, the last being 0 and each the more probable by so many times: zeros that its
+/// scrambled number ends with.
+fn late(v: u32) -> u32 {
+    let v = (v ^ v >> 16).wrapping_mul(0x45d9_f3b5);
+    let v = (v ^ v >> 16).wrapping_mul(0x45d9_f3b5);
+    (v ^ v >> 16).trailing_zeros() / ROUND
+}

@@ -1,0 +1,160 @@
+//! Orientation and power test for many points: one bound for the whole set decides nearly all.
+
+use std::cmp::Ordering;
+
+use super::super::{TriangulationError, room};
+use super::formulas::{Ray, determinant, power_determinant};
+use super::{Predicates, ROUNDING};
+
+/// Weighted points about the middle of their box, each with its height |p|² − ω on the paraboloid:
+/// four doubles that both determinants are made of. On a lattice where all terms of a determinant
+/// stay below 2⁵³ every sign is exact, ties included; else a sign is believed beyond one bound for
+/// the whole set, and [`Predicates`] decide the rest.
+pub(crate) struct Screen<'a> {
+    predicates: &'a Predicates<'a>,
+    /// One more than there are: the ghost is nowhere, so that no sign is believed.
+    points: Vec<[f64; 4]>,
+    /// Whether the points are the sites moved, without any rounding.
+    exact: bool,
+    orientation: f64,
+    power: f64,
+}
+
+impl<'a> Screen<'a> {
+    /// Looks at all points. O(n).
+    ///
+    /// # Errors
+    /// No memory for 32 bytes a point.
+    pub fn new(predicates: &'a Predicates<'a>) -> Result<Self, TriangulationError> {
+        let (positions, weights) = (predicates.positions, predicates.weights);
+        let (low, high) = super::extent(positions);
+        let alike = weights.windows(2).all(|pair| pair[0] == pair[1]);
+        let lattice = predicates.lattice;
+        let exact = lattice.step != 0.0 && (lattice.holds_weights || alike);
+        let middle = [0, 1, 2].map(|k| match lattice.step {
+            0.0 => low[k] / 2.0 + high[k] / 2.0,
+            step => ((low[k] / 2.0 + high[k] / 2.0) / step).round() * step,
+        });
+        let mut points = room(positions.len() + 1)?;
+        let mut highest = 0f64;
+        for (position, weight) in positions.iter().zip(weights) {
+            let [x, y, z] = [0, 1, 2].map(|k| position[k] - middle[k]);
+            let (square, weight) = (x * x + y * y + z * z, if alike { 0.0 } else { *weight });
+            highest = highest.max(square + weight.abs());
+            points.push([x, y, z, square - weight]);
+        }
+        points.push([f64::NAN; 4]);
+        let [width, depth, height] = [0, 1, 2].map(|k| high[k] - low[k]);
+        let terms = 6.0 * width * depth * height;
+        // Four differences of heights, each of at most twice the largest.
+        let power_terms = 4.0 * terms * 2.0 * highest;
+        let sure = |terms: f64, degree: usize, exact: bool| {
+            if exact && predicates.holds(terms, degree) {
+                0.0
+            } else if terms > 1e-200 && terms < 1e250 {
+                // A difference is off by less than 2⁻⁵⁰ of the largest; see `ROUNDING`.
+                terms * ROUNDING
+            } else {
+                f64::INFINITY
+            }
+        };
+        let on_lattice = lattice.step != 0.0;
+        let (orientation, power) = (sure(terms, 3, on_lattice), sure(power_terms, 5, exact));
+        Ok(Self { predicates, points, exact: on_lattice && orientation == 0.0, orientation, power })
+    }
+
+    /// The number of points.
+    pub fn len(&self) -> usize {
+        self.points.len() - 1
+    }
+
+    /// The sign of the determinant of b − a, c − a, d − a: positive if a, b, c turn
+    /// counter-clockwise seen from d.
+    #[inline(always)]
+    pub fn orientation(&self, corners: [u32; 4]) -> Ordering {
+        let a = &self.points[corners[0] as usize];
+        let ray = |v: u32| {
+            let q = &self.points[v as usize];
+            [q[0] - a[0], q[1] - a[1], q[2] - a[2]]
+        };
+        let value = determinant([&ray(corners[1]), &ray(corners[2]), &ray(corners[3])]);
+        if value > self.orientation {
+            Ordering::Greater
+        } else if value < -self.orientation {
+            Ordering::Less
+        } else if self.orientation == 0.0 {
+            Ordering::Equal
+        } else {
+            self.predicates.orientation(corners)
+        }
+    }
+
+    /// Whether three points lie on one line.
+    pub fn collinear(&self, [a, b, c]: [u32; 3]) -> bool {
+        self.predicates.collinear([a, b, c])
+    }
+
+    /// Whether a point lies inside the orthogonal sphere of a positively oriented cell; `None` if
+    /// that needs a closer look, or if the cell is infinite.
+    #[inline(always)]
+    pub fn conflicts(&self, cell: [u32; 4], t: u32) -> Option<bool> {
+        let x = &self.points[t as usize];
+        let ray = |v: u32| {
+            let p = &self.points[v as usize];
+            Ray { vector: [p[0] - x[0], p[1] - x[1], p[2] - x[2]], power: p[3] - x[3] }
+        };
+        let value = power_determinant(&[ray(cell[0]), ray(cell[1]), ray(cell[2]), ray(cell[3])]);
+        (value.abs() > self.power).then_some(value < 0.0)
+    }
+
+    /// The same for a finite cell, always decided: points on the sphere are judged as if each point
+    /// were raised by an infinitely small height, the larger the later it comes in the order of
+    /// (x, y, z) (Devillers and Teillaud 2011, doi:10.1016/j.comgeo.2010.08.002; CGAL's
+    /// `Regular_triangulation_3` does the same).
+    pub fn conflicts_closely(&self, cell: [u32; 4], t: u32) -> bool {
+        // With a bound of 0 the first look has seen a true 0.
+        let sign = match self.power {
+            0.0 => Ordering::Equal,
+            _ => self.predicates.power(cell, t),
+        };
+        sign.is_lt() || (sign.is_eq() && self.conflicts_raised(cell, t))
+    }
+
+    /// For a point on the sphere: the sign of the first term in the infinitely small heights that
+    /// is not 0.
+    fn conflicts_raised(&self, cell: [u32; 4], t: u32) -> bool {
+        let mut left = [0, 1, 2, 3, 4];
+        let name = |place: usize| if place == 4 { t } else { cell[place] };
+        for count in [5, 4, 3] {
+            let mut last = 0;
+            for at in 1..count {
+                if self.precedes(name(left[last]), name(left[at])) {
+                    last = at;
+                }
+            }
+            let place = left[last];
+            if place == 4 {
+                return false;
+            }
+            let mut moved = cell;
+            moved[place] = t;
+            let sign = self.orientation(moved);
+            if sign.is_ne() {
+                return sign.is_gt();
+            }
+            left[last] = left[count - 1];
+        }
+        false
+    }
+
+    /// Whether one point comes before another in the order of (x, y, z).
+    fn precedes(&self, a: u32, b: u32) -> bool {
+        if self.exact {
+            let [x, y, z, _] = self.points[a as usize];
+            let [u, v, w, _] = self.points[b as usize];
+            (x, y, z) < (u, v, w)
+        } else {
+            self.predicates.positions[a as usize] < self.predicates.positions[b as usize]
+        }
+    }
+}
