@@ -56,8 +56,8 @@ std::unique_ptr<Regular> regular(rust::Slice<const double> positions,
                                  rust::Slice<const double> weights) {
   throw_quietly();
   const auto points = numbered<Triangulation::Weighted_point>(positions, weights);
-  auto data = std::make_unique<Regular::Data>(
-      Regular::Data{Triangulation(points.begin(), points.end())});
+  auto data = std::make_unique<Regular::Data>();
+  data->triangulation.insert(points.begin(), points.end());
   data->triangulation.infinite_vertex()->info() = static_cast<std::uint32_t>(points.size());
   return std::make_unique<Regular>(std::move(data));
 }

@@ -1,129 +1,277 @@
-//! Races the engines on the same points and prints a table.
+//! Races the engines against plain CGAL on the same points and prints a table.
 //!
-//! `cargo run --release --example race` (about a quarter of an hour); `-- quick` for sets of up to
-//! 128 k points, `-- large` for the others; `-- alpha` raises α instead, until slabs stop paying.
+//! `cargo run --release --example race` (about half an hour); `-- quick` for sets of up to 128 k points,
+//! `-- large` for the others; `-- alpha` raises α instead; `-- triangulation` races triangulations
+//! alone, against that of Gmsh (HXT), too, where `GMSH_PYTHON` names a Python that has it.
 //!
-//! Both engines are timed with everything they give: classes, canonical order, Betti numbers,
-//! measures. The reference engine is CGAL's `Fixed_alpha_shape_3` with these added; of its time
-//! nine tenths are CGAL's. Runs are interleaved, times are medians of five, ratios are of these
-//! medians. Peak memory is that of a process of its own, less what the input took.
+//! *Plain CGAL* is `benches/plain_cgal.cc`, which this program compiles with `c++ -O3 -DNDEBUG`
+//! (`CXX` names another compiler). Our engines are timed with everything they give: classes, canonical
+//! order, Betti numbers, sheets, measures. Every run is a process of its own that reads the points from
+//! a file, and counts must agree. Runs are interleaved, times are medians of five, ratios those of the
+//! medians, and peaks the largest memory of the process, its input included.
 
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
 use walpha::points::{Points, Selection, Units, difference, select, weigh};
 use walpha::shape::{Engine, ShapeOptions};
-use walpha::{Alpha, Gray, Volume, WeightedPoints, Weighting, alpha_shape, memory, volume};
+use walpha::triangulation::{Maker, Sites, triangulate};
+use walpha::{Alpha, Class, Gray, Simplices, Volume, WeightedPoints, Weighting};
+use walpha::{alpha_shape, memory, volume};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
 const RUNS: usize = 5;
 const THREADS: usize = 2;
-const SMALL: [&str; 3] = ["skull@64", "skull@128", "random@128000"];
+const SMALL: [&str; 2] = ["skull@128", "random@128000"];
 const LARGE: [&str; 2] = ["skull@256", "random@1000000"];
 
 fn main() -> Result<()> {
-    rayon::ThreadPoolBuilder::new().num_threads(THREADS).build_global()?;
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["memory", engine, set, weighting, alpha] => memory_of(engine, set, weighting, alpha),
-        [] => races(&[&SMALL[..], &LARGE].concat()),
-        ["quick"] => races(&SMALL),
-        ["large"] => races(&LARGE),
-        ["alpha"] => {
-            header();
-            let race = |alpha| race("skull@128", "common=0", alpha);
-            [2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0].into_iter().try_for_each(race)
+        ["run", engine, points, alpha, threads, memory] => {
+            run(engine, points, alpha, threads.parse()?, memory.parse().ok())
         }
-        _ => Err("usage: race [quick|large|alpha]".into()),
+        [] => shapes(&[&SMALL[..], &LARGE].concat()),
+        ["quick"] => shapes(&SMALL),
+        ["large"] => shapes(&LARGE),
+        ["alpha"] => sweep(),
+        ["triangulation"] => triangulations(),
+        _ => Err("usage: race [quick|large|alpha|triangulation]".into()),
     }
 }
 
-fn races(sets: &[&str]) -> Result<()> {
-    header();
+fn shapes(sets: &[&str]) -> Result<()> {
+    let race = Race::new()?;
+    Race::header();
     for set in sets {
         for weighting in ["common=0", "min-max", "barycentric"] {
             if weighting == "common=0" || set.starts_with("skull") {
-                race(set, weighting, if set.starts_with("skull") { 10.0 } else { 1.0 })?;
+                race.shape(set, weighting, if set.starts_with("skull") { 10.0 } else { 1.0 })?;
             }
         }
     }
     Ok(())
 }
 
-fn header() {
-    println!(
-        "| set | points | weights | α | reference | slabs, 1 thread | ratio | slabs, {THREADS} threads | ratio \
-         | reference peak | slabs peak | peak with --memory of a third |"
-    );
-    println!("|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
+fn sweep() -> Result<()> {
+    let race = Race::new()?;
+    Race::header();
+    let alphas = [2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0];
+    alphas.into_iter().try_for_each(|alpha| race.shape("skull@128", "common=0", alpha))
 }
 
-fn race(set: &str, weighting: &str, alpha: f64) -> Result<()> {
-    let points = weighted(set, weighting, alpha)?;
-    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let mut times = [const { Vec::new() }; 3];
-    for _ in 0..RUNS {
-        times[0].push(seconds(|| run(Engine::Reference, &points, alpha, None))?);
-        times[1].push(one_thread.install(|| seconds(|| run(Engine::Slabs, &points, alpha, None)))?);
-        times[2].push(seconds(|| run(Engine::Slabs, &points, alpha, None))?);
+fn triangulations() -> Result<()> {
+    let race = Race::new()?;
+    println!("| set | plain CGAL | HXT | native | CGAL / native | HXT / native |");
+    println!("|---|--:|--:|--:|--:|--:|");
+    for set in ["skull@128", "random@128000", "skull@256", "random@1000000"] {
+        let points = race.points(set, "common=0", 1.0)?;
+        let plain = || race.plain(&points, "triangulation");
+        let native = || race.engine("triangulation", &points, 0.0, 1, None);
+        let hxt = || race.hxt(&points);
+        let gmsh = std::env::var_os("GMSH_PYTHON").is_some();
+        let runs: Vec<&dyn Fn() -> Result<Run>> =
+            if gmsh { vec![&plain, &native, &hxt] } else { vec![&plain, &native] };
+        let seconds: Vec<f64> = medians(&runs)?.iter().map(|run| run.seconds).collect();
+        let [plain, native] = [seconds[0], seconds[1]];
+        let text = |seconds: f64| format!("{seconds:.2} s");
+        let hxt = seconds.get(2);
+        println!(
+            "| {set} | {} | {} | {} | {:.2} | {} |",
+            text(plain),
+            hxt.map_or("–".to_owned(), |&s| text(s)),
+            text(native),
+            plain / native,
+            hxt.map_or("–".to_owned(), |s| format!("{:.2}", s / native)),
+        );
     }
-    let [reference, one, two] = times.map(|mut runs| {
-        runs.sort_by(f64::total_cmp);
-        runs[RUNS / 2]
-    });
-    let peak = |engine: &str| -> Result<u64> {
-        let arguments = ["memory", engine, set, weighting, &alpha.to_string()];
-        let output = Command::new(std::env::current_exe()?).args(arguments).output()?;
-        if !output.status.success() {
-            return Err(String::from_utf8_lossy(&output.stderr).into());
+    Ok(())
+}
+
+/// What one process says.
+struct Run {
+    seconds: f64,
+    peak: u64,
+    counts: String,
+}
+
+/// Where the runners are.
+struct Race {
+    folder: tempfile::TempDir,
+    plain: PathBuf,
+}
+
+impl Race {
+    /// Compiles plain CGAL.
+    fn new() -> Result<Self> {
+        let folder = tempfile::tempdir()?;
+        let plain = folder.path().join("plain_cgal");
+        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/plain_cgal.cc");
+        let compiler = std::env::var_os("CXX").unwrap_or("c++".into());
+        let flags = ["-std=c++17", "-O3", "-DNDEBUG", "-frounding-math", "-pthread", "-o"];
+        let status = Command::new(compiler)
+            .args(flags)
+            .args([&plain, &source])
+            .args(["-lmpfr", "-lgmp"])
+            .status()?;
+        if !status.success() {
+            return Err("plain CGAL was not compiled".into());
         }
-        Ok(String::from_utf8(output.stdout)?.trim().parse()?)
+        Ok(Self { folder, plain })
+    }
+
+    fn header() {
+        println!(
+            "| set | points | weights | α | plain CGAL | cgal, 1 thread | cgal, {THREADS} | \
+             native, 1 thread | native, {THREADS} | peak: plain | cgal | native | \
+             native with --memory of a quarter |"
+        );
+        println!("|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
+    }
+
+    fn shape(&self, set: &str, weighting: &str, alpha: f64) -> Result<()> {
+        let points = self.points(set, weighting, alpha)?;
+        let count = std::fs::metadata(&points)?.len() / 32;
+        let plain = || self.plain(&points, &alpha.to_string());
+        let points = &points;
+        let by = |engine: &'static str, threads| {
+            move || self.engine(engine, points, alpha, threads, None)
+        };
+        let (cgal, cgals) = (by("cgal", 1), by("cgal", THREADS));
+        let (native, natives) = (by("native", 1), by("native", THREADS));
+        let runs = medians(&[&plain, &cgal, &cgals, &native, &natives])?;
+        let base = runs[0].seconds;
+        let time = |k: usize| format!("{:.2} s ({:.1}×)", runs[k].seconds, base / runs[k].seconds);
+        let mebibytes = |bytes: u64| format!("{} MiB", bytes >> 20);
+        // A small set may not do with so little: threads and code take some, too.
+        let least = self.engine("native", points, alpha, THREADS, Some(runs[0].peak / 4));
+        println!(
+            "| {set} | {count} | {weighting} | {alpha} | {base:.2} s | {} | {} | {} | {} | {} | {} | {} | {} |",
+            time(1),
+            time(2),
+            time(3),
+            time(4),
+            mebibytes(runs[0].peak),
+            mebibytes(runs[2].peak),
+            mebibytes(runs[4].peak),
+            least.map_or("refused".to_owned(), |run| mebibytes(run.peak)),
+        );
+        Ok(())
+    }
+
+    /// Writes a set as plain CGAL reads it.
+    fn points(&self, set: &str, weighting: &str, alpha: f64) -> Result<PathBuf> {
+        let points = weighted(set, weighting, alpha)?;
+        let rows = points.positions.iter().zip(&points.weights);
+        let numbers = rows.flat_map(|(p, w)| [p[0], p[1], p[2], *w]);
+        let path = self.folder.path().join("points");
+        std::fs::write(&path, numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>())?;
+        Ok(path)
+    }
+
+    fn plain(&self, points: &Path, what: &str) -> Result<Run> {
+        output(Command::new(&self.plain).arg(points).arg(what))
+    }
+
+    fn engine(
+        &self,
+        engine: &str,
+        points: &Path,
+        alpha: f64,
+        threads: usize,
+        memory: Option<u64>,
+    ) -> Result<Run> {
+        let memory = memory.map_or("-".to_owned(), |bytes| bytes.to_string());
+        let mut command = Command::new(std::env::current_exe()?);
+        command.args(["run", engine]).arg(points);
+        output(command.args([alpha.to_string(), threads.to_string(), memory]))
+    }
+
+    /// Gmsh's parallel Delaunay triangulation, on one thread.
+    fn hxt(&self, points: &Path) -> Result<Run> {
+        let python = std::env::var_os("GMSH_PYTHON").ok_or("GMSH_PYTHON is not set")?;
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/race_gmsh.py");
+        output(Command::new(python).arg(script).arg(points))
+    }
+}
+
+/// Runs everything in turn, several times; gives the medians of times and peaks.
+fn medians(runs: &[&dyn Fn() -> Result<Run>]) -> Result<Vec<Run>> {
+    let mut done: Vec<Vec<Run>> = runs.iter().map(|_| Vec::new()).collect();
+    for _ in 0..RUNS {
+        for (run, done) in runs.iter().zip(&mut done) {
+            done.push(run()?);
+        }
+    }
+    let counts = done[0][0].counts.clone();
+    let median = |mut of: Vec<Run>| {
+        assert!(of.iter().all(|run| run.counts == counts), "counts differ");
+        of.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        let peak = of.iter().map(|run| run.peak).max().unwrap_or(0);
+        Run { peak, ..of.swap_remove(RUNS / 2) }
     };
-    let whole = peak("reference")?;
-    let mebibytes = |bytes: u64| bytes >> 20;
-    // A small set may not do with a third: threads and code take some, too.
-    let third = peak(&(whole / 3).to_string());
+    Ok(done.into_iter().map(median).collect())
+}
+
+/// Seconds, peak KiB, counts.
+fn output(command: &mut Command) -> Result<Run> {
+    let output = command.output()?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into());
+    }
+    let text = String::from_utf8(output.stdout)?;
+    let mut words = text.split_whitespace();
+    let mut word = || words.next().ok_or("seconds and a peak");
+    let (seconds, peak) = (word()?.parse()?, word()?.parse::<u64>()? << 10);
+    Ok(Run { seconds, peak, counts: words.collect::<Vec<_>>().join(" ") })
+}
+
+/// One engine on points from a file: prints what plain CGAL prints.
+fn run(engine: &str, points: &str, alpha: &str, threads: usize, memory: Option<u64>) -> Result<()> {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+    let bytes = std::fs::read(points)?;
+    let number = |bytes: &[u8; 8]| f64::from_le_bytes(*bytes);
+    let rows = bytes.as_chunks::<8>().0.as_chunks::<4>().0;
+    let positions = rows.iter().map(|[x, y, z, _]| [x, y, z].map(number)).collect();
+    let weights = rows.iter().map(|[.., w]| number(w)).collect();
+    let points = WeightedPoints { positions, weights, values: None };
+    drop(bytes);
+    let started = Instant::now();
+    let engine = match engine {
+        "cgal" => Engine::Cgal,
+        "native" => Engine::Native,
+        _ => {
+            let sites = Sites::new(&points.positions, &points.weights)?;
+            let made = triangulate(&sites, Maker::Native)?;
+            assert!(!made.cells().is_empty());
+            let seconds = started.elapsed().as_secs_f64();
+            println!("{seconds} {} 0 0 0 0 0 0 0 0 0 0", memory::peak_bytes().unwrap_or(0) >> 10);
+            return Ok(());
+        }
+    };
+    let alpha = Alpha::from_squared(alpha.parse()?)?;
+    let options = ShapeOptions { engine, memory, ..ShapeOptions::new(alpha) };
+    let shape = alpha_shape(points, &options)?;
+    assert!(shape.betti().is_some());
+    let seconds = started.elapsed().as_secs_f64();
+    let complex = shape.complex();
     println!(
-        "| {set} | {} | {weighting} | {alpha} | {reference:.2} s | {one:.2} s | {:.2} | {two:.2} s | {:.2} \
-         | {} MiB | {} MiB | {} |",
-        points.len(),
-        reference / one,
-        reference / two,
-        mebibytes(whole),
-        mebibytes(peak("slabs")?),
-        third.map_or("refused".to_owned(), |bytes| format!("{} MiB", mebibytes(bytes))),
+        "{seconds} {} {} {} {} {}",
+        memory::peak_bytes().unwrap_or(0) >> 10,
+        complex.cells.len(),
+        by_class(&complex.facets),
+        by_class(&complex.edges),
+        by_class(&complex.vertices)
     );
     Ok(())
 }
 
-fn seconds(work: impl FnOnce() -> Result<()>) -> Result<f64> {
-    let started = Instant::now();
-    work()?;
-    Ok(started.elapsed().as_secs_f64())
-}
-
-fn run(engine: Engine, points: &WeightedPoints, alpha: f64, memory: Option<u64>) -> Result<()> {
-    let alpha = Alpha::from_squared(alpha)?;
-    let options = ShapeOptions { engine, memory, ..ShapeOptions::new(alpha) };
-    let shape = alpha_shape(points.clone(), &options)?;
-    assert!(shape.betti().is_some());
-    Ok(())
-}
-
-/// Prints the bytes that one engine adds to those of the input at its peak.
-fn memory_of(engine: &str, set: &str, weighting: &str, alpha: &str) -> Result<()> {
-    let alpha: f64 = alpha.parse()?;
-    let points = weighted(set, weighting, alpha)?;
-    let before = memory::resident_bytes().unwrap_or(0);
-    match engine {
-        "reference" => run(Engine::Reference, &points, alpha, None)?,
-        "slabs" => run(Engine::Slabs, &points, alpha, None)?,
-        // As with --memory: so many bytes more than now.
-        bytes => run(Engine::Slabs, &points, alpha, Some(before + bytes.parse::<u64>()?))?,
-    }
-    println!("{}", memory::peak_bytes().unwrap_or(0).saturating_sub(before));
-    Ok(())
+fn by_class<const N: usize>(simplices: &Simplices<N>) -> String {
+    let counts = simplices.counts();
+    let of = |class: Class| counts[class as usize].to_string();
+    [Class::Interior, Class::Regular, Class::Singular].map(of).join(" ")
 }
 
 /// A set by name: `skull@N` (the skull upsampled to N³ samples) or `random@N` (N random points).

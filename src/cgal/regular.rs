@@ -1,23 +1,41 @@
 use super::ffi::bridge;
 use super::thrown;
-use crate::triangulation::{SitesError, Triangulation, TriangulationError};
+use crate::triangulation::{SitesError, TriangulationError};
 
-/// CGAL's `Regular_triangulation_3` of points that are sites, or some of them, copied out.
-///
-/// Expected O(n log n) for points of even density; about 1 kB a point while it works.
+const STAGE: &str = "regular triangulation";
+
+/// CGAL's `Regular_triangulation_3` of points that are sites, or some of them, in three dimensions.
+pub(crate) struct Regular(cxx::UniquePtr<bridge::Regular>);
+
+/// Triangulates. Expected O(n log n) for points of even density; about 1 kB a point.
 ///
 /// # Errors
-/// Points that span no volume, no memory, too many cells.
+/// Points that span no volume, no memory.
 pub(crate) fn regular(
     positions: &[[f64; 3]],
     weights: &[f64],
-) -> Result<Triangulation, TriangulationError> {
-    const STAGE: &str = "regular triangulation";
+) -> Result<Regular, TriangulationError> {
+    assert_eq!(positions.len(), weights.len(), "one weight for each point");
     let made = bridge::regular(positions.as_flattened(), weights).map_err(thrown(STAGE))?;
-    if made.dimension() != 3 {
-        return Err(SitesError::flat(positions.len(), made.dimension()).into());
+    match made.dimension() {
+        3 => Ok(Regular(made)),
+        flat => Err(SitesError::flat(positions.len(), flat).into()),
     }
-    Triangulation::filled(made.cells(), positions.len() as u32, |cells, beside| {
-        made.copy(cells.as_flattened_mut(), beside.as_flattened_mut()).map_err(thrown(STAGE))
-    })
+}
+
+impl Regular {
+    /// The number of cells, infinite ones included.
+    pub fn cells(&self) -> usize {
+        self.0.cells()
+    }
+
+    /// Writes the corners of each cell, the ghost being one past the last point, and what lies across
+    /// its facets, as [`Triangulation`](crate::triangulation::Triangulation) has them.
+    pub fn copy(
+        &self,
+        cells: &mut [[u32; 4]],
+        beside: &mut [[u32; 4]],
+    ) -> Result<(), TriangulationError> {
+        self.0.copy(cells.as_flattened_mut(), beside.as_flattened_mut()).map_err(thrown(STAGE))
+    }
 }

@@ -134,11 +134,10 @@ pub fn alpha_shape(
         Engine::Cgal => by_blocks(&sites, power_alpha(options), Maker::Cgal, options)?,
         Engine::Native => by_blocks(&sites, power_alpha(options), Maker::Native, options)?,
     };
-    let Found { mut complex, boundary, whole } = found;
-    let hidden = whole.then(|| hidden(sites.input(), &complex.vertices));
+    let Found { mut complex, boundary, hidden } = found;
     // Counted over what is outside, too.
     let direct = boundary.is_none().then(|| direct_betti(&complex));
-    if !options.exterior {
+    if boundary.is_none() && !options.exterior {
         complex.retain_shape();
     }
     let (counted, measures) = rayon::join(
@@ -165,15 +164,16 @@ struct Found {
     complex: Complex,
     /// The number of components and the sheets of the boundary, where the engine tells them.
     boundary: Option<(u64, Sheets)>,
-    /// Whether all vertices of the whole triangulation are there, so that the rest is hidden.
-    whole: bool,
+    /// Sites that are no vertices, where the engine saw the whole triangulation.
+    hidden: Option<Vec<u32>>,
 }
 
 #[cfg(feature = "cgal")]
 fn by_reference(sites: &Sites<'_>, alpha: f64) -> Result<Found, ShapeError> {
     let raw = crate::cgal::reference(sites, alpha)?;
     let complex = canonical(&raw, sites.input());
-    Ok(Found { complex, boundary: None, whole: true })
+    let hidden = Some(hidden(sites.input(), &complex.vertices));
+    Ok(Found { complex, boundary: None, hidden })
 }
 
 #[cfg(not(feature = "cgal"))]
@@ -199,12 +199,11 @@ fn by_blocks(
     } else {
         Plan::new(sites, alpha, maker, Limits { blocks: asked, memory: options.memory })?
     };
-    let whole = plan.partition.len() == 1;
     let lattice = Lattice::of(sites.positions(), sites.weights());
-    let question = Question { alpha, lattice, exterior: whole, maker };
+    let question = Question { alpha, lattice, exterior: options.exterior, maker };
     let answer = blocks::run(sites, &plan, &question)?;
     let boundary = Some((answer.b0, Sheets::of(&answer)));
-    Ok(Found { complex: answer.complex, boundary, whole })
+    Ok(Found { complex: answer.complex, boundary, hidden: answer.hidden })
 }
 
 /// The parameter at which the power weights are judged.
@@ -229,6 +228,7 @@ fn squared_radii(weights: &[f64], alpha: Alpha) -> Result<Vec<f64>, ShapeError> 
 }
 
 /// Sites that are no vertices. Both lists ascend.
+#[cfg(feature = "cgal")]
 fn hidden(sites: &[u32], vertices: &Simplices<1>) -> Vec<u32> {
     let mut vertices = vertices.vertices.iter().peekable();
     sites.iter().copied().filter(|&site| vertices.next_if(|v| v[0] == site).is_none()).collect()

@@ -47,20 +47,36 @@ impl Triangulation {
     /// The most cells that 4·cell + corner can name.
     pub const MOST_CELLS: usize = 1 << 30;
 
-    /// So many cells of so many points, written by another program.
-    #[cfg(feature = "cgal")]
-    pub(crate) fn filled(
-        count: usize,
+    /// Numbers cells by their smallest corners, so that cells near each other in the order of points
+    /// are near each other in memory, and leaves those out whose first corner is [`GONE`]. O(cells).
+    fn along_points(
+        old_cells: Vec<[u32; 4]>,
+        old_beside: Vec<[u32; 4]>,
         ghost: u32,
-        write: impl FnOnce(&mut [[u32; 4]], &mut [[u32; 4]]) -> Result<(), TriangulationError>,
     ) -> Result<Self, TriangulationError> {
-        if count > Self::MOST_CELLS {
-            return Err(TriangulationError::TooManyCells);
+        let smallest = |cell: &[u32; 4]| cell[0].min(cell[1]).min(cell[2]).min(cell[3]) as usize;
+        let mut next: Vec<u32> = filled(ghost as usize + 2, 0)?;
+        for cell in old_cells.iter().filter(|cell| cell[0] != GONE) {
+            next[smallest(cell) + 1] += 1;
         }
-        let (mut cells, mut beside) = (room(count)?, room(count)?);
-        cells.resize(count, [0; 4]);
-        beside.resize(count, [0; 4]);
-        write(&mut cells, &mut beside)?;
+        for v in 1..next.len() {
+            next[v] += next[v - 1];
+        }
+        let count = next[ghost as usize + 1] as usize;
+        let mut numbers = filled(old_cells.len(), GONE)?;
+        let mut cells = filled(count, [0; 4])?;
+        for (number, cell) in numbers.iter_mut().zip(&old_cells).filter(|(_, cell)| cell[0] != GONE)
+        {
+            let place = &mut next[smallest(cell)];
+            *number = *place;
+            cells[*place as usize] = *cell;
+            *place += 1;
+        }
+        drop(old_cells);
+        let mut beside = filled(count, [0; 4])?;
+        for (&number, across) in numbers.iter().zip(&old_beside).filter(|(n, _)| **n != GONE) {
+            beside[number as usize] = across.map(|side| 4 * numbers[side as usize / 4] + side % 4);
+        }
         Ok(Self { cells, beside, ghost })
     }
 
@@ -99,9 +115,19 @@ fn room<T>(count: usize) -> Result<Vec<T>, TriangulationError> {
     }
 }
 
+/// A vector of so many equal elements.
+fn filled<T: Clone>(count: usize, element: T) -> Result<Vec<T>, TriangulationError> {
+    let mut filled = room(count)?;
+    filled.resize(count, element);
+    Ok(filled)
+}
+
 fn no_memory(bytes: usize) -> TriangulationError {
     TriangulationError::Memory { stage: "triangulation", needed: Some(bytes) }
 }
+
+/// The first corner of a cell that is none.
+const GONE: u32 = u32::MAX;
 
 /// Which program makes a triangulation; both make the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,11 +149,25 @@ impl Maker {
         match self {
             Self::Native => native::native(positions, weights),
             #[cfg(feature = "cgal")]
-            Self::Cgal => crate::cgal::regular(positions, weights),
+            Self::Cgal => cgal(positions, weights),
             #[cfg(not(feature = "cgal"))]
             Self::Cgal => Err(TriangulationError::WithoutCgal),
         }
     }
+}
+
+/// CGAL's `Regular_triangulation_3`, copied out.
+#[cfg(feature = "cgal")]
+fn cgal(positions: &[[f64; 3]], weights: &[f64]) -> Result<Triangulation, TriangulationError> {
+    let made = crate::cgal::regular(positions, weights)?;
+    let count = made.cells();
+    if count > Triangulation::MOST_CELLS {
+        return Err(TriangulationError::TooManyCells);
+    }
+    let (mut cells, mut beside) = (filled(count, [0; 4])?, filled(count, [0; 4])?);
+    made.copy(&mut cells, &mut beside)?;
+    drop(made);
+    Triangulation::along_points(cells, beside, positions.len() as u32)
 }
 
 /// The regular triangulation of sites, by site index. Expected O(n log n) for points of even density.

@@ -23,6 +23,7 @@ pub(super) fn merge(
     let mut components = components(sites, &mut blocks);
     plan.give_back();
     let places = places(sites, &plan.partition);
+    let hidden = (blocks.len() == 1).then(|| hidden(sites, &places, &blocks));
     let vertices = vertices(sites, &places, &blocks, exterior);
     let b0 = (vertices.iter())
         .filter(|&(&[v], class)| class != Class::Exterior && components.find(v) == v)
@@ -43,7 +44,13 @@ pub(super) fn merge(
     let edges = merged.rows(&blocks, Dimension::Edges, |block| &block.edges);
     let edge_sheets =
         merged.sheets(&blocks, Dimension::EdgeSheets, |block| &block.edge_sheets, &sheets);
-    Answer { complex: Complex { cells, facets, edges, vertices }, b0, facet_sheets, edge_sheets }
+    Answer {
+        complex: Complex { cells, facets, edges, vertices },
+        b0,
+        facet_sheets,
+        edge_sheets,
+        hidden,
+    }
 }
 
 /// Where a site's rows are.
@@ -139,6 +146,13 @@ impl Merged<'_> {
 fn split<'a, T>(mut whole: &'a mut [T], lengths: &[usize]) -> Vec<&'a mut [T]> {
     let piece = |&length: &usize| whole.split_off_mut(..length).expect("lengths of all pieces");
     lengths.iter().map(piece).collect()
+}
+
+fn hidden(sites: &Sites<'_>, places: &[Place], blocks: &[Owned]) -> Vec<u32> {
+    let is_hidden =
+        |place: &Place| blocks[place.block as usize].vertices[place.point as usize].is_none();
+    let sites = sites.input().iter().zip(places);
+    sites.filter(|(_, place)| is_hidden(place)).map(|(&site, _)| site).collect()
 }
 
 fn vertices(sites: &Sites<'_>, places: &[Place], blocks: &[Owned], exterior: bool) -> Simplices<1> {

@@ -1,6 +1,6 @@
 //! The cells that go when a point comes, and those that take their place.
 
-use super::super::{Triangulation, TriangulationError, room};
+use super::super::{Triangulation, TriangulationError, filled};
 use super::{Mesh, Native};
 
 /// So many different corners of a cavity's boundary, the ghost among them, fit the table.
@@ -49,8 +49,7 @@ const AROUND: [[[usize; 3]; 3]; 4] = [
 impl Cavity {
     pub fn new(ghost: u32) -> Result<Self, TriangulationError> {
         let count = ghost as usize + 1;
-        let mut names = room(count)?;
-        names.resize(count, 0);
+        let names = filled(count, 0)?;
         Ok(Self {
             cells: Vec::new(),
             pending: Vec::new(),

@@ -17,7 +17,7 @@ mod start;
 use std::cmp::Ordering;
 
 use super::predicates::{Predicates, Screen};
-use super::{Triangulation, TriangulationError};
+use super::{GONE, Triangulation, TriangulationError};
 use cavity::Cavity;
 
 /// The regular triangulation of points: finite numbers of sane magnitude, no two places equal.
@@ -37,7 +37,7 @@ pub(super) fn native(
             native.insert(v)?;
         }
     }
-    Ok(native.finish())
+    native.finish()
 }
 
 /// A triangulation that grows.
@@ -66,31 +66,12 @@ impl Native<'_> {
         Ok(())
     }
 
-    /// Moves the last cells into places that are free.
-    fn finish(mut self) -> Triangulation {
-        const GONE: [u32; 4] = [u32::MAX; 4];
-        let Mesh { mut cells, mut beside, ghost } = self.mesh;
-        for &place in &self.free {
-            cells[place as usize] = GONE;
+    fn finish(mut self) -> Result<Triangulation, TriangulationError> {
+        for place in self.free {
+            self.mesh.cells[place as usize][0] = GONE;
         }
-        self.free.sort_unstable();
-        for &place in &self.free {
-            while cells.last() == Some(&GONE) {
-                cells.pop();
-            }
-            let last = cells.len();
-            if place as usize >= last {
-                break;
-            }
-            cells.swap_remove(place as usize);
-            beside[place as usize] = beside[last - 1];
-            for corner in 0..4 {
-                let across = beside[place as usize][corner];
-                beside[across as usize / 4][across as usize % 4] = 4 * place + corner as u32;
-            }
-        }
-        beside.truncate(cells.len());
-        Triangulation { cells, beside, ghost }
+        let Mesh { cells, beside, ghost } = self.mesh;
+        Triangulation::along_points(cells, beside, ghost)
     }
 }
 

@@ -1,0 +1,26 @@
+#!/usr/bin/env python3
+"""Times Gmsh's Delaunay triangulation (HXT, arXiv:1805.08831) of the points in a file, on one thread.
+
+For examples/race.rs; needs the package `gmsh` from PyPI. Prints seconds, peak KiB, and zeros where the
+race compares counts: HXT breaks ties otherwise, so its cells are not ours.
+"""
+
+import resource
+import sys
+import time
+
+import gmsh
+import numpy
+
+points = numpy.fromfile(sys.argv[1]).reshape(-1, 4)[:, :3]
+gmsh.initialize()
+gmsh.option.setNumber("General.Verbosity", 1)
+gmsh.option.setNumber("General.NumThreads", 1)
+gmsh.option.setNumber("Mesh.Algorithm3D", 10)
+flat = points.ravel()
+start = time.perf_counter()
+cells = gmsh.algorithm.tetrahedralize(flat)
+seconds = time.perf_counter() - start
+assert len(cells) >= 4 * len(points)
+peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+print(f"{seconds:.4f} {peak}", *[0] * 10)
