@@ -13,11 +13,8 @@ pub fn resident_bytes() -> Option<u64> {
 
 /// Bytes as people read them: a whole number of the largest unit that leaves at least one.
 pub(crate) fn readable(bytes: u64) -> String {
-    let (unit, name) = match bytes {
-        ..0x400 => (1, "bytes"),
-        ..0x10_0000 => (0x400, "KiB"),
-        _ => (0x10_0000, "MiB"),
-    };
+    let units = [(1 << 20, "MiB"), (1 << 10, "KiB"), (1, "bytes")];
+    let (unit, name) = units.into_iter().find(|(unit, _)| bytes >= *unit).unwrap_or(units[2]);
     format!("{} {name}", bytes / unit)
 }
 

@@ -99,6 +99,6 @@ mod tests {
     fn one_place_keeps_its_order() {
         let points = |keyed: Vec<Keyed>| keyed.into_iter().map(|(_, i)| i).collect::<Vec<_>>();
         assert_eq!(points(keyed(&[[1.0, 2.0, 3.0]; 4])), [0, 1, 2, 3]);
-        assert_eq!(points(keyed::<3>(&[])), []);
+        assert!(keyed::<3>(&[]).is_empty());
     }
 }

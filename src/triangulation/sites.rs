@@ -128,8 +128,7 @@ fn check<const D: usize>(positions: &[[f64; D]], weights: &[f64]) -> Result<(), 
         weights[index],
         MAX_WEIGHT,
     )]);
-    // NaN compares false.
-    let insane = numbers.find(|(_, value, limit)| !(value.abs() <= *limit));
+    let insane = numbers.find(|(_, value, limit)| value.is_nan() || value.abs() > *limit);
     let (what, value, limit) = insane.expect("one of the numbers of this point");
     Err(SitesError::Value { index, what, value, limit })
 }

@@ -138,9 +138,9 @@ impl Node {
         for &place in members {
             let site = sites.curve()[place as usize] as usize;
             let at = sites.positions()[site];
-            for k in 0..3 {
-                node.low[k] = node.low[k].min(at[k]);
-                node.high[k] = node.high[k].max(at[k]);
+            for (k, x) in at.into_iter().enumerate() {
+                node.low[k] = node.low[k].min(x);
+                node.high[k] = node.high[k].max(x);
             }
             node.heaviest = node.heaviest.max(sites.weights()[site]);
         }

@@ -70,6 +70,7 @@ impl Native<'_> {
         for place in self.free {
             self.mesh.cells[place as usize][0] = GONE;
         }
+        drop(self.marks);
         let Mesh { cells, beside, ghost } = self.mesh;
         Triangulation::along_points(cells, beside, ghost)
     }

@@ -9,6 +9,7 @@
 use crate::number::{Number, cross, dot};
 
 /// From the first vertex to another.
+#[derive(Clone, Copy)]
 pub(super) struct Ray<T> {
     pub vector: [T; 3],
     pub power: T,

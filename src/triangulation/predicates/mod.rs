@@ -59,8 +59,18 @@ impl<'a> Predicates<'a> {
         Self { positions, weights, lattice, exact }
     }
 
+    #[inline(always)]
     fn site(&self, v: u32) -> Site {
         Site { position: self.positions[v as usize], weight: self.weights[v as usize] }
+    }
+
+    #[inline(always)]
+    fn sites<const N: usize>(&self, simplex: [u32; N]) -> [Site; N] {
+        let mut sites = [Site { position: [0.0; 3], weight: 0.0 }; N];
+        for (site, v) in sites.iter_mut().zip(simplex) {
+            *site = self.site(v);
+        }
+        sites
     }
 
     /// The squared radius of the smallest orthogonal sphere of a simplex: α at which it fits.
@@ -70,7 +80,7 @@ impl<'a> Predicates<'a> {
         if N == 1 {
             return Interval { low: -p.weight, high: -p.weight };
         }
-        let View { rays, size } = View::<N>::of(p, simplex.map(|v| self.site(v)));
+        let View { rays, size } = View::<N>::of(p, self.sites(simplex));
         let (numerator, denominator) = quotient(&rays[1..]);
         let bounds = size.bounds(N);
         let error = |bound: f64, degree: usize, exact: bool| {
@@ -107,7 +117,7 @@ impl<'a> Predicates<'a> {
     /// The smallest double that is not below the squared radius: the first α at which it fits. By
     /// division of integers; some microseconds.
     pub fn first_alpha<const N: usize>(&self, simplex: [u32; N]) -> f64 {
-        let sites = simplex.map(|v| self.site(v));
+        let sites = self.sites(simplex);
         if N == 1 { -sites[0].weight } else { exact::squared_radius(sites) }
     }
 
@@ -115,7 +125,7 @@ impl<'a> Predicates<'a> {
     /// a facet. Exact.
     #[inline]
     pub fn inside<const N: usize>(&self, simplex: [u32; N], x: u32) -> bool {
-        let sites = simplex.map(|v| self.site(v));
+        let sites = self.sites(simplex);
         let (p, x) = (sites[0], self.site(x));
         let View { rays, size } = View::<N>::of(p, sites);
         let (ray, reach) = ray(p, x);
@@ -132,7 +142,7 @@ impl<'a> Predicates<'a> {
 
     /// The sign of the determinant of b − a, c − a, d − a. Exact.
     pub fn orientation(&self, corners: [u32; 4]) -> Ordering {
-        let sites = corners.map(|v| self.site(v));
+        let sites = self.sites(corners);
         let View { rays: [_, b, c, d], size } = View::of(sites[0], sites);
         let value = determinant([&b.vector, &c.vector, &d.vector]);
         let bound = 6.0 * size.length * size.length * size.length;
@@ -145,14 +155,14 @@ impl<'a> Predicates<'a> {
 
     /// Whether three points lie on one line. Exact, by integers.
     pub fn collinear(&self, corners: [u32; 3]) -> bool {
-        exact::collinear(corners.map(|v| self.site(v)))
+        exact::collinear(self.sites(corners))
     }
 
     /// Whether a point lies inside (`Less`), on (`Equal`) or outside the orthogonal sphere of a
     /// positively oriented cell. Exact.
     pub fn power(&self, cell: [u32; 4], t: u32) -> Ordering {
         let t = self.site(t);
-        let sites = cell.map(|v| self.site(v));
+        let sites = self.sites(cell);
         let View { rays, size } = View::of(t, sites);
         let value = power_determinant(&rays);
         let bound = 24.0 * size.length * size.length * size.length * size.power;
@@ -169,7 +179,7 @@ impl<'a> Predicates<'a> {
     /// most α. Exact.
     #[inline]
     pub fn fits<const N: usize>(&self, simplex: [u32; N], alpha: f64) -> bool {
-        let sites = simplex.map(|v| self.site(v));
+        let sites = self.sites(simplex);
         let p = sites[0];
         if N == 1 {
             return -p.weight <= alpha;

@@ -14,11 +14,12 @@ impl<const N: usize> View<N> {
     #[inline(always)]
     pub fn of(p: Site, sites: [Site; N]) -> Self {
         let mut size = Size { length: 0.0, power: 0.0 };
-        let rays = sites.map(|q| {
+        let mut rays = [Ray { vector: [0.0; 3], power: 0.0 }; N];
+        for (to, q) in rays.iter_mut().zip(sites) {
             let (ray, reach) = ray(p, q);
             size = size.larger(reach);
-            ray
-        });
+            *to = ray;
+        }
         Self { rays, size }
     }
 }

@@ -89,7 +89,8 @@ fn a_radius_on_a_lattice_is_a_round_number() {
     assert!(radius.low < 0.75 && radius.high > 0.75);
     assert_eq!(predicates.first_alpha(cell), 0.75);
     assert!(
-        predicates.fits(cell, radius, 0.75) && !predicates.fits(cell, radius, 0.75f64.next_down())
+        predicates.fits_by(cell, radius, 0.75)
+            && !predicates.fits_by(cell, radius, 0.75f64.next_down())
     );
     // The far corners lie on the sphere, not inside.
     assert!(!predicates.inside([0, 1, 2], 4) && !predicates.inside([0, 1, 2], 3));

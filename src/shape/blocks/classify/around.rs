@@ -11,30 +11,40 @@ pub(super) struct Walker<'a> {
     owned: &'a mut Owned,
     /// Points united by edges.
     components: UnionFind,
-    /// By vertex: its place among the neighbours of the point in hand.
-    places: Vec<u32>,
-    neighbours: Vec<Neighbour>,
-    cells: Vec<([u32; 3], Class)>,
+    /// By vertex: 4·v + what the facets at its edge say ([`COVERED`], [`OPEN`]), if it is a neighbour of
+    /// the point v that was last in hand when it was met.
+    met: Vec<u32>,
+    neighbours: Vec<u32>,
+    /// How many there are.
+    near: usize,
+    cells: Vec<CellRow>,
     facets: Vec<FacetRow>,
     edges: Vec<EdgeRow>,
 }
 
-/// A neighbour of the point in hand, with what the facets at their edge say.
-struct Neighbour {
-    to: u32,
-    /// Whether one of the facets is in the shape, whether one is not interior.
-    covered: bool,
-    open: bool,
+/// One of the facets at an edge is in the shape.
+const COVERED: u32 = 1;
+/// One of the facets at an edge is not interior.
+const OPEN: u32 = 2;
+
+/// A cell that the point in hand is the smallest vertex of.
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct CellRow {
+    /// The three other vertices in the order that makes it positively oriented, two in one number.
+    first_two: u64,
+    third: u32,
+    inside: bool,
 }
 
 /// A facet that the point in hand is the smallest vertex of.
+#[derive(Clone, Copy, Default)]
 struct FacetRow {
-    /// The two other vertices.
-    row: [u32; 2],
-    /// Whether the point and these turn clockwise seen from the cell's fourth corner.
-    clockwise: bool,
+    /// The two other vertices in one number.
+    row: u64,
     /// 4·cell + corner opposite.
     side: u32,
+    /// Whether the point and these turn clockwise seen from the cell's fourth corner.
+    clockwise: bool,
 }
 
 /// An edge that the point in hand is the smallest vertex of.
@@ -63,8 +73,10 @@ impl<'a> Walker<'a> {
             sheets,
             owned,
             components: UnionFind::new(points),
-            places: vec![NOWHERE; points],
+            // No vertex has the number that u32::MAX stands for.
+            met: vec![u32::MAX; points],
             neighbours: Vec::new(),
+            near: 0,
             cells: Vec::new(),
             facets: Vec::new(),
             edges: Vec::new(),
@@ -80,8 +92,6 @@ impl<'a> Walker<'a> {
             return;
         }
         let covered = self.meet(v, star);
-        self.give_cells();
-        self.give_facets();
         self.give_edges(v, star);
         let class = if star.iter().all(|&at| self.states[at as usize / 4].is_inside()) {
             Class::Interior
@@ -91,9 +101,6 @@ impl<'a> Walker<'a> {
             self.lone_vertex(v, star)
         };
         self.owned.vertices.push(Some(class));
-        for neighbour in self.neighbours.drain(..) {
-            self.places[neighbour.to as usize] = NOWHERE;
-        }
     }
 
     /// Ends the rows of the last point; gives the components.
@@ -102,125 +109,130 @@ impl<'a> Walker<'a> {
         self.components
     }
 
-    /// One walk around the point: its neighbours with what the facets say of the edges to them, the cells
-    /// and the facets that it is the smallest vertex of. Says whether one of the facets around it is
-    /// in the shape.
+    /// One walk around the point, nearly without branches, as these would be guessed wrong: its neighbours
+    /// with what the facets say of the edges to them, the cells and the facets that it is the smallest
+    /// vertex of. Says whether one of the facets around it is in the shape.
     fn meet(&mut self, v: u32, star: &[u32]) -> bool {
-        let smallest = self.local.input(v);
-        let mut covered = 0;
+        let Self { local, states, met, neighbours, cells, facets, .. } = self;
+        let input = &local.block.input[..];
+        let smallest = input[v as usize];
+        let most = star.len();
+        if facets.len() < 3 * most {
+            cells.resize(most, CellRow::default());
+            facets.resize(3 * most, FacetRow::default());
+            neighbours.resize(3 * most, 0);
+        }
+        let (mut covered, mut near, mut solid, mut flat) = (0, 0, 0, 0);
         for &at in star {
             let (cell, k) = (at / 4, at as usize % 4);
-            let state = self.states[cell as usize];
+            let state = states[cell as usize];
             if state.is_infinite() {
                 continue;
             }
-            let corners = self.local.mesh.cells()[cell as usize];
-            let places = [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4];
-            let others = places.map(|place| corners[place]);
-            let ranks = others.map(|u| self.local.input(u));
-            let opposite = places.map(|place| 1 << (2 * place));
+            let corners = local.mesh.cells()[cell as usize];
+            let (p, q, r) = ((k + 1) % 4, (k + 2) % 4, (k + 3) % 4);
+            let (a, b, c) = (corners[p], corners[q], corners[r]);
+            let (x, y, z) = (input[a as usize], input[b as usize], input[c as usize]);
             let (in_shape, open) = (state.covered(), state.open());
-            covered |= in_shape & (opposite[0] | opposite[1] | opposite[2]);
-            for j in 0..3 {
-                // The facets at the edge are opposite the two other corners.
-                let facets = opposite[(j + 1) % 3] | opposite[(j + 2) % 3];
-                let neighbour = self.neighbour(others[j]);
-                neighbour.covered |= in_shape & facets != 0;
-                neighbour.open |= open & facets != 0;
-                let (b, d) = ((j + 1) % 3, (j + 2) % 3);
-                if state.gives(places[j]) && smallest < ranks[b].min(ranks[d]) {
-                    let (b, d) = if ranks[b] < ranks[d] { (b, d) } else { (d, b) };
-                    let clockwise = !even(k, places[b], places[d]);
-                    let side = 4 * cell + places[j] as u32;
-                    self.facets.push(FacetRow { row: [ranks[b], ranks[d]], clockwise, side });
-                }
+            let (at_p, at_q, at_r) = (1 << (2 * p), 1 << (2 * q), 1 << (2 * r));
+            covered |= in_shape & (at_p | at_q | at_r);
+            // The facets at an edge are opposite the two other corners.
+            for (u, facets) in [(a, at_q | at_r), (b, at_r | at_p), (c, at_p | at_q)] {
+                let says = u32::from(in_shape & facets != 0) * COVERED
+                    + u32::from(open & facets != 0) * OPEN;
+                let met = &mut met[u as usize];
+                let is_new = *met / 4 != v;
+                let before = if is_new { 4 * v } else { *met };
+                *met = before | says;
+                neighbours[near] = u;
+                near += usize::from(is_new);
             }
-            if smallest < ranks[0].min(ranks[1]).min(ranks[2])
-                && (state.is_inside() || self.local.exterior)
+            for (opposite, (m, x), (n, y)) in
+                [(p, (q, y), (r, z)), (q, (p, x), (r, z)), (r, (p, x), (q, y))]
             {
-                self.cells.push(cell_row(k, ranks, state));
+                let (m, low, n, high) = if x < y { (m, x, n, y) } else { (n, y, m, x) };
+                let row = u64::from(low) << 32 | u64::from(high);
+                let side = 4 * cell + opposite as u32;
+                facets[flat] = FacetRow { row, side, clockwise: !even(k, m, n) };
+                flat += usize::from(state.gives(opposite) & (smallest < low));
             }
+            cells[solid] = CellRow::new(k, [x, y, z], state.is_inside());
+            let wanted = state.is_inside() | local.exterior;
+            solid += usize::from(wanted & (smallest < x.min(y).min(z)));
         }
+        self.give_cells(solid);
+        self.give_facets(flat);
+        self.near = near;
         covered != 0
     }
 
-    fn neighbour(&mut self, u: u32) -> &mut Neighbour {
-        let place = &mut self.places[u as usize];
-        if *place == NOWHERE {
-            *place = self.neighbours.len() as u32;
-            self.neighbours.push(Neighbour { to: u, covered: false, open: false });
-        }
-        &mut self.neighbours[*place as usize]
-    }
-
-    fn give_cells(&mut self) {
-        self.cells.sort_unstable_by_key(|cell| cell.0);
-        for (row, class) in self.cells.drain(..) {
-            self.owned.cells.push(row, class);
+    fn give_cells(&mut self, count: usize) {
+        let cells = &mut self.cells[..count];
+        cells.sort_unstable();
+        for cell in cells {
+            let class = if cell.inside { Class::Interior } else { Class::Exterior };
+            let [first, second] = pair(cell.first_two);
+            self.owned.cells.push([first, second, cell.third], class);
         }
     }
 
-    fn give_facets(&mut self) {
-        let class = |facet: &FacetRow| {
-            let cell = self.states[facet.side as usize / 4];
-            (cell.facet(facet.side as usize % 4), cell.is_inside())
-        };
-        for facet in &mut self.facets {
+    fn give_facets(&mut self, count: usize) {
+        let facets = &mut self.facets[..count];
+        for facet in &mut *facets {
+            let state = self.states[facet.side as usize / 4];
+            let class = state.facet(facet.side as usize % 4);
             // A regular facet turns counter-clockwise seen from outside.
-            if class(facet) == (Class::Regular, !facet.clockwise) {
-                facet.row.swap(0, 1);
+            if class == Class::Regular && facet.clockwise != state.is_inside() {
+                facet.row = facet.row.rotate_left(32);
             }
         }
-        self.facets.sort_unstable_by_key(|facet| facet.row);
-        for facet in &self.facets {
-            let (class, inside) = class(facet);
-            self.owned.facets.push(facet.row, class);
-            let beyond =
-                || self.local.mesh.beside()[facet.side as usize / 4][facet.side as usize % 4];
-            match class {
-                Class::Regular => {
-                    let outside = if inside { beyond() } else { facet.side };
-                    self.owned.facet_sheets.push(self.local.corner(outside));
-                }
-                Class::Singular => {
-                    let mut sides = [facet.side, beyond()].map(|side| self.local.corner(side));
-                    if !facet.clockwise {
-                        sides.swap(0, 1);
-                    }
-                    self.owned.facet_sheets.extend(sides);
-                }
-                Class::Exterior | Class::Interior => {}
+        facets.sort_unstable_by_key(|facet| facet.row);
+        for facet in facets {
+            let state = self.states[facet.side as usize / 4];
+            let class = state.facet(facet.side as usize % 4);
+            self.owned.facets.push(pair(facet.row), class);
+            if matches!(class, Class::Exterior | Class::Interior) {
+                continue;
+            }
+            let beyond = self.local.mesh.beside()[facet.side as usize / 4][facet.side as usize % 4];
+            if class == Class::Regular {
+                let outside = if state.is_inside() { beyond } else { facet.side };
+                self.owned.facet_sheets.push(self.local.corner(outside));
+            } else {
+                let sides = [self.local.corner(facet.side), self.local.corner(beyond)];
+                let [front, back] = if facet.clockwise { sides } else { [sides[1], sides[0]] };
+                self.owned.facet_sheets.extend([front, back]);
             }
         }
-        self.facets.clear();
     }
 
     fn give_edges(&mut self, v: u32, star: &[u32]) {
         let smallest = self.local.input(v);
-        for neighbour in &self.neighbours {
-            let to = self.local.input(neighbour.to);
+        for &neighbour in &self.neighbours[..self.near] {
+            let to = self.local.input(neighbour);
             // An edge between two blocks is joined to its sheet at both ends.
-            if to < smallest && self.local.owned(neighbour.to) {
+            if to < smallest && self.local.owned(neighbour) {
                 continue;
             }
+            let says = self.met[neighbour as usize];
             let mut corner = NOWHERE;
-            let class = if !neighbour.open {
+            let class = if says & OPEN == 0 {
                 Class::Interior
-            } else if neighbour.covered {
+            } else if says & COVERED != 0 {
                 Class::Regular
-            } else if let Some(at) = self.lone_edge(v, neighbour.to, star) {
+            } else if let Some(at) = self.lone_edge(v, neighbour, star) {
                 corner = at;
                 Class::Singular
             } else {
                 Class::Exterior
             };
             if class == Class::Singular {
-                join_ends(self.local, self.sheets, self.owned, [v, neighbour.to], corner);
+                join_ends(self.local, self.sheets, self.owned, [v, neighbour], corner);
             }
             if to > smallest && (class != Class::Exterior || self.local.exterior) {
                 self.edges.push(EdgeRow { to, class, corner });
                 if class != Class::Exterior {
-                    self.components.unite(v, neighbour.to);
+                    self.components.unite(v, neighbour);
                 }
             }
         }
@@ -259,31 +271,38 @@ impl<'a> Walker<'a> {
     /// The class of a point that no facet of the shape touches.
     fn lone_vertex(&self, v: u32, star: &[u32]) -> Class {
         let mut refuted = false;
-        for neighbour in &self.neighbours {
-            if self.lone_edge(v, neighbour.to, star).is_some() {
+        for &neighbour in &self.neighbours[..self.near] {
+            if self.lone_edge(v, neighbour, star).is_some() {
                 return Class::Regular;
             }
-            refuted |= self.local.predicates.inside([v], neighbour.to);
+            refuted |= self.local.predicates.inside([v], neighbour);
         }
         if !refuted && self.local.fits([v]) { Class::Singular } else { Class::Exterior }
     }
 }
 
-/// A cell without its smallest vertex, at place `k`, in the order that makes it positively oriented.
+/// Two vertices out of one number.
 #[inline(always)]
-fn cell_row(k: usize, mut row: [u32; 3], state: State) -> ([u32; 3], Class) {
-    // Rotating a row of four is odd, and so is each exchange.
-    let mut odd = k % 2 == 1;
-    for (a, b) in [(0, 1), (1, 2), (0, 1)] {
-        if row[a] > row[b] {
-            row.swap(a, b);
-            odd = !odd;
-        }
+fn pair(row: u64) -> [u32; 2] {
+    [(row >> 32) as u32, row as u32]
+}
+
+impl CellRow {
+    /// A cell without its smallest vertex, which is at place `k`; the others follow it.
+    #[inline(always)]
+    fn new(k: usize, [mut a, mut b, mut c]: [u32; 3], inside: bool) -> Self {
+        // Rotating a row of four is odd, and so is each exchange.
+        let mut odd = k % 2 == 1;
+        let mut order = |x: &mut u32, y: &mut u32| {
+            odd ^= *x > *y;
+            (*x, *y) = ((*x).min(*y), (*x).max(*y));
+        };
+        order(&mut a, &mut b);
+        order(&mut b, &mut c);
+        order(&mut a, &mut b);
+        let (second, third) = if odd { (c, b) } else { (b, c) };
+        Self { first_two: u64::from(a) << 32 | u64::from(second), third, inside }
     }
-    if odd {
-        row.swap(1, 2);
-    }
-    (row, if state.is_inside() { Class::Interior } else { Class::Exterior })
 }
 
 /// The space around a singular edge is one piece, from end to end.

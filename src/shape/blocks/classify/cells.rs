@@ -52,6 +52,11 @@ impl State {
         self.0 >> (Self::GIVES + opposite) & 1 != 0
     }
 
+    /// How many rows it gives out.
+    pub fn given(self) -> usize {
+        (self.0 >> Self::GIVES).count_ones() as usize
+    }
+
     fn set_facet(&mut self, opposite: usize, class: Class) {
         self.0 |= (class as u16) << (2 * opposite);
     }
@@ -144,6 +149,6 @@ impl Local<'_> {
     #[inline(always)]
     pub(super) fn facet(&self, side: u32) -> [u32; 3] {
         let (cell, opposite) = (self.mesh.cells()[side as usize / 4], side as usize % 4);
-        [1, 2, 3].map(|step| cell[(opposite + step) % 4])
+        [cell[(opposite + 1) % 4], cell[(opposite + 2) % 4], cell[(opposite + 3) % 4]]
     }
 }

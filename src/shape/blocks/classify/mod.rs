@@ -35,6 +35,7 @@ pub(super) fn classify(block: &Block, mesh: &Triangulation, question: &Question)
     let mut sheets = Sheets::new(&states);
     let mut owned = Owned::default();
     local.classify_facets(&mut states, &mut sheets, &mut owned);
+    owned.reserve(&states, block.own as usize);
     let stars = Stars::new(mesh, block.own, &states);
     let mut walker = Walker::new(&local, &states, &stars, &mut sheets, &mut owned);
     (0..block.own).for_each(|v| walker.visit(v));

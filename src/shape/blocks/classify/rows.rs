@@ -1,5 +1,6 @@
 //! What a block gives out.
 
+use super::State;
 use crate::shape::Class;
 
 /// The simplices that a block owns, around one of its points after the other. That point, the smallest
@@ -50,6 +51,12 @@ impl<const M: usize> Default for Rows<M> {
 }
 
 impl<const M: usize> Rows<M> {
+    /// Makes room for so many rows at the most, so that growing copies nothing.
+    pub fn reserve(&mut self, most: usize) {
+        self.vertices.reserve_exact(most);
+        self.classes.reserve_exact(most);
+    }
+
     pub fn push(&mut self, row: [u32; M], class: Class) {
         self.vertices.push(row);
         self.classes.push(class);
@@ -66,6 +73,21 @@ pub(in super::super) struct Side {
 }
 
 impl Owned {
+    /// Makes room for the rows of a block with these classes, some of them other blocks'.
+    pub fn reserve(&mut self, states: &[State], points: usize) {
+        let (mut cells, mut facets) = (0, 0);
+        for state in states {
+            cells += usize::from(state.is_inside());
+            facets += state.given();
+        }
+        self.cells.reserve(cells);
+        self.facets.reserve(facets);
+        // In a triangulated ball there is an edge for each cell and for each point, less a few.
+        self.edges.reserve(cells + points);
+        self.starts.reserve_exact(points + 1);
+        self.vertices.reserve_exact(points);
+    }
+
     /// Notes that the rows of the next point begin here.
     pub fn begin(&mut self) {
         self.starts.push(
