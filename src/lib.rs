@@ -48,6 +48,7 @@ pub mod progress;
 pub mod render;
 pub mod reproduce;
 pub mod shape;
+pub mod shown;
 pub mod volume;
 
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap_mangen::Man as Page;
 use walpha::export::Target;
+use walpha::shown::shown;
 
 use super::output::print;
 use super::{Global, described};
@@ -34,7 +35,7 @@ impl Man {
             let path = folder.join(page.get_filename());
             Target::open(&path)?.write(|mut out| page.render(&mut out))?;
             if !global.quiet {
-                print(&format!("wrote     {}\n", path.display()))?;
+                print(&format!("wrote     {}\n", shown(&path)))?;
             }
         }
         Ok(())

@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use super::Weighting;
 use crate::cgal::CgalError;
+use crate::shown::shown;
 use crate::volume::VolumeError;
 
 /// Why there are no points, or no weights for them.
@@ -75,7 +76,7 @@ pub enum PointsError {
         weight: f64,
     },
     /// A point file is not what it should be.
-    #[error("{path}: {what}")]
+    #[error("{}: {what}", shown(path))]
     Format {
         /// The file.
         path: PathBuf,
