@@ -41,10 +41,11 @@ pub struct Interpolate {
     #[command(flatten)]
     pipeline: PipelineArgs,
     /// Volume to write F to, as f32: .nrrd, .nii, .nii.gz, .vti, .npy or .raw; or - (standard output,
-    /// with --format). With --curve: a folder, or what names of files begin with.
+    /// with --format). With --curve: a folder, or what names of files begin with. Files that are
+    /// there are replaced.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Volume to write 1 to where a sample is on the shape, else 0; the same formats.
+    /// Volume to write 1 to where a sample is on the shape, else 0; the same formats, and replaced.
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
     /// Interpolate everywhere: on the whole triangulation of the points (α = inf) and the 8 corners

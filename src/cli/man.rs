@@ -15,7 +15,8 @@ use super::{Global, described};
 /// Example: walpha man -o ~/.local/share/man/man1
 #[derive(Args)]
 pub struct Man {
-    /// Folder to write walpha.1, walpha-shape.1 and so on to [default: walpha.1 to standard output].
+    /// Folder to write walpha.1, walpha-shape.1 and so on to, replaced if they are there [default:
+    /// walpha.1 to standard output].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 }

@@ -24,7 +24,7 @@ pub struct Reproduce {
     /// installed].
     #[arg(long, value_name = "INPUT")]
     input: Option<String>,
-    /// Folder to write to; made if it is not there.
+    /// Folder to write to, made if it is not there; files in it are replaced, all at the end.
     #[arg(long, value_name = "DIR", default_value = "reproduction")]
     out: PathBuf,
 }

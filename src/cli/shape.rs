@@ -23,7 +23,7 @@ pub struct Shape {
     #[command(flatten)]
     pipeline: PipelineArgs,
     /// Files to write: .ply, .off, .obj, .stl, .glb, .vtp (boundary), .vtu, .npz or .json (all
-    /// simplices), .png (a picture); or - (standard output, with --format).
+    /// simplices), .png (a picture); or - (standard output, with --format). Files that are there are replaced.
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
     #[command(flatten)]

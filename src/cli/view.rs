@@ -30,7 +30,7 @@ use super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport};
 pub struct View {
     #[command(flatten)]
     input: InputArgs,
-    /// Page to write (.html).
+    /// Page to write (.html), replaced if it is there.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Levels of the slider: squared lengths, as in 1,2,5,inf; or auto, for critical values of the

@@ -35,7 +35,7 @@ use regions::region;
 pub struct Ladder {
     #[command(flatten)]
     input: InputArgs,
-    /// Folder to write to; made if it is not there.
+    /// Folder to write to, made if it is not there; files in it are replaced, all at the end.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Squared lengths, as in 1,2,5,inf; or auto, for critical values of the topology.
