@@ -49,6 +49,7 @@ pub mod progress;
 pub mod render;
 pub mod reproduce;
 pub mod shape;
+pub mod shown;
 pub mod triangulation;
 pub mod volume;
 

@@ -1,4 +1,4 @@
-//! What the system says of this process's memory.
+//! What the system says of this process's memory, and large pieces of it that may not be had.
 
 /// The most memory this process ever held, in bytes; `None` where the system does not tell (only
 /// Linux does).
@@ -23,4 +23,34 @@ fn status(field: &str) -> Option<u64> {
     let line = status.lines().find_map(|line| line.strip_prefix(field))?;
     let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kilobytes * 1024)
+}
+
+/// Memory for something large cannot be had.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{what} needs {bytes} bytes of memory, which cannot be had; make it smaller")]
+pub struct NoMemory {
+    what: String,
+    bytes: u128,
+}
+
+/// Room for so many items, or an error that names what they are for. What is large, and grows with
+/// what a user asks for, begins here.
+pub(crate) fn room<T>(count: usize, what: impl FnOnce() -> String) -> Result<Vec<T>, NoMemory> {
+    let mut items = Vec::new();
+    let bytes = count as u128 * size_of::<T>() as u128;
+    items.try_reserve_exact(count).map_err(|_| NoMemory { what: what(), bytes })?;
+    Ok(items)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_too_large_is_an_error() {
+        let asked = room::<u64>(usize::MAX / 8, || "a volume".into());
+        let text = asked.unwrap_err().to_string();
+        assert!(text.starts_with("a volume needs 18446744073709551608 bytes"), "{text}");
+        assert!(room::<u64>(1000, String::new).unwrap().capacity() >= 1000);
+    }
 }

@@ -1,5 +1,5 @@
 //! What people expect of a command: configuration, pipes, near misses, three lines of error, manual
-//! pages, interrupts.
+//! pages, names.
 
 mod common;
 
@@ -199,23 +199,30 @@ fn a_broken_pipe_is_no_error() {
     }
 }
 
+/// Names with control characters cannot play with the terminal.
 #[test]
-#[cfg(unix)]
-fn an_interrupt_leaves_nothing() {
+fn names_are_shown_without_control_characters() {
     let folder = tempfile::tempdir().unwrap();
-    for signal in ["-INT", "-TERM"] {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_walpha"));
-        let args = ["shape", "sample:phantom@128", "--ratio", "0.3", "-o", "a.ply", "b.vtu"];
-        let mut child = command.args(args).current_dir(&folder).spawn().unwrap();
-        let count = || fs::read_dir(&folder).unwrap().count();
-        while count() < 2 {
-            assert!(child.try_wait().unwrap().is_none(), "done before it was interrupted");
-        }
-        let id = child.id().to_string();
-        assert!(Command::new("kill").args([signal, &id]).status().unwrap().success());
-        assert_eq!(child.wait().unwrap().code(), Some(130), "{signal}");
-        assert_eq!(count(), 0, "{signal}");
+    let f = folder.path();
+    let name = "a\x1b[2Jb\rc\nd";
+    fs::write(f.join(format!("{name}.csv")), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n").unwrap();
+    let shown = "a\\u{1b}[2Jb\\rc\\nd";
+    for args in [["info", &format!("{name}.nrrd")], ["check", &format!("{name}.json")]] {
+        let (code, _, said) = run(f, &args);
+        assert!(code == 1 && said.contains(shown), "{said}");
+        assert!(!said.contains(['\x1b', '\r']) && said.lines().count() == 3, "{said}");
     }
+    let said = ok(f, &["shape", &format!("{name}.csv"), "-o", &format!("{name}.off")]);
+    assert!(!said.contains(['\x1b', '\r']) && said.contains("a\\u{1b}[2Jb\\rc"), "{said}");
+}
+
+#[test]
+fn too_many_threads_are_not_started() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["haar", "sample:phantom@8", "--threads", "65535"];
+    let (code, _, said) = run(folder.path(), &args);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("--threads 65535") && said.contains("start"), "{said}");
 }
 
 #[test]

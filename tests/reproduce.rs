@@ -1,6 +1,8 @@
 //! The paper, made again: files, numbers, and the same bytes each time.
 
 mod common;
+#[path = "reproduce/page.rs"]
+mod page;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -23,25 +25,6 @@ fn read_all(folder: &Path) -> BTreeMap<String, Vec<u8>> {
         (entry.file_name().into_string().unwrap(), fs::read(entry.path()).unwrap())
     };
     entries.map(file).collect()
-}
-
-/// Numbers as they stand in a text, signs left out.
-fn numbers(text: &str) -> Vec<String> {
-    let parts = text.split(|c: char| !c.is_ascii_digit() && c != '.');
-    let trimmed = parts.map(|part| part.trim_matches('.').to_owned());
-    trimmed.filter(|part| part.parse::<f64>().is_ok()).collect()
-}
-
-/// What a reader sees of a page: no styles, no tags, no pictures.
-fn visible(html: &str) -> String {
-    let (head, rest) = html.split_once("<style>").unwrap();
-    let (_, rest) = rest.split_once("</style>").unwrap();
-    let mut text = String::new();
-    for part in (head.to_owned() + rest).split('<') {
-        text += part.split_once('>').map_or("", |(_, words)| words);
-        text.push(' ');
-    }
-    text
 }
 
 #[test]
@@ -70,7 +53,7 @@ fn all_there_and_the_same_each_time() {
     named.sort();
     assert_eq!(files.keys().cloned().collect::<Vec<_>>(), named);
 
-    numbers_of_the_page_stand_in_the_report(&files, &report);
+    page::numbers_stand_in_the_report(&files, &report);
     shapes_agree_with_the_shape_command(&report);
 
     let mut again = reproduction("1");
@@ -83,28 +66,6 @@ fn all_there_and_the_same_each_time() {
         assert!(report.as_object_mut().unwrap().remove("seconds").is_some());
     }
     assert_eq!(report, other);
-}
-
-/// Up to the digits that the page shows.
-fn numbers_of_the_page_stand_in_the_report(files: &BTreeMap<String, Vec<u8>>, report: &Value) {
-    let html = String::from_utf8(files["report.html"].clone()).unwrap();
-    assert!(!html.contains("<script") && !html.contains("http"), "a page on its own");
-    let mut without_times = report.clone();
-    without_times.as_object_mut().unwrap().remove("seconds");
-    let known: Vec<f64> = numbers(&serde_json::to_string(&without_times).unwrap())
-        .iter()
-        .map(|n| n.parse().unwrap())
-        .collect();
-    let shown = numbers(&visible(&html));
-    assert!(shown.len() > 300, "{} numbers", shown.len());
-    for number in shown {
-        let decimals = number.split_once('.').map_or(0, |(_, digits)| digits.len());
-        let half = 0.500_001 * 10f64.powi(-(decimals as i32));
-        let value: f64 = number.parse().unwrap();
-        // √α stands beside α on the page.
-        let stands = |k: &f64| (k - value).abs() <= half || (k.sqrt() - value).abs() <= half;
-        assert!(known.iter().any(stands), "{number} is not in report.json");
-    }
 }
 
 /// The command lines of the report give its numbers.

@@ -117,6 +117,23 @@ fn levels_of_a_pyramid_are_chosen_and_placed() {
     }
 }
 
+/// The metadata of a store name files in it and no others.
+#[test]
+fn levels_outside_the_store_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path().join("store");
+    array(folder.path(), "/secret", &[1, 2, 2, 2]);
+    fs::create_dir(&f).unwrap();
+    for name in ["../secret", "0/../../secret", "/../secret"] {
+        pyramid(&f, 2, json!([{"path": name}]));
+        let text = open(&f, None).unwrap_err().to_string();
+        assert!(text.contains("outside the store") && text.contains("secret"), "{text}");
+    }
+    // What looks absolute is taken from the store's top.
+    pyramid(&f, 2, json!([{"path": folder.path().join("secret")}]));
+    assert!(open(&f, None).is_err());
+}
+
 #[test]
 fn what_is_no_volume_is_told() {
     let folder = tempfile::tempdir().unwrap();

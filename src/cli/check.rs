@@ -9,6 +9,7 @@ use serde::Serialize;
 use walpha::alpha_shape;
 use walpha::check::schema::PlacedComplex;
 use walpha::check::{Certificate, Claim, Comparison, Extent, Finding, Placed, compare, enumerate};
+use walpha::shown::shown;
 
 use super::args::{PipelineArgs, ShapeArgs};
 use super::output::tell;
@@ -124,7 +125,7 @@ impl Check {
         if self.points.is_some() {
             bail!(
                 "--points belongs to a complex (.json, .npz), and {} is none; leave it away",
-                path.display()
+                shown(path)
             );
         }
         let weighed = pipeline::weighted_points(&self.pipeline, progress)?;

@@ -3,6 +3,7 @@
 use std::io::IsTerminal;
 
 use clap::error::ErrorKind;
+use walpha::shown::escaped;
 
 use super::progress;
 
@@ -85,7 +86,9 @@ impl Complaint {
     fn print(&self) {
         let (red, bold, plain) =
             if coloured() { ("\x1b[1;31m", "\x1b[1m", "\x1b[0m") } else { ("", "", "") };
-        let Self { what, why, next } = self;
+        // Names of files and arguments stand in them.
+        let [what, why, next] =
+            [&self.what, &self.why, &self.next].map(|text| escaped(text, |_| false));
         eprintln!("{red}error:{plain} {what}");
         eprintln!("{bold}  why:{plain} {why}");
         eprintln!("{bold} next:{plain} {next}");

@@ -7,6 +7,7 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use walpha::check::schema::{ComplexFile, PlacedComplex};
 use walpha::points::read_points;
+use walpha::shown::shown;
 
 /// Whether a file is a complex by its name: `.json` or `.npz`.
 pub fn is_complex(path: &Path) -> bool {
@@ -18,23 +19,20 @@ pub fn is_complex(path: &Path) -> bool {
 /// given.
 pub fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<PlacedComplex> {
     if !is_complex(path) {
-        bail!(
-            "{}: a complex is read from .json or .npz; see docs/cross-checking.md",
-            path.display()
-        );
+        bail!("{}: a complex is read from .json or .npz; see docs/cross-checking.md", shown(path));
     }
     let named = |error: std::io::Error| {
         let hint = if error.kind() == ErrorKind::NotFound { "; check the path" } else { "" };
-        anyhow::anyhow!("cannot read {}: {error}{hint}", path.display())
+        anyhow::anyhow!("cannot read {}: {error}{hint}", shown(path))
     };
     let file = BufReader::new(File::open(path).map_err(named)?);
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let file = if json { ComplexFile::read_json(file) } else { ComplexFile::read_npz(file) };
-    let mut file = file.with_context(|| path.display().to_string())?;
+    let mut file = file.with_context(|| shown(path))?;
     if let Some(points) = points {
         let points = read_points(points)?;
         file.points = points.positions;
         file.weights = points.weights.or(file.weights);
     }
-    file.into_complex().with_context(|| path.display().to_string())
+    file.into_complex().with_context(|| shown(path))
 }

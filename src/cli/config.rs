@@ -11,6 +11,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 use toml::{Table, Value};
 use walpha::near::nearest;
+use walpha::shown::shown;
 
 /// The option that names the file.
 const FILE: &str = "config";
@@ -57,7 +58,7 @@ pub fn with_file(command: &Command, mut args: Vec<OsString>) -> anyhow::Result<V
             continue;
         }
         let text = texts(arg, &value)
-            .with_context(|| format!("{}: {key} = {value} makes no sense", file.display()))?;
+            .with_context(|| format!("{}: {key} = {value} makes no sense", shown(&file)))?;
         // A default needs no saying, and may not be said where it depends on another option.
         let defaults = arg.get_default_values();
         if matches!((&text[..], defaults), ([one], [default]) if *one == default_text(arg, default))
@@ -98,7 +99,7 @@ fn path(matches: &ArgMatches) -> Option<PathBuf> {
 /// The file's settings for this command.
 fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
     let text = std::fs::read_to_string(file).map_err(|error| {
-        anyhow!("cannot read {}: {error}; give --config the name of a TOML file", file.display())
+        anyhow!("cannot read {}: {error}; give --config the name of a TOML file", shown(file))
     })?;
     let table: Table = text.parse().map_err(|error: toml::de::Error| {
         let said = error.to_string();
@@ -106,7 +107,7 @@ fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
         let said: Vec<&str> = lines.collect();
         anyhow!(
             "{} is no TOML file: {}; walpha {name} --print-config shows how one looks",
-            file.display(),
+            shown(file),
             said.join(" ")
         )
     })?;
@@ -142,12 +143,12 @@ fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
     Ok(settings)
 }
 
-fn unknown(file: &Path, shown: &str, key: &str, known: Vec<&str>) -> anyhow::Error {
+fn unknown(file: &Path, name: &str, key: &str, known: Vec<&str>) -> anyhow::Error {
     let next = match nearest(key, known) {
         Some(near) => format!("did you mean {near}?"),
         None => "take it away, or see --print-config".to_owned(),
     };
-    anyhow!("{}: no option has the name {shown}; {next}", file.display())
+    anyhow!("{}: no option has the name {name}; {next}", shown(file))
 }
 
 /// The options a file may set.

@@ -1,15 +1,15 @@
 //! `walpha interpolate --curve`: error against the number of points.
 
 use std::fmt::{self, Display};
-use std::fs;
-use std::io;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
 use serde::Serialize;
-use walpha::export::Target;
+use walpha::export::{Content, NewFolder, Target, write_all};
 use walpha::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
 use walpha::render::error_figure;
+use walpha::shown::shown;
 use walpha::{SelectionRule, Volume, Weighting, haar};
 
 use super::Global;
@@ -33,7 +33,7 @@ struct Facts {
 /// Measures the curve and writes it as CSV, PNG and SVG.
 pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Result<()> {
     let PipelineArgs { input, haar, select, weights } = pipeline;
-    let paths = paths(base)?;
+    let (new, paths) = paths(base)?;
     let targets = paths.iter().map(|path| Target::open(path)).collect::<Result<Vec<_>, _>>()?;
     let mut progress = Progress::new(global);
     let Input::Volume(volume, _) = read(input, &mut progress)? else {
@@ -60,8 +60,12 @@ pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Resu
     let alpha = options.alpha.squared();
     let figure = error_figure(&format!("Error against points: {}", input.input), alpha, &curve);
     let files = [csv, figure.to_png()?, figure.to_svg()?.into_bytes()];
-    for (target, bytes) in targets.into_iter().zip(&files) {
-        target.write(|out| out.write_all(bytes))?;
+    write_all(targets.into_iter().zip(&files).map(|(target, bytes)| {
+        let content = |out: &mut dyn Write| out.write_all(bytes);
+        (target, Box::new(content) as Content<'_>)
+    }))?;
+    if let Some(new) = new {
+        new.keep();
     }
     let seconds = progress.finish().last().map_or(0.0, |(_, seconds)| *seconds);
     let facts = Facts {
@@ -85,18 +89,14 @@ fn counts(volume: &Volume, select: &SelectArgs) -> anyhow::Result<Vec<u64>> {
     Ok([0.0625, 0.125, 0.25, 0.5, 1.0, 2.0].map(|f| (f * whole).round() as u64).into())
 }
 
-/// `curve.csv`, `.png` and `.svg` in a folder, or files whose names begin as given.
-fn paths(base: &Path) -> anyhow::Result<[PathBuf; 3]> {
+/// `curve.csv`, `.png` and `.svg` in a folder, made if it is not there, or files whose names begin as
+/// given.
+fn paths(base: &Path) -> anyhow::Result<(Option<NewFolder>, [PathBuf; 3])> {
     const EXTENSIONS: [&str; 3] = ["csv", "png", "svg"];
-    let text = base.to_string_lossy();
-    if text.ends_with(['/', std::path::MAIN_SEPARATOR]) {
-        match fs::create_dir(base) {
-            Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
-                return Err(anyhow!("cannot make the folder {text}: {error}; choose another"));
-            }
-            _ => {}
-        }
-    }
+    let asked = base.to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
+    let new = if asked { NewFolder::make(base) } else { Ok(None) }.map_err(|error| {
+        anyhow!("cannot make the folder {}: {error}; choose another", shown(base))
+    })?;
     let stem = if base.is_dir() {
         base.join("curve")
     } else if EXTENSIONS.iter().any(|known| base.extension().is_some_and(|e| e == *known)) {
@@ -104,12 +104,13 @@ fn paths(base: &Path) -> anyhow::Result<[PathBuf; 3]> {
     } else {
         base.to_owned()
     };
-    Ok(EXTENSIONS.map(|extension| {
+    let paths = EXTENSIONS.map(|extension| {
         let mut path = stem.clone().into_os_string();
         path.push(".");
         path.push(extension);
         path.into()
-    }))
+    });
+    Ok((new, paths))
 }
 
 impl Display for Facts {

@@ -1,61 +1,62 @@
 //! A folder that results go to.
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
-use walpha::export::Target;
+use walpha::export::{Filled, NewFolder, Target, put_all};
+use walpha::shown::shown;
 
-/// The folder results go to: found writable before the long work.
+/// The folder results go to: found writable before the long work. All files appear in it at the end,
+/// or none.
 pub struct Folder {
     path: PathBuf,
-    /// Whether it is ours, to be taken away again if nothing comes of it.
-    made: bool,
+    files: Vec<Filled>,
     written: Vec<String>,
+    /// It is ours, to be taken away again if nothing comes of it: after the files.
+    new: Option<NewFolder>,
 }
 
 impl Folder {
-    /// Makes the folder if it is not there; `option` names the option it was given by.
-    pub fn open(path: &Path, option: &str) -> anyhow::Result<Self> {
-        let made = match fs::create_dir(path) {
-            Ok(()) => true,
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && path.is_dir() => false,
-            Err(error) => {
-                let path = path.display();
-                return Err(anyhow!(
-                    "cannot make the folder {path}: {error}; choose another with {option}"
-                ));
-            }
-        };
-        let folder = Self { path: path.to_owned(), made, written: Vec::new() };
-        Target::open(&path.join("report"))?;
+    /// Makes the folder if it is not there; `option` names the option it was given by, `names` files
+    /// that will be written for certain.
+    pub fn open(path: &Path, option: &str, names: &[&str]) -> anyhow::Result<Self> {
+        let new = NewFolder::make(path).map_err(|error| {
+            let path = shown(path);
+            anyhow!("cannot make the folder {path}: {error}; choose another with {option}")
+        })?;
+        let folder = Self { path: path.to_owned(), files: Vec::new(), written: Vec::new(), new };
+        for name in names {
+            Target::open(&path.join(name))?;
+        }
         Ok(folder)
     }
 
-    /// Writes a file, complete or not at all; says how many bytes it has.
+    /// Writes a file, which appears when all are finished; says how many bytes it has.
     pub fn write(
         &mut self,
         name: &str,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> anyhow::Result<u64> {
         let path = self.path.join(name);
-        Target::open(&path)?.write(content)?;
+        let filled = Target::open(&path)?.fill(content)?;
+        let bytes = filled.bytes();
         self.written.push(path.display().to_string());
-        Ok(fs::metadata(&path)?.len())
+        self.files.push(filled);
+        Ok(bytes)
     }
 
     /// The paths of the files written so far.
     pub fn written(&self) -> &[String] {
         &self.written
     }
-}
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        if self.made && self.written.is_empty() {
-            // Only if it is empty.
-            let _ = fs::remove_dir(&self.path);
+    /// Puts all files in their places.
+    pub fn finish(self) -> anyhow::Result<()> {
+        put_all(self.files)?;
+        if let Some(new) = self.new {
+            new.keep();
         }
+        Ok(())
     }
 }

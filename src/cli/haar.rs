@@ -22,8 +22,8 @@ use super::report::{HaarReport, SCHEMA_VERSION};
 pub struct Haar {
     #[command(flatten)]
     input: InputArgs,
-    /// File to write the restored gray levels to, as f32: .nrrd, .nii, .nii.gz, .vti, .npy or
-    /// .raw; or - (standard output, with --format).
+    /// File to write the restored gray levels to, as f32, replaced if it is there: .nrrd, .nii,
+    /// .nii.gz, .vti, .npy or .raw; or - (standard output, with --format).
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]

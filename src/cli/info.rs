@@ -40,6 +40,9 @@ enum Content {
         min: f32,
         max: f32,
         gray_levels: bool,
+        /// Where the samples are, if not in INPUT itself.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        data_files: Vec<String>,
     },
     Points {
         count: usize,
@@ -72,6 +75,11 @@ impl Info {
         }
         let volume = volume::open(&self.input.input, &self.input.options())?;
         let (min, max) = volume.value_range();
+        let input = self.input.input.as_str();
+        let data_files = match input.starts_with("sample:") {
+            true => Vec::new(),
+            false => volume::data_files(input.as_ref(), &self.input.options())?,
+        };
         Ok(Content::Volume {
             dims: volume.dims().xyz(),
             spacing: volume.frame().spacing,
@@ -80,6 +88,7 @@ impl Info {
             min,
             max,
             gray_levels: volume.has_gray_levels(),
+            data_files: data_files.iter().map(|file| file.display().to_string()).collect(),
         })
     }
 }
@@ -93,7 +102,16 @@ impl std::fmt::Display for Facts {
 impl std::fmt::Display for Content {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Volume { dims: [x, y, z], spacing, origin, direction, min, max, gray_levels } => {
+            Self::Volume {
+                dims: [x, y, z],
+                spacing,
+                origin,
+                direction,
+                min,
+                max,
+                gray_levels,
+                data_files,
+            } => {
                 writeln!(f, "volume    {x}×{y}×{z} samples (x, y, z)")?;
                 writeln!(f, "spacing   {} {} {}", spacing[0], spacing[1], spacing[2])?;
                 writeln!(f, "origin    {} {} {}", origin[0], origin[1], origin[2])?;
@@ -104,7 +122,14 @@ impl std::fmt::Display for Content {
                     }
                 }
                 let gray = if *gray_levels { ", gray levels as they are" } else { "" };
-                writeln!(f, "values    {min} to {max}{gray}")
+                writeln!(f, "values    {min} to {max}{gray}")?;
+                match &data_files[..] {
+                    [] => Ok(()),
+                    [file] => writeln!(f, "samples   in {file}"),
+                    [first, .., last] => {
+                        writeln!(f, "samples   in {} files, {first} to {last}", data_files.len())
+                    }
+                }
             }
             Self::Points { count, low, high, weights, values } => {
                 writeln!(f, "points    {count}")?;

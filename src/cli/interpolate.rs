@@ -1,12 +1,13 @@
 //! `walpha interpolate`: F on a grid, and how far it is from the volume.
 
 use std::fmt::{self, Display};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
-use walpha::export::{Target, VolumeFormat};
+use walpha::export::{Content, Target, VolumeFormat, write_all};
 use walpha::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
 use walpha::{AlphaShape, Volume, alpha_shape};
 
@@ -40,10 +41,11 @@ pub struct Interpolate {
     #[command(flatten)]
     pipeline: PipelineArgs,
     /// Volume to write F to, as f32: .nrrd, .nii, .nii.gz, .vti, .npy or .raw; or - (standard output,
-    /// with --format). With --curve: a folder, or what names of files begin with.
+    /// with --format). With --curve: a folder, or what names of files begin with. Files that are
+    /// there are replaced.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Volume to write 1 to where a sample is on the shape, else 0; the same formats.
+    /// Volume to write 1 to where a sample is on the shape, else 0; the same formats, and replaced.
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
     /// Interpolate everywhere: on the whole triangulation of the points (α = inf) and the 8 corners
@@ -123,7 +125,7 @@ impl Interpolate {
         report.add_shape(&shape);
         let sampled = progress.stage("interpolate", || self.sample(&shape, &grid, volume))?;
         let on_shape = sampled.resampled.covered();
-        let mask = mask.map(|(format, target)| (format, target, sampled.resampled.mask()));
+        let mask = mask.map(|open| anyhow::Ok((open, sampled.resampled.mask()?))).transpose()?;
         let (inside, filled, resampled) = if self.fill {
             let units = self.pipeline.select.units();
             let whole = progress.stage("fill", || fill(&shape, volume, units))?;
@@ -133,13 +135,13 @@ impl Interpolate {
             (sampled.error, None, sampled.resampled)
         };
         progress.stage("write", || {
-            if let Some((format, target)) = output {
-                target.write(|out| format.write(resampled.volume(), out))?;
-            }
-            if let Some((format, target, mask)) = mask {
-                target.write(|out| format.write(&mask, out))?;
-            }
-            anyhow::Ok(())
+            let (mask, values) = mask.unzip();
+            let volumes = [(output, Some(resampled.volume())), (mask, values.as_ref())];
+            write_all(volumes.into_iter().filter_map(|(open, volume)| {
+                let ((format, target), volume) = (open?, volume?);
+                let content = move |out: &mut dyn Write| format.write(volume, out);
+                Some((target, Box::new(content) as Content<'_>))
+            }))
         })?;
         let files = self.output.iter().chain(&self.mask).map(|path| path.display().to_string());
         report.finish(progress.finish(), files.collect());

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap_mangen::Man as Page;
 use walpha::export::Target;
+use walpha::shown::shown;
 
 use super::output::print;
 use super::{Global, described};
@@ -14,7 +15,8 @@ use super::{Global, described};
 /// Example: walpha man -o ~/.local/share/man/man1
 #[derive(Args)]
 pub struct Man {
-    /// Folder to write walpha.1, walpha-shape.1 and so on to [default: walpha.1 to standard output].
+    /// Folder to write walpha.1, walpha-shape.1 and so on to, replaced if they are there [default:
+    /// walpha.1 to standard output].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 }
@@ -34,7 +36,7 @@ impl Man {
             let path = folder.join(page.get_filename());
             Target::open(&path)?.write(|mut out| page.render(&mut out))?;
             if !global.quiet {
-                print(&format!("wrote     {}\n", path.display()))?;
+                print(&format!("wrote     {}\n", shown(&path)))?;
             }
         }
         Ok(())

@@ -22,12 +22,14 @@ mod progress;
 mod report;
 mod reproduce;
 mod shape;
+mod signals;
 mod view;
 
 use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 
+use anyhow::anyhow;
 use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use tracing::Level;
 use tracing::level_filters::LevelFilter;
@@ -35,7 +37,7 @@ use tracing_subscriber::Layer;
 use tracing_subscriber::filter::Targets;
 use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::util::SubscriberInitExt;
-use walpha::export::{Target, abandon};
+use walpha::export::Target;
 use walpha::progress::TARGET;
 
 use output::{is_broken_pipe, print};
@@ -75,7 +77,8 @@ struct Global {
     /// Say on standard error what is being done, and how the work is cut.
     #[arg(short, long, global = true, conflicts_with = "quiet")]
     verbose: bool,
-    /// Threads to compute with; the result is the same for any number [default: all].
+    /// Threads to compute with, at most four for each processor; the result is the same for any
+    /// number [default: all].
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Whether a file goes to standard output.
@@ -103,6 +106,8 @@ enum Command {
 const USAGE: u8 = 2;
 /// The exit code of a check or comparison that found something.
 const DIFFERENT: u8 = 3;
+/// More threads than this for a processor only wait for each other.
+const MOST_THREADS_EACH: usize = 4;
 /// The exit code after Ctrl-C, as shells have it.
 const INTERRUPTED: i32 = 130;
 
@@ -115,11 +120,7 @@ fn described() -> clap::Command {
 
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
-    // A handler that cannot be set leaves the system's own.
-    let _ = ctrlc::set_handler(|| {
-        progress::clear();
-        abandon(INTERRUPTED)
-    });
+    signals::prepare();
     let mut command = described();
     let typed: Vec<OsString> = std::env::args_os().collect();
     let name = named(&command, &typed);
@@ -192,6 +193,21 @@ fn print_config(command: &clap::Command, matches: &ArgMatches) -> anyhow::Result
     Ok(ExitCode::SUCCESS)
 }
 
+/// Starts the threads asked for, or as many as rayon finds right.
+fn start_threads(asked: Option<u16>) -> anyhow::Result<()> {
+    let count = asked.map_or(0, usize::from);
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    let most = MOST_THREADS_EACH * processors;
+    if count > most {
+        tracing::warn!(
+            "--threads {count} is more than {processors} processors can use: {most} start"
+        );
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.min(most));
+    pool.build_global()
+        .map_err(|error| anyhow!("threads cannot be started: {error}; give fewer with --threads"))
+}
+
 fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
     let listener = (!global.quiet && std::io::stderr().is_terminal())
         .then(|| progress::Listener.with_filter(Targets::new().with_target(TARGET, Level::TRACE)));
@@ -203,9 +219,7 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
     let log = tracing_subscriber::fmt::layer().with_ansi(complaint::coloured()).with_target(false);
     let log = log.with_writer(std::io::stderr).without_time().with_filter(level);
     tracing_subscriber::registry().with(listener).with(log).init();
-    if let Some(threads) = global.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
-    }
+    start_threads(global.threads)?;
     match command {
         Command::Reproduce(reproduce) => reproduce.run(global)?,
         Command::Shape(shape) => shape.run(global)?,

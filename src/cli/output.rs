@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::io::{self, Write};
 
 use serde::Serialize;
+use walpha::shown::escaped;
 
 use super::Global;
 
@@ -13,7 +14,7 @@ pub fn tell<T: Serialize + Display>(global: Global, facts: &T) -> anyhow::Result
     if global.json {
         say(global, &json(facts)?)?;
     } else if !global.quiet {
-        say(global, &facts.to_string())?;
+        say(global, &escaped(&facts.to_string(), |c| c == '\n'))?;
     }
     Ok(())
 }

@@ -20,8 +20,8 @@ use super::{Global, pipeline};
 pub struct Points {
     #[command(flatten)]
     pipeline: PipelineArgs,
-    /// File to write: .csv (header x,y,z,weight,value) or .npy (the same columns); or - (standard
-    /// output, with --format).
+    /// File to write, replaced if it is there: .csv (header x,y,z,weight,value) or .npy (the same
+    /// columns); or - (standard output, with --format).
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use walpha::reproduce::{File, Report, Subject, page, reproduce};
+use walpha::shown::shown;
 use walpha::volume::{ReadOptions, open};
 use walpha::{Gray, Volume, VolumeError};
 
@@ -23,7 +24,7 @@ pub struct Reproduce {
     /// installed].
     #[arg(long, value_name = "INPUT")]
     input: Option<String>,
-    /// Folder to write to; made if it is not there.
+    /// Folder to write to, made if it is not there; files in it are replaced, all at the end.
     #[arg(long, value_name = "DIR", default_value = "reproduction")]
     out: PathBuf,
 }
@@ -37,7 +38,7 @@ impl Reproduce {
         let mut progress = Progress::new(global);
         let (name, volume) = progress.stage("read", || self.volume(global))?;
         let (volume, range) = volume.into_gray(Gray::Automatic)?;
-        let mut folder = Folder::open(&self.out, "--out")?;
+        let mut folder = Folder::open(&self.out, "--out", &["report.html", "report.json"])?;
         let subject = Subject { volume: &volume, range, name: &name };
         let made = reproduce(&subject, &mut |stage| progress.show(stage))?;
         let mut files = made.files;
@@ -53,7 +54,7 @@ impl Reproduce {
             for file in &files {
                 folder.write(&file.name, |out| out.write_all(&file.bytes))?;
             }
-            Ok(())
+            folder.finish()
         })?;
         progress.finish();
         if global.json {
@@ -99,6 +100,6 @@ fn text(report: &Report, out: &Path, files: usize) -> String {
     }
     let seconds = report.seconds.get("total").copied().unwrap_or_default();
     let page = out.join("report.html");
-    text += &format!("wrote     {files} files; open {} ({seconds:.1} s)\n", page.display());
+    text += &format!("wrote     {files} files; open {} ({seconds:.1} s)\n", shown(&page));
     text
 }

@@ -1,10 +1,12 @@
 //! `walpha shape`: the whole pipeline.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
 use walpha::alpha_shape;
-use walpha::export::{Exporter, Format, Target, UnknownFormat};
+use walpha::export::{Content, Exporter, Format, Target, UnknownFormat, write_all};
+use walpha::shown::shown;
 
 use super::args::{FormatArgs, PipelineArgs, ShapeArgs};
 use super::output::tell;
@@ -21,7 +23,7 @@ pub struct Shape {
     #[command(flatten)]
     pipeline: PipelineArgs,
     /// Files to write: .ply, .off, .obj, .stl, .glb, .vtp (boundary), .vtu, .npz or .json (all
-    /// simplices), .png (a picture); or - (standard output, with --format).
+    /// simplices), .png (a picture); or - (standard output, with --format). Files that are there are replaced.
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
     #[command(flatten)]
@@ -59,13 +61,15 @@ impl Shape {
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
         report.add_shape(&shape);
         let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
-            Some(format!("{}: {}", target.path().display(), exporter.remark(&shape)?))
+            Some(format!("{}: {}", shown(target.path()), exporter.remark(&shape)?))
         };
         let remarks: Vec<String> = targets.iter().filter_map(remark).collect();
         progress.stage("write", || {
-            targets
-                .into_iter()
-                .try_for_each(|(target, exporter)| target.write(|out| exporter.write(&shape, out)))
+            write_all(targets.into_iter().map(|(target, exporter)| {
+                let shape = &shape;
+                let content = move |out: &mut dyn Write| exporter.write(shape, out);
+                (target, Box::new(content) as Content<'_>)
+            }))
         })?;
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);

@@ -11,6 +11,7 @@ use walpha::export::Target;
 use walpha::ladder::Filtration;
 use walpha::points::Units;
 use walpha::render::{Original, Page, Subject};
+use walpha::shown::shown;
 
 use super::Global;
 use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
@@ -29,7 +30,7 @@ use super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport};
 pub struct View {
     #[command(flatten)]
     input: InputArgs,
-    /// Page to write (.html).
+    /// Page to write (.html), replaced if it is there.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Levels of the slider: squared lengths, as in 1,2,5,inf; or auto, for critical values of the
@@ -67,7 +68,7 @@ impl View {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let html = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("html"));
         if !html {
-            bail!("{}: a page can be written as .html", self.output.display());
+            bail!("{}: a page can be written as .html", shown(&self.output));
         }
         if !self.isovalue.is_finite() {
             bail!("--isovalue must be a finite gray level");
@@ -115,7 +116,7 @@ impl View {
         let page = progress.stage("page", || Page::new(&subject))?;
         if !global.quiet {
             let size = page.html.len() as f64 / 1e6;
-            eprintln!("walpha: {} takes {size:.1} MB", self.output.display());
+            eprintln!("walpha: {} takes {size:.1} MB", shown(&self.output));
             if let Some(told) = &page.simplified {
                 eprintln!("walpha: {told}");
             }

@@ -4,6 +4,7 @@ use std::path::Path;
 use super::{Glb, Json, Npz, Obj, Off, Ply, Stl, Vtp, Vtu};
 use crate::near::nearest;
 use crate::shape::AlphaShape;
+use crate::shown::shown;
 
 /// A way to write a shape down.
 pub trait Exporter {
@@ -128,7 +129,7 @@ impl UnknownFormat {
         let extension = path.extension().unwrap_or_default().to_string_lossy().into_owned();
         let dotted: Vec<String> = known.clone().into_iter().map(|e| format!(".{e}")).collect();
         Self {
-            path: path.display().to_string(),
+            path: shown(path),
             near: nearest(&extension, known).map(str::to_owned),
             extension,
             thing,

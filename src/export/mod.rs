@@ -31,9 +31,11 @@ mod npz;
 mod obj;
 mod off;
 mod part;
+mod place;
 mod ply;
 mod stl;
 mod target;
+mod unfinished;
 mod volume;
 mod vtp;
 mod vtu;
@@ -44,10 +46,10 @@ pub use json::Json;
 pub use npz::Npz;
 pub use obj::Obj;
 pub use off::Off;
-pub use part::abandon;
 pub use ply::Ply;
 pub use stl::Stl;
-pub use target::{Target, TargetError};
+pub use target::{Content, Filled, Target, TargetError, put_all, write_all};
+pub use unfinished::{NewFolder, abandon, sweep};
 pub use volume::{
     VolumeFormat, write_volume_nifti, write_volume_npy, write_volume_nrrd, write_volume_raw,
     write_volume_vti,

@@ -1,83 +1,165 @@
-//! Files that are not complete yet, and how they go when the process is interrupted.
+//! A file that is not complete yet, beside the one it is to become.
 
-use std::collections::BTreeSet;
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::fs::{File, Metadata, OpenOptions};
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 
-use tempfile::NamedTempFile;
+use tempfile::TempPath;
 
-/// The parts there are now. Held while one comes or goes.
-static PARTS: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+use super::place::Place;
+use super::unfinished::{Entry, Gate, gate};
 
-fn parts() -> MutexGuard<'static, BTreeSet<PathBuf>> {
-    PARTS.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Removes every file that is not complete, and ends the process before another can appear. For the
-/// handler of an interrupt: files that stand under their names are complete.
-pub fn abandon(code: i32) -> ! {
-    let parts = parts();
-    for part in parts.iter() {
-        // It may have gone by itself; there is nobody to tell.
-        let _ = std::fs::remove_file(part);
-    }
-    std::process::exit(code)
-}
-
-/// A temporary file beside the one it is to become.
+/// A temporary file to be filled.
 #[derive(Debug)]
 pub(super) struct Part {
-    file: Option<NamedTempFile>,
-    path: PathBuf,
+    file: File,
+    whole: Whole,
+}
+
+/// A complete file that waits to be put in its place.
+#[derive(Debug)]
+pub(super) struct Whole {
+    temporary: Option<TempPath>,
+    entry: &'static Entry,
+    place: Place,
+    way: Way,
+}
+
+/// How a file gets into its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Way {
+    /// At once, for all who look.
+    Renamed,
+    /// Byte by byte into the file that stands there, which has other names, an owner we cannot give
+    /// away to, or a list of who may read it: a new file under this name would be another file.
+    Copied,
 }
 
 impl Part {
-    pub fn beside(path: &Path) -> io::Result<Self> {
-        let folder = match path.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
+    pub fn beside(place: Place) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(".walpha-").suffix(".part");
-        // Temporary files are private by default; this one becomes an ordinary file.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut parts = parts();
-        // Without the name of the temporary file, which means nothing to anybody.
-        let file = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
-        let path = file.path().to_owned();
-        parts.insert(path.clone());
-        Ok(Self { file: Some(file), path })
-    }
-
-    pub fn fill(
-        mut self,
-        content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> io::Result<Self> {
-        if let Some(file) = &mut self.file {
-            // The file itself: its errors do not name it.
-            let mut buffered = BufWriter::new(file.as_file_mut());
-            content(&mut buffered)?;
-            buffered.flush()?;
+        let mut gate = gate();
+        let mut entry = None;
+        let private = place.existing.is_some();
+        // Entered before it is there, so that no signal finds it unknown. Errors do not name the
+        // temporary file, which means nothing to anybody.
+        let made = builder.make_in(place.folder(), |path| {
+            let entered = gate.enter(path, false)?;
+            let file = create(path, private).inspect_err(|_| entered.strike())?;
+            entry = Some(entered);
+            Ok(file)
+        });
+        let (file, temporary) = made?.into_parts();
+        let entry = entry.expect("entered before it was made");
+        let mut whole = Whole { temporary: Some(temporary), entry, place, way: Way::Renamed };
+        // The drop of what follows waits for the gate.
+        drop(gate);
+        if let Some(existing) = &whole.place.existing {
+            whole.way = way(&file, existing, &whole.place)?;
         }
-        Ok(self)
+        Ok(Self { file, whole })
     }
 
-    /// Gives the file its name.
-    pub fn put(mut self, path: &Path) -> io::Result<()> {
-        let Some(file) = self.file.take() else { return Ok(()) };
-        let mut parts = parts();
-        file.persist(path).map_err(|refused| refused.error)?;
-        parts.remove(&self.path);
+    /// Fills the file and closes it; says how many bytes it has.
+    pub fn fill(
+        self,
+        content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> io::Result<(Whole, u64)> {
+        let Self { file, whole } = self;
+        // The file itself: its errors do not name it.
+        let mut buffered = BufWriter::new(file);
+        content(&mut buffered)?;
+        buffered.flush()?;
+        let bytes = buffered.get_ref().metadata()?.len();
+        Ok((whole, bytes))
+    }
+}
+
+impl Whole {
+    /// Gives the file its name. The gate is held, so that an interrupt waits.
+    pub fn put(&mut self, _: &Gate) -> io::Result<()> {
+        let Some(temporary) = self.temporary.take() else { return Ok(()) };
+        match self.way {
+            Way::Renamed => temporary.persist(&self.place.path).map_err(|refused| refused.error)?,
+            Way::Copied => overwrite(
+                &mut OpenOptions::new().write(true).open(&self.place.path)?,
+                &mut File::open(&temporary)?,
+            )?,
+        }
+        self.entry.strike();
         Ok(())
     }
 }
 
-impl Drop for Part {
+impl Drop for Whole {
     fn drop(&mut self) {
-        let mut parts = parts();
-        self.file = None;
-        parts.remove(&self.path);
+        let _gate = gate();
+        self.temporary = None;
+        self.entry.strike();
     }
+}
+
+/// Puts new content into a file. What could fail for want of room comes first and is undone then.
+fn overwrite(file: &mut File, content: &mut File) -> io::Result<()> {
+    let (old, new) = (file.metadata()?.len(), content.metadata()?.len());
+    if new > old {
+        content.seek(SeekFrom::Start(old))?;
+        file.seek(SeekFrom::Start(old))?;
+        if let Err(error) = io::copy(content, file) {
+            file.set_len(old)?;
+            return Err(error);
+        }
+    }
+    content.rewind()?;
+    file.rewind()?;
+    io::copy(&mut content.take(old), file)?;
+    file.set_len(new)
+}
+
+/// A new file. One that replaces another is nobody else's to read before it is like that one.
+#[cfg(unix)]
+fn create(path: &std::path::Path, private: bool) -> io::Result<File> {
+    use std::os::unix::fs::OpenOptionsExt;
+    let mode = if private { 0o600 } else { 0o666 };
+    OpenOptions::new().write(true).create_new(true).mode(mode).open(path)
+}
+
+#[cfg(not(unix))]
+fn create(path: &std::path::Path, _: bool) -> io::Result<File> {
+    OpenOptions::new().write(true).create_new(true).open(path)
+}
+
+/// Makes a file like the one it is to replace, or says that it cannot be.
+#[cfg(unix)]
+fn way(file: &File, existing: &Metadata, place: &Place) -> io::Result<Way> {
+    use std::fs::Permissions;
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
+    let ours = file.metadata()?;
+    let (user, group) = (existing.uid(), existing.gid());
+    let same_owner = (ours.uid(), ours.gid()) == (user, group);
+    if existing.nlink() > 1
+        || has_access_list(&place.path)
+        || !same_owner && fchown(file, Some(user), Some(group)).is_err()
+    {
+        return Ok(Way::Copied);
+    }
+    file.set_permissions(Permissions::from_mode(existing.mode() & 0o777))?;
+    Ok(Way::Renamed)
+}
+
+#[cfg(not(unix))]
+fn way(_: &File, _: &Metadata, _: &Place) -> io::Result<Way> {
+    Ok(Way::Renamed)
+}
+
+/// Whether more is said of who may read a file than by its mode.
+#[cfg(target_os = "linux")]
+fn has_access_list(path: &std::path::Path) -> bool {
+    let mut no_room: [u8; 0] = [];
+    rustix::fs::getxattr(path, "system.posix_acl_access", &mut no_room).is_ok()
+}
+
+#[cfg(all(unix, not(target_os = "linux")))]
+fn has_access_list(_: &std::path::Path) -> bool {
+    false
 }

@@ -1,10 +1,19 @@
-use std::io::{self, BufWriter, Write};
+use std::fs::OpenOptions;
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use super::part::Part;
+use super::part::{Part, Whole};
+use super::place::{Claim, Place};
+use super::unfinished::gate;
+use crate::shown::shown;
 
 /// A file to be: opened before the long work, so that a bad place is known at once, and put under
 /// its name only when it is complete. Dropped before that, it leaves nothing behind.
+///
+/// What stood under the name is replaced, and the new file has its mode and owner; links are
+/// followed. A file that has other names, too, or whose owner cannot be kept, is not replaced but
+/// overwritten, when all of the new content is on the disk: that alone is not done at one blow. There
+/// are no two targets of one file at a time.
 ///
 /// `-` is standard output. That, and what is no ordinary file (a pipe, a device), is written to as it
 /// comes.
@@ -12,21 +21,58 @@ use super::part::Part;
 pub struct Target {
     path: PathBuf,
     sink: Sink,
+    /// None of a device.
+    claim: Option<Claim>,
 }
 
 #[derive(Debug)]
 enum Sink {
-    Part(Part),
-    Stream,
+    Part(Box<Part>),
+    Device,
+    Stdout,
 }
 
 /// A file cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write {}: {source}; nothing was left behind, choose a place with room that you may write to", path.display())]
+#[error("cannot write {}: {source}; {left}{}", shown(path), next_step(source))]
 pub struct TargetError {
     path: PathBuf,
     source: io::Error,
+    /// What became of the outputs; empty where that is plain.
+    left: String,
 }
+
+impl TargetError {
+    const NOTHING_LEFT: &str = "nothing was left behind, ";
+
+    fn of(path: &Path, left: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self { path: path.to_owned(), source, left: left.into() }
+    }
+}
+
+/// What to do about an error of the system.
+fn next_step(error: &io::Error) -> &'static str {
+    #[cfg(unix)]
+    if error.raw_os_error() == Some(rustix::io::Errno::MFILE.raw_os_error()) {
+        return "allow more with `ulimit -n`";
+    }
+    match error.kind() {
+        ErrorKind::NotFound => "make it first, or choose a place that is there",
+        ErrorKind::AlreadyExists => "give each output a name of its own",
+        ErrorKind::InvalidFilename => "choose a shorter name",
+        ErrorKind::IsADirectory => "name a file in it",
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            "make it writable, or choose a place that you may write to"
+        }
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            "choose a place with room"
+        }
+        _ => "choose a place with room that you may write to",
+    }
+}
+
+/// What writes a file.
+pub type Content<'a> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>;
 
 impl Target {
     /// The path that is standard output.
@@ -35,16 +81,24 @@ impl Target {
     /// Opens a temporary file in the folder of `path`.
     ///
     /// # Errors
-    /// When the folder does not exist or cannot be written, or `path` is a folder itself.
+    /// When the folder does not exist or cannot be written to, `path` is a folder itself or a
+    /// write-protected file, its name is too long, or a target of the same file is open.
     pub fn open(path: &Path) -> Result<Self, TargetError> {
-        let named = |source| TargetError { path: path.to_owned(), source };
-        if path.is_dir() {
-            return Err(named(io::Error::from(io::ErrorKind::IsADirectory)));
+        Self::sink(path)
+            .map(|(sink, claim)| Self { path: path.to_owned(), sink, claim })
+            .map_err(TargetError::of(path, ""))
+    }
+
+    fn sink(path: &Path) -> io::Result<(Sink, Option<Claim>)> {
+        if path == Path::new(Self::STDOUT) {
+            return Ok((Sink::Stdout, Some(Claim::of_stdout()?)));
         }
-        let stream = path == Path::new(Self::STDOUT) || (path.exists() && !path.is_file());
-        let sink =
-            if stream { Sink::Stream } else { Sink::Part(Part::beside(path).map_err(named)?) };
-        Ok(Self { path: path.to_owned(), sink })
+        let place = Place::of(path)?;
+        if place.is_stream() {
+            return Ok((Sink::Device, None));
+        }
+        let claim = Claim::of(&place)?;
+        Ok((Sink::Part(Part::beside(place)?.into()), Some(claim)))
     }
 
     /// Where the file will stand.
@@ -60,28 +114,93 @@ impl Target {
         self,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), TargetError> {
-        let Self { path, sink } = self;
-        let written = match sink {
-            Sink::Part(part) => part.fill(content).and_then(|part| part.put(&path)),
-            Sink::Stream if path == Path::new(Self::STDOUT) => {
-                through(io::stdout().lock(), content)
-            }
-            Sink::Stream => std::fs::OpenOptions::new()
-                .write(true)
-                .open(&path)
-                .and_then(|stream| through(stream, content)),
-        };
-        written.map_err(|source| TargetError { path, source })
+        put_all(vec![self.fill(content)?])
     }
+
+    /// Writes the content, but leaves the place as it is until [`put_all`]. A stream takes it now.
+    ///
+    /// # Errors
+    /// What the system said, with the path.
+    pub fn fill(
+        self,
+        content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<Filled, TargetError> {
+        let Self { path, sink, claim } = self;
+        let (filled, left) = match sink {
+            Sink::Part(part) => (
+                part.fill(content).map(|(whole, bytes)| (Some(whole), bytes)),
+                TargetError::NOTHING_LEFT,
+            ),
+            Sink::Stdout => (through(io::stdout().lock(), content), ""),
+            Sink::Device => {
+                let device = OpenOptions::new().write(true).open(&path);
+                (device.and_then(|device| through(device, content)), "")
+            }
+        };
+        let (whole, bytes) = filled.map_err(TargetError::of(&path, left))?;
+        Ok(Filled { path, whole, bytes, _claim: claim })
+    }
+}
+
+/// A complete file that is to be put in its place; dropped before that, it goes.
+#[derive(Debug)]
+pub struct Filled {
+    path: PathBuf,
+    whole: Option<Whole>,
+    bytes: u64,
+    _claim: Option<Claim>,
+}
+
+impl Filled {
+    /// Bytes of the file; 0 of a stream.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+}
+
+/// Puts complete files in their places. An interrupt waits until they all stand there.
+///
+/// # Errors
+/// What the system said of the first that cannot be put there; the others after it go.
+pub fn put_all(mut files: Vec<Filled>) -> Result<(), TargetError> {
+    // Files that are dropped take the gate themselves.
+    let gate = gate();
+    for (done, file) in files.iter_mut().enumerate() {
+        let Filled { path, whole: Some(whole), .. } = file else { continue };
+        let left = match done {
+            0 => TargetError::NOTHING_LEFT.to_owned(),
+            1 => "one other output is complete, ".to_owned(),
+            _ => format!("{done} other outputs are complete, "),
+        };
+        whole.put(&gate).map_err(TargetError::of(path, left))?;
+    }
+    drop(gate);
+    Ok(())
+}
+
+/// Writes all of several files, or none of them; then what goes to streams, whose readers may have
+/// enough and leave.
+///
+/// # Errors
+/// What the system said of the first file that cannot be written.
+pub fn write_all<'a>(
+    files: impl IntoIterator<Item = (Target, Content<'a>)>,
+) -> Result<(), TargetError> {
+    let is_part = |(target, _): &(Target, Content<'_>)| matches!(target.sink, Sink::Part(_));
+    let (files, streams): (Vec<_>, Vec<_>) = files.into_iter().partition(is_part);
+    let filled = files.into_iter().map(|(target, content)| target.fill(content));
+    put_all(filled.collect::<Result<_, _>>()?)?;
+    streams.into_iter().try_for_each(|(target, content)| target.write(content))
 }
 
 fn through(
     stream: impl Write,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> io::Result<()> {
+) -> io::Result<(Option<Whole>, u64)> {
     let mut buffered = BufWriter::new(stream);
     content(&mut buffered)?;
-    buffered.flush()
+    buffered.flush()?;
+    Ok((None, 0))
 }
 
 #[cfg(test)]
@@ -93,9 +212,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("shape.ply");
         let target = Target::open(&path).unwrap();
-        let error = target.write(|_| Err(io::ErrorKind::StorageFull.into())).unwrap_err();
+        let error = target.write(|_| Err(ErrorKind::StorageFull.into())).unwrap_err();
         let text = error.to_string();
         assert!(text.contains("shape.ply") && !text.contains(".part"), "{text}");
+        assert!(text.contains("nothing was left behind, choose a place with room"), "{text}");
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
     }
 
@@ -107,16 +227,39 @@ mod tests {
         }
         let target = Target::open(path).unwrap();
         let error = target.write(|out| out.write_all(b"text")).unwrap_err();
+        assert!(!error.to_string().contains("left behind"), "who knows: {error}");
         let source = std::error::Error::source(&error).unwrap();
         let kind = source.downcast_ref::<io::Error>().unwrap().kind();
-        assert_eq!(kind, io::ErrorKind::StorageFull);
+        assert_eq!(kind, ErrorKind::StorageFull);
     }
 
     #[test]
     fn a_place_that_cannot_be_is_known_at_once() {
         let folder = tempfile::tempdir().unwrap();
-        let text = Target::open(&folder.path().join("no/a.ply")).unwrap_err().to_string();
-        assert!(text.contains("no/a.ply") && !text.contains(".part"), "{text}");
-        assert!(Target::open(folder.path()).unwrap_err().to_string().contains("directory"));
+        let said = |name: &str| Target::open(&folder.path().join(name)).unwrap_err().to_string();
+        let text = said("no/a.ply");
+        assert!(
+            text.contains("no/a.ply: there is no folder") && text.contains("make it"),
+            "{text}"
+        );
+        assert!(said(".").contains("directory"));
+        let text = said(&format!("{}.ply", "a".repeat(400)));
+        assert!(text.contains("too long") && text.contains("shorter"), "{text}");
+    }
+
+    #[test]
+    fn all_files_or_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let open = |name: &str| Target::open(&folder.path().join(name)).unwrap();
+        let good = |out: &mut dyn Write| out.write_all(b"text");
+        let bad = |_: &mut dyn Write| Err(ErrorKind::StorageFull.into());
+        let files: Vec<(_, Content<'_>)> =
+            vec![(open("a"), Box::new(good)), (open("b"), Box::new(bad))];
+        assert!(write_all(files).is_err());
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+        let files: Vec<(_, Content<'_>)> =
+            vec![(open("a"), Box::new(good)), (open("b"), Box::new(good))];
+        write_all(files).unwrap();
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2);
     }
 }

@@ -9,6 +9,7 @@ use crate::haar::{HaarOptions, Tolerance, smooth};
 use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, points_at, select, weigh,
 };
+use crate::progress;
 use crate::shape::{Alpha, ShapeError, ShapeOptions, alpha_shape};
 use crate::triangulation::TriangulationError;
 use crate::volume::Volume;
@@ -95,8 +96,9 @@ pub fn error_curve(
     let differences = difference(smoothed);
     let bench = Bench { volume, smoothed, differences, options };
     let mut curve = Vec::new();
-    for method in Method::ALL {
+    for (done, method) in Method::ALL.into_iter().enumerate() {
         announce(method);
+        progress::report(done as u64, Method::ALL.len() as u64);
         if method == Method::Haar {
             curve.extend(bench.haar()?);
             continue;

@@ -1,4 +1,5 @@
 use crate::haar::HaarError;
+use crate::memory::NoMemory;
 use crate::points::PointsError;
 use crate::shape::ShapeError;
 use crate::volume::VolumeError;
@@ -44,6 +45,9 @@ pub enum InterpolateError {
     /// The volume cannot be truncated.
     #[error(transparent)]
     Haar(#[from] HaarError),
+    /// Memory for the samples cannot be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// The values make no volume: they pass the range of `f32`.
     #[error("after interpolation: {0}")]
     Volume(#[from] VolumeError),

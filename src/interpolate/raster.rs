@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use rayon::prelude::*;
 
 use super::{Grid, Interpolant};
+use crate::memory::{NoMemory, room};
 
 /// What a sample outside the shape belongs to.
 pub(super) const NOTHING: u32 = u32::MAX;
@@ -19,11 +20,11 @@ const CHUNK: usize = 32;
 /// Simplices are drawn in parallel, and a sample keeps the least number written to it, which does
 /// not depend on who comes first. Exact tests are spent on the samples near a simplex only, as
 /// rounded planes tell.
-pub(super) fn owners(interpolant: &Interpolant<'_>, grid: &Grid) -> Vec<u32> {
+pub(super) fn owners(interpolant: &Interpolant<'_>, grid: &Grid) -> Result<Vec<u32>, NoMemory> {
     let [nx, ny, _] = grid.dims().xyz();
     let samples = grid.dims().samples();
-    let owners: Vec<AtomicU32> =
-        (0..samples).into_par_iter().map(|_| AtomicU32::new(NOTHING)).collect();
+    let mut owners = room(samples, || format!("sampling at {} places", grid.dims()))?;
+    owners.par_extend((0..samples).into_par_iter().map(|_| AtomicU32::new(NOTHING)));
     (0..interpolant.len() as u32).into_par_iter().with_min_len(CHUNK).for_each(|part| {
         let (corners, count) = interpolant.corners(part);
         for_each_near(grid, &corners[..count], |index| {
@@ -34,7 +35,8 @@ pub(super) fn owners(interpolant: &Interpolant<'_>, grid: &Grid) -> Vec<u32> {
             }
         });
     });
-    owners.into_par_iter().map(AtomicU32::into_inner).collect()
+    // In place, as both are of one size.
+    Ok(owners.into_iter().map(AtomicU32::into_inner).collect())
 }
 
 /// How far, in samples, one looks beyond a simplex: far more than indices are rounded by.

@@ -3,7 +3,8 @@ use rayon::prelude::*;
 
 use super::raster::{NOTHING, owners};
 use super::{Grid, Interpolant, InterpolateError};
-use crate::volume::{Frame, Volume};
+use crate::memory::room;
+use crate::volume::Volume;
 
 /// F on the samples of a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,13 +19,14 @@ impl Interpolant<'_> {
     /// + samples), in parallel over both, the same on any number of threads; 8 bytes a sample.
     ///
     /// # Errors
-    /// Values that pass the range of `f32`.
+    /// Values that pass the range of `f32`; no memory for as many samples.
     pub fn resample(&self, grid: &Grid) -> Result<Resampled, InterpolateError> {
-        let owners = owners(self, grid);
+        let owners = owners(self, grid)?;
         let [nx, ny, _] = grid.dims().xyz();
-        let mut samples = Array3::<f32>::zeros(grid.dims().shape());
-        let flat = samples.as_slice_mut().expect("standard layout");
-        flat.par_chunks_mut(nx).zip(owners.par_chunks(nx)).enumerate().for_each(
+        let dims = grid.dims();
+        let mut samples = room(dims.samples(), || format!("a volume of {dims} samples"))?;
+        samples.resize(dims.samples(), 0f32);
+        samples.par_chunks_mut(nx).zip(owners.par_chunks(nx)).enumerate().for_each(
             |(row, (samples, owners))| {
                 for (i, (sample, &part)) in samples.iter_mut().zip(owners).enumerate() {
                     let place = || grid.position([i, row % ny, row / ny]);
@@ -36,6 +38,7 @@ impl Interpolant<'_> {
                 }
             },
         );
+        let samples = Array3::from_shape_vec(dims.shape(), samples).expect("as many as dims say");
         let volume = Volume::new(samples, *grid.frame())?.with_gray_levels();
         Ok(Resampled { volume, owners })
     }
@@ -58,11 +61,15 @@ impl Resampled {
     }
 
     /// A volume that is 1 on the shape and 0 outside.
-    pub fn mask(&self) -> Volume {
-        let inside: Vec<f32> =
-            self.owners.par_iter().map(|&part| f32::from(u8::from(part != NOTHING))).collect();
-        let samples = Array3::from_shape_vec(self.volume.dims().shape(), inside);
-        let frame: Frame = *self.volume.frame();
-        Volume::new(samples.expect("one for each sample"), frame).expect("zeros and ones")
+    ///
+    /// # Errors
+    /// No memory for it.
+    pub fn mask(&self) -> Result<Volume, InterpolateError> {
+        let dims = self.volume.dims();
+        let mut inside = room(dims.samples(), || format!("a mask of {dims} samples"))?;
+        let value = |&part: &u32| f32::from(u8::from(part != NOTHING));
+        inside.par_extend(self.owners.par_iter().map(value));
+        let samples = Array3::from_shape_vec(dims.shape(), inside).expect("one for each sample");
+        Ok(Volume::new(samples, *self.volume.frame())?)
     }
 }

@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use super::Weighting;
+use crate::shown::shown;
 use crate::triangulation::TriangulationError;
 use crate::volume::VolumeError;
 
@@ -75,7 +76,7 @@ pub enum PointsError {
         weight: f64,
     },
     /// A point file is not what it should be.
-    #[error("{path}: {what}")]
+    #[error("{}: {what}", shown(path))]
     Format {
         /// The file.
         path: PathBuf,

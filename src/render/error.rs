@@ -1,4 +1,5 @@
 use super::Size;
+use crate::memory::NoMemory;
 
 /// What can be wrong with the description of a picture.
 #[derive(Debug, thiserror::Error)]
@@ -82,6 +83,9 @@ pub enum RenderError {
         /// Points given.
         points: usize,
     },
+    /// Memory for the pixels cannot be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// PNG encoding failed.
     #[error("cannot encode the picture as PNG: {0}")]
     Png(#[from] image::ImageError),

@@ -9,6 +9,7 @@ use super::facets::vertex_normals;
 use super::light::Studio;
 use super::vector::{V3, add, along, cross, dot, length, scale, sub, unit};
 use super::{Mesh, Scene, Shading};
+use crate::progress;
 
 /// The light that reaches one place.
 #[derive(Clone, Copy, Debug)]
@@ -121,6 +122,7 @@ fn measure(scene: &Scene, studio: &Studio, receivers: &[Receiver]) -> Vec<Light>
     let mut light = vec![Light { mean: 0.0, toward: [0.0; 3], key: 0.0 }; receivers.len()];
     let space = Space::around(scene);
     for (chunk, some) in directions.chunks(MAPS_AT_ONCE).enumerate() {
+        progress::report((chunk * MAPS_AT_ONCE) as u64, directions.len() as u64);
         let maps: Option<Vec<DepthMap>> = space
             .as_ref()
             .map(|space| some.par_iter().map(|&d| DepthMap::new(scene, space, d)).collect());

@@ -14,6 +14,7 @@ use super::tile::draw;
 use super::tiles::Tiles;
 use super::triangle::Triangle;
 use super::{Background, Camera, Picture, RenderError, Scene, Size};
+use crate::memory::room;
 
 /// Samples in a pixel.
 pub(super) const SAMPLES: usize = 16;
@@ -141,12 +142,15 @@ pub(super) fn render(
     background: Background,
 ) -> Result<Picture, RenderError> {
     let lens = Lens::new(camera, size)?;
+    // Before the work.
+    let (width, height) = (size.width() as usize, size.height() as usize);
+    let mut pixels = room(width * height, || format!("a picture of {width}×{height} pixels"))?;
+    pixels.resize(width * height, [0; 4]);
     let studio = Studio::new(&lens);
     let exposure = Exposure::new(scene, &studio);
     let stage = Stage { scene, lens, studio, exposure };
     let primitives = primitives(scene, &lens, size);
     let tiles = Tiles::new(&primitives, size);
-    let mut pixels = vec![[0; 4]; size.width() as usize * size.height() as usize];
     let rows: Vec<Vec<[u8; 4]>> = (0..tiles.count())
         .into_par_iter()
         .map(|tile| draw(&stage, &primitives, tiles.members(tile), tiles.area(tile), background))

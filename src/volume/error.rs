@@ -2,6 +2,8 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::{Dims, SAMPLES};
+use crate::memory::NoMemory;
+use crate::shown::shown;
 
 /// What can be wrong with a volume or the file it comes from.
 #[derive(Debug, thiserror::Error)]
@@ -51,7 +53,7 @@ pub enum VolumeError {
         high: f64,
     },
     /// The operating system refused.
-    #[error("cannot read {path}: {source}{}", next_step(path, source.kind()))]
+    #[error("cannot read {}: {source}{}", shown(path), next_step(path, source.kind()))]
     Io {
         /// The file.
         path: PathBuf,
@@ -59,7 +61,7 @@ pub enum VolumeError {
         source: std::io::Error,
     },
     /// The file is not what its name or header says.
-    #[error("{path}: {what}")]
+    #[error("{}: {what}", shown(path))]
     Format {
         /// The file.
         path: PathBuf,
@@ -67,13 +69,16 @@ pub enum VolumeError {
         what: String,
     },
     /// A file whose header or samples make no volume.
-    #[error("{path}: {source}")]
+    #[error("{}: {source}", shown(path))]
     InFile {
         /// The file.
         path: PathBuf,
         /// What is wrong with them.
         source: Box<VolumeError>,
     },
+    /// Memory for the samples cannot be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// The sample is not installed, or no sample has this name.
     #[error("{0}")]
     Sample(String),

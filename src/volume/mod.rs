@@ -26,6 +26,6 @@ pub use error::VolumeError;
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
 pub(crate) use read::{Element, Lines, NPY_MAGIC, NpyFile, VtkXml, io_error};
-pub use read::{RawLayout, ReadOptions, read};
+pub use read::{RawLayout, ReadOptions, data_files, read};
 pub use sample::{SAMPLES, open, phantom, sample};
 pub use volume::Volume;

@@ -5,6 +5,7 @@ use ndarray::Array3;
 use walpha::export::VolumeFormat;
 use walpha::volume::{Dtype, Endian, Frame, RawLayout, ReadOptions, Volume, read};
 
+use crate::common::{json, ok};
 use crate::files::*;
 
 #[test]
@@ -95,6 +96,46 @@ fn detached_samples_are_found() {
     assert!(missing.unwrap_err().to_string().contains("no.raw"));
     let short = open(&save(f, "v.nhdr", [NRRD, "data file: s1.raw\n"].concat())).unwrap_err();
     assert!(short.to_string().contains("24 bytes, but 12 follow"), "{short}");
+}
+
+/// A header may lead anywhere, so the file that was read is told.
+#[test]
+fn the_files_of_samples_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = &folder.path().join("headers");
+    fs::create_dir(f).unwrap();
+    let all = save(folder.path(), "all.raw", shorts());
+    let elsewhere = all.to_str().unwrap();
+    let cases = [
+        ("v.nhdr", [NRRD, "data file: ../all.raw\n"].concat(), "../all.raw"),
+        ("v.nhdr", format!("{NRRD}data file: {elsewhere}\n"), elsewhere),
+        ("v.mhd", [MHA, "ElementDataFile = ../all.raw\n"].concat(), "../all.raw"),
+        ("v.mhd", format!("{MHA}ElementDataFile = {elsewhere}\n"), elsewhere),
+    ];
+    for (name, header, data) in cases {
+        save(folder.path(), "all.raw", shorts());
+        let path = save(f, name, header);
+        let told = ok(f, &["info", name]);
+        assert!(told.contains(&format!("samples   in {data}")), "{told}");
+        let facts = json(f, &["info", name]);
+        assert_eq!(facts["data_files"], serde_json::json!([data]));
+        fs::write(&all, &shorts()[..10]).unwrap();
+        let text = open(&path).unwrap_err().to_string();
+        assert!(text.contains(name) && text.contains(data) && text.contains("but 10"), "{text}");
+        fs::remove_file(&all).unwrap();
+        let text = open(&path).unwrap_err().to_string();
+        assert!(text.contains(data), "{text}");
+    }
+    save(f, "1.raw", &shorts()[..12]);
+    save(f, "2.raw", &shorts()[12..]);
+    save(f, "v.nhdr", [NRRD, "data file: %d.raw 1 2 1\n"].concat());
+    assert!(ok(f, &["info", "v.nhdr"]).contains("samples   in 2 files, 1.raw to 2.raw"));
+    // Samples that are no numbers are an error about the file they stand in.
+    let text = NRRD.replace("type: short", "type: float").replace("raw", "text");
+    let path = save(f, "v.nhdr", text + "data file: numbers.txt\n");
+    save(f, "numbers.txt", "1e99 ".repeat(12));
+    let said = open(&path).unwrap_err().to_string();
+    assert!(said.contains("v.nhdr") && said.contains("numbers.txt"), "{said}");
 }
 
 #[test]

@@ -20,7 +20,7 @@ use super::super::output::tell;
 use super::super::pipeline::{Domain, Input, read};
 use super::super::progress::Progress;
 use super::super::report::{AlphaReport, SCHEMA_VERSION};
-use super::{Ladder, Mesh};
+use super::{Ladder, Mesh, short};
 
 /// What `walpha ladder` did over detail.
 #[derive(Serialize)]
@@ -136,6 +136,7 @@ impl Ladder {
         };
         folder.write("detail.csv", |out| write_rows(&facts.levels, out))?;
         folder.write("detail.json", |out| Ok(serde_json::to_writer_pretty(out, &facts)?))?;
+        folder.finish()?;
         tell(global, &facts)
     }
 
@@ -147,7 +148,7 @@ impl Ladder {
             selection: Selection { rule: SelectionRule::Count(count), ..selection },
         });
         let by_epsilon = self.epsilons.iter().map(|&epsilon| Wanted {
-            name: format!("epsilon-{epsilon}"),
+            name: format!("epsilon-{}", short(epsilon)),
             haar: HaarOptions { tolerance: Tolerance::Epsilon(epsilon), ..haar },
             selection,
         });

@@ -4,6 +4,7 @@ mod detail;
 mod facts;
 mod regions;
 
+use std::fmt::{Display, LowerExp};
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
@@ -34,7 +35,7 @@ use regions::region;
 pub struct Ladder {
     #[command(flatten)]
     input: InputArgs,
-    /// Folder to write to; made if it is not there.
+    /// Folder to write to, made if it is not there; files in it are replaced, all at the end.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Squared lengths, as in 1,2,5,inf; or auto, for critical values of the topology.
@@ -79,8 +80,14 @@ impl Ladder {
         if self.roi.is_some() && !detail {
             bail!("--roi belongs to levels of detail: give --counts or --epsilons too");
         }
+        once("--counts", &self.counts)?;
+        once("--epsilons", &self.epsilons)?;
         let meshes = meshes(&self.mesh, if detail { &["ply"] } else { &[] })?;
-        let folder = Folder::open(&self.output, "--output")?;
+        let names: &[&str] = match detail {
+            true => &["detail.csv", "detail.json"],
+            false => &["ladder.csv", "voids.csv", "ladder.png", "ladder.svg", "ladder.json"],
+        };
+        let folder = Folder::open(&self.output, "--output", names)?;
         if detail {
             return self.over_detail(global, meshes, folder);
         }
@@ -138,6 +145,7 @@ impl Ladder {
         files.push(self.output.join("ladder.json").display().to_string());
         facts.finish(progress.finish(), files);
         folder.write("ladder.json", |out| Ok(serde_json::to_writer_pretty(out, &facts)?))?;
+        folder.finish()?;
         tell(global, &facts)
     }
 }
@@ -145,7 +153,23 @@ impl Ladder {
 /// The name of a level's mesh: its place in the ladder, and its α.
 fn level_name(ladder: &Levels, k: usize, level: &Level, extension: &str) -> String {
     let digits = ladder.levels.len().to_string().len();
-    format!("level-{:0digits$}-alpha-{}.{extension}", k + 1, level.alpha)
+    format!("level-{:0digits$}-alpha-{}.{extension}", k + 1, short(level.alpha))
+}
+
+/// A number for the name of a file, which must not have hundreds of digits.
+fn short(number: impl Display + LowerExp) -> String {
+    /// As a double has, with a sign and a point and some zeros.
+    const LONG: usize = 24;
+    let text = number.to_string();
+    if text.len() > LONG { format!("{number:e}") } else { text }
+}
+
+/// Refuses what is named twice, as one file would replace the other.
+fn once<T: PartialEq + Display>(option: &str, values: &[T]) -> anyhow::Result<()> {
+    match values.iter().enumerate().find(|(k, value)| values[..*k].contains(value)) {
+        Some((_, value)) => bail!("{option} names {value} twice; each level has a file of its own"),
+        None => Ok(()),
+    }
 }
 
 /// A format of meshes.
@@ -155,14 +179,17 @@ struct Mesh {
 }
 
 fn meshes(asked: &[String], silent: &[&str]) -> anyhow::Result<Vec<Mesh>> {
-    let asked: Vec<&str> = asked.iter().map(|extension| extension.trim()).collect();
-    let extensions = if asked.is_empty() { silent } else { &asked[..] };
-    let mesh = |extension: &&str| {
-        let extension = extension.trim_start_matches('.').to_ascii_lowercase();
+    let plain = |extension: &str| extension.trim().trim_start_matches('.').to_ascii_lowercase();
+    let mut extensions: Vec<String> = asked.iter().map(|extension| plain(extension)).collect();
+    once("--mesh", &extensions)?;
+    if extensions.is_empty() {
+        extensions = silent.iter().map(|extension| plain(extension)).collect();
+    }
+    let mesh = |extension: String| {
         let name = format!("level.{extension}");
         let format =
             Format::of(Path::new(&name)).map_err(|unknown| anyhow!("--mesh: {unknown}"))?;
         Ok(Mesh { exporter: format.exporter(false), extension })
     };
-    extensions.iter().map(mesh).collect()
+    extensions.into_iter().map(mesh).collect()
 }

@@ -3,39 +3,71 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use super::io_error;
-use crate::volume::VolumeError;
+use super::described::Described;
+use super::{format_error, io_error};
+use crate::shown::shown;
+use crate::volume::{Volume, VolumeError};
+
+/// The files that a header names, relative to its folder; they may stand anywhere.
+pub(super) fn beside(header: &Path, names: &[String]) -> Vec<PathBuf> {
+    let folder = header.parent().unwrap_or(Path::new(""));
+    names.iter().map(|name| folder.join(name)).collect()
+}
+
+/// Reads the volume that a header describes from these files; `skip` gives how much of a file of
+/// this length is passed over.
+pub(super) fn read(
+    header: &Path,
+    described: Described,
+    files: &[PathBuf],
+    skip: impl Fn(u64) -> u64,
+) -> Result<Volume, VolumeError> {
+    let source = Detached::new(files, skip)?;
+    let bytes = source.bytes;
+    described.read(header, source, bytes).map_err(naming(header, files))
+}
+
+/// Errors about samples that stand in other files than their header, with the names of both.
+pub(super) fn naming<'a>(
+    header: &'a Path,
+    files: &'a [PathBuf],
+) -> impl Fn(VolumeError) -> VolumeError + 'a {
+    let first = files.first().map_or(String::new(), |file| shown(file));
+    let place = match files {
+        [.., last] if files.len() > 1 => format!("{first} to {}", shown(last)),
+        _ => first,
+    };
+    move |error| match error {
+        VolumeError::Format { what, .. } => {
+            format_error(header, format!("(samples in {place}) {what}"))
+        }
+        VolumeError::Io { .. } | VolumeError::InFile { .. } => error,
+        other => format_error(header, format!("(samples in {place}) {other}")),
+    }
+}
 
 /// Samples that stand in other files than their header: these files one after the other, each
 /// without its first bytes. One is open at a time.
 #[derive(Debug)]
-pub(super) struct Detached {
+struct Detached {
     /// Those still to come, and the bytes to pass over in each.
     files: VecDeque<(PathBuf, u64)>,
-    current: Option<File>,
+    current: Option<(PathBuf, File)>,
     /// Bytes in all, those skipped left out.
-    pub bytes: u64,
+    bytes: u64,
 }
 
 impl Detached {
-    /// Files by their names in a header, which are relative to its folder; `skip` gives how much
-    /// of a file of this length is passed over.
-    pub fn new(
-        header: &Path,
-        names: &[String],
-        skip: impl Fn(u64) -> u64,
-    ) -> Result<Self, VolumeError> {
-        let folder = header.parent().unwrap_or(Path::new(""));
+    fn new(files: &[PathBuf], skip: impl Fn(u64) -> u64) -> Result<Self, VolumeError> {
         let mut detached = Self { files: VecDeque::new(), current: None, bytes: 0 };
-        for name in names {
-            let path = folder.join(name);
-            let file = std::fs::metadata(&path).map_err(io_error(&path))?;
+        for path in files {
+            let file = std::fs::metadata(path).map_err(io_error(path))?;
             if file.is_dir() {
-                return Err(io_error(&path)(io::ErrorKind::IsADirectory.into()));
+                return Err(io_error(path)(io::ErrorKind::IsADirectory.into()));
             }
             let skip = skip(file.len());
             detached.bytes += file.len().saturating_sub(skip);
-            detached.files.push_back((path, skip));
+            detached.files.push_back((path.clone(), skip));
         }
         Ok(detached)
     }
@@ -43,17 +75,21 @@ impl Detached {
 
 impl Read for Detached {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        // Whoever reads knows the header's name alone.
+        let named = |path: &Path, error: io::Error| {
+            io::Error::new(error.kind(), format!("{}: {error}", shown(path)))
+        };
         loop {
-            if let Some(file) = &mut self.current {
-                let found = file.read(buffer)?;
+            if let Some((path, file)) = &mut self.current {
+                let found = file.read(buffer).map_err(|error| named(path, error))?;
                 if found > 0 || buffer.is_empty() {
                     return Ok(found);
                 }
             }
             let Some((path, skip)) = self.files.pop_front() else { return Ok(0) };
-            let mut file = File::open(&path)?;
-            file.seek(SeekFrom::Start(skip))?;
-            self.current = Some(file);
+            let mut file = File::open(&path).map_err(|error| named(&path, error))?;
+            file.seek(SeekFrom::Start(skip)).map_err(|error| named(&path, error))?;
+            self.current = Some((path, file));
         }
     }
 }

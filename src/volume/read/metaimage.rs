@@ -1,9 +1,9 @@
 use std::fs::File;
 use std::io::BufReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::described::{Described, Encoding, frame};
-use super::detached::Detached;
+use super::detached::{self, beside};
 use super::lines::Lines;
 use super::nrrd::numbered;
 use super::{format_error, io_error};
@@ -30,34 +30,21 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
     let mut lines = Lines::new(BufReader::new(file));
     let header = Header::read(path, &mut lines)?;
     let described = header.described(path)?;
-    let words: Vec<&str> = header.data.split_whitespace().collect();
-    if words.first().is_some_and(|word| word.eq_ignore_ascii_case("local")) {
+    let Some(names) = header.names(path, &mut lines)? else {
         let bytes = length - lines.bytes();
         return described.read(path, lines.into_inner(), bytes);
-    }
-    let names = if words.first() == Some(&"LIST") {
-        let mut names = Vec::new();
-        while let Some(line) = lines.next().map_err(io_error(path))? {
-            if !line.trim().is_empty() {
-                names.push(line.trim().to_owned());
-            }
-        }
-        names
-    } else {
-        match numbered(&words) {
-            Some(names) => names.map_err(|what| format_error(path, what))?,
-            None => vec![header.data.clone()],
-        }
     };
-    if names.iter().all(String::is_empty) {
-        return Err(format_error(path, "names no data file: its header is damaged"));
-    }
     let each = described.bytes() / names.len() as u64;
     let skip = header.skip(path)?;
     let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
-    let source = Detached::new(path, &names, skip)?;
-    let bytes = source.bytes;
-    described.read(path, source, bytes)
+    detached::read(path, described, &beside(path, &names), skip)
+}
+
+/// The files that hold the samples, where the header does not.
+pub(super) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
+    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+    let names = Header::read(path, &mut lines)?.names(path, &mut lines)?;
+    Ok(names.map_or_else(Vec::new, |names| beside(path, &names)))
 }
 
 struct Header {
@@ -86,6 +73,36 @@ impl Header {
         }
         let what = "ends before ElementDataFile: it is truncated, or no MetaImage file";
         Err(format_error(path, what))
+    }
+
+    /// The data files as they are named; `None` where the samples follow the header.
+    fn names(
+        &self,
+        path: &Path,
+        lines: &mut Lines<BufReader<File>>,
+    ) -> Result<Option<Vec<String>>, VolumeError> {
+        let words: Vec<&str> = self.data.split_whitespace().collect();
+        if words.first().is_some_and(|word| word.eq_ignore_ascii_case("local")) {
+            return Ok(None);
+        }
+        let names = if words.first() == Some(&"LIST") {
+            let mut names = Vec::new();
+            while let Some(line) = lines.next().map_err(io_error(path))? {
+                if !line.trim().is_empty() {
+                    names.push(line.trim().to_owned());
+                }
+            }
+            names
+        } else {
+            match numbered(&words) {
+                Some(names) => names.map_err(|what| format_error(path, what))?,
+                None => vec![self.data.clone()],
+            }
+        };
+        if names.iter().all(String::is_empty) {
+            return Err(format_error(path, "names no data file: its header is damaged"));
+        }
+        Ok(Some(names))
     }
 
     /// The value of the first of these keys that is there.

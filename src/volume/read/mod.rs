@@ -27,7 +27,7 @@ mod zarr;
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
@@ -108,6 +108,26 @@ fn read_file(path: &Path, level: Option<u32>) -> Result<Volume, VolumeError> {
         Kind::Tiff => tiff::read(path),
         #[cfg(feature = "dicom")]
         Kind::Dicom => dicom::read_series_of(path),
+    }
+}
+
+/// The files that hold the samples of a volume, where its header is a file of its own (NRRD,
+/// MetaImage, NIfTI); else none. A header may name any file, not only those of its folder.
+///
+/// # Errors
+/// The header cannot be read.
+pub fn data_files(path: &Path, options: &ReadOptions) -> Result<Vec<PathBuf>, VolumeError> {
+    if options.raw.is_some() || !path.is_file() {
+        return Ok(Vec::new());
+    }
+    let mut start = Vec::new();
+    let file = File::open(path).map_err(io_error(path))?;
+    file.take(detect::BYTES).read_to_end(&mut start).map_err(io_error(path))?;
+    match detect::kind(path, &start)? {
+        Kind::Nrrd => nrrd::data_files(path),
+        Kind::MetaImage => metaimage::data_files(path),
+        Kind::Nifti => nifti::data_files(path, &start),
+        _ => Ok(Vec::new()),
     }
 }
 

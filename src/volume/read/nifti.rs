@@ -1,8 +1,9 @@
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::described::{Described, Encoding, diagonal, frame};
+use super::detached::naming;
 use super::payload::{Length, Payload};
 use super::{format_error, io_error, payload_error};
 use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
@@ -51,7 +52,8 @@ pub(super) fn read(path: &Path, reader: impl Read, length: Length) -> Result<Vol
         let offset = header.vox_offset().clamp(0.0, length as f64) as u64;
         file.seek(SeekFrom::Start(offset)).map_err(io_error(&image))?;
         let left = Length::Exactly(length - offset);
-        return samples(path, described, slope, inter, BufReader::new(file), left);
+        return samples(path, described, slope, inter, BufReader::new(file), left)
+            .map_err(naming(path, &[image]));
     }
     let offset = header.offset(path)?;
     let skip = offset - header.bytes.len() as u64;
@@ -60,6 +62,13 @@ pub(super) fn read(path: &Path, reader: impl Read, length: Length) -> Result<Vol
         return Err(format_error(path, format!("ends before its samples at byte {offset}")));
     }
     samples(path, described, slope, inter, reader, length.minus(offset))
+}
+
+/// The file that holds the samples, where the header has one of its own.
+pub(super) fn data_files(path: &Path, start: &[u8]) -> Result<Vec<PathBuf>, VolumeError> {
+    let Some((version, endian)) = version(start) else { return Ok(Vec::new()) };
+    let header = Header { bytes: start.to_owned(), version, endian };
+    Ok(if header.is_pair(path)? { vec![path.with_extension("img")] } else { Vec::new() })
 }
 
 /// Reads samples and scales them, in doubles where `f32` does not hold the numbers of the file.

@@ -2,6 +2,7 @@ use std::io::Read;
 use std::str::FromStr;
 
 use super::payload::Element;
+use crate::memory::{NoMemory, room};
 use crate::volume::Dtype;
 
 /// Reads exactly `count` numbers of a type, written as text with white space between them, from
@@ -21,12 +22,14 @@ pub(crate) fn numbers<T: Element + FromStr + Into<f64>>(
              mislabelled"
         ));
     }
-    let mut text = Vec::new();
+    let no_room = |lack: NoMemory| lack.to_string();
+    let mut text = room(bytes as usize, || "its text".into()).map_err(no_room)?;
     reader
         .take(bytes)
         .read_to_end(&mut text)
         .map_err(|error| format!("cannot be read: {error}"))?;
-    let mut values = Vec::with_capacity(count as usize);
+    let mut values =
+        room(count as usize, || format!("a row of {count} numbers")).map_err(no_room)?;
     for word in text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
         if values.len() as u64 == count {
             return Err(format!("claims {count} numbers, but more follow: it is mislabelled"));

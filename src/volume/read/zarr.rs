@@ -1,6 +1,6 @@
 //! Zarr arrays, and pyramids of them as OME-Zarr lays them out.
 
-use std::path::Path;
+use std::path::{Component, Path};
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -14,6 +14,7 @@ use super::described::{Described, Encoding, diagonal, frame};
 use super::folder::is_zarr;
 use super::format_error;
 use crate::progress;
+use crate::shown::shown;
 use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
 
 /// Reads a Zarr array of version 2 or 3 in a folder, or a level of an OME-Zarr pyramid (0, the finest,
@@ -55,6 +56,13 @@ pub(super) fn read(path: &Path, level: Option<u32>) -> Result<Volume, VolumeErro
     let Some(name) = dataset["path"].as_str() else {
         return Err(said(format!("names no array for level {wanted}: its metadata are damaged")));
     };
+    // An upward step would lead to files that nobody named.
+    if Path::new(name).components().any(|part| part == Component::ParentDir) {
+        let what = format!(
+            "names {name:?} for level {wanted}, outside the store: its metadata are damaged"
+        );
+        return Err(said(what));
+    }
     let array = Array::open(store, &format!("/{}", name.trim_matches('/')))
         .map_err(|error| damaged(&error))?;
     let transforms = [&dataset["coordinateTransformations"], &pyramid["coordinateTransformations"]];
@@ -76,7 +84,7 @@ fn children(folder: &Path) -> String {
     let mut names: Vec<String> = entries
         .map(|entry| entry.path())
         .filter(|path| is_zarr(path))
-        .map(|path| path.display().to_string())
+        .map(|path| shown(&path))
         .collect();
     names.sort();
     if names.is_empty() { "nothing".to_owned() } else { names.join(", ") }

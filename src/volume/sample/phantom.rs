@@ -1,6 +1,7 @@
 use ndarray::Array3;
 use rayon::prelude::*;
 
+use crate::memory::room;
 use crate::volume::{Dims, Frame, Volume, VolumeError};
 
 /// Half the head's box is 1; an edge fades over this much, one voxel of a 64³ phantom.
@@ -22,12 +23,13 @@ const TEETH: f64 = 245.0;
 /// are used, which IEEE 754 rounds the same everywhere: same size, same bytes.
 ///
 /// # Errors
-/// A size of 0, or above 1625, the largest whose cube is within [`Dims::MAX_SAMPLES`].
+/// A size of 0, or above 1625, the largest whose cube is within [`Dims::MAX_SAMPLES`], or no memory.
 pub fn phantom(size: u64) -> Result<Volume, VolumeError> {
     let dims = Dims::new(size, size, size)?;
     let n = dims.x();
     let at = |i: usize| (2 * i + 1) as f64 / n as f64 - 1.0;
-    let mut samples = vec![0f32; dims.samples()];
+    let mut samples = room(dims.samples(), || format!("a phantom of {dims} samples"))?;
+    samples.resize(dims.samples(), 0f32);
     samples.par_chunks_mut(n).enumerate().for_each(|(row, samples)| {
         let (y, z) = (at(row % n), at(row / n));
         for (x, sample) in samples.iter_mut().enumerate() {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use flate2::read::GzDecoder;
 
+use crate::shown::shown;
 use crate::volume::read::{Length, io_error, read_inr};
 use crate::volume::{ReadOptions, Volume, VolumeError, read};
 
@@ -29,8 +30,8 @@ fn find(directory: Option<&Path>, archive: &Path) -> Result<Volume, VolumeError>
             "sample:skull is not installed: {FILE} was sought below CGAL_DATA_DIR ({}) and in {}; \
              on Debian and Ubuntu `sudo apt-get install libcgal-demo` brings it, elsewhere set \
              CGAL_DATA_DIR to CGAL's data folder; sample:phantom needs nothing",
-            directory.map_or("not set".into(), |d| d.display().to_string()),
-            archive.display(),
+            directory.map_or("not set".into(), shown),
+            shown(archive),
         )))
     }
 }

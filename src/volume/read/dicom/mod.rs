@@ -12,6 +12,7 @@ use super::described::{Described, Encoding};
 use super::folder::dicom_files;
 use super::format_error;
 use crate::progress;
+use crate::shown::shown;
 use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
 use slice::Slice;
 use stack::stacked;
@@ -41,7 +42,7 @@ pub(super) fn read_folder(folder: &Path, files: &[PathBuf]) -> Result<Volume, Vo
     if series.len() > 1 {
         let list: Vec<String> = series
             .iter()
-            .map(|(_, count, path)| format!("{count} slices with {}", path.display()))
+            .map(|(_, count, path)| format!("{count} slices with {}", shown(path)))
             .collect();
         let what = format!(
             "holds {} DICOM series, {}; name a file of the one to read",

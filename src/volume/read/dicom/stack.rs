@@ -1,6 +1,7 @@
 use std::path::Path;
 
 use super::slice::Slice;
+use crate::shown::shown;
 use crate::volume::read::format_error;
 use crate::volume::{Frame, VolumeError};
 
@@ -25,7 +26,7 @@ pub(super) fn stacked(
         return Err(said("holds no DICOM slices: name a folder of them".into()));
     };
     for slice in &slices {
-        let (name, other) = (slice.path.display(), first.path.display());
+        let (name, other) = (shown(&slice.path), shown(&first.path));
         if (slice.columns, slice.rows) != (first.columns, first.rows) {
             return Err(said(format!(
                 "has a slice of {}×{} pixels in {name}, and of {}×{} in {other}: move those that do not \
@@ -70,7 +71,7 @@ fn even(slices: &[Slice], normal: [f64; 3]) -> Result<Option<[f64; 3]>, String> 
     let at = |slice: &Slice| dot(slice.position, normal);
     let mut gaps: Vec<f64> = slices.windows(2).map(|two| at(&two[1]) - at(&two[0])).collect();
     let pairs: Vec<_> = slices.windows(2).zip(gaps.clone()).collect();
-    let names = |two: &[Slice]| format!("{} and {}", two[0].path.display(), two[1].path.display());
+    let names = |two: &[Slice]| format!("{} and {}", shown(&two[0].path), shown(&two[1].path));
     gaps.sort_by(f64::total_cmp);
     // Of an even number the greater, so that not all places need be doubled; the lesser for what is
     // usual, so that a gap among few stands out.

@@ -8,7 +8,7 @@ use crate::volume::VolumeError;
 
 /// The names a `data file` field gives: one, a `LIST` of the lines that follow, or a numbered row
 /// `pattern min max step`, where the pattern has one `%d`, perhaps `%03d`.
-pub(super) fn data_files(
+pub(super) fn named(
     path: &Path,
     value: &str,
     lines: &mut Lines<BufReader<File>>,

@@ -4,14 +4,14 @@ mod space;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::BufReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::described::{Described, Encoding};
-use super::detached::Detached;
+use super::detached::{self, beside};
 use super::lines::Lines;
 use super::{format_error, io_error};
 use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
-use files::data_files;
+use files::named;
 pub(super) use files::numbered;
 
 /// The first bytes of each NRRD file, before the digit of its version.
@@ -47,11 +47,16 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
             }
             let each = described.bytes() / names.len() as u64;
             let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
-            let source = Detached::new(path, names, skip)?;
-            let bytes = source.bytes;
-            described.read(path, source, bytes)
+            detached::read(path, described, &beside(path, names), skip)
         }
     }
+}
+
+/// The files that hold the samples, where the header does not.
+pub(super) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
+    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+    let header = Header::read(path, &mut lines)?;
+    Ok(header.files.map_or_else(Vec::new, |names| beside(path, &names)))
 }
 
 struct Header {
@@ -82,7 +87,7 @@ impl Header {
             };
             let (name, value) = (name.trim().to_lowercase(), value.trim());
             if name == "data file" || name == "datafile" {
-                header.files = Some(data_files(path, value, lines)?);
+                header.files = Some(named(path, value, lines)?);
                 if value.starts_with("LIST") {
                     return Ok(header);
                 }

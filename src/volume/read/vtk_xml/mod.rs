@@ -47,15 +47,20 @@ struct Appended {
 impl VtkXml {
     /// Whether a file begins as VTK's XML files do.
     pub fn is_header(start: &[u8]) -> bool {
-        let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
         let holds = |part: &[u8]| start.windows(part.len()).any(|window| window == part);
-        start.starts_with(b"<") && holds(b"<VTKFile")
+        begins_as_xml(start) && holds(b"<VTKFile")
     }
 
     /// Reads all but the arrays. The root must be `VTKFile`.
     pub fn open(path: &Path) -> Result<Self, VolumeError> {
         let file = File::open(path).map_err(io_error(path))?;
-        let length = file.metadata().map_err(io_error(path))?.len();
+        let metadata = file.metadata().map_err(io_error(path))?;
+        if !metadata.is_file() {
+            let what =
+                "is no ordinary file, and VTK's XML is read in several passes: copy it into one";
+            return Err(format_error(path, what));
+        }
+        let length = metadata.len();
         let mut this = Self {
             path: path.into(),
             length,
@@ -65,7 +70,12 @@ impl VtkXml {
             elements: Vec::new(),
             appended: None,
         };
-        this.scan(BufReader::new(file))?;
+        let mut file = BufReader::new(file);
+        // Before a search for the first element, which may go through all of a huge file.
+        if !begins_as_xml(file.fill_buf().map_err(io_error(path))?) {
+            return Err(this.said("is no VTK file: it does not begin with an element"));
+        }
+        this.scan(file)?;
         this.root()?;
         Ok(this)
     }
@@ -209,4 +219,9 @@ impl VtkXml {
         file.seek(SeekFrom::Start(start)).map_err(io_error(&self.path))?;
         Ok(BufReader::new(file.take(end.saturating_sub(start))))
     }
+}
+
+fn begins_as_xml(start: &[u8]) -> bool {
+    let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    start.trim_ascii_start().starts_with(b"<")
 }

@@ -1,0 +1,51 @@
+//! What ends the command before its time, and how it goes then: no file is left half written.
+
+use walpha::export::abandon;
+
+use super::{INTERRUPTED, progress};
+
+/// Prepares for Ctrl-C, for a file that may not grow, and for a lack of memory.
+///
+/// The large allocations of the library return errors. Where one of the others fails, Rust has no way
+/// back in stable form: it says how many bytes were wanted and aborts, and so does C++ where it cannot
+/// throw. An allocator of our own could not tell those from the allocations that return errors, so
+/// the abort itself is caught.
+pub fn prepare() {
+    // A handler that cannot be set leaves the system's own.
+    let _ = ctrlc::set_handler(|| {
+        progress::clear();
+        abandon(INTERRUPTED)
+    });
+    #[cfg(unix)]
+    unix::prepare();
+}
+
+#[cfg(unix)]
+mod unix {
+    use nix::libc::{_exit, c_int};
+    use nix::sys::signal::{SigHandler, Signal, signal};
+    use walpha::export::sweep;
+
+    const ABORTED: &str = "\
+error: walpha stopped in the middle of its work
+  why: the line above says what failed, memory most likely; no unfinished file was left
+ next: give it more memory, or a smaller input; if that was not it, please report this with the input
+";
+
+    pub fn prepare() {
+        // SAFETY: `aborted` does only what a handler may do.
+        let _ = unsafe { signal(Signal::SIGABRT, SigHandler::Handler(aborted)) };
+        // So that writing beyond the limit (`ulimit -f`) is an error like that of a full disk.
+        // SAFETY: no code of ours runs on this signal.
+        let _ = unsafe { signal(Signal::SIGXFSZ, SigHandler::SigIgn) };
+    }
+
+    /// Allocates nothing, waits for no lock, and does not return.
+    extern "C" fn aborted(_: c_int) {
+        sweep();
+        // There is nobody to tell if it fails.
+        let _ = nix::unistd::write(std::io::stderr(), ABORTED.as_bytes());
+        // SAFETY: it ends the process without running anything else in it, as a handler may.
+        unsafe { _exit(1) }
+    }
+}

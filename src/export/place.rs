@@ -1,0 +1,133 @@
+//! Where a file is to stand, and whether two names are one place.
+
+use std::fs::{self, Metadata, OpenOptions};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use super::unfinished::gate;
+use crate::shown::shown;
+
+/// A place for a file: behind all links, and with what stands there.
+#[derive(Debug)]
+pub(super) struct Place {
+    pub path: PathBuf,
+    pub existing: Option<Metadata>,
+}
+
+impl Place {
+    /// Refuses at once what can be known to fail later: a missing folder, a name that is too long, a
+    /// folder or a write-protected file of this name.
+    pub fn of(path: &Path) -> io::Result<Self> {
+        let existing = match fs::metadata(path) {
+            Ok(existing) => Some(existing),
+            Err(error) if error.kind() == ErrorKind::NotFound => None,
+            Err(error) => return Err(error),
+        };
+        let path = behind_links(path);
+        match &existing {
+            None => {
+                let folder = folder(&path);
+                if !folder.exists() {
+                    let what = format!("there is no folder {}", shown(folder));
+                    return Err(io::Error::new(ErrorKind::NotFound, what));
+                }
+            }
+            Some(existing) if existing.is_dir() => return Err(ErrorKind::IsADirectory.into()),
+            Some(existing) if existing.is_file() => {
+                // The system lets root write to files that nobody may write to.
+                if existing.permissions().readonly() {
+                    let what = "it is there and write-protected";
+                    return Err(io::Error::new(ErrorKind::PermissionDenied, what));
+                }
+                OpenOptions::new().write(true).open(&path)?;
+            }
+            Some(_) => {}
+        }
+        Ok(Self { path, existing })
+    }
+
+    /// Whether a pipe, a device or the like stands there, which is written to as it comes.
+    pub fn is_stream(&self) -> bool {
+        self.existing.as_ref().is_some_and(|existing| !existing.is_file())
+    }
+
+    pub fn folder(&self) -> &Path {
+        folder(&self.path)
+    }
+}
+
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// The path that links of this name lead to, whether something stands there or not.
+fn behind_links(path: &Path) -> PathBuf {
+    /// As many as Linux follows.
+    const MOST_LINKS: usize = 40;
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(link) = fs::read_link(&path) else { break };
+        path = folder(&path).join(link);
+    }
+    path
+}
+
+/// What tells places apart.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Key {
+    path: PathBuf,
+    /// Device and number of the file that stands there: hard links are one file.
+    file: Option<(u64, u64)>,
+}
+
+/// A place that is one target's alone, until this is dropped.
+#[derive(Debug)]
+pub(super) struct Claim(Key);
+
+impl Claim {
+    /// Refuses a place that another target is open for: one of the two files would be lost.
+    pub fn of(place: &Place) -> io::Result<Self> {
+        let name = place.path.file_name().ok_or(ErrorKind::InvalidFilename)?;
+        let path = fs::canonicalize(place.folder())?.join(name);
+        Self::new(Key { path, file: place.existing.as_ref().and_then(number) })
+    }
+
+    /// The same for standard output.
+    pub fn of_stdout() -> io::Result<Self> {
+        Self::new(Key { path: super::Target::STDOUT.into(), file: None })
+    }
+
+    fn new(key: Key) -> io::Result<Self> {
+        let mut gate = gate();
+        let same =
+            |other: &Key| key.path == other.path || key.file.is_some() && key.file == other.file;
+        if gate.claimed.iter().any(same) {
+            return Err(io::Error::new(ErrorKind::AlreadyExists, "another output goes there, too"));
+        }
+        gate.claimed.push(key.clone());
+        Ok(Self(key))
+    }
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        let claimed = &mut gate().claimed;
+        if let Some(at) = claimed.iter().position(|key| *key == self.0) {
+            claimed.swap_remove(at);
+        }
+    }
+}
+
+#[cfg(unix)]
+fn number(existing: &Metadata) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    Some((existing.dev(), existing.ino()))
+}
+
+#[cfg(not(unix))]
+fn number(_: &Metadata) -> Option<(u64, u64)> {
+    None
+}

@@ -1,0 +1,148 @@
+//! What is not complete yet, and how it goes when the process ends before its time.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+
+/// A file or folder that goes again unless it is finished. Entries are never freed, and their list
+/// is read without a lock: the handler of a signal may do so at any moment.
+#[derive(Debug)]
+pub(super) struct Entry {
+    name: Name,
+    folder: bool,
+    there: AtomicBool,
+    next: OnceLock<&'static Entry>,
+}
+
+/// A path as the system takes it, so that removing it needs no memory.
+#[cfg(unix)]
+type Name = std::ffi::CString;
+#[cfg(not(unix))]
+type Name = PathBuf;
+
+static FIRST: OnceLock<&'static Entry> = OnceLock::new();
+
+/// What is known of the run's outputs. Locked while a file or folder comes or goes.
+#[derive(Debug, Default)]
+pub(super) struct Gate {
+    last: Option<&'static Entry>,
+    /// The files that targets are open for.
+    pub claimed: Vec<super::place::Key>,
+}
+
+pub(super) fn gate() -> MutexGuard<'static, Gate> {
+    static GATE: Mutex<Gate> = Mutex::new(Gate { last: None, claimed: Vec::new() });
+    GATE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Gate {
+    /// Enters a path before something is made there.
+    pub fn enter(&mut self, path: &Path, folder: bool) -> io::Result<&'static Entry> {
+        let (there, next) = (AtomicBool::new(true), OnceLock::new());
+        let entry: &Entry = Box::leak(Box::new(Entry { name: name(path)?, folder, there, next }));
+        let place = self.last.map_or(&FIRST, |last| &last.next);
+        place.set(entry).expect("the last entry has no next");
+        self.last = Some(entry);
+        Ok(entry)
+    }
+}
+
+impl Entry {
+    /// It is complete, or gone.
+    pub fn strike(&self) {
+        self.there.store(false, Ordering::Release);
+    }
+
+    fn remove(&self) {
+        // It may have gone by itself; there is nobody to tell.
+        #[cfg(unix)]
+        let _ = match self.folder {
+            true => rustix::fs::rmdir(&*self.name),
+            false => rustix::fs::unlink(&*self.name),
+        };
+        #[cfg(not(unix))]
+        let _ = match self.folder {
+            true => fs::remove_dir(&self.name),
+            false => fs::remove_file(&self.name),
+        };
+    }
+}
+
+#[cfg(unix)]
+fn name(path: &Path) -> io::Result<Name> {
+    use std::os::unix::ffi::OsStrExt;
+    Ok(Name::new(path.as_os_str().as_bytes())?)
+}
+
+#[cfg(not(unix))]
+fn name(path: &Path) -> io::Result<Name> {
+    Ok(path.to_owned())
+}
+
+/// Removes every file that is not complete, and every folder made for such files that holds no
+/// other. On Unix this takes no lock and no memory, and calls nothing but `unlink` and `rmdir`: the
+/// handler of any signal may call it, if the process ends then.
+pub fn sweep() {
+    // Folders when they are empty.
+    for folders in [false, true] {
+        let mut next = FIRST.get();
+        while let Some(entry) = next {
+            if entry.folder == folders && entry.there.load(Ordering::Acquire) {
+                entry.remove();
+            }
+            next = entry.next.get();
+        }
+    }
+}
+
+/// Removes what is not complete, and ends the process before another file can appear. For the handler
+/// of an interrupt, in a thread of its own: files that stand under their names are complete.
+pub fn abandon(code: i32) -> ! {
+    let _for_good = gate();
+    sweep();
+    std::process::exit(code)
+}
+
+/// A folder made for files to come. Dropped before it is kept, it goes again if it is empty.
+#[derive(Debug)]
+pub struct NewFolder {
+    path: PathBuf,
+    entry: &'static Entry,
+}
+
+impl NewFolder {
+    /// Makes a folder; `None` if there is one already.
+    ///
+    /// # Errors
+    /// What the system said: a file stands there, the folder above is missing, and so on.
+    pub fn make(path: &Path) -> io::Result<Option<Self>> {
+        let path = std::path::absolute(path)?;
+        let mut gate = gate();
+        match fs::create_dir(&path) {
+            Ok(()) => {}
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && path.is_dir() => {
+                return Ok(None);
+            }
+            Err(error) => return Err(error),
+        }
+        let entry = gate.enter(&path, true)?;
+        Ok(Some(Self { path, entry }))
+    }
+
+    /// Leaves the folder where it is.
+    pub fn keep(self) {
+        self.entry.strike();
+    }
+}
+
+impl Drop for NewFolder {
+    fn drop(&mut self) {
+        let _gate = gate();
+        if self.entry.there.swap(false, Ordering::AcqRel) {
+            // Only if it is empty.
+            let _ = fs::remove_dir(&self.path);
+        }
+    }
+}

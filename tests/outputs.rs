@@ -1,0 +1,290 @@
+//! What becomes of files: those that are replaced, those that cannot be written, and those that a
+//! failure or an interrupt leaves unfinished.
+#![cfg(unix)]
+
+mod common;
+
+use std::fs::{self, Permissions};
+use std::os::unix::fs::{MetadataExt, PermissionsExt, chown, symlink};
+use std::os::unix::process::CommandExt;
+use std::path::Path;
+use std::process::{Command, Output};
+use std::time::{Duration, Instant};
+
+use common::{ok, run};
+use nix::sys::resource::{Resource, setrlimit};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+
+const HAAR: [&str; 5] = ["haar", "sample:phantom@8", "-q", "-o", "a.npy"];
+
+/// Runs under a limit of the system.
+fn limited(folder: &Path, resource: Resource, limit: u64, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_walpha"));
+    command.args(args).current_dir(folder).env_remove("RUST_BACKTRACE");
+    let lower = move || Ok(setrlimit(resource, limit, limit)?);
+    // SAFETY: between fork and exec this makes one system call, which allocates nothing.
+    unsafe { command.pre_exec(lower) };
+    command.output().unwrap()
+}
+
+/// Expects exit code 1, an error with these words, and these files in the folder alone.
+fn refused(folder: &Path, args: &str, words: &[&str]) {
+    let names = || -> Vec<_> {
+        let mut names: Vec<_> =
+            fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let before = names();
+    let (code, _, said) = run(folder, &args.split(' ').collect::<Vec<_>>());
+    assert_eq!(code, 1, "walpha {args}\n{said}");
+    for word in words {
+        assert!(said.contains(word), "walpha {args}: no {word:?} in\n{said}");
+    }
+    assert_eq!(names(), before, "walpha {args}");
+}
+
+#[test]
+fn a_replaced_file_keeps_its_mode_and_owner() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.npy");
+    for mode in [0o600, 0o640, 0o666] {
+        fs::write(&file, "old").unwrap();
+        fs::set_permissions(&file, Permissions::from_mode(mode)).unwrap();
+        ok(folder.path(), &HAAR);
+        assert_eq!(fs::metadata(&file).unwrap().mode() & 0o777, mode);
+        assert!(fs::read(&file).unwrap().starts_with(b"\x93NUMPY"));
+    }
+    // Only root may give files away.
+    if chown(&file, Some(4321), Some(4321)).is_ok() {
+        ok(folder.path(), &HAAR);
+        let kept = fs::metadata(&file).unwrap();
+        assert_eq!((kept.uid(), kept.gid()), (4321, 4321));
+    }
+}
+
+#[test]
+fn links_lead_to_what_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    fs::create_dir(f.join("there")).unwrap();
+    let real = f.join("there/real.npy");
+    symlink("next.npy", f.join("a.npy")).unwrap();
+    symlink("there/real.npy", f.join("next.npy")).unwrap();
+    // Once to a place where nothing stands, once to a file.
+    for _ in 0..2 {
+        ok(f, &HAAR);
+        assert!(f.join("a.npy").is_symlink() && f.join("next.npy").is_symlink());
+        assert!(fs::read(&real).unwrap().starts_with(b"\x93NUMPY") && !real.is_symlink());
+        fs::write(&real, "old").unwrap();
+    }
+    symlink("b.npy", f.join("b.npy")).unwrap();
+    refused(f, "haar sample:phantom@8 -o b.npy", &["b.npy"]);
+}
+
+#[test]
+fn other_names_of_a_file_see_what_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, other] = ["a.npy", "other.npy"].map(|name| folder.path().join(name));
+    // Shorter and longer than what comes.
+    for length in [3, 100_000] {
+        fs::write(&file, vec![b'x'; length]).unwrap();
+        let _ = fs::remove_file(&other);
+        fs::hard_link(&file, &other).unwrap();
+        ok(folder.path(), &HAAR);
+        assert_eq!(fs::metadata(&file).unwrap().nlink(), 2);
+        let bytes = fs::read(&other).unwrap();
+        assert!(bytes.starts_with(b"\x93NUMPY") && bytes.len() == 2176, "{}", bytes.len());
+    }
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
+}
+
+#[test]
+fn places_that_cannot_be_are_refused_at_the_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    fs::write(f.join("a.npy"), "precious").unwrap();
+    fs::set_permissions(f.join("a.npy"), Permissions::from_mode(0o444)).unwrap();
+    // The input would be an error, too, if one came so far.
+    refused(f, "haar no.nrrd -o a.npy", &["a.npy", "write-protected", "make it writable"]);
+    assert_eq!(fs::read_to_string(f.join("a.npy")).unwrap(), "precious");
+    refused(f, "haar no.nrrd -o no/b.npy", &["there is no folder no", "make it first"]);
+    let name = format!("{}.npy", "b".repeat(400));
+    refused(f, &format!("haar no.nrrd -o {name}"), &["too long", "choose a shorter name"]);
+    refused(f, "ladder no.nrrd -o no/ladder", &["no/ladder", "--output"]);
+    // What a folder will hold is looked at before the work, too.
+    fs::create_dir(f.join("ladder")).unwrap();
+    fs::write(f.join("ladder/voids.csv"), "precious").unwrap();
+    fs::set_permissions(f.join("ladder/voids.csv"), Permissions::from_mode(0o444)).unwrap();
+    refused(f, "ladder no.nrrd -o ladder", &["voids.csv", "write-protected"]);
+
+    let many: Vec<String> = (0..60).map(|k| format!("{k}.ply")).collect();
+    let mut args = vec!["shape", "sample:phantom@8", "-o"];
+    args.extend(many.iter().map(String::as_str));
+    let output = limited(f, Resource::RLIMIT_NOFILE, 30, &args);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("Too many open files") && said.contains("ulimit -n"), "{said}");
+}
+
+#[test]
+fn no_output_is_lost_to_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let word = ["another output goes there", "a name of its own"];
+    refused(f, "shape no.nrrd -o s.ply ./s.ply", &word);
+    refused(f, "interpolate no.nrrd -o s.npy --mask s.npy", &word);
+    refused(f, "shape no.nrrd -o - - --format ply", &word);
+    symlink("s.ply", f.join("link.ply")).unwrap();
+    refused(f, "shape no.nrrd -o s.ply link.ply", &word);
+    fs::write(f.join("a.ply"), "").unwrap();
+    fs::hard_link(f.join("a.ply"), f.join("b.ply")).unwrap();
+    refused(f, "shape no.nrrd -o a.ply b.ply", &word);
+    refused(f, "ladder no.nrrd --mesh ply,.PLY -o ladder", &["--mesh", "twice"]);
+    refused(f, "ladder no.nrrd --counts 100,100 -o ladder", &["--counts", "twice"]);
+    refused(f, "ladder no.nrrd --epsilons 5,5.0 -o ladder", &["--epsilons", "twice"]);
+}
+
+/// α of 300 digits would make names longer than a system takes.
+#[test]
+fn levels_of_any_alpha_have_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let alphas = "1e-300,10,1e300";
+    ok(
+        folder.path(),
+        &["ladder", "sample:phantom@8", "--alphas", alphas, "--mesh", "off", "-q", "-o", "out"],
+    );
+    assert!(folder.path().join("out/level-1-alpha-1e-300.off").exists());
+    assert!(folder.path().join("out/level-2-alpha-10.off").exists());
+}
+
+#[test]
+fn a_file_that_may_not_grow_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    // The tables are shorter than that, the picture is longer.
+    let args = ["ladder", "sample:phantom@16", "-o", "out"];
+    let output = limited(folder.path(), Resource::RLIMIT_FSIZE, 20_000, &args);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{:?} {said}", output.status);
+    for word in ["ladder.png", "File too large", "nothing was left behind"] {
+        assert!(said.contains(word), "no {word:?} in {said}");
+    }
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 0, "{said}");
+
+    let args = ["shape", "sample:phantom@16", "-o", "a.off", "b.json"];
+    let output = limited(folder.path(), Resource::RLIMIT_FSIZE, 100_000, &args);
+    assert_eq!(output.status.code(), Some(1), "{:?}", output.status);
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 0, "a.off was complete, b.json was not");
+}
+
+/// The content is overwritten only where there is room for it.
+#[test]
+fn a_file_with_other_names_survives_a_lack_of_room() {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, other] = ["a.npy", "other.npy"].map(|name| folder.path().join(name));
+    fs::write(&file, "precious").unwrap();
+    fs::hard_link(&file, &other).unwrap();
+    let output = limited(folder.path(), Resource::RLIMIT_FSIZE, 1000, &HAAR);
+    assert_eq!(output.status.code(), Some(1), "{:?}", output.status);
+    assert_eq!(fs::read_to_string(&other).unwrap(), "precious");
+}
+
+#[test]
+fn an_interrupt_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases: [&[&str]; 3] = [
+        &["shape", "sample:phantom@128", "--ratio", "0.3", "-o", "a.ply", "b.vtu"],
+        &["ladder", "sample:phantom@128", "--ratio", "0.3", "-o", "made"],
+        &["reproduce", "--input", "sample:phantom@64", "--out", "made"],
+    ];
+    for args in cases {
+        for signal in [Signal::SIGINT, Signal::SIGTERM] {
+            let mut command = Command::new(env!("CARGO_BIN_EXE_walpha"));
+            let mut child = command.args(args).current_dir(&folder).spawn().unwrap();
+            let count = || fs::read_dir(&folder).unwrap().count();
+            while count() == 0 {
+                assert!(child.try_wait().unwrap().is_none(), "done before it was interrupted");
+            }
+            kill(Pid::from_raw(child.id() as i32), signal).unwrap();
+            assert_eq!(child.wait().unwrap().code(), Some(130), "{signal} {args:?}");
+            assert_eq!(count(), 0, "{signal} {args:?}");
+        }
+    }
+}
+
+/// With too little memory a command says so, and takes its unfinished files away.
+#[test]
+fn a_lack_of_memory_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases: [&[&str]; 4] = [
+        &["haar", "sample:phantom@160", "-o", "a.npy"],
+        &["view", "sample:phantom@48", "-o", "a.html"],
+        &["shape", "sample:phantom@48", "-o", "a.ply", "a.png"],
+        &["ladder", "sample:phantom@48", "-o", "made"],
+    ];
+    let mut failed = 0;
+    for args in cases {
+        for megabytes in [50, 80, 110, 140, 200, 300] {
+            let output = limited(folder.path(), Resource::RLIMIT_AS, megabytes << 20, args);
+            let said = String::from_utf8_lossy(&output.stderr);
+            let code = output.status.code();
+            assert!(
+                matches!(code, Some(0 | 1)),
+                "{args:?} {megabytes} MB: {:?} {said}",
+                output.status
+            );
+            let mut left = fs::read_dir(&folder).unwrap();
+            if code == Some(1) {
+                failed += 1;
+                assert!(said.contains("error: walpha") && said.contains(" next: "), "{said}");
+                assert!(left.next().is_none(), "{args:?} {megabytes} MB left something behind");
+            }
+            for entry in left {
+                let path = entry.unwrap().path();
+                let _ =
+                    if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+            }
+        }
+    }
+    assert!(failed > 4, "{failed} runs had too little memory");
+}
+
+#[test]
+fn sizes_beyond_all_memory_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let few = 400 << 20;
+    let cases: [(&[&str], &str); 3] = [
+        (&["info", "sample:phantom@1000"], "4000000000 bytes of memory"),
+        (
+            &["interpolate", "sample:phantom@8", "--dims", "1000,1000,1000"],
+            "4000000000 bytes of memory",
+        ),
+        (
+            &["shape", "sample:phantom@8", "-o", "a.png", "--size", "16384x16384"],
+            "1073741824 bytes of memory",
+        ),
+    ];
+    for (args, words) in cases {
+        let output = limited(folder.path(), Resource::RLIMIT_AS, few, args);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(1) && said.contains(words), "{args:?}: {said}");
+    }
+}
+
+#[test]
+fn an_endless_device_is_not_read_to_its_end() {
+    if !Path::new("/dev/zero").exists() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.vti", "a.vtu", "a.vtp"] {
+        symlink("/dev/zero", folder.path().join(name)).unwrap();
+        let started = Instant::now();
+        // A gigabyte is soon full of it.
+        let output = limited(folder.path(), Resource::RLIMIT_AS, 1 << 30, &["info", name]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{:?} {said}", output.status);
+        assert!(said.contains(name) && said.contains("no ordinary file"), "{said}");
+        assert!(started.elapsed() < Duration::from_secs(5), "{name}");
+    }
+}
