@@ -41,6 +41,12 @@ impl<'a> Emptiness<'a> {
         self.find(simplex, |q| side(corners.each_ref(), q) == Side::Inside)
     }
 
+    /// Whether no other point is inside or on the sphere of a point alone.
+    pub fn alone(&self, point: u32) -> bool {
+        let site = self.points.get(point);
+        self.find([point], |q| side([&site], q) != Side::Outside).is_none()
+    }
+
     fn find<const N: usize>(
         &self,
         simplex: [u32; N],

@@ -169,6 +169,24 @@ pub enum Finding {
         /// Six times the volume between them.
         six_volumes: Exact,
     },
+    /// All faces of a cell are listed, and the definition has it, but it is not listed. It is
+    /// judged as if it were, and what follows from its absence is not reported.
+    MissingCell {
+        /// The cell, positively oriented.
+        cell: Simplex,
+        /// The class it has.
+        class: Class,
+        /// The squared radius of its orthogonal sphere.
+        radius_squared: Exact,
+    },
+    /// A point is in the shape by itself, with no other point inside or on its sphere, but it is
+    /// not listed as a vertex.
+    MissingVertex {
+        /// The point.
+        point: u32,
+        /// The squared radius of its sphere, at most α.
+        radius_squared: Exact,
+    },
     /// A point is neither vertex nor listed as hidden or duplicate.
     Unaccounted {
         /// The point.
@@ -196,6 +214,16 @@ pub enum Finding {
         /// The point that stays in its place.
         stays: u32,
     },
+}
+
+impl Finding {
+    /// The simplex whose class or winding is wrong.
+    pub(super) fn judged_class(&self) -> Option<&Simplex> {
+        match self {
+            Self::Class { simplex, .. } | Self::Winding { facet: simplex, .. } => Some(simplex),
+            _ => None,
+        }
+    }
 }
 
 impl fmt::Display for Finding {
@@ -243,8 +271,9 @@ impl fmt::Display for Finding {
             ),
             Self::Class { simplex, given, expected, radius_squared, refuted_by } => {
                 write!(f, "{simplex} is {}, not {}", class_name(*expected), class_name(*given))?;
-                if let Some(radius) = radius_squared {
-                    write!(f, " (squared radius {radius})")?;
+                match radius_squared {
+                    Some(radius) => write!(f, " (squared radius {radius})")?,
+                    None => write!(f, " (its corners are in one place or on one line or plane)")?,
                 }
                 match refuted_by {
                     Some((point, power)) => {
@@ -267,6 +296,15 @@ impl fmt::Display for Finding {
             Self::OutsideHull { point, facet, six_volumes } => write!(
                 f,
                 "point {point} lies outside the hull, beyond {facet} (six volumes {six_volumes})"
+            ),
+            Self::MissingCell { cell, class, radius_squared } => write!(
+                f,
+                "{cell} is missing: all its faces are listed, and it is {} (squared radius {radius_squared})",
+                class_name(*class)
+            ),
+            Self::MissingVertex { point, radius_squared } => write!(
+                f,
+                "point {point} is missing: it is a vertex of the shape (squared radius {radius_squared}, and no other point inside)"
             ),
             Self::Unaccounted { point } => {
                 write!(f, "point {point} is neither vertex nor hidden nor a duplicate")
