@@ -8,17 +8,20 @@ mod gaps;
 mod geometry;
 mod hull;
 mod index;
+mod message;
 mod near;
 mod places;
+mod points;
 mod structure;
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
-use super::exact::{Exact, WeightedPoint};
+use super::exact::Exact;
 use crate::shape::{Class, Complex};
 use classes::Judge;
 use emptiness::Emptiness;
+use points::Points;
 use structure::Structure;
 
 pub use certificate::{Certificate, NotCertifiable, NotJudged};
@@ -294,30 +297,5 @@ impl<'a> Judged<'a> {
             }
         }
         Self { structure, broken, unlike }
-    }
-}
-
-/// The input points.
-#[derive(Clone, Copy)]
-struct Points<'a> {
-    positions: &'a [[f64; 3]],
-    weights: &'a [f64],
-}
-
-impl Points<'_> {
-    fn len(self) -> usize {
-        self.positions.len()
-    }
-
-    fn get(self, i: u32) -> WeightedPoint {
-        WeightedPoint { position: self.positions[i as usize], weight: self.weights[i as usize] }
-    }
-
-    fn at<const N: usize>(self, row: [u32; N]) -> [WeightedPoint; N] {
-        row.map(|i| self.get(i))
-    }
-
-    fn places<const N: usize>(self, row: [u32; N]) -> [[f64; 3]; N] {
-        row.map(|i| self.positions[i as usize])
     }
 }

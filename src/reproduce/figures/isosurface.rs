@@ -110,7 +110,7 @@ fn readings(study: &Study<'_>, fraction: f64) -> (Table, bool) {
     let count = |values: &mut dyn Iterator<Item = f64>| values.filter(|&v| v >= least).count();
     let gray = |volume: &Volume| count(&mut volume.as_slice().iter().map(|&v| f64::from(v)));
     let readings = [
-        ("original gray level", gray(&study.subject.volume)),
+        ("original gray level", gray(study.subject.volume)),
         ("gray level after truncation", gray(&study.smoothed)),
         ("L, the mean of the six differences", count(&mut differences.iter().copied())),
         ("the sum of the six differences", count(&mut differences.iter().map(|l| 6.0 * l))),
