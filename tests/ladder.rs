@@ -225,7 +225,7 @@ fn the_critical_values_of_ill_conditioned_points_are_exact() {
         let chosen = filtration.readable(&curve, 5000);
         let several = chosen.iter().map(|alpha| alpha.squared());
         let all: Vec<f64> = several.chain([suggested.all_points, suggested.one_region]).collect();
-        assert!(all.len() > 12, "{all:?}");
+        assert!(all.len() > 5, "{all:?}");
         for alpha in all {
             let [at, below] = [alpha, alpha.next_down()].map(|alpha| {
                 let alpha = Alpha::from_squared(alpha).unwrap();
