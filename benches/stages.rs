@@ -57,8 +57,8 @@ fn reference(bencher: Bencher, weighting: &str) {
 }
 
 #[divan::bench(args = WEIGHTINGS)]
-fn slabs(bencher: Bencher, weighting: &str) {
-    engine(bencher, Engine::Slabs, weighting);
+fn native(bencher: Bencher, weighting: &str) {
+    engine(bencher, Engine::Native, weighting);
 }
 
 fn engine(bencher: Bencher, engine: Engine, weighting: &str) {

@@ -49,8 +49,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let theirs = ComplexFile::read_json(&answer.stdout[..])?.into_complex()?;
 
-    let ours = Placed { positions: &positions, complex: shape.complex() };
-    let theirs = Placed { positions: &theirs.positions, complex: &theirs.complex };
+    let ours = Placed {
+        positions: &positions,
+        weights: shape.power_weights(),
+        alpha: shape.power_alpha(),
+        complex: shape.complex(),
+    };
+    let theirs = Placed {
+        positions: &theirs.positions,
+        weights: &theirs.weights,
+        alpha: theirs.alpha,
+        complex: &theirs.complex,
+    };
     let comparison = compare(ours, theirs)?;
     for (name, d) in ["vertices", "edges", "facets", "cells"].iter().zip(&comparison.dimensions) {
         println!(

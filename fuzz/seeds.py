@@ -271,6 +271,19 @@ def complexes():
     return [json.dumps(whole).encode(), json.dumps(dict(points=points, alpha="inf", cells=[[3, 2, 1, 0]])).encode(), out.getvalue()]
 
 
+def check_json():
+    """The complexes in JSON, one with corners in one place, one with classes and exterior cells."""
+    points = [[0, 0, 0], [0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]]
+    files = [dict(points=points, alpha=1, facets=[[0, 1, 2]]),
+             dict(points=points[1:], weights=[0, 0.5, 0, 0, 1], alpha=0.5, cells=[[0, 1, 2, 3], [1, 3, 2, 4]],
+                  classes={"cells": ["interior", "exterior"]}, hidden=[], duplicates=[])]
+    return [file for file in complexes() if not file.startswith(b"PK")] + [json.dumps(file).encode() for file in files]
+
+
+def check_npz():
+    return [file for file in complexes() if file.startswith(b"PK")]
+
+
 def zarr():
     two = {"zarr_format": 2, "shape": [2, 3, 2], "chunks": [2, 3, 2], "dtype": "|u1", "compressor": None,
            "fill_value": 0, "order": "C", "filters": None}
@@ -291,7 +304,7 @@ TARGETS = {
     "inrimage": inrimage, "npy": npys, "npz": npz, "nrrd": nrrd, "metaimage": metaimage, "nifti": nifti,
     "nifti_gzip": lambda: [gzip.compress(file) for file in nifti()], "vtk_legacy": vtk_legacy, "vti": vti,
     "tiff": tiffs, "table": table, "xyz": xyz, "ply": ply, "vtk_geometry": vtk_geometry,
-    "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes,
+    "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes, "check_json": check_json, "check_npz": check_npz,
 }
 
 if __name__ == "__main__":

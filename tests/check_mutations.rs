@@ -122,16 +122,82 @@ fn each_dropped_cell() {
     let (case, answer) = base();
     for row in 0..answer.complex.cells.len() {
         let mut mutated = answer.complex.clone();
-        drop_row(&mut mutated.cells, row);
+        let dropped = drop_row(&mut mutated.cells, row).unwrap();
         let all = findings(&case, &with(&answer, mutated), Extent::Whole);
-        assert!(!all.is_empty(), "cell {row}");
+        assert!(is_missing(&all, &dropped), "{dropped:?}: {all:?}");
     }
     let shape = shape_of(&answer);
     for row in 0..shape.complex.cells.len() {
         let mut mutated = shape.complex.clone();
-        drop_row(&mut mutated.cells, row);
+        let dropped = drop_row(&mut mutated.cells, row).unwrap();
         let all = findings(&case, &with(&answer, mutated), Extent::Shape);
-        assert!(!all.is_empty(), "cell {row} of the shape");
+        assert!(is_missing(&all, &dropped), "{dropped:?}: {all:?}");
+    }
+}
+
+/// One finding, and the true one.
+fn is_missing(all: &[Finding], dropped: &[u32]) -> bool {
+    matches!(all, [Finding::MissingCell { cell, .. }] if sorted(cell.vertices()) == dropped)
+}
+
+/// Also where classes were made from the cells that are left.
+#[test]
+fn each_dropped_cell_of_a_file_without_classes() {
+    use walpha::check::schema::ComplexFile;
+    let (case, answer) = base();
+    let shape = shape_of(&answer);
+    let (positions, weights) = (&case.positions, &case.weights);
+    let mut whole = ComplexFile::new(positions, weights, case.alpha, &shape.complex, None, None);
+    whole.classes = Default::default();
+    for row in 0..shape.complex.cells.len() {
+        let mut file = whole.clone();
+        let dropped = sorted(&file.cells.as_mut().unwrap().remove(row));
+        let complex = file.into_complex().unwrap().complex;
+        let all = findings(&case, &with(&answer, complex), Extent::Shape);
+        assert!(is_missing(&all, &dropped), "{dropped:?}: {all:?}");
+    }
+}
+
+/// A cell that α leaves out is no gap, and nor are several cells that only look like one.
+#[test]
+fn facets_around_nothing_are_no_gap() {
+    let (mut case, answer) = base();
+    case.alpha = 0.74;
+    let facets = answer.complex.facets.vertices.clone();
+    let mut complex = Complex::default();
+    for facet in facets {
+        complex.facets.vertices.push(facet);
+        complex.facets.classes.push(Class::Singular);
+    }
+    let all = findings(&case, &with(&answer, complex), Extent::Shape);
+    assert!(!all.iter().any(|f| matches!(f, Finding::MissingCell { .. })), "{all:?}");
+}
+
+#[test]
+fn a_vertex_of_a_shape_that_is_listed_as_hidden() {
+    let (case, answer) = base();
+    let mut shape = shape_of(&answer);
+    assert_eq!(findings(&case, &shape, Extent::Shape), []);
+    shape.hidden.push(4);
+    assert_eq!(findings(&case, &shape, Extent::Shape), [Finding::NotOnlyHidden { point: 4 }]);
+}
+
+#[test]
+fn a_point_with_a_ball_of_its_own_that_is_not_listed() {
+    let (case, answer) = base();
+    let mut shape = shape_of(&answer);
+    // The far point, which the shape has as a singular vertex.
+    let row = shape.complex.vertices.vertices.iter().position(|v| *v == [27]).unwrap();
+    assert_eq!(shape.complex.vertices.classes[row], Class::Singular);
+    drop_row(&mut shape.complex.vertices, row);
+    for hidden in [vec![HIDDEN], vec![HIDDEN, 27]] {
+        let listed = Answer { hidden, ..with(&answer, shape.complex.clone()) };
+        let all = findings(&case, &listed, Extent::Shape);
+        assert!(
+            matches!(&all[..], [Finding::MissingVertex { point: 27, radius_squared }]
+                if radius_squared.is_zero()),
+            "{all:?}"
+        );
     }
 }
 
@@ -153,6 +219,7 @@ fn each_cell_dropped_with_its_faces() {
                     | Finding::HullEdge { .. }
                     | Finding::HullWraps { .. }
                     | Finding::OutsideHull { .. }
+                    | Finding::MissingCell { .. }
             )
         };
         assert!(all.iter().any(geometric), "{all:?}");

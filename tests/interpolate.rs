@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use common::{has_skull, json, ok, run};
+use common::{has_skull, json, ok, run, spans_a_volume};
 use ndarray::Array3;
 use proptest::prelude::*;
 use walpha::interpolate::{
@@ -30,9 +30,8 @@ fn points(positions: Vec<Place>, weights: Vec<f64>, f: impl Fn(Place) -> f64) ->
     WeightedPoints { positions, weights, values }
 }
 
-/// `None` for points in one plane, which strategies produce now and then.
-fn shape(points: WeightedPoints, alpha: f64) -> Option<AlphaShape> {
-    alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(alpha).unwrap())).ok()
+fn shape(points: WeightedPoints, alpha: f64) -> AlphaShape {
+    alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(alpha).unwrap())).unwrap()
 }
 
 fn linear([x, y, z]: Place) -> f64 {
@@ -44,16 +43,18 @@ fn wild([x, y, z]: Place) -> f64 {
     100.0 * (1.3 * x + 0.7).sin() * (0.9 * y - 0.2).cos() + 10.0 * (z * z + x * x + 1.0).sqrt()
 }
 
-/// Lattice points: ties everywhere. Weights, now and then.
+/// Lattice points, not all in one plane: ties everywhere. Weights, now and then.
 fn lattice() -> impl Strategy<Value = (Vec<Place>, Vec<f64>)> {
     let site = ([0..5, 0..5, 0..5i32], prop_oneof![3 => Just(0), 1 => 0..6i32]);
-    prop::collection::vec(site, 5..40).prop_map(|sites| {
+    let sites = prop::collection::vec(site, 5..40).prop_map(|sites| {
         sites.iter().map(|&(p, w)| (p.map(f64::from), f64::from(w) / 2.0)).unzip()
-    })
+    });
+    sites.prop_filter("in one plane", |(places, _): &(Vec<Place>, _)| spans_a_volume(places))
 }
 
 fn anywhere() -> impl Strategy<Value = Vec<Place>> {
-    prop::collection::vec([-4.0..4.0f64, -4.0..4.0, -4.0..4.0], 5..40)
+    let places = prop::collection::vec([-4.0..4.0f64, -4.0..4.0, -4.0..4.0], 5..40);
+    places.prop_filter("in one plane", |places| spans_a_volume(places))
 }
 
 /// The points of a simplex with these shares, rounded.
@@ -75,7 +76,7 @@ proptest! {
     ) {
         let zeros = vec![0.0; floats.len()];
         for points in [points(places, weights, linear), points(floats, zeros, linear)] {
-            let Some(shape) = shape(points, f64::INFINITY) else { continue };
+            let shape = shape(points, f64::INFINITY);
             let interpolant = Interpolant::new(&shape).unwrap();
             for (cell, _) in shape.complex().cells.iter() {
                 let place = within(&shape, cell, shares);
@@ -98,7 +99,7 @@ proptest! {
     ) {
         const STEP: f64 = 1e-9;
         let zeros = vec![0.0; floats.len()];
-        let Some(shape) = shape(points(floats, zeros, wild), f64::INFINITY) else { return Ok(()) };
+        let shape = shape(points(floats, zeros, wild), f64::INFINITY);
         let interpolant = Interpolant::new(&shape).unwrap();
         let values = shape.points().values.as_ref().unwrap();
         for facet in shape.complex().facets.of(Class::Interior) {
@@ -111,10 +112,10 @@ proptest! {
                 interpolant.value_at([0, 1, 2].map(|k| place[k] + step * direction[k]))
             });
             // Steps change F by its gradient, which is steep in a flat cell.
-            let steepest = [before, after].into_iter().flatten().map(|v| (v - there).abs());
+            let steepest = [before, after].map(|v| (v.expect("beside a place inside") - there).abs());
             let thickness = thinnest(&shape, facet);
             let bound = 1e-10 + 1e3 * STEP / thickness;
-            for change in steepest.chain([(there - expected).abs()]) {
+            for change in steepest.into_iter().chain([(there - expected).abs()]) {
                 prop_assert!(change <= bound, "{change} at {place:?}, {bound}");
             }
         }
@@ -122,9 +123,7 @@ proptest! {
 
     #[test]
     fn samples_belong_as_definition_says((places, weights) in lattice(), alpha in 0..24i32) {
-        let Some(shape) = shape(points(places, weights, wild), f64::from(alpha) / 4.0) else {
-            return Ok(());
-        };
+        let shape = shape(points(places, weights, wild), f64::from(alpha) / 4.0);
         let interpolant = Interpolant::new(&shape).unwrap();
         let grid = Grid::spanning([-0.5; 3], [5.0; 3], Dims::new(12, 12, 12).unwrap());
         let resampled = interpolant.resample(&grid).unwrap();
@@ -148,7 +147,7 @@ proptest! {
     #[test]
     fn floats_on_any_grid_are_found_both_ways(floats in anywhere(), alpha in 1.0..9.0f64) {
         let zeros = vec![0.0; floats.len()];
-        let Some(shape) = shape(points(floats, zeros, wild), alpha) else { return Ok(()) };
+        let shape = shape(points(floats, zeros, wild), alpha);
         let interpolant = Interpolant::new(&shape).unwrap();
         let turned = Frame {
             origin: [-3.7, -4.1, -3.3],
@@ -191,7 +190,7 @@ proptest! {
         let samples = |shape: AlphaShape| {
             Interpolant::new(&shape).unwrap().resample(&grid).unwrap().volume().clone()
         };
-        prop_assert_eq!(make(sites.clone()).map(samples), make(shuffled).map(samples));
+        prop_assert_eq!(samples(make(sites.clone())), samples(make(shuffled)));
     }
 }
 
@@ -270,7 +269,7 @@ fn thin_parts_of_a_shape_have_values() {
         [0.0, 32.0, 0.0],
         [0.0, 0.0, 50.0],
     ];
-    let shape = shape(points(places.into(), vec![0.0; 10], linear), 2.0).unwrap();
+    let shape = shape(points(places.into(), vec![0.0; 10], linear), 2.0);
     let interpolant = Interpolant::new(&shape).unwrap();
     let value = |place| interpolant.value_at(place);
     let at = |place| interpolant.locate(place).map(|at| at.simplex.len());
@@ -292,11 +291,11 @@ fn what_has_no_values_has_no_interpolant() {
     let places: Vec<Place> = phantom_points(&phantom(8), 60).positions;
     let mut points = points(places, vec![0.0; 60], linear);
     points.values.as_mut().unwrap()[7] = f64::NAN;
-    let bad = shape(points.clone(), 10.0).unwrap();
+    let bad = shape(points.clone(), 10.0);
     let error = Interpolant::new(&bad).unwrap_err();
     assert!(matches!(error, InterpolateError::Value { index: 7, .. }), "{error}");
     points.values = None;
-    let error = Interpolant::new(&shape(points, 10.0).unwrap()).unwrap_err();
+    let error = Interpolant::new(&shape(points, 10.0)).unwrap_err();
     assert!(matches!(error, InterpolateError::NoValues), "{error}");
 }
 
@@ -314,7 +313,7 @@ fn filling_covers_the_grid_and_keeps_the_points() {
     let selection = Selection { rule: SelectionRule::Count(300), gray_min: None };
     let selected = select(&volume, &volume, &differences, &selection, Units::Voxel).unwrap();
     for weighting in [Weighting::Common(0.0), Weighting::MinMax, Weighting::BarycentricN] {
-        let shape = shape(weigh(&selected, weighting, 10.0).unwrap(), 10.0).unwrap();
+        let shape = shape(weigh(&selected, weighting, 10.0).unwrap(), 10.0);
         let whole = fill(&shape, Some(&volume), Units::Voxel).unwrap();
         assert_eq!(whole.points().len(), 308);
         let grid = Grid::of(&volume, Units::Voxel);
@@ -335,7 +334,7 @@ fn filling_covers_the_grid_and_keeps_the_points() {
 
 fn rmse_of(volume: &Volume, voxels: &[u32]) -> f64 {
     let points = points_at(volume, &difference(volume), voxels, Units::Voxel);
-    let shape = shape(weigh(&points, Weighting::Common(0.0), 1.0).unwrap(), f64::INFINITY).unwrap();
+    let shape = shape(weigh(&points, Weighting::Common(0.0), 1.0).unwrap(), f64::INFINITY);
     let whole = fill(&shape, Some(volume), Units::Voxel).unwrap();
     let grid = Grid::of(volume, Units::Voxel);
     let resampled = Interpolant::new(&whole).unwrap().resample(&grid).unwrap();
@@ -359,7 +358,7 @@ fn adaptive_points_are_better_and_the_first_are_those_of_fewer() {
     }
     let errors = [100, 400, 800].map(|n| rmse_of(&volume, &many[..n]));
     assert!(errors.is_sorted_by(|a, b| a > b), "{errors:?}");
-    let largest = shape(phantom_points(&volume, 800), 10.0).unwrap();
+    let largest = shape(phantom_points(&volume, 800), 10.0);
     let whole = fill(&largest, Some(&volume), Units::Voxel).unwrap();
     let grid = Grid::of(&volume, Units::Voxel);
     let resampled = Interpolant::new(&whole).unwrap().resample(&grid).unwrap();
@@ -568,4 +567,27 @@ fn adaptive_points_stand_for_the_skull() {
         let rmse = told["interpolation"]["filled"]["rmse"].as_f64().unwrap();
         assert!(rmse < most, "{rmse} with {count} points");
     }
+}
+
+/// Fewer points than asked for are told, and why.
+#[test]
+fn a_selection_that_ends_early_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["points", "sample:phantom@16", "--select", "adaptive", "--count", "3000"];
+    let early = [&args[..], &["--target-rmse", "30"]].concat();
+    let told = ok(folder.path(), &early);
+    assert!(told.contains("fewer than 3000: these reach an RMSE of 30 gray levels"), "{told}");
+    let made = json(folder.path(), &early);
+    assert_eq!(made["points"]["ended_early"], serde_json::json!({"asked": 3000, "rmse": 30.0}));
+    // A plane of gray levels: the corners do.
+    let ramp = Array3::from_shape_fn((5, 5, 5), |(z, y, x)| (x + 2 * y + 3 * z) as f32);
+    let mut npy = Vec::new();
+    ndarray_npy::WriteNpyExt::write_npy(&ramp, &mut npy).unwrap();
+    fs::write(folder.path().join("ramp.npy"), npy).unwrap();
+    let ramp = ["points", "ramp.npy", "--gray", "0..255", "--select", "adaptive", "--count", "60"];
+    let told = ok(folder.path(), &ramp);
+    assert!(told.contains("fewer than 60: no sample differs"), "{told}");
+    assert!(
+        json(folder.path(), &["points", "sample:phantom@16"])["points"]["ended_early"].is_null()
+    );
 }

@@ -13,7 +13,7 @@ fn volume(samples: Array3<f32>) -> Volume {
 }
 
 /// L by its definition.
-fn slow_difference(f: &Array3<f32>) -> Array3<f32> {
+fn slow_difference(f: &Array3<f32>) -> Array3<f64> {
     let get = |z: i64, y: i64, x: i64| {
         let inside = z >= 0 && y >= 0 && x >= 0;
         if inside { f.get([z as usize, y as usize, x as usize]).copied() } else { None }
@@ -23,7 +23,7 @@ fn slow_difference(f: &Array3<f32>) -> Array3<f32> {
         let neighbours = [(0, 0, -1), (0, 0, 1), (0, -1, 0), (0, 1, 0), (-1, 0, 0), (1, 0, 0)];
         let here = f64::from(get(z, y, x).unwrap());
         let there = neighbours.iter().filter_map(|(dz, dy, dx)| get(z + dz, y + dy, x + dx));
-        (there.map(|v| (here - f64::from(v)).abs()).sum::<f64>() / 6.0) as f32
+        there.map(|v| (here - f64::from(v)).abs()).sum::<f64>() / 6.0
     })
 }
 
@@ -37,15 +37,15 @@ fn grid() -> impl Strategy<Value = Array3<f32>> {
 }
 
 /// Voxel indices the rule chooses, by sorting.
-fn slow_selection(l: &Array3<f32>, f: &Array3<f32>, selection: &Selection) -> Option<Vec<usize>> {
-    let (l, f): (Vec<f32>, Vec<f32>) = (l.iter().copied().collect(), f.iter().copied().collect());
+fn slow_selection(l: &Array3<f64>, f: &Array3<f32>, selection: &Selection) -> Option<Vec<usize>> {
+    let (l, f): (Vec<f64>, Vec<f32>) = (l.iter().copied().collect(), f.iter().copied().collect());
     let least = selection.gray_min.unwrap_or(f64::NEG_INFINITY);
     let mut open: Vec<usize> = (0..l.len()).filter(|&i| f64::from(f[i]) >= least).collect();
     open.sort_by(|&a, &b| l[b].total_cmp(&l[a]).then(a.cmp(&b)));
     let count = match selection.rule {
         SelectionRule::Count(n) => n as usize,
         SelectionRule::Ratio(r) => ((r * l.len() as f64).round() as usize).max(1),
-        SelectionRule::Threshold(t) => open.iter().filter(|&&i| f64::from(l[i]) >= t).count(),
+        SelectionRule::Threshold(t) => open.iter().filter(|&&i| l[i] >= t).count(),
     };
     if count == 0 || count > open.len() {
         return None;
@@ -68,6 +68,8 @@ proptest! {
             (0u64..40).prop_map(SelectionRule::Count),
             (0.001f64..=1.0).prop_map(SelectionRule::Ratio),
             (0.0f64..4.0).prop_map(SelectionRule::Threshold),
+            // Just at an L: sixths of whole numbers.
+            (1u8..24).prop_map(|sixths| SelectionRule::Threshold(f64::from(sixths) / 6.0)),
         ],
         gray_min in prop::option::of(0.0f64..4.0),
     ) {
@@ -81,12 +83,9 @@ proptest! {
                 let points = chosen.unwrap();
                 let index = |[x, y, z]: &[f64; 3]| *x as usize + nx * (*y as usize + ny * *z as usize);
                 prop_assert_eq!(points.positions.iter().map(index).collect::<Vec<_>>(), expected.clone());
-                let at = |column: &Array3<f32>| -> Vec<f64> {
-                    let flat: Vec<f32> = column.iter().copied().collect();
-                    expected.iter().map(|&i| f64::from(flat[i])).collect()
-                };
-                prop_assert_eq!(points.values.unwrap(), at(&f));
-                prop_assert_eq!(points.differences.unwrap(), at(&l));
+                let at = |column: Vec<f64>| -> Vec<f64> { expected.iter().map(|&i| column[i]).collect() };
+                prop_assert_eq!(points.values.unwrap(), at(f.iter().map(|&v| v.into()).collect()));
+                prop_assert_eq!(points.differences.unwrap(), at(l.into_iter().collect()));
             }
         }
     }
@@ -286,4 +285,30 @@ fn bad_point_files_say_where_they_are_bad() {
     refuse("none.npy", &npy(ndarray::Array2::zeros((0, 4))), &["no point"]);
     let text = read_points(Path::new("no/such.csv")).unwrap_err().to_string();
     assert!(text.contains("no/such.csv"), "{text}");
+}
+
+/// L = 5/6 twice: neither is lost to a threshold of 5/6.
+#[test]
+fn a_threshold_that_is_an_l_takes_it() {
+    let v = volume(Array3::from_shape_fn((1, 1, 2), |(_, _, x)| 5.0 * x as f32));
+    let rule = SelectionRule::Threshold(5.0 / 6.0);
+    let selection = Selection { rule, gray_min: None };
+    assert_eq!(select(&v, &v, &difference(&v), &selection, Units::Voxel).unwrap().len(), 2);
+    let above = Selection { rule: SelectionRule::Threshold((5f64 / 6.0).next_up()), ..selection };
+    assert!(select(&v, &v, &difference(&v), &above, Units::Voxel).is_err());
+}
+
+/// L of a little more than another is chosen first, even where single precision cannot tell.
+#[test]
+fn close_differences_are_told_apart() {
+    let mut samples = Array3::zeros((1, 1, 8));
+    (samples[[0, 0, 1]], samples[[0, 0, 5]]) = (200.0, 200.0f32.next_up());
+    samples[[0, 0, 3]] = 1e-7;
+    let v = volume(samples);
+    let selection = Selection { rule: SelectionRule::Count(1), gray_min: None };
+    let points = select(&v, &v, &difference(&v), &selection, Units::Voxel).unwrap();
+    assert_eq!(points.positions, [[5.0, 0.0, 0.0]]);
+    let l = difference(&v);
+    // 200/6 and 10⁻⁷/6 more.
+    assert!(l[[0, 0, 2]] > l[[0, 0, 0]] && l[[0, 0, 2]] as f32 == l[[0, 0, 0]] as f32);
 }

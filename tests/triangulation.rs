@@ -74,7 +74,7 @@ fn sphere(r: &mut Random) -> WeightedPoints {
 
 /// Lattice points moved by one place of their last digit, or not.
 fn neighbours(r: &mut Random) -> WeightedPoints {
-    let mut coordinate = |r: &mut Random| {
+    let coordinate = |r: &mut Random| {
         let x = 1.0 + r.whole(0, 2);
         [x, x.next_up(), x.next_down()][r.below(3) as usize]
     };
@@ -200,7 +200,8 @@ fn a_hundred_thousand_degenerate_sets() {
         // Shapes of every tenth set: triangulations are where engines may differ.
         let scale = points.positions.as_flattened().iter().fold(0f64, |most, x| most.max(x.abs()));
         let alphas = [0.0, 0.25, 0.5, 1.0].map(|alpha| alpha * scale * scale);
-        let alphas = if seed / FAMILIES.len() as u64 % 10 == 0 { &alphas[..] } else { &[] };
+        let every_tenth = (seed / FAMILIES.len() as u64).is_multiple_of(10);
+        let alphas = if every_tenth { &alphas[..] } else { &[] };
         let done = std::panic::catch_unwind(|| check(&points, alphas));
         let what = done.unwrap_or_else(|_| panic!("set {seed}, family {family}: {points:?}"));
         ((family, what), 1u64)

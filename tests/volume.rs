@@ -187,6 +187,18 @@ fn long_inrimage_headers_are_read() {
     assert_eq!(volume.unwrap().as_slice(), [2.5]);
 }
 
+/// Some writers pad to other lengths than multiples of 256, or not at all; CGAL reads them, too.
+#[test]
+fn inrimage_headers_of_any_length_are_read() {
+    let lines = "XDIM=1\nYDIM=1\nZDIM=1\nTYPE=float\nPIXSIZE=32 bits\nCPU=pc\n";
+    for padding in [0, 1, 100, 255, 256, 700] {
+        let header = format!("#INRIMAGE-4#{{\n{lines}{}##}}\n", "\n".repeat(padding));
+        let bytes = [header.as_bytes(), &2.5f32.to_le_bytes()].concat();
+        let volume = read(&Folder::new().file("v.inr", &bytes), &KNOWN);
+        assert_eq!(volume.unwrap().as_slice(), [2.5], "{padding}");
+    }
+}
+
 #[test]
 fn damaged_inrimages_are_refused() {
     let folder = Folder::new();

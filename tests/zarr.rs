@@ -1,9 +1,11 @@
 //! Zarr arrays and OME-Zarr pyramids, written with the zarrs crate or by hand.
 #![cfg(feature = "zarr")]
 
+use std::alloc::{GlobalAlloc, Layout, System};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde_json::json;
 use walpha::Volume;
@@ -164,4 +166,59 @@ fn what_is_no_volume_is_told() {
     array(f, "/colours", &[1, 2, 2, 2]);
     pyramid(f, 2, turned);
     refuses(f, "affine");
+}
+
+/// The system's allocator, which remembers the largest piece asked for.
+struct Remembering;
+
+static LARGEST: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: everything is handed to the system's allocator as it came.
+unsafe impl GlobalAlloc for Remembering {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        LARGEST.fetch_max(layout.size(), Ordering::Relaxed);
+        // SAFETY: the caller's promises are those the system's allocator asks for.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(at, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Remembering = Remembering;
+
+/// Two slices of six million samples each, in chunks of 3000 rows of which one is there. The samples
+/// take 48 MB; nothing else may be so large.
+#[test]
+fn long_slices_are_read_in_pieces() {
+    let folder = tempfile::tempdir().unwrap();
+    let metadata = json!({
+        "zarr_format": 2, "shape": [2, 3_000_000, 2], "chunks": [2, 3000, 2], "dtype": "<f8",
+        "compressor": null, "fill_value": 0, "order": "C", "filters": null
+    });
+    fs::write(folder.path().join(".zarray"), metadata.to_string()).unwrap();
+    let chunk: Vec<u8> = (0..12_000).flat_map(|i| f64::from(i).to_le_bytes()).collect();
+    fs::write(folder.path().join("0.700.0"), chunk).unwrap();
+    let volume = open(folder.path(), None).unwrap();
+    let samples = volume.samples();
+    assert_eq!(samples[[0, 2_100_000, 1]], 1.0);
+    assert_eq!(samples[[1, 2_102_999, 1]], 11_999.0);
+    assert_eq!(samples.iter().filter(|&&v| v != 0.0).count(), 11_999);
+    let largest = LARGEST.load(Ordering::Relaxed);
+    assert!(largest < 50 << 20, "{largest} bytes at once");
+}
+
+#[test]
+fn chunks_far_larger_than_their_array_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    array_v2(folder.path(), [2, 3, 2], "|u1", &[0; 12]);
+    let metadata = fs::read_to_string(folder.path().join(".zarray")).unwrap();
+    let large = metadata.replace("\"chunks\":[2,3,2]", "\"chunks\":[2,3,1099511627776]");
+    assert_ne!(large, metadata);
+    fs::write(folder.path().join(".zarray"), large).unwrap();
+    let error = open(folder.path(), None).unwrap_err().to_string();
+    assert!(error.contains("has chunks of 6597069766656 samples"), "{error}");
 }

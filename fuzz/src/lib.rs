@@ -4,7 +4,8 @@
 use std::io::Cursor;
 use std::path::PathBuf;
 
-use walpha::check::schema::ComplexFile;
+use walpha::check::schema::{ComplexFile, SchemaError};
+use walpha::check::{Claim, Extent};
 use walpha::points::{is_point_file, read_points};
 use walpha::volume::{ReadOptions, read};
 
@@ -36,6 +37,32 @@ pub fn complex(bytes: &[u8]) {
         ComplexFile::read_json(bytes)
     };
     let _ = file.and_then(ComplexFile::into_complex);
+}
+
+/// Reads bytes as a complex in JSON and judges it.
+pub fn check_json(bytes: &[u8]) {
+    judge(ComplexFile::read_json(bytes));
+}
+
+/// Reads bytes as a complex in NPZ and judges it.
+pub fn check_npz(bytes: &[u8]) {
+    judge(ComplexFile::read_npz(Cursor::new(bytes)));
+}
+
+fn judge(file: Result<ComplexFile, SchemaError>) {
+    let Ok(placed) = file.and_then(ComplexFile::into_complex) else { return };
+    let claim = Claim {
+        positions: &placed.positions,
+        weights: &placed.weights,
+        alpha: placed.alpha,
+        complex: &placed.complex,
+        extent: Extent::of(&placed.complex, placed.alpha),
+        hidden: placed.hidden.as_deref(),
+        duplicates: placed.duplicates.as_deref(),
+    };
+    if let Ok((findings, _)) = claim.findings() {
+        findings.iter().for_each(|finding| assert!(!finding.to_string().is_empty()));
+    }
 }
 
 /// Reads bytes as a Zarr store: the metadata of an array, then its first chunk; of a group, if they

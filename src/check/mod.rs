@@ -27,7 +27,8 @@
 //! damaged.cells.classes.pop();
 //! claim.complex = &damaged;
 //! assert!(claim.first_finding()?.is_some());
-//! let [a, b] = [&made.complex, &damaged].map(|complex| Placed { positions: &positions, complex });
+//! let placed = |complex| Placed { positions: &positions, weights: &weights, alpha: 0.75, complex };
+//! let [a, b] = [&made.complex, &damaged].map(placed);
 //! assert!(!compare(a, b)?.is_equal());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -43,7 +44,8 @@ pub mod schema;
 
 pub use certify::{Certificate, Claim, Extent, Finding, NotCertifiable, NotJudged, Simplex};
 pub use compare::{
-    ClassDifference, Comparison, Differences, Domain, NotComparable, Placed, compare,
+    ClassDifference, Comparison, Differences, Domain, NotComparable, Placed, WeightDifference,
+    compare,
 };
 pub use enumerate::{Enumeration, NotEnumerable, enumerate};
 pub use exact::Exact;

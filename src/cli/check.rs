@@ -15,7 +15,7 @@ use super::args::{PipelineArgs, ShapeArgs};
 use super::output::tell;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
-use super::{DIFFERENT, Global, compare as compare_command, complex_file, pipeline};
+use super::{DIFFERENT, Global, complex_file, pipeline};
 
 /// Judge a complex exactly: that of an engine, or one another program wrote.
 ///
@@ -148,9 +148,9 @@ impl Check {
 /// How a complex (A) differs from the one its definition makes (B).
 fn by_definition(judged: &PlacedComplex) -> anyhow::Result<Comparison> {
     let made = enumerate(&judged.positions, &judged.weights, judged.alpha)?;
-    let a = Placed { positions: &judged.positions, complex: &judged.complex };
-    let b = Placed { positions: &judged.positions, complex: &made.complex };
-    Ok(compare(a, b)?)
+    let PlacedComplex { positions, weights, alpha, complex, .. } = judged;
+    let a = Placed { positions, weights, alpha: *alpha, complex };
+    Ok(compare(a, Placed { complex: &made.complex, ..a })?)
 }
 
 impl std::fmt::Display for Facts {
@@ -172,7 +172,7 @@ impl std::fmt::Display for Facts {
         }
         if let Some(enumeration) = &self.enumeration {
             writeln!(f, "against the definition (A: judged, B: made from the definition)")?;
-            compare_command::describe(f, enumeration)?;
+            writeln!(f, "{enumeration}")?;
         }
         let verdict = if self.valid { "certified: no finding" } else { "wrong" };
         writeln!(

@@ -54,6 +54,27 @@ pub struct VolumeFacts {
     pub boxes: [f64; 2],
     pub range: GrayRange,
     pub truncation: Truncation,
+    /// Adaptive selection ended before it had as many points as asked for.
+    pub ended: Option<Ended>,
+}
+
+/// Why there are fewer points than asked for.
+#[derive(Clone, Copy, Serialize)]
+pub struct Ended {
+    asked: u64,
+    /// The RMSE that was good enough; 0 where only a perfect interpolant is.
+    rmse: f64,
+}
+
+impl Display for Ended {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { asked, rmse } = self;
+        write!(f, "fewer than {asked}: ")?;
+        match *rmse {
+            0.0 => write!(f, "no sample differs from the interpolant of these any more"),
+            rmse => write!(f, "these reach an RMSE of {rmse} gray levels"),
+        }
+    }
 }
 
 /// Steps 1 to 7: reads INPUT and makes weighted points of it.
@@ -85,10 +106,10 @@ pub fn weigh_input(
             let options = haar.options();
             let (smoothed, truncation) =
                 progress.stage("haar", || haar::smooth(&volume, &options))?;
-            let selected =
+            let (selected, ended) =
                 progress.stage("points", || selected_points(&volume, &smoothed, select))?;
             let boxes = [Units::Voxel, Units::World].map(|units| box_volume(&volume, units));
-            let facts = VolumeFacts { dims: volume.dims().xyz(), boxes, range, truncation };
+            let facts = VolumeFacts { dims: volume.dims().xyz(), boxes, range, truncation, ended };
             original = Some(volume);
             (selected, Some(facts))
         }
@@ -104,20 +125,25 @@ pub fn weigh_input(
     Ok((Weighed { points, weighting, volume }, original))
 }
 
-/// Points as asked for: by differences, or adaptively.
+/// Points as asked for: by differences, or adaptively, where fewer may do.
 fn selected_points(
     volume: &Volume,
     smoothed: &Volume,
     select: &SelectArgs,
-) -> anyhow::Result<Points> {
+) -> anyhow::Result<(Points, Option<Ended>)> {
     let differences = points::difference(smoothed);
     let units = select.units();
     let Some(goal) = select.adaptive(volume.dims().samples())? else {
-        return Ok(points::select(volume, smoothed, &differences, &select.selection(), units)?);
+        let selection = select.selection();
+        return Ok((points::select(volume, smoothed, &differences, &selection, units)?, None));
     };
     let mut voxels = adaptive_voxels(volume, &goal, units)?;
     voxels.sort_unstable();
-    Ok(points::points_at(volume, &differences, &voxels, units))
+    // With a target alone as many as there are samples may be needed, and none is asked for.
+    let asked = goal.count < volume.dims().samples() as u64;
+    let fewer = asked && (voxels.len() as u64) < goal.count;
+    let ended = fewer.then_some(Ended { asked: goal.count, rmse: goal.rmse });
+    Ok((points::points_at(volume, &differences, &voxels, units), ended))
 }
 
 /// The volume that coverage is a share of.
@@ -183,6 +209,7 @@ pub fn readable(
     let suggested = filtration.suggest(curve);
     let [low, high] = suggested.plateau;
     let also = [suggested.all_points, suggested.one_region, suggested.no_void, low, high];
-    alphas.extend(also.iter().filter_map(|&alpha| Alpha::from_squared(alpha).ok()));
+    let finite = also.iter().filter(|alpha| alpha.is_finite());
+    alphas.extend(finite.filter_map(|&alpha| Alpha::from_squared(alpha).ok()));
     alphas
 }

@@ -8,7 +8,7 @@ use walpha::points::WeightSummary;
 use walpha::shape::{Betti, Component, Engine, Void, number_or_name};
 use walpha::{Alpha, AlphaShape, Class, GrayRange, Simplices, Truncation, memory};
 
-use super::pipeline::{VolumeFacts, Weighed};
+use super::pipeline::{Ended, VolumeFacts, Weighed};
 
 /// Counted up when a field changes its meaning or goes; new fields may come at any time.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -58,6 +58,8 @@ struct PointsReport {
     duplicates: Option<usize>,
     hidden: Option<usize>,
     in_shape: Option<usize>,
+    /// Adaptive selection needed fewer than asked for.
+    ended_early: Option<Ended>,
 }
 
 /// α as a squared length and as a radius.
@@ -183,6 +185,7 @@ impl Report {
                 duplicates: None,
                 hidden: None,
                 in_shape: None,
+                ended_early: volume.and_then(|v| v.ended),
             },
             alpha: AlphaReport::from(alpha),
             weights: WeightsReport::of(weighed),
@@ -255,6 +258,9 @@ impl Display for Report {
         }
         if self.shape.is_some() && self.points.hidden.is_none() {
             write!(f, " (--blocks 1 counts hidden points)")?;
+        }
+        if let Some(ended) = &self.points.ended_early {
+            write!(f, "\n          {ended}")?;
         }
         writeln!(f, "\nweights   {} (squared lengths)", self.weights)?;
         writeln!(f, "parameter {}", self.alpha)?;

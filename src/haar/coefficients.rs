@@ -1,7 +1,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use ndarray::{Array3, ArrayView3};
+use ndarray::{Array3, ArrayView3, Zip};
 use serde::{Deserialize, Serialize};
 
 use super::{nonstandard, standard};
@@ -50,33 +50,32 @@ impl FromStr for Decomposition {
 /// use ndarray::arr3;
 /// use walpha::haar::{Decomposition, forward};
 ///
-/// let coefficients = forward(arr3(&[[[9.0, 7.0, 3.0, 5.0]]]), Decomposition::NonStandard);
+/// let coefficients = forward(arr3(&[[[9.0, 7.0, 3.0, 5.0]]]).view(), Decomposition::NonStandard);
 /// // Averages [8, 4] → [6] and half-differences [1, −1], [2], each times the norm of its function.
-/// let expected = [6.0 * 2.0, 1.0 * 2f32.sqrt(), 2.0 * 2.0, -1.0 * 2f32.sqrt()];
+/// let expected = [6.0 * 2.0, 1.0 * 2f64.sqrt(), 2.0 * 2.0, -1.0 * 2f64.sqrt()];
 /// for (c, e) in coefficients.values().iter().zip(expected) {
-///     assert!((c - e).abs() < 1e-6);
+///     assert!((c - e).abs() < 1e-15);
 /// }
 /// ```
 ///
 /// An odd row keeps its last sample by the unbalanced Haar step: the detail between supports of a
-/// and b samples is (√b·s − √a·t)/√(a + b), and a constant volume of any size has details of
-/// exactly 0. Sums of squares equal those of the samples up to the rounding of `f32`.
+/// and b samples is (√b·s − √a·t)/√(a + b). Sums of squares equal those of the samples up to
+/// rounding.
+///
+/// Coefficients are doubles, whole numbers over square roots of whole numbers where the samples are
+/// whole numbers (or these times a power of two) and n·max is below 2⁵³/n for n samples, as for all
+/// gray levels of 8 bits up to 256³: then what is 0 is exactly 0, and equal coefficients of one
+/// level, or of levels whose functions are of the same shape, are equal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients {
-    pub(super) values: Array3<f32>,
+    pub(super) values: Array3<f64>,
     decomposition: Decomposition,
 }
 
-/// Transforms samples `[z, y, x]`, in place if they are in standard layout.
-///
-/// O(n), parallel, the same on any number of threads. Sample magnitudes whose
-/// sum or norm passes the range of `f32` overflow; gray levels are far from that.
-pub fn forward(samples: Array3<f32>, decomposition: Decomposition) -> Coefficients {
-    let mut values = if samples.is_standard_layout() {
-        samples
-    } else {
-        samples.as_standard_layout().into_owned()
-    };
+/// Transforms samples `[z, y, x]`. O(n), parallel, the same on any number of threads.
+pub fn forward(samples: ArrayView3<'_, f32>, decomposition: Decomposition) -> Coefficients {
+    let mut values = Array3::zeros(samples.dim());
+    Zip::from(&mut values).and(samples).par_for_each(|value, &sample| *value = f64::from(sample));
     match decomposition {
         Decomposition::NonStandard => nonstandard::forward(&mut values),
         Decomposition::Standard => standard::forward(&mut values),
@@ -86,7 +85,7 @@ pub fn forward(samples: Array3<f32>, decomposition: Decomposition) -> Coefficien
 
 impl Coefficients {
     /// The coefficients, at their places in `[z, y, x]`.
-    pub fn values(&self) -> ArrayView3<'_, f32> {
+    pub fn values(&self) -> ArrayView3<'_, f64> {
         self.values.view()
     }
 
@@ -95,14 +94,16 @@ impl Coefficients {
         self.decomposition
     }
 
-    /// The samples `[z, y, x]` that have these coefficients, in place. O(n), parallel, the same on
-    /// any number of threads.
+    /// The samples `[z, y, x]` that have these coefficients, rounded once. O(n), parallel, the same
+    /// on any number of threads.
     pub fn inverse(self) -> Array3<f32> {
         let mut values = self.values;
         match self.decomposition {
             Decomposition::NonStandard => nonstandard::inverse(&mut values),
             Decomposition::Standard => standard::inverse(&mut values),
         }
-        values
+        let mut samples = Array3::zeros(values.dim());
+        Zip::from(&mut samples).and(&values).par_for_each(|sample, &value| *sample = value as f32);
+        samples
     }
 }

@@ -2,8 +2,9 @@ use rayon::prelude::*;
 
 /// Values counted into one histogram. Fixed, so that sums are the same on any number of threads.
 const CHUNK: usize = 1 << 17;
-/// Position and number of the bits of a magnitude that each pass sorts by, 31 in all.
-const DIGITS: [(u32, u32); 3] = [(19, 12), (10, 9), (0, 10)];
+/// Position and number of the bits of a magnitude that each pass sorts by, 63 in all: the exponent
+/// and a bit of the mantissa first.
+const DIGITS: [(u32, u32); 6] = [(51, 12), (41, 10), (31, 10), (21, 10), (11, 10), (0, 11)];
 
 /// What may be dropped, smallest magnitudes first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +20,7 @@ pub(crate) enum Budget {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Cut {
     /// The bits of the magnitude at the cut: larger ones stay, smaller ones are dropped.
-    magnitude: u32,
+    magnitude: u64,
     /// Values of just this magnitude stay below this index.
     ties_end: usize,
 }
@@ -28,9 +29,9 @@ impl Cut {
     /// Cuts values so that as many are dropped as the budget allows. NaN takes no part, and does
     /// not stay; infinities must not occur.
     ///
-    /// Magnitudes are ordered as their bits are, so this is a radix selection: three passes, each
-    /// a histogram of counts and energies, and no value moves. O(n).
-    pub fn new(values: &[f32], mut budget: Budget) -> Self {
+    /// Magnitudes are ordered as their bits are, so this is a radix selection: a histogram of
+    /// counts and energies by the leading digit, then of what agrees with it by the next. O(n).
+    pub fn new(values: &[f64], mut budget: Budget) -> Self {
         let (mut magnitude, mut ties) = (0, 0);
         for (shift, width) in DIGITS {
             let bins = histogram(values, magnitude, shift, width);
@@ -40,10 +41,10 @@ impl Cut {
                 let below = (1 << (shift + width)) - 1;
                 return Self { magnitude: magnitude | below, ties_end: 0 };
             };
-            magnitude |= (digit as u32) << shift;
+            magnitude |= (digit as u64) << shift;
             ties = bins[digit].count;
         }
-        let stay = ties - budget.equal(f64::from(f32::from_bits(magnitude)).powi(2), ties);
+        let stay = ties - budget.equal(f64::from_bits(magnitude).powi(2), ties);
         let ties_end = match stay {
             0 => 0,
             _ if stay == ties => values.len(),
@@ -54,7 +55,7 @@ impl Cut {
 
     /// Whether the value at this index stays.
     #[inline]
-    pub fn keeps(self, value: f32, index: usize) -> bool {
+    pub fn keeps(self, value: f64, index: usize) -> bool {
         let bits = magnitude(value);
         let above = bits > self.magnitude && bits < INFINITY;
         above || (bits == self.magnitude && index < self.ties_end)
@@ -62,11 +63,11 @@ impl Cut {
 }
 
 /// The bits of an infinite magnitude. Those of NaN are larger.
-const INFINITY: u32 = f32::INFINITY.to_bits();
+const INFINITY: u64 = f64::INFINITY.to_bits();
 
 #[inline(always)]
-fn magnitude(value: f32) -> u32 {
-    value.to_bits() & (u32::MAX >> 1)
+fn magnitude(value: f64) -> u64 {
+    value.to_bits() & (u64::MAX >> 1)
 }
 
 #[derive(Clone, Copy, Default)]
@@ -77,18 +78,18 @@ struct Bin {
 
 impl Bin {
     #[inline(always)]
-    fn add(&mut self, bits: u32) {
-        let value = f64::from(f32::from_bits(bits));
+    fn add(&mut self, bits: u64) {
+        let value = f64::from_bits(bits);
         self.count += 1;
         self.energy += value * value;
     }
 }
 
 /// Sorts values that agree with `prefix` above the digit at `shift` by this digit.
-fn histogram(values: &[f32], prefix: u32, shift: u32, width: u32) -> Vec<Bin> {
+fn histogram(values: &[f64], prefix: u64, shift: u32, width: u32) -> Vec<Bin> {
     let above = shift + width;
     let sort = |chunk| match above {
-        31 => leading_digits(chunk, shift, width),
+        63 => leading_digits(chunk, shift, width),
         _ => inner_digits(chunk, prefix, shift, width),
     };
     let chunks: Vec<Vec<Bin>> = values.par_chunks(CHUNK).map(sort).collect();
@@ -99,7 +100,7 @@ fn histogram(values: &[f32], prefix: u32, shift: u32, width: u32) -> Vec<Bin> {
             total.energy += bin.energy;
         }
     }
-    if above == 31 {
+    if above == 63 {
         total.truncate((INFINITY >> shift) as usize);
     }
     total
@@ -107,7 +108,7 @@ fn histogram(values: &[f32], prefix: u32, shift: u32, width: u32) -> Vec<Bin> {
 
 /// Every value counts. Neighbours go to two tables in turn: runs of equal values (zeros, mostly)
 /// would make each addition wait for the one before.
-fn leading_digits(chunk: &[f32], shift: u32, width: u32) -> Vec<Bin> {
+fn leading_digits(chunk: &[f64], shift: u32, width: u32) -> Vec<Bin> {
     let mut bins = vec![Bin::default(); 1 << width];
     let mut others = bins.clone();
     let (pairs, rest) = chunk.as_chunks::<2>();
@@ -127,11 +128,11 @@ fn leading_digits(chunk: &[f32], shift: u32, width: u32) -> Vec<Bin> {
 }
 
 /// Few values count: blocks without one are passed over, which the compiler vectorises.
-fn inner_digits(chunk: &[f32], prefix: u32, shift: u32, width: u32) -> Vec<Bin> {
+fn inner_digits(chunk: &[f64], prefix: u64, shift: u32, width: u32) -> Vec<Bin> {
     let (above, mask) = (shift + width, (1 << width) - 1);
     let mut bins = vec![Bin::default(); 1 << width];
     for block in chunk.chunks(32) {
-        let agrees = |&value: &f32| (magnitude(value) ^ prefix) >> above == 0;
+        let agrees = |&value: &f64| (magnitude(value) ^ prefix) >> above == 0;
         if block.iter().fold(false, |any, value| any | agrees(value)) {
             for bits in block.iter().filter(|&value| agrees(value)).copied().map(magnitude) {
                 bins[(bits >> shift & mask) as usize].add(bits);
@@ -142,9 +143,9 @@ fn inner_digits(chunk: &[f32], prefix: u32, shift: u32, width: u32) -> Vec<Bin> 
 }
 
 /// The index after the `nth` (from 1) value of this magnitude, of which there are as many.
-fn place_after(nth: u64, values: &[f32], wanted: u32) -> usize {
-    let is_wanted = |value: &f32| magnitude(*value) == wanted;
-    let count = |chunk: &[f32]| chunk.iter().filter(|&value| is_wanted(value)).count() as u64;
+fn place_after(nth: u64, values: &[f64], wanted: u64) -> usize {
+    let is_wanted = |value: &f64| magnitude(*value) == wanted;
+    let count = |chunk: &[f64]| chunk.iter().filter(|&value| is_wanted(value)).count() as u64;
     let counts: Vec<u64> = values.par_chunks(CHUNK).map(count).collect();
     let mut left = nth;
     for (chunk, count) in counts.into_iter().enumerate() {

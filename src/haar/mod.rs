@@ -10,7 +10,7 @@
 //! use walpha::haar::{Decomposition, Tolerance, forward};
 //!
 //! let row = arr3(&[[[9.0, 7.0, 3.0, 5.0]]]);
-//! let mut coefficients = forward(row, Decomposition::NonStandard);
+//! let mut coefficients = forward(row.view(), Decomposition::NonStandard);
 //! // Σ(f − f̂)² may be up to 4·1²: the detail −1 of [3, 5] goes, and so does the 1 of [9, 7].
 //! let truncation = coefficients.truncate(Tolerance::Rms(1.0))?;
 //! assert_eq!((truncation.kept, truncation.total), (2, 4));
@@ -45,14 +45,14 @@ pub struct HaarOptions {
 /// The truncated volume f̂ of a volume f: forward, truncate, inverse.
 ///
 /// Where no coefficient but zeros is dropped, f̂ is f bit for bit. O(n); the same on any number of
-/// threads; two copies of the samples live at once, f and what becomes f̂.
+/// threads; the coefficients, in double precision, live beside f, and then beside f̂.
 ///
 /// # Errors
 /// A tolerance that is none (see [`Coefficients::truncate`]), or samples so large that f̂ passes
 /// the range of `f32`.
 pub fn smooth(volume: &Volume, options: &HaarOptions) -> Result<(Volume, Truncation), HaarError> {
     options.tolerance.check()?;
-    let mut coefficients = forward(volume.samples().to_owned(), options.decomposition);
+    let mut coefficients = forward(volume.samples(), options.decomposition);
     let truncation = coefficients.truncate(options.tolerance)?;
     if truncation.epsilon == 0.0 {
         drop(coefficients);

@@ -1,61 +1,61 @@
 use ndarray::Array3;
 use rayon::prelude::*;
 
-use super::support::{forward_row, forward_rows, inverse_row, inverse_rows, norm, share, strides};
+use super::support::{Step, forward_row, forward_rows, inverse_row, inverse_rows, square, strides};
 
 /// Pairs of rows handed to a thread at once, at least.
 const PAIRS: usize = 8;
 
 /// All levels, from samples to coefficients.
-pub(super) fn forward(values: &mut Array3<f32>) {
+pub(super) fn forward(values: &mut Array3<f64>) {
     let (z, y, x) = values.dim();
     let flat = values.as_slice_mut().expect("standard layout");
     for stride in strides(x.max(y).max(z)) {
         let level = Level::new([x, y, z], stride);
         level.each_bundle(flat, |bundle| level.forward(bundle));
     }
-    flat[0] = (f64::from(flat[0]) * whole_norm([x, y, z])) as f32;
+    flat[0] /= whole_norm([x, y, z]);
 }
 
 /// All levels, from coefficients to samples.
-pub(super) fn inverse(values: &mut Array3<f32>) {
+pub(super) fn inverse(values: &mut Array3<f64>) {
     let (z, y, x) = values.dim();
     let flat = values.as_slice_mut().expect("standard layout");
-    flat[0] = (f64::from(flat[0]) / whole_norm([x, y, z])) as f32;
+    flat[0] *= whole_norm([x, y, z]);
     for stride in strides(x.max(y).max(z)).rev() {
         let level = Level::new([x, y, z], stride);
         level.each_bundle(flat, |bundle| level.inverse(bundle));
     }
 }
 
-/// The norm of the function 1.
+/// The norm of the function 1, by which a sum of all is more than its coefficient.
 fn whole_norm(dims: [usize; 3]) -> f64 {
     dims.map(|n| n as f64).iter().product::<f64>().sqrt()
 }
 
-/// One level of the transform: means at multiples of the stride in each axis.
+/// One level of the transform: sums at multiples of the stride in each axis.
 struct Level {
     dims: [usize; 3],
     stride: usize,
-    /// The norm along x of the raw value at each multiple of the stride.
-    norms: Vec<f64>,
+    /// The factor along x of the square that belongs to the raw value at each multiple of the stride.
+    squares: Vec<f64>,
 }
 
 /// Up to 2×2 rows that step together: those at y and y + s, in the slices at z and z + s.
 struct Bundle<'a> {
     y: usize,
     z: usize,
-    rows: [[Option<&'a mut [f32]>; 2]; 2],
+    rows: [[Option<&'a mut [f64]>; 2]; 2],
 }
 
 impl Level {
     fn new(dims: [usize; 3], stride: usize) -> Self {
-        let norms = (0..dims[0]).step_by(stride).map(|i| norm(dims[0], stride, i)).collect();
-        Self { dims, stride, norms }
+        let squares = (0..dims[0]).step_by(stride).map(|i| square(dims[0], stride, i)).collect();
+        Self { dims, stride, squares }
     }
 
     /// Calls `work` on each bundle, in parallel.
-    fn each_bundle(&self, flat: &mut [f32], work: impl Fn(Bundle<'_>) + Sync) {
+    fn each_bundle(&self, flat: &mut [f64], work: impl Fn(Bundle<'_>) + Sync) {
         let ([x, y, _], s) = (self.dims, self.stride);
         let (slice, rows) = (x * y, 2 * s * x);
         flat.par_chunks_mut(2 * s * slice).enumerate().for_each(|(k, slab)| {
@@ -79,61 +79,61 @@ impl Level {
         let [near, far] = &mut rows;
         for slice in [&mut *near, &mut *far] {
             if let [Some(first), Some(second)] = slice {
-                forward_rows(first, second, s, share(self.dims[1], s, y + s));
+                forward_rows(first, second, s, Step::of(self.dims[1], s, y + s));
             }
         }
         for (first, second) in near.iter_mut().zip(far) {
             if let (Some(first), Some(second)) = (first, second) {
-                forward_rows(first, second, s, share(self.dims[2], s, z + s));
+                forward_rows(first, second, s, Step::of(self.dims[2], s, z + s));
             }
         }
-        self.scale(y, z, &mut rows, |norm| norm);
+        self.scale(y, z, &mut rows, |square| 1.0 / square.sqrt());
     }
 
     fn inverse(&self, Bundle { y, z, mut rows }: Bundle<'_>) {
         let s = self.stride;
-        self.scale(y, z, &mut rows, |norm| 1.0 / norm);
+        self.scale(y, z, &mut rows, f64::sqrt);
         let [near, far] = &mut rows;
         for (first, second) in near.iter_mut().zip(&mut *far) {
             if let (Some(first), Some(second)) = (first, second) {
-                inverse_rows(first, second, s, share(self.dims[2], s, z + s));
+                inverse_rows(first, second, s, Step::of(self.dims[2], s, z + s));
             }
         }
         for slice in [near, far] {
             if let [Some(first), Some(second)] = slice {
-                inverse_rows(first, second, s, share(self.dims[1], s, y + s));
+                inverse_rows(first, second, s, Step::of(self.dims[1], s, y + s));
             }
         }
         rows.iter_mut().flatten().flatten().for_each(|row| inverse_row(row, s));
     }
 
-    /// Multiplies each detail by a function of its norm. Means stay for the next level.
+    /// Multiplies each detail by a function of its square. Sums stay for the next level.
     fn scale(
         &self,
         y: usize,
         z: usize,
-        rows: &mut [[Option<&mut [f32]>; 2]; 2],
+        rows: &mut [[Option<&mut [f64]>; 2]; 2],
         of: impl Fn(f64) -> f64,
     ) {
         let ([x, ny, nz], s) = (self.dims, self.stride);
         for (dz, slice) in rows.iter_mut().enumerate() {
             for (dy, row) in slice.iter_mut().enumerate() {
                 let Some(row) = row else { continue };
-                let norm_yz = norm(ny, s, y + dy * s) * norm(nz, s, z + dz * s);
-                let factor = |k: usize| of(norm_yz * self.norms[k]) as f32;
-                // All pairs along x but the last have the same two norms.
-                let (mean, detail) = (factor(0), factor(self.norms.len().min(2) - 1));
-                let mean = if dy == 0 && dz == 0 { 1.0 } else { mean };
+                let square_yz = square(ny, s, y + dy * s) * square(nz, s, z + dz * s);
+                let factor = |k: usize| of(square_yz * self.squares[k]);
+                // All pairs along x but the last have the same two squares.
+                let (sum, detail) = (factor(0), factor(self.squares.len().min(2) - 1));
+                let sum = if dy == 0 && dz == 0 { 1.0 } else { sum };
                 let full = x / (2 * s) * (2 * s);
                 if s == 1 {
                     let (pairs, _) = row[..full].as_chunks_mut::<2>();
                     for [p, q] in pairs {
-                        *p *= mean;
+                        *p *= sum;
                         *q *= detail;
                     }
                 } else {
                     for i in (0..full).step_by(2 * s) {
-                        row[i] *= mean;
+                        row[i] *= sum;
                         row[i + s] *= detail;
                     }
                 }
@@ -148,7 +148,7 @@ impl Level {
 }
 
 /// The rows of `x` samples at 0 and at `apart`, if that one is there.
-fn pair(rows: &mut [f32], apart: usize, x: usize) -> [Option<&mut [f32]>; 2] {
+fn pair(rows: &mut [f64], apart: usize, x: usize) -> [Option<&mut [f64]>; 2] {
     let (first, second) = rows.split_at_mut(rows.len().min(apart));
     [Some(&mut first[..x]), second.get_mut(..x)]
 }

@@ -1,30 +1,30 @@
 use ndarray::Array3;
 use rayon::prelude::*;
 
-use super::support::{forward_row, forward_rows, inverse_row, inverse_rows, norm, share, strides};
+use super::support::{Step, forward_row, forward_rows, inverse_row, inverse_rows, square, strides};
 
 /// Each axis in full, x first, from samples to coefficients.
-pub(super) fn forward(values: &mut Array3<f32>) {
+pub(super) fn forward(values: &mut Array3<f64>) {
     let (z, y, x) = values.dim();
     let flat = values.as_slice_mut().expect("standard layout");
     flat.par_chunks_mut(x).for_each(|row| strides(x).for_each(|s| forward_row(row, s)));
     flat.par_chunks_mut(x * y).for_each(|slice| along(slice, y, false));
     along(flat, z, false);
-    scale(flat, [x, y, z], |norm| norm);
+    scale(flat, [x, y, z], |square| 1.0 / square.sqrt());
 }
 
 /// Each axis in full, z first, from coefficients to samples.
-pub(super) fn inverse(values: &mut Array3<f32>) {
+pub(super) fn inverse(values: &mut Array3<f64>) {
     let (z, y, x) = values.dim();
     let flat = values.as_slice_mut().expect("standard layout");
-    scale(flat, [x, y, z], |norm| 1.0 / norm);
+    scale(flat, [x, y, z], f64::sqrt);
     along(flat, z, true);
     flat.par_chunks_mut(x * y).for_each(|slice| along(slice, y, true));
     flat.par_chunks_mut(x).for_each(|row| strides(x).rev().for_each(|s| inverse_row(row, s)));
 }
 
 /// All levels along the slowest of the axes of `flat`, which has n lines.
-fn along(flat: &mut [f32], n: usize, back: bool) {
+fn along(flat: &mut [f64], n: usize, back: bool) {
     let line = flat.len() / n;
     let level = |s: usize| {
         flat.par_chunks_mut(2 * s * line).enumerate().for_each(|(k, pair)| {
@@ -32,30 +32,29 @@ fn along(flat: &mut [f32], n: usize, back: bool) {
             if second.is_empty() {
                 return;
             }
-            let share = share(n, s, 2 * s * k + s);
-            let step = if back { inverse_rows } else { forward_rows };
+            let step = Step::of(n, s, 2 * s * k + s);
+            let work = if back { inverse_rows } else { forward_rows };
             let (first, second) = (&mut first[..line], &mut second[..line]);
             let pieces = first.par_chunks_mut(1 << 14).zip(second.par_chunks_mut(1 << 14));
-            pieces.for_each(|(first, second)| step(first, second, 1, share));
+            pieces.for_each(|(first, second)| work(first, second, 1, step));
         });
     };
     if back { strides(n).rev().for_each(level) } else { strides(n).for_each(level) }
 }
 
-/// Multiplies each value by a function of its norm.
-fn scale(flat: &mut [f32], dims: [usize; 3], of: impl Fn(f64) -> f64 + Sync) {
-    let [norms_x, norms_y, norms_z] = dims.map(norms);
+/// Multiplies each value by a function of its square.
+fn scale(flat: &mut [f64], dims: [usize; 3], of: impl Fn(f64) -> f64 + Sync) {
+    let [in_x, in_y, in_z] = dims.map(squares);
     flat.par_chunks_mut(dims[0]).enumerate().for_each(|(row, values)| {
-        let norm_yz = norms_y[row % dims[1]] * norms_z[row / dims[1]];
-        for (value, norm_x) in values.iter_mut().zip(&norms_x) {
-            *value *= of(norm_yz * norm_x) as f32;
+        let square_yz = in_y[row % dims[1]] * in_z[row / dims[1]];
+        for (value, square_x) in values.iter_mut().zip(&in_x) {
+            *value *= of(square_yz * square_x);
         }
     });
 }
 
-/// The norm of each function of a row of n samples.
-fn norms(n: usize) -> Vec<f64> {
-    let at =
-        |i: usize| if i == 0 { (n as f64).sqrt() } else { norm(n, 1 << i.trailing_zeros(), i) };
+/// The factors of a row of n samples.
+fn squares(n: usize) -> Vec<f64> {
+    let at = |i: usize| if i == 0 { n as f64 } else { square(n, 1 << i.trailing_zeros(), i) };
     (0..n).map(at).collect()
 }

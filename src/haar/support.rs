@@ -1,33 +1,54 @@
 //! One axis of the Haar basis on a row of any length.
 //!
-//! At the level of stride s = 2ˡ a row of n samples is n/2ˡ means, rounded up, at the multiples
-//! of s. The mean at i stands for a *support* of min(s, n − i) samples. The step joins the means
-//! at i = 2ks and i + s, of supports a and b, values p and q:
+//! At the level of stride s = 2ˡ a row of n samples is n/2ˡ sums, rounded up, at the multiples
+//! of s. The sum at i has a *support* of min(s, n − i) samples. The step joins the sums at i = 2ks
+//! and i + s, of supports a and b with greatest common divisor g, values p and q:
 //!
 //! ```text
-//! mean   m = p − (p − q)·b/(a + b)      to i
-//! detail d = p − q                      to i + s
+//! sum    m = p + q                  to i
+//! detail d = (b·p − a·q)/g          to i + s
 //! ```
 //!
-//! Times √(a + b) and √(ab/(a + b)) these are the unbalanced Haar step on the orthonormal values
-//! √a·p and √b·q: average (√a·√a·p + √b·√b·q)/√(a + b), detail (√b·√a·p − √a·√b·q)/√(a + b). For
-//! a = b it is the common Haar step. Working on means keeps all numbers in the range of the samples, and
-//! makes the details of a constant row exactly 0.
+//! Over √(a + b) and √(ab(a + b))/g these are the unbalanced Haar step on the orthonormal values
+//! p/√a and q/√b: average (√a·p/√a + √b·q/√b)/√(a + b), detail (√b·p/√a − √a·q/√b)/√(a + b). For
+//! a = b it is the common Haar step. Sums and details of whole numbers are whole numbers, so equal
+//! coefficients are equal, and those that are 0 are exactly 0, as long as these stay below 2⁵³.
 
-/// The share of the second mean in the joint one, b/(a + b).
-pub(super) fn share(n: usize, stride: usize, second: usize) -> f32 {
-    let b = stride.min(n - second);
-    (b as f64 / (stride + b) as f64) as f32
+/// How the second of two neighbouring sums joins the first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Step {
+    /// b/g and a/g.
+    of_first: f64,
+    of_second: f64,
 }
 
-/// The norm of the function whose coefficient is the raw value at `i` after the level of
-/// `stride`: √(a + b) at a mean, √(ab/(a + b)) at a detail.
-pub(super) fn norm(n: usize, stride: usize, i: usize) -> f64 {
+impl Step {
+    /// Supports of equal size.
+    const EVEN: Self = Self { of_first: 1.0, of_second: 1.0 };
+
+    /// The step at `stride` of a row of n samples whose second sum is at `second`.
+    pub fn of(n: usize, stride: usize, second: usize) -> Self {
+        let (a, b) = (stride, stride.min(n - second));
+        let g = common_divisor(a, b);
+        Self { of_first: (b / g) as f64, of_second: (a / g) as f64 }
+    }
+}
+
+/// Of a power of two and a number that is not 0.
+fn common_divisor(power: usize, number: usize) -> usize {
+    power.min(1 << number.trailing_zeros())
+}
+
+/// The square of what the raw value at `i` after the level of `stride` is to be divided by to be an
+/// orthonormal coefficient: a + b at a sum, ab(a + b)/g² at a detail. A whole number, so that
+/// products over axes do not depend on their order.
+pub(super) fn square(n: usize, stride: usize, i: usize) -> f64 {
     if i.is_multiple_of(2 * stride) {
-        ((2 * stride).min(n - i) as f64).sqrt()
+        (2 * stride).min(n - i) as f64
     } else {
-        let (a, b) = (stride as f64, stride.min(n - i) as f64);
-        (a * b / (a + b)).sqrt()
+        let (a, b) = (stride, stride.min(n - i));
+        let g = common_divisor(a, b);
+        (a / g) as f64 * (b / g) as f64 * (a + b) as f64
     }
 }
 
@@ -37,70 +58,69 @@ pub(super) fn strides(n: usize) -> impl DoubleEndedIterator<Item = usize> {
 }
 
 /// Steps a row forward.
-pub(super) fn forward_row(row: &mut [f32], stride: usize) {
-    let n = row.len();
-    if stride == 1 {
-        let (pairs, _) = row.as_chunks_mut::<2>();
-        for [p, q] in pairs {
-            join(p, q, 0.5);
-        }
-    } else {
-        for i in (0..n.saturating_sub(stride)).step_by(2 * stride) {
-            let (mut p, mut q) = (row[i], row[i + stride]);
-            join(&mut p, &mut q, share(n, stride, i + stride));
-            (row[i], row[i + stride]) = (p, q);
-        }
-    }
+pub(super) fn forward_row(row: &mut [f64], stride: usize) {
+    each_step(row, stride, join);
 }
 
 /// Steps a row back.
-pub(super) fn inverse_row(row: &mut [f32], stride: usize) {
+pub(super) fn inverse_row(row: &mut [f64], stride: usize) {
+    each_step(row, stride, part);
+}
+
+#[inline(always)]
+fn each_step(row: &mut [f64], stride: usize, work: impl Fn(&mut f64, &mut f64, Step)) {
     let n = row.len();
     if stride == 1 {
         let (pairs, _) = row.as_chunks_mut::<2>();
         for [p, q] in pairs {
-            part(p, q, 0.5);
+            work(p, q, Step::EVEN);
         }
     } else {
         for i in (0..n.saturating_sub(stride)).step_by(2 * stride) {
             let (mut p, mut q) = (row[i], row[i + stride]);
-            part(&mut p, &mut q, share(n, stride, i + stride));
+            work(&mut p, &mut q, Step::of(n, stride, i + stride));
             (row[i], row[i + stride]) = (p, q);
         }
     }
 }
 
-/// Joins two rows sample by sample, at each `stride`-th, where the second has this share.
-pub(super) fn forward_rows(first: &mut [f32], second: &mut [f32], stride: usize, share: f32) {
-    each_pair(first, second, stride, |p, q| join(p, q, share));
+/// Joins two rows sample by sample, at each `stride`-th.
+pub(super) fn forward_rows(first: &mut [f64], second: &mut [f64], stride: usize, step: Step) {
+    each_pair(first, second, stride, step, join);
 }
 
 /// Parts two rows sample by sample.
-pub(super) fn inverse_rows(first: &mut [f32], second: &mut [f32], stride: usize, share: f32) {
-    each_pair(first, second, stride, |p, q| part(p, q, share));
+pub(super) fn inverse_rows(first: &mut [f64], second: &mut [f64], stride: usize, step: Step) {
+    each_pair(first, second, stride, step, part);
 }
 
 #[inline(always)]
-fn each_pair(a: &mut [f32], b: &mut [f32], stride: usize, step: impl Fn(&mut f32, &mut f32)) {
+fn each_pair(
+    a: &mut [f64],
+    b: &mut [f64],
+    stride: usize,
+    step: Step,
+    work: impl Fn(&mut f64, &mut f64, Step),
+) {
     let pairs = a.iter_mut().zip(b);
-    // Told apart so that the dense case is vectorised.
-    if stride == 1 {
-        pairs.for_each(|(p, q)| step(p, q));
+    // Told apart so that the dense and even case is vectorised, without divisions.
+    if stride > 1 {
+        pairs.step_by(stride).for_each(|(p, q)| work(p, q, step));
+    } else if step == Step::EVEN {
+        pairs.for_each(|(p, q)| work(p, q, Step::EVEN));
     } else {
-        pairs.step_by(stride).for_each(|(p, q)| step(p, q));
+        pairs.for_each(|(p, q)| work(p, q, step));
     }
 }
 
 #[inline(always)]
-fn join(p: &mut f32, q: &mut f32, share: f32) {
-    let detail = *p - *q;
-    *p -= detail * share;
-    *q = detail;
+fn join(p: &mut f64, q: &mut f64, Step { of_first, of_second }: Step) {
+    (*p, *q) = (*p + *q, of_first * *p - of_second * *q);
 }
 
 #[inline(always)]
-fn part(p: &mut f32, q: &mut f32, share: f32) {
-    let detail = *q;
-    *p += detail * share;
-    *q = *p - detail;
+fn part(p: &mut f64, q: &mut f64, Step { of_first, of_second }: Step) {
+    let (sum, detail, whole) = (*p, *q, of_first + of_second);
+    *p = (of_second * sum + detail) / whole;
+    *q = (of_first * sum - detail) / whole;
 }

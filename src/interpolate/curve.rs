@@ -116,7 +116,7 @@ pub fn error_curve(
 struct Bench<'a> {
     volume: &'a Volume,
     smoothed: &'a Volume,
-    differences: Array3<f32>,
+    differences: Array3<f64>,
     options: &'a CurveOptions,
 }
 
@@ -133,13 +133,13 @@ impl Bench<'_> {
                 self.counts().map(|count| self.by(SelectionRule::Count(count))).collect()
             }
             Method::Threshold => {
-                let mut levels: Vec<f32> = self.differences.iter().copied().collect();
+                let mut levels: Vec<f64> = self.differences.iter().copied().collect();
                 levels.sort_unstable_by(|a, b| b.total_cmp(a));
-                let level = |count: u64| f64::from(levels[count as usize - 1]).round().max(1.0);
+                let level = |count: u64| levels[count as usize - 1].round().max(1.0);
                 let mut thresholds: Vec<f64> = self.counts().map(level).collect();
                 thresholds.dedup();
                 // A constant volume has no difference of a gray level.
-                thresholds.retain(|&threshold| f64::from(levels[0]) >= threshold);
+                thresholds.retain(|&threshold| levels[0] >= threshold);
                 thresholds.into_iter().map(|t| self.by(SelectionRule::Threshold(t))).collect()
             }
             Method::Adaptive => {

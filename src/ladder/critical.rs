@@ -3,18 +3,17 @@ use serde::Serialize;
 
 use super::Filtration;
 use super::levels::ByLevel;
-use crate::shape::{Alpha, Betti};
-use crate::triangulation::{Interval, Predicates};
+use super::values::Value;
+use crate::shape::{Alpha, Betti, each_number_or_name};
 
 /// The topology of a filtration at every α at which a simplex comes.
 ///
-/// Critical values are numbers with rounding bounds here; where two of them might be equal they are
-/// one entry. On a voxel grid, where they are equal by the thousand, that leaves few.
+/// Critical values are told apart exactly; those for which the same double is the first not below
+/// are one entry, as no α tells them apart. On a voxel grid, where values are equal by the thousand,
+/// that leaves few.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// Each critical value lies in its interval, and the next one above it: the shape at an upper
-    /// end has what comes at the value.
-    values: Vec<Interval>,
+    values: Vec<Value>,
     /// The Betti numbers from each value on.
     pub betti: Vec<Betti>,
     /// The solid components from each value on.
@@ -32,34 +31,27 @@ pub struct Suggestions {
     pub all_points: f64,
     /// That, and the cells are one solid component: MATLAB's `criticalAlpha(shp, 'one-region')`,
     /// CGAL's `Alpha_shape_3::find_optimal_alpha(1)`, which searches by halving and may find a
-    /// larger one, as the number of components goes up and down.
+    /// larger one. This is the smallest α with the property, not one from which it lasts: the
+    /// number of components goes up and down.
     pub one_region: f64,
     /// That, and there is no void.
     pub no_void: f64,
     /// From where to where the Betti numbers stay the same longest, as a ratio of the squared radii
-    /// of the largest balls, from `all_points` on.
+    /// of the largest balls, looked for from `all_points` on. The second is the α at which they
+    /// change again; ∞, the string "inf" in JSON, if from `all_points` on they never change.
+    #[serde(serialize_with = "each_number_or_name")]
     pub plateau: [f64; 2],
 }
 
 impl Filtration {
     /// The topology at all critical values. O(n log n).
     pub fn curve(&self) -> Curve {
-        let lower = self.facets.par_iter().chain(&self.edges).chain(&self.vertices);
-        let mut radii: Vec<Interval> = lower.flatten().chain(&self.cells).copied().collect();
-        radii.par_sort_unstable_by(|a, b| a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)));
-        let mut values: Vec<Interval> = Vec::new();
-        for radius in radii {
-            match values.last_mut() {
-                Some(value) if radius.low <= value.high => value.high = value.high.max(radius.high),
-                _ => values.push(radius),
-            }
-        }
+        let values = self.values();
         let alphas: Vec<Alpha> = values
             .iter()
-            .map(|value| Alpha::from_squared(value.high).expect("radii are numbers"))
+            .map(|value| Alpha::from_squared(value.above()).expect("radii are numbers"))
             .collect();
         let levels = self.levels(&alphas);
-        // Upper ends that are equal would be one level; a gap lies between any two.
         assert_eq!(levels.len(), values.len(), "one level for each value");
         let (betti, solid_components) =
             rayon::join(|| levels.betti(), || levels.solid_components());
@@ -100,9 +92,10 @@ impl Filtration {
         let all_points = from(0, &|k| curve.loose[k] == 0);
         let one_region = from(all_points, &|k| curve.solid_components[k] == 1);
         let no_void = from(one_region, &|k| curve.betti[k].b2 == 0);
-        let plateau = curve.plateau(all_points);
-        let [all_points, one_region, no_void, low, high] =
-            self.alphas_at(curve, [all_points, one_region, no_void, plateau[0], plateau[1]]);
+        let (from, to) = curve.plateau(all_points);
+        let [all_points, one_region, no_void, low] =
+            self.alphas_at(curve, [all_points, one_region, no_void, from]);
+        let high = to.map_or(f64::INFINITY, |to| self.first_alpha(curve.values[to]));
         Suggestions { all_points, one_region, no_void, plateau: [low, high] }
     }
 
@@ -140,41 +133,7 @@ impl Filtration {
 
     /// The first doubles that are not below critical values.
     fn alphas_at<const M: usize>(&self, curve: &Curve, values: [usize; M]) -> [f64; M] {
-        let spheres = self.spheres();
-        let whole = self.whole.complex();
-        values.map(|k| {
-            let value = curve.values[k];
-            let mut alpha = f64::NEG_INFINITY;
-            raise(&mut alpha, value, &spheres, &whole.cells.vertices, self.cells.iter().copied());
-            let lower = self.facets.iter().map(known);
-            raise(&mut alpha, value, &spheres, &self.incidence.facets, lower);
-            let lower = self.edges.iter().map(known);
-            raise(&mut alpha, value, &spheres, &whole.edges.vertices, lower);
-            let lower = self.vertices.iter().map(known);
-            raise(&mut alpha, value, &spheres, &whole.vertices.vertices, lower);
-            alpha
-        })
-    }
-}
-
-/// What has no sphere of its own lies above everything.
-fn known(radius: &Option<Interval>) -> Interval {
-    radius.unwrap_or(Interval { low: f64::INFINITY, high: f64::INFINITY })
-}
-
-/// Raises α until every simplex whose radius lies in `value` fits.
-fn raise<const N: usize>(
-    alpha: &mut f64,
-    value: Interval,
-    spheres: &Predicates<'_>,
-    rows: &[[u32; N]],
-    radii: impl Iterator<Item = Interval>,
-) {
-    for (&row, radius) in rows.iter().zip(radii) {
-        let within = value.low <= radius.low && radius.high <= value.high;
-        if within && !spheres.fits_by(row, radius, *alpha) {
-            *alpha = spheres.first_alpha(row);
-        }
+        values.map(|k| self.first_alpha(curve.values[k]))
     }
 }
 
@@ -191,7 +150,7 @@ impl Curve {
 
     /// α just above each critical value, ascending: the rest of a step of the curve lies between.
     pub fn alphas(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
-        self.values.iter().map(|value| value.high)
+        self.values.iter().map(|value| value.above())
     }
 
     /// The largest weight: what α must be raised by to have the squared radius of the largest balls.
@@ -201,22 +160,24 @@ impl Curve {
 
     /// The squared radius of the largest balls at a value.
     fn size(&self, k: usize) -> f64 {
-        self.values[k].high + self.largest_weight
+        self.values[k].above() + self.largest_weight
     }
 
-    /// The value at which the longest stretch without a change begins, and the one that ends it.
-    fn plateau(&self, start: usize) -> [usize; 2] {
-        let mut best = [start, start];
-        let ratio = |[a, b]: [usize; 2]| self.size(b) / self.size(a);
+    /// The value at which the longest stretch without a change begins, and the one that ends it;
+    /// none if nothing changes from the start on. The last stretch of several has no end, and is
+    /// none of them.
+    fn plateau(&self, start: usize) -> (usize, Option<usize>) {
+        let ratio = |(a, b): (usize, usize)| self.size(b) / self.size(a);
+        let mut best: Option<(usize, usize)> = None;
         let mut begin = start;
         for k in start + 1..self.values.len() {
             if self.betti[k] != self.betti[begin] {
-                if ratio([begin, k]) > ratio(best) {
-                    best = [begin, k];
+                if best.is_none_or(|best| ratio((begin, k)) > ratio(best)) {
+                    best = Some((begin, k));
                 }
                 begin = k;
             }
         }
-        best
+        best.map_or((start, None), |(from, to)| (from, Some(to)))
     }
 }

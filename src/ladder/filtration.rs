@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::incidence::Incidence;
 use crate::points::WeightedPoints;
-use crate::shape::{Alpha, AlphaShape, Complex, ShapeError, ShapeOptions, alpha_shape};
+use crate::shape::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape};
 use crate::triangulation::{Interval, Predicates};
 
 /// All alpha shapes of a set of points at once: the regular triangulation, and for each simplex
@@ -35,7 +35,8 @@ impl Filtration {
     /// # Errors
     /// As [`alpha_shape`].
     pub fn new(points: WeightedPoints) -> Result<Self, ShapeError> {
-        let options = ShapeOptions { exterior: true, ..ShapeOptions::new(Alpha::INFINITE) };
+        let engine = Engine::Native;
+        let options = ShapeOptions { engine, exterior: true, ..ShapeOptions::new(Alpha::INFINITE) };
         let whole = alpha_shape(points, &options)?;
         let complex = whole.complex();
         let incidence = Incidence::of(complex, whole.points().len());

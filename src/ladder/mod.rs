@@ -32,6 +32,7 @@ mod region;
 mod shape;
 mod table;
 mod topology;
+mod values;
 mod voids;
 
 pub use critical::{Curve, Suggestions};

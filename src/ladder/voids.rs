@@ -19,8 +19,10 @@ pub(super) struct Complement<'a> {
     /// Roots, and cells that were roots once.
     roots: Vec<u32>,
     count: u64,
-    /// The α at which a cell comes, where it was asked for.
-    known: BTreeMap<u32, f64>,
+    /// The cells of each component in a ring, each with the next.
+    next: Vec<u32>,
+    /// The α that fills a component, by its root, where it was asked for; and how many cells it had.
+    known: BTreeMap<u32, (usize, f64)>,
 }
 
 impl Levels<'_> {
@@ -42,7 +44,7 @@ impl Levels<'_> {
         let positions = &self.filtration.points().positions;
         let hollow = |(row, cell): (usize, &[u32; 4])| {
             let corners = cell.map(|v| positions[v as usize]);
-            Hollow::of(row as u32, self.filtration.cells[row], corners)
+            Hollow::of(self.filtration.cells[row], corners)
         };
         let outside = self.cells.len() as u32;
         let mut complement = Complement {
@@ -52,6 +54,7 @@ impl Levels<'_> {
             hollows: complex.cells.vertices.iter().enumerate().map(hollow).collect(),
             roots: Vec::new(),
             count: 1,
+            next: (0..outside).collect(),
             known: BTreeMap::new(),
         };
         for level in (0..self.len()).rev() {
@@ -78,6 +81,7 @@ impl Complement<'_> {
         let (root, other) = (a.min(b) as usize, a.max(b) as usize);
         // The outside is the last set of all and keeps no account.
         if other < self.hollows.len() {
+            self.next.swap(root, other);
             let other = self.hollows[other];
             self.hollows[root].join(&other);
         }
@@ -92,17 +96,34 @@ impl Complement<'_> {
         let outside = self.sets.find(self.hollows.len() as u32);
         let mut roots = std::mem::take(&mut self.roots);
         roots.retain(|&root| self.sets.find(root) == root && root != outside);
-        let filtration = self.levels.filtration;
-        let cells = &filtration.whole.complex().cells.vertices;
         let void = |&root: &u32| {
-            let hollow = &self.hollows[root as usize];
-            let top = hollow.top() as usize;
-            let first = || self.spheres.first_alpha(cells[top]);
-            hollow.void(*self.known.entry(hollow.top()).or_insert_with(first))
+            let alpha = self.filling(root);
+            self.hollows[root as usize].void(alpha)
         };
         let mut voids: Vec<Void> = roots.iter().map(void).collect();
         voids.sort_by(Void::order);
         self.roots = roots;
         voids
+    }
+
+    /// The first double at which all cells of a component fit.
+    fn filling(&mut self, root: u32) -> f64 {
+        let hollow = self.hollows[root as usize];
+        match self.known.get(&root) {
+            Some(&(cells, alpha)) if cells == hollow.cells() => return alpha,
+            _ => {}
+        }
+        let filtration = self.levels.filtration;
+        let cells = &filtration.whole.complex().cells.vertices;
+        let (mut alpha, mut at) = (f64::NEG_INFINITY, root as usize);
+        loop {
+            hollow.raise(&mut alpha, &self.spheres, cells[at], filtration.cells[at]);
+            at = self.next[at] as usize;
+            if at == root as usize {
+                break;
+            }
+        }
+        self.known.insert(root, (hollow.cells(), alpha));
+        alpha
     }
 }

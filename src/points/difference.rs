@@ -9,11 +9,12 @@ const ROWS: usize = 32;
 /// The difference L of each voxel, `[z, y, x]`: a sixth of the sum of |f(voxel) − f(neighbour)|
 /// over its neighbours in ±x, ±y and ±z, where a missing neighbour adds 0.
 ///
-/// Sums in f64, rounded once to `f32`. O(n), parallel.
-pub fn difference(volume: &Volume) -> Array3<f32> {
+/// In double precision: the six differences are exact unless samples differ 2²⁸-fold in magnitude, so
+/// voxels of equal L have the same double, and it is the one nearest to L. O(n), parallel.
+pub fn difference(volume: &Volume) -> Array3<f64> {
     let [nx, ny, nz] = volume.dims().xyz();
     let samples = volume.as_slice();
-    let mut differences = vec![0f32; samples.len()];
+    let mut differences = vec![0.0; samples.len()];
     let rows = differences.par_chunks_mut(nx).with_min_len(ROWS).enumerate();
     rows.for_each(|(row, differences)| {
         let (y, z) = (row % ny, row / ny);
@@ -37,21 +38,21 @@ pub fn difference(volume: &Volume) -> Array3<f32> {
 ///
 /// assert_eq!(difference_row(&[8.0, 8.0, 4.0, 4.0], 2.0), [0.0, 2.0, 2.0, 0.0]);
 /// ```
-pub fn difference_row(row: &[f32], divisor: f64) -> Vec<f32> {
+pub fn difference_row(row: &[f32], divisor: f64) -> Vec<f64> {
     let mut differences = vec![0.0; row.len()];
     row_differences(row, [row; 4], divisor, &mut differences);
     differences
 }
 
 /// The differences of a row from itself and from the rows beside it.
-fn row_differences(row: &[f32], beside: [&[f32]; 4], divisor: f64, differences: &mut [f32]) {
+fn row_differences(row: &[f32], beside: [&[f32]; 4], divisor: f64, differences: &mut [f64]) {
     let n = row.len();
     let [a, b, c, d] = beside.map(|row| &row[..n]);
     let one = |i: usize, left: f32, right: f32| {
         let value = f64::from(row[i]);
         let from = |other: f32| (value - f64::from(other)).abs();
         let sum = from(left) + from(right) + from(a[i]) + from(b[i]) + from(c[i]) + from(d[i]);
-        (sum / divisor) as f32
+        sum / divisor
     };
     let differences = &mut differences[..n];
     // Slices of one length, so that the middle is vectorised; the ends are written again below.
@@ -64,7 +65,7 @@ fn row_differences(row: &[f32], beside: [&[f32]; 4], divisor: f64, differences: 
             let from = |other: f32| (value - f64::from(other)).abs();
             let sum =
                 from(left[i]) + from(right[i]) + from(a[i]) + from(b[i]) + from(c[i]) + from(d[i]);
-            *difference = (sum / divisor) as f32;
+            *difference = sum / divisor;
         }
     }
     if n > 0 {

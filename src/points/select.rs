@@ -28,7 +28,7 @@ pub enum SelectionRule {
     /// (half up, and at least 1), then as `Count`; the voxels that `gray_min` leaves are too few
     /// if they are fewer than that.
     Ratio(f64),
-    /// All voxels with L of at least this, in gray levels.
+    /// All voxels with L of at least this, in gray levels: as doubles, 5/6 is at least 5/6.
     Threshold(f64),
 }
 
@@ -102,7 +102,7 @@ impl Points {
 pub fn select(
     volume: &Volume,
     smoothed: &Volume,
-    differences: &Array3<f32>,
+    differences: &Array3<f64>,
     selection: &Selection,
     units: Units,
 ) -> Result<Points, PointsError> {
@@ -118,8 +118,8 @@ pub fn select(
         }
         Some(least) => {
             let mask =
-                |(&l, &gray): (&f32, &f32)| if f64::from(gray) >= least { l } else { f32::NAN };
-            let masked: Vec<f32> = flat.par_iter().zip(smoothed.as_slice()).map(mask).collect();
+                |(&l, &gray): (&f64, &f32)| if f64::from(gray) >= least { l } else { f64::NAN };
+            let masked: Vec<f64> = flat.par_iter().zip(smoothed.as_slice()).map(mask).collect();
             let available = masked.par_iter().filter(|l| !l.is_nan()).count() as u64;
             chosen(&masked, available, &selection.rule)?
         }
@@ -134,24 +134,25 @@ pub fn select(
 /// When the two are not of one shape, or have no such voxel.
 pub fn points_at(
     volume: &Volume,
-    differences: &Array3<f32>,
+    differences: &Array3<f64>,
     voxels: &[u32],
     units: Units,
 ) -> Points {
     assert_eq!(volume.dims().shape(), *differences.shape(), "one grid");
     let differences = differences.as_standard_layout();
-    let of = |column: &[f32]| voxels.par_iter().map(|&i| f64::from(column[i as usize])).collect();
+    let values = volume.as_slice();
+    let flat = differences.as_slice().expect("standard layout");
     Points {
         positions: voxels.par_iter().map(|&voxel| units.position(volume, voxel)).collect(),
-        values: Some(of(volume.as_slice())),
-        differences: Some(of(differences.as_slice().expect("standard layout"))),
+        values: Some(voxels.par_iter().map(|&i| f64::from(values[i as usize])).collect()),
+        differences: Some(voxels.par_iter().map(|&i| flat[i as usize]).collect()),
         weights: None,
     }
 }
 
 /// The indices the rule chooses, ascending. Masked voxels are NaN, and `available` are not.
 fn chosen(
-    differences: &[f32],
+    differences: &[f64],
     available: u64,
     rule: &SelectionRule,
 ) -> Result<Vec<u32>, PointsError> {
@@ -177,15 +178,15 @@ fn chosen(
             Err(PointsError::Number { what: "--threshold", given: least, need })
         }
         SelectionRule::Threshold(least) => {
-            let chosen = collect(differences, |l, _| f64::from(l) >= least);
+            let chosen = collect(differences, |l, _| l >= least);
             if chosen.is_empty() { Err(PointsError::Empty { voxels }) } else { Ok(chosen) }
         }
     }
 }
 
 /// The indices of the values that are wanted, ascending.
-fn collect(values: &[f32], wanted: impl Fn(f32, usize) -> bool + Sync) -> Vec<u32> {
-    let of_chunk = |(chunk, values): (usize, &[f32])| {
+fn collect(values: &[f64], wanted: impl Fn(f64, usize) -> bool + Sync) -> Vec<u32> {
+    let of_chunk = |(chunk, values): (usize, &[f64])| {
         let indices = (chunk * CHUNK..).zip(values);
         indices.filter(|&(i, &l)| wanted(l, i)).map(|(i, _)| i as u32).collect::<Vec<_>>()
     };

@@ -79,3 +79,13 @@ pub fn number_or_name<S: Serializer>(number: &f64, serializer: S) -> Result<S::O
         serializer.serialize_str(&number.to_string())
     }
 }
+
+/// The same for two numbers.
+pub(crate) fn each_number_or_name<S: Serializer>(
+    numbers: &[f64; 2],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Named(#[serde(serialize_with = "number_or_name")] f64);
+    numbers.map(Named).serialize(serializer)
+}

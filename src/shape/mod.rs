@@ -30,6 +30,7 @@ mod topology;
 mod union_find;
 mod voids;
 
+pub(crate) use alpha::each_number_or_name;
 pub use alpha::{Alpha, Balls, NotAnAlpha, number_or_name};
 pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
 pub use blocks::PlanError;

@@ -18,8 +18,8 @@ pub struct Void {
     pub low: [f64; 3],
     /// The largest coordinates of its box, (x, y, z).
     pub high: [f64; 3],
-    /// The α that fills it, a squared length: the squared radius of the largest orthogonal sphere
-    /// of its cells, rounded up. It may fall into several voids before. With
+    /// The α that fills it, a squared length: the first double that is not below the squared radius
+    /// of the largest orthogonal sphere of its cells, exactly. It may fall into several voids before. With
     /// [`Balls::Radius`](super::Balls::Radius), where weights follow α, it is the parameter of the
     /// power weights instead, as [`AlphaShape::power_alpha`].
     pub filling_alpha: f64,
@@ -41,20 +41,19 @@ pub(crate) struct Hollow {
     six_volumes: f64,
     low: [f64; 3],
     high: [f64; 3],
-    /// The cell of the largest sphere, the first of those that are alike.
-    top: u32,
+    /// Around the largest squared radius of the cells.
     radius: Interval,
 }
 
 impl Hollow {
     /// One cell, with its squared radius.
-    pub fn of(cell: u32, radius: Interval, corners: [[f64; 3]; 4]) -> Self {
+    pub fn of(radius: Interval, corners: [[f64; 3]; 4]) -> Self {
         let end = |choose: fn(f64, f64) -> f64| {
             [0, 1, 2]
                 .map(|k| corners[1..].iter().fold(corners[0][k], |so_far, p| choose(so_far, p[k])))
         };
         let six_volumes = six_volumes(corners);
-        Self { cells: 1, six_volumes, low: end(f64::min), high: end(f64::max), top: cell, radius }
+        Self { cells: 1, six_volumes, low: end(f64::min), high: end(f64::max), radius }
     }
 
     /// Takes in another.
@@ -65,15 +64,27 @@ impl Hollow {
             self.low[k] = self.low[k].min(other.low[k]);
             self.high[k] = self.high[k].max(other.high[k]);
         }
-        let larger = other.radius.high.total_cmp(&self.radius.high);
-        if larger.then_with(|| self.top.cmp(&other.top)).is_gt() {
-            (self.top, self.radius) = (other.top, other.radius);
-        }
+        self.radius.low = self.radius.low.max(other.radius.low);
+        self.radius.high = self.radius.high.max(other.radius.high);
     }
 
-    /// The cell that goes last.
-    pub fn top(&self) -> u32 {
-        self.top
+    /// How many cells there are.
+    pub fn cells(&self) -> usize {
+        self.cells
+    }
+
+    /// Raises α to the first double at which one of the cells fits.
+    pub fn raise(
+        &self,
+        alpha: &mut f64,
+        spheres: &Predicates<'_>,
+        cell: [u32; 4],
+        radius: Interval,
+    ) {
+        // What surely comes before another needs no look.
+        if radius.high >= self.radius.low && !spheres.fits_by(cell, radius, *alpha) {
+            *alpha = spheres.first_alpha(cell);
+        }
     }
 
     /// The void it is, given when its last cell goes.
@@ -102,21 +113,28 @@ fn voids(shape: &AlphaShape) -> Vec<Void> {
     let spheres = Predicates::new(positions, shape.power_weights());
     // By the component's number, which is its first cell's.
     let mut found: Vec<Option<Hollow>> = vec![None; cells.len() + 1];
+    let mut inside = Vec::new();
     for (id, (&cell, class)) in cells.iter().enumerate() {
         let component = complement.component(id as u32);
         if class != Class::Exterior || component == outside {
             continue;
         }
         let corners = cell.map(|v| positions[v as usize]);
-        let hollow = Hollow::of(id as u32, spheres.squared_radius(cell), corners);
+        let radius = spheres.squared_radius(cell);
+        let hollow = Hollow::of(radius, corners);
         match &mut found[component as usize] {
             Some(found) => found.join(&hollow),
             empty => *empty = Some(hollow),
         }
+        inside.push((component as usize, cell, radius));
     }
-    let void =
-        |hollow: Hollow| hollow.void(spheres.first_alpha(cells.vertices[hollow.top as usize]));
-    let mut voids: Vec<Void> = found.into_iter().flatten().map(void).collect();
+    let mut filling = vec![f64::NEG_INFINITY; found.len()];
+    for (component, cell, radius) in inside {
+        let hollow = found[component].expect("it has this cell");
+        hollow.raise(&mut filling[component], &spheres, cell, radius);
+    }
+    let void = |(hollow, alpha): (Option<Hollow>, f64)| Some(hollow?.void(alpha));
+    let mut voids: Vec<Void> = found.into_iter().zip(filling).filter_map(void).collect();
     voids.sort_by(Void::order);
     voids
 }

@@ -25,7 +25,7 @@ pub use dtype::{Dtype, Endian, UnknownName};
 pub use error::VolumeError;
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
-pub(crate) use read::{Element, Lines, NPY_MAGIC, NpyFile, VtkXml, io_error};
+pub(crate) use read::{Element, Lines, MOST_EXPANSION, NPY_MAGIC, NpyFile, VtkXml, io_error};
 pub use read::{RawLayout, ReadOptions, data_files, read};
 pub use sample::{SAMPLES, open, phantom, sample};
 pub use volume::Volume;

@@ -42,3 +42,19 @@ pub fn json(folder: &Path, args: &[&str]) -> serde_json::Value {
     assert!(value.is_object());
     value
 }
+
+/// Whether points are in no plane; exact where coordinates are small whole numbers or halves.
+pub fn spans_a_volume(positions: &[[f64; 3]]) -> bool {
+    let minus = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k] - b[k]);
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    };
+    let mut rays = positions.iter().map(|&p| minus(p, positions[0]));
+    let Some(along) = rays.find(|&ray| ray != [0.0; 3]) else { return false };
+    let Some(normal) = rays.map(|ray| cross(along, ray)).find(|&n| n != [0.0; 3]) else {
+        return false;
+    };
+    let height =
+        |p: [f64; 3]| minus(p, positions[0]).iter().zip(normal).map(|(x, n)| x * n).sum::<f64>();
+    positions.iter().any(|&p| height(p) != 0.0)
+}

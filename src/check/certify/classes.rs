@@ -53,7 +53,8 @@ pub struct Judge<'a> {
     pub points: Points<'a>,
     pub alpha: f64,
     pub extent: Extent,
-    pub emptiness: Option<Emptiness<'a>>,
+    /// In a shape alone.
+    pub emptiness: Option<&'a Emptiness<'a>>,
 }
 
 /// The class a simplex has, and the point that keeps it out of the shape, or [`NONE`].
@@ -83,7 +84,7 @@ impl Judge<'_> {
         let verdict = |&cell: &[u32; 4]| {
             let inside = !self.flat(cell) && self.small(cell);
             let class = if inside { Class::Interior } else { Class::Exterior };
-            let refuter = self.emptiness.as_ref().filter(|_| inside);
+            let refuter = self.emptiness.filter(|_| inside);
             let finding = refuter.and_then(|near| near.refuter_of_cell(cell)).map(|point| {
                 let corners = self.points.at(cell);
                 let power = power_value(corners.each_ref(), &self.points.get(point));
@@ -196,8 +197,7 @@ impl Judge<'_> {
 
     /// The verdict on a simplex with a small sphere and nothing of the shape above it.
     fn alone<const N: usize>(&self, row: [u32; N], neighbour_inside: Option<u32>) -> Verdict {
-        let inside =
-            neighbour_inside.or_else(|| self.emptiness.as_ref().and_then(|near| near.refuter(row)));
+        let inside = neighbour_inside.or_else(|| self.emptiness.and_then(|near| near.refuter(row)));
         match inside {
             Some(refuted_by) => Verdict { class: Class::Exterior, refuted_by },
             None => Verdict::of(Class::Singular),
@@ -232,8 +232,10 @@ impl Judge<'_> {
         side(self.points.at(row).each_ref(), &self.points.get(q)) == Side::Inside
     }
 
+    /// Whether the corners are affinely dependent, so that there is no sphere of theirs.
     fn flat<const N: usize>(&self, row: [u32; N]) -> bool {
         match self.points.places(row)[..] {
+            [a, b] => a == b,
             [a, b, c] => collinear(a, b, c),
             [a, b, c, d] => orientation(a, b, c, d).is_eq(),
             _ => false,

@@ -11,6 +11,7 @@ use crate::check::exact::{RoundedSphere, Side, WeightedPoint, in_conflict, orien
 pub struct Emptiness<'a> {
     points: Points<'a>,
     grid: Grid,
+    heaviest: f64,
     /// √(α + largest ω), rounded up; zero when nothing can be inside.
     reach: f64,
 }
@@ -21,7 +22,7 @@ impl<'a> Emptiness<'a> {
         let heaviest = points.weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let sites = (0..points.len() as u32).filter(|&i| stays[i as usize] == i).collect();
         let reach = (alpha + heaviest).next_up().max(0.0).sqrt().next_up();
-        Self { points, grid: Grid::new(points.positions, sites), reach }
+        Self { points, grid: Grid::new(points.positions, sites), heaviest, reach }
     }
 
     /// A point that refutes a cell, after perturbation, whose squared radius is at most α.
@@ -39,6 +40,18 @@ impl<'a> Emptiness<'a> {
     pub fn refuter<const N: usize>(&self, simplex: [u32; N]) -> Option<u32> {
         let corners = self.points.at(simplex);
         self.find(simplex, |q| side(corners.each_ref(), q) == Side::Inside)
+    }
+
+    /// Whether no other point is inside or on the sphere of a point alone.
+    pub fn alone(&self, point: u32) -> bool {
+        let site = self.points.get(point);
+        // |q − p|² ≤ ω of q − ω of p, whatever α is.
+        let reach = (self.heaviest - site.weight).next_up().max(0.0).sqrt().next_up();
+        let near = |index: u32| {
+            let within = index != point && side([&site], &self.points.get(index)) != Side::Outside;
+            within.then_some(())
+        };
+        self.grid.within(site.position, reach, near).is_none()
     }
 
     fn find<const N: usize>(

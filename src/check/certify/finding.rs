@@ -2,7 +2,6 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::check::class_name;
 use crate::check::exact::Exact;
 use crate::shape::Class;
 
@@ -169,6 +168,24 @@ pub enum Finding {
         /// Six times the volume between them.
         six_volumes: Exact,
     },
+    /// All faces of a cell are listed, and the definition has it, but it is not listed. It is
+    /// judged as if it were, and what follows from its absence is not reported.
+    MissingCell {
+        /// The cell, positively oriented.
+        cell: Simplex,
+        /// The class it has.
+        class: Class,
+        /// The squared radius of its orthogonal sphere.
+        radius_squared: Exact,
+    },
+    /// A point is in the shape by itself, with no other point inside or on its sphere, but it is
+    /// not listed as a vertex.
+    MissingVertex {
+        /// The point.
+        point: u32,
+        /// The squared radius of its sphere, at most α.
+        radius_squared: Exact,
+    },
     /// A point is neither vertex nor listed as hidden or duplicate.
     Unaccounted {
         /// The point.
@@ -198,103 +215,12 @@ pub enum Finding {
     },
 }
 
-impl fmt::Display for Finding {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Finding {
+    /// The simplex whose class or winding is wrong.
+    pub(super) fn judged_class(&self) -> Option<&Simplex> {
         match self {
-            Self::Index { simplex, points } => {
-                write!(f, "{simplex} names a point that does not exist: there are {points}")
-            }
-            Self::RepeatedVertex { simplex } => write!(f, "{simplex} names a point twice"),
-            Self::RepeatedSimplex { simplex } => write!(f, "{simplex} is listed twice"),
-            Self::MissingFace { face, of } => write!(f, "{face} is missing: {of} has it as a face"),
-            Self::Stray { simplex } => {
-                write!(f, "{simplex} is the face of no higher simplex of the triangulation")
-            }
-            Self::NoCells => write!(f, "there are no cells, so this is no triangulation"),
-            Self::Orientation { cell, six_volumes } => write!(
-                f,
-                "{cell} must be positively oriented, but six times its volume is {six_volumes}"
-            ),
-            Self::Crowded { facet, cells } => {
-                write!(f, "{facet} is shared by {} cells, not by at most two:", cells.len())?;
-                cells.iter().try_for_each(|cell| write!(f, " {:?}", cell.vertices()))
-            }
-            Self::Overlap { facet, cells: [a, b] } => {
-                write!(f, "{a} and {b} overlap: both are on the same side of {facet}")
-            }
-            Self::NotRegular { cell, point, power } => {
-                write!(f, "{cell} is not regular: point {point} is inside its orthogonal sphere")?;
-                write_power(f, power)
-            }
-            Self::HullEdge { edge, facets } => {
-                write!(f, "{edge} of the hull lies between {facets} facets with one cell, not two")
-            }
-            Self::HullBends { facet, point, six_volumes } => write!(
-                f,
-                "the hull is not convex: point {point} is outside {facet} (six volumes {six_volumes})"
-            ),
-            Self::HullWraps { first, facet } => write!(
-                f,
-                "the hull does not go around the first cell once: {facet} does not face away from it, or lies behind {first}"
-            ),
-            Self::Volume { cells, hull } => write!(
-                f,
-                "the cells do not fill the hull: six times their volume is {cells}, six times the hull's {hull}"
-            ),
-            Self::Class { simplex, given, expected, radius_squared, refuted_by } => {
-                write!(f, "{simplex} is {}, not {}", class_name(*expected), class_name(*given))?;
-                if let Some(radius) = radius_squared {
-                    write!(f, " (squared radius {radius})")?;
-                }
-                match refuted_by {
-                    Some((point, power)) => {
-                        write!(f, "; point {point} is inside its sphere (power {power})")
-                    }
-                    None => Ok(()),
-                }
-            }
-            Self::Winding { facet, behind } => write!(
-                f,
-                "{facet} must turn counter-clockwise seen from outside, but point {behind} of the shape is before it"
-            ),
-            Self::NotHidden { point, cell, power } => {
-                write!(
-                    f,
-                    "point {point} is not hidden: it is inside the orthogonal sphere of {cell}, in which it lies"
-                )?;
-                write_power(f, power)
-            }
-            Self::OutsideHull { point, facet, six_volumes } => write!(
-                f,
-                "point {point} lies outside the hull, beyond {facet} (six volumes {six_volumes})"
-            ),
-            Self::Unaccounted { point } => {
-                write!(f, "point {point} is neither vertex nor hidden nor a duplicate")
-            }
-            Self::NotOnlyHidden { point } => {
-                write!(
-                    f,
-                    "point {point} is listed as hidden, but it is a vertex, a duplicate, listed before or no point"
-                )
-            }
-            Self::Duplicate { point, given, expected } => {
-                let stays = |who: &Option<u32>| match who {
-                    Some(other) => format!("gives way to point {other}"),
-                    None => "stays".into(),
-                };
-                write!(f, "point {point} {}, but as listed it {}", stays(expected), stays(given))
-            }
-            Self::DuplicateVertex { point, stays } => {
-                write!(f, "point {point} is a vertex, but gives way to point {stays} at its place")
-            }
+            Self::Class { simplex, .. } | Self::Winding { facet: simplex, .. } => Some(simplex),
+            _ => None,
         }
-    }
-}
-
-fn write_power(f: &mut fmt::Formatter<'_>, power: &Exact) -> fmt::Result {
-    if power.is_zero() {
-        write!(f, " (on it, and inside by the perturbation)")
-    } else {
-        write!(f, " (power {power})")
     }
 }

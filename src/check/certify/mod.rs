@@ -4,19 +4,24 @@ mod certificate;
 mod classes;
 mod emptiness;
 mod finding;
+mod gaps;
 mod geometry;
 mod hull;
 mod index;
+mod message;
 mod near;
 mod places;
+mod points;
 mod structure;
 
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
-use super::exact::{Exact, WeightedPoint};
+use super::exact::Exact;
 use crate::shape::{Class, Complex};
 use classes::Judge;
 use emptiness::Emptiness;
+use points::Points;
 use structure::Structure;
 
 pub use certificate::{Certificate, NotCertifiable, NotJudged};
@@ -104,14 +109,15 @@ impl<'a> Claim<'a> {
     ///
     /// The rules, each exact and each linear in the number of simplices (up to sorting):
     /// 1. rows name distinct input points, and no simplex is listed twice;
-    /// 2. every face of a simplex is listed, and in a whole triangulation nothing else is;
+    /// 2. every face of a simplex is listed, so is each cell that has all its faces listed, and in
+    ///    a whole triangulation nothing else is;
     /// 3. cells are positively oriented; a facet has at most two cells, one on each side;
     /// 4. no cell is refuted by its neighbours' vertices, by the perturbed power test; in a shape
     ///    alone, by no point nearby;
     /// 5. the hull is convex, goes around once, and the cells' volumes add up to what it
     ///    encloses (whole triangulations only);
-    /// 6. every point is a vertex, hidden or a duplicate, and listed as such where it is listed
-    ///    (hidden: whole triangulations only);
+    /// 6. no point is more than one of vertex, hidden and duplicate, and each is one of them (in a
+    ///    shape alone: each that has no other inside or on its sphere is a vertex);
     /// 7. every class is what the definition says, and regular facets turn counter-clockwise seen
     ///    from outside.
     ///
@@ -172,38 +178,68 @@ impl<'a> Claim<'a> {
         if bad_rows {
             return ControlFlow::Break(());
         }
-        let cells = &self.complex.cells.vertices;
-        let (sum, exponent) = hull::six_volumes(cells, points);
+        let (sum, exponent) = hull::six_volumes(&self.complex.cells.vertices, points);
         *volume = Some(Exact::integer(sum, exponent));
 
-        let (structure, mut broken) = Structure::new(self.complex, points);
-        broken.extend(geometry::orientations(cells, points));
-        let sound = broken.is_empty();
+        let stays = places::staying(points);
+        let emptiness = (!whole).then(|| Emptiness::new(points, self.alpha, &stays));
+        let emptiness = emptiness.as_ref();
+        let judge = Judge { points, alpha: self.alpha, extent: self.extent, emptiness };
+        let listed = Judged::new(self.complex, &judge);
+        let missing = gaps::missing_cells(&listed.structure, points, self.alpha, emptiness);
+        if !missing.is_empty() {
+            let filled = gaps::filled(self.complex, &missing);
+            let filled = Judged::new(&filled, &judge);
+            if filled.broken.is_empty() && filled.unlike.is_empty() {
+                report(gaps::findings(&missing, points))?;
+                // Classes around a gap may be right without its cell, or with it.
+                let wrong = classes::judge(&listed.structure, &judge);
+                let wrong: BTreeSet<_> = wrong.iter().filter_map(Finding::judged_class).collect();
+                let in_both = |finding: &Finding| {
+                    finding.judged_class().is_none_or(|simplex| wrong.contains(simplex))
+                };
+                let mut lasting =
+                    |findings: Vec<Finding>| report(findings.into_iter().filter(in_both).collect());
+                return self.apply(filled, &judge, &stays, &mut lasting);
+            }
+        }
+        self.apply(listed, &judge, &stays, report)
+    }
+
+    /// The rules after those on rows.
+    fn apply(
+        &self,
+        Judged { structure, broken, unlike }: Judged,
+        judge: &Judge,
+        stays: &[u32],
+        report: &mut dyn FnMut(Vec<Finding>) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let points = judge.points;
+        let regular = broken.is_empty() && unlike.is_empty();
         report(broken)?;
-        if whole {
+        if self.extent == Extent::Whole {
             report(hull::volume(&structure, points))?;
         }
-        let mut regular = false;
-        if sound {
-            let mut unlike = geometry::neighbours(&structure, points);
-            if whole {
-                unlike.extend(hull::convexity(&structure, points));
+        report(unlike)?;
+        report(places::duplicates(&structure, stays, self.duplicates))?;
+        match judge.emptiness {
+            Some(emptiness) => report(places::of_shape(
+                &structure,
+                points,
+                self.alpha,
+                emptiness,
+                stays,
+                self.hidden,
+            ))?,
+            None => {
+                let (hidden, findings) = places::hidden(&structure, stays, self.hidden);
+                report(findings)?;
+                if regular {
+                    report(places::hiddenness(&structure, points, &hidden))?;
+                }
             }
-            regular = unlike.is_empty();
-            report(unlike)?;
         }
-        let stays = places::staying(points);
-        report(places::duplicates(&structure, &stays, self.duplicates))?;
-        if whole {
-            let (hidden, findings) = places::hidden(&structure, &stays, self.hidden);
-            report(findings)?;
-            if regular {
-                report(places::hiddenness(&structure, points, &hidden))?;
-            }
-        }
-        let emptiness = (!whole).then(|| Emptiness::new(points, self.alpha, &stays));
-        let judge = Judge { points, alpha: self.alpha, extent: self.extent, emptiness };
-        report(classes::judge(&structure, &judge))?;
+        report(classes::judge(&structure, judge))?;
         if regular { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 
@@ -239,27 +275,27 @@ impl<'a> Claim<'a> {
     }
 }
 
-/// The input points.
-#[derive(Clone, Copy)]
-struct Points<'a> {
-    positions: &'a [[f64; 3]],
-    weights: &'a [f64],
+/// How a complex hangs together, and which rules of structure and geometry it breaks.
+struct Judged<'a> {
+    structure: Structure<'a>,
+    /// Rules without which the others mean nothing.
+    broken: Vec<Finding>,
+    /// Neighbours and hull, if nothing is broken.
+    unlike: Vec<Finding>,
 }
 
-impl Points<'_> {
-    fn len(self) -> usize {
-        self.positions.len()
-    }
-
-    fn get(self, i: u32) -> WeightedPoint {
-        WeightedPoint { position: self.positions[i as usize], weight: self.weights[i as usize] }
-    }
-
-    fn at<const N: usize>(self, row: [u32; N]) -> [WeightedPoint; N] {
-        row.map(|i| self.get(i))
-    }
-
-    fn places<const N: usize>(self, row: [u32; N]) -> [[f64; 3]; N] {
-        row.map(|i| self.positions[i as usize])
+impl<'a> Judged<'a> {
+    fn new(complex: &'a Complex, judge: &Judge) -> Self {
+        let points = judge.points;
+        let (structure, mut broken) = Structure::new(complex, points);
+        broken.extend(geometry::orientations(&complex.cells.vertices, points));
+        let mut unlike = Vec::new();
+        if broken.is_empty() {
+            unlike.extend(geometry::neighbours(&structure, points));
+            if judge.extent == Extent::Whole {
+                unlike.extend(hull::convexity(&structure, points));
+            }
+        }
+        Self { structure, broken, unlike }
     }
 }

@@ -2,11 +2,14 @@
 
 use rayon::prelude::*;
 
+use super::emptiness::Emptiness;
 use super::near::Grid;
 use super::structure::{Half, Structure};
 use super::{Finding, Points};
 use crate::check::canonical::outward_facets;
-use crate::check::exact::{in_conflict, orientation, power_value, six_volume};
+use crate::check::exact::{
+    in_conflict, orientation, power_value, radius, radius_value, six_volume,
+};
 
 /// For each point, the one that stays at its place: the heaviest, of equal weights the first.
 pub fn staying(points: Points) -> Vec<u32> {
@@ -81,6 +84,42 @@ pub fn hidden(
     let unknown = (0..).zip(&accounted).filter(|(_, known)| !**known);
     findings.extend(unknown.map(|(point, _)| Finding::Unaccounted { point }));
     (hidden, findings)
+}
+
+/// In a shape alone: points listed as hidden are no vertices, and points that are in the shape by
+/// themselves are vertices.
+///
+/// A point whose sphere of squared radius −ω has all others strictly outside is below them all
+/// once it is lifted, so it is a vertex of the regular triangulation; a tie may hide it.
+pub fn of_shape(
+    structure: &Structure,
+    points: Points,
+    alpha: f64,
+    emptiness: &Emptiness,
+    stays: &[u32],
+    listed: Option<&[u32]>,
+) -> Vec<Finding> {
+    let mut accounted: Vec<bool> = (0..).zip(stays).map(|(i, &stayed)| stayed != i).collect();
+    for [v] in &structure.complex.vertices.vertices {
+        accounted[*v as usize] = true;
+    }
+    let missing = |&point: &u32| {
+        let site = points.get(point);
+        !accounted[point as usize] && radius([&site], alpha).is_le() && emptiness.alone(point)
+    };
+    let all = (0..points.len() as u32).into_par_iter();
+    let finding = |point| {
+        let radius_squared = radius_value([&points.get(point)]);
+        Finding::MissingVertex { point, radius_squared }
+    };
+    let mut findings: Vec<_> = all.filter(missing).map(finding).collect();
+    for &point in listed.unwrap_or_default() {
+        match accounted.get_mut(point as usize) {
+            Some(known @ false) => *known = true,
+            _ => findings.push(Finding::NotOnlyHidden { point }),
+        }
+    }
+    findings
 }
 
 /// Each hidden point is hidden: it does not refute the cell it lies in.

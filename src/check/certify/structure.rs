@@ -10,6 +10,8 @@ use crate::shape::Complex;
 /// How the listed simplices hang together.
 pub struct Structure<'a> {
     pub complex: &'a Complex,
+    pub cells: Index<4>,
+    pub facets: Index<3>,
     pub edges: Index<2>,
     pub vertices: Index<1>,
     /// For each facet, the sides that cells have on it: 4 · cell + the number of the opposite
@@ -31,7 +33,7 @@ impl<'a> Structure<'a> {
     /// Links cells by their facets. Vertices of all rows must be valid.
     pub fn new(complex: &'a Complex, points: Points) -> (Self, Vec<Finding>) {
         let n = points.len();
-        let (_, mut findings) = Index::new(&complex.cells.vertices, n);
+        let (cell_index, mut findings) = Index::new(&complex.cells.vertices, n);
         let (facets, found) = Index::new(&complex.facets.vertices, n);
         findings.extend(found);
         let (edges, found) = Index::new(&complex.edges.vertices, n);
@@ -64,7 +66,8 @@ impl<'a> Structure<'a> {
             facet: complex.facets.vertices[row as usize].into(),
             cells: cells_with(cells, &cell_facets, row),
         }));
-        (Self { complex, edges, vertices, sides, cell_facets }, findings)
+        let cells = cell_index;
+        (Self { complex, cells, facets, edges, vertices, sides, cell_facets }, findings)
     }
 
     /// The cells on a facet, at most two.

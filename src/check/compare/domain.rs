@@ -4,9 +4,9 @@ use std::fmt;
 use dashu_int::IBig;
 use serde::Serialize;
 
-use super::{Placed, Places};
+use super::{Placed, Places, weights_by_place};
 use crate::check::canonical::{outward_facets, smallest_even, sorted};
-use crate::check::exact::{Exact, Lattice, orientation};
+use crate::check::exact::{Exact, Lattice, Lift, WeightedPoint, orientation};
 use crate::shape::Class;
 
 /// What the cells of two shapes cover.
@@ -15,11 +15,14 @@ use crate::shape::Class;
 pub enum Domain {
     /// The same cells.
     SameCells,
-    /// The same region, cut into other cells. This is no error of either program: where more than
-    /// four points lie on one empty sphere, each program may cut their polytope as it likes.
+    /// The same region, cut into other cells.
     SameRegion {
         /// Six times the volume of the region.
         six_volumes: Exact,
+        /// Whether the other cells of each orthogonal sphere cover the same, too. Then this is no
+        /// error of either program: where more than four points lie on one empty sphere, each may
+        /// cut their polytope as it likes. If not, one of the two is no regular triangulation.
+        tied: bool,
     },
     /// Different regions.
     Different {
@@ -34,10 +37,17 @@ impl fmt::Display for Domain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::SameCells => write!(f, "domain: the same cells"),
-            Self::SameRegion { six_volumes } => write!(
-                f,
-                "domain: the same region (same boundary, same exact volume {six_volumes}/6) cut into other cells, as cospherical points allow"
-            ),
+            Self::SameRegion { six_volumes, tied } => {
+                let why = if *tied {
+                    "as cospherical points allow"
+                } else {
+                    "which are not on the same spheres: no tie, and at most one of A and B is regular"
+                };
+                write!(
+                    f,
+                    "domain: the same region (same boundary, same exact volume {six_volumes}/6) cut into other cells, {why}"
+                )
+            }
             Self::Different { six_volumes_a, six_volumes_b } => write!(
                 f,
                 "domain: different regions (exact volumes {six_volumes_a}/6 in A, {six_volumes_b}/6 in B)"
@@ -66,7 +76,8 @@ pub fn compare(a: Placed, b: Placed, places: &Places) -> Domain {
     };
     let (six_volumes_a, six_volumes_b) = (six_volumes(&in_a), six_volumes(&in_b));
     if six_volumes_a == six_volumes_b && same_surface(&in_a, &in_b, places, lattice) {
-        Domain::SameRegion { six_volumes: six_volumes_a }
+        let tied = tied(Side::new(a, &places.a, &in_a), Side::new(b, &places.b, &in_b), places);
+        Domain::SameRegion { six_volumes: six_volumes_a, tied }
     } else {
         Domain::Different { six_volumes_a, six_volumes_b }
     }
@@ -89,6 +100,45 @@ fn interior_cells(
         }
     });
     oriented.map(smallest_even).collect()
+}
+
+/// The cells of a complex, and the weight at each place that it has a point at.
+struct Side<'a> {
+    cells: &'a BTreeSet<[u32; 4]>,
+    weights: Vec<f64>,
+}
+
+impl<'a> Side<'a> {
+    fn new(placed: Placed, place: &[u32], cells: &'a BTreeSet<[u32; 4]>) -> Self {
+        Self { cells, weights: weights_by_place(placed.weights, place) }
+    }
+}
+
+/// Whether the cells that only one has are the same regions with the same lifted heights: for each
+/// hyperplane, and so for each orthogonal sphere, cells of A and of B must cover the same.
+fn tied(a: Side, b: Side, places: &Places) -> bool {
+    let corner = |side: &Side, place: u32| WeightedPoint {
+        position: places.positions[place as usize],
+        weight: side.weights[place as usize],
+    };
+    let only = [(&a, a.cells - b.cells), (&b, b.cells - a.cells)];
+    let corners = only
+        .iter()
+        .flat_map(|(side, cells)| cells.iter().flatten().map(move |&place| corner(side, place)));
+    let lift = Lift::through(corners);
+    let mut spheres = BTreeMap::<[IBig; 5], [BTreeSet<[u32; 4]>; 2]>::new();
+    for (which, (side, cells)) in only.iter().enumerate() {
+        for cell in cells {
+            let plane = lift.hyperplane(cell.map(|place| corner(side, place)));
+            spheres.entry(plane).or_default()[which].insert(*cell);
+        }
+    }
+    let lattice = Lattice::through(&places.positions);
+    let volume = |cells: &BTreeSet<[u32; 4]>| {
+        let cells: Vec<_> = cells.iter().map(|cell| at(places, *cell)).collect();
+        lattice.six_volumes(cells.len(), |i| cells[i])
+    };
+    spheres.values().all(|[a, b]| volume(a) == volume(b) && same_surface(a, b, places, lattice))
 }
 
 fn same_surface(

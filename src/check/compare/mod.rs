@@ -1,30 +1,40 @@
 //! Comparison of two complexes over the same points.
 
 mod domain;
+mod text;
 
 use std::collections::BTreeMap;
-use std::fmt;
 
 use serde::Serialize;
 
 use super::Simplex;
 use super::canonical::sorted;
-use crate::shape::{Class, Complex, Simplices};
+use crate::shape::{Class, Complex, Simplices, each_number_or_name};
 
 pub use domain::Domain;
 
-/// A complex with the places of its points.
+/// A complex with its points and its parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed<'a> {
     /// x, y, z of each point, all finite.
     pub positions: &'a [[f64; 3]],
+    /// The power weight of each, all finite.
+    pub weights: &'a [f64],
+    /// α, a squared length, or ±∞.
+    pub alpha: f64,
     /// A complex by indices into them.
     pub complex: &'a Complex,
 }
 
 /// What two complexes A and B have in common, and what not.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
+    /// α of A and of B; "inf" or "-inf" where it is infinite.
+    #[serde(serialize_with = "each_number_or_name")]
+    pub alpha: [f64; 2],
+    /// Points at places that both have, whose weights differ. Of several points at one place the
+    /// heaviest counts, which is the one that stays.
+    pub weights: Vec<WeightDifference>,
     /// Points of A at places where B has none, by A's indices.
     pub points_only_a: Vec<u32>,
     /// Points of B at places where A has none, by B's indices.
@@ -61,13 +71,34 @@ pub struct ClassDifference {
     pub b: Class,
 }
 
+/// A place where the weights differ.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WeightDifference {
+    /// The first point there, by A's indices.
+    pub point: u32,
+    /// The largest weight there in A.
+    pub a: f64,
+    /// The largest weight there in B.
+    pub b: f64,
+}
+
 /// Why two complexes cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotComparable {
-    /// A coordinate is NaN or infinite.
+    /// Positions and weights do not pair up.
+    #[error("complex {which} has {positions} points but {weights} weights: each needs one")]
+    Lengths {
+        /// `A` or `B`.
+        which: char,
+        /// Points given.
+        positions: usize,
+        /// Weights given.
+        weights: usize,
+    },
+    /// A coordinate or weight is NaN or infinite.
     #[error(
-        "point {point} of complex {which} has a coordinate that is not finite; clean the input"
+        "point {point} of complex {which} has a coordinate or weight that is not finite; clean the input"
     )]
     NotFinite {
         /// `A` or `B`.
@@ -85,10 +116,10 @@ pub enum NotComparable {
     },
 }
 
-/// Compares two complexes, matching points by their places, so that the two may number them
-/// differently.
+/// Compares two complexes with their weights and α, matching points by their places, so that the
+/// two may number them differently.
 ///
-/// Windings do not count. Cost O(n log n).
+/// Windings do not count, nor do lists of hidden points and duplicates. Cost O(n log n).
 ///
 /// # Errors
 /// [`NotComparable`].
@@ -109,6 +140,8 @@ pub fn compare(a: Placed, b: Placed) -> Result<Comparison, NotComparable> {
         (0..).zip(own).filter(|(_, place)| !other.contains(place)).map(|(i, _)| i).collect()
     };
     Ok(Comparison {
+        alpha: [a.alpha, b.alpha],
+        weights: different_weights(a, b, &places),
         points_only_a: only(&places.a, &places.b),
         points_only_b: only(&places.b, &places.a),
         exterior,
@@ -118,11 +151,14 @@ pub fn compare(a: Placed, b: Placed) -> Result<Comparison, NotComparable> {
 }
 
 impl Comparison {
-    /// Whether the points and all compared simplices with their classes are the same.
+    /// Whether the points, their weights, α and all compared simplices with their classes are the
+    /// same.
     pub fn is_equal(&self) -> bool {
         let same =
             |d: &Differences| d.only_a.is_empty() && d.only_b.is_empty() && d.classes.is_empty();
-        self.points_only_a.is_empty()
+        self.alpha[0] == self.alpha[1]
+            && self.weights.is_empty()
+            && self.points_only_a.is_empty()
             && self.points_only_b.is_empty()
             && self.dimensions.iter().all(same)
     }
@@ -151,8 +187,38 @@ impl Places {
     }
 }
 
-fn sane(which: char, Placed { positions, complex }: Placed) -> Result<(), NotComparable> {
-    if let Some(point) = positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+/// At each place the largest weight of the points there; −∞ where there is none.
+fn weights_by_place(weights: &[f64], place: &[u32]) -> Vec<f64> {
+    let count = place.iter().max().map_or(0, |&last| last as usize + 1);
+    let mut largest = vec![f64::NEG_INFINITY; count];
+    for (&place, &weight) in place.iter().zip(weights) {
+        largest[place as usize] = largest[place as usize].max(weight);
+    }
+    largest
+}
+
+fn different_weights(a: Placed, b: Placed, places: &Places) -> Vec<WeightDifference> {
+    let mut in_a = weights_by_place(a.weights, &places.a);
+    let in_b = weights_by_place(b.weights, &places.b);
+    let difference = |(point, &place): (u32, &u32)| {
+        // Each place once: what is taken is gone.
+        let a = std::mem::replace(&mut in_a[place as usize], f64::NEG_INFINITY);
+        let b = in_b.get(place as usize).copied().filter(|b| *b != f64::NEG_INFINITY)?;
+        (a != b && a != f64::NEG_INFINITY).then_some(WeightDifference { point, a, b })
+    };
+    (0..).zip(&places.a).filter_map(difference).collect()
+}
+
+fn sane(
+    which: char,
+    Placed { positions, weights, complex, .. }: Placed,
+) -> Result<(), NotComparable> {
+    if positions.len() != weights.len() {
+        let (positions, weights) = (positions.len(), weights.len());
+        return Err(NotComparable::Lengths { which, positions, weights });
+    }
+    let finite = |(p, w): (&[f64; 3], &f64)| p.iter().chain([w]).all(|x| x.is_finite());
+    if let Some(point) = positions.iter().zip(weights).position(|point| !finite(point)) {
         return Err(NotComparable::NotFinite { which, point });
     }
     let n = positions.len();
@@ -201,40 +267,4 @@ fn differences<const N: usize>(
     let rest = b.into_values();
     differences.only_b = rest.map(|(row, class)| (Simplex::from(row), class)).collect();
     differences
-}
-
-/// How many differences of a kind are printed one by one.
-const PRINTED: usize = 10;
-
-impl fmt::Display for Comparison {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let points = [("A", &self.points_only_a), ("B", &self.points_only_b)];
-        for (name, points) in points.into_iter().filter(|(_, points)| !points.is_empty()) {
-            writeln!(f, "{} points are only in {name}", points.len())?;
-        }
-        if !self.exterior {
-            writeln!(f, "exterior simplices are not compared: not both complexes list them")?;
-        }
-        let names = ["vertices", "edges", "facets", "cells"];
-        for (name, d) in names.into_iter().zip(&self.dimensions) {
-            writeln!(
-                f,
-                "{name}: {} equal, {} only in A, {} only in B, {} of different class",
-                d.equal,
-                d.only_a.len(),
-                d.only_b.len(),
-                d.classes.len()
-            )?;
-            for (which, rows) in [("A", &d.only_a), ("B", &d.only_b)] {
-                for (simplex, class) in rows.iter().take(PRINTED) {
-                    writeln!(f, "  only in {which}: {simplex}, {}", super::class_name(*class))?;
-                }
-            }
-            for difference in d.classes.iter().take(PRINTED) {
-                let (a, b) = (super::class_name(difference.a), super::class_name(difference.b));
-                writeln!(f, "  {}: {a} in A, {b} in B", difference.simplex)?;
-            }
-        }
-        write!(f, "{}", self.domain)
-    }
 }

@@ -10,6 +10,7 @@ mod binary;
 mod center;
 mod formulas;
 mod frame;
+mod lift;
 mod number;
 mod perturb;
 mod solid;
@@ -21,6 +22,7 @@ use formulas::{Area, Power1, Power2, Power3, Power4, Radius2, Radius3, Radius4, 
 use frame::sign_of;
 
 pub use center::RoundedSphere;
+pub use lift::Lift;
 pub use perturb::in_conflict;
 pub use solid::{Lattice, Star};
 pub use value::{Exact, power_value, radius_value, six_volume};

@@ -115,9 +115,12 @@ pub enum SchemaError {
     /// Not JSON, or not of this form.
     #[error("the complex cannot be read as JSON: {0}")]
     Json(#[from] serde_json::Error),
-    /// Not NPZ.
+    /// No archive.
     #[error("the complex cannot be read as NPZ: {0}; write it with numpy.savez")]
-    Npz(#[from] ndarray_npy::ReadNpzError),
+    Zip(String),
+    /// An array of the archive cannot be read; its name stands for the path of a file.
+    #[error("the complex cannot be read as NPZ: {0}")]
+    Npz(#[from] crate::volume::VolumeError),
     /// A needed array is missing.
     #[error("the NPZ file has no array `{0}`, which is needed")]
     Missing(&'static str),

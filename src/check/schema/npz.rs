@@ -1,25 +1,30 @@
 use std::io::{Read, Seek};
+use std::path::Path;
 
-use ndarray::{ArrayD, Axis, Ix0, Ix1, Ix2};
-use ndarray_npy::{NpzReader, ReadNpzError, ReadableElement};
+use zip::ZipArchive;
+use zip::read::ZipFile;
 
 use super::{Classes, ComplexFile, SchemaError};
 use crate::shape::Class;
+use crate::volume::{MOST_EXPANSION, NpyFile};
+
+/// Points and simplices differ from row to row, and a deflate stream repeats no row that differs
+/// from all before it without a code of two bits at least: rows of up to 32 bytes expand 128-fold
+/// at most, and here twice that is allowed.
+const MOST_REPETITION: u64 = 256;
+/// Arrays of up to so many bytes are read, whatever they expand from.
+const SMALL: u64 = 16 << 20;
 
 impl ComplexFile {
-    /// Reads NPZ.
+    /// Reads NPZ. What the headers claim is compared with the file, and with each other, before
+    /// any array is read.
     ///
     /// # Errors
     /// Missing, ill-shaped or unreadable arrays; numbers that are no indices or classes.
     pub fn read_npz(reader: impl Read + Seek) -> Result<Self, SchemaError> {
         let mut file = Npz::new(reader)?;
-        let points = file.rows("points", Ok)?.unwrap_or_default();
-        let alpha = file.array("alpha")?.ok_or(SchemaError::Missing("alpha"))?;
-        let alpha = alpha.into_dimensionality::<Ix0>().map_err(|_| SchemaError::Array {
-            name: "alpha",
-            got: "more than one number".into(),
-            expected: "a scalar".into(),
-        })?;
+        file.check()?;
+        let alpha = file.numbers("alpha")?.ok_or(SchemaError::Missing("alpha"))?[0];
         let classes = Classes {
             cells: file.list("cell_classes", class)?,
             facets: file.list("facet_classes", class)?,
@@ -27,69 +32,139 @@ impl ComplexFile {
             vertices: file.list("vertex_classes", class)?,
         };
         Ok(Self {
-            points,
-            weights: file.list("weights", |_, weight| Ok(weight))?,
-            alpha: alpha.into_scalar(),
-            cells: file.rows("cells", index_in("cells"))?,
-            facets: file.rows("facets", index_in("facets"))?,
-            edges: file.rows("edges", index_in("edges"))?,
+            points: file.rows("points", |_, x| Ok(x))?.unwrap_or_default(),
+            weights: file.numbers("weights")?,
+            alpha,
+            cells: file.rows("cells", index)?,
+            facets: file.rows("facets", index)?,
+            edges: file.rows("edges", index)?,
             vertices: file.list("vertices", index)?,
             classes,
             hidden: file.list("hidden", index)?,
-            duplicates: file.rows("duplicates", index_in("duplicates"))?,
+            duplicates: file.rows("duplicates", index)?,
             info: None,
         })
     }
 }
 
+/// What an array of a name is.
+#[derive(Clone, Copy)]
+enum Kind {
+    Scalar,
+    /// One number for each row of another array.
+    Column(&'static str),
+    /// Rows of so many numbers, no two alike.
+    Rows(u64),
+}
+
+const ARRAYS: [(&str, Kind); 13] = [
+    ("points", Kind::Rows(3)),
+    ("alpha", Kind::Scalar),
+    ("cells", Kind::Rows(4)),
+    ("facets", Kind::Rows(3)),
+    ("edges", Kind::Rows(2)),
+    ("vertices", Kind::Rows(1)),
+    ("hidden", Kind::Rows(1)),
+    ("duplicates", Kind::Rows(2)),
+    ("weights", Kind::Column("points")),
+    ("cell_classes", Kind::Column("cells")),
+    ("facet_classes", Kind::Column("facets")),
+    ("edge_classes", Kind::Column("edges")),
+    ("vertex_classes", Kind::Column("vertices")),
+];
+
 /// The arrays of a file, read as doubles: they hold every index and class exactly.
-struct Npz<R: Read + Seek> {
-    reader: NpzReader<R>,
-    names: Vec<String>,
+struct Npz<R> {
+    archive: ZipArchive<R>,
+    /// Bytes of the file.
+    length: u64,
 }
 
 impl<R: Read + Seek> Npz<R> {
-    fn new(reader: R) -> Result<Self, SchemaError> {
-        let mut reader = NpzReader::new(reader)?;
-        let names = reader.names()?;
-        Ok(Self { reader, names })
+    fn new(mut reader: R) -> Result<Self, SchemaError> {
+        let damaged = |error: &dyn std::fmt::Display| SchemaError::Zip(error.to_string());
+        let length = reader.seek(std::io::SeekFrom::End(0)).map_err(|error| damaged(&error))?;
+        let archive = ZipArchive::new(reader).map_err(|error| damaged(&error))?;
+        Ok(Self { archive, length })
     }
 
-    fn array(&mut self, name: &'static str) -> Result<Option<ArrayD<f64>>, SchemaError> {
-        if !self.names.iter().any(|n| n == name || n.strip_suffix(".npy") == Some(name)) {
-            return Ok(None);
+    /// Looks at all headers: shapes, lengths that must be equal, and bytes that cannot be there.
+    fn check(&mut self) -> Result<(), SchemaError> {
+        let mut counts = Vec::new();
+        for (name, kind) in ARRAYS {
+            let Some(rows) = self.check_one(name, kind)? else { continue };
+            if let Kind::Column(of) = kind {
+                let expected = counts.iter().find(|(other, _)| *other == of);
+                let expected = expected.map_or(0, |&(_, rows)| rows);
+                if rows != expected {
+                    let [got, expected] = [rows, expected].map(|rows| rows as usize);
+                    return Err(SchemaError::Lengths { name, got, expected, of });
+                }
+            }
+            counts.push((name, rows));
         }
-        let found = self
-            .try_as(name, |x: f64| x)
-            .or_else(|| self.try_as(name, |x: i64| x as f64))
-            .or_else(|| self.try_as(name, |x: u32| x.into()))
-            .or_else(|| self.try_as(name, |x: i32| x.into()))
-            .or_else(|| self.try_as(name, |x: u64| x as f64))
-            .or_else(|| self.try_as(name, |x: f32| x.into()))
-            .or_else(|| self.try_as(name, |x: u8| x.into()))
-            .or_else(|| self.try_as(name, |x: i8| x.into()));
-        match found {
-            Some(array) => Ok(Some(array?)),
-            None => Err(SchemaError::Array {
+        Ok(())
+    }
+
+    /// How many rows an array claims.
+    fn check_one(&mut self, name: &'static str, kind: Kind) -> Result<Option<u64>, SchemaError> {
+        let length = self.length;
+        let Some(member) = self.member(name)? else { return Ok(None) };
+        let (size, packed) = (member.size(), member.compressed_size().min(length));
+        let most = match kind {
+            Kind::Rows(_) if size > SMALL => MOST_REPETITION,
+            _ => MOST_EXPANSION,
+        };
+        if size > packed.saturating_mul(most).saturating_add(most) {
+            return Err(SchemaError::Array {
                 name,
-                got: "another type of element".into(),
-                expected: "float32, float64, int8, int32, int64, uint8, uint32 or uint64".into(),
-            }),
+                got: format!("{size} bytes in {packed} of the file"),
+                expected: format!(
+                    "no more than {most} times as many, as one that does not repeat itself"
+                ),
+            });
         }
+        let array = npy(name, member)?;
+        let shape = array.shape;
+        let wrong = |expected: String| {
+            Err(SchemaError::Array { name, got: format!("shape {shape:?}"), expected })
+        };
+        let rows = match (kind, &shape[..]) {
+            (Kind::Scalar, []) => 1,
+            (Kind::Scalar, _) => return wrong("a scalar".into()),
+            (Kind::Column(_) | Kind::Rows(1), &[rows]) => rows,
+            (Kind::Column(_) | Kind::Rows(1), _) => return wrong("one dimension".into()),
+            (Kind::Rows(columns), &[rows, given]) if given == columns => rows,
+            // NumPy makes a flat array of an empty list of rows.
+            (Kind::Rows(_), _) if shape.contains(&0) => 0,
+            (Kind::Rows(columns), _) => return wrong(format!("shape [m, {columns}]")),
+        };
+        Ok(Some(rows))
     }
 
-    /// None if the elements are of another type.
-    fn try_as<T: ReadableElement + Clone>(
-        &mut self,
-        name: &str,
-        convert: impl Fn(T) -> f64,
-    ) -> Option<Result<ArrayD<f64>, ReadNpzError>> {
-        use ndarray_npy::ReadNpyError::WrongDescriptor;
-        let found = self.reader.by_name::<ndarray::OwnedRepr<T>, ndarray::IxDyn>(name);
-        match found {
-            Err(ReadNpzError::Npy(WrongDescriptor(_))) => None,
-            other => Some(other.map(|array| array.mapv(convert))),
-        }
+    fn member(&mut self, name: &str) -> Result<Option<ZipFile<'_, R>>, SchemaError> {
+        let is_it = |entry: &str| entry.strip_suffix(".npy").unwrap_or(entry) == name;
+        let at = self.archive.file_names().position(is_it);
+        let found = at.map(|at| self.archive.by_index(at)).transpose();
+        found.map_err(|error| SchemaError::Zip(format!("{name}: {error}")))
+    }
+
+    /// All numbers of an array, row by row.
+    fn numbers(&mut self, name: &'static str) -> Result<Option<Vec<f64>>, SchemaError> {
+        let Some(member) = self.member(name)? else { return Ok(None) };
+        let array = npy(name, member)?;
+        let columns = match array.shape[..] {
+            [rows, columns] if array.fortran && rows > 0 => Some((rows as usize, columns as usize)),
+            _ => None,
+        };
+        let numbers: Vec<f64> = array.values(Path::new(name))?;
+        Ok(Some(match columns {
+            None => numbers,
+            Some((rows, columns)) => {
+                let at = |i: usize| numbers[i % columns * rows + i / columns];
+                (0..rows * columns).map(at).collect()
+            }
+        }))
     }
 
     fn list<T>(
@@ -97,45 +172,35 @@ impl<R: Read + Seek> Npz<R> {
         name: &'static str,
         convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
     ) -> Result<Option<Vec<T>>, SchemaError> {
-        let Some(array) = self.array(name)? else { return Ok(None) };
-        let got = format!("shape {:?}", array.shape());
-        let list = array.into_dimensionality::<Ix1>().map_err(|_| SchemaError::Array {
-            name,
-            got,
-            expected: "one dimension".into(),
-        })?;
-        list.into_iter().map(|x| convert(name, x)).collect::<Result<_, _>>().map(Some)
+        let Some(numbers) = self.numbers(name)? else { return Ok(None) };
+        numbers.into_iter().map(|x| convert(name, x)).collect::<Result<_, _>>().map(Some)
     }
 
     fn rows<T: Copy + Default, const N: usize>(
         &mut self,
         name: &'static str,
-        convert: impl Fn(f64) -> Result<T, SchemaError>,
+        convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
     ) -> Result<Option<Vec<[T; N]>>, SchemaError> {
-        let Some(array) = self.array(name)? else { return Ok(None) };
-        let got = format!("shape {:?}", array.shape());
-        let empty = array.is_empty();
-        let wrong = || SchemaError::Array { name, got, expected: format!("shape [m, {N}]") };
-        match array.into_dimensionality::<Ix2>() {
-            // NumPy makes a flat array of an empty list of rows.
-            Err(_) if empty => Ok(Some(Vec::new())),
-            Ok(table) if table.ncols() == N => {
-                let row = |row: ndarray::ArrayView1<f64>| {
-                    let mut out = [T::default(); N];
-                    for (slot, &x) in out.iter_mut().zip(row) {
-                        *slot = convert(x)?;
-                    }
-                    Ok(out)
-                };
-                table.axis_iter(Axis(0)).map(row).collect::<Result<_, _>>().map(Some)
+        let Some(numbers) = self.numbers(name)? else { return Ok(None) };
+        let (rows, _) = numbers.as_chunks::<N>();
+        let row = |row: &[f64; N]| {
+            let mut out = [T::default(); N];
+            for (slot, &x) in out.iter_mut().zip(row) {
+                *slot = convert(name, x)?;
             }
-            _ => Err(wrong()),
-        }
+            Ok(out)
+        };
+        rows.iter().map(row).collect::<Result<_, _>>().map(Some)
     }
 }
 
-fn index_in(name: &'static str) -> impl Fn(f64) -> Result<u32, SchemaError> {
-    move |value| index(name, value)
+/// An array of the archive, at its first element.
+fn npy<'a, R: Read>(
+    name: &str,
+    member: ZipFile<'a, R>,
+) -> Result<NpyFile<ZipFile<'a, R>>, SchemaError> {
+    let size = member.size();
+    Ok(NpyFile::of(Path::new(name), member, size)?)
 }
 
 fn index(name: &'static str, value: f64) -> Result<u32, SchemaError> {

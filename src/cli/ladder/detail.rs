@@ -30,7 +30,7 @@ struct Facts {
     alpha: AlphaReport,
     weights: String,
     domain: Domain,
-    /// Points with full detail; null without a region.
+    /// Points with full detail, which each level has besides its own; null without a region.
     points_in_region: Option<usize>,
     levels: Vec<Row>,
     seconds: BTreeMap<&'static str, f64>,
@@ -187,7 +187,10 @@ impl Display for Facts {
         writeln!(f, "weights   {}", self.weights)?;
         writeln!(f, "parameter {}", self.alpha)?;
         if let Some(points) = self.points_in_region {
-            writeln!(f, "region    {points} points, in each level")?;
+            writeln!(
+                f,
+                "region    {points} points of full detail in each level, and those of the level"
+            )?;
         }
         writeln!(
             f,

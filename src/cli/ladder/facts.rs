@@ -25,7 +25,7 @@ pub struct Facts {
     domain: Domain,
     /// Cells, facets, edges, vertices of the triangulation.
     simplices: [usize; 4],
-    /// Critical values that doubles tell apart.
+    /// Critical values, as far as some α tells them apart.
     critical_values: usize,
     suggested: Option<Suggestions>,
     levels: Vec<Row>,
@@ -131,11 +131,23 @@ impl Display for Facts {
         writeln!(f, "domain    {}", self.domain)?;
         if let Some(s) = &self.suggested {
             writeln!(f, "curve     {} critical values; α to try:", self.critical_values)?;
-            writeln!(f, "          {:<12} every point in a cell", s.all_points)?;
-            writeln!(f, "          {:<12} and one solid component", s.one_region)?;
-            writeln!(f, "          {:<12} and no void", s.no_void)?;
+            writeln!(f, "          {:<12} the first with every point in a cell", s.all_points)?;
+            writeln!(
+                f,
+                "          {:<12} the first with that and one solid component",
+                s.one_region
+            )?;
+            writeln!(f, "          {:<12} the first with that and no void", s.no_void)?;
             let [low, high] = s.plateau;
-            writeln!(f, "          {low:<12} to {high}: the longest stretch without a change")?;
+            if high == f64::INFINITY {
+                writeln!(f, "          {low:<12} to inf: b0, b1, b2 change no more")?;
+            } else {
+                let all = s.all_points;
+                writeln!(
+                    f,
+                    "          {low:<12} to {high}: the longest stretch without a change of b0, b1, b2, from {all} on"
+                )?;
+            }
         }
         writeln!(
             f,

@@ -54,8 +54,8 @@ pub struct Ladder {
     #[arg(long, value_name = "E,E,…", value_delimiter = ',', group = "levels",
           value_parser = super::args::not_negative)]
     epsilons: Vec<f64>,
-    /// A region that keeps full detail (the points of --count, --ratio or --threshold) at every level
-    /// of detail; borders belong to it. In the units of the points.
+    /// A region that keeps full detail (the points of --count, --ratio or --threshold, besides those
+    /// of the level) at every level of detail; borders belong to it. In the units of the points.
     #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = region,
           allow_hyphen_values = true)]
     roi: Option<Region>,

@@ -104,13 +104,14 @@ pub(super) fn figure_5(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
 /// much as the paper says.
 fn readings(study: &Study<'_>, fraction: f64) -> (Table, bool) {
     let samples = study.subject.volume.as_slice().len();
-    let least = THRESHOLD as f32;
+    let least = THRESHOLD;
     let differences = difference(&study.smoothed);
     let squares = root_mean_square_difference(&study.smoothed);
-    let count = |values: &mut dyn Iterator<Item = f32>| values.filter(|&v| v >= least).count();
+    let count = |values: &mut dyn Iterator<Item = f64>| values.filter(|&v| v >= least).count();
+    let gray = |volume: &Volume| count(&mut volume.as_slice().iter().map(|&v| f64::from(v)));
     let readings = [
-        ("original gray level", count(&mut study.subject.volume.as_slice().iter().copied())),
-        ("gray level after truncation", count(&mut study.smoothed.as_slice().iter().copied())),
+        ("original gray level", gray(study.subject.volume)),
+        ("gray level after truncation", gray(&study.smoothed)),
         ("L, the mean of the six differences", count(&mut differences.iter().copied())),
         ("the sum of the six differences", count(&mut differences.iter().map(|l| 6.0 * l))),
         ("the root mean square of the six differences", count(&mut squares.iter().copied())),
@@ -130,7 +131,7 @@ fn readings(study: &Study<'_>, fraction: f64) -> (Table, bool) {
 }
 
 /// √(Σ d²/6) over the differences to the six neighbours: "averaged L² norm" taken literally.
-fn root_mean_square_difference(volume: &Volume) -> Vec<f32> {
+fn root_mean_square_difference(volume: &Volume) -> Vec<f64> {
     let samples = volume.samples();
     let of = |((z, y, x), &here): ((usize, usize, usize), &f32)| {
         let neighbours = [
@@ -143,7 +144,7 @@ fn root_mean_square_difference(volume: &Volume) -> Vec<f32> {
         ];
         let square =
             |at| samples.get(at).map_or(0.0, |&v| (f64::from(v) - f64::from(here)).powi(2));
-        (neighbours.into_iter().map(square).sum::<f64>() / 6.0).sqrt() as f32
+        (neighbours.into_iter().map(square).sum::<f64>() / 6.0).sqrt()
     };
     samples.indexed_iter().map(of).collect()
 }

@@ -14,7 +14,7 @@ pub(super) fn table_1(_: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let mut both = one.clone();
     both.details[0][0] = 0.0;
     let row: Vec<f32> = both.row().iter().map(|&v| v as f32).collect();
-    let weights: Vec<f64> = difference_row(&row, 2.0).iter().map(|&w| w.into()).collect();
+    let weights = difference_row(&row, 2.0);
 
     let coefficients = Table {
         caption: "Averages (p + q)/2 and half-differences (p − q)/2, as the paper has them".into(),

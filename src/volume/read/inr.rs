@@ -1,4 +1,4 @@
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use ndarray::Array3;
@@ -9,13 +9,14 @@ use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
 
 /// The first bytes of each INRIMAGE-4 file.
 pub(super) const MAGIC: &[u8] = b"#INRIMAGE-4#{";
-/// Headers are padded with newlines to a multiple of this.
-const BLOCK: usize = 256;
+/// The line that ends a header.
+const END: &[u8] = b"\n##}\n";
 /// Longer headers than these 16 kB are taken for damage.
-const MAX_BLOCKS: usize = 64;
+const MAX_HEADER: usize = 1 << 14;
 
 /// Reads an INRIMAGE-4 image, INRIA's format in which CGAL ships its sample volumes: lines
-/// `KEY=VALUE` in blocks of 256 bytes that end with `##}`, then the samples, x fastest.
+/// `KEY=VALUE` up to a line `##}`, then the samples, x fastest. Headers should be padded to a multiple
+/// of 256 bytes; like CGAL's reader, this one takes any length.
 ///
 /// `SCALE`, `XO`, `YO` and `ZO` have no bearing on where a sample lies and are passed over, as by
 /// CGAL; images with several values a voxel (`VDIM`) or rotated axes (`RX`…) are refused.
@@ -57,23 +58,28 @@ impl HeaderError {
     }
 }
 
-/// Reads blocks up to the one that closes the header.
+/// Reads up to the line that closes the header.
 fn header(path: &Path, reader: &mut impl Read) -> Result<Vec<u8>, VolumeError> {
     let format = |what: &str| VolumeError::Format { path: path.into(), what: what.into() };
-    let mut text = Vec::with_capacity(BLOCK);
-    for _ in 0..MAX_BLOCKS {
-        let found = reader.take(BLOCK as u64).read_to_end(&mut text).map_err(io_error(path))?;
-        if !text.starts_with(MAGIC) {
-            return Err(format("is no INRIMAGE-4 file: it does not begin with #INRIMAGE-4#{"));
-        }
-        if found < BLOCK {
-            return Err(format("ends inside its INRIMAGE header: it is truncated; copy it again"));
-        }
-        if text.ends_with(b"##}\n") {
-            return Ok(text);
-        }
+    let mut text = Vec::new();
+    reader.take(MAGIC.len() as u64).read_to_end(&mut text).map_err(io_error(path))?;
+    if text != MAGIC {
+        return Err(format("is no INRIMAGE-4 file: it does not begin with #INRIMAGE-4#{"));
     }
-    Err(format("has no end of header (##}) at a multiple of 256 bytes: it is damaged"))
+    while !text.ends_with(END) {
+        if text.len() == MAX_HEADER {
+            return Err(format("has no end of header (a line ##}) in 16 kB: it is damaged"));
+        }
+        let mut byte = [0];
+        reader.read_exact(&mut byte).map_err(|error| match error.kind() {
+            ErrorKind::UnexpectedEof => {
+                format("ends inside its INRIMAGE header: it is truncated; copy it again")
+            }
+            _ => io_error(path)(error),
+        })?;
+        text.extend(byte);
+    }
+    Ok(text)
 }
 
 fn parse(text: &[u8]) -> Result<Header, HeaderError> {

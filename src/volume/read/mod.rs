@@ -35,7 +35,7 @@ pub(crate) use inr::read as read_inr;
 pub(crate) use lines::Lines;
 pub(crate) use npy::{MAGIC as NPY_MAGIC, NpyFile};
 use payload::PayloadError;
-pub(crate) use payload::{Element, Length};
+pub(crate) use payload::{Element, Length, MOST_EXPANSION};
 pub use raw::RawLayout;
 pub(crate) use vtk_xml::VtkXml;
 

@@ -21,7 +21,7 @@ use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
 /// unless `level` says otherwise).
 ///
 /// The last three axes are z, y and x, and those before them must have one entry. Scale and translation
-/// of a pyramid give the frame. Memory for the samples and a row of chunks at a time.
+/// of a pyramid give the frame. Memory for the samples and some rows of chunks at a time.
 pub(super) fn read(path: &Path, level: Option<u32>) -> Result<Volume, VolumeError> {
     let said = |what: String| format_error(path, what);
     let damaged = |error: &dyn std::fmt::Display| {
@@ -162,6 +162,11 @@ fn samples(
     })
 }
 
+/// Samples read at a time, or one row of chunks if that is more.
+const PIECE: u64 = 1 << 22;
+/// A chunk is decoded as a whole; larger ones must be of an array of their size.
+const MOST_IN_CHUNK: u64 = 1 << 26;
+
 struct Read<'a> {
     path: &'a Path,
     array: &'a Array<FilesystemStore>,
@@ -169,7 +174,7 @@ struct Read<'a> {
 }
 
 impl Read<'_> {
-    /// All samples, by as many slices at once as a chunk is thick.
+    /// All samples, by as many slices at once as a chunk is thick, and as many rows as fit a piece.
     fn all<T: ElementOwned + Copy + Send + Sync>(
         &self,
         convert: impl Fn(T) -> f32 + Send + Sync,
@@ -181,7 +186,14 @@ impl Read<'_> {
             said(format!("is a Zarr array that cannot be read ({error}): copy it again"))
         };
         let chunk = array.chunk_shape(&vec![0; axes]).map_err(|error| damaged(&error))?;
-        let thick = chunk[axes - 3].get();
+        let in_chunk = chunk.iter().fold(1u64, |product, size| product.saturating_mul(size.get()));
+        if in_chunk > MOST_IN_CHUNK.max(8 * dims.samples() as u64) {
+            return Err(said(format!(
+                "has chunks of {in_chunk} samples, far more than the array: it is damaged, or \
+                 store it in smaller chunks"
+            )));
+        }
+        let [thick, high] = [3, 2].map(|axis| chunk[axes - axis].get());
         let mut samples = Vec::new();
         samples.try_reserve_exact(dims.samples()).map_err(|_| {
             let bytes = dims.samples() * size_of::<f32>();
@@ -190,17 +202,29 @@ impl Read<'_> {
             ))
         })?;
         let [x, y, z] = dims.xyz().map(|size| size as u64);
-        let mut start = 0;
-        while start < z {
-            let end = start.saturating_add(thick).min(z);
+        samples.resize(dims.samples(), 0.0);
+        // Whole chunks, so that none is decoded twice.
+        let row_of_chunks = thick.saturating_mul(high).saturating_mul(x);
+        let high = high.saturating_mul((PIECE / row_of_chunks).max(1));
+        let steps = |size: u64, step: u64| {
+            let step = step.min(size);
+            (0..size.div_ceil(step)).map(move |k| k * step..((k + 1) * step).min(size))
+        };
+        for (slices, rows) in steps(z, thick)
+            .flat_map(|slices| steps(y, high).map(move |rows| (slices.clone(), rows)))
+        {
             let mut ranges = vec![0..1; axes];
-            ranges[axes - 3..].clone_from_slice(&[start..end, 0..y, 0..x]);
+            ranges[axes - 3..].clone_from_slice(&[slices.clone(), rows.clone(), 0..x]);
             let part = ArraySubset::new_with_ranges(&ranges);
             let part: Vec<T> =
                 array.retrieve_array_subset_elements(&part).map_err(|error| damaged(&error))?;
-            samples.par_extend(part.into_par_iter().map(&convert));
-            progress::report(end, z);
-            start = end;
+            let in_slice = ((rows.end - rows.start) * x) as usize;
+            for (slice, part) in slices.clone().zip(part.chunks(in_slice)) {
+                let at = ((slice * y + rows.start) * x) as usize;
+                let samples = &mut samples[at..at + in_slice];
+                samples.par_iter_mut().zip(part).for_each(|(sample, &v)| *sample = convert(v));
+            }
+            progress::report(slices.start * y + rows.end * (slices.end - slices.start), z * y);
         }
         Ok(samples)
     }

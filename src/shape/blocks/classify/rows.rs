@@ -74,7 +74,7 @@ pub(in super::super) struct Side {
 
 impl Owned {
     /// Makes room for the rows of a block with these classes, some of them other blocks'.
-    pub fn reserve(&mut self, states: &[State], points: usize) {
+    pub(super) fn reserve(&mut self, states: &[State], points: usize) {
         let (mut cells, mut facets) = (0, 0);
         for state in states {
             cells += usize::from(state.is_inside());
