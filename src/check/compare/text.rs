@@ -3,7 +3,6 @@
 use std::fmt::{self, Display};
 
 use super::Comparison;
-use crate::check::class_name;
 
 /// How many differences of a kind are printed one by one.
 const PRINTED: usize = 10;
@@ -38,12 +37,11 @@ impl Display for Comparison {
             )?;
             for (which, only) in [("A", &d.only_a), ("B", &d.only_b)] {
                 for (simplex, class) in only.iter().take(PRINTED) {
-                    writeln!(f, "  only in {which}: {simplex}, {}", class_name(*class))?;
+                    writeln!(f, "  only in {which}: {simplex} {class:?}")?;
                 }
             }
-            for difference in d.classes.iter().take(PRINTED) {
-                let (a, b) = (class_name(difference.a), class_name(difference.b));
-                writeln!(f, "  {}: {a} in A, {b} in B", difference.simplex)?;
+            for c in d.classes.iter().take(PRINTED) {
+                writeln!(f, "  {}: A {:?}, B {:?}", c.simplex, c.a, c.b)?;
             }
         }
         writeln!(f, "{}", self.domain)?;
