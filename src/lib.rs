@@ -33,8 +33,8 @@
 
 pub use ndarray;
 
-#[cfg(feature = "cgal")]
-pub(crate) mod cgal;
+#[cfg_attr(not(feature = "cgal"), path = "cgal/absent.rs")]
+mod cgal;
 pub mod check;
 pub mod export;
 pub mod haar;

@@ -31,6 +31,7 @@ enum Way {
     Renamed,
     /// Byte by byte into the file that stands there, which has other names, an owner we cannot give
     /// away to, or a list of who may read it: a new file under this name would be another file.
+    #[cfg_attr(not(unix), expect(dead_code, reason = "only Unix tells of these"))]
     Copied,
 }
 

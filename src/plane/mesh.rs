@@ -1,6 +1,5 @@
 use std::collections::HashMap;
 
-#[cfg(feature = "cgal")]
 use crate::cgal;
 use crate::triangulation::{Sites, TriangulationError};
 
@@ -29,18 +28,6 @@ pub(super) struct Side {
     pub(super) apex: u32,
 }
 
-#[cfg(not(feature = "cgal"))]
-impl Mesh {
-    pub(super) fn closest(_: &Sites<'_, 2>) -> Result<Self, TriangulationError> {
-        Err(TriangulationError::WithoutCgal)
-    }
-
-    pub(super) fn farthest(_: &Sites<'_, 2>) -> Result<Self, TriangulationError> {
-        Err(TriangulationError::WithoutCgal)
-    }
-}
-
-#[cfg(feature = "cgal")]
 impl Mesh {
     /// The regular triangulation.
     pub(super) fn closest(sites: &Sites<'_, 2>) -> Result<Self, TriangulationError> {

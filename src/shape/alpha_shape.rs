@@ -3,7 +3,6 @@ use std::num::NonZeroUsize;
 use serde::{Deserialize, Serialize};
 
 use super::blocks::{self, Limits, Plan, PlanError, Question};
-#[cfg(feature = "cgal")]
 use super::canonical::canonical;
 use super::topology::sheet_betti;
 use super::{Alpha, Balls, Betti, Class, Complex, Measures, Sheets, Simplices, direct_betti};
@@ -168,17 +167,11 @@ struct Found {
     hidden: Option<Vec<u32>>,
 }
 
-#[cfg(feature = "cgal")]
 fn by_reference(sites: &Sites<'_>, alpha: f64) -> Result<Found, ShapeError> {
     let raw = crate::cgal::reference(sites, alpha)?;
     let complex = canonical(&raw, sites.input());
     let hidden = Some(hidden(sites.input(), &complex.vertices));
     Ok(Found { complex, boundary: None, hidden })
-}
-
-#[cfg(not(feature = "cgal"))]
-fn by_reference(_: &Sites<'_>, _: f64) -> Result<Found, ShapeError> {
-    Err(TriangulationError::WithoutCgal.into())
 }
 
 fn by_blocks(
@@ -228,7 +221,6 @@ fn squared_radii(weights: &[f64], alpha: Alpha) -> Result<Vec<f64>, ShapeError> 
 }
 
 /// Sites that are no vertices. Both lists ascend.
-#[cfg(feature = "cgal")]
 fn hidden(sites: &[u32], vertices: &Simplices<1>) -> Vec<u32> {
     let mut vertices = vertices.vertices.iter().peekable();
     sites.iter().copied().filter(|&site| vertices.next_if(|v| v[0] == site).is_none()).collect()

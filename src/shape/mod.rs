@@ -19,7 +19,6 @@
 mod alpha;
 mod alpha_shape;
 mod blocks;
-#[cfg(feature = "cgal")]
 mod canonical;
 mod complex;
 mod manifold;

@@ -148,25 +148,24 @@ impl Maker {
     ) -> Result<Triangulation, TriangulationError> {
         match self {
             Self::Native => native::native(positions, weights),
-            #[cfg(feature = "cgal")]
             Self::Cgal => cgal(positions, weights),
-            #[cfg(not(feature = "cgal"))]
-            Self::Cgal => Err(TriangulationError::WithoutCgal),
         }
     }
 }
 
-/// CGAL's `Regular_triangulation_3`, copied out.
-#[cfg(feature = "cgal")]
+/// CGAL's `Regular_triangulation_3`, copied out; its own memory is given back before cells are numbered.
 fn cgal(positions: &[[f64; 3]], weights: &[f64]) -> Result<Triangulation, TriangulationError> {
-    let made = crate::cgal::regular(positions, weights)?;
-    let count = made.cells();
-    if count > Triangulation::MOST_CELLS {
-        return Err(TriangulationError::TooManyCells);
-    }
-    let (mut cells, mut beside) = (filled(count, [0; 4])?, filled(count, [0; 4])?);
-    made.copy(&mut cells, &mut beside)?;
-    drop(made);
+    let copied = || {
+        let made = crate::cgal::regular(positions, weights)?;
+        let count = made.cells();
+        if count > Triangulation::MOST_CELLS {
+            return Err(TriangulationError::TooManyCells);
+        }
+        let (mut cells, mut beside) = (filled(count, [0; 4])?, filled(count, [0; 4])?);
+        made.copy(&mut cells, &mut beside)?;
+        Ok((cells, beside))
+    };
+    let (cells, beside) = copied()?;
     Triangulation::along_points(cells, beside, positions.len() as u32)
 }
 

@@ -123,7 +123,6 @@ impl Plan {
     /// Gives freed memory back to the system, where memory matters more than time and the allocator
     /// would keep it for itself (glibc).
     pub fn give_back(&self) {
-        #[cfg(feature = "cgal")]
         if self.frugal {
             crate::cgal::give_back();
         }

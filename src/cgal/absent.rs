@@ -1,0 +1,72 @@
+//! What stands in for the bridge where the crate is built without CGAL: every question is answered by
+//! [`TriangulationError::WithoutCgal`], and results have no values.
+
+use crate::triangulation::{Sites, TriangulationError};
+
+const ABSENT: TriangulationError = TriangulationError::WithoutCgal;
+
+pub(crate) enum RawComplex {}
+
+pub(crate) enum RawTriangulation {}
+
+pub(crate) enum Regular {}
+
+pub(crate) fn give_back() {}
+
+pub(crate) fn reference(_: &Sites<'_>, _: f64) -> Result<RawComplex, TriangulationError> {
+    Err(ABSENT)
+}
+
+pub(crate) fn regular(_: &[[f64; 3]], _: &[f64]) -> Result<Regular, TriangulationError> {
+    Err(ABSENT)
+}
+
+pub(crate) fn regular_plane(_: &Sites<'_, 2>) -> Result<RawTriangulation, TriangulationError> {
+    Err(ABSENT)
+}
+
+pub(crate) fn farthest_plane(_: &Sites<'_, 2>) -> Result<RawTriangulation, TriangulationError> {
+    Err(ABSENT)
+}
+
+impl RawComplex {
+    pub fn cells(&self) -> (&[[u32; 4]], &[u8]) {
+        match *self {}
+    }
+
+    pub fn facets(&self) -> (&[[u32; 3]], &[u8]) {
+        match *self {}
+    }
+
+    pub fn edges(&self) -> (&[[u32; 2]], &[u8]) {
+        match *self {}
+    }
+
+    pub fn vertices(&self) -> (&[[u32; 1]], &[u8]) {
+        match *self {}
+    }
+}
+
+impl RawTriangulation {
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        match *self {}
+    }
+
+    pub fn edges(&self) -> &[[u32; 2]] {
+        match *self {}
+    }
+
+    pub fn vertices(&self) -> &[u32] {
+        match *self {}
+    }
+}
+
+impl Regular {
+    pub fn cells(&self) -> usize {
+        match *self {}
+    }
+
+    pub fn copy(&self, _: &mut [[u32; 4]], _: &mut [[u32; 4]]) -> Result<(), TriangulationError> {
+        match *self {}
+    }
+}
