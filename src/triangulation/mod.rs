@@ -96,6 +96,11 @@ impl Triangulation {
         self.ghost
     }
 
+    /// Cells, what lies beside them, and the ghost, to be given back one after the other.
+    pub(crate) fn into_parts(self) -> (Vec<[u32; 4]>, Vec<[u32; 4]>, u32) {
+        (self.cells, self.beside, self.ghost)
+    }
+
     /// The points that are no vertices, ascending. O(cells).
     pub fn hidden(&self) -> Vec<u32> {
         let mut seen = vec![false; self.ghost as usize + 1];

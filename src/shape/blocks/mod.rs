@@ -102,10 +102,10 @@ fn decide(
         let points = partition.block(sites, question.alpha, block);
         match question.maker.make(&points.positions, &points.weights) {
             Err(TriangulationError::Sites(SitesError::Flat { .. })) => {}
-            made => return Ok(classify(&points, &made?, question)),
+            made => return Ok(classify(&points, made?, question)),
         }
     }
     let points = partition.block(sites, f64::INFINITY, block);
     let made = question.maker.make(&points.positions, &points.weights)?;
-    Ok(classify(&points, &made, question))
+    Ok(classify(&points, made, question))
 }

@@ -1,5 +1,5 @@
 use super::rows::{Owned, Side};
-use super::{Local, Sheets, Stars, State, even};
+use super::{Boundary, Local, Sheets, Stars, State, even};
 use crate::shape::{Class, UnionFind};
 
 /// Goes around one point after the other.
@@ -7,6 +7,7 @@ pub(super) struct Walker<'a> {
     local: &'a Local<'a>,
     states: &'a [State],
     stars: &'a Stars,
+    boundary: &'a Boundary,
     sheets: &'a mut Sheets,
     owned: &'a mut Owned,
     /// Points united by edges.
@@ -62,6 +63,7 @@ impl<'a> Walker<'a> {
         local: &'a Local<'a>,
         states: &'a [State],
         stars: &'a Stars,
+        boundary: &'a Boundary,
         sheets: &'a mut Sheets,
         owned: &'a mut Owned,
     ) -> Self {
@@ -70,6 +72,7 @@ impl<'a> Walker<'a> {
             local,
             states,
             stars,
+            boundary,
             sheets,
             owned,
             components: UnionFind::new(points),
@@ -129,7 +132,7 @@ impl<'a> Walker<'a> {
             if state.is_infinite() {
                 continue;
             }
-            let corners = local.mesh.cells()[cell as usize];
+            let corners = local.cells[cell as usize];
             let (p, q, r) = ((k + 1) % 4, (k + 2) % 4, (k + 3) % 4);
             let (a, b, c) = (corners[p], corners[q], corners[r]);
             let (x, y, z) = (input[a as usize], input[b as usize], input[c as usize]);
@@ -194,7 +197,7 @@ impl<'a> Walker<'a> {
             if matches!(class, Class::Exterior | Class::Interior) {
                 continue;
             }
-            let beyond = self.local.mesh.beside()[facet.side as usize / 4][facet.side as usize % 4];
+            let beyond = self.boundary.beyond(facet.side);
             if class == Class::Regular {
                 let outside = if state.is_inside() { beyond } else { facet.side };
                 self.owned.facet_sheets.push(self.local.corner(outside));
@@ -253,11 +256,11 @@ impl<'a> Walker<'a> {
         }
         let mut corner = None;
         for &at in star {
-            let cell = local.mesh.cells()[at as usize / 4];
+            let cell = local.cells[at as usize / 4];
             if !cell.contains(&u) {
                 continue;
             }
-            let others = cell.into_iter().filter(|&x| x != v && x != u && x != local.mesh.ghost());
+            let others = cell.into_iter().filter(|&x| x != v && x != u && x != local.ghost);
             for x in others {
                 if local.predicates.inside([v, u], x) {
                     return None;
@@ -314,7 +317,7 @@ fn join_ends(
     corner: u32,
 ) {
     if local.owned(u) {
-        let cell = local.mesh.cells()[corner as usize / 4];
+        let cell = local.cells[corner as usize / 4];
         let place = cell.iter().position(|&w| w == u).expect("a cell at the edge");
         sheets.unite(corner, corner / 4 * 4 + place as u32);
     } else {

@@ -66,9 +66,22 @@ impl State {
     }
 }
 
+/// Both sides of the facets on the boundary, each 4·cell + corner, that of the cell that gives the facet
+/// out first; ascending. All that is still asked of neighbours after the facets are classified.
+#[derive(Default)]
+pub(super) struct Boundary(Vec<(u32, u32)>);
+
+impl Boundary {
+    /// The other side of a facet that is given out.
+    pub fn beyond(&self, side: u32) -> u32 {
+        let found = self.0.binary_search_by_key(&side, |facet| facet.0);
+        self.0[found.expect("a facet on the boundary")].1
+    }
+}
+
 impl Local<'_> {
     pub(super) fn classify_cells(&self) -> Vec<State> {
-        let ghost = self.mesh.ghost();
+        let ghost = self.ghost;
         let state = |&cell: &[u32; 4]| {
             if !cell.iter().any(|&v| self.owned(v)) {
                 State(State::FAR)
@@ -80,22 +93,24 @@ impl Local<'_> {
                 State(0)
             }
         };
-        self.mesh.cells().iter().map(state).collect()
+        self.cells.iter().map(state).collect()
     }
 
     /// Classifies each facet that has an owned corner, and unites what it says of the outside.
     pub(super) fn classify_facets(
         &self,
+        beside: &[[u32; 4]],
         states: &mut [State],
         sheets: &mut Sheets,
         owned: &mut Owned,
-    ) {
+    ) -> Boundary {
+        let mut boundary = Boundary::default();
         for cell in 0..states.len() as u32 {
             let state = states[cell as usize];
             if state.is_far() {
                 continue;
             }
-            let across = self.mesh.beside()[cell as usize];
+            let across = beside[cell as usize];
             for (here, there) in (4 * cell..).zip(across) {
                 let next = states[there as usize / 4];
                 // Each pair once. No facet of a cell that is far has an owned corner.
@@ -111,8 +126,12 @@ impl Local<'_> {
                 states[there as usize / 4].set_facet(there as usize % 4, class);
                 if class != Class::Exterior || self.exterior {
                     // One of the two cells at a finite facet is finite.
-                    let giver = if state.is_infinite() { there } else { here };
+                    let (giver, other) =
+                        if state.is_infinite() { (there, here) } else { (here, there) };
                     states[giver as usize / 4].set_gives(giver as usize % 4);
+                    if matches!(class, Class::Regular | Class::Singular) {
+                        boundary.0.push((giver, other));
+                    }
                 }
                 match class {
                     Class::Interior => {}
@@ -127,17 +146,19 @@ impl Local<'_> {
                 }
             }
         }
+        boundary.0.sort_unstable();
+        boundary
     }
 
     /// A facet between two cells that are not in the shape: 4·cell + corner on both sides.
     fn classify_lone_facet(&self, here: u32, there: u32) -> Class {
-        let ghost = self.mesh.ghost();
+        let ghost = self.ghost;
         let facet = self.facet(here);
         if facet.contains(&ghost) || !self.fits(facet) {
             return Class::Exterior;
         }
         // In a regular triangulation a sphere that holds a point holds one of the two beside it.
-        let apex = |side: u32| self.mesh.cells()[side as usize / 4][side as usize % 4];
+        let apex = |side: u32| self.cells[side as usize / 4][side as usize % 4];
         let held = [here, there]
             .into_iter()
             .map(apex)
@@ -148,7 +169,7 @@ impl Local<'_> {
     /// The corners of a facet, of 4·cell + corner opposite.
     #[inline(always)]
     pub(super) fn facet(&self, side: u32) -> [u32; 3] {
-        let (cell, opposite) = (self.mesh.cells()[side as usize / 4], side as usize % 4);
+        let (cell, opposite) = (self.cells[side as usize / 4], side as usize % 4);
         [cell[(opposite + 1) % 4], cell[(opposite + 2) % 4], cell[(opposite + 3) % 4]]
     }
 }

@@ -17,16 +17,18 @@ use crate::shape::UnionFind;
 use crate::triangulation::{Predicates, Triangulation};
 
 use around::Walker;
-use cells::State;
+use cells::{Boundary, State};
 pub(super) use rows::{Dimension, Owned, Rows};
 use sheets::Sheets;
 use stars::Stars;
 
 /// Classifies the simplices whose smallest vertex is the block's own. O(cells).
-pub(super) fn classify(block: &Block, mesh: &Triangulation, question: &Question) -> Owned {
+pub(super) fn classify(block: &Block, mesh: Triangulation, question: &Question) -> Owned {
+    let (cells, beside, ghost) = mesh.into_parts();
     let local = Local {
         block,
-        mesh,
+        cells: &cells,
+        ghost,
         predicates: Predicates::on(question.lattice, &block.positions, &block.weights),
         alpha: question.alpha,
         exterior: question.exterior,
@@ -34,10 +36,11 @@ pub(super) fn classify(block: &Block, mesh: &Triangulation, question: &Question)
     let mut states = local.classify_cells();
     let mut sheets = Sheets::new(&states);
     let mut owned = Owned::default();
-    local.classify_facets(&mut states, &mut sheets, &mut owned);
+    let boundary = local.classify_facets(&beside, &mut states, &mut sheets, &mut owned);
+    drop(beside);
     owned.reserve(&states, block.own as usize);
-    let stars = Stars::new(mesh, block.own, &states);
-    let mut walker = Walker::new(&local, &states, &stars, &mut sheets, &mut owned);
+    let stars = Stars::new(&cells, block.own, &states);
+    let mut walker = Walker::new(&local, &states, &stars, &boundary, &mut sheets, &mut owned);
     (0..block.own).for_each(|v| walker.visit(v));
     let mut components = walker.finish();
     owned.joined = joined(&mut components, &block.input);
@@ -48,7 +51,8 @@ pub(super) fn classify(block: &Block, mesh: &Triangulation, question: &Question)
 /// A block with its triangulation, and what is asked about it. Vertices are its points' numbers.
 struct Local<'a> {
     block: &'a Block,
-    mesh: &'a Triangulation,
+    cells: &'a [[u32; 4]],
+    ghost: u32,
     predicates: Predicates<'a>,
     alpha: f64,
     exterior: bool,

@@ -57,7 +57,7 @@ impl Sheets {
 impl Local<'_> {
     /// Around each owned vertex of an exterior facet, the cells on both sides are in one sector.
     pub(super) fn pass(&self, here: u32, there: u32, sheets: &mut Sheets) {
-        let cells = self.mesh.cells();
+        let cells = self.cells;
         let (cell, next) = (cells[here as usize / 4], cells[there as usize / 4]);
         for (k, &v) in cell.iter().enumerate() {
             if k == here as usize % 4 || !self.owned(v) {
@@ -70,14 +70,14 @@ impl Local<'_> {
 
     /// An owned corner of an exterior cell on the side it has of a facet.
     pub(super) fn corner(&self, side: u32) -> u32 {
-        let cell = self.mesh.cells()[side as usize / 4];
+        let cell = self.cells[side as usize / 4];
         let owned = (1..4).map(|step| (side + step) % 4).find(|&k| self.owned(cell[k as usize]));
         side / 4 * 4 + owned.expect("an owned point on each facet that is asked about")
     }
 
     /// One side of a boundary facet is on one sheet; other blocks may know it too.
     pub(super) fn join_side(&self, side: u32, sheets: &mut Sheets, owned: &mut Owned) {
-        let cell = self.mesh.cells()[side as usize / 4];
+        let cell = self.cells[side as usize / 4];
         let mut places = [1, 2, 3].map(|step| (side as usize + step) % 4);
         let own = places.iter().filter(|&&k| self.owned(cell[k])).count();
         // Seen across from two owned points, and not known well here.

@@ -1,5 +1,4 @@
 use super::State;
-use crate::triangulation::Triangulation;
 
 /// The cells around each owned vertex, as 4·cell + the vertex's place in it.
 pub(super) struct Stars {
@@ -9,9 +8,9 @@ pub(super) struct Stars {
 
 impl Stars {
     /// Looks for the vertices below `own`. O(cells).
-    pub fn new(mesh: &Triangulation, own: u32, states: &[State]) -> Self {
+    pub fn new(cells: &[[u32; 4]], own: u32, states: &[State]) -> Self {
         let near = || {
-            let all = (0u32..).step_by(4).zip(mesh.cells()).zip(states);
+            let all = (0u32..).step_by(4).zip(cells).zip(states);
             all.filter(|(_, state)| !state.is_far()).map(|(cell, _)| cell)
         };
         // Where the star of a vertex ends, kept one further on; then, as stars fill, where it begins.
