@@ -10,47 +10,26 @@ pub(crate) trait Number {
     fn times(&self, other: &Self) -> Self;
 }
 
-impl Number for f64 {
-    #[inline(always)]
-    fn plus(&self, other: &Self) -> Self {
-        self + other
-    }
-    #[inline(always)]
-    fn minus(&self, other: &Self) -> Self {
-        self - other
-    }
-    #[inline(always)]
-    fn times(&self, other: &Self) -> Self {
-        self * other
-    }
+macro_rules! number {
+    ($($number:ty)*) => {$(
+        impl Number for $number {
+            #[inline(always)]
+            fn plus(&self, other: &Self) -> Self {
+                self + other
+            }
+            #[inline(always)]
+            fn minus(&self, other: &Self) -> Self {
+                self - other
+            }
+            #[inline(always)]
+            fn times(&self, other: &Self) -> Self {
+                self * other
+            }
+        }
+    )*};
 }
 
-impl Number for IBig {
-    fn plus(&self, other: &Self) -> Self {
-        self + other
-    }
-    fn minus(&self, other: &Self) -> Self {
-        self - other
-    }
-    fn times(&self, other: &Self) -> Self {
-        self * other
-    }
-}
-
-impl Number for i128 {
-    #[inline(always)]
-    fn plus(&self, other: &Self) -> Self {
-        self + other
-    }
-    #[inline(always)]
-    fn minus(&self, other: &Self) -> Self {
-        self - other
-    }
-    #[inline(always)]
-    fn times(&self, other: &Self) -> Self {
-        self * other
-    }
-}
+number!(f64 i128 IBig);
 
 /// Integers that doubles are turned into: of 128 bits where these suffice, else of any length.
 pub(crate) trait Integer: Number + Ord {

@@ -6,7 +6,7 @@ use crate::haar::{HaarOptions, Truncation, smooth};
 use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, select, weigh,
 };
-use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, alpha_shape};
+use crate::shape::{Alpha, AlphaShape, Balls, Engine, ShapeOptions, alpha_shape};
 use crate::volume::Volume;
 
 /// The paper's points.
@@ -71,7 +71,9 @@ impl<'a> Study<'a> {
         let Recipe { weighting, alpha, balls } = recipe;
         let weighted = weigh(&self.points, weighting, alpha)?;
         let alpha = Alpha::from_squared(alpha).expect("a recipe's α is a number");
-        let options = ShapeOptions { balls, exterior: true, ..ShapeOptions::new(alpha) };
+        // CGAL as the paper used it.
+        let engine = Engine::Reference;
+        let options = ShapeOptions { balls, engine, exterior: true, ..ShapeOptions::new(alpha) };
         let shape = alpha_shape(weighted, &options)?;
         let mut command = self.command("shape");
         command += &format!(" --weights {weighting} --alpha {}", alpha.squared());

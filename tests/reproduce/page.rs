@@ -48,7 +48,9 @@ fn each<'a>(list: &'a Value, shown: impl Fn(&'a Value) -> Vec<Shown>) -> Vec<Sho
 /// Each number of the page is the one that belongs there, to the digits shown.
 pub fn numbers_stand_in_the_report(files: &BTreeMap<String, Vec<u8>>, report: &Value) {
     let html = String::from_utf8(files["report.html"].clone()).unwrap();
-    assert!(!html.contains("<script") && !html.contains("http"), "a page on its own");
+    // The letters alone may stand in a picture, which is written in 64 signs without a colon.
+    let elsewhere = ["<script", "http:", "https:"].into_iter().find(|part| html.contains(part));
+    assert_eq!(elsewhere, None, "a page on its own");
     let mut sections = html.split("<section").skip(1);
     for item in report["items"].as_array().unwrap() {
         let section = sections.next().expect("a section for each item");
