@@ -8,11 +8,12 @@ const TABLE: usize = 64;
 
 /// What one insertion works with; kept so that the next need not allocate.
 pub(super) struct Cavity {
-    /// The cells that go.
+    /// The cells that go; later the places of the new ones.
     cells: Vec<u32>,
-    /// Cells of the cavity whose neighbours were not looked at yet.
-    pending: Vec<u32>,
+    /// The facets of its boundary, and room for those of one more cell.
     boundary: Vec<Facet>,
+    /// How many there are.
+    facets: usize,
     /// Corners of the boundary have numbers of their own, from 0: this is `base` plus that for those
     /// that have been met in this insertion, less than `base` for all others.
     names: Vec<u32>,
@@ -25,26 +26,17 @@ pub(super) struct Cavity {
     seen: u32,
 }
 
-/// A facet of the boundary with the new point in place of the corner opposite.
+/// A facet of the boundary.
+#[derive(Clone, Copy, Default)]
 struct Facet {
-    corners: [u32; 4],
-    /// Their numbers on the boundary; that of the new point means nothing.
-    numbers: [u32; 4],
-    /// The place of the new point.
-    apex: u32,
+    /// With the new point these make a positively oriented cell.
+    corners: [u32; 3],
     /// 4·cell + corner outside the cavity.
     outside: u32,
 }
 
-/// For a cell with the new point at a place: the corner opposite each of the other facets, and the
-/// other two corners x, y, such that (point, corner, x, y) is an even permutation. The facet beyond
-/// has the same with y, x.
-const AROUND: [[[usize; 3]; 3]; 4] = [
-    [[1, 2, 3], [2, 3, 1], [3, 1, 2]],
-    [[0, 3, 2], [2, 0, 3], [3, 2, 0]],
-    [[0, 1, 3], [1, 3, 0], [3, 0, 1]],
-    [[0, 2, 1], [1, 0, 2], [2, 1, 0]],
-];
+/// The new point's place in new cells.
+const APEX: u32 = 3;
 
 impl Cavity {
     pub fn new(ghost: u32) -> Result<Self, TriangulationError> {
@@ -52,8 +44,8 @@ impl Cavity {
         let names = filled(count, 0)?;
         Ok(Self {
             cells: Vec::new(),
-            pending: Vec::new(),
-            boundary: Vec::new(),
+            boundary: vec![Facet::default(); 4],
+            facets: 0,
             names,
             base: 1,
             corners: 0,
@@ -65,7 +57,7 @@ impl Cavity {
     /// Forgets the last cavity.
     fn clear(&mut self, marks: &mut [u32]) {
         self.cells.clear();
-        self.boundary.clear();
+        self.facets = 0;
         self.base += self.corners;
         self.corners = 0;
         self.seen += 2;
@@ -88,54 +80,46 @@ impl Native<'_> {
         cavity.clear(marks);
         let seen = cavity.seen;
         marks[start as usize] = seen + 1;
-        cavity.pending.push(start);
-        while let Some(cell) = cavity.pending.pop() {
-            cavity.cells.push(cell);
-            let corners = mesh.cells[cell as usize];
+        cavity.cells.push(start);
+        let mut at = 0;
+        while let Some(&cell) = cavity.cells.get(at) {
+            at += 1;
             let across = mesh.beside[cell as usize];
-            for apex in 0..4 {
-                let outside = across[apex];
+            let mut stays = 0;
+            for (corner, outside) in across.into_iter().enumerate() {
                 let next = outside / 4;
                 let mark = &mut marks[next as usize];
                 if *mark < seen {
                     let goes = mesh.conflicts(screen, next, v);
                     *mark = seen + u32::from(goes);
                     if goes {
-                        cavity.pending.push(next);
+                        cavity.cells.push(next);
                     }
                 }
-                if *mark == seen {
-                    let mut corners = corners;
-                    corners[apex] = v;
-                    cavity.boundary.push(Facet {
-                        corners,
-                        numbers: [0; 4],
-                        apex: apex as u32,
-                        outside,
-                    });
-                }
+                stays |= usize::from(*mark == seen) << corner;
             }
+            cavity.bound(mesh.cells[cell as usize], across, stays);
         }
     }
 
     /// Joins the point to the boundary of the cavity.
-    pub(super) fn fill(&mut self) -> Result<(), TriangulationError> {
+    pub(super) fn fill(&mut self, v: u32) -> Result<(), TriangulationError> {
         self.make_room()?;
-        self.write();
+        self.write(v);
         let Self { mesh, cavity, .. } = self;
         if cavity.corners as usize <= TABLE {
             cavity.join_by_table(mesh);
         } else {
             cavity.join_by_sorting(mesh);
         }
-        self.near = cavity.cells[cavity.boundary.len() - 1];
+        self.near = cavity.cells[cavity.facets - 1];
         Ok(())
     }
 
     /// Finds places for the new cells: those of the cavity first, then others that are free, then
     /// new ones.
     fn make_room(&mut self) -> Result<(), TriangulationError> {
-        let wanted = self.cavity.boundary.len();
+        let wanted = self.cavity.facets;
         let places = &mut self.cavity.cells;
         if wanted < places.len() {
             self.free.extend(places.drain(wanted..));
@@ -157,30 +141,26 @@ impl Native<'_> {
         Ok(())
     }
 
-    /// Writes the new cells and joins them to what is outside; notes in the table where they meet
+    /// Writes the new cells, tells the cells outside of them, and notes in the table where they meet
     /// each other: each edge of the boundary is in two facets, which run along it in opposite
     /// directions.
-    fn write(&mut self) {
-        let Self { mesh, marks, cavity, .. } = self;
-        let Cavity { boundary, cells, names, base, corners, table, .. } = cavity;
+    fn write(&mut self, v: u32) {
+        let Self { mesh, cavity, .. } = self;
+        let Cavity { boundary, facets, cells, names, base, corners, table, .. } = cavity;
         let mut number = |v: u32| {
             let name = &mut names[v as usize];
-            if *name < *base {
-                *name = *base + *corners;
-                *corners += 1;
-            }
+            let is_new = *name < *base;
+            *name = if is_new { *base + *corners } else { *name };
+            *corners += u32::from(is_new);
             *name - *base
         };
-        for (facet, &place) in boundary.iter_mut().zip(&*cells) {
-            mesh.cells[place as usize] = facet.corners;
-            marks[place as usize] = 0;
-            mesh.join(4 * place + facet.apex, facet.outside);
-            let [[p, ..], [q, ..], [r, ..]] = AROUND[facet.apex as usize % 4];
-            for k in [p, q, r] {
-                facet.numbers[k] = number(facet.corners[k]);
-            }
-            for [corner, x, y] in AROUND[facet.apex as usize % 4] {
-                table[slot(facet.numbers[x], facet.numbers[y])] = 4 * place + corner as u32;
+        for (facet, &place) in boundary[..*facets].iter().zip(&*cells) {
+            let Facet { corners: [a, b, c], outside } = *facet;
+            mesh.cells[place as usize] = [a, b, c, v];
+            mesh.beside[outside as usize / 4][outside as usize % 4] = 4 * place + APEX;
+            let (a, b, c) = (number(a), number(b), number(c));
+            for (corner, x, y) in [(0, b, c), (1, c, a), (2, a, b)] {
+                table[slot(x, y)] = 4 * place + corner;
             }
         }
     }
@@ -193,24 +173,44 @@ fn slot(x: u32, y: u32) -> usize {
 }
 
 impl Cavity {
+    /// Adds the facets of a cell beyond which cells stay. They are written anyway, without branches
+    /// that would be guessed wrong half the time, and the next ones take the place of others.
+    #[inline(always)]
+    fn bound(&mut self, cell: [u32; 4], across: [u32; 4], stays: usize) {
+        if self.boundary.len() < self.facets + 4 {
+            self.boundary.resize(2 * self.boundary.len(), Facet::default());
+        }
+        let Some(room) = self.boundary[self.facets..].first_chunk_mut::<4>() else { return };
+        let [a, b, c, d] = cell;
+        let facets = [[b, d, c], [a, c, d], [b, a, d], [a, b, c]];
+        let mut at = 0;
+        for (k, (corners, outside)) in facets.into_iter().zip(across).enumerate() {
+            room[at % 4] = Facet { corners, outside };
+            at += stays >> k & 1;
+        }
+        self.facets += at;
+    }
+
     /// Joins new cells to each other.
     fn join_by_table(&mut self, mesh: &mut Mesh) {
-        for (facet, &place) in self.boundary.iter().zip(&self.cells) {
-            let beside = &mut mesh.beside[place as usize];
-            for [corner, x, y] in AROUND[facet.apex as usize % 4] {
-                beside[corner] = self.table[slot(facet.numbers[y], facet.numbers[x])];
-            }
+        for (facet, &place) in self.boundary[..self.facets].iter().zip(&self.cells) {
+            let Facet { corners: [a, b, c], outside } = *facet;
+            let number = |v: u32| self.names[v as usize] - self.base;
+            let (a, b, c) = (number(a), number(b), number(c));
+            let beside = |x: u32, y: u32| self.table[slot(x, y)];
+            mesh.beside[place as usize] = [beside(c, b), beside(a, c), beside(b, a), outside];
         }
     }
 
     /// The same with more corners than the table has room for: the two facets at an edge meet by
     /// sorting.
     fn join_by_sorting(&mut self, mesh: &mut Mesh) {
-        let mut edges = Vec::with_capacity(3 * self.boundary.len());
-        for (facet, &place) in self.boundary.iter().zip(&self.cells) {
-            for [corner, x, y] in AROUND[facet.apex as usize] {
-                let (x, y) = (facet.corners[x], facet.corners[y]);
-                edges.push(((x.min(y), x.max(y)), 4 * place + corner as u32));
+        let mut edges = Vec::with_capacity(3 * self.facets);
+        for (facet, &place) in self.boundary[..self.facets].iter().zip(&self.cells) {
+            let [a, b, c] = facet.corners;
+            mesh.beside[place as usize][APEX as usize] = facet.outside;
+            for (corner, x, y) in [(0, b, c), (1, c, a), (2, a, b)] {
+                edges.push(((x.min(y), x.max(y)), 4 * place + corner));
             }
         }
         edges.sort_unstable();

@@ -61,7 +61,7 @@ impl Native<'_> {
         let cell = self.locate(v);
         if self.mesh.conflicts(self.screen, cell, v) {
             self.dig(cell, v);
-            self.fill()?;
+            self.fill(v)?;
         }
         Ok(())
     }

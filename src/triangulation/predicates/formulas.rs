@@ -27,15 +27,29 @@ pub(super) fn determinant<T: Number>([a, b, c]: [&[T; 3]; 3]) -> T {
 /// multiples of the other columns.
 #[inline(always)]
 pub(super) fn power_determinant<T: Number>([a, b, c, d]: &[Ray<T>; 4]) -> T {
-    let xy = |p: &Ray<T>, q: &Ray<T>| {
-        p.vector[0].times(&q.vector[1]).minus(&q.vector[0].times(&p.vector[1]))
-    };
-    let zp =
-        |p: &Ray<T>, q: &Ray<T>| p.vector[2].times(&q.power).minus(&q.vector[2].times(&p.power));
-    let positive = (xy(a, b).times(&zp(c, d)))
-        .plus(&xy(a, d).times(&zp(b, c)))
-        .plus(&xy(b, c).times(&zp(a, d)).plus(&xy(c, d).times(&zp(a, b))));
-    positive.minus(&xy(a, c).times(&zp(b, d)).plus(&xy(b, d).times(&zp(a, c))))
+    // Laplace's expansion by two rows and the two others.
+    let terms = [
+        products(minors(a, b), minors(c, d)),
+        products(minors(a, c), minors(b, d)),
+        products(minors(a, d), minors(b, c)),
+    ];
+    let [x, y] = [0, 1].map(|i| terms[0][i].minus(&terms[1][i]).plus(&terms[2][i]));
+    x.plus(&y)
+}
+
+/// The minors of two rays in the columns (x, y) and (z, power), side by side: a processor computes
+/// both at once.
+#[inline(always)]
+fn minors<T: Number>(p: &Ray<T>, q: &Ray<T>) -> [T; 2] {
+    let (low_p, high_p) = ([&p.vector[0], &p.vector[2]], [&p.vector[1], &p.power]);
+    let (low_q, high_q) = ([&q.vector[0], &q.vector[2]], [&q.vector[1], &q.power]);
+    [0, 1].map(|i| low_p[i].times(high_q[i]).minus(&low_q[i].times(high_p[i])))
+}
+
+/// The products of the minors of two rays with the opposite ones of two others.
+#[inline(always)]
+fn products<T: Number>([u, v]: [T; 2], [x, y]: [T; 2]) -> [T; 2] {
+    [u.times(&y), v.times(&x)]
 }
 
 /// 4 d·|c|² and d, where d ≥ 0 depends on the rays alone: of degree 2 for one ray, 4 for two, 6

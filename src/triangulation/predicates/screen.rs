@@ -14,8 +14,9 @@ pub(crate) struct Screen<'a> {
     predicates: &'a Predicates<'a>,
     /// One more than there are: the ghost is nowhere, so that no sign is believed.
     points: Vec<[f64; 4]>,
-    /// Whether the points are the sites moved, without any rounding.
-    exact: bool,
+    /// Where every determinant of coordinates is exact: what x and y count for in the number that
+    /// orders points by (x, y, z).
+    order: Option<[f64; 2]>,
     orientation: f64,
     power: f64,
 }
@@ -41,7 +42,7 @@ impl<'a> Screen<'a> {
             let [x, y, z] = [0, 1, 2].map(|k| position[k] - middle[k]);
             let (square, weight) = (x * x + y * y + z * z, if alike { 0.0 } else { *weight });
             highest = highest.max(square + weight.abs());
-            points.push([x, y, z, square - weight]);
+            points.push([x, z, y, square - weight]);
         }
         points.push([f64::NAN; 4]);
         let [width, depth, height] = [0, 1, 2].map(|k| high[k] - low[k]);
@@ -60,7 +61,12 @@ impl<'a> Screen<'a> {
         };
         let on_lattice = lattice.step != 0.0;
         let (orientation, power) = (sure(terms, 3, on_lattice), sure(power_terms, 5, exact));
-        Ok(Self { predicates, points, exact: on_lattice && orientation == 0.0, orientation, power })
+        // One more than the steps there are in z, and so for y: below 2⁵³ in all, as `terms` are, of which
+        // there are six.
+        let more = |extent: f64| extent / lattice.step + 1.0;
+        let order = (on_lattice && orientation == 0.0)
+            .then(|| [more(depth) * more(height), more(height)]);
+        Ok(Self { predicates, points, order, orientation, power })
     }
 
     /// The number of points.
@@ -75,7 +81,7 @@ impl<'a> Screen<'a> {
         let a = &self.points[corners[0] as usize];
         let ray = |v: u32| {
             let q = &self.points[v as usize];
-            [q[0] - a[0], q[1] - a[1], q[2] - a[2]]
+            [q[0] - a[0], q[2] - a[2], q[1] - a[1]]
         };
         let value = determinant([&ray(corners[1]), &ray(corners[2]), &ray(corners[3])]);
         if value > self.orientation {
@@ -101,7 +107,7 @@ impl<'a> Screen<'a> {
         let x = &self.points[t as usize];
         let ray = |v: u32| {
             let p = &self.points[v as usize];
-            Ray { vector: [p[0] - x[0], p[1] - x[1], p[2] - x[2]], power: p[3] - x[3] }
+            Ray { vector: [p[0] - x[0], p[2] - x[2], p[1] - x[1]], power: p[3] - x[3] }
         };
         let value = power_determinant(&[ray(cell[0]), ray(cell[1]), ray(cell[2]), ray(cell[3])]);
         (value.abs() > self.power).then_some(value < 0.0)
@@ -123,16 +129,11 @@ impl<'a> Screen<'a> {
     /// For a point on the sphere: the sign of the first term in the infinitely small heights that
     /// is not 0.
     fn conflicts_raised(&self, cell: [u32; 4], t: u32) -> bool {
-        let mut left = [0, 1, 2, 3, 4];
-        let name = |place: usize| if place == 4 { t } else { cell[place] };
+        let mut names = [cell[0], cell[1], cell[2], cell[3], t];
+        let mut places = [0, 1, 2, 3, 4];
         for count in [5, 4, 3] {
-            let mut last = 0;
-            for at in 1..count {
-                if self.precedes(name(left[last]), name(left[at])) {
-                    last = at;
-                }
-            }
-            let place = left[last];
+            let last = self.last(&names[..count]);
+            let place = places[last];
             if place == 4 {
                 return false;
             }
@@ -142,19 +143,34 @@ impl<'a> Screen<'a> {
             if sign.is_ne() {
                 return sign.is_gt();
             }
-            left[last] = left[count - 1];
+            names[last] = names[count - 1];
+            places[last] = places[count - 1];
         }
         false
     }
 
-    /// Whether one point comes before another in the order of (x, y, z).
-    fn precedes(&self, a: u32, b: u32) -> bool {
-        if self.exact {
-            let [x, y, z, _] = self.points[a as usize];
-            let [u, v, w, _] = self.points[b as usize];
-            (x, y, z) < (u, v, w)
+    /// Which of some points comes last in the order of (x, y, z).
+    fn last(&self, points: &[u32]) -> usize {
+        let mut last = 0;
+        if let Some([by_x, by_y]) = self.order {
+            let key = |v: u32| {
+                let [x, z, y, _] = self.points[v as usize];
+                x * by_x + y * by_y + z
+            };
+            let mut highest = key(points[0]);
+            for (at, &v) in points.iter().enumerate().skip(1) {
+                let key = key(v);
+                last = if key > highest { at } else { last };
+                highest = highest.max(key);
+            }
         } else {
-            self.predicates.positions[a as usize] < self.predicates.positions[b as usize]
+            let position = |at: usize| self.predicates.positions[points[at] as usize];
+            for at in 1..points.len() {
+                if position(at) > position(last) {
+                    last = at;
+                }
+            }
         }
+        last
     }
 }
