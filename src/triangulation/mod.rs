@@ -50,32 +50,38 @@ impl Triangulation {
     /// Numbers cells by their smallest corners, so that cells near each other in the order of points
     /// are near each other in memory, and leaves those out whose first corner is [`GONE`]. O(cells).
     fn along_points(
-        old_cells: Vec<[u32; 4]>,
-        old_beside: Vec<[u32; 4]>,
+        old: Vec<Cell>,
         ghost: u32,
     ) -> Result<Self, TriangulationError> {
-        let smallest = |cell: &[u32; 4]| cell[0].min(cell[1]).min(cell[2]).min(cell[3]) as usize;
+        let there = || old.iter().filter(|cell| cell.corners[0] != GONE);
+        let smallest = |cell: &Cell| {
+            let [a, b, c, d] = cell.corners;
+            a.min(b).min(c).min(d) as usize
+        };
         let mut next: Vec<u32> = filled(ghost as usize + 2, 0)?;
-        for cell in old_cells.iter().filter(|cell| cell[0] != GONE) {
+        for cell in there() {
             next[smallest(cell) + 1] += 1;
         }
         for v in 1..next.len() {
             next[v] += next[v - 1];
         }
         let count = next[ghost as usize + 1] as usize;
-        let mut numbers = filled(old_cells.len(), GONE)?;
+        let mut numbers = filled(old.len(), GONE)?;
         let mut cells = filled(count, [0; 4])?;
-        for (number, cell) in numbers.iter_mut().zip(&old_cells).filter(|(_, cell)| cell[0] != GONE)
-        {
+        for (number, cell) in numbers.iter_mut().zip(&old) {
+            if cell.corners[0] == GONE { continue; }
             let place = &mut next[smallest(cell)];
             *number = *place;
-            cells[*place as usize] = *cell;
+            cells[*place as usize] = cell.corners;
             *place += 1;
         }
-        drop(old_cells);
+        // In place: half the memory of the old cells comes free.
+        let mut across: Vec<_> = old.into_iter().map(|cell| cell.beside).collect();
+        across.shrink_to_fit();
         let mut beside = filled(count, [0; 4])?;
-        for (&number, across) in numbers.iter().zip(&old_beside).filter(|(n, _)| **n != GONE) {
-            beside[number as usize] = across.map(|side| 4 * numbers[side as usize / 4] + side % 4);
+        for (&number, [a, b, c, d]) in numbers.iter().zip(across).filter(|(n, _)| **n != GONE) {
+            let to = |side: u32| 4 * numbers[side as usize / 4] + side % 4;
+            beside[number as usize] = [to(a), to(b), to(c), to(d)];
         }
         Ok(Self { cells, beside, ghost })
     }
@@ -131,6 +137,13 @@ fn no_memory(bytes: usize) -> TriangulationError {
     TriangulationError::Memory { stage: "triangulation", needed: Some(bytes) }
 }
 
+/// A cell as its makers have it: its corners, and 4·cell + corner across each facet.
+#[derive(Clone, Copy, Default)]
+struct Cell {
+    corners: [u32; 4],
+    beside: [u32; 4],
+}
+
 /// The first corner of a cell that is none.
 const GONE: u32 = u32::MAX;
 
@@ -168,10 +181,10 @@ fn cgal(positions: &[[f64; 3]], weights: &[f64]) -> Result<Triangulation, Triang
         }
         let (mut cells, mut beside) = (filled(count, [0; 4])?, filled(count, [0; 4])?);
         made.copy(&mut cells, &mut beside)?;
-        Ok((cells, beside))
+        Ok(cells.into_iter().zip(beside).map(|(corners, beside)| Cell { corners, beside }).collect())
     };
-    let (cells, beside) = copied()?;
-    Triangulation::along_points(cells, beside, positions.len() as u32)
+    let cells = copied()?;
+    Triangulation::along_points(cells, positions.len() as u32)
 }
 
 /// The regular triangulation of sites, by site index. Expected O(n log n) for points of even density.

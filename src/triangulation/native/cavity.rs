@@ -1,6 +1,6 @@
 //! The cells that go when a point comes, and those that take their place.
 
-use super::super::{Triangulation, TriangulationError, filled};
+use super::super::{Cell, Triangulation, TriangulationError, filled};
 use super::{Mesh, Native};
 
 /// So many different corners of a cavity's boundary, the ghost among them, fit the table.
@@ -84,7 +84,7 @@ impl Native<'_> {
         let mut at = 0;
         while let Some(&cell) = cavity.cells.get(at) {
             at += 1;
-            let across = mesh.beside[cell as usize];
+            let across = mesh.cells[cell as usize].beside;
             let mut stays = 0;
             for (corner, outside) in across.into_iter().enumerate() {
                 let next = outside / 4;
@@ -98,7 +98,7 @@ impl Native<'_> {
                 }
                 stays |= usize::from(*mark == seen) << corner;
             }
-            cavity.bound(mesh.cells[cell as usize], across, stays);
+            cavity.bound(mesh.cells[cell as usize].corners, across, stays);
         }
     }
 
@@ -134,8 +134,7 @@ impl Native<'_> {
             }
             places.extend(count as u32..(count + more) as u32);
             self.reserve(more)?;
-            self.mesh.cells.resize(count + more, [0; 4]);
-            self.mesh.beside.resize(count + more, [0; 4]);
+            self.mesh.cells.resize(count + more, Cell::default());
             self.marks.resize(count + more, 0);
         }
         Ok(())
@@ -156,8 +155,8 @@ impl Native<'_> {
         };
         for (facet, &place) in boundary[..*facets].iter().zip(&*cells) {
             let Facet { corners: [a, b, c], outside } = *facet;
-            mesh.cells[place as usize] = [a, b, c, v];
-            mesh.beside[outside as usize / 4][outside as usize % 4] = 4 * place + APEX;
+            mesh.cells[place as usize].corners = [a, b, c, v];
+            mesh.cells[outside as usize / 4].beside[outside as usize % 4] = 4 * place + APEX;
             let (a, b, c) = (number(a), number(b), number(c));
             for (corner, x, y) in [(0, b, c), (1, c, a), (2, a, b)] {
                 table[slot(x, y)] = 4 * place + corner;
@@ -198,7 +197,7 @@ impl Cavity {
             let number = |v: u32| self.names[v as usize] - self.base;
             let (a, b, c) = (number(a), number(b), number(c));
             let beside = |x: u32, y: u32| self.table[slot(x, y)];
-            mesh.beside[place as usize] = [beside(c, b), beside(a, c), beside(b, a), outside];
+            mesh.cells[place as usize].beside = [beside(c, b), beside(a, c), beside(b, a), outside];
         }
     }
 
@@ -208,7 +207,7 @@ impl Cavity {
         let mut edges = Vec::with_capacity(3 * self.facets);
         for (facet, &place) in self.boundary[..self.facets].iter().zip(&self.cells) {
             let [a, b, c] = facet.corners;
-            mesh.beside[place as usize][APEX as usize] = facet.outside;
+            mesh.cells[place as usize].beside[APEX as usize] = facet.outside;
             for (corner, x, y) in [(0, b, c), (1, c, a), (2, a, b)] {
                 edges.push(((x.min(y), x.max(y)), 4 * place + corner));
             }

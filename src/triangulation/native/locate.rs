@@ -8,12 +8,12 @@ impl Native<'_> {
     pub(super) fn locate(&self, v: u32) -> u32 {
         let mut cell = self.near;
         if let Some(corner) = self.mesh.ghost_corner(cell) {
-            cell = self.mesh.beside[cell as usize][corner] / 4;
+            cell = self.mesh.cells[cell as usize].beside[corner] / 4;
         }
         let mut from = u32::MAX;
         'walk: loop {
-            let corners = self.mesh.cells[cell as usize];
-            let across = self.mesh.beside[cell as usize];
+            let corners = self.mesh.cells[cell as usize].corners;
+            let across = self.mesh.cells[cell as usize].beside;
             for corner in 0..4 {
                 let next = across[corner] / 4;
                 if next == from {

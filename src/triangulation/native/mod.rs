@@ -17,7 +17,7 @@ mod start;
 use std::cmp::Ordering;
 
 use super::predicates::{Predicates, Screen};
-use super::{GONE, Triangulation, TriangulationError};
+use super::{Cell, GONE, Triangulation, TriangulationError};
 use cavity::Cavity;
 
 /// The regular triangulation of points: finite numbers of sane magnitude, no two places equal.
@@ -68,18 +68,16 @@ impl Native<'_> {
 
     fn finish(mut self) -> Result<Triangulation, TriangulationError> {
         for place in self.free {
-            self.mesh.cells[place as usize][0] = GONE;
+            self.mesh.cells[place as usize].corners[0] = GONE;
         }
         drop(self.marks);
-        let Mesh { cells, beside, ghost } = self.mesh;
-        Triangulation::along_points(cells, beside, ghost)
+        Triangulation::along_points(self.mesh.cells, self.mesh.ghost)
     }
 }
 
 /// Cells and their neighbours, as [`Triangulation`] has them.
 struct Mesh {
-    cells: Vec<[u32; 4]>,
-    beside: Vec<[u32; 4]>,
+    cells: Vec<Cell>,
     ghost: u32,
 }
 
@@ -87,7 +85,7 @@ impl Mesh {
     /// Whether a point lies inside the orthogonal sphere of a cell.
     #[inline(always)]
     fn conflicts(&self, screen: &Screen<'_>, cell: u32, v: u32) -> bool {
-        let quick = screen.conflicts(self.cells[cell as usize], v);
+        let quick = screen.conflicts(self.cells[cell as usize].corners, v);
         quick.unwrap_or_else(|| self.conflicts_closely(screen, cell, v))
     }
 
@@ -95,7 +93,7 @@ impl Mesh {
     /// cell behind where both meet.
     #[inline(never)]
     fn conflicts_closely(&self, screen: &Screen<'_>, cell: u32, v: u32) -> bool {
-        let mut corners = self.cells[cell as usize];
+        let mut corners = self.cells[cell as usize].corners;
         let Some(corner) = self.ghost_corner(cell) else {
             return screen.conflicts_closely(corners, v);
         };
@@ -104,7 +102,7 @@ impl Mesh {
             Ordering::Greater => true,
             Ordering::Less => false,
             Ordering::Equal => {
-                let behind = self.cells[self.beside[cell as usize][corner] as usize / 4];
+                let behind = self.cells[self.cells[cell as usize].beside[corner] as usize / 4].corners;
                 let quick = screen.conflicts(behind, v);
                 quick.unwrap_or_else(|| screen.conflicts_closely(behind, v))
             }
@@ -114,14 +112,14 @@ impl Mesh {
     /// The place of the ghost in an infinite cell.
     #[inline(always)]
     fn ghost_corner(&self, cell: u32) -> Option<usize> {
-        self.cells[cell as usize].iter().position(|&v| v == self.ghost)
+        self.cells[cell as usize].corners.iter().position(|&v| v == self.ghost)
     }
 
     /// Joins two facets, each 4·cell + corner.
     #[inline(always)]
     fn join(&mut self, a: u32, b: u32) {
-        self.beside[a as usize / 4][a as usize % 4] = b;
-        self.beside[b as usize / 4][b as usize % 4] = a;
+        self.cells[a as usize / 4].beside[a as usize % 4] = b;
+        self.cells[b as usize / 4].beside[b as usize % 4] = a;
     }
 }
 

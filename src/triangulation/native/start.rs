@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::super::predicates::Screen;
-use super::super::{SitesError, TriangulationError, no_memory};
+use super::super::{Cell, SitesError, TriangulationError, no_memory};
 use super::{Cavity, Mesh, Native};
 
 impl<'a> Native<'a> {
@@ -15,7 +15,7 @@ impl<'a> Native<'a> {
         let expected = (screen.len() + screen.len() / 16).saturating_mul(7).max(64);
         let mut native = Self {
             screen,
-            mesh: Mesh { cells: Vec::new(), beside: Vec::new(), ghost },
+            mesh: Mesh { cells: Vec::new(), ghost },
             marks: Vec::new(),
             free: Vec::new(),
             first,
@@ -23,20 +23,19 @@ impl<'a> Native<'a> {
             cavity: Cavity::new(ghost)?,
         };
         native.reserve(expected)?;
-        native.mesh.cells.push(first);
+        native.mesh.cells.push(Cell { corners: first, beside: [0; 4] });
         for corner in 0..4 {
             let mut infinite = first;
             infinite[corner] = ghost;
             // Seen from outside the facet turns the other way.
             infinite.swap((corner + 1) % 4, (corner + 2) % 4);
-            native.mesh.cells.push(infinite);
+            native.mesh.cells.push(Cell { corners: infinite, beside: [0; 4] });
         }
         native.marks.resize(5, 0);
-        native.mesh.beside.resize(5, [0; 4]);
         for a in 0..5 {
             for b in 0..5 {
-                if let Some([from, to]) = common_facet(native.mesh.cells[a], native.mesh.cells[b]) {
-                    native.mesh.beside[a][from] = (4 * b + to) as u32;
+                if let Some([from, to]) = common_facet(native.mesh.cells[a].corners, native.mesh.cells[b].corners) {
+                    native.mesh.cells[a].beside[from] = (4 * b + to) as u32;
                 }
             }
         }
@@ -49,7 +48,6 @@ impl<'a> Native<'a> {
         self.mesh
             .cells
             .try_reserve(more)
-            .and_then(|()| self.mesh.beside.try_reserve(more))
             .and_then(|()| self.marks.try_reserve(more))
             .map_err(|_| no_memory(bytes))
     }
