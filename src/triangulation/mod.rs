@@ -49,10 +49,7 @@ impl Triangulation {
 
     /// Numbers cells by their smallest corners, so that cells near each other in the order of points
     /// are near each other in memory, and leaves those out whose first corner is [`GONE`]. O(cells).
-    fn along_points(
-        old: Vec<Cell>,
-        ghost: u32,
-    ) -> Result<Self, TriangulationError> {
+    fn along_points(old: Vec<Cell>, ghost: u32) -> Result<Self, TriangulationError> {
         let there = || old.iter().filter(|cell| cell.corners[0] != GONE);
         let smallest = |cell: &Cell| {
             let [a, b, c, d] = cell.corners;
@@ -69,7 +66,9 @@ impl Triangulation {
         let mut numbers = filled(old.len(), GONE)?;
         let mut cells = filled(count, [0; 4])?;
         for (number, cell) in numbers.iter_mut().zip(&old) {
-            if cell.corners[0] == GONE { continue; }
+            if cell.corners[0] == GONE {
+                continue;
+            }
             let place = &mut next[smallest(cell)];
             *number = *place;
             cells[*place as usize] = cell.corners;
@@ -181,7 +180,11 @@ fn cgal(positions: &[[f64; 3]], weights: &[f64]) -> Result<Triangulation, Triang
         }
         let (mut cells, mut beside) = (filled(count, [0; 4])?, filled(count, [0; 4])?);
         made.copy(&mut cells, &mut beside)?;
-        Ok(cells.into_iter().zip(beside).map(|(corners, beside)| Cell { corners, beside }).collect())
+        Ok(cells
+            .into_iter()
+            .zip(beside)
+            .map(|(corners, beside)| Cell { corners, beside })
+            .collect())
     };
     let cells = copied()?;
     Triangulation::along_points(cells, positions.len() as u32)

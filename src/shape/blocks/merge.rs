@@ -1,79 +1,70 @@
 //! The rows of all blocks as one complex, in canonical order.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
-use super::classify::{Dimension, Owned, Rows};
+use super::classify::{Dimension, Owned, Rows, Shelf, Shelves};
 use super::{Answer, Partition, Plan};
 use crate::shape::{Class, Complex, Simplices, UnionFind};
 use crate::triangulation::Sites;
 
 /// Sites merged by one thread at a time.
-const CHUNK: usize = 1 << 13;
+const CHUNK: usize = 1 << 12;
 
 /// Puts the rows of blocks in order of their smallest vertices, which they come without. Around each
-/// vertex rows are in order already. Blocks give the rows of one dimension back before those of the
-/// next are merged; facets, the most, come first, while nothing else is there.
+/// vertex rows are in order already. Blocks give the rows of one shelf back before those of the next
+/// are merged, so that little is there twice.
 pub(super) fn merge(
     sites: &Sites<'_>,
     plan: &Plan,
     mut blocks: Vec<Owned>,
     exterior: bool,
+    shelves: Shelves,
 ) -> Answer {
     let sheets = common_sheets(&mut blocks);
     let mut components = components(sites, &mut blocks);
     plan.give_back();
-    let places = places(sites, &plan.partition);
-    let hidden = (blocks.len() == 1).then(|| hidden(sites, &places, &blocks));
-    let vertices = vertices(sites, &places, &blocks, exterior);
+    let places = places(sites, &plan.partition, shelves);
+    let shelves = shelves.ranges(sites.input());
+    let merged = Merged { input: sites.input(), places, shelves, plan };
+    let hidden = (blocks.len() == 1).then(|| merged.hidden(&blocks));
+    let vertices = merged.vertices(&blocks, exterior);
     let b0 = (vertices.iter())
         .filter(|&(&[v], class)| class != Class::Exterior && components.find(v) == v)
         .count() as u64;
     drop(components);
-    let merged = Merged { input: sites.input(), places: &places };
-    let facets = merged.rows(&blocks, Dimension::Facets, |block| &block.facets);
-    let facet_sheets =
-        merged.sheets(&blocks, Dimension::FacetSheets, |block| &block.facet_sheets, &sheets);
-    for block in &mut blocks {
-        block.facets = Rows::default();
-        block.facet_sheets = Vec::new();
-    }
-    plan.give_back();
-    let cells = merged.rows(&blocks, Dimension::Cells, |block| &block.cells);
-    blocks.iter_mut().for_each(|block| block.cells = Rows::default());
-    plan.give_back();
-    let edges = merged.rows(&blocks, Dimension::Edges, |block| &block.edges);
+    let facet_sheets = merged.sheets(
+        &mut blocks,
+        Dimension::FacetSheets,
+        |shelf| &mut shelf.facet_sheets,
+        &sheets,
+    );
     let edge_sheets =
-        merged.sheets(&blocks, Dimension::EdgeSheets, |block| &block.edge_sheets, &sheets);
-    Answer {
-        complex: Complex { cells, facets, edges, vertices },
-        b0,
-        facet_sheets,
-        edge_sheets,
-        hidden,
-    }
+        merged.sheets(&mut blocks, Dimension::EdgeSheets, |shelf| &mut shelf.edge_sheets, &sheets);
+    let facets = merged.rows(&mut blocks, Dimension::Facets, |shelf| &mut shelf.facets);
+    let cells = merged.rows(&mut blocks, Dimension::Cells, |shelf| &mut shelf.cells);
+    let edges = merged.rows(&mut blocks, Dimension::Edges, |shelf| &mut shelf.edges);
+    let complex = Complex { cells, facets, edges, vertices };
+    Answer { complex, b0, facet_sheets, edge_sheets, hidden }
 }
 
 /// Where a site's rows are.
 #[derive(Clone, Copy, Default)]
 struct Place {
     block: u32,
-    /// Which of the block's points it is.
+    /// Which of the points it is that the block has on the site's shelf.
     point: u32,
 }
 
-impl Place {
-    fn range(self, blocks: &[Owned], dimension: Dimension) -> std::ops::Range<usize> {
-        let starts = &blocks[self.block as usize].starts;
-        let start = |point: u32| starts[point as usize][dimension as usize] as usize;
-        start(self.point)..start(self.point + 1)
-    }
-}
-
-fn places(sites: &Sites<'_>, partition: &Partition) -> Vec<Place> {
+fn places(sites: &Sites<'_>, partition: &Partition, shelves: Shelves) -> Vec<Place> {
     let mut places = vec![Place::default(); sites.input().len()];
     for block in 0..partition.len() {
-        for (site, point) in partition.own(sites, block).zip(0..) {
-            places[site as usize] = Place { block: block as u32, point };
+        let mut counts = vec![0; shelves.count];
+        for site in partition.own(sites, block) {
+            let count = &mut counts[shelves.at(sites.input()[site as usize])];
+            places[site as usize] = Place { block: block as u32, point: *count };
+            *count += 1;
         }
     }
     places
@@ -82,89 +73,134 @@ fn places(sites: &Sites<'_>, partition: &Partition) -> Vec<Place> {
 /// All sites in order.
 struct Merged<'a> {
     input: &'a [u32],
-    places: &'a [Place],
+    places: Vec<Place>,
+    /// The sites of each shelf.
+    shelves: Vec<Range<usize>>,
+    plan: &'a Plan,
+}
+
+/// Where the rows of each point begin, by block.
+struct Starts<'a> {
+    blocks: Vec<&'a [[u32; 5]]>,
+    dimension: Dimension,
+}
+
+impl Starts<'_> {
+    fn range(&self, place: &Place) -> Range<usize> {
+        let start = |point: u32| {
+            self.blocks[place.block as usize][point as usize][self.dimension as usize] as usize
+        };
+        start(place.point)..start(place.point + 1)
+    }
 }
 
 impl Merged<'_> {
     /// Rows of `M` vertices get their smallest and become simplices of `N = M + 1`.
     fn rows<const M: usize, const N: usize>(
         &self,
-        blocks: &[Owned],
+        blocks: &mut [Owned],
         dimension: Dimension,
-        of: impl Fn(&Owned) -> &Rows<M> + Sync,
+        of: fn(&mut Shelf) -> &mut Rows<M>,
     ) -> Simplices<N> {
-        let counts = self.counts(blocks, dimension);
-        let total = counts.iter().sum();
+        let shelves = blocks.iter_mut().flat_map(|block| &mut block.shelves);
+        let total = shelves.map(|shelf| of(shelf).classes.len()).sum();
         let mut vertices = vec![[0; N]; total];
         let mut classes = vec![Class::Exterior; total];
-        let to = split(&mut vertices, &counts).into_iter().zip(split(&mut classes, &counts));
-        let from = self.places.chunks(CHUNK).zip(self.input.chunks(CHUNK));
-        let tasks: Vec<_> = from.zip(to).collect();
-        tasks.into_par_iter().for_each(|((places, input), (mut vertices, mut classes))| {
-            for (place, &smallest) in places.iter().zip(input) {
-                let rows = of(&blocks[place.block as usize]);
-                let range = place.range(blocks, dimension);
-                let count = ..range.len();
-                let own = vertices.split_off_mut(count).expect("as many rows as were counted");
-                for (to, from) in own.iter_mut().zip(&rows.vertices[range.clone()]) {
-                    to[0] = smallest;
-                    to[1..].copy_from_slice(from);
+        let (mut to, mut to_classes) = (&mut vertices[..], &mut classes[..]);
+        for (shelf, sites) in self.shelves.iter().enumerate() {
+            let (starts, rows) = take(blocks, shelf, dimension, of);
+            let places = &self.places[sites.clone()];
+            let count = |places: &[Place]| places.iter().map(|p| starts.range(p).len()).sum();
+            let counts: Vec<usize> = places.par_chunks(CHUNK).map(count).collect();
+            let to = split(&mut to, &counts).into_iter().zip(split(&mut to_classes, &counts));
+            let from = places.chunks(CHUNK).zip(self.input[sites.clone()].chunks(CHUNK));
+            let tasks: Vec<_> = from.zip(to).collect();
+            tasks.into_par_iter().for_each(|((places, input), (mut vertices, mut classes))| {
+                for (place, &smallest) in places.iter().zip(input) {
+                    let (rows, range) = (&rows[place.block as usize], starts.range(place));
+                    let own = split_off(&mut vertices, range.len());
+                    for (to, from) in own.iter_mut().zip(&rows.vertices[range.clone()]) {
+                        to[0] = smallest;
+                        to[1..].copy_from_slice(from);
+                    }
+                    let own = split_off(&mut classes, range.len());
+                    own.copy_from_slice(&rows.classes[range]);
                 }
-                let own = classes.split_off_mut(count).expect("as many classes as rows");
-                own.copy_from_slice(&rows.classes[range]);
-            }
-        });
+            });
+            drop(rows);
+            self.plan.give_back();
+        }
         Simplices { vertices, classes }
     }
 
     /// The common numbers of the sheets that boundary rows lie on.
     fn sheets(
         &self,
-        blocks: &[Owned],
+        blocks: &mut [Owned],
         dimension: Dimension,
-        of: impl Fn(&Owned) -> &Vec<u32> + Sync,
+        of: fn(&mut Shelf) -> &mut Vec<u32>,
         common: &[Vec<u32>],
     ) -> Vec<u32> {
         let mut merged = Vec::new();
-        for place in self.places {
-            let (block, common) = (&blocks[place.block as usize], &common[place.block as usize]);
-            let names = &of(block)[place.range(blocks, dimension)];
-            merged.extend(names.iter().map(|&name| common[name as usize]));
+        for (shelf, sites) in self.shelves.iter().enumerate() {
+            let (starts, names) = take(blocks, shelf, dimension, of);
+            for place in &self.places[sites.clone()] {
+                let block = place.block as usize;
+                let names = &names[block][starts.range(place)];
+                merged.extend(names.iter().map(|&name| common[block][name as usize]));
+            }
         }
         merged
     }
 
-    /// How much each chunk has.
-    fn counts(&self, blocks: &[Owned], dimension: Dimension) -> Vec<usize> {
-        let count =
-            |places: &[Place]| places.iter().map(|p| p.range(blocks, dimension).len()).sum();
-        self.places.par_chunks(CHUNK).map(count).collect()
+    /// Each site with its class, if it is a vertex.
+    fn classes(&self, blocks: &[Owned]) -> impl Iterator<Item = (u32, Option<Class>)> {
+        let shelves = self.shelves.iter().enumerate();
+        shelves.flat_map(move |(shelf, sites)| {
+            let input = &self.input[sites.clone()];
+            let class = move |place: &Place| {
+                blocks[place.block as usize].shelves[shelf].vertices[place.point as usize]
+            };
+            input.iter().copied().zip(self.places[sites.clone()].iter().map(class))
+        })
     }
-}
 
-/// Cuts a slice into pieces of these lengths.
-fn split<'a, T>(mut whole: &'a mut [T], lengths: &[usize]) -> Vec<&'a mut [T]> {
-    let piece = |&length: &usize| whole.split_off_mut(..length).expect("lengths of all pieces");
-    lengths.iter().map(piece).collect()
-}
+    fn hidden(&self, blocks: &[Owned]) -> Vec<u32> {
+        self.classes(blocks).filter(|(_, class)| class.is_none()).map(|(site, _)| site).collect()
+    }
 
-fn hidden(sites: &Sites<'_>, places: &[Place], blocks: &[Owned]) -> Vec<u32> {
-    let is_hidden =
-        |place: &Place| blocks[place.block as usize].vertices[place.point as usize].is_none();
-    let sites = sites.input().iter().zip(places);
-    sites.filter(|(_, place)| is_hidden(place)).map(|(&site, _)| site).collect()
-}
-
-fn vertices(sites: &Sites<'_>, places: &[Place], blocks: &[Owned], exterior: bool) -> Simplices<1> {
-    let mut simplices = Simplices::default();
-    for (&site, place) in sites.input().iter().zip(places) {
-        let class = blocks[place.block as usize].vertices[place.point as usize];
-        if let Some(class) = class.filter(|&class| exterior || class != Class::Exterior) {
-            simplices.vertices.push([site]);
-            simplices.classes.push(class);
+    fn vertices(&self, blocks: &[Owned], exterior: bool) -> Simplices<1> {
+        let mut simplices = Simplices::default();
+        for (site, class) in self.classes(blocks) {
+            if let Some(class) = class.filter(|&class| exterior || class != Class::Exterior) {
+                simplices.vertices.push([site]);
+                simplices.classes.push(class);
+            }
         }
+        simplices
     }
-    simplices
+}
+
+/// What all blocks have on a shelf, taken from them, and where each point's begins.
+fn take<'a, T: Default>(
+    blocks: &'a mut [Owned],
+    shelf: usize,
+    dimension: Dimension,
+    of: fn(&mut Shelf) -> &mut T,
+) -> (Starts<'a>, Vec<T>) {
+    let take = |block: &mut Owned| std::mem::take(of(&mut block.shelves[shelf]));
+    let taken = blocks.iter_mut().map(take).collect();
+    let starts = blocks.iter().map(|block| &block.shelves[shelf].starts[..]).collect();
+    (Starts { blocks: starts, dimension }, taken)
+}
+
+/// Cuts pieces of these lengths off a slice.
+fn split<'a, T>(whole: &mut &'a mut [T], lengths: &[usize]) -> Vec<&'a mut [T]> {
+    lengths.iter().map(|&length| split_off(whole, length)).collect()
+}
+
+fn split_off<'a, T>(whole: &mut &'a mut [T], length: usize) -> &'a mut [T] {
+    whole.split_off_mut(..length).expect("as many as were counted")
 }
 
 /// Makes one numbering of the sheets of all blocks: those that share a side of a facet, or a

@@ -25,7 +25,7 @@ use super::{Complex, ShapeError};
 use crate::progress;
 use crate::triangulation::{Lattice, Maker, Sites, SitesError, TriangulationError};
 
-use classify::{Owned, classify};
+use classify::{Owned, Shelves, classify};
 use merge::merge;
 pub(super) use partition::Partition;
 pub use plan::PlanError;
@@ -79,16 +79,25 @@ pub(super) fn run(
     let partition = &plan.partition;
     tracing::debug!(blocks = partition.len(), at_once = plan.at_once, "cut");
     // So many blocks at once, each giving its memory back before the next.
+    let shelves = Shelves::new(sites.input(), plan.shelves());
     let blocks: Vec<usize> = (0..partition.len()).collect();
-    let mut owned = Vec::with_capacity(blocks.len());
+    let mut owned: Vec<Owned> = Vec::with_capacity(blocks.len());
+    let (mut bytes, mut points) = (0, 0);
     for batch in blocks.chunks(plan.at_once) {
-        let done: Result<Vec<_>, ShapeError> =
-            batch.par_iter().map(|&block| decide(sites, partition, block, question)).collect();
-        owned.extend(done?);
+        let done: Result<Vec<_>, ShapeError> = batch
+            .par_iter()
+            .map(|&block| decide(sites, partition, block, question, shelves))
+            .collect();
+        for done in done? {
+            bytes += done.merged_bytes();
+            points += done.points();
+            owned.push(done);
+        }
+        plan.keeps(bytes, points, sites.input().len())?;
         progress::report(owned.len() as u64, partition.len() as u64);
         plan.give_back();
     }
-    Ok(merge(sites, plan, owned, question.exterior))
+    Ok(merge(sites, plan, owned, question.exterior, shelves))
 }
 
 /// Triangulates a block with its halo, or, where these span no volume, with all other sites.
@@ -97,15 +106,16 @@ fn decide(
     partition: &Partition,
     block: usize,
     question: &Question,
+    shelves: Shelves,
 ) -> Result<Owned, ShapeError> {
     if partition.len() > 1 {
         let points = partition.block(sites, question.alpha, block);
         match question.maker.make(&points.positions, &points.weights) {
             Err(TriangulationError::Sites(SitesError::Flat { .. })) => {}
-            made => return Ok(classify(&points, made?, question)),
+            made => return Ok(classify(&points, made?, question, shelves)),
         }
     }
     let points = partition.block(sites, f64::INFINITY, block);
     let made = question.maker.make(&points.positions, &points.weights)?;
-    Ok(classify(&points, made, question))
+    Ok(classify(&points, made, question, shelves))
 }

@@ -8,9 +8,15 @@ use crate::triangulation::{Maker, Sites};
 pub(crate) struct Plan {
     pub partition: Partition,
     pub at_once: usize,
-    /// Whether memory that comes free goes back to the system at once. That takes a tenth of the
-    /// time, as it must be asked for again.
-    frugal: bool,
+    /// Bytes allowed, and held when the plan was made. Memory that comes free then goes back to the
+    /// system at once, which takes a tenth of the time, as it must be asked for again.
+    bound: Option<Bound>,
+}
+
+#[derive(Clone, Copy)]
+struct Bound {
+    asked: u64,
+    resident: u64,
 }
 
 /// What a plan keeps to.
@@ -39,13 +45,16 @@ pub struct PlanError {
     pub blocks: usize,
 }
 
-/// Bytes for each point of blocks that are done: the rows and classes of 6 to 7 cells, 12 to 14 facets
-/// and 7 to 8 edges, without their smallest vertices, and the sides that blocks share. Measured peaks
-/// lie below this and the next two.
-const DONE: u64 = 340;
-/// Bytes for each point while blocks are merged: what is done, and the whole rows of one dimension
-/// after the other.
-const MERGED: u64 = 465;
+/// Bytes for each point of blocks that are done: the rows and classes of about 5 cells, 11 facets and 7
+/// edges, without their smallest vertices, and the sides that blocks share. A shape without any outside
+/// has up to 7, 14 and 8, for which [`Plan::keeps`] watches.
+const DONE: u64 = 215;
+/// Bytes for each point when blocks are merged: whole rows.
+const MERGED: u64 = 320;
+/// Bytes for each point that merging takes beside the rows: where the rows of each are.
+const PLACES: u64 = 16;
+/// Steps in which rows are merged where memory is bounded: so little of them is there twice.
+const SHELVES: usize = 32;
 /// Blocks are made no smaller for the sake of threads: halos would cost more than a thread gains.
 const WORTHWHILE: usize = 2000;
 /// No set has use for more blocks.
@@ -55,7 +64,7 @@ const MOST: usize = 1 << 12;
 fn at_work(maker: Maker) -> u64 {
     match maker {
         // 6 to 7 cells of 36 bytes while they are made; then of 32, with stars and rows.
-        Maker::Native => 700,
+        Maker::Native => 600,
         // 6 to 7 cells of 112 bytes in CGAL, and their copies.
         Maker::Cgal => 1250,
     }
@@ -64,7 +73,7 @@ fn at_work(maker: Maker) -> u64 {
 impl Plan {
     /// All sites as one block.
     pub fn whole(sites: &Sites<'_>) -> Self {
-        Self { partition: Partition::new(sites, 1), at_once: 1, frugal: false }
+        Self { partition: Partition::new(sites, 1), at_once: 1, bound: None }
     }
 
     /// The fewest blocks that keep all threads at work and the memory below a bound, if one is
@@ -80,10 +89,12 @@ impl Plan {
     ) -> Result<Self, PlanError> {
         let threads = rayon::current_num_threads();
         let points = sites.input().len();
+        let resident = memory::resident_bytes().unwrap_or(0);
+        let bound = limits.memory.map(|asked| Bound { asked, resident });
         if let Some(blocks) = limits.blocks {
             let partition = Partition::new(sites, blocks);
             let at_once = partition.len().min(threads);
-            return Ok(Self { partition, at_once, frugal: limits.memory.is_some() });
+            return Ok(Self { partition, at_once, bound });
         }
         let mut blocks = threads.min(points / WORTHWHILE).max(1);
         let mut partition = Partition::new(sites, blocks);
@@ -93,9 +104,8 @@ impl Plan {
             return Ok(Self::whole(sites));
         }
         let Some(asked) = limits.memory else {
-            return Ok(Self { partition, at_once: blocks, frugal: false });
+            return Ok(Self { partition, at_once: blocks, bound });
         };
-        let resident = memory::resident_bytes().unwrap_or(0);
         let needs = |at_once: usize, largest: usize| {
             let at_work = at_work(maker) * (at_once * largest) as u64;
             resident + (DONE * points as u64 + at_work).max(MERGED * points as u64)
@@ -105,7 +115,7 @@ impl Plan {
             for at_once in (1..=threads.min(blocks)).rev() {
                 let needed = needs(at_once, largest);
                 if needed <= asked {
-                    return Ok(Self { partition, at_once, frugal: true });
+                    return Ok(Self { partition, at_once, bound });
                 }
                 if needed < least.needed {
                     least = PlanError { asked, needed, blocks };
@@ -120,11 +130,45 @@ impl Plan {
         }
     }
 
+    /// In how many steps the rows of blocks are merged.
+    pub fn shelves(&self) -> usize {
+        if self.bound.is_some() { SHELVES } else { 1 }
+    }
+
+    /// Whether the bound will be kept if all points have as much to merge as some of them have.
+    ///
+    /// # Errors
+    /// [`PlanError`] when not.
+    pub fn keeps(&self, bytes: u64, points: usize, all: usize) -> Result<(), PlanError> {
+        let Some(Bound { asked, resident }) = self.bound else { return Ok(()) };
+        let rows = (bytes as f64 * all as f64 / points as f64) as u64;
+        let needed = resident + rows + PLACES * all as u64;
+        let error = PlanError { asked, needed, blocks: self.partition.len() };
+        if needed <= asked { Ok(()) } else { Err(error) }
+    }
+
     /// Gives freed memory back to the system, where memory matters more than time and the allocator
     /// would keep it for itself (glibc).
     pub fn give_back(&self) {
-        if self.frugal {
+        if self.bound.is_some() {
             crate::cgal::give_back();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_rows_than_planned_are_noticed() {
+        let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let sites = Sites::new(&positions, &[0.0; 4]).unwrap();
+        let bound = Bound { asked: 1000 + 4 * 100 + 4 * PLACES, resident: 1000 };
+        let plan = Plan { bound: Some(bound), ..Plan::whole(&sites) };
+        assert_eq!(plan.keeps(200, 2, 4), Ok(()));
+        let error = plan.keeps(202, 2, 4).unwrap_err();
+        assert_eq!((error.asked, error.needed), (bound.asked, bound.asked + 4));
+        assert_eq!(Plan::whole(&sites).keeps(u64::MAX, 1, 4), Ok(()));
     }
 }

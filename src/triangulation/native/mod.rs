@@ -102,7 +102,8 @@ impl Mesh {
             Ordering::Greater => true,
             Ordering::Less => false,
             Ordering::Equal => {
-                let behind = self.cells[self.cells[cell as usize].beside[corner] as usize / 4].corners;
+                let behind =
+                    self.cells[self.cells[cell as usize].beside[corner] as usize / 4].corners;
                 let quick = screen.conflicts(behind, v);
                 quick.unwrap_or_else(|| screen.conflicts_closely(behind, v))
             }

@@ -34,7 +34,9 @@ impl<'a> Native<'a> {
         native.marks.resize(5, 0);
         for a in 0..5 {
             for b in 0..5 {
-                if let Some([from, to]) = common_facet(native.mesh.cells[a].corners, native.mesh.cells[b].corners) {
+                if let Some([from, to]) =
+                    common_facet(native.mesh.cells[a].corners, native.mesh.cells[b].corners)
+                {
                     native.mesh.cells[a].beside[from] = (4 * b + to) as u32;
                 }
             }

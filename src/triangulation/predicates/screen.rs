@@ -64,8 +64,8 @@ impl<'a> Screen<'a> {
         // One more than the steps there are in z, and so for y: below 2⁵³ in all, as `terms` are, of which
         // there are six.
         let more = |extent: f64| extent / lattice.step + 1.0;
-        let order = (on_lattice && orientation == 0.0)
-            .then(|| [more(depth) * more(height), more(height)]);
+        let order =
+            (on_lattice && orientation == 0.0).then(|| [more(depth) * more(height), more(height)]);
         Ok(Self { predicates, points, order, orientation, power })
     }
 

@@ -88,10 +88,10 @@ impl<'a> Walker<'a> {
 
     /// The point's class, and the simplices it is the smallest vertex of.
     pub fn visit(&mut self, v: u32) {
-        self.owned.begin();
+        self.owned.rows.begin();
         let star = self.stars.of(v);
         if star.is_empty() {
-            self.owned.vertices.push(None);
+            self.owned.rows.vertices.push(None);
             return;
         }
         let covered = self.meet(v, star);
@@ -103,12 +103,12 @@ impl<'a> Walker<'a> {
         } else {
             self.lone_vertex(v, star)
         };
-        self.owned.vertices.push(Some(class));
+        self.owned.rows.vertices.push(Some(class));
     }
 
     /// Ends the rows of the last point; gives the components.
     pub fn finish(self) -> UnionFind {
-        self.owned.begin();
+        self.owned.rows.begin();
         self.components
     }
 
@@ -170,12 +170,13 @@ impl<'a> Walker<'a> {
     }
 
     fn give_cells(&mut self, count: usize) {
+        let rows = &mut self.owned.rows;
         let cells = &mut self.cells[..count];
         cells.sort_unstable();
         for cell in cells {
             let class = if cell.inside { Class::Interior } else { Class::Exterior };
             let [first, second] = pair(cell.first_two);
-            self.owned.cells.push([first, second, cell.third], class);
+            rows.cells.push([first, second, cell.third], class);
         }
     }
 
@@ -190,21 +191,22 @@ impl<'a> Walker<'a> {
             }
         }
         facets.sort_unstable_by_key(|facet| facet.row);
+        let rows = &mut self.owned.rows;
         for facet in facets {
             let state = self.states[facet.side as usize / 4];
             let class = state.facet(facet.side as usize % 4);
-            self.owned.facets.push(pair(facet.row), class);
+            rows.facets.push(pair(facet.row), class);
             if matches!(class, Class::Exterior | Class::Interior) {
                 continue;
             }
             let beyond = self.boundary.beyond(facet.side);
             if class == Class::Regular {
                 let outside = if state.is_inside() { beyond } else { facet.side };
-                self.owned.facet_sheets.push(self.local.corner(outside));
+                rows.facet_sheets.push(self.local.corner(outside));
             } else {
                 let sides = [self.local.corner(facet.side), self.local.corner(beyond)];
                 let [front, back] = if facet.clockwise { sides } else { [sides[1], sides[0]] };
-                self.owned.facet_sheets.extend([front, back]);
+                rows.facet_sheets.extend([front, back]);
             }
         }
     }
@@ -240,10 +242,11 @@ impl<'a> Walker<'a> {
             }
         }
         self.edges.sort_unstable_by_key(|edge| edge.to);
+        let rows = &mut self.owned.rows;
         for EdgeRow { to, class, corner } in self.edges.drain(..) {
-            self.owned.edges.push([to], class);
+            rows.edges.push([to], class);
             if class == Class::Singular {
-                self.owned.edge_sheets.push(corner);
+                rows.edge_sheets.push(corner);
             }
         }
     }

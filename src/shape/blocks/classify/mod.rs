@@ -18,12 +18,17 @@ use crate::triangulation::{Predicates, Triangulation};
 
 use around::Walker;
 use cells::{Boundary, State};
-pub(super) use rows::{Dimension, Owned, Rows};
+pub(super) use rows::{Dimension, Owned, Rows, Shelf, Shelves};
 use sheets::Sheets;
 use stars::Stars;
 
 /// Classifies the simplices whose smallest vertex is the block's own. O(cells).
-pub(super) fn classify(block: &Block, mesh: Triangulation, question: &Question) -> Owned {
+pub(super) fn classify(
+    block: &Block,
+    mesh: Triangulation,
+    question: &Question,
+    shelves: Shelves,
+) -> Owned {
     let (cells, beside, ghost) = mesh.into_parts();
     let local = Local {
         block,
@@ -45,6 +50,8 @@ pub(super) fn classify(block: &Block, mesh: Triangulation, question: &Question) 
     let mut components = walker.finish();
     owned.joined = joined(&mut components, &block.input);
     sheets.number(&mut owned);
+    drop((cells, states, stars));
+    owned.shelve(shelves, &block.input[..block.own as usize]);
     owned
 }
 

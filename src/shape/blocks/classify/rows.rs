@@ -1,13 +1,57 @@
 //! What a block gives out.
 
+use std::ops::Range;
+
 use super::State;
 use crate::shape::Class;
 
-/// The simplices that a block owns, around one of its points after the other. That point, the smallest
-/// vertex of each, is left out of the rows: a quarter to a half of the memory that they take while
-/// blocks wait for each other.
+/// What a block owns.
 #[derive(Default)]
 pub(in super::super) struct Owned {
+    /// All its simplices, while it is at work.
+    pub(super) rows: Shelf,
+    /// Later these, by the shelf of their smallest vertices.
+    pub shelves: Vec<Shelf>,
+    /// How many sheets there are.
+    pub sheets: u32,
+    /// Sides of facets, and singular edges, that touch points of this block and of others.
+    pub shared: Vec<Side>,
+    /// Points, each with another one of its component.
+    pub joined: Vec<[u32; 2]>,
+}
+
+/// Input indices in runs of about equal length, so that the rows of one run can be merged, and given
+/// back, before those of the next.
+#[derive(Clone, Copy)]
+pub(in super::super) struct Shelves {
+    pub count: usize,
+    length: u32,
+}
+
+impl Shelves {
+    /// So many for these input indices, which ascend.
+    pub fn new(input: &[u32], count: usize) -> Self {
+        let end = input.last().map_or(0, |&last| last as usize + 1);
+        Self { count, length: end.div_ceil(count).max(1) as u32 }
+    }
+
+    /// The shelf of the point with an input index.
+    pub fn at(self, input: u32) -> usize {
+        (input / self.length) as usize
+    }
+
+    /// Which of these input indices, which ascend, are on each shelf.
+    pub fn ranges(self, input: &[u32]) -> Vec<Range<usize>> {
+        let start = |shelf| input.partition_point(|&i| self.at(i) < shelf);
+        (0..self.count).map(|shelf| start(shelf)..start(shelf + 1)).collect()
+    }
+}
+
+/// The simplices that a block owns whose smallest vertices are on one shelf, around one of these after
+/// the other. That point is left out of the rows: a quarter to a half of the memory that they take
+/// while blocks wait for each other.
+#[derive(Default)]
+pub(in super::super) struct Shelf {
     pub cells: Rows<3>,
     pub facets: Rows<2>,
     pub edges: Rows<1>,
@@ -20,12 +64,6 @@ pub(in super::super) struct Owned {
     pub facet_sheets: Vec<u32>,
     /// The sheet of each singular edge.
     pub edge_sheets: Vec<u32>,
-    /// How many sheets there are.
-    pub sheets: u32,
-    /// Sides of facets, and singular edges, that touch points of this block and of others.
-    pub shared: Vec<Side>,
-    /// Points, each with another one of its component.
-    pub joined: Vec<[u32; 2]>,
 }
 
 /// Columns of [`Owned::starts`].
@@ -52,7 +90,7 @@ impl<const M: usize> Default for Rows<M> {
 
 impl<const M: usize> Rows<M> {
     /// Makes room for so many rows at the most, so that growing copies nothing.
-    pub fn reserve(&mut self, most: usize) {
+    fn reserve(&mut self, most: usize) {
         self.vertices.reserve_exact(most);
         self.classes.reserve_exact(most);
     }
@@ -60,6 +98,11 @@ impl<const M: usize> Rows<M> {
     pub fn push(&mut self, row: [u32; M], class: Class) {
         self.vertices.push(row);
         self.classes.push(class);
+    }
+
+    fn of(&self, ranges: impl Iterator<Item = Range<usize>> + Clone) -> Self {
+        let vertices = gathered(&self.vertices, ranges.clone());
+        Self { vertices, classes: gathered(&self.classes, ranges) }
     }
 }
 
@@ -80,16 +123,47 @@ impl Owned {
             cells += usize::from(state.is_inside());
             facets += state.given();
         }
-        self.cells.reserve(cells);
-        self.facets.reserve(facets);
+        self.rows.cells.reserve(cells);
+        self.rows.facets.reserve(facets);
         // In a triangulated ball there is an edge for each cell and for each point, less a few.
-        self.edges.reserve(cells + points);
-        self.starts.reserve_exact(points + 1);
-        self.vertices.reserve_exact(points);
+        self.rows.edges.reserve(cells + points);
+        self.rows.starts.reserve_exact(points + 1);
+        self.rows.vertices.reserve_exact(points);
     }
 
+    /// The number of points.
+    pub fn points(&self) -> usize {
+        self.shelves.iter().map(|shelf| shelf.vertices.len()).sum()
+    }
+
+    /// What the rows, classes and sheets will take when they are whole.
+    pub fn merged_bytes(&self) -> u64 {
+        let bytes = |shelf: &Shelf| {
+            let rows = 17 * shelf.cells.classes.len()
+                + 13 * shelf.facets.classes.len()
+                + 9 * shelf.edges.classes.len()
+                + 5 * shelf.vertices.len();
+            rows + 4 * (shelf.facet_sheets.len() + shelf.edge_sheets.len())
+        };
+        self.shelves.iter().map(bytes).sum::<usize>() as u64
+    }
+
+    /// Puts the rows of points with these input indices on shelves.
+    pub(super) fn shelve(&mut self, shelves: Shelves, input: &[u32]) {
+        let rows = std::mem::take(&mut self.rows);
+        self.shelves = if shelves.count == 1 {
+            vec![rows]
+        } else {
+            let mut points = vec![Vec::new(); shelves.count];
+            (0..).zip(input).for_each(|(v, &i)| points[shelves.at(i)].push(v));
+            points.iter().map(|points| rows.of(points)).collect()
+        };
+    }
+}
+
+impl Shelf {
     /// Notes that the rows of the next point begin here.
-    pub fn begin(&mut self) {
+    pub(super) fn begin(&mut self) {
         self.starts.push(
             [
                 self.cells.classes.len(),
@@ -101,4 +175,36 @@ impl Owned {
             .map(|len| len as u32),
         );
     }
+
+    /// The rows of some of the points.
+    fn of(&self, points: &[u32]) -> Self {
+        let ranges = |dimension: Dimension| {
+            let start = move |v: u32| self.starts[v as usize][dimension as usize] as usize;
+            points.iter().map(move |&v| start(v)..start(v + 1))
+        };
+        let mut shelf = Self {
+            cells: self.cells.of(ranges(Dimension::Cells)),
+            facets: self.facets.of(ranges(Dimension::Facets)),
+            edges: self.edges.of(ranges(Dimension::Edges)),
+            vertices: points.iter().map(|&v| self.vertices[v as usize]).collect(),
+            starts: Vec::with_capacity(points.len() + 1),
+            facet_sheets: gathered(&self.facet_sheets, ranges(Dimension::FacetSheets)),
+            edge_sheets: gathered(&self.edge_sheets, ranges(Dimension::EdgeSheets)),
+        };
+        let mut end = [0; 5];
+        shelf.starts.push(end);
+        for &v in points {
+            let [from, to] = [self.starts[v as usize], self.starts[v as usize + 1]];
+            (0..5).for_each(|k| end[k] += to[k] - from[k]);
+            shelf.starts.push(end);
+        }
+        shelf
+    }
+}
+
+/// Elements from these places, in memory of just their number.
+fn gathered<T: Copy>(from: &[T], ranges: impl Iterator<Item = Range<usize>> + Clone) -> Vec<T> {
+    let mut to = Vec::with_capacity(ranges.clone().map(|range| range.len()).sum());
+    ranges.for_each(|range| to.extend_from_slice(&from[range]));
+    to
 }

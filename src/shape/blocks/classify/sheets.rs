@@ -1,4 +1,4 @@
-use super::rows::{Owned, Side};
+use super::rows::{Owned, Shelf, Side};
 use super::{Local, State, even};
 use crate::shape::UnionFind;
 
@@ -41,7 +41,8 @@ impl Sheets {
         let mut names = vec![NONE; self.sets.len()];
         let mut count = 0;
         let shared = owned.shared.iter_mut().map(|side| &mut side.sheet);
-        for corner in owned.facet_sheets.iter_mut().chain(&mut owned.edge_sheets).chain(shared) {
+        let Shelf { facet_sheets, edge_sheets, .. } = &mut owned.rows;
+        for corner in facet_sheets.iter_mut().chain(edge_sheets).chain(shared) {
             let at = self.at(*corner);
             let name = &mut names[self.sets.find(at) as usize];
             if *name == NONE {
