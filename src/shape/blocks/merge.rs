@@ -144,11 +144,11 @@ impl Merged<'_> {
         let mut merged = Vec::new();
         for (shelf, sites) in self.shelves.iter().enumerate() {
             let (starts, names) = take(blocks, shelf, dimension, of);
-            for place in &self.places[sites.clone()] {
-                let block = place.block as usize;
-                let names = &names[block][starts.range(place)];
-                merged.extend(names.iter().map(|&name| common[block][name as usize]));
-            }
+            let common = |place: &Place| {
+                let (names, common) = (&names[place.block as usize], &common[place.block as usize]);
+                names[starts.range(place)].iter().map(|&name| common[name as usize])
+            };
+            merged.par_extend(self.places[sites.clone()].par_iter().flat_map_iter(common));
         }
         merged
     }

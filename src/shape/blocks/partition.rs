@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use super::Block;
 use crate::triangulation::Sites;
 
@@ -38,7 +40,7 @@ impl Partition {
             let Range { start, end } = nodes[at].members;
             let here = &mut members[start..end];
             if blocks == 1 {
-                here.sort_unstable();
+                here.par_sort_unstable();
                 leaves.push(at);
                 continue;
             }
@@ -73,7 +75,6 @@ impl Partition {
 
     /// How many points the largest block has, those around it included.
     pub fn largest(&self, sites: &Sites<'_>, alpha: f64) -> usize {
-        use rayon::prelude::*;
         let size = |block: usize| {
             let mut count = self.nodes[self.leaves[block]].members.len();
             self.halo(sites, alpha, block, |_| count += 1);
@@ -126,25 +127,28 @@ impl Partition {
     }
 }
 
+/// The lowest and highest corner of a box, and the largest weight in it.
+type Extent = ([f64; 3], [f64; 3], f64);
+
 impl Node {
     fn around(sites: &Sites<'_>, members: &[u32], start: usize) -> Self {
-        let mut node = Self {
-            members: start..start + members.len(),
-            low: [f64::INFINITY; 3],
-            high: [f64::NEG_INFINITY; 3],
-            heaviest: f64::NEG_INFINITY,
-            halves: None,
+        let nowhere = || ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], f64::NEG_INFINITY);
+        let union = |(a, b, u): Extent, (c, d, v): Extent| {
+            let (mut low, mut high) = (a, b);
+            for k in 0..3 {
+                low[k] = low[k].min(c[k]);
+                high[k] = high[k].max(d[k]);
+            }
+            (low, high, u.max(v))
         };
-        for &place in members {
+        let extent = |&place: &u32| {
             let site = sites.curve()[place as usize] as usize;
             let at = sites.positions()[site];
-            for (k, x) in at.into_iter().enumerate() {
-                node.low[k] = node.low[k].min(x);
-                node.high[k] = node.high[k].max(x);
-            }
-            node.heaviest = node.heaviest.max(sites.weights()[site]);
-        }
-        node
+            (at, at, sites.weights()[site])
+        };
+        let (low, high, heaviest) =
+            members.par_iter().with_min_len(1 << 12).map(extent).reduce(nowhere, union);
+        Self { members: start..start + members.len(), low, high, heaviest, halves: None }
     }
 
     fn longest_side(&self) -> usize {
