@@ -76,8 +76,8 @@ impl Plan {
         Self { partition: Partition::new(sites, 1), at_once: 1, bound: None }
     }
 
-    /// The fewest blocks that keep all threads at work and the memory below a bound, if one is
-    /// given. O(n log n).
+    /// As many blocks as there are threads; with a bound on memory, those that keep it and take the
+    /// least time. O(n log n).
     ///
     /// # Errors
     /// [`PlanError`] when the bound cannot be kept.
@@ -111,19 +111,29 @@ impl Plan {
             resident + (DONE * points as u64 + at_work).max(MERGED * points as u64)
         };
         let mut least = PlanError { asked, needed: u64::MAX, blocks };
+        let mut best: Option<(f64, Self)> = None;
         loop {
-            for at_once in (1..=threads.min(blocks)).rev() {
+            // The time of a plan is that of its blocks with their halos, shared among threads.
+            let work = (blocks * largest) as f64;
+            let time = |at_once: usize| work / at_once as f64;
+            let shortest = best.as_ref().map_or(f64::INFINITY, |(time, _)| *time);
+            let at_once = (1..=threads.min(blocks)).rev().find(|&at_once| {
                 let needed = needs(at_once, largest);
-                if needed <= asked {
-                    return Ok(Self { partition, at_once, bound });
-                }
                 if needed < least.needed {
                     least = PlanError { asked, needed, blocks };
                 }
+                needed <= asked
+            });
+            if let Some(at_once) = at_once.filter(|&at_once| time(at_once) < shortest) {
+                best = Some((time(at_once), Self { partition, at_once, bound }));
             }
             blocks *= 2;
-            if blocks > MOST.min(points) {
-                return Err(least);
+            // More blocks have more of a halo: with all threads at work they are slower.
+            if at_once == Some(threads)
+                || (best.is_some() && time(threads) >= shortest)
+                || blocks > MOST.min(points)
+            {
+                return best.map(|(_, plan)| plan).ok_or(least);
             }
             partition = Partition::new(sites, blocks);
             largest = partition.largest(sites, alpha);
