@@ -1,8 +1,8 @@
 use serde::Serialize;
 
 use super::MOST;
-use crate::memory::NoMemory;
 use crate::check::exact::Exact;
+use crate::memory::NoMemory;
 
 /// What was judged, and what could not be.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
