@@ -219,7 +219,7 @@ fn names_are_shown_without_control_characters() {
     }
     let named = |extension: &str| format!("{name}.{extension}");
     let [csv, json, npy, html, nrrd] = ["csv", "json", "npy", "html", "nrrd"].map(named);
-    let reports: [&[&str]; 9] = [
+    let reports: [&[&str]; 8] = [
         &["shape", &csv, "-o", &json],
         &["points", &csv, "-o", &npy],
         &["check", &csv],
@@ -227,7 +227,6 @@ fn names_are_shown_without_control_characters() {
         &["ladder", &csv, "-o", name],
         &["view", &csv, "-o", &html],
         &["interpolate", "sample:phantom@8", "-o", &nrrd],
-        &["info", &nrrd],
         &["interpolate", &nrrd, "--curve", "-o", &named("curve")],
     ];
     for args in reports {
