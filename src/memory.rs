@@ -42,6 +42,13 @@ pub(crate) fn room<T>(count: usize, what: impl FnOnce() -> String) -> Result<Vec
     Ok(items)
 }
 
+/// Whether so many bytes can be had at once, or an error that names what they are for: a plan for
+/// work that takes them piece by piece. They are asked for and given back, and other threads may
+/// take them; so this finds what cannot be, and does not promise what can.
+pub(crate) fn afford(bytes: usize, what: impl FnOnce() -> String) -> Result<(), NoMemory> {
+    room::<u8>(bytes, what).map(drop)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,5 +59,9 @@ mod tests {
         let text = asked.unwrap_err().to_string();
         assert!(text.starts_with("a volume needs 18446744073709551608 bytes"), "{text}");
         assert!(room::<u64>(1000, String::new).unwrap().capacity() >= 1000);
+        let planned = afford(usize::MAX / 2, || "transforming it".into());
+        let text = planned.unwrap_err().to_string();
+        assert!(text.starts_with("transforming it needs 9223372036854775807 bytes"), "{text}");
+        assert_eq!(afford(1000, String::new), Ok(()));
     }
 }

@@ -7,7 +7,10 @@
 /// The target of these events.
 pub const TARGET: &str = "walpha::progress";
 
-/// Says that `done` of `total` equal parts of the running stage are done.
+/// Says that `done` of `total` equal parts of the running stage are done. That one part alone is done
+/// says nothing.
 pub(crate) fn report(done: u64, total: u64) {
-    tracing::trace!(target: TARGET, done, total);
+    if total > 1 {
+        tracing::trace!(target: TARGET, done, total);
+    }
 }

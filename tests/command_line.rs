@@ -55,6 +55,11 @@ fn errors_say_what_why_and_what_next() {
         (2, "shape sample:phantom --alpha ten", "invalid value 'ten'", "as in 10"),
         (2, "shape sample:phantom --weights minmax", "invalid value 'minmax'", "min-max"),
         (2, "shape sample:phantom --count 1 --ratio 0.5", "cannot be used with", "--help"),
+        (2, "shape sample:phantom --memory 1G --alpha inf", "cannot be kept", "a finite --alpha"),
+        (2, "shape sample:phantom --memory 1G --exterior", "cannot be kept", "omit --exterior"),
+        (2, "check a.csv --memory 1G --engine reference", "cannot be kept", "--engine native"),
+        (2, "interpolate a --memory 1G --alpha-radius inf", "cannot be kept", "a finite --alpha"),
+        (2, "interpolate sample:phantom --memory 1G --fill", "cannot be used with", "--help"),
         (2, "shape", "required arguments", "walpha shape --help"),
         (2, "shape a.raw --dims 2,2 --dtype u8", "invalid value '2,2'", "64,64,64"),
         (2, "completions basch", "invalid value 'basch'", "'bash'"),
@@ -204,16 +209,32 @@ fn a_broken_pipe_is_no_error() {
 fn names_are_shown_without_control_characters() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
-    let name = "a\x1b[2Jb\rc\nd";
+    let name = "a\x1b[2Jb\rc\nZ";
     fs::write(f.join(format!("{name}.csv")), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n").unwrap();
-    let shown = "a\\u{1b}[2Jb\\rc\\nd";
+    let shown = "a\\u{1b}[2Jb\\rc\\nZ";
     for args in [["info", &format!("{name}.nrrd")], ["check", &format!("{name}.json")]] {
         let (code, _, said) = run(f, &args);
         assert!(code == 1 && said.contains(shown), "{said}");
         assert!(!said.contains(['\x1b', '\r']) && said.lines().count() == 3, "{said}");
     }
-    let said = ok(f, &["shape", &format!("{name}.csv"), "-o", &format!("{name}.off")]);
-    assert!(!said.contains(['\x1b', '\r']) && said.contains("a\\u{1b}[2Jb\\rc"), "{said}");
+    let named = |extension: &str| format!("{name}.{extension}");
+    let [csv, json, npy, html, nrrd] = ["csv", "json", "npy", "html", "nrrd"].map(named);
+    let reports: [&[&str]; 8] = [
+        &["shape", &csv, "-o", &json],
+        &["points", &csv, "-o", &npy],
+        &["check", &csv],
+        &["compare", &json, &json],
+        &["ladder", &csv, "-o", name],
+        &["view", &csv, "-o", &html],
+        &["interpolate", "sample:phantom@8", "-o", &nrrd],
+        &["interpolate", &nrrd, "--curve", "-o", &named("curve")],
+    ];
+    for args in reports {
+        let said = ok(f, args);
+        assert!(!said.contains(['\x1b', '\r']) && said.contains(shown), "{said}");
+        // The last letter of the name, behind its line feed.
+        assert!(!said.lines().any(|line| line.starts_with('Z')), "{said}");
+    }
 }
 
 #[test]

@@ -114,6 +114,7 @@ fn energy_is_kept_and_the_inverse_gives_the_samples_back() {
             let coefficients = forward(f.view(), decomposition);
             let (before, after) = (norm_squared(f.view()), norm_squared(coefficients.values()));
             assert!((before - after).abs() <= 1e-13 * before, "{dims:?} {decomposition}");
+            assert_eq!(coefficients.decomposition(), decomposition);
             assert_eq!(coefficients.inverse(), f, "{dims:?} {decomposition}");
         }
     }

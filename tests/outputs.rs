@@ -269,6 +269,25 @@ fn sizes_beyond_all_memory_are_named() {
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.code() == Some(1) && said.contains(words), "{args:?}: {said}");
     }
+    // There is room for the samples, and not for 12 bytes more of each.
+    let args = ["haar", "sample:phantom@256", "--threads", "1"];
+    let output = limited(folder.path(), Resource::RLIMIT_AS, 300 << 20, &args);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(1) && said.contains("needs 201326592 bytes"), "{said}");
+}
+
+/// What C++ throws for want of memory arrives as an error of that.
+#[test]
+fn cpp_says_that_it_has_no_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["shape", "sample:phantom@64", "--count", "40000", "--engine", "reference"];
+    let named = [60, 80, 100, 120, 140, 160, 180, 200].into_iter().any(|megabytes| {
+        let output = limited(folder.path(), Resource::RLIMIT_AS, megabytes << 20, &args);
+        let said = String::from_utf8(output.stderr).unwrap();
+        said.contains("no memory for the reference engine: C++ ran out of it")
+            && output.status.code() == Some(1)
+    });
+    assert!(named);
 }
 
 #[test]

@@ -180,6 +180,7 @@ fn weights_follow_their_equations() {
     assert_eq!(of(Weighting::MinMax), [0.0, 2.0, 2.0, 8.0]);
     assert_eq!(of(Weighting::Barycentric), [0.8, 1.6, 1.6, 4.0]);
     let n = weigh(&four, Weighting::BarycentricN, 8.0).unwrap();
+    assert_eq!((n.len(), n.is_empty()), (4, false));
     assert_eq!(n.weights, [3.2, 6.4, 6.4, 16.0]);
     assert_eq!(n.summary(), WeightSummary { min: 3.2, mean: 8.0, max: 16.0 });
 }

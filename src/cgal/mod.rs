@@ -28,3 +28,45 @@ fn thrown(stage: &'static str) -> impl Fn(cxx::Exception) -> TriangulationError 
         text => TriangulationError::Thrown { stage, text: text.into() },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::ffi::bridge;
+    use super::*;
+
+    /// Sites refuse an infinity, because CGAL throws where its exact numbers meet one.
+    const INFINITE: [f64; 15] =
+        [0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1., f64::INFINITY, 0., 0.];
+
+    fn told(error: cxx::Exception) -> (&'static str, String) {
+        match thrown("tried")(error) {
+            TriangulationError::Thrown { stage, text } => (stage, text),
+            other => panic!("{other}"),
+        }
+    }
+
+    #[test]
+    fn what_cgal_throws_is_an_error() {
+        let space = [0.0; 5];
+        let thrown = [
+            bridge::regular(&INFINITE, &space).err(),
+            bridge::reference(&INFINITE, &space, 1.0).err(),
+            bridge::regular_plane(&[0., 0., 1., 0., 0., 1., f64::INFINITY, 0.], &[0.0; 4]).err(),
+        ];
+        for (entry, error) in thrown.into_iter().enumerate() {
+            let (stage, text) = told(error.unwrap_or_else(|| panic!("entry {entry} took ∞")));
+            assert_eq!(stage, "tried");
+            assert!(text.starts_with("CGAL ERROR: assertion violation!"), "{entry}: {text}");
+        }
+    }
+
+    #[test]
+    fn what_the_bridge_throws_is_an_error() {
+        let made = bridge::regular(&INFINITE[..12], &[0.0; 4]).unwrap();
+        let mut corners = vec![0; 4 * made.cells()];
+        let mut beside = corners.clone();
+        assert!(made.copy(&mut corners, &mut beside).is_ok());
+        let (_, text) = told(made.copy(&mut corners[1..], &mut beside).unwrap_err());
+        assert_eq!(text, "four vertices and four neighbours are copied for each cell");
+    }
+}

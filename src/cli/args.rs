@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use anyhow::{anyhow, bail};
+use clap::error::ErrorKind;
 use clap::{Args, ValueEnum};
 use walpha::export::Target;
 use walpha::interpolate::Adaptive;
-use walpha::shape::{Engine, ShapeOptions};
+use walpha::shape::{Engine, ShapeError, ShapeOptions};
 use walpha::volume::{Dtype, Endian, RawLayout, ReadOptions};
 use walpha::{
     Alpha, Balls, Decomposition, Dims, Gray, GrayRange, HaarOptions, Selection, SelectionRule,
@@ -328,7 +329,8 @@ pub struct ShapeArgs {
     /// triangulation, which alone knows hidden points.
     #[arg(long, value_name = "N")]
     blocks: Option<NonZeroUsize>,
-    /// Memory to plan blocks for, as in 2G or 500M.
+    /// Memory to plan blocks for, as in 2G or 500M; not for what takes the whole triangulation (α = inf,
+    /// --exterior, --engine reference).
     #[arg(long, value_name = "SIZE", value_parser = bytes, conflicts_with = "blocks")]
     memory: Option<u64>,
     /// Keep the simplices outside the shape too: the whole triangulation.
@@ -356,6 +358,16 @@ enum BallsArg {
 }
 
 impl ShapeArgs {
+    /// Whether they go together: what does not is an error of usage, and is told before the work.
+    pub fn check(&self, alpha: Alpha) -> Result<(), clap::Error> {
+        // What is wrong in the first line, why and what next in the second, as clap has them.
+        let usage = |error: ShapeError| {
+            let text = error.to_string().replacen(": ", "\n", 1);
+            clap::Error::raw(ErrorKind::ArgumentConflict, text)
+        };
+        self.options(alpha).check().map_err(usage)
+    }
+
     /// The stage's options.
     pub fn options(&self, alpha: Alpha) -> ShapeOptions {
         let balls = match self.balls {

@@ -12,7 +12,7 @@ use walpha::check::{Certificate, Claim, Comparison, Extent, Finding, Placed, com
 use walpha::shown::shown;
 
 use super::args::{PipelineArgs, ShapeArgs};
-use super::output::tell;
+use super::output::{name, tell};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 use super::{DIFFERENT, Global, complex_file, pipeline};
@@ -128,6 +128,7 @@ impl Check {
                 shown(path)
             );
         }
+        self.shape.check(self.pipeline.weights.alpha())?;
         let weighed = pipeline::weighted_points(&self.pipeline, progress)?;
         let mut options = self.shape.options(self.pipeline.weights.alpha());
         // The whole triangulation can be judged wholly. Several blocks are judged as they are.
@@ -156,7 +157,7 @@ fn by_definition(judged: &PlacedComplex) -> anyhow::Result<Comparison> {
 impl std::fmt::Display for Facts {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let [cells, facets, edges, vertices] = self.simplices;
-        writeln!(f, "judged    {}: {} points", self.input, self.points)?;
+        writeln!(f, "judged    {}: {} points", name(&self.input), self.points)?;
         writeln!(
             f,
             "          {cells} cells, {facets} facets, {edges} edges, {vertices} vertices"

@@ -9,7 +9,7 @@ use serde::Serialize;
 use walpha::check::schema::PlacedComplex;
 use walpha::check::{Comparison, Placed, compare};
 
-use super::output::tell;
+use super::output::{name, tell};
 use super::report::SCHEMA_VERSION;
 use super::{DIFFERENT, Global, complex_file};
 
@@ -59,7 +59,7 @@ impl Compare {
 
 impl Display for Facts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "A         {}\nB         {}", self.a, self.b)?;
+        writeln!(f, "A         {}\nB         {}", name(&self.a), name(&self.b))?;
         writeln!(f, "{}", self.comparison)?;
         let verdict = if self.equal { "equal in all that was compared" } else { "different" };
         writeln!(f, "verdict   {verdict}")

@@ -14,7 +14,7 @@ use walpha::{SelectionRule, Volume, Weighting, haar};
 
 use super::Global;
 use super::args::{PipelineArgs, SelectArgs};
-use super::output::tell;
+use super::output::{name, tell};
 use super::pipeline::{Input, read};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
@@ -115,7 +115,7 @@ fn paths(base: &Path) -> anyhow::Result<(Option<NewFolder>, [PathBuf; 3])> {
 
 impl Display for Facts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "input     {}, α = {} (squared length)", self.input, self.alpha)?;
+        writeln!(f, "input     {}, α = {} (squared length)", name(&self.input), self.alpha)?;
         writeln!(
             f,
             "{:<20}{:<12}{:>8}{:>8}{:>11}{:>13}{:>13}",
@@ -137,7 +137,7 @@ impl Display for Facts {
             )?;
         }
         for file in &self.files {
-            writeln!(f, "wrote     {file}")?;
+            writeln!(f, "wrote     {}", name(file))?;
         }
         writeln!(f, "time      total {:.2} s", self.seconds)
     }

@@ -7,7 +7,7 @@ use walpha::points::read_points;
 use walpha::volume;
 
 use super::args::InputArgs;
-use super::output::tell;
+use super::output::{name, tell};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 use super::{Global, pipeline};
@@ -125,9 +125,10 @@ impl std::fmt::Display for Content {
                 writeln!(f, "values    {min} to {max}{gray}")?;
                 match &data_files[..] {
                     [] => Ok(()),
-                    [file] => writeln!(f, "samples   in {file}"),
+                    [file] => writeln!(f, "samples   in {}", name(file)),
                     [first, .., last] => {
-                        writeln!(f, "samples   in {} files, {first} to {last}", data_files.len())
+                        let ends = [first, last].map(|file| name(file)).join(" to ");
+                        writeln!(f, "samples   in {} files, {ends}", data_files.len())
                     }
                 }
             }

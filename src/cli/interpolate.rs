@@ -50,7 +50,7 @@ pub struct Interpolate {
     mask: Option<PathBuf>,
     /// Interpolate everywhere: on the whole triangulation of the points (α = inf) and the 8 corners
     /// of the volume, which come with their values and the least weight of the points.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "memory")]
     fill: bool,
     /// Measure error against the number of points.
     #[arg(long, requires = "output", conflicts_with_all = [
@@ -109,6 +109,7 @@ impl Interpolate {
             let base = self.output.as_deref().expect("clap requires it");
             return curve::run(global, &self.pipeline, base);
         }
+        self.shape.check(self.pipeline.weights.alpha())?;
         let output = match &self.output {
             None => None,
             Some(path) => Some((VolumeFormat::of(&self.format.name(path)?)?, Target::open(path)?)),

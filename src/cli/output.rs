@@ -19,6 +19,11 @@ pub fn tell<T: Serialize + Display>(global: Global, facts: &T) -> anyhow::Result
     Ok(())
 }
 
+/// A name within a text, where it must not begin a line.
+pub fn name(name: &str) -> String {
+    escaped(name, |_| false)
+}
+
 fn say(global: Global, text: &str) -> io::Result<()> {
     if global.piped { io::stderr().lock().write_all(text.as_bytes()) } else { print(text) }
 }

@@ -8,6 +8,7 @@ use walpha::points::WeightSummary;
 use walpha::shape::{Betti, Component, Engine, Void, number_or_name};
 use walpha::{Alpha, AlphaShape, Class, GrayRange, Simplices, Truncation, memory};
 
+use super::output::name;
 use super::pipeline::{Ended, VolumeFacts, Weighed};
 
 /// Counted up when a field changes its meaning or goes; new fields may come at any time.
@@ -238,7 +239,7 @@ fn largest_components(shape: &AlphaShape) -> Vec<Component> {
 
 impl Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "input     {}", self.input.name)?;
+        write!(f, "input     {}", name(&self.input.name))?;
         if let (Some([x, y, z]), Some([low, high])) = (self.input.dims, self.input.gray_range) {
             write!(f, "  {x}×{y}×{z} samples, values {low}..{high} are gray 0..255")?;
         }
@@ -293,7 +294,7 @@ impl Display for Report {
             }
         }
         for file in &self.files {
-            writeln!(f, "wrote     {file}")?;
+            writeln!(f, "wrote     {}", name(file))?;
         }
         write!(f, "time     ")?;
         for stage in STAGES {

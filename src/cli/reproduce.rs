@@ -90,7 +90,9 @@ fn text(report: &Report, out: &Path, files: usize) -> String {
     let input = &report.input;
     text += &format!(
         "input     {}, {} points of {} samples\n",
-        input.name, input.points, input.samples
+        shown(input.name.as_ref()),
+        input.points,
+        input.samples
     );
     for item in &report.items {
         let name = item.title.split('.').next().unwrap_or_default();

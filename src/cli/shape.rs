@@ -39,7 +39,8 @@ pub struct Shape {
 
 impl Shape {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
-        // Before the long work: a bad extension or place costs nothing yet.
+        // Before the long work: a bad option, extension or place costs nothing yet.
+        self.shape.check(self.pipeline.weights.alpha())?;
         let mut targets = Vec::new();
         for path in &self.output {
             let name = self.format.name(path)?;

@@ -15,7 +15,7 @@ use walpha::shown::shown;
 
 use super::Global;
 use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
-use super::output::tell;
+use super::output::{name, tell};
 use super::pipeline::{self, Weighed};
 use super::progress::Progress;
 use super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport};
@@ -167,13 +167,13 @@ impl View {
 
 impl Display for Facts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "input     {}", self.input)?;
+        writeln!(f, "input     {}", name(&self.input))?;
         writeln!(f, "points    {}", self.points)?;
         writeln!(f, "levels    {}", self.levels)?;
         if let Some(told) = &self.simplified {
             writeln!(f, "page      {told}")?;
         }
-        writeln!(f, "wrote     {}, {:.1} MB", self.file, self.bytes as f64 / 1e6)?;
+        writeln!(f, "wrote     {}, {:.1} MB", name(&self.file), self.bytes as f64 / 1e6)?;
         let total = self.seconds.get("total").copied().unwrap_or_default();
         writeln!(f, "time      total {total:.2} s")
     }

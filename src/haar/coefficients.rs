@@ -1,5 +1,4 @@
 use std::fmt;
-use std::str::FromStr;
 
 use ndarray::{Array3, ArrayView3, Zip};
 use serde::{Deserialize, Serialize};
@@ -23,18 +22,6 @@ impl fmt::Display for Decomposition {
             Self::NonStandard => "nonstandard",
             Self::Standard => "standard",
         })
-    }
-}
-
-impl FromStr for Decomposition {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "nonstandard" => Ok(Self::NonStandard),
-            "standard" => Ok(Self::Standard),
-            _ => Err(format!("{text:?} is no decomposition: give nonstandard or standard")),
-        }
     }
 }
 

@@ -32,6 +32,7 @@ pub use truncate::{HaarError, Tolerance, Truncation};
 pub use unnormalised::Unnormalised;
 
 use crate::volume::Volume;
+use crate::{memory, progress};
 
 /// How a volume is transformed and truncated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,12 +49,18 @@ pub struct HaarOptions {
 /// threads; the coefficients, in double precision, live beside f, and then beside f̂.
 ///
 /// # Errors
-/// A tolerance that is none (see [`Coefficients::truncate`]), or samples so large that f̂ passes
-/// the range of `f32`.
+/// A tolerance that is none (see [`Coefficients::truncate`]), samples so large that f̂ passes
+/// the range of `f32`, or no memory.
 pub fn smooth(volume: &Volume, options: &HaarOptions) -> Result<(Volume, Truncation), HaarError> {
     options.tolerance.check()?;
+    let dims = volume.dims();
+    let bytes = (size_of::<f64>() + size_of::<f32>()) * dims.samples();
+    memory::afford(bytes, || format!("transforming {dims} samples"))?;
+    // Each way takes as long, and truncation a little.
     let mut coefficients = forward(volume.samples(), options.decomposition);
+    progress::report(4, 9);
     let truncation = coefficients.truncate(options.tolerance)?;
+    progress::report(5, 9);
     if truncation.epsilon == 0.0 {
         drop(coefficients);
         return Ok((volume.clone(), truncation));

@@ -2,6 +2,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{Budget, Coefficients, Cut};
+use crate::memory::NoMemory;
 use crate::volume::VolumeError;
 
 /// Coefficients summed at a time. Fixed, so that sums are the same on any number of threads.
@@ -60,6 +61,9 @@ pub enum HaarError {
     /// The truncated samples make no volume: they passed the range of `f32`.
     #[error("after truncation: {0}")]
     Volume(#[from] VolumeError),
+    /// Memory for the coefficients cannot be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
 }
 
 impl Tolerance {

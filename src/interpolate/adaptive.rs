@@ -7,6 +7,7 @@ use super::fill::corners;
 use super::raster::NOTHING;
 use super::{Deviation, Grid, Interpolant, InterpolateError, Resampled};
 use crate::points::{Units, WeightedPoints};
+use crate::progress;
 use crate::shape::{Alpha, ShapeOptions, alpha_shape};
 use crate::volume::{Dims, Volume};
 
@@ -71,6 +72,7 @@ pub fn adaptive_voxels(
             return Ok(voxels);
         };
         tracing::debug!(points = voxels.len(), rmse, "adaptive");
+        progress::report(voxels.len() as u64, goal.count);
         let room = goal.count as usize - voxels.len();
         let batch = ((voxels.len() as f64 * BATCH).ceil() as usize).max(FIRST_BATCH).min(room);
         if rmse <= goal.rmse || batch == 0 {

@@ -3,7 +3,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 use super::incidence::Incidence;
+use crate::memory;
 use crate::points::WeightedPoints;
+use crate::progress;
 use crate::shape::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape};
 use crate::triangulation::{Interval, Predicates};
 
@@ -39,14 +41,33 @@ impl Filtration {
         let options = ShapeOptions { engine, exterior: true, ..ShapeOptions::new(Alpha::INFINITE) };
         let whole = alpha_shape(points, &options)?;
         let complex = whole.complex();
+        memory::afford(Self::bytes(complex), || {
+            format!("the filtration of {} cells", complex.cells.len())
+        })?;
+        let done = |parts| progress::report(parts, 8);
+        done(4);
         let incidence = Incidence::of(complex, whole.points().len());
+        done(5);
         let spheres = Predicates::new(&whole.points().positions, &whole.points().weights);
         let cells =
             complex.cells.vertices.par_iter().map(|&cell| spheres.squared_radius(cell)).collect();
+        done(6);
         let facets = gabriel_facets(complex, &incidence, &spheres);
+        done(7);
         let edges = gabriel_edges(complex, &incidence, &spheres);
         let vertices = gabriel_vertices(complex, &incidence, &spheres);
+        done(8);
         Ok(Self { whole, incidence, cells, facets, edges, vertices })
+    }
+
+    /// What a filtration of these simplices takes besides them, without its levels.
+    fn bytes(whole: &Complex) -> usize {
+        let radius = size_of::<Option<Interval>>();
+        let cell = size_of::<Interval>() + size_of::<[u32; 4]>();
+        let facet = radius + 2 * size_of::<[u32; 3]>() + size_of::<[u32; 2]>();
+        cell * whole.cells.len()
+            + facet * whole.facets.len()
+            + radius * (whole.edges.len() + whole.vertices.len())
     }
 
     /// The points and their frozen weights.

@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use super::Weighting;
+use crate::memory::NoMemory;
 use crate::shown::shown;
 use crate::triangulation::TriangulationError;
 use crate::volume::VolumeError;
@@ -83,6 +84,9 @@ pub enum PointsError {
         /// What is wrong, and what to do next.
         what: String,
     },
+    /// Memory for the samples cannot be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
     /// The file cannot be read.
     #[error(transparent)]
     File(#[from] VolumeError),

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::PointsError;
 use crate::haar::{Budget, Cut};
+use crate::memory;
 use crate::volume::Volume;
 
 /// Voxels looked at as one piece of work.
@@ -95,7 +96,8 @@ impl Points {
 /// parallel, the same on any number of threads.
 ///
 /// # Errors
-/// A rule whose number makes no sense, more voxels asked for than there are, or no voxel left.
+/// A rule whose number makes no sense, more voxels asked for than there are, no voxel left, or no
+/// memory.
 ///
 /// # Panics
 /// When the three are not of one shape.
@@ -119,6 +121,8 @@ pub fn select(
         Some(least) => {
             let mask =
                 |(&l, &gray): (&f64, &f32)| if f64::from(gray) >= least { l } else { f64::NAN };
+            let bytes = size_of_val(flat);
+            memory::afford(bytes, || format!("--gray-min on {} samples", volume.dims()))?;
             let masked: Vec<f64> = flat.par_iter().zip(smoothed.as_slice()).map(mask).collect();
             let available = masked.par_iter().filter(|l| !l.is_nan()).count() as u64;
             chosen(&masked, available, &selection.rule)?

@@ -6,6 +6,7 @@ use super::blocks::{self, Limits, Plan, PlanError, Question};
 use super::canonical::canonical;
 use super::topology::sheet_betti;
 use super::{Alpha, Balls, Betti, Class, Complex, Measures, Sheets, Simplices, direct_betti};
+use crate::memory::NoMemory;
 use crate::points::WeightedPoints;
 use crate::triangulation::{Lattice, Maker, Sites, SitesError, TriangulationError};
 
@@ -55,6 +56,34 @@ impl ShapeOptions {
             memory: None,
         }
     }
+
+    /// Whether they go together, which [`alpha_shape`] looks at first.
+    ///
+    /// # Errors
+    /// [`ShapeError::Unbounded`] and [`ShapeError::Exterior`]: blocks, or a bound on memory, for what
+    /// takes the whole triangulation.
+    pub fn check(&self) -> Result<(), ShapeError> {
+        if let Some(blocks) = self.blocks.map(NonZeroUsize::get)
+            && self.exterior
+            && blocks > 1
+        {
+            return Err(ShapeError::Exterior { blocks });
+        }
+        let unbounded = |when, instead| Err(ShapeError::Unbounded { when, instead });
+        match self.memory {
+            None => Ok(()),
+            Some(_) if self.engine == Engine::Reference => {
+                unbounded("by the reference engine", "use --engine native or --engine cgal")
+            }
+            Some(_) if self.exterior => {
+                unbounded("with the simplices outside the shape", "omit --exterior")
+            }
+            Some(_) if power_alpha(self) == f64::INFINITY => {
+                unbounded("at α = inf, the convex hull", "give a finite --alpha")
+            }
+            Some(_) => Ok(()),
+        }
+    }
 }
 
 /// The weighted alpha shape of a set of points: a classified subcomplex of their regular
@@ -94,6 +123,20 @@ pub enum ShapeError {
     /// The memory allowed does not suffice for any number of blocks.
     #[error(transparent)]
     Plan(#[from] PlanError),
+    /// Memory for what is known of the simplices cannot be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
+    /// Memory is bounded by cutting the points into blocks, which this shape is not made in.
+    #[error(
+        "--memory cannot be kept {when}: that takes the whole triangulation at once; leave --memory \
+         away, or {instead}"
+    )]
+    Unbounded {
+        /// What asks for the whole triangulation.
+        when: &'static str,
+        /// What can be had in blocks.
+        instead: &'static str,
+    },
     /// Exterior simplices are known to the whole triangulation only.
     #[error(
         "simplices outside the shape are not local: they need the whole triangulation, and \
@@ -118,11 +161,13 @@ impl From<SitesError> for ShapeError {
 ///
 /// # Errors
 /// NaN or absurd numbers, fewer than four different places, points in one plane or on one line:
-/// see [`SitesError`]; a negative radius: [`ShapeError::Radius`].
+/// see [`SitesError`]; a negative radius: [`ShapeError::Radius`]; options that do not go together:
+/// [`ShapeOptions::check`].
 pub fn alpha_shape(
     points: WeightedPoints,
     options: &ShapeOptions,
 ) -> Result<AlphaShape, ShapeError> {
+    options.check()?;
     let squared = match options.balls {
         Balls::Power => None,
         Balls::Radius => Some(squared_radii(&points.weights, options.alpha)?),
@@ -181,9 +226,6 @@ fn by_blocks(
     options: &ShapeOptions,
 ) -> Result<Found, ShapeError> {
     let asked = options.blocks.map(NonZeroUsize::get);
-    if let Some(blocks) = asked.filter(|&blocks| options.exterior && blocks > 1) {
-        return Err(ShapeError::Exterior { blocks });
-    }
     // Any α below −max ω asks for the empty shape, and doubles hold one.
     let largest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let alpha = alpha.max(-2.0 * largest.abs() - 1.0);

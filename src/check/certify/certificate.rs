@@ -2,6 +2,7 @@ use serde::Serialize;
 
 use super::MOST;
 use crate::check::exact::Exact;
+use crate::memory::NoMemory;
 
 /// What was judged, and what could not be.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -77,4 +78,7 @@ pub enum NotCertifiable {
     /// More simplices or points than 32-bit numbers.
     #[error("{0} cells or points are too many to check: at most {max} fit", max = MOST)]
     TooMany(usize),
+    /// Memory for what hangs together how cannot be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
 }

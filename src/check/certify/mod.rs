@@ -18,6 +18,7 @@ use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 use super::exact::Exact;
+use crate::memory;
 use crate::shape::{Class, Complex};
 use classes::Judge;
 use emptiness::Emptiness;
@@ -270,7 +271,9 @@ impl<'a> Claim<'a> {
         let finite = |i: &usize| positions[*i].iter().chain([&weights[*i]]).all(|x| x.is_finite());
         match (0..positions.len()).find(|i| !finite(i)) {
             Some(index) => Err(NotCertifiable::NotFinite(index)),
-            None => Ok(()),
+            None => Ok(memory::afford(Structure::bytes(complex), || {
+                format!("the check of {} cells", complex.cells.len())
+            })?),
         }
     }
 }

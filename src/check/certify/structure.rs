@@ -30,6 +30,16 @@ pub struct Half {
 }
 
 impl<'a> Structure<'a> {
+    /// What that of a complex takes, besides the complex.
+    pub fn bytes(complex: &Complex) -> usize {
+        let cell = size_of::<([u32; 4], u32)>() + size_of::<[u32; 4]>();
+        let facet = size_of::<([u32; 3], u32)>() + size_of::<[u32; 2]>();
+        cell * complex.cells.len()
+            + facet * complex.facets.len()
+            + size_of::<([u32; 2], u32)>() * complex.edges.len()
+            + size_of::<([u32; 1], u32)>() * complex.vertices.len()
+    }
+
     /// Links cells by their facets. Vertices of all rows must be valid.
     pub fn new(complex: &'a Complex, points: Points) -> (Self, Vec<Finding>) {
         let n = points.len();

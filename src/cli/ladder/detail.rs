@@ -16,7 +16,7 @@ use walpha::{
 use super::super::Global;
 use super::super::args::WeightArgs;
 use super::super::folder::Folder;
-use super::super::output::tell;
+use super::super::output::{name, tell};
 use super::super::pipeline::{Domain, Input, read};
 use super::super::progress::Progress;
 use super::super::report::{AlphaReport, SCHEMA_VERSION};
@@ -183,7 +183,7 @@ impl Stages<'_> {
 
 impl Display for Facts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "input     {}", self.input)?;
+        writeln!(f, "input     {}", name(&self.input))?;
         writeln!(f, "weights   {}", self.weights)?;
         writeln!(f, "parameter {}", self.alpha)?;
         if let Some(points) = self.points_in_region {

@@ -9,6 +9,7 @@ use walpha::Alpha;
 use walpha::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
 use walpha::shape::{Betti, ByClass, Measures, Void, number_or_name};
 
+use super::super::output::name;
 use super::super::pipeline::{Domain, Weighed};
 use super::super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport};
 
@@ -117,7 +118,7 @@ impl Facts {
 impl Display for Facts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [cells, facets, edges, vertices] = self.simplices;
-        writeln!(f, "input     {}", self.input)?;
+        writeln!(f, "input     {}", name(&self.input))?;
         writeln!(
             f,
             "points    {}, {} duplicates, {} hidden",
@@ -182,7 +183,7 @@ impl Display for Facts {
             )?;
         }
         for file in &self.files {
-            writeln!(f, "wrote     {file}")?;
+            writeln!(f, "wrote     {}", name(file))?;
         }
         write!(f, "time     ")?;
         for stage in ["read", "haar", "points", "filtration", "curve", "ladder", "write", "total"] {

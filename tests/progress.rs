@@ -1,0 +1,90 @@
+//! Stages that may take long say how far they are.
+
+use std::fmt::Debug;
+use std::sync::{Arc, Mutex};
+
+use tracing::field::{Field, Visit};
+use tracing::span::{Attributes, Id, Record};
+use tracing::{Event, Metadata, Subscriber};
+use walpha::interpolate::{Adaptive, adaptive_voxels};
+use walpha::ladder::Filtration;
+use walpha::progress::TARGET;
+use walpha::{Gray, HaarOptions, Units, Volume, WeightedPoints, haar, volume};
+
+/// Keeps what is reported.
+#[derive(Clone, Default)]
+struct Listener(Arc<Mutex<Vec<Parts>>>);
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Parts {
+    done: u64,
+    total: u64,
+}
+
+impl Visit for Parts {
+    fn record_u64(&mut self, field: &Field, value: u64) {
+        match field.name() {
+            "done" => self.done = value,
+            "total" => self.total = value,
+            other => panic!("{other}"),
+        }
+    }
+
+    fn record_debug(&mut self, _: &Field, _: &dyn Debug) {}
+}
+
+impl Subscriber for Listener {
+    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
+        metadata.target() == TARGET
+    }
+
+    fn event(&self, event: &Event<'_>) {
+        let mut parts = Parts::default();
+        event.record(&mut parts);
+        self.0.lock().unwrap().push(parts);
+    }
+
+    fn new_span(&self, _: &Attributes<'_>) -> Id {
+        Id::from_u64(1)
+    }
+
+    fn record(&self, _: &Id, _: &Record<'_>) {}
+    fn record_follows_from(&self, _: &Id, _: &Id) {}
+    fn enter(&self, _: &Id) {}
+    fn exit(&self, _: &Id) {}
+}
+
+/// Asserts that work moves forward on one scale, at least so often.
+fn assert_moves(least: usize, work: impl FnOnce()) {
+    let listener = Listener::default();
+    tracing::subscriber::with_default(listener.clone(), work);
+    let told = listener.0.lock().unwrap();
+    assert!(told.len() >= least, "{told:?}");
+    assert!(told.iter().all(|parts| parts.total == told[0].total), "{told:?}");
+    assert!(told.windows(2).all(|pair| pair[0].done < pair[1].done), "{told:?}");
+    assert!(told.last().is_some_and(|last| last.done <= last.total), "{told:?}");
+}
+
+fn phantom() -> Volume {
+    let volume = volume::sample("sample:phantom@16").unwrap();
+    volume.into_gray(Gray::Automatic).unwrap().0
+}
+
+#[test]
+fn the_wavelet_stage_moves() {
+    assert_moves(2, || drop(haar::smooth(&phantom(), &HaarOptions::default()).unwrap()));
+}
+
+#[test]
+fn a_filtration_moves() {
+    let at = |i: usize| [i % 5, i / 5 % 5, i / 25].map(|c| c as f64);
+    let positions: Vec<_> = (0..125).map(at).collect();
+    let points = WeightedPoints { weights: vec![0.0; 125], positions, values: None };
+    assert_moves(5, || drop(Filtration::new(points).unwrap()));
+}
+
+#[test]
+fn adaptive_selection_moves() {
+    let goal = Adaptive { count: 300, rmse: 0.0 };
+    assert_moves(4, || drop(adaptive_voxels(&phantom(), &goal, Units::Voxel).unwrap()));
+}
