@@ -12,6 +12,7 @@
 //! # Ok::<(), walpha::VolumeError>(())
 //! ```
 
+mod coordinates;
 mod dtype;
 mod error;
 mod gray;
@@ -21,6 +22,7 @@ mod sample;
 #[expect(clippy::module_inception, reason = "the type gives the floor its name")]
 mod volume;
 
+pub use coordinates::{Conversion, Coordinates, LengthUnit, Space};
 pub use dtype::{Dtype, Endian, UnknownName};
 pub use error::VolumeError;
 pub use gray::{Gray, GrayRange};

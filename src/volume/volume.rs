@@ -67,6 +67,11 @@ impl Volume {
         &self.frame
     }
 
+    /// The same samples with their grid elsewhere, or told in other coordinates.
+    pub fn with_frame(self, frame: Frame) -> Self {
+        Self { frame, ..self }
+    }
+
     /// The samples, `[z, y, x]`.
     pub fn samples(&self) -> ArrayView3<'_, f32> {
         self.samples.view()

@@ -6,7 +6,7 @@ use ndarray::Array3;
 
 use super::payload::{Length, Payload};
 use super::{format_error, payload_error, text};
-use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, Frame, Volume, VolumeError};
 
 /// A volume as the header of a file describes it, x fastest.
 #[derive(Clone, Debug)]
@@ -78,8 +78,10 @@ pub(super) fn frame(
     path: &Path,
     origin: [f64; 3],
     axes: [[f64; 3]; 3],
+    coordinates: Coordinates,
 ) -> Result<Frame, VolumeError> {
-    Frame::from_axes(origin, axes).ok_or_else(|| {
+    let frame = Frame::from_axes(origin, axes).map(|frame| frame.meaning(coordinates));
+    frame.ok_or_else(|| {
         let what = format!(
             "places its grid at {origin:?} with steps {axes:?} along its axes: spacing must not be \
              0, and all numbers finite; correct its header"

@@ -5,7 +5,7 @@ use ndarray::Array3;
 
 use super::payload::{Length, Payload};
 use super::{io_error, payload_error};
-use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, Frame, Volume, VolumeError};
 
 /// The first bytes of each INRIMAGE-4 file.
 pub(super) const MAGIC: &[u8] = b"#INRIMAGE-4#{";
@@ -158,6 +158,9 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
         frame.origin[axis] = number(origin, 0.0)?;
         if frame.spacing[axis] <= 0.0 {
             return Err(said(format!("{spacing} in its header must be a positive length")));
+        }
+        if value(spacing).or(value(origin)).is_some() {
+            frame.coordinates = Coordinates::default();
         }
     }
     Ok(Header { dims, dtype, endian, frame })

@@ -7,10 +7,15 @@ use super::detached::{self, beside};
 use super::lines::Lines;
 use super::nrrd::numbered;
 use super::{format_error, io_error};
-use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Volume, VolumeError};
 
 /// Keys one of which stands in the first line of a MetaImage header.
 const FIRST_KEYS: [&str; 4] = ["ObjectType", "NDims", "Comment", "ObjectSubType"];
+
+/// Keys of the grid's place, each by its names.
+const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
+const ORIGIN: [&str; 3] = ["Offset", "Origin", "Position"];
+const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
 
 /// Whether a file begins as a MetaImage header does.
 pub(super) fn is_header(start: &[u8]) -> bool {
@@ -180,27 +185,36 @@ impl Header {
             Encoding::Raw
         };
 
-        let keys = ["ElementSpacing", "ElementSize"];
-        let spacing = self.numbers(path, &keys, count, [1.0; 3])?;
-        let keys = ["Offset", "Origin", "Position"];
-        let origin = self.numbers(path, &keys, count, [0.0; 3])?;
-        let keys = ["TransformMatrix", "Rotation", "Orientation"];
+        let spacing = self.numbers(path, &SPACING, count, [1.0; 3])?;
+        let origin = self.numbers(path, &ORIGIN, count, [0.0; 3])?;
         let mut axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         if count == 3 {
             let identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-            let matrix = self.numbers::<9>(path, &keys, 9, identity)?;
+            let matrix = self.numbers::<9>(path, &MATRIX, 9, identity)?;
             axes.as_flattened_mut().copy_from_slice(&matrix);
         } else {
-            let matrix = self.numbers::<4>(path, &keys, 4, [1.0, 0.0, 0.0, 1.0])?;
+            let matrix = self.numbers::<4>(path, &MATRIX, 4, [1.0, 0.0, 0.0, 1.0])?;
             axes[0][..2].copy_from_slice(&matrix[..2]);
             axes[1][..2].copy_from_slice(&matrix[2..]);
         }
         for (axis, length) in axes.iter_mut().zip(spacing) {
             *axis = axis.map(|component| component * length);
         }
-        let frame = frame(path, origin, axes)?;
+        let frame = frame(path, origin, axes, self.coordinates())?;
         let endian = if big { Endian::Big } else { Endian::Little };
         Ok(Described { dims, dtype, endian, frame, encoding })
+    }
+
+    /// MetaImage is LPS, and in millimetres unless `DistanceUnits` say otherwise.
+    fn coordinates(&self) -> Coordinates {
+        let keys = [SPACING.as_slice(), &ORIGIN, &MATRIX].concat();
+        if self.field(&keys).is_none() {
+            return Coordinates::VOXEL;
+        }
+        match self.field(&["DistanceUnits"]).map(LengthUnit::named) {
+            Some(unit) if unit.is_known() => Coordinates { unit, ..Coordinates::PATIENT },
+            _ => Coordinates::PATIENT,
+        }
     }
 
     /// Bytes before the samples of each data file; `None` where they stand at its end.

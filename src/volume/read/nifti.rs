@@ -6,7 +6,9 @@ use super::described::{Described, Encoding, diagonal, frame};
 use super::detached::naming;
 use super::payload::{Length, Payload};
 use super::{format_error, io_error, payload_error};
-use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use crate::volume::{
+    Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Space, Volume, VolumeError,
+};
 
 /// Length of the header of version 1, which its first number repeats.
 const HEADER_1: usize = 348;
@@ -21,7 +23,7 @@ pub(super) fn is_header(start: &[u8]) -> bool {
 /// Reads NIfTI-1 and NIfTI-2 (nifti.nimh.nih.gov): `.nii`, `.nii.gz`, or a pair `.hdr` and `.img`.
 ///
 /// `scl_slope` and `scl_inter` are applied. The frame is that of `sform`, else of `qform`, else of
-/// `pixdim` alone, in the space the file means (x to the right, y to the front, z up). Axes beyond
+/// `pixdim` alone, which says nothing of the space; the other two are RAS. Axes beyond
 /// the third must have one sample; colours and complex numbers are refused.
 pub(super) fn read(path: &Path, reader: impl Read, length: Length) -> Result<Volume, VolumeError> {
     let mut reader = reader;
@@ -260,13 +262,17 @@ impl Header {
             let row = |r: usize| [0, 1, 2, 3].map(|c| self.real(280, 400, 4 * r + c));
             let rows = [row(0), row(1), row(2)];
             let column = |c: usize| [0, 1, 2].map(|r| rows[r][c]);
-            return frame(path, column(3), [column(0), column(1), column(2)]);
+            let axes = [column(0), column(1), column(2)];
+            return frame(path, column(3), axes, self.coordinates(Space::Ras));
         }
         // 0 stands for "unknown" in some files.
         let length = |i: usize| if pixdim(i) == 0.0 { 1.0 } else { pixdim(i).abs() };
         let spacing = [1, 2, 3].map(length);
         if self.code(252, 344) <= 0 {
-            return frame(path, [0.0; 3], diagonal(spacing));
+            let coordinates = self.coordinates(Space::Unknown);
+            let said = spacing != [1.0; 3] || coordinates.unit.is_known();
+            let coordinates = if said { coordinates } else { Coordinates::VOXEL };
+            return frame(path, [0.0; 3], diagonal(spacing), coordinates);
         }
         let mut imaginary = [0, 1, 2].map(|i| self.real(256, 352, i));
         let square: f64 = imaginary.iter().map(|v| v * v).sum();
@@ -287,6 +293,22 @@ impl Header {
         }
         let axis = |c: usize| [0, 1, 2].map(|r| rotation[r][c] * spacing[c]);
         let origin = [0, 1, 2].map(|i| self.real(268, 376, i));
-        frame(path, origin, [axis(0), axis(1), axis(2)])
+        frame(path, origin, [axis(0), axis(1), axis(2)], self.coordinates(Space::Ras))
+    }
+
+    /// The unit of `xyzt_units`; a patient is measured in millimetres where it names none.
+    fn coordinates(&self, space: Space) -> Coordinates {
+        let code = match self.version {
+            1 => self.at::<1>(123, 0)[0],
+            _ => self.at::<4>(0, 500)[0],
+        };
+        let unit = match code & 7 {
+            1 => LengthUnit::Metre,
+            2 => LengthUnit::Millimetre,
+            3 => LengthUnit::Micrometre,
+            _ if space.is_known() => LengthUnit::Millimetre,
+            _ => LengthUnit::Unstated,
+        };
+        Coordinates { space, unit }
     }
 }

@@ -4,7 +4,7 @@ use super::described::{Described, Encoding, frame};
 use super::format_error;
 use super::vtk::to_centres;
 use super::vtk_xml::VtkXml;
-use crate::volume::{Dims, Endian, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Endian, LengthUnit, Space, Volume, VolumeError};
 
 /// Reads VTI, VTK's image data in XML, in one piece: the active scalars of its points, or else its
 /// first array of points, or of cells, whose samples stand at the cells' centres.
@@ -65,8 +65,19 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
         )));
     }
     let dims = Dims::new(dims[0], dims[1], dims[2])?;
-    let (frame, dtype) = (frame(path, corner, axes)?, file.dtype(array)?);
+    let (frame, dtype) = (frame(path, corner, axes, coordinates(&file, image)?)?, file.dtype(array)?);
     let samples = file.values(array, dims.samples() as u64)?;
     Described { dims, dtype, endian: Endian::Little, frame, encoding: Encoding::Raw }
         .volume(samples)
+}
+
+/// What the field data `SPACE` and `UNIT` say, as our own files have them.
+fn coordinates(file: &VtkXml, image: usize) -> Result<Coordinates, VolumeError> {
+    let space = match file.field_text(image, "SPACE")?.as_deref() {
+        Some("LPS") => Space::Lps,
+        Some("RAS") => Space::Ras,
+        _ => Space::Unknown,
+    };
+    let unit = file.field_text(image, "UNIT")?.map(|name| LengthUnit::named(&name));
+    Ok(Coordinates { space, unit: unit.unwrap_or_default() })
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::described::{Described, Encoding, frame};
 use super::lines::Lines;
 use super::{format_error, io_error, text};
-use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, Volume, VolumeError};
 
 /// The first bytes of each legacy VTK file.
 pub(super) const MAGIC: &[u8] = b"# vtk DataFile";
@@ -192,7 +192,7 @@ impl Grid {
             to_centres(&mut dims, &mut origin, axes);
         }
         let encoding = if text { Encoding::Text } else { Encoding::Raw };
-        let frame = frame(path, origin, axes)?;
+        let frame = frame(path, origin, axes, Coordinates::default())?;
         let dims = Dims::new(dims[0], dims[1], dims[2])?;
         Ok(Described { dims, dtype, endian: Endian::Big, frame, encoding })
     }

@@ -15,7 +15,7 @@ use super::folder::is_zarr;
 use super::format_error;
 use crate::progress;
 use crate::shown::shown;
-use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Volume, VolumeError};
 
 /// Reads a Zarr array of version 2 or 3 in a folder, or a level of an OME-Zarr pyramid (0, the finest,
 /// unless `level` says otherwise).
@@ -33,7 +33,7 @@ pub(super) fn read(path: &Path, level: Option<u32>) -> Result<Volume, VolumeErro
             return Err(said(format!("is one array and has no level {level}; leave --level away")));
         }
         let array = Array::open(store, "/").map_err(|error| damaged(&error))?;
-        return volume(path, &array, &[]);
+        return volume(path, &array, &[], Coordinates::VOXEL);
     }
     let group = Group::open(Arc::clone(&store), "/").map_err(|error| damaged(&error))?;
     let attributes = Value::Object(group.attributes().clone());
@@ -68,7 +68,22 @@ pub(super) fn read(path: &Path, level: Option<u32>) -> Result<Volume, VolumeErro
     let transforms = [&dataset["coordinateTransformations"], &pyramid["coordinateTransformations"]];
     let transforms: Vec<&Value> =
         transforms.into_iter().filter_map(Value::as_array).flatten().collect();
-    volume(path, &array, &transforms)
+    let unit = unit(&pyramid["axes"]).map_err(said)?;
+    volume(path, &array, &transforms, Coordinates { unit, ..Coordinates::default() })
+}
+
+/// The unit of the axes of space, which must have one in common.
+fn unit(axes: &Value) -> Result<LengthUnit, String> {
+    let of_space = |axis: &&Value| axis["type"] == "space";
+    let axes = axes.as_array().into_iter().flatten().filter(of_space);
+    let mut units = axes.map(|axis| axis["unit"].as_str().unwrap_or_default());
+    let first = units.next().unwrap_or_default();
+    match units.find(|&unit| unit != first) {
+        None => Ok(LengthUnit::named(first)),
+        Some(other) => {
+            Err(format!("has axes in {first:?} and {other:?}: give them one unit in its metadata"))
+        }
+    }
 }
 
 fn is_array(folder: &Path) -> bool {
@@ -95,6 +110,7 @@ fn volume(
     path: &Path,
     array: &Array<FilesystemStore>,
     transforms: &[&Value],
+    coordinates: Coordinates,
 ) -> Result<Volume, VolumeError> {
     let said = |what: String| format_error(path, what);
     let shape = array.shape().to_vec();
@@ -130,7 +146,7 @@ fn volume(
             }
         }
     }
-    let frame = frame(path, origin, diagonal(scale))?;
+    let frame = frame(path, origin, diagonal(scale), coordinates)?;
     let (dtype, samples) = samples(path, array, dims)?;
     let (endian, encoding) = (Endian::Little, Encoding::Raw);
     Described { dims, dtype, endian, frame, encoding }.volume(samples)

@@ -7,7 +7,7 @@ use std::path::Path;
 
 pub use phantom::phantom;
 
-use super::{ReadOptions, Volume, VolumeError, read};
+use super::{Frame, ReadOptions, Volume, VolumeError, read};
 use crate::near::nearest;
 
 /// The samples there are, as a user writes them.
@@ -32,7 +32,8 @@ pub fn open(input: &str, options: &ReadOptions) -> Result<Volume, VolumeError> {
 /// No sample has this name; the skull is not installed or its archive damaged; N is no size.
 pub fn sample(name: &str) -> Result<Volume, VolumeError> {
     match name.strip_prefix("sample:") {
-        Some("skull") => skull::skull(),
+        // Its header has numbers, but the paper's lengths are voxels.
+        Some("skull") => Ok(skull::skull()?.with_frame(Frame::VOXEL)),
         Some("phantom") => phantom(PHANTOM_SIZE),
         Some(other) if other.starts_with("phantom@") => match other["phantom@".len()..].parse() {
             Ok(size) => phantom(size),

@@ -53,6 +53,27 @@ impl VtkXml {
         }
     }
 
+    /// A text of the field data of a dataset: the first string of an array of strings, which VTK writes
+    /// as the numbers of its characters, up to a 0.
+    pub fn field_text(&self, dataset: usize, name: &str) -> Result<Option<String>, VolumeError> {
+        /// Nothing that is looked for is longer.
+        const LONGEST: u64 = 1000;
+        let Some(fields) = self.children(dataset, "FieldData").next() else { return Ok(None) };
+        let named = |&array: &usize| self.attribute(array, "Name") == Some(name);
+        let Some(array) = self.children(fields, "Array").find(named) else { return Ok(None) };
+        if self.attribute(array, "format") != Some("ascii") {
+            return Ok(None);
+        }
+        let XmlElement { text: start, text_end, .. } = self.elements[array];
+        let end = text_end.unwrap_or(start).min(start + LONGEST);
+        let mut text = String::new();
+        let read = self.part(start, end)?.read_to_string(&mut text);
+        read.map_err(|error| self.said(format!("has damaged field data {name}: {error}")))?;
+        let bytes: Vec<u8> = text.split_whitespace().map_while(|byte| byte.parse().ok()).collect();
+        let first = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
+        Ok(Some(String::from_utf8_lossy(first).into_owned()))
+    }
+
     /// Reads an array behind its length, or behind the lengths of its compressed blocks; there are
     /// at most `most` bytes.
     fn decoded<T: Element>(
