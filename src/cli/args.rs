@@ -11,8 +11,8 @@ use walpha::interpolate::Adaptive;
 use walpha::shape::{Engine, ShapeOptions};
 use walpha::volume::{Dtype, Endian, RawLayout, ReadOptions};
 use walpha::{
-    Alpha, Balls, Decomposition, Dims, Gray, GrayRange, HaarOptions, Selection, SelectionRule,
-    Tolerance, Units, Weighting,
+    Alpha, Balls, Coordinates, Decomposition, Dims, Gray, GrayRange, HaarOptions, LengthUnit,
+    Selection, SelectionRule, Space, Tolerance, Units, Volume, Weighting,
 };
 
 /// What to read.
@@ -29,6 +29,9 @@ pub struct InputArgs {
     /// Values that become gray 0 and 255 [default: as they are for unsigned 8 bits, else min..max].
     #[arg(long, value_name = "LO..HI", value_parser = gray_range, allow_hyphen_values = true)]
     gray: Option<GrayRange>,
+    /// Write gray levels 0..255, and not the values of INPUT that they stand for.
+    #[arg(long)]
+    gray_out: bool,
 }
 
 impl InputArgs {
@@ -40,6 +43,11 @@ impl InputArgs {
     /// How values become gray levels.
     pub fn gray(&self) -> Gray {
         self.gray.map_or(Gray::Automatic, Gray::Range)
+    }
+
+    /// The values that gray levels stand for in what is written, where `range` became 0..255.
+    pub fn written(&self, range: GrayRange) -> GrayRange {
+        if self.gray_out { GrayRange::IDENTITY } else { range }
     }
 }
 
@@ -176,9 +184,58 @@ pub struct SelectArgs {
     /// Leave out samples below this gray level after truncation.
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     gray_min: Option<f64>,
-    /// Coordinates in voxels, or in the file's units; then α, weights and sizes are too.
-    #[arg(long, value_enum, default_value_t, value_name = "UNITS")]
-    units: UnitsArg,
+    /// Leave out samples below this value of INPUT, as in --value-min 300 for Hounsfield units.
+    #[arg(long, value_name = "V", allow_negative_numbers = true, conflicts_with = "gray_min")]
+    value_min: Option<f64>,
+    #[command(flatten)]
+    place: PlaceArgs,
+}
+
+/// In what coordinates points, shapes and all lengths are.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Coordinates")]
+pub struct PlaceArgs {
+    /// Coordinates in voxels, or in the unit of the file; then α, weights and sizes are too
+    /// [default: world where the file states spacing or a place, else voxel].
+    #[arg(long, value_enum, value_name = "UNITS")]
+    units: Option<UnitsArg>,
+    /// Which way world coordinates run, where the file says how they lie in a patient: x to the left
+    /// and y to the back (lps), or to the right and the front (ras) [default: lps].
+    #[arg(long, value_enum, value_name = "SPACE")]
+    space: Option<SpaceArg>,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum SpaceArg {
+    Lps,
+    Ras,
+}
+
+impl PlaceArgs {
+    /// What the coordinates of this volume's points are measured in, and the volume in the space that
+    /// they are in.
+    pub fn place(&self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
+        let Coordinates { space, unit } = volume.frame().coordinates;
+        let units = match self.units {
+            Some(UnitsArg::Voxel) => Units::Voxel,
+            Some(UnitsArg::World) => Units::World,
+            None if unit == LengthUnit::Voxel => Units::Voxel,
+            None => Units::World,
+        };
+        let asked = match self.space {
+            Some(_) if units == Units::Voxel => {
+                bail!("--space is for world coordinates, and these are voxels: leave it away")
+            }
+            Some(_) if !space.is_known() => bail!(
+                "the input does not say how its axes lie in a patient, and --space cannot know: leave \
+                 it away"
+            ),
+            Some(SpaceArg::Ras) => Space::Ras,
+            _ => Space::Lps,
+        };
+        let frame = volume.frame().to(Coordinates { space: asked, unit });
+        Ok((volume.with_frame(frame), units))
+    }
 }
 
 #[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
@@ -188,22 +245,26 @@ enum SelectArg {
     Adaptive,
 }
 
-#[derive(Clone, Copy, Default, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum UnitsArg {
-    #[default]
     Voxel,
     World,
 }
 
 impl SelectArgs {
-    /// The stage's options.
-    pub fn selection(&self) -> Selection {
-        let rule = match (self.count, self.threshold) {
+    /// The stage's options, for a volume whose values `range` are gray 0..255.
+    pub fn selection(&self, range: &GrayRange) -> Selection {
+        let gray_min = self.gray_min.or(self.value_min.map(|value| range.gray(value)));
+        Selection { rule: self.rule(), gray_min }
+    }
+
+    /// By what rule samples are chosen.
+    pub fn rule(&self) -> SelectionRule {
+        match (self.count, self.threshold) {
             (Some(count), _) => SelectionRule::Count(count),
             (_, Some(threshold)) => SelectionRule::Threshold(threshold),
             _ => self.ratio.map_or_else(SelectionRule::default, SelectionRule::Ratio),
-        };
-        Selection { rule, gray_min: self.gray_min }
+        }
     }
 
     /// The goal of adaptive selection, if that is asked for, among so many samples.
@@ -214,14 +275,14 @@ impl SelectArgs {
             }
             return Ok(None);
         }
-        if self.threshold.is_some() || self.gray_min.is_some() {
+        if self.threshold.is_some() || self.gray_min.or(self.value_min).is_some() {
             bail!(
-                "--threshold and --gray-min choose by gray levels, which --select adaptive does \
-                 not: use --count, --ratio or --target-rmse"
+                "--threshold, --gray-min and --value-min choose by gray levels, which --select \
+                 adaptive does not: use --count, --ratio or --target-rmse"
             );
         }
         let rmse = self.target_rmse.unwrap_or(0.0);
-        let count = match self.selection().rule {
+        let count = match self.rule() {
             SelectionRule::Count(count) => count,
             SelectionRule::Ratio(_) if self.ratio.is_none() && self.target_rmse.is_some() => {
                 samples as u64
@@ -234,23 +295,24 @@ impl SelectArgs {
         Ok(Some(Adaptive { count, rmse }))
     }
 
-    /// What coordinates are measured in.
-    pub fn units(&self) -> Units {
-        match self.units {
-            UnitsArg::Voxel => Units::Voxel,
-            UnitsArg::World => Units::World,
-        }
+    /// In what coordinates the points are.
+    pub fn place(&self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
+        self.place.place(volume)
     }
 }
+
+/// The α of the paper, in squares of a voxel's side.
+const SILENT_ALPHA: f64 = 10.0;
 
 /// α and the weights in proportion to it.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Weights and α")]
 pub struct WeightArgs {
-    /// The parameter α, a squared length; `inf` gives the convex hull.
-    #[arg(long, value_name = "A", value_parser = alpha, group = "parameter", default_value = "10",
+    /// The parameter α, a squared length; `inf` gives the convex hull [default: 10 h² where a voxel
+    /// has the volume h³, so 10 in voxels].
+    #[arg(long, value_name = "A", value_parser = alpha, group = "parameter",
           allow_negative_numbers = true)]
-    alpha: Alpha,
+    alpha: Option<Alpha>,
     /// The parameter as a radius: α = R².
     #[arg(long, value_name = "R", value_parser = alpha_radius, group = "parameter")]
     alpha_radius: Option<Alpha>,
@@ -261,9 +323,10 @@ pub struct WeightArgs {
 }
 
 impl WeightArgs {
-    /// The parameter α.
-    pub fn alpha(&self) -> Alpha {
-        self.alpha_radius.unwrap_or(self.alpha)
+    /// The parameter α, for a grid whose voxels have the volume of a cube of side `h`.
+    pub fn alpha(&self, h: f64) -> Alpha {
+        let silent = || Alpha::from_squared(SILENT_ALPHA * h * h).unwrap_or(Alpha::INFINITE);
+        self.alpha_radius.or(self.alpha).unwrap_or_else(silent)
     }
 
     /// The weights asked for; without a word, those of the input, or else none.
@@ -278,10 +341,9 @@ impl WeightArgs {
 #[command(next_help_heading = "Weights, frozen")]
 pub struct FrozenArgs {
     /// The α, a squared length, for which weights are computed; they stay the same at every level,
-    /// so that levels are nested.
-    #[arg(long, value_name = "A", value_parser = alpha, default_value = "10",
-          allow_negative_numbers = true)]
-    alpha_ref: Alpha,
+    /// so that levels are nested [default: 10 h² where a voxel has the volume h³, so 10 in voxels].
+    #[arg(long, value_name = "A", value_parser = alpha, allow_negative_numbers = true)]
+    alpha_ref: Option<Alpha>,
     /// Weights ω (squared lengths): common=C, min-max (eq. 4.1), barycentric (eq. 4.2),
     /// barycentric-n (N times that) or column (from the input).
     #[arg(long, value_name = "KIND", allow_hyphen_values = true)]
@@ -291,6 +353,42 @@ pub struct FrozenArgs {
 impl From<FrozenArgs> for WeightArgs {
     fn from(FrozenArgs { alpha_ref, weights }: FrozenArgs) -> Self {
         Self { alpha: alpha_ref, alpha_radius: None, weights }
+    }
+}
+
+/// A gray level, or a value of the file: `50` or `300v`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Level {
+    /// As the wavelet stage has it.
+    Gray(f64),
+    /// As the file has it.
+    Value(f64),
+}
+
+impl Level {
+    /// The gray level, where values `range` are gray 0..255.
+    pub fn gray(self, range: &GrayRange) -> f64 {
+        match self {
+            Self::Gray(gray) => gray,
+            Self::Value(value) => range.gray(value),
+        }
+    }
+}
+
+impl FromStr for Level {
+    type Err = anyhow::Error;
+
+    fn from_str(text: &str) -> anyhow::Result<Self> {
+        let (number, level): (_, fn(f64) -> Self) = match text.strip_suffix('v') {
+            Some(value) => (value, Self::Value),
+            None => (text, Self::Gray),
+        };
+        match self::number(number)? {
+            number if number.is_finite() => Ok(level(number)),
+            _ => bail!(
+                "a finite number is needed; give a gray level as in 50, or a value as in 300v"
+            ),
+        }
     }
 }
 

@@ -2,9 +2,9 @@
 
 use clap::Args;
 use serde::Serialize;
-use walpha::Frame;
 use walpha::points::read_points;
 use walpha::volume;
+use walpha::{Coordinates, Frame, LengthUnit};
 
 use super::args::InputArgs;
 use super::output::tell;
@@ -36,7 +36,10 @@ enum Content {
         dims: [usize; 3],
         spacing: [f64; 3],
         origin: [f64; 3],
+        /// Columns are the grid's axes.
         direction: [[f64; 3]; 3],
+        #[serde(flatten)]
+        coordinates: Coordinates,
         min: f32,
         max: f32,
         gray_levels: bool,
@@ -85,6 +88,7 @@ impl Info {
             spacing: volume.frame().spacing,
             origin: volume.frame().origin,
             direction: volume.frame().direction,
+            coordinates: volume.frame().coordinates,
             min,
             max,
             gray_levels: volume.has_gray_levels(),
@@ -107,14 +111,22 @@ impl std::fmt::Display for Content {
                 spacing,
                 origin,
                 direction,
+                coordinates: Coordinates { space, unit },
                 min,
                 max,
                 gray_levels,
                 data_files,
             } => {
                 writeln!(f, "volume    {x}×{y}×{z} samples (x, y, z)")?;
-                writeln!(f, "spacing   {} {} {}", spacing[0], spacing[1], spacing[2])?;
-                writeln!(f, "origin    {} {} {}", origin[0], origin[1], origin[2])?;
+                let stated = match (space.is_known(), unit) {
+                    (true, _) => space.name(),
+                    (false, LengthUnit::Voxel) => "none, the file places no grid",
+                    (false, _) => "unknown, the file does not say how its axes lie in a patient",
+                };
+                writeln!(f, "space     {stated}")?;
+                let unit = unit.symbol();
+                writeln!(f, "spacing   {} {} {} {unit}", spacing[0], spacing[1], spacing[2])?;
+                writeln!(f, "origin    {} {} {} {unit}", origin[0], origin[1], origin[2])?;
                 if *direction != Frame::VOXEL.direction {
                     for (i, axis) in ["x", "y", "z"].iter().enumerate() {
                         let [r, a, s] = direction.map(|row| row[i]);

@@ -55,8 +55,7 @@ impl Points {
                 })
             })?;
         }
-        let mut report =
-            Report::of_points(&self.pipeline.input.input, &weighed, self.pipeline.weights.alpha());
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         tell(global, &report)

@@ -55,10 +55,10 @@ impl Shape {
 
         let mut progress = Progress::new(global);
         let weighed = pipeline::weighted_points(&self.pipeline, &mut progress)?;
-        let alpha = self.pipeline.weights.alpha();
-        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, alpha);
-        let options = self.shape.options(alpha);
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
+        let options = self.shape.options(weighed.alpha);
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
+        let shape = shape.meaning(weighed.coordinates);
         report.add_shape(&shape);
         let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
             Some(format!("{}: {}", shown(target.path()), exporter.remark(&shape)?))

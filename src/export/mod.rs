@@ -52,8 +52,8 @@ pub use stl::Stl;
 pub use target::{Content, Filled, Target, TargetError, put_all, write_all};
 pub use unfinished::{NewFolder, abandon, sweep};
 pub use volume::{
-    VolumeFormat, write_volume_metaimage, write_volume_nifti, write_volume_npy, write_volume_nrrd, write_volume_raw,
-    write_volume_vti,
+    VolumeFormat, write_volume_metaimage, write_volume_nifti, write_volume_npy, write_volume_nrrd,
+    write_volume_raw, write_volume_vti,
 };
 pub use vtp::Vtp;
 pub use vtu::Vtu;

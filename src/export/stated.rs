@@ -2,12 +2,19 @@
 
 use crate::volume::{Coordinates, LengthUnit};
 
-/// A line for the comments of a file: `SPACE=LPS UNIT=mm`, as 3D Slicer looks for it; `UNIT` alone where
-/// the space is not known, and nothing where nothing is.
+/// For the comments of a file, behind what stands there: ` SPACE=LPS UNIT=mm`, as 3D Slicer looks for
+/// it; `UNIT` alone where the space is not known, and nothing where nothing is.
 pub(super) fn comment(coordinates: Coordinates) -> String {
-    let words: Vec<String> =
-        told(coordinates).into_iter().map(|(name, value)| format!("{name}={value}")).collect();
-    words.join(" ")
+    told(coordinates).into_iter().map(|(name, value)| format!(" {name}={value}")).collect()
+}
+
+/// The same as a line of its own, behind the word or sign that begins a comment; none where nothing is
+/// known.
+pub(super) fn line(sign: &str, coordinates: Coordinates) -> String {
+    match comment(coordinates) {
+        comment if comment.is_empty() => comment,
+        comment => format!("{sign}{comment}\n"),
+    }
 }
 
 /// The same as VTK's field data in XML: arrays of one string each, in the numbers of its characters.
@@ -28,6 +35,6 @@ pub(super) fn field_data(coordinates: Coordinates) -> String {
 
 fn told(Coordinates { space, unit }: Coordinates) -> Vec<(&'static str, &'static str)> {
     let space = space.is_known().then(|| ("SPACE", space.name()));
-    let unit = (unit != LengthUnit::Unstated).then(|| ("UNIT", unit.symbol()));
+    let unit = (unit != LengthUnit::Unstated).then(|| ("UNIT", unit.ascii()));
     space.into_iter().chain(unit).collect()
 }

@@ -56,6 +56,12 @@ impl Deviation {
         }
     }
 
+    /// The same where a gray level is `step` of another unit.
+    pub fn scaled(&self, step: f64) -> Self {
+        let scaled = |error: Option<f64>| error.map(|error| error * step);
+        Self { rmse: scaled(self.rmse), max: scaled(self.max), ..*self }
+    }
+
     /// The share of samples on the shape.
     pub fn coverage(&self) -> f64 {
         self.covered as f64 / self.samples as f64

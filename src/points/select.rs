@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::PointsError;
 use crate::haar::{Budget, Cut};
-use crate::volume::Volume;
+use crate::volume::{Coordinates, Volume};
 
 /// Voxels looked at as one piece of work.
 const CHUNK: usize = 1 << 16;
@@ -64,6 +64,14 @@ pub struct Points {
 }
 
 impl Units {
+    /// What coordinates of this volume's points mean in these units.
+    pub fn coordinates(self, volume: &Volume) -> Coordinates {
+        match self {
+            Self::Voxel => Coordinates::VOXEL,
+            Self::World => volume.frame().coordinates,
+        }
+    }
+
     /// Where a voxel of a volume, by its index x + X·(y + Y·z), stands in these units.
     pub fn position(self, volume: &Volume, voxel: u32) -> [f64; 3] {
         let [nx, ny, _] = volume.dims().xyz();

@@ -130,6 +130,15 @@ impl LengthUnit {
         }
     }
 
+    /// The same in letters that every file can hold: `um`.
+    pub fn ascii(self) -> &'static str {
+        match self {
+            Self::Micrometre => "um",
+            Self::Angstrom => "angstrom",
+            other => other.symbol(),
+        }
+    }
+
     /// The unit that a file names, in the spellings of NRRD, MetaImage, ImageJ, OME-XML and OME-Zarr.
     /// A name that is not understood is [`LengthUnit::Unstated`].
     pub fn named(name: &str) -> Self {
@@ -218,6 +227,8 @@ mod tests {
     fn names_of_units_are_understood() {
         for unit in LengthUnit::ALL {
             assert_eq!(LengthUnit::named(unit.symbol()), unit);
+            assert_eq!(LengthUnit::named(unit.ascii()), unit);
+            assert!(unit.ascii().is_ascii());
         }
         for name in ["um", "\"um\"", "Micron", "micrometer", "µm", "μm", "\\u00B5m"] {
             assert_eq!(LengthUnit::named(name), LengthUnit::Micrometre, "{name}");

@@ -118,10 +118,22 @@ impl Volume {
                 range
             }
         };
-        if range != GrayRange::IDENTITY {
+        if !range.is_identity() {
             self.samples.par_mapv_inplace(|v| range.gray(v.into()) as f32);
         }
         Ok((self.with_gray_levels(), range))
+    }
+}
+
+impl Volume {
+    /// The volume with the values that its gray levels stand for: what [`Volume::into_gray`] did, undone.
+    /// In place.
+    pub fn into_values(mut self, range: &GrayRange) -> Self {
+        if !range.is_identity() {
+            self.samples.par_mapv_inplace(|gray| range.value(gray.into()) as f32);
+            self.gray_levels = false;
+        }
+        self
     }
 }
 

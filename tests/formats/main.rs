@@ -5,6 +5,7 @@ mod common;
 mod damage;
 mod damaged;
 mod files;
+mod places;
 mod points;
 mod shapes;
 mod volumes;

@@ -105,17 +105,19 @@ impl Ladder {
         let read = pipeline::read(&self.input, &mut progress)?;
         let (weighed, _) =
             pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
-        let domain = pipeline::domain(&weighed, self.select.units());
-        let mut facts = Facts::new(&self.input.input, &weighed, weights.alpha(), domain);
+        let weighed = weighed.in_values();
+        let domain = pipeline::domain(&weighed);
+        let mut facts = Facts::new(&self.input.input, &weighed, domain);
+        let (alpha, coordinates) = (weighed.alpha, weighed.coordinates);
         let points = weighed.points;
         let filtration = progress.stage("filtration", || Filtration::new(points))?;
         let curve = progress.stage("curve", || filtration.curve());
         let suggested = progress.stage("curve", || filtration.suggest(&curve));
         let alphas = match &self.alphas {
             Alphas::Given(alphas) => alphas.clone(),
-            Alphas::Auto => progress.stage("curve", || {
-                pipeline::readable(&filtration, &curve, READABLE, weights.alpha())
-            }),
+            Alphas::Auto => {
+                progress.stage("curve", || pipeline::readable(&filtration, &curve, READABLE, alpha))
+            }
         };
         let levels = progress.stage("ladder", || filtration.levels(&alphas));
         let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
@@ -132,7 +134,7 @@ impl Ladder {
                 if meshes.is_empty() {
                     break;
                 }
-                let shape = levels.shape(k, false, level.betti);
+                let shape = levels.shape(k, false, level.betti).meaning(coordinates);
                 for mesh in &meshes {
                     let name = level_name(&ladder, k, level, &mesh.extension);
                     folder.write(&name, |out| mesh.exporter.write(&shape, out))?;

@@ -32,7 +32,8 @@ fn place(frame: &Frame) -> String {
     // The rows of the matrix are the grid's axes.
     let axes = [0, 1, 2].map(|c| frame.direction.map(|row| row[c]));
     let unit = frame.coordinates.unit;
-    let unit = if unit.is_known() { format!("DistanceUnits = {}\n", unit.symbol()) } else { String::new() };
+    let unit =
+        if unit.is_known() { format!("DistanceUnits = {}\n", unit.ascii()) } else { String::new() };
     format!(
         "TransformMatrix = {}\nOffset = {}\n{unit}ElementSpacing = {}\n",
         numbers(axes.as_flattened()),

@@ -40,7 +40,7 @@ fn space(frame: &Frame) -> String {
         Space::Unknown if *frame == Frame::VOXEL => return String::new(),
         Space::Unknown => "space dimension: 3",
     };
-    let unit = if frame.coordinates == Coordinates::default() { "" } else { unit.symbol() };
+    let unit = if frame.coordinates == Coordinates::default() { "" } else { unit.ascii() };
     format!("{space}\nspace units: \"{unit}\" \"{unit}\" \"{unit}\"\n")
 }
 

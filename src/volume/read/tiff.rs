@@ -269,8 +269,8 @@ impl About {
                 if about.unit == LengthUnit::Voxel {
                     about.unit = unit;
                 }
-                let [from, unit] = [unit, about.unit]
-                    .map(|unit| Coordinates { unit, ..Coordinates::default() });
+                let [from, unit] =
+                    [unit, about.unit].map(|unit| Coordinates { unit, ..Coordinates::default() });
                 about.spacing[k] = from.to(unit).length(length);
             }
             return Ok(about);

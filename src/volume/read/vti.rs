@@ -65,7 +65,8 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
         )));
     }
     let dims = Dims::new(dims[0], dims[1], dims[2])?;
-    let (frame, dtype) = (frame(path, corner, axes, coordinates(&file, image)?)?, file.dtype(array)?);
+    let (frame, dtype) =
+        (frame(path, corner, axes, coordinates(&file, image)?)?, file.dtype(array)?);
     let samples = file.values(array, dims.samples() as u64)?;
     Described { dims, dtype, endian: Endian::Little, frame, encoding: Encoding::Raw }
         .volume(samples)

@@ -61,7 +61,8 @@ pub(super) fn stacked(
         None => normal.map(|n| n * first.thickness),
     };
     let axes = [column.map(|v| v * first.spacing[0]), row.map(|v| v * first.spacing[1]), step];
-    let frame = super::super::described::frame(path, slices[0].position, axes, Coordinates::PATIENT)?;
+    let frame =
+        super::super::described::frame(path, slices[0].position, axes, Coordinates::PATIENT)?;
     Ok((slices, frame))
 }
 
