@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use walpha::export::Target;
 use walpha::interpolate::Adaptive;
 use walpha::shape::{Engine, ShapeOptions};
-use walpha::volume::{Dtype, Endian, RawLayout, ReadOptions};
+use walpha::volume::{Dtype, Endian, Nan, RawLayout, ReadOptions, Region};
 use walpha::{
     Alpha, Balls, Coordinates, Decomposition, Dims, Gray, GrayRange, HaarOptions, LengthUnit,
     Selection, SelectionRule, Space, Tolerance, Units, Volume, Weighting,
@@ -18,14 +18,16 @@ use walpha::{
 /// What to read.
 #[derive(Args, Clone)]
 pub struct InputArgs {
-    /// Volume or point file, sample:skull, sample:phantom or sample:phantom@N.
+    /// Volume or point file, - (standard input), sample:skull, sample:phantom or sample:phantom@N.
     #[arg(value_name = "INPUT")]
     pub input: String,
     #[command(flatten)]
     pub raw: RawArgs,
-    /// Level of a pyramid (OME-Zarr) to read; 0 is the finest [default: 0].
-    #[arg(long, value_name = "N", conflicts_with = "dims")]
-    level: Option<u32>,
+    #[command(flatten)]
+    part: PartArgs,
+    /// Format where no name tells it, as of standard input and output (-): --format nrrd.
+    #[arg(long, value_name = "EXTENSION")]
+    format: Option<String>,
     /// Values that become gray 0 and 255 [default: as they are for unsigned 8 bits, else min..max].
     #[arg(long, value_name = "LO..HI", value_parser = gray_range, allow_hyphen_values = true)]
     gray: Option<GrayRange>,
@@ -37,7 +39,35 @@ pub struct InputArgs {
 impl InputArgs {
     /// How to read a volume.
     pub fn options(&self) -> ReadOptions {
-        ReadOptions { raw: self.raw.layout(), level: self.level }
+        let PartArgs { level, array, frame, series, nan, roi, downsample } = self.part.clone();
+        ReadOptions {
+            raw: self.raw.layout(),
+            level,
+            array,
+            frame,
+            series,
+            nan,
+            region: roi,
+            downsample,
+        }
+    }
+
+    /// What the name of standard input would end with.
+    pub fn extension(&self) -> String {
+        let dotted = |format: &String| format!(".{}", format.trim_start_matches('.'));
+        self.format.as_ref().map(dotted).unwrap_or_default()
+    }
+
+    /// A path of an output whose extension tells the format: the path itself, if it has one.
+    pub fn output(&self, path: &Path) -> anyhow::Result<PathBuf> {
+        match &self.format {
+            _ if path.extension().is_some() => Ok(path.to_owned()),
+            Some(_) => Ok(format!("output{}", self.extension()).into()),
+            None if path == Path::new(Target::STDOUT) => {
+                bail!("standard output has no extension; name the format, as in --format nrrd")
+            }
+            None => Ok(path.to_owned()),
+        }
     }
 
     /// How values become gray levels.
@@ -49,6 +79,36 @@ impl InputArgs {
     pub fn written(&self, range: GrayRange) -> GrayRange {
         if self.gray_out { GrayRange::IDENTITY } else { range }
     }
+}
+
+/// Which part of a file is the volume, and what of it is taken.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "Parts of a volume")]
+struct PartArgs {
+    /// Level of a pyramid (OME-Zarr) to read; 0 is the finest [default: 0].
+    #[arg(long, value_name = "N", conflicts_with = "dims")]
+    level: Option<u32>,
+    /// Array to read, by its name, of a file of several (VTK, NPZ) [default: of VTK, the first of points].
+    #[arg(long, value_name = "NAME", conflicts_with = "dims")]
+    array: Option<String>,
+    /// Volume to read of a file of several (a fourth axis), from 0.
+    #[arg(long, value_name = "K", conflicts_with = "dims")]
+    frame: Option<u64>,
+    /// Series to read of a folder of several (DICOM): its number as `walpha info` lists it, or the end
+    /// of its UID.
+    #[arg(long, value_name = "N", conflicts_with = "dims")]
+    series: Option<String>,
+    /// Value for samples that are NaN; without one they are left out: no points, no errors.
+    #[arg(long, value_name = "VALUE", num_args = 0..=1, default_missing_value = "mask",
+          value_parser = nan, allow_negative_numbers = true)]
+    nan: Option<Nan>,
+    /// Take the samples from one index up to, and without, another along x, y and z; ends may be left
+    /// away, as in 20:40,:,10:.
+    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = voxels)]
+    roi: Option<Region>,
+    /// Take the means of N×N×N samples.
+    #[arg(long, value_name = "N")]
+    downsample: Option<NonZeroUsize>,
 }
 
 /// The layout of a raw file.
@@ -94,28 +154,6 @@ pub struct PipelineArgs {
     pub select: SelectArgs,
     #[command(flatten)]
     pub weights: WeightArgs,
-}
-
-/// Which format goes to standard output.
-#[derive(Args, Clone)]
-pub struct FormatArgs {
-    /// Format of a file whose name has no extension, as of standard output (-o -): --format ply.
-    #[arg(long, value_name = "EXTENSION", requires = "output")]
-    format: Option<String>,
-}
-
-impl FormatArgs {
-    /// A path whose extension tells the format: the path itself, if it has one.
-    pub fn name(&self, path: &Path) -> anyhow::Result<PathBuf> {
-        match &self.format {
-            _ if path.extension().is_some() => Ok(path.to_owned()),
-            Some(format) => Ok(format!("output.{}", format.trim_start_matches('.')).into()),
-            None if path == Path::new(Target::STDOUT) => {
-                bail!("standard output has no extension; name the format, as in --format nrrd")
-            }
-            None => Ok(path.to_owned()),
-        }
-    }
 }
 
 /// The wavelet stage.
@@ -480,6 +518,38 @@ fn dims(text: &str) -> anyhow::Result<Dims> {
         bail!("three sizes are needed; give those along x, y and z, as in 64,64,64");
     };
     Ok(Dims::new(x, y, z)?)
+}
+
+fn nan(text: &str) -> anyhow::Result<Nan> {
+    if text == "mask" {
+        return Ok(Nan::Mask);
+    }
+    let value = number(text)? as f32;
+    if !value.is_finite() {
+        bail!("a finite number is needed; give it as in -1000, or give none");
+    }
+    Ok(Nan::Value(value))
+}
+
+fn voxels(text: &str) -> anyhow::Result<Region> {
+    let ranges: Vec<&str> = text.split(',').collect();
+    if ranges.len() != 3 {
+        bail!("three ranges are needed, as in 20:40,20:40,10:30 for x, y and z");
+    }
+    let mut region = Region::default();
+    for (k, range) in ranges.into_iter().enumerate() {
+        let Some((first, end)) = range.split_once(':') else {
+            bail!("`{range}` is no range: two indices are needed, as in 20:40");
+        };
+        let index = |text: &str| match text.trim() {
+            "" => Ok(None),
+            text => text.parse().map(Some).map_err(|_| {
+                anyhow!("`{text}` is no index of a sample: whole numbers are needed, as in 20:40")
+            }),
+        };
+        (region.first[k], region.end[k]) = (index(first)?.unwrap_or(0), index(end)?);
+    }
+    Ok(region)
 }
 
 fn gray_range(text: &str) -> anyhow::Result<GrayRange> {

@@ -9,7 +9,7 @@ use walpha::export::{Target, VolumeFormat};
 use walpha::haar::smooth;
 
 use super::Global;
-use super::args::{FormatArgs, HaarArgs, InputArgs};
+use super::args::{HaarArgs, InputArgs};
 use super::output::tell;
 use super::pipeline::{Grays, Input, read};
 use super::progress::Progress;
@@ -23,11 +23,9 @@ pub struct Haar {
     #[command(flatten)]
     input: InputArgs,
     /// File to write the restored values to, as f32, replaced if it is there: .nrrd, .nii, .nii.gz,
-    /// .mha, .vti, .npy or .raw; or - (standard output, with --format).
+    /// .mha, .vti, .tif, .npy or .raw; or - (standard output, with --format).
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    #[command(flatten)]
-    format: FormatArgs,
     #[command(flatten)]
     haar: HaarArgs,
 }
@@ -43,7 +41,7 @@ impl Haar {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let target = match &self.output {
             None => None,
-            Some(path) => Some((VolumeFormat::of(&self.format.name(path)?)?, Target::open(path)?)),
+            Some(path) => Some((VolumeFormat::of(&self.input.output(path)?)?, Target::open(path)?)),
         };
         let mut progress = Progress::new(global);
         let Input::Volume(Grays { volume, range, written }) = read(&self.input, &mut progress)?

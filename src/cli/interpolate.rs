@@ -11,7 +11,7 @@ use walpha::export::{Content, Target, VolumeFormat, write_all};
 use walpha::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
 use walpha::{AlphaShape, GrayRange, Units, Volume, alpha_shape};
 
-use super::args::{FormatArgs, PipelineArgs, ShapeArgs};
+use super::args::{PipelineArgs, ShapeArgs};
 use super::output::tell;
 use super::pipeline::{VolumeFacts, Weighed};
 use super::progress::Progress;
@@ -41,7 +41,7 @@ use super::{Global, curve, pipeline};
 pub struct Interpolate {
     #[command(flatten)]
     pipeline: PipelineArgs,
-    /// Volume to write F to, as f32: .nrrd, .nii, .nii.gz, .mha, .vti, .npy or .raw; or - (standard
+    /// Volume to write F to, as f32: .nrrd, .nii, .nii.gz, .mha, .vti, .tif, .npy or .raw; or - (standard
     /// output, with --format). With --curve: a folder, or what names of files begin with. Files that are
     /// there are replaced.
     #[arg(short, long, value_name = "FILE")]
@@ -59,8 +59,6 @@ pub struct Interpolate {
         "engine", "blocks", "memory", "exterior",
     ])]
     curve: bool,
-    #[command(flatten)]
-    format: FormatArgs,
     #[command(flatten)]
     shape: ShapeArgs,
 }
@@ -139,7 +137,9 @@ impl Interpolate {
         }
         let output = match &self.output {
             None => None,
-            Some(path) => Some((VolumeFormat::of(&self.format.name(path)?)?, Target::open(path)?)),
+            Some(path) => {
+                Some((VolumeFormat::of(&self.pipeline.input.output(path)?)?, Target::open(path)?))
+            }
         };
         let mask = self.mask.as_deref().map(open).transpose()?;
         let mut progress = Progress::new(global);

@@ -3,7 +3,9 @@
 use std::fmt::{self, Display};
 use std::path::Path;
 
+use anyhow::{anyhow, bail};
 use serde::Serialize;
+use walpha::export::{Scratch, Target};
 use walpha::interpolate::adaptive_voxels;
 use walpha::ladder::{Curve, Filtration};
 use walpha::points::{is_point_file, read_points, weigh};
@@ -35,18 +37,37 @@ pub struct Grays {
 /// Reads INPUT.
 pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> {
     progress.stage("read", || {
-        if is_points(args)? {
-            return Ok(Input::Points(read_points(Path::new(&args.input))?));
-        }
-        let (volume, range) = volume::open(&args.input, &args.options())?.into_gray(args.gray())?;
-        Ok(Input::Volume(Grays { volume, range, written: args.written(range) }))
+        with_file(args, |input| {
+            if is_points(args, input)? {
+                return Ok(Input::Points(read_points(Path::new(input))?));
+            }
+            let (volume, range) = volume::open(input, &args.options())?.into_gray(args.gray())?;
+            Ok(Input::Volume(Grays { volume, range, written: args.written(range) }))
+        })
     })
 }
 
-/// Whether INPUT is a point file.
-pub fn is_points(args: &InputArgs) -> anyhow::Result<bool> {
-    let volume = args.input.starts_with("sample:") || args.options().raw.is_some();
-    Ok(!volume && is_point_file(Path::new(&args.input))?)
+/// Does something with INPUT as a file or the name of a sample. Standard input becomes a file for that
+/// time: formats are read in several passes.
+pub fn with_file<T>(
+    args: &InputArgs,
+    work: impl FnOnce(&str) -> anyhow::Result<T>,
+) -> anyhow::Result<T> {
+    if args.input != Target::STDOUT {
+        return work(&args.input);
+    }
+    let file = Scratch::of(&mut std::io::stdin().lock(), &args.extension())
+        .map_err(|error| anyhow!("cannot read standard input: {error}; name a file instead"))?;
+    let path = file.path().to_string_lossy().into_owned();
+    // Nobody knows the name of that file.
+    work(&path)
+        .map_err(|error| anyhow!("{}", format!("{error:#}").replace(&path, "standard input")))
+}
+
+/// Whether an input is a point file.
+pub fn is_points(args: &InputArgs, input: &str) -> anyhow::Result<bool> {
+    let volume = input.starts_with("sample:") || args.options().raw.is_some();
+    Ok(!volume && is_point_file(Path::new(input))?)
 }
 
 /// Weighted points and what is to be told about them.
@@ -170,6 +191,12 @@ fn selected_points(
     let Some(goal) = select.adaptive(volume.dims().samples())? else {
         return Ok((points::select(volume, smoothed, &differences, selection, units)?, None));
     };
+    if volume.has_missing() {
+        bail!(
+            "--select adaptive interpolates between all samples, and some are missing: give --nan a \
+             value, or leave adaptive away"
+        );
+    }
     let mut voxels = adaptive_voxels(volume, &goal, units)?;
     voxels.sort_unstable();
     // With a target alone as many as there are samples may be needed, and none is asked for.

@@ -8,7 +8,7 @@ use walpha::alpha_shape;
 use walpha::export::{Content, Exporter, Format, Target, UnknownFormat, write_all};
 use walpha::shown::shown;
 
-use super::args::{FormatArgs, PipelineArgs, ShapeArgs};
+use super::args::{PipelineArgs, ShapeArgs};
 use super::output::tell;
 use super::picture::PictureArgs;
 use super::progress::Progress;
@@ -26,8 +26,6 @@ pub struct Shape {
     /// simplices), .png (a picture); or - (standard output, with --format). Files that are there are replaced.
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
-    #[command(flatten)]
-    format: FormatArgs,
     /// Write text where a format has a binary form too (PLY).
     #[arg(long)]
     ascii: bool,
@@ -42,7 +40,7 @@ impl Shape {
         // Before the long work: a bad extension or place costs nothing yet.
         let mut targets = Vec::new();
         for path in &self.output {
-            let name = self.format.name(path)?;
+            let name = self.pipeline.input.output(path)?;
             let exporter: Box<dyn Exporter> = if PictureArgs::wanted(&name) {
                 Box::new(self.picture)
             } else {

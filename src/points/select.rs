@@ -98,7 +98,7 @@ impl Points {
 
 /// Selects voxels, in order of their index x + X·(y + Y·z).
 ///
-/// `volume` gives the values of the points and the grid, `smoothed` is the truncated volume, which
+/// `volume` gives the values of the points and the grid, and its missing samples take no part; `smoothed` is the truncated volume, which
 /// `gray_min` judges, and `differences` are its [`difference`](super::difference)s. O(n),
 /// parallel, the same on any number of threads.
 ///
@@ -120,14 +120,19 @@ pub fn select(
     let standard = differences.as_standard_layout();
     let flat = standard.as_slice().expect("standard layout");
     let voxels = match selection.gray_min {
-        None => chosen(flat, n as u64, &selection.rule)?,
+        None if !volume.has_missing() => chosen(flat, n as u64, &selection.rule)?,
         Some(least) if least.is_nan() => {
             return Err(PointsError::Number { what: "--gray-min", given: least, need: "a number" });
         }
-        Some(least) => {
-            let mask =
-                |(&l, &gray): (&f64, &f32)| if f64::from(gray) >= least { l } else { f64::NAN };
-            let masked: Vec<f64> = flat.par_iter().zip(smoothed.as_slice()).map(mask).collect();
+        least => {
+            let least = least.unwrap_or(f64::NEG_INFINITY);
+            let takes_part =
+                |i: usize, gray: f32| f64::from(gray) >= least && !volume.is_missing(i);
+            let mask = |(i, (&l, &gray)): (usize, (&f64, &f32))| {
+                if takes_part(i, gray) { l } else { f64::NAN }
+            };
+            let pairs = flat.par_iter().zip(smoothed.as_slice()).enumerate();
+            let masked: Vec<f64> = pairs.map(mask).collect();
             let available = masked.par_iter().filter(|l| !l.is_nan()).count() as u64;
             chosen(&masked, available, &selection.rule)?
         }

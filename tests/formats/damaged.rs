@@ -10,7 +10,7 @@ fn damaged_volumes_say_what_is_wrong() {
     refuses("v.nrrd", nrrd(|h| h, &shorts()[1..]), &["24 bytes, but 23 follow", "truncated"]);
     refuses("v.nrrd", nrrd(|h| h, &[&shorts()[..], b"x"].concat()), &["25 follow", "too long"]);
     refuses("v.nrrd", n("short", "block"), &["type block"]);
-    refuses("v.nrrd", n("raw", "bzip2"), &["bzip2", "not read"]);
+    refuses("v.nrrd", n("raw", "hex"), &["hex", "not read"]);
     refuses("v.nrrd", n("raw", "gzip"), &["encoded data"]);
     refuses("v.nrrd", n("endian: little\n", ""), &["endian"]);
     refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 3 2"), &["2 sizes"]);

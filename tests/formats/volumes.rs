@@ -22,14 +22,21 @@ fn written_volumes_are_read_back() {
         let options = match format {
             VolumeFormat::Raw => {
                 let (dims, dtype, endian) = (volume.dims(), Dtype::F32, Endian::Little);
-                ReadOptions { raw: Some(RawLayout { dims, dtype, endian, offset: 0 }), level: None }
+                ReadOptions {
+                    raw: Some(RawLayout { dims, dtype, endian, offset: 0 }),
+                    ..ReadOptions::default()
+                }
             }
             _ => ReadOptions::default(),
         };
         let back = read(&path, &options).unwrap();
         assert_eq!(back.as_slice(), volume.as_slice(), "{extension}");
-        let has_frame = !matches!(format, VolumeFormat::Npy | VolumeFormat::Raw);
-        let frame = if has_frame { turned() } else { Frame::VOXEL };
+        let frame = match format {
+            VolumeFormat::Npy | VolumeFormat::Raw => Frame::VOXEL,
+            // Spacing alone.
+            VolumeFormat::Tiff => Frame { spacing: turned().spacing, ..Frame::VOXEL },
+            _ => turned(),
+        };
         assert!(close(back.frame(), &frame), "{extension}: {:?}", back.frame());
         // By content too.
         if format != VolumeFormat::Raw {

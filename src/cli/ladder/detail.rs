@@ -82,13 +82,13 @@ impl Ladder {
         let coordinates = units.coordinates(&volume);
         let domain = Domain::of_grid(&volume, units);
         let mut stages = Stages { volume: &volume, units, smoothed: None };
-        let full = match &self.roi {
+        let full = match &self.focus {
             None => None,
             Some(region) => {
                 let wanted = (self.haar.options(), self.select.selection(&range));
                 let points = progress.stage("points", || stages.points(&wanted.0, &wanted.1))?.0;
                 if !points.positions.iter().any(|&p| region.contains(p)) {
-                    bail!("no point lies in --roi: it is in the units of the points, x first");
+                    bail!("no point lies in --focus: it is in the units of the points, x first");
                 }
                 Some((points, region))
             }

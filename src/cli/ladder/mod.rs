@@ -30,7 +30,7 @@ use regions::region;
 /// and detail.csv and detail.json tell error and size.
 ///
 /// Examples: walpha ladder sample:skull --alphas 1,2,5,10,20,50 -o ladder;
-/// walpha ladder sample:skull --counts 1000,4000,16000 --roi 20:40,20:40,20:40 -o detail
+/// walpha ladder sample:skull --counts 1000,4000,16000 --focus 20:40,20:40,20:40 -o detail
 #[derive(Args)]
 pub struct Ladder {
     #[command(flatten)]
@@ -58,7 +58,7 @@ pub struct Ladder {
     /// of the level) at every level of detail; borders belong to it. In the units of the points.
     #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = region,
           allow_hyphen_values = true)]
-    roi: Option<Region>,
+    focus: Option<Region>,
     /// Meshes to write for each level, by extension, as in ply,vtu [default: none for α, ply for
     /// levels of detail].
     #[arg(long, value_name = "EXT,EXT,…", value_delimiter = ',')]
@@ -77,8 +77,8 @@ const READABLE: usize = 24;
 impl Ladder {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let detail = !(self.counts.is_empty() && self.epsilons.is_empty());
-        if self.roi.is_some() && !detail {
-            bail!("--roi belongs to levels of detail: give --counts or --epsilons too");
+        if self.focus.is_some() && !detail {
+            bail!("--focus belongs to levels of detail: give --counts or --epsilons too");
         }
         once("--counts", &self.counts)?;
         once("--epsilons", &self.epsilons)?;

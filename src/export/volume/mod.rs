@@ -5,6 +5,7 @@ mod nifti;
 mod npy;
 mod nrrd;
 mod raw;
+mod tiff;
 mod vti;
 
 use std::io::{self, Write};
@@ -15,6 +16,7 @@ pub use nifti::write_volume_nifti;
 pub use npy::write_volume_npy;
 pub use nrrd::write_volume_nrrd;
 pub use raw::write_volume_raw;
+pub use tiff::write_volume_tiff;
 pub use vti::write_volume_vti;
 
 use super::UnknownFormat;
@@ -35,6 +37,8 @@ pub enum VolumeFormat {
     MetaImage,
     /// VTK image data, samples appended raw.
     Vti,
+    /// TIFF pages, with spacing as ImageJ has it; no origin and no directions.
+    Tiff,
     /// A NumPy array, axes z, y, x; no frame.
     Npy,
     /// Bare samples, x fastest; no header.
@@ -43,12 +47,14 @@ pub enum VolumeFormat {
 
 impl VolumeFormat {
     /// Every format with its extension.
-    pub const ALL: [(Self, &str); 7] = [
+    pub const ALL: [(Self, &str); 9] = [
         (Self::Nrrd, "nrrd"),
         (Self::Nifti, "nii"),
         (Self::NiftiGzip, "nii.gz"),
         (Self::MetaImage, "mha"),
         (Self::Vti, "vti"),
+        (Self::Tiff, "tif"),
+        (Self::Tiff, "tiff"),
         (Self::Npy, "npy"),
         (Self::Raw, "raw"),
     ];
@@ -76,6 +82,7 @@ impl VolumeFormat {
             }
             Self::MetaImage => write_volume_metaimage(volume, out),
             Self::Vti => write_volume_vti(volume, out),
+            Self::Tiff => write_volume_tiff(volume, out),
             Self::Npy => write_volume_npy(volume, out),
             Self::Raw => write_volume_raw(volume, out),
         }

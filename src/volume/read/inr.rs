@@ -33,8 +33,7 @@ pub(crate) fn read(
         .samples(dtype, endian, dims.samples() as u64)
         .map_err(payload_error(path, &dims, dtype))?;
     let samples = Array3::from_shape_vec(dims.shape(), samples).expect("count was checked");
-    let volume = Volume::new(samples, frame)?;
-    Ok(if dtype == Dtype::U8 { volume.with_gray_levels() } else { volume })
+    Ok(Volume::of_file(samples, frame)?.with_dtype(dtype))
 }
 
 struct Header {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::described::{Described, Encoding, diagonal, frame};
 use super::detached::naming;
+use super::frames::Frames;
 use super::payload::{Length, Payload};
 use super::{format_error, io_error, payload_error};
 use crate::volume::{
@@ -24,8 +25,13 @@ pub(super) fn is_header(start: &[u8]) -> bool {
 ///
 /// `scl_slope` and `scl_inter` are applied. The frame is that of `sform`, else of `qform`, else of
 /// `pixdim` alone, which says nothing of the space; the other two are RAS. Axes beyond
-/// the third must have one sample; colours and complex numbers are refused.
-pub(super) fn read(path: &Path, reader: impl Read, length: Length) -> Result<Volume, VolumeError> {
+/// the third count volumes, of which `frame` is read; colours and complex numbers are refused.
+pub(super) fn read(
+    path: &Path,
+    reader: impl Read,
+    length: Length,
+    frame: Option<u64>,
+) -> Result<Volume, VolumeError> {
     let mut reader = reader;
     let mut header = Vec::new();
     let mut fill = |size: usize, header: &mut Vec<u8>| -> Result<(), VolumeError> {
@@ -45,7 +51,7 @@ pub(super) fn read(path: &Path, reader: impl Read, length: Length) -> Result<Vol
         fill(HEADER_2, &mut header)?;
     }
     let header = Header { bytes: header, version, endian };
-    let described = header.described(path)?;
+    let described = header.described(path, frame)?;
     let (slope, inter) = header.scaling();
     if header.is_pair(path)? {
         let image = path.with_extension("img");
@@ -82,7 +88,9 @@ fn samples(
     reader: impl Read,
     length: Length,
 ) -> Result<Volume, VolumeError> {
-    let Described { dims, dtype, endian, .. } = described;
+    let Described { dims, dtype, endian, frames, .. } = described;
+    let each = (dims.samples() * dtype.size()) as u64;
+    let (reader, length) = frames.one(path, reader, length, each)?;
     let payload = Payload { reader, length };
     let fail = payload_error(path, &dims, dtype);
     let count = dims.samples() as u64;
@@ -99,7 +107,7 @@ fn samples(
         samples.iter().map(|v| (v * slope + inter) as f32).collect()
     };
     // Scaled bytes are no gray levels.
-    Described { dtype: Dtype::F32, ..described }.volume(scaled)
+    Ok(described.volume(scaled)?.with_dtype(Dtype::F32))
 }
 
 /// Version and byte order, by the first number.
@@ -199,7 +207,7 @@ impl Header {
         Err(format_error(path, format!("has samples at byte {offset} (vox_offset), in its header")))
     }
 
-    fn described(&self, path: &Path) -> Result<Described, VolumeError> {
+    fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
         let said = |what: String| format_error(path, what);
         let axes = self.dim(0);
         if !(1..=7).contains(&axes) {
@@ -210,12 +218,9 @@ impl Header {
         if sizes.iter().any(|&size| size < 0) {
             return Err(said(format!("has axes of {sizes:?} samples: its header is damaged")));
         }
-        if sizes[3..].iter().any(|&size| size > 1) {
-            return Err(said(format!(
-                "has axes of {sizes:?} samples: a volume has three; extract one first"
-            )));
-        }
-        let [x, y, z, ..] = sizes.map(|size| size as u64);
+        let sizes = sizes.map(|size| size as u64);
+        let frames = Frames::choose(path, &sizes[3..], frame)?;
+        let [x, y, z, ..] = sizes;
         let dims = Dims::new(x, y, z)?;
         let dtype = match self.short(70, 12) {
             2 => Dtype::U8,
@@ -243,7 +248,8 @@ impl Header {
             }
         };
         let frame = self.frame(path)?;
-        Ok(Described { dims, dtype, endian: self.endian, frame, encoding: Encoding::Raw })
+        let (endian, encoding) = (self.endian, Encoding::Raw);
+        Ok(Described { dims, dtype, endian, frame, encoding, frames })
     }
 
     /// Slope and intercept; a slope of 0 means none.

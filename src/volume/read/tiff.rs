@@ -8,6 +8,7 @@ use tiff::tags::{ByteOrder, Tag};
 use tiff::{ColorType, TiffError};
 
 use super::described::{Described, Encoding, diagonal, frame};
+use super::frames::Frames;
 use super::{format_error, io_error};
 use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Volume, VolumeError};
 
@@ -286,7 +287,8 @@ impl About {
     ) -> Result<Described, VolumeError> {
         let coordinates = Coordinates { unit: self.unit, ..Coordinates::default() };
         let frame = frame(path, [0.0; 3], diagonal(self.spacing), coordinates)?;
-        Ok(Described { dims, dtype, endian, frame, encoding: Encoding::Raw })
+        let (encoding, frames) = (Encoding::Raw, Frames::ONE);
+        Ok(Described { dims, dtype, endian, frame, encoding, frames })
     }
 }
 

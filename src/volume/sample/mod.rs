@@ -20,7 +20,11 @@ const PHANTOM_SIZE: u64 = 64;
 /// # Errors
 /// Those of [`sample`] and [`read()`].
 pub fn open(input: &str, options: &ReadOptions) -> Result<Volume, VolumeError> {
-    if input.starts_with("sample:") { sample(input) } else { read(Path::new(input), options) }
+    if input.starts_with("sample:") {
+        options.part(sample(input)?)
+    } else {
+        read(Path::new(input), options)
+    }
 }
 
 /// A sample by its name: one of [`SAMPLES`].
@@ -33,7 +37,7 @@ pub fn open(input: &str, options: &ReadOptions) -> Result<Volume, VolumeError> {
 pub fn sample(name: &str) -> Result<Volume, VolumeError> {
     match name.strip_prefix("sample:") {
         // Its header has numbers, but the paper's lengths are voxels.
-        Some("skull") => Ok(skull::skull()?.with_frame(Frame::VOXEL)),
+        Some("skull") => Ok(skull::skull()?.settled(None)?.with_frame(Frame::VOXEL)),
         Some("phantom") => phantom(PHANTOM_SIZE),
         Some(other) if other.starts_with("phantom@") => match other["phantom@".len()..].parse() {
             Ok(size) => phantom(size),
