@@ -221,7 +221,7 @@ def read_nifti(check):
     nib.save(nib.Nifti1Image(samples("c8").T, affine), check.path("complex.nii"))
     check.refused("nibabel complex", check.path("complex.nii"), "complex")
     nib.save(nib.Nifti1Image(np.zeros((3, 3, 3, 2), "f4"), affine), check.path("four.nii"))
-    check.refused("nibabel 4D", check.path("four.nii"), "a volume has three")
+    check.refused("nibabel 4D", check.path("four.nii"), "choose one with --frame")
 
 
 def read_dicom(check):
@@ -561,6 +561,43 @@ def keep_places(check):
         check.judge(f"info of {name}", None if (info["space"], info["unit"]) == (space, unit) else str(info))
 
 
+def part_of_several(check):
+    """Volumes of four axes, arrays by name, NaN and TIFF, against the programs that know them."""
+    data = np.random.default_rng(5).integers(0, 900, (2, 3, 4, 5)).astype("i2")
+    nib.save(nib.Nifti1Image(data.T, np.eye(4)), check.path("four.nii.gz"))
+    nrrd.write(check.path("four.nrrd"), data.T.copy(order="F"), {"kinds": ["domain"] * 3 + ["time"]})
+    sitk.WriteImage(sitk.GetImageFromArray(data, isVector=False), check.path("four.mha"))
+    np.save(check.path("four.npy"), data)
+    for name in ["four.nii.gz", "four.nrrd", "four.mha", "four.npy"]:
+        for frame in range(2):
+            run = check.run("haar", check.path(name), "--frame", frame, "--rms", "0", "-o", check.path("frame.npy"))
+            if run.returncode:
+                check.judge(f"{name} frame {frame}", run.stderr.strip())
+            else:
+                check.equal(f"{name} frame {frame}", np.load(check.path("frame.npy")), data[frame], 1e-3)
+    both = vtk_image(samples("f4"))
+    for name, values in [("second", samples("f4") * 3), ("cells", np.ones((2, 3, 4), "f4"))]:
+        array = numpy_to_vtk(values.ravel(), deep=1)
+        array.SetName(name)
+        (both.GetCellData() if name == "cells" else both.GetPointData()).AddArray(array)
+    for writer, name in [(vtk.vtkXMLImageDataWriter(), "both.vti"), (vtk.vtkStructuredPointsWriter(), "both.vtk")]:
+        save(writer, both, check.path(name))
+        for array, top in [("samples", 118), ("second", 354), ("cells", 1)]:
+            info = json.loads(check.run("info", check.path(name), "--array", array, "--json").stdout or "{}")
+            check.equal(f"VTK {name} array {array}", info.get("max", -1), top)
+        check.equal(f"VTK {name}: points before cells", json.loads(check.run("info", check.path(name), "--json").stdout)["max"], 118)
+    sitk.WriteImage(itk_image(samples("f4")), check.path("t.nrrd"))
+    check.run("haar", check.path("t.nrrd"), "--rms", "0", "-o", check.path("ours.tif"))
+    with tifffile.TiffFile(check.path("ours.tif")) as file:
+        check.equal("tifffile reads our tif", file.asarray(), samples("f4"), 1e-4)
+        told = file.imagej_metadata
+        check.equal("ImageJ's words in our tif", [told["spacing"], told["slices"], told["unit"] == "mm"], [2.0, 3, 1])
+        n, d = file.pages[0].tags["XResolution"].value
+        check.equal("resolution of our tif", n / d, 2.0)
+    image = sitk.GetArrayFromImage(sitk.ReadImage(check.path("ours.tif")))
+    check.equal("ITK reads our tif", image, samples("f4"), 1e-4)
+
+
 def cloud():
     positions = np.random.default_rng(7).random((50, 3)) * 10
     return positions, np.arange(50.0), np.linspace(-1, 1, 50)
@@ -689,7 +726,7 @@ def main():
     sys.exit(1 if check.wrong else 0)
 
 
-PARTS = [read_nrrd, read_itk, read_nifti, read_vtk, read_tiff, read_slices, read_numpy, write_volumes, keep_places]
+PARTS = [read_nrrd, read_itk, read_nifti, read_vtk, read_tiff, read_slices, read_numpy, write_volumes, keep_places, part_of_several]
 PARTS += [read_points, scattered, write_shapes, read_dicom, read_zarr]
 
 if "--inside" in sys.argv:
