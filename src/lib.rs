@@ -57,4 +57,6 @@ pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
 pub use interpolate::Interpolant;
 pub use points::{Points, PointsError, Selection, SelectionRule, Units, WeightedPoints, Weighting};
 pub use shape::{Alpha, AlphaShape, Balls, Class, Complex, Simplices, alpha_shape};
-pub use volume::{Dims, Frame, Gray, GrayRange, Volume, VolumeError};
+pub use volume::{
+    Coordinates, Dims, Frame, Gray, GrayRange, LengthUnit, Space, Volume, VolumeError,
+};

@@ -152,7 +152,7 @@ fn what_is_printed_can_be_fed_back() {
         assert_eq!(first, again);
     }
     let text = ok(f, &["shape", "--count", "99", "--print-config"]);
-    assert!(text.contains("alpha = 10\n") && text.contains("count = 99\n"), "{text}");
+    assert!(text.contains("rms = 1\n") && text.contains("count = 99\n"), "{text}");
     assert!(!text.contains("ratio"), "excluded by --count: {text}");
 }
 

@@ -185,6 +185,53 @@ fn one_file_stands_for_its_series() {
 }
 
 #[test]
+fn series_in_nested_folders_are_listed_and_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    for n in 0..3i16 {
+        let deep = f.join(format!("disc/{n}"));
+        fs::create_dir_all(&deep).unwrap();
+        slice(n, f64::from(n)).save(&deep, "slice");
+        let other =
+            Slice { series: "1.2.9", rows: 1, pixels: vec![n; 3], ..slice(n, 2.0 * f64::from(n)) };
+        other.save(&deep, "other.dcm");
+    }
+    let of = |series: Option<&str>| {
+        read(f, &ReadOptions { series: series.map(str::to_owned), ..ReadOptions::default() })
+    };
+    let text = of(None).unwrap_err().to_string();
+    assert!(text.contains("2 DICOM series") && text.contains("--series"), "{text}");
+    assert!(text.contains("3 slices of 3×1, 1.2.9, as "), "{text}");
+    assert_eq!(of(Some("1")).unwrap().dims().xyz(), [3, 1, 3]);
+    assert_eq!(of(Some(".9")).unwrap().dims().xyz(), [3, 1, 3]);
+    assert_eq!(of(Some("2")).unwrap().dims().xyz(), [3, 2, 3]);
+    assert!(of(Some("3")).unwrap_err().to_string().contains("no series 3"));
+    let listed = walpha::volume::series(f).unwrap();
+    assert_eq!(
+        listed.iter().map(|one| (one.number, one.slices)).collect::<Vec<_>>(),
+        [(1, 3), (2, 3)]
+    );
+    let frame = *of(Some("2")).unwrap().frame();
+    assert_eq!(frame.coordinates, walpha::Coordinates::PATIENT);
+}
+
+/// Some scanners write a TIFF header into the bytes before the mark.
+#[test]
+fn a_preamble_of_another_format_does_not_matter() {
+    let folder = tempfile::tempdir().unwrap();
+    for preamble in [b"II*\0", b"MM\0*"] {
+        let mut bytes = slice(1, 7.0).bytes();
+        bytes[..4].copy_from_slice(preamble);
+        let path = folder.path().join("one.dcm");
+        fs::write(&path, bytes).unwrap();
+        let volume = open(&path).unwrap();
+        assert_eq!(volume.dims().xyz(), [3, 2, 1]);
+        assert_eq!(walpha::volume::format_name(&path, &ReadOptions::default()).unwrap(), "DICOM");
+        assert_eq!(volume.dtype(), walpha::volume::Dtype::I16);
+    }
+}
+
+#[test]
 fn what_makes_no_volume_is_told() {
     let at = |n: i16| slice(n, f64::from(n));
     let with = |group, number, kind: &'static [u8; 2], value: &str| Slice {

@@ -15,8 +15,8 @@ use walpha::points::{difference, points_at, select, weigh};
 use walpha::shape::ShapeOptions;
 use walpha::volume::{self, ReadOptions, read};
 use walpha::{
-    Alpha, AlphaShape, Class, Dims, Frame, Selection, SelectionRule, Units, Volume, WeightedPoints,
-    Weighting, alpha_shape,
+    Alpha, AlphaShape, Class, Coordinates, Dims, Frame, Selection, SelectionRule, Units, Volume,
+    WeightedPoints, Weighting, alpha_shape,
 };
 
 type Place = [f64; 3];
@@ -153,6 +153,7 @@ proptest! {
             origin: [-3.7, -4.1, -3.3],
             spacing: [0.77, 0.5, 1.3],
             direction: [[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]],
+            coordinates: Coordinates::default(),
         };
         let volume = Volume::new(Array3::zeros((7, 9, 8)), turned).unwrap();
         for dims in [[8, 9, 7], [5, 11, 3]] {

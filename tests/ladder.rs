@@ -468,7 +468,7 @@ fn the_command_makes_levels_of_detail() {
         "sample:phantom@24",
         "--counts",
         "200,600",
-        "--roi",
+        "--focus",
         "0:23,0:23,8:12",
         "-o",
         "out",
@@ -495,7 +495,7 @@ fn the_command_makes_levels_of_detail() {
 fn a_region_is_not_coarser_than_its_level() {
     let folder = tempfile::tempdir().unwrap();
     let args = ["ladder", "sample:phantom@24", "--counts", "6000", "-o", "out"];
-    let region = ["--roi", "4:19,4:19,8:12", "--count", "300"];
+    let region = ["--focus", "4:19,4:19,8:12", "--count", "300"];
     let points =
         |args: &[&str]| common::json(folder.path(), args)["levels"][0]["points"].as_u64().unwrap();
     assert_eq!(points(&[&args[..], &region].concat()), points(&args));
@@ -508,9 +508,17 @@ fn bad_wishes_leave_nothing_behind() {
     for (args, code, word) in [
         (&["ladder", phantom, "-o", "out", "--alphas", "1,x"][..], 2, "--alphas"),
         (&["ladder", phantom, "-o", "out", "--mesh", "doc"], 1, "--mesh"),
-        (&["ladder", phantom, "-o", "out", "--roi", "1:2,1:2,1:2"], 1, "--counts"),
-        (&["ladder", phantom, "-o", "out", "--counts", "9", "--roi", "2:1,1:2,1:2"], 2, "no range"),
-        (&["ladder", phantom, "-o", "out", "--counts", "9", "--roi", "90:99,1:2,1:2"], 1, "--roi"),
+        (&["ladder", phantom, "-o", "out", "--focus", "1:2,1:2,1:2"], 1, "--counts"),
+        (
+            &["ladder", phantom, "-o", "out", "--counts", "9", "--focus", "2:1,1:2,1:2"],
+            2,
+            "no range",
+        ),
+        (
+            &["ladder", phantom, "-o", "out", "--counts", "9", "--focus", "90:99,1:2,1:2"],
+            1,
+            "--focus",
+        ),
         (&["ladder", phantom, "-o", "out", "--counts", "9", "--alphas", "1"], 2, "--counts"),
     ] {
         let (got, _, stderr) = common::run(folder.path(), args);

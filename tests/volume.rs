@@ -31,11 +31,13 @@ impl Folder {
     }
 }
 
-const KNOWN: ReadOptions = ReadOptions { raw: None, level: None };
+fn known() -> ReadOptions {
+    ReadOptions::default()
+}
 
 fn raw(dims: [u64; 3], dtype: Dtype, endian: Endian, offset: u64) -> ReadOptions {
     let dims = Dims::new(dims[0], dims[1], dims[2]).unwrap();
-    ReadOptions { raw: Some(RawLayout { dims, dtype, endian, offset }), level: None }
+    ReadOptions { raw: Some(RawLayout { dims, dtype, endian, offset }), ..ReadOptions::default() }
 }
 
 /// The numbers −3, 0, 100 or, without sign, 3, 0, 100, as a file stores them, and as samples.
@@ -164,7 +166,7 @@ fn inrimages_of_every_type_and_order() {
             for (name, bytes) in
                 [("v.inr", bytes.clone()), ("v.inr.gz", gzip(&bytes)), ("v", bytes)]
             {
-                let volume = read(&folder.file(name, &bytes), &KNOWN).unwrap();
+                let volume = read(&folder.file(name, &bytes), &known()).unwrap();
                 assert_eq!(volume.as_slice(), expected, "{dtype} {cpu} {name}");
                 assert_eq!(volume.dims().xyz(), [1, 3, 1]);
                 assert_eq!(volume.frame().spacing, [0.5, 2.0, 3.25]);
@@ -183,7 +185,7 @@ fn long_inrimage_headers_are_read() {
     );
     let bytes = inr(&header, &2.5f32.to_le_bytes());
     assert_eq!(bytes.len(), 4 * 256 + 4, "four blocks");
-    let volume = read(&Folder::new().file("v.inr", &bytes), &KNOWN);
+    let volume = read(&Folder::new().file("v.inr", &bytes), &known());
     assert_eq!(volume.unwrap().as_slice(), [2.5]);
 }
 
@@ -194,7 +196,7 @@ fn inrimage_headers_of_any_length_are_read() {
     for padding in [0, 1, 100, 255, 256, 700] {
         let header = format!("#INRIMAGE-4#{{\n{lines}{}##}}\n", "\n".repeat(padding));
         let bytes = [header.as_bytes(), &2.5f32.to_le_bytes()].concat();
-        let volume = read(&Folder::new().file("v.inr", &bytes), &KNOWN);
+        let volume = read(&Folder::new().file("v.inr", &bytes), &known());
         assert_eq!(volume.unwrap().as_slice(), [2.5], "{padding}");
     }
 }
@@ -202,10 +204,10 @@ fn inrimage_headers_of_any_length_are_read() {
 #[test]
 fn damaged_inrimages_are_refused() {
     let folder = Folder::new();
-    let refuses = |bytes: &[u8], parts: &[&str]| folder.refuses("v.inr", bytes, &KNOWN, parts);
+    let refuses = |bytes: &[u8], parts: &[&str]| folder.refuses("v.inr", bytes, &known(), parts);
     let good = "XDIM=3\nYDIM=1\nZDIM=1\nTYPE=float\nPIXSIZE=32 bits\nCPU=decm\n";
     let payload = [0; 12];
-    assert!(read(&folder.file("v.inr", &inr(good, &payload)), &KNOWN).is_ok());
+    assert!(read(&folder.file("v.inr", &inr(good, &payload)), &known()).is_ok());
 
     refuses(b"", &["is empty"]);
     refuses(b"hello", &["no INRIMAGE"]);
@@ -237,20 +239,25 @@ fn headers_that_claim_too_much_are_refused() {
         let rest = "TYPE=unsigned fixed\nPIXSIZE=8 bits\nCPU=pc";
         inr(&format!("XDIM={x}\nYDIM={y}\nZDIM={z}\n{rest}"), b"abc")
     };
-    folder.refuses("v.inr", &header(side, side, side), &KNOWN, &["2147483648×", "too many"]);
+    folder.refuses("v.inr", &header(side, side, side), &known(), &["2147483648×", "too many"]);
     folder.refuses(
         "v.inr",
         &header(1600, 1600, 1600),
-        &KNOWN,
+        &known(),
         &["4096000000 bytes", "but 3 follow"],
     );
     let packed = gzip(&header(1600, 1600, 1600));
-    folder.refuses("v.inr.gz", &packed, &KNOWN, &["4096000000 bytes", "at most"]);
+    folder.refuses("v.inr.gz", &packed, &known(), &["4096000000 bytes", "at most"]);
     let shape =
         format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({side}, {side}, {side}), }}");
-    folder.refuses("v.npy", &npy_of(&shape, b""), &KNOWN, &["2147483648×", "too many"]);
+    folder.refuses("v.npy", &npy_of(&shape, b""), &known(), &["2147483648×", "too many"]);
     let shape = "{'descr': '<f8', 'fortran_order': False, 'shape': (1600, 1600, 1600), }";
-    folder.refuses("v.npy", &npy_of(shape, b"abc"), &KNOWN, &["32768000000 bytes", "but 3 follow"]);
+    folder.refuses(
+        "v.npy",
+        &npy_of(shape, b"abc"),
+        &known(),
+        &["32768000000 bytes", "but 3 follow"],
+    );
 }
 
 #[test]
@@ -259,7 +266,7 @@ fn damaged_gzip_streams_are_refused() {
     let samples: Vec<u8> = (0..30_000u32).map(|i| ((i * i) >> 3) as u8).collect();
     let header = "XDIM=300\nYDIM=100\nZDIM=1\nTYPE=unsigned fixed\nPIXSIZE=8 bits\nCPU=pc";
     let whole = gzip(&inr(header, &samples));
-    let refuses = |bytes: &[u8], parts: &[&str]| folder.refuses("v.inr.gz", bytes, &KNOWN, parts);
+    let refuses = |bytes: &[u8], parts: &[&str]| folder.refuses("v.inr.gz", bytes, &known(), parts);
     refuses(&whole[..whole.len() / 2], &["gzip", "truncated"]);
     refuses(&whole[..20], &["v.inr.gz"]);
     refuses(&gzip(&inr(header, &samples[..29_999])), &["30000 bytes", "but 29999", "truncated"]);
@@ -281,7 +288,7 @@ fn npy_arrays_of_every_type_and_order() {
             let mut fortran = Array3::zeros((2, 3, 4).f());
             fortran.assign(&c);
             for array in [c, fortran] {
-                let volume = read(&folder.file("v.npy", &npy(&array)), &KNOWN).unwrap();
+                let volume = read(&folder.file("v.npy", &npy(&array)), &known()).unwrap();
                 assert_eq!(volume.dims().xyz(), [4, 3, 2]);
                 assert_eq!(volume.samples()[[1, 2, 3]], 123.0);
                 assert_eq!(volume.as_slice()[4], 10.0);
@@ -292,10 +299,10 @@ fn npy_arrays_of_every_type_and_order() {
     each!(u8, i8, u16, i16, u32, i32, u64, i64, f32, f64);
     let (payload, expected) = three(Dtype::I16, Endian::Big);
     let header = "{'descr': '>i2', 'fortran_order': False, 'shape': (3, 1, 1), }\n";
-    let volume = read(&folder.file("v.npy", &npy_of(header, &payload)), &KNOWN).unwrap();
+    let volume = read(&folder.file("v.npy", &npy_of(header, &payload)), &known()).unwrap();
     assert_eq!(volume.as_slice(), expected);
     let mask = Array3::from_shape_vec((1, 1, 2), vec![true, false]).unwrap();
-    let volume = read(&folder.file("mask", &npy(&mask)), &KNOWN).unwrap();
+    let volume = read(&folder.file("mask", &npy(&mask)), &known()).unwrap();
     assert_eq!(volume.as_slice(), [1.0, 0.0]);
     assert!(!volume.has_gray_levels(), "0 and 1 are no gray levels");
 }
@@ -303,7 +310,7 @@ fn npy_arrays_of_every_type_and_order() {
 #[test]
 fn damaged_npy_files_are_refused() {
     let folder = Folder::new();
-    let refuses = |bytes: &[u8], parts: &[&str]| folder.refuses("v.npy", bytes, &KNOWN, parts);
+    let refuses = |bytes: &[u8], parts: &[&str]| folder.refuses("v.npy", bytes, &known(), parts);
     let good = npy(&Array3::<f32>::zeros((2, 2, 2)));
     refuses(b"", &["is empty"]);
     refuses(b"hello world", &["no NPY file"]);
@@ -316,7 +323,7 @@ fn damaged_npy_files_are_refused() {
             &[0; 4],
         )
     };
-    assert!(read(&folder.file("v.npy", &header("'<f4'", "False", "(1, 1, 1)")), &KNOWN).is_ok());
+    assert!(read(&folder.file("v.npy", &header("'<f4'", "False", "(1, 1, 1)")), &known()).is_ok());
     refuses(&header("'<f4'", "False", "(1,)"), &["1 axes", "three"]);
     refuses(&header("'<c8'", "False", "(1, 1, 1)"), &["<c8"]);
     refuses(&header("'<f2'", "False", "(1, 1, 1)"), &["<f2", "astype"]);
@@ -335,11 +342,11 @@ fn damaged_npy_files_are_refused() {
 #[test]
 fn unknown_and_missing_files_say_what_to_do() {
     let folder = Folder::new();
-    folder.refuses("v.raw", &[1, 2, 3], &KNOWN, &["--dims", ".inr", ".npy"]);
-    folder.refuses("v.dat", b"something", &KNOWN, &["no format known"]);
-    let text = read(Path::new("no/such.raw"), &KNOWN).unwrap_err().to_string();
+    folder.refuses("v.raw", &[1, 2, 3], &known(), &["--dims", ".inr", ".npy"]);
+    folder.refuses("v.dat", b"something", &known(), &["no format known"]);
+    let text = read(Path::new("no/such.raw"), &known()).unwrap_err().to_string();
     assert!(text.contains("no/such.raw") && text.contains("sample:phantom"), "{text}");
-    let text = read(folder.0.path(), &KNOWN).unwrap_err().to_string();
+    let text = read(folder.0.path(), &known()).unwrap_err().to_string();
     assert!(text.contains("name a file in it"), "{text}");
 }
 

@@ -16,7 +16,7 @@ use zarrs::filesystem::FilesystemStore;
 use zarrs::group::GroupBuilder;
 
 fn open(path: &Path, level: Option<u32>) -> Result<Volume, VolumeError> {
-    read(path, &ReadOptions { raw: None, level })
+    read(path, &ReadOptions { level, ..ReadOptions::default() })
 }
 
 fn numbers(shape: &[u64]) -> Vec<u16> {

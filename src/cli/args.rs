@@ -10,38 +10,106 @@ use clap::{Args, ValueEnum};
 use walpha::export::Target;
 use walpha::interpolate::Adaptive;
 use walpha::shape::{Engine, ShapeError, ShapeOptions};
-use walpha::volume::{Dtype, Endian, RawLayout, ReadOptions};
+use walpha::volume::{Dtype, Endian, Nan, RawLayout, ReadOptions, Region};
 use walpha::{
-    Alpha, Balls, Decomposition, Dims, Gray, GrayRange, HaarOptions, Selection, SelectionRule,
-    Tolerance, Units, Weighting,
+    Alpha, Balls, Coordinates, Decomposition, Dims, Gray, GrayRange, HaarOptions, LengthUnit,
+    Selection, SelectionRule, Space, Tolerance, Units, Volume, Weighting,
 };
 
 /// What to read.
 #[derive(Args, Clone)]
 pub struct InputArgs {
-    /// Volume or point file, sample:skull, sample:phantom or sample:phantom@N.
+    /// Volume or point file, - (standard input), sample:skull, sample:phantom or sample:phantom@N.
     #[arg(value_name = "INPUT")]
     pub input: String,
     #[command(flatten)]
     pub raw: RawArgs,
-    /// Level of a pyramid (OME-Zarr) to read; 0 is the finest [default: 0].
-    #[arg(long, value_name = "N", conflicts_with = "dims")]
-    level: Option<u32>,
+    #[command(flatten)]
+    part: PartArgs,
+    /// Format where no name tells it, as of standard input and output (-): --format nrrd.
+    #[arg(long, value_name = "EXTENSION")]
+    format: Option<String>,
     /// Values that become gray 0 and 255 [default: as they are for unsigned 8 bits, else min..max].
     #[arg(long, value_name = "LO..HI", value_parser = gray_range, allow_hyphen_values = true)]
     gray: Option<GrayRange>,
+    /// Write gray levels 0..255, and not the values of INPUT that they stand for.
+    #[arg(long)]
+    gray_out: bool,
 }
 
 impl InputArgs {
     /// How to read a volume.
     pub fn options(&self) -> ReadOptions {
-        ReadOptions { raw: self.raw.layout(), level: self.level }
+        let PartArgs { level, array, frame, series, nan, roi, downsample } = self.part.clone();
+        ReadOptions {
+            raw: self.raw.layout(),
+            level,
+            array,
+            frame,
+            series,
+            nan,
+            region: roi,
+            downsample,
+        }
+    }
+
+    /// What the name of standard input would end with.
+    pub fn extension(&self) -> String {
+        let dotted = |format: &String| format!(".{}", format.trim_start_matches('.'));
+        self.format.as_ref().map(dotted).unwrap_or_default()
+    }
+
+    /// A path of an output whose extension tells the format: the path itself, if it has one.
+    pub fn output(&self, path: &Path) -> anyhow::Result<PathBuf> {
+        match &self.format {
+            _ if path.extension().is_some() => Ok(path.to_owned()),
+            Some(_) => Ok(format!("output{}", self.extension()).into()),
+            None if path == Path::new(Target::STDOUT) => {
+                bail!("standard output has no extension; name the format, as in --format nrrd")
+            }
+            None => Ok(path.to_owned()),
+        }
     }
 
     /// How values become gray levels.
     pub fn gray(&self) -> Gray {
         self.gray.map_or(Gray::Automatic, Gray::Range)
     }
+
+    /// The values that gray levels stand for in what is written, where `range` became 0..255.
+    pub fn written(&self, range: GrayRange) -> GrayRange {
+        if self.gray_out { GrayRange::IDENTITY } else { range }
+    }
+}
+
+/// Which part of a file is the volume, and what of it is taken.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "Parts of a volume")]
+struct PartArgs {
+    /// Level of a pyramid (OME-Zarr) to read; 0 is the finest [default: 0].
+    #[arg(long, value_name = "N", conflicts_with = "dims")]
+    level: Option<u32>,
+    /// Array to read, by its name, of a file of several (VTK, NPZ) [default: of VTK, the first of points].
+    #[arg(long, value_name = "NAME", conflicts_with = "dims")]
+    array: Option<String>,
+    /// Volume to read of a file of several (a fourth axis), from 0.
+    #[arg(long, value_name = "K", conflicts_with = "dims")]
+    frame: Option<u64>,
+    /// Series to read of a folder of several (DICOM): its number as `walpha info` lists it, or the end
+    /// of its UID.
+    #[arg(long, value_name = "N", conflicts_with = "dims")]
+    series: Option<String>,
+    /// Value for samples that are NaN; without one they are left out: no points, no errors.
+    #[arg(long, value_name = "VALUE", num_args = 0..=1, default_missing_value = "mask",
+          value_parser = nan, allow_negative_numbers = true)]
+    nan: Option<Nan>,
+    /// Take the samples from one index up to, and without, another along x, y and z; ends may be left
+    /// away, as in 20:40,:,10:.
+    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = voxels)]
+    roi: Option<Region>,
+    /// Take the means of N×N×N samples.
+    #[arg(long, value_name = "N")]
+    downsample: Option<NonZeroUsize>,
 }
 
 /// The layout of a raw file.
@@ -87,28 +155,6 @@ pub struct PipelineArgs {
     pub select: SelectArgs,
     #[command(flatten)]
     pub weights: WeightArgs,
-}
-
-/// Which format goes to standard output.
-#[derive(Args, Clone)]
-pub struct FormatArgs {
-    /// Format of a file whose name has no extension, as of standard output (-o -): --format ply.
-    #[arg(long, value_name = "EXTENSION", requires = "output")]
-    format: Option<String>,
-}
-
-impl FormatArgs {
-    /// A path whose extension tells the format: the path itself, if it has one.
-    pub fn name(&self, path: &Path) -> anyhow::Result<PathBuf> {
-        match &self.format {
-            _ if path.extension().is_some() => Ok(path.to_owned()),
-            Some(format) => Ok(format!("output.{}", format.trim_start_matches('.')).into()),
-            None if path == Path::new(Target::STDOUT) => {
-                bail!("standard output has no extension; name the format, as in --format nrrd")
-            }
-            None => Ok(path.to_owned()),
-        }
-    }
 }
 
 /// The wavelet stage.
@@ -177,9 +223,58 @@ pub struct SelectArgs {
     /// Leave out samples below this gray level after truncation.
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     gray_min: Option<f64>,
-    /// Coordinates in voxels, or in the file's units; then α, weights and sizes are too.
-    #[arg(long, value_enum, default_value_t, value_name = "UNITS")]
-    units: UnitsArg,
+    /// Leave out samples below this value of INPUT, as in --value-min 300 for Hounsfield units.
+    #[arg(long, value_name = "V", allow_negative_numbers = true, conflicts_with = "gray_min")]
+    value_min: Option<f64>,
+    #[command(flatten)]
+    place: PlaceArgs,
+}
+
+/// In what coordinates points, shapes and all lengths are.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Coordinates")]
+pub struct PlaceArgs {
+    /// Coordinates in voxels, or in the unit of the file; then α, weights and sizes are too
+    /// [default: world where the file states spacing or a place, else voxel].
+    #[arg(long, value_enum, value_name = "UNITS")]
+    units: Option<UnitsArg>,
+    /// Which way world coordinates run, where the file says how they lie in a patient: x to the left
+    /// and y to the back (lps), or to the right and the front (ras) [default: lps].
+    #[arg(long, value_enum, value_name = "SPACE")]
+    space: Option<SpaceArg>,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum SpaceArg {
+    Lps,
+    Ras,
+}
+
+impl PlaceArgs {
+    /// What the coordinates of this volume's points are measured in, and the volume in the space that
+    /// they are in.
+    pub fn place(&self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
+        let Coordinates { space, unit } = volume.frame().coordinates;
+        let units = match self.units {
+            Some(UnitsArg::Voxel) => Units::Voxel,
+            Some(UnitsArg::World) => Units::World,
+            None if unit == LengthUnit::Voxel => Units::Voxel,
+            None => Units::World,
+        };
+        let asked = match self.space {
+            Some(_) if units == Units::Voxel => {
+                bail!("--space is for world coordinates, and these are voxels: leave it away")
+            }
+            Some(_) if !space.is_known() => bail!(
+                "the input does not say how its axes lie in a patient, and --space cannot know: leave \
+                 it away"
+            ),
+            Some(SpaceArg::Ras) => Space::Ras,
+            _ => Space::Lps,
+        };
+        let frame = volume.frame().to(Coordinates { space: asked, unit });
+        Ok((volume.with_frame(frame), units))
+    }
 }
 
 #[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
@@ -189,22 +284,26 @@ enum SelectArg {
     Adaptive,
 }
 
-#[derive(Clone, Copy, Default, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum UnitsArg {
-    #[default]
     Voxel,
     World,
 }
 
 impl SelectArgs {
-    /// The stage's options.
-    pub fn selection(&self) -> Selection {
-        let rule = match (self.count, self.threshold) {
+    /// The stage's options, for a volume whose values `range` are gray 0..255.
+    pub fn selection(&self, range: &GrayRange) -> Selection {
+        let gray_min = self.gray_min.or(self.value_min.map(|value| range.gray(value)));
+        Selection { rule: self.rule(), gray_min }
+    }
+
+    /// By what rule samples are chosen.
+    pub fn rule(&self) -> SelectionRule {
+        match (self.count, self.threshold) {
             (Some(count), _) => SelectionRule::Count(count),
             (_, Some(threshold)) => SelectionRule::Threshold(threshold),
             _ => self.ratio.map_or_else(SelectionRule::default, SelectionRule::Ratio),
-        };
-        Selection { rule, gray_min: self.gray_min }
+        }
     }
 
     /// The goal of adaptive selection, if that is asked for, among so many samples.
@@ -215,14 +314,14 @@ impl SelectArgs {
             }
             return Ok(None);
         }
-        if self.threshold.is_some() || self.gray_min.is_some() {
+        if self.threshold.is_some() || self.gray_min.or(self.value_min).is_some() {
             bail!(
-                "--threshold and --gray-min choose by gray levels, which --select adaptive does \
-                 not: use --count, --ratio or --target-rmse"
+                "--threshold, --gray-min and --value-min choose by gray levels, which --select \
+                 adaptive does not: use --count, --ratio or --target-rmse"
             );
         }
         let rmse = self.target_rmse.unwrap_or(0.0);
-        let count = match self.selection().rule {
+        let count = match self.rule() {
             SelectionRule::Count(count) => count,
             SelectionRule::Ratio(_) if self.ratio.is_none() && self.target_rmse.is_some() => {
                 samples as u64
@@ -235,23 +334,24 @@ impl SelectArgs {
         Ok(Some(Adaptive { count, rmse }))
     }
 
-    /// What coordinates are measured in.
-    pub fn units(&self) -> Units {
-        match self.units {
-            UnitsArg::Voxel => Units::Voxel,
-            UnitsArg::World => Units::World,
-        }
+    /// In what coordinates the points are.
+    pub fn place(&self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
+        self.place.place(volume)
     }
 }
+
+/// The α of the paper, in squares of a voxel's side.
+const SILENT_ALPHA: f64 = 10.0;
 
 /// α and the weights in proportion to it.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Weights and α")]
 pub struct WeightArgs {
-    /// The parameter α, a squared length; `inf` gives the convex hull.
-    #[arg(long, value_name = "A", value_parser = alpha, group = "parameter", default_value = "10",
+    /// The parameter α, a squared length; `inf` gives the convex hull [default: 10 h² where a voxel
+    /// has the volume h³, so 10 in voxels].
+    #[arg(long, value_name = "A", value_parser = alpha, group = "parameter",
           allow_negative_numbers = true)]
-    alpha: Alpha,
+    alpha: Option<Alpha>,
     /// The parameter as a radius: α = R².
     #[arg(long, value_name = "R", value_parser = alpha_radius, group = "parameter")]
     alpha_radius: Option<Alpha>,
@@ -262,9 +362,10 @@ pub struct WeightArgs {
 }
 
 impl WeightArgs {
-    /// The parameter α.
-    pub fn alpha(&self) -> Alpha {
-        self.alpha_radius.unwrap_or(self.alpha)
+    /// The parameter α, for a grid whose voxels have the volume of a cube of side `h`.
+    pub fn alpha(&self, h: f64) -> Alpha {
+        let silent = || Alpha::from_squared(SILENT_ALPHA * h * h).unwrap_or(Alpha::INFINITE);
+        self.alpha_radius.or(self.alpha).unwrap_or_else(silent)
     }
 
     /// The weights asked for; without a word, those of the input, or else none.
@@ -279,10 +380,9 @@ impl WeightArgs {
 #[command(next_help_heading = "Weights, frozen")]
 pub struct FrozenArgs {
     /// The α, a squared length, for which weights are computed; they stay the same at every level,
-    /// so that levels are nested.
-    #[arg(long, value_name = "A", value_parser = alpha, default_value = "10",
-          allow_negative_numbers = true)]
-    alpha_ref: Alpha,
+    /// so that levels are nested [default: 10 h² where a voxel has the volume h³, so 10 in voxels].
+    #[arg(long, value_name = "A", value_parser = alpha, allow_negative_numbers = true)]
+    alpha_ref: Option<Alpha>,
     /// Weights ω (squared lengths): common=C, min-max (eq. 4.1), barycentric (eq. 4.2),
     /// barycentric-n (N times that) or column (from the input).
     #[arg(long, value_name = "KIND", allow_hyphen_values = true)]
@@ -292,6 +392,42 @@ pub struct FrozenArgs {
 impl From<FrozenArgs> for WeightArgs {
     fn from(FrozenArgs { alpha_ref, weights }: FrozenArgs) -> Self {
         Self { alpha: alpha_ref, alpha_radius: None, weights }
+    }
+}
+
+/// A gray level, or a value of the file: `50` or `300v`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Level {
+    /// As the wavelet stage has it.
+    Gray(f64),
+    /// As the file has it.
+    Value(f64),
+}
+
+impl Level {
+    /// The gray level, where values `range` are gray 0..255.
+    pub fn gray(self, range: &GrayRange) -> f64 {
+        match self {
+            Self::Gray(gray) => gray,
+            Self::Value(value) => range.gray(value),
+        }
+    }
+}
+
+impl FromStr for Level {
+    type Err = anyhow::Error;
+
+    fn from_str(text: &str) -> anyhow::Result<Self> {
+        let (number, level): (_, fn(f64) -> Self) = match text.strip_suffix('v') {
+            Some(value) => (value, Self::Value),
+            None => (text, Self::Gray),
+        };
+        match self::number(number)? {
+            number if number.is_finite() => Ok(level(number)),
+            _ => bail!(
+                "a finite number is needed; give a gray level as in 50, or a value as in 300v"
+            ),
+        }
     }
 }
 
@@ -394,6 +530,38 @@ fn dims(text: &str) -> anyhow::Result<Dims> {
         bail!("three sizes are needed; give those along x, y and z, as in 64,64,64");
     };
     Ok(Dims::new(x, y, z)?)
+}
+
+fn nan(text: &str) -> anyhow::Result<Nan> {
+    if text == "mask" {
+        return Ok(Nan::Mask);
+    }
+    let value = number(text)? as f32;
+    if !value.is_finite() {
+        bail!("a finite number is needed; give it as in -1000, or give none");
+    }
+    Ok(Nan::Value(value))
+}
+
+fn voxels(text: &str) -> anyhow::Result<Region> {
+    let ranges: Vec<&str> = text.split(',').collect();
+    if ranges.len() != 3 {
+        bail!("three ranges are needed, as in 20:40,20:40,10:30 for x, y and z");
+    }
+    let mut region = Region::default();
+    for (k, range) in ranges.into_iter().enumerate() {
+        let Some((first, end)) = range.split_once(':') else {
+            bail!("`{range}` is no range: two indices are needed, as in 20:40");
+        };
+        let index = |text: &str| match text.trim() {
+            "" => Ok(None),
+            text => text.parse().map(Some).map_err(|_| {
+                anyhow!("`{text}` is no index of a sample: whole numbers are needed, as in 20:40")
+            }),
+        };
+        (region.first[k], region.end[k]) = (index(first)?.unwrap_or(0), index(end)?);
+    }
+    Ok(region)
 }
 
 fn gray_range(text: &str) -> anyhow::Result<GrayRange> {

@@ -128,9 +128,9 @@ impl Check {
                 shown(path)
             );
         }
-        self.shape.check(self.pipeline.weights.alpha())?;
+        self.shape.check(self.pipeline.weights.alpha(1.0))?;
         let weighed = pipeline::weighted_points(&self.pipeline, progress)?;
-        let mut options = self.shape.options(self.pipeline.weights.alpha());
+        let mut options = self.shape.options(weighed.alpha);
         // The whole triangulation can be judged wholly. Several blocks are judged as they are.
         options.exterior |=
             options.blocks.is_none_or(|blocks| blocks.get() == 1) && options.memory.is_none();

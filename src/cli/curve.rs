@@ -10,12 +10,12 @@ use walpha::export::{Content, NewFolder, Target, write_all};
 use walpha::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
 use walpha::render::error_figure;
 use walpha::shown::shown;
-use walpha::{SelectionRule, Volume, Weighting, haar};
+use walpha::{LengthUnit, SelectionRule, Volume, Weighting, haar};
 
 use super::Global;
 use super::args::{PipelineArgs, SelectArgs};
 use super::output::{name, tell};
-use super::pipeline::{Input, read};
+use super::pipeline::{Grays, Input, read, side};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 
@@ -23,8 +23,9 @@ use super::report::SCHEMA_VERSION;
 struct Facts {
     schema_version: u32,
     input: String,
-    /// Squared.
+    /// Squared, in the square of the unit.
     alpha: f64,
+    unit: LengthUnit,
     curve: Vec<CurvePoint>,
     files: Vec<String>,
     seconds: f64,
@@ -36,15 +37,16 @@ pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Resu
     let (new, paths) = paths(base)?;
     let targets = paths.iter().map(|path| Target::open(path)).collect::<Result<Vec<_>, _>>()?;
     let mut progress = Progress::new(global);
-    let Input::Volume(volume, _) = read(input, &mut progress)? else {
+    let Input::Volume(Grays { volume, range, .. }) = read(input, &mut progress)? else {
         bail!("{} holds points, and --curve needs a volume", input.input);
     };
+    let (volume, units) = select.place(volume)?;
     let (smoothed, _) = progress.stage("haar", || haar::smooth(&volume, &haar.options()))?;
     let options = CurveOptions {
         counts: counts(&volume, select)?,
         weightings: vec![Weighting::Common(0.0), Weighting::MinMax, Weighting::Barycentric],
-        alpha: weights.alpha(),
-        units: select.units(),
+        alpha: weights.alpha(side(&volume, units)),
+        units,
     };
     let show = |method: Method| match method {
         Method::Difference => "points of largest difference",
@@ -56,7 +58,7 @@ pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Resu
     let curve =
         error_curve(&volume, &smoothed, &options, &mut |method| progress.show(show(method)))?;
     let mut csv = Vec::new();
-    write_curve_csv(&curve, &mut csv)?;
+    write_curve_csv(&curve, range.step(), &mut csv)?;
     let alpha = options.alpha.squared();
     let figure = error_figure(&format!("Error against points: {}", input.input), alpha, &curve);
     let files = [csv, figure.to_png()?, figure.to_svg()?.into_bytes()];
@@ -72,6 +74,7 @@ pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Resu
         schema_version: SCHEMA_VERSION,
         input: input.input.clone(),
         alpha,
+        unit: units.coordinates(&volume).unit,
         curve,
         files: paths.map(|path| path.display().to_string()).into(),
         seconds,
@@ -81,7 +84,7 @@ pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Resu
 
 /// From a sixteenth to twice the points that would be selected.
 fn counts(volume: &Volume, select: &SelectArgs) -> anyhow::Result<Vec<u64>> {
-    let whole = match select.selection().rule {
+    let whole = match select.rule() {
         SelectionRule::Count(count) => count as f64,
         SelectionRule::Ratio(ratio) => ratio * volume.dims().samples() as f64,
         SelectionRule::Threshold(_) => bail!("--curve needs --count or --ratio"),
@@ -115,7 +118,9 @@ fn paths(base: &Path) -> anyhow::Result<(Option<NewFolder>, [PathBuf; 3])> {
 
 impl Display for Facts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "input     {}, α = {} (squared length)", name(&self.input), self.alpha)?;
+        let unit = self.unit.symbol();
+        let input = name(&self.input);
+        writeln!(f, "input     {input}, α = {} {unit}² (squared length)", self.alpha)?;
         writeln!(
             f,
             "{:<20}{:<12}{:>8}{:>8}{:>11}{:>13}{:>13}",

@@ -9,9 +9,9 @@ use walpha::export::{Target, VolumeFormat};
 use walpha::haar::smooth;
 
 use super::Global;
-use super::args::{FormatArgs, HaarArgs, InputArgs};
+use super::args::{HaarArgs, InputArgs};
 use super::output::tell;
-use super::pipeline::{Input, read};
+use super::pipeline::{Grays, Input, read};
 use super::progress::Progress;
 use super::report::{HaarReport, SCHEMA_VERSION};
 
@@ -22,12 +22,10 @@ use super::report::{HaarReport, SCHEMA_VERSION};
 pub struct Haar {
     #[command(flatten)]
     input: InputArgs,
-    /// File to write the restored gray levels to, as f32, replaced if it is there: .nrrd, .nii,
-    /// .nii.gz, .vti, .npy or .raw; or - (standard output, with --format).
+    /// File to write the restored values to, as f32, replaced if it is there: .nrrd, .nii, .nii.gz,
+    /// .mha, .vti, .tif, .npy or .raw; or - (standard output, with --format).
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    #[command(flatten)]
-    format: FormatArgs,
     #[command(flatten)]
     haar: HaarArgs,
 }
@@ -43,19 +41,21 @@ impl Haar {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let target = match &self.output {
             None => None,
-            Some(path) => Some((VolumeFormat::of(&self.format.name(path)?)?, Target::open(path)?)),
+            Some(path) => Some((VolumeFormat::of(&self.input.output(path)?)?, Target::open(path)?)),
         };
         let mut progress = Progress::new(global);
-        let Input::Volume(volume, _) = read(&self.input, &mut progress)? else {
+        let Input::Volume(Grays { volume, range, written }) = read(&self.input, &mut progress)?
+        else {
             bail!("{} holds points; name a volume", self.input.input);
         };
         let options = self.haar.options();
         let (smoothed, truncation) = progress.stage("haar", || smooth(&volume, &options))?;
         if let Some((format, target)) = target {
+            let smoothed = smoothed.into_values(&written);
             progress.stage("write", || target.write(|out| format.write(&smoothed, out)))?;
         }
         progress.finish();
-        let haar = HaarReport::from(&truncation);
+        let haar = HaarReport::new(&truncation, &range);
         tell(global, &Facts { schema_version: SCHEMA_VERSION, input: self.input.input, haar })
     }
 }

@@ -1,10 +1,12 @@
 //! `walpha info`: what a file holds.
 
+use std::path::Path;
+
 use clap::Args;
 use serde::Serialize;
-use walpha::Frame;
 use walpha::points::read_points;
-use walpha::volume;
+use walpha::volume::{self, Series};
+use walpha::{Coordinates, Frame, LengthUnit};
 
 use super::args::InputArgs;
 use super::output::{name, tell};
@@ -33,16 +35,26 @@ struct Facts {
 #[serde(tag = "kind", rename_all = "lowercase")]
 enum Content {
     Volume {
+        format: &'static str,
+        /// How a sample is stored.
+        samples: String,
         dims: [usize; 3],
         spacing: [f64; 3],
         origin: [f64; 3],
+        /// Columns are the grid's axes.
         direction: [[f64; 3]; 3],
+        #[serde(flatten)]
+        coordinates: Coordinates,
         min: f32,
         max: f32,
         gray_levels: bool,
         /// Where the samples are, if not in INPUT itself.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         data_files: Vec<String>,
+    },
+    /// Several series in a folder, of which --series reads one.
+    Series {
+        series: Vec<Series>,
     },
     Points {
         count: usize,
@@ -55,13 +67,14 @@ enum Content {
 
 impl Info {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
-        let content = Progress::new(global).stage("read", || self.look())?;
+        let look = || pipeline::with_file(&self.input, |input| self.look(input));
+        let content = Progress::new(global).stage("read", look)?;
         tell(global, &Facts { schema_version: SCHEMA_VERSION, input: self.input.input, content })
     }
 
-    fn look(&self) -> anyhow::Result<Content> {
-        if pipeline::is_points(&self.input)? {
-            let points = read_points(self.input.input.as_ref())?;
+    fn look(&self, input: &str) -> anyhow::Result<Content> {
+        if pipeline::is_points(&self.input, input)? {
+            let points = read_points(input.as_ref())?;
             let axis = |end: fn(f64, f64) -> f64, start: f64, axis: usize| {
                 points.positions.iter().fold(start, |so_far, p| end(so_far, p[axis]))
             };
@@ -73,18 +86,30 @@ impl Info {
                 values: points.values.is_some(),
             });
         }
-        let volume = volume::open(&self.input.input, &self.input.options())?;
+        let options = self.input.options();
+        if options.series.is_none() && Path::new(input).is_dir() {
+            let series = volume::series(input.as_ref())?;
+            if series.len() > 1 {
+                return Ok(Content::Series { series });
+            }
+        }
+        let volume = volume::open(input, &options)?;
         let (min, max) = volume.value_range();
-        let input = self.input.input.as_str();
-        let data_files = match input.starts_with("sample:") {
-            true => Vec::new(),
-            false => volume::data_files(input.as_ref(), &self.input.options())?,
+        let (format, data_files) = match input.starts_with("sample:") {
+            true => ("sample", Vec::new()),
+            false => {
+                let path = input.as_ref();
+                (volume::format_name(path, &options)?, volume::data_files(path, &options)?)
+            }
         };
         Ok(Content::Volume {
+            format,
+            samples: volume.dtype().to_string(),
             dims: volume.dims().xyz(),
             spacing: volume.frame().spacing,
             origin: volume.frame().origin,
             direction: volume.frame().direction,
+            coordinates: volume.frame().coordinates,
             min,
             max,
             gray_levels: volume.has_gray_levels(),
@@ -103,18 +128,29 @@ impl std::fmt::Display for Content {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Volume {
+                format,
+                samples,
                 dims: [x, y, z],
                 spacing,
                 origin,
                 direction,
+                coordinates: Coordinates { space, unit },
                 min,
                 max,
                 gray_levels,
                 data_files,
             } => {
+                writeln!(f, "format    {format}, samples of type {samples}")?;
                 writeln!(f, "volume    {x}×{y}×{z} samples (x, y, z)")?;
-                writeln!(f, "spacing   {} {} {}", spacing[0], spacing[1], spacing[2])?;
-                writeln!(f, "origin    {} {} {}", origin[0], origin[1], origin[2])?;
+                let stated = match (space.is_known(), unit) {
+                    (true, _) => space.name(),
+                    (false, LengthUnit::Voxel) => "none, the file places no grid",
+                    (false, _) => "unknown, the file does not say how its axes lie in a patient",
+                };
+                writeln!(f, "space     {stated}")?;
+                let unit = unit.symbol();
+                writeln!(f, "spacing   {} {} {} {unit}", spacing[0], spacing[1], spacing[2])?;
+                writeln!(f, "origin    {} {} {} {unit}", origin[0], origin[1], origin[2])?;
                 if *direction != Frame::VOXEL.direction {
                     for (i, axis) in ["x", "y", "z"].iter().enumerate() {
                         let [r, a, s] = direction.map(|row| row[i]);
@@ -131,6 +167,10 @@ impl std::fmt::Display for Content {
                         writeln!(f, "samples   in {} files, {ends}", data_files.len())
                     }
                 }
+            }
+            Self::Series { series } => {
+                writeln!(f, "series    {} in the folder; --series N reads one", series.len())?;
+                series.iter().try_for_each(|one| writeln!(f, "          {one}"))
             }
             Self::Points { count, low, high, weights, values } => {
                 writeln!(f, "points    {count}")?;

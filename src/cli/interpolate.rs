@@ -9,10 +9,11 @@ use clap::Args;
 use serde::Serialize;
 use walpha::export::{Content, Target, VolumeFormat, write_all};
 use walpha::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
-use walpha::{AlphaShape, Volume, alpha_shape};
+use walpha::{AlphaShape, GrayRange, Units, Volume, alpha_shape};
 
-use super::args::{FormatArgs, PipelineArgs, ShapeArgs};
+use super::args::{PipelineArgs, ShapeArgs};
 use super::output::tell;
+use super::pipeline::{VolumeFacts, Weighed};
 use super::progress::Progress;
 use super::report::{Report, number_or_null_or_name};
 use super::{Global, curve, pipeline};
@@ -21,8 +22,8 @@ use super::{Global, curve, pipeline};
 ///
 /// F is linear on each cell of the shape (and on facets, edges and vertices that are faces of
 /// none). It is sampled on the grid of the volume, or with --dims on another over the same extent,
-/// from the first sample to the last; samples outside the shape are 0. Error is measured on the
-/// samples of INPUT that the shape covers, in gray levels; the peak of PSNR is 255. Hidden points
+/// from the first sample to the last; samples outside the shape are gray 0, which is the lowest value.
+/// Error is measured on the samples of INPUT that the shape covers; the peak of PSNR is gray 255. Hidden points
 /// carry no value. For points without a volume, --dims is needed and spans their box.
 ///
 /// With --curve: error and coverage over the number of points instead, from a sixteenth to twice
@@ -40,8 +41,8 @@ use super::{Global, curve, pipeline};
 pub struct Interpolate {
     #[command(flatten)]
     pipeline: PipelineArgs,
-    /// Volume to write F to, as f32: .nrrd, .nii, .nii.gz, .vti, .npy or .raw; or - (standard output,
-    /// with --format). With --curve: a folder, or what names of files begin with. Files that are
+    /// Volume to write F to, as f32: .nrrd, .nii, .nii.gz, .mha, .vti, .tif, .npy or .raw; or - (standard
+    /// output, with --format). With --curve: a folder, or what names of files begin with. Files that are
     /// there are replaced.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -54,12 +55,10 @@ pub struct Interpolate {
     fill: bool,
     /// Measure error against the number of points.
     #[arg(long, requires = "output", conflicts_with_all = [
-        "mask", "fill", "select", "target_rmse", "threshold", "gray_min", "weights", "balls", "engine",
-        "blocks", "memory", "exterior",
+        "mask", "fill", "select", "target_rmse", "threshold", "gray_min", "value_min", "weights", "balls",
+        "engine", "blocks", "memory", "exterior",
     ])]
     curve: bool,
-    #[command(flatten)]
-    format: FormatArgs,
     #[command(flatten)]
     shape: ShapeArgs,
 }
@@ -88,15 +87,42 @@ struct Interpolation {
 struct Error {
     #[serde(flatten)]
     deviation: Deviation,
+    /// In values of INPUT; null where these are gray levels.
+    rmse_in_values: Option<f64>,
+    max_in_values: Option<f64>,
     coverage: f64,
     /// Decibels; "inf" where nothing differs.
     #[serde(serialize_with = "number_or_null_or_name")]
     psnr: Option<f64>,
 }
 
-impl From<Deviation> for Error {
-    fn from(deviation: Deviation) -> Self {
-        Self { deviation, coverage: deviation.coverage(), psnr: deviation.psnr() }
+impl Error {
+    fn new(deviation: Deviation, range: &GrayRange) -> Self {
+        let in_values = (!range.is_identity()).then(|| deviation.scaled(range.step()));
+        Self {
+            deviation,
+            rmse_in_values: in_values.and_then(|d| d.rmse),
+            max_in_values: in_values.and_then(|d| d.max),
+            coverage: deviation.coverage(),
+            psnr: deviation.psnr(),
+        }
+    }
+}
+
+/// The volume that F is measured against: its samples and how they became gray levels.
+#[derive(Clone, Copy)]
+struct Original<'a> {
+    volume: &'a Volume,
+    units: Units,
+    range: GrayRange,
+    written: GrayRange,
+}
+
+impl<'a> Original<'a> {
+    fn of(volume: Option<&'a Volume>, weighed: &Weighed) -> Option<Self> {
+        let (volume, facts) = volume.zip(weighed.volume.as_ref())?;
+        let VolumeFacts { units, range, written, .. } = *facts;
+        Some(Self { volume, units, range, written })
     }
 }
 
@@ -109,35 +135,38 @@ impl Interpolate {
             let base = self.output.as_deref().expect("clap requires it");
             return curve::run(global, &self.pipeline, base);
         }
-        self.shape.check(self.pipeline.weights.alpha())?;
+        self.shape.check(self.pipeline.weights.alpha(1.0))?;
         let output = match &self.output {
             None => None,
-            Some(path) => Some((VolumeFormat::of(&self.format.name(path)?)?, Target::open(path)?)),
+            Some(path) => {
+                Some((VolumeFormat::of(&self.pipeline.input.output(path)?)?, Target::open(path)?))
+            }
         };
         let mask = self.mask.as_deref().map(open).transpose()?;
         let mut progress = Progress::new(global);
         let (weighed, volume) = pipeline::points_and_volume(&self.pipeline, &mut progress)?;
-        let volume = volume.as_ref();
-        let alpha = self.pipeline.weights.alpha();
-        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, alpha);
-        let grid = self.grid(volume, &weighed.points.positions)?;
-        let options = self.shape.options(alpha);
+        let original = Original::of(volume.as_ref(), &weighed);
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
+        let grid = self.grid(original, &weighed.points.positions)?;
+        let options = self.shape.options(weighed.alpha);
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
         report.add_shape(&shape);
-        let sampled = progress.stage("interpolate", || self.sample(&shape, &grid, volume))?;
+        let sampled = progress.stage("interpolate", || sample(&shape, &grid, original))?;
         let on_shape = sampled.resampled.covered();
         let mask = mask.map(|open| anyhow::Ok((open, sampled.resampled.mask()?))).transpose()?;
         let (inside, filled, resampled) = if self.fill {
-            let units = self.pipeline.select.units();
-            let whole = progress.stage("fill", || fill(&shape, volume, units))?;
-            let filled = progress.stage("interpolate", || self.sample(&whole, &grid, volume))?;
+            let units = original.map_or(Units::Voxel, |original| original.units);
+            let whole = progress.stage("fill", || fill(&shape, volume.as_ref(), units))?;
+            let filled = progress.stage("interpolate", || sample(&whole, &grid, original))?;
             (sampled.error, filled.error, filled.resampled)
         } else {
             (sampled.error, None, sampled.resampled)
         };
         progress.stage("write", || {
-            let (mask, values) = mask.unzip();
-            let volumes = [(output, Some(resampled.volume())), (mask, values.as_ref())];
+            let (mask, inside) = mask.unzip();
+            let written = original.map_or(GrayRange::IDENTITY, |original| original.written);
+            let values = resampled.into_volume().into_values(&written);
+            let volumes = [(output, Some(&values)), (mask, inside.as_ref())];
             write_all(volumes.into_iter().filter_map(|(open, volume)| {
                 let ((format, target), volume) = (open?, volume?);
                 let content = move |out: &mut dyn Write| format.write(volume, out);
@@ -153,32 +182,14 @@ impl Interpolate {
         )
     }
 
-    fn sample(
-        &self,
-        shape: &AlphaShape,
-        grid: &Grid,
-        volume: Option<&Volume>,
-    ) -> anyhow::Result<Sampled> {
-        let interpolant = Interpolant::new(shape)?;
-        let resampled = interpolant.resample(grid)?;
-        let error = match volume {
-            None => None,
-            Some(volume) if volume.dims() == grid.dims() => Some(Deviation::of(volume, &resampled)),
-            Some(volume) => {
-                let own = Grid::of(volume, self.pipeline.select.units());
-                Some(Deviation::of(volume, &interpolant.resample(&own)?))
-            }
-        };
-        Ok(Sampled { resampled, error: error.map(Error::from) })
-    }
-
     /// The grid asked for.
-    fn grid(&self, volume: Option<&Volume>, positions: &[[f64; 3]]) -> anyhow::Result<Grid> {
-        let units = self.pipeline.select.units();
+    fn grid(&self, original: Option<Original>, positions: &[[f64; 3]]) -> anyhow::Result<Grid> {
         let asked = self.pipeline.input.raw.grid();
-        match (volume, asked) {
-            (Some(volume), None) => Ok(Grid::of(volume, units)),
-            (Some(volume), Some(dims)) => Ok(Grid::over(volume, dims, units)),
+        match (original, asked) {
+            (Some(Original { volume, units, .. }), None) => Ok(Grid::of(volume, units)),
+            (Some(Original { volume, units, .. }), Some(dims)) => {
+                Ok(Grid::over(volume, dims, units))
+            }
             (None, Some(dims)) => {
                 let end = |f: fn(f64, f64) -> f64| {
                     let join = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| f(a[k], b[k]));
@@ -198,6 +209,23 @@ impl Interpolate {
 struct Sampled {
     resampled: Resampled,
     error: Option<Error>,
+}
+
+fn sample(shape: &AlphaShape, grid: &Grid, original: Option<Original>) -> anyhow::Result<Sampled> {
+    let interpolant = Interpolant::new(shape)?;
+    let resampled = interpolant.resample(grid)?;
+    let error = match original {
+        None => None,
+        Some(Original { volume, units, range, .. }) => {
+            let deviation = if volume.dims() == grid.dims() {
+                Deviation::of(volume, &resampled)
+            } else {
+                Deviation::of(volume, &interpolant.resample(&Grid::of(volume, units))?)
+            };
+            Some(Error::new(deviation, &range))
+        }
+    };
+    Ok(Sampled { resampled, error })
 }
 
 fn open(path: &Path) -> anyhow::Result<(VolumeFormat, Target)> {
@@ -223,7 +251,11 @@ impl Display for Error {
         let Deviation { samples, rmse, max, .. } = self.deviation;
         write!(f, "{:.2} % of {samples} samples", 100.0 * self.coverage)?;
         if let (Some(rmse), Some(max), Some(psnr)) = (rmse, max, self.psnr) {
-            write!(f, ", RMSE {rmse:.6}, largest error {max:.6} gray levels, PSNR {psnr:.2} dB")?;
+            write!(f, ", RMSE {rmse:.6}, largest error {max:.6} gray levels")?;
+            if let (Some(rmse), Some(max)) = (self.rmse_in_values, self.max_in_values) {
+                write!(f, " ({rmse:.6} and {max:.6} in values)")?;
+            }
+            write!(f, ", PSNR {psnr:.2} dB")?;
         }
         Ok(())
     }

@@ -3,13 +3,15 @@
 use std::fmt::{self, Display};
 use std::path::Path;
 
+use anyhow::{anyhow, bail};
 use serde::Serialize;
+use walpha::export::{Scratch, Target};
 use walpha::interpolate::adaptive_voxels;
 use walpha::ladder::{Curve, Filtration};
 use walpha::points::{is_point_file, read_points, weigh};
 use walpha::{
-    Alpha, GrayRange, Points, Truncation, Units, Volume, WeightedPoints, Weighting, haar, points,
-    volume,
+    Alpha, Coordinates, GrayRange, LengthUnit, Points, Selection, Truncation, Units, Volume,
+    WeightedPoints, Weighting, haar, points, volume,
 };
 
 use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, WeightArgs};
@@ -17,42 +19,78 @@ use super::progress::Progress;
 
 /// What INPUT turned out to be.
 pub enum Input {
-    /// A grid of gray levels, and the values they came from.
-    Volume(Volume, GrayRange),
+    /// A grid of gray levels.
+    Volume(Grays),
     /// Points, with weights and values perhaps.
     Points(Points),
+}
+
+/// A volume in gray levels, and what they stand for.
+pub struct Grays {
+    pub volume: Volume,
+    /// The values that became gray 0 and 255.
+    pub range: GrayRange,
+    /// The same where values are written, or else no change.
+    pub written: GrayRange,
 }
 
 /// Reads INPUT.
 pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> {
     progress.stage("read", || {
-        if is_points(args)? {
-            return Ok(Input::Points(read_points(Path::new(&args.input))?));
-        }
-        let (volume, range) = volume::open(&args.input, &args.options())?.into_gray(args.gray())?;
-        Ok(Input::Volume(volume, range))
+        with_file(args, |input| {
+            if is_points(args, input)? {
+                return Ok(Input::Points(read_points(Path::new(input))?));
+            }
+            let (volume, range) = volume::open(input, &args.options())?.into_gray(args.gray())?;
+            Ok(Input::Volume(Grays { volume, range, written: args.written(range) }))
+        })
     })
 }
 
-/// Whether INPUT is a point file.
-pub fn is_points(args: &InputArgs) -> anyhow::Result<bool> {
-    let volume = args.input.starts_with("sample:") || args.options().raw.is_some();
-    Ok(!volume && is_point_file(Path::new(&args.input))?)
+/// Does something with INPUT as a file or the name of a sample. Standard input becomes a file for that
+/// time: formats are read in several passes.
+pub fn with_file<T>(
+    args: &InputArgs,
+    work: impl FnOnce(&str) -> anyhow::Result<T>,
+) -> anyhow::Result<T> {
+    if args.input != Target::STDOUT {
+        return work(&args.input);
+    }
+    let file = Scratch::of(&mut std::io::stdin().lock(), &args.extension())
+        .map_err(|error| anyhow!("cannot read standard input: {error}; name a file instead"))?;
+    let path = file.path().to_string_lossy().into_owned();
+    // Nobody knows the name of that file.
+    work(&path)
+        .map_err(|error| anyhow!("{}", format!("{error:#}").replace(&path, "standard input")))
+}
+
+/// Whether an input is a point file.
+pub fn is_points(args: &InputArgs, input: &str) -> anyhow::Result<bool> {
+    let volume = input.starts_with("sample:") || args.options().raw.is_some();
+    Ok(!volume && is_point_file(Path::new(input))?)
 }
 
 /// Weighted points and what is to be told about them.
 pub struct Weighed {
+    /// With gray levels as values, where they come from a volume.
     pub points: WeightedPoints,
     pub weighting: Weighting,
+    /// As asked for, or what is fit for the volume.
+    pub alpha: Alpha,
+    /// What the coordinates of the points mean.
+    pub coordinates: Coordinates,
     pub volume: Option<VolumeFacts>,
 }
 
 /// What is to be told about a volume.
 pub struct VolumeFacts {
     pub dims: [usize; 3],
-    /// The samples' box in voxels, and in the file's units.
-    pub boxes: [f64; 2],
+    /// What coordinates are measured in.
+    pub units: Units,
+    /// The volume of the samples' box.
+    pub extent: f64,
     pub range: GrayRange,
+    pub written: GrayRange,
     pub truncation: Truncation,
     /// Adaptive selection ended before it had as many points as asked for.
     pub ended: Option<Ended>,
@@ -77,12 +115,23 @@ impl Display for Ended {
     }
 }
 
-/// Steps 1 to 7: reads INPUT and makes weighted points of it.
-pub fn weighted_points(args: &PipelineArgs, progress: &mut Progress) -> anyhow::Result<Weighed> {
-    Ok(points_and_volume(args, progress)?.0)
+impl Weighed {
+    /// The points with the values that are written: those of the file, unless gray levels were asked
+    /// for.
+    pub fn in_values(mut self) -> Self {
+        if let (Some(volume), Some(values)) = (&self.volume, &mut self.points.values) {
+            values.iter_mut().for_each(|value| *value = volume.written.value(*value));
+        }
+        self
+    }
 }
 
-/// The same, with the gray levels of the volume they come from.
+/// Steps 1 to 7: reads INPUT and makes weighted points of it, with the values that are written.
+pub fn weighted_points(args: &PipelineArgs, progress: &mut Progress) -> anyhow::Result<Weighed> {
+    Ok(points_and_volume(args, progress)?.0.in_values())
+}
+
+/// The same with gray levels, and those of the volume they come from.
 pub fn points_and_volume(
     args: &PipelineArgs,
     progress: &mut Progress,
@@ -100,16 +149,21 @@ pub fn weigh_input(
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Volume>)> {
     let mut original = None;
+    let (mut coordinates, mut alpha) = (Coordinates::default(), weights.alpha(1.0));
     let (mut points, volume) = match input {
         Input::Points(points) => (points, None),
-        Input::Volume(volume, range) => {
+        Input::Volume(Grays { volume, range, written }) => {
+            let (volume, units) = select.place(volume)?;
+            coordinates = units.coordinates(&volume);
+            alpha = weights.alpha(side(&volume, units));
             let options = haar.options();
             let (smoothed, truncation) =
                 progress.stage("haar", || haar::smooth(&volume, &options))?;
-            let (selected, ended) =
-                progress.stage("points", || selected_points(&volume, &smoothed, select))?;
-            let boxes = [Units::Voxel, Units::World].map(|units| box_volume(&volume, units));
-            let facts = VolumeFacts { dims: volume.dims().xyz(), boxes, range, truncation, ended };
+            let (selected, ended) = progress.stage("points", || {
+                selected_points(&volume, &smoothed, &select.selection(&range), select, units)
+            })?;
+            let (dims, extent) = (volume.dims().xyz(), box_volume(&volume, units));
+            let facts = VolumeFacts { dims, units, extent, range, written, truncation, ended };
             original = Some(volume);
             (selected, Some(facts))
         }
@@ -120,23 +174,29 @@ pub fn weigh_input(
         if scattered && weighting.needs_differences() {
             points.differences = Some(points::scattered_difference(&points)?);
         }
-        weigh(&points, weighting, weights.alpha().squared())
+        weigh(&points, weighting, alpha.squared())
     })?;
-    Ok((Weighed { points, weighting, volume }, original))
+    Ok((Weighed { points, weighting, alpha, coordinates, volume }, original))
 }
 
 /// Points as asked for: by differences, or adaptively, where fewer may do.
 fn selected_points(
     volume: &Volume,
     smoothed: &Volume,
+    selection: &Selection,
     select: &SelectArgs,
+    units: Units,
 ) -> anyhow::Result<(Points, Option<Ended>)> {
     let differences = points::difference(smoothed);
-    let units = select.units();
     let Some(goal) = select.adaptive(volume.dims().samples())? else {
-        let selection = select.selection();
-        return Ok((points::select(volume, smoothed, &differences, &selection, units)?, None));
+        return Ok((points::select(volume, smoothed, &differences, selection, units)?, None));
     };
+    if volume.has_missing() {
+        bail!(
+            "--select adaptive interpolates between all samples, and some are missing: give --nan a \
+             value, or leave adaptive away"
+        );
+    }
     let mut voxels = adaptive_voxels(volume, &goal, units)?;
     voxels.sort_unstable();
     // With a target alone as many as there are samples may be needed, and none is asked for.
@@ -150,6 +210,8 @@ fn selected_points(
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Domain {
     pub volume: f64,
+    /// Of length; the volume is in its cube.
+    pub unit: LengthUnit,
     /// What it is the volume of.
     pub of: &'static str,
 }
@@ -157,44 +219,48 @@ pub struct Domain {
 impl Domain {
     /// The box between the outermost samples of a grid.
     pub fn of_grid(volume: &Volume, units: Units) -> Self {
-        Self { volume: box_volume(volume, units), of: "the box of the samples" }
+        let unit = units.coordinates(volume).unit;
+        Self { volume: box_volume(volume, units), unit, of: "the box of the samples" }
     }
 }
 
 impl Display for Domain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}, volume {}", self.of, self.volume)
+        write!(f, "{}, volume {} {}³", self.of, self.volume, self.unit.symbol())
     }
 }
 
 /// The domain of weighted points: that of the grid they come from, or their own box.
-pub fn domain(weighed: &Weighed, units: Units) -> Domain {
+pub fn domain(weighed: &Weighed) -> Domain {
+    let unit = weighed.coordinates.unit;
     if let Some(volume) = &weighed.volume {
-        let volume = volume.boxes[usize::from(units == Units::World)];
-        return Domain { volume, of: "the box of the samples" };
+        return Domain { volume: volume.extent, unit, of: "the box of the samples" };
     }
     let extent = |k: usize| {
         let ends = (weighed.points.positions.iter())
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| [l.min(p[k]), h.max(p[k])]);
         ends[1] - ends[0]
     };
-    Domain { volume: extent(0) * extent(1) * extent(2), of: "the box of the points" }
+    Domain { volume: extent(0) * extent(1) * extent(2), unit, of: "the box of the points" }
 }
 
 /// The box between the outermost samples.
 fn box_volume(volume: &Volume, units: Units) -> f64 {
     let steps: f64 = volume.dims().xyz().map(|n| (n - 1) as f64).iter().product();
-    let cell = match units {
+    steps * cell(volume, units)
+}
+
+/// The volume of a voxel.
+fn cell(volume: &Volume, units: Units) -> f64 {
+    match units {
         Units::Voxel => 1.0,
-        Units::World => {
-            let frame = volume.frame();
-            let [a, b, c] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-                .map(|step| [0, 1, 2].map(|k| frame.to_world(step)[k] - frame.origin[k]));
-            let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
-            (a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)).abs()
-        }
-    };
-    steps * cell
+        Units::World => volume.frame().cell(),
+    }
+}
+
+/// The side of a cube as large as a voxel.
+pub fn side(volume: &Volume, units: Units) -> f64 {
+    cell(volume, units).cbrt()
 }
 
 /// Readable critical values, those suggested, and the α that the weights are meant for.

@@ -7,7 +7,7 @@ use clap::Args;
 use walpha::export::{Target, UnknownFormat};
 use walpha::points::{write_csv, write_npy};
 
-use super::args::{FormatArgs, PipelineArgs};
+use super::args::PipelineArgs;
 use super::output::tell;
 use super::progress::Progress;
 use super::report::Report;
@@ -24,8 +24,6 @@ pub struct Points {
     /// columns); or - (standard output, with --format).
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    #[command(flatten)]
-    format: FormatArgs,
 }
 
 impl Points {
@@ -33,7 +31,7 @@ impl Points {
         let target = match &self.output {
             None => None,
             Some(path) => {
-                let name = self.format.name(path)?;
+                let name = self.pipeline.input.output(path)?;
                 let extension = name.extension().unwrap_or_default().to_ascii_lowercase();
                 let csv = extension == "csv";
                 if !csv && extension != "npy" {
@@ -55,8 +53,7 @@ impl Points {
                 })
             })?;
         }
-        let mut report =
-            Report::of_points(&self.pipeline.input.input, &weighed, self.pipeline.weights.alpha());
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         tell(global, &report)

@@ -6,7 +6,9 @@ use std::fmt::{self, Display};
 use serde::{Serialize, Serializer};
 use walpha::points::WeightSummary;
 use walpha::shape::{Betti, Component, Engine, Void, number_or_name};
-use walpha::{Alpha, AlphaShape, Class, GrayRange, Simplices, Truncation, memory};
+use walpha::{
+    Alpha, AlphaShape, Class, Coordinates, GrayRange, LengthUnit, Simplices, Truncation, memory,
+};
 
 use super::output::name;
 use super::pipeline::{Ended, VolumeFacts, Weighed};
@@ -23,6 +25,9 @@ const STAGES: [&str; 8] =
 pub struct Report {
     schema_version: u32,
     input: InputReport,
+    /// Of points and all lengths: areas are in the square of this unit, volumes in its cube, α and
+    /// weights in the square.
+    coordinates: Coordinates,
     haar: Option<HaarReport>,
     points: PointsReport,
     alpha: AlphaReport,
@@ -49,8 +54,11 @@ struct InputReport {
 pub struct HaarReport {
     kept: u64,
     total: u64,
+    /// Gray levels.
     epsilon: f64,
     rms: f64,
+    /// In values of the input; null where these are gray levels.
+    rms_in_values: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -63,13 +71,14 @@ struct PointsReport {
     ended_early: Option<Ended>,
 }
 
-/// α as a squared length and as a radius.
+/// α as a squared length and as a radius, and the unit of length.
 #[derive(Serialize)]
 pub struct AlphaReport {
     #[serde(serialize_with = "number_or_name")]
     squared: f64,
     #[serde(serialize_with = "number_or_null_or_name")]
     radius: Option<f64>,
+    unit: LengthUnit,
 }
 
 /// What the weights are.
@@ -79,6 +88,8 @@ pub struct WeightsReport {
     min: f64,
     mean: f64,
     max: f64,
+    /// Of length; weights are in its square.
+    unit: LengthUnit,
 }
 
 #[derive(Serialize)]
@@ -128,15 +139,23 @@ impl Display for Counts {
     }
 }
 
-impl From<Alpha> for AlphaReport {
-    fn from(alpha: Alpha) -> Self {
-        Self { squared: alpha.squared(), radius: alpha.radius() }
+impl AlphaReport {
+    /// An α where lengths are in this unit.
+    pub fn new(alpha: Alpha, unit: LengthUnit) -> Self {
+        Self { squared: alpha.squared(), radius: alpha.radius(), unit }
     }
 }
 
 impl Display for AlphaReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        Alpha::from_squared(self.squared).map_err(|_| fmt::Error)?.fmt(f)
+        let Self { squared, radius, unit } = self;
+        let unit = unit.symbol();
+        match radius {
+            Some(radius) => {
+                write!(f, "α = {squared} {unit}² (squared length; √α = {radius:.6} {unit})")
+            }
+            None => write!(f, "α = {squared} {unit}² (squared length; negative, so no radius)"),
+        }
     }
 }
 
@@ -144,33 +163,43 @@ impl WeightsReport {
     /// The weights of some points.
     pub fn of(weighed: &Weighed) -> Self {
         let WeightSummary { min, mean, max } = weighed.points.summary();
-        Self { kind: weighed.weighting.to_string(), min, mean, max }
+        let (kind, unit) = (weighed.weighting.to_string(), weighed.coordinates.unit);
+        Self { kind, min, mean, max, unit }
     }
 }
 
 impl Display for WeightsReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { kind, min, mean, max } = self;
-        write!(f, "{kind}: min {min:.6}, mean {mean:.6}, max {max:.6}")
+        let Self { kind, min, mean, max, unit } = self;
+        write!(f, "{kind}: min {min:.6}, mean {mean:.6}, max {max:.6} {}²", unit.symbol())
     }
 }
 
-impl From<&Truncation> for HaarReport {
-    fn from(t: &Truncation) -> Self {
-        Self { kept: t.kept, total: t.total, epsilon: t.epsilon, rms: t.rms }
+impl HaarReport {
+    /// What was truncated, of values `range` that became gray 0..255.
+    pub fn new(t: &Truncation, range: &GrayRange) -> Self {
+        let rms_in_values = (!range.is_identity()).then(|| t.rms * range.step());
+        Self { kept: t.kept, total: t.total, epsilon: t.epsilon, rms: t.rms, rms_in_values }
     }
 }
 
 impl Display for HaarReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { kept, total, epsilon, rms } = self;
-        write!(f, "{kept} of {total} coefficients kept, ε = {epsilon:.6}, rms {rms:.6} gray levels")
+        let Self { kept, total, epsilon, rms, rms_in_values } = self;
+        write!(
+            f,
+            "{kept} of {total} coefficients kept, ε = {epsilon:.6}, rms {rms:.6} gray levels"
+        )?;
+        match rms_in_values {
+            Some(rms) => write!(f, " ({rms:.6} in values)"),
+            None => Ok(()),
+        }
     }
 }
 
 impl Report {
     /// What is known before there is a shape.
-    pub fn of_points(name: &str, weighed: &Weighed, alpha: Alpha) -> Self {
+    pub fn of_points(name: &str, weighed: &Weighed) -> Self {
         let volume = weighed.volume.as_ref();
         Self {
             schema_version: SCHEMA_VERSION,
@@ -180,7 +209,8 @@ impl Report {
                 gray_range: volume
                     .map(|VolumeFacts { range: GrayRange { low, high }, .. }| [*low, *high]),
             },
-            haar: volume.map(|v| HaarReport::from(&v.truncation)),
+            coordinates: weighed.coordinates,
+            haar: volume.map(|v| HaarReport::new(&v.truncation, &v.range)),
             points: PointsReport {
                 selected: weighed.points.len(),
                 duplicates: None,
@@ -188,7 +218,7 @@ impl Report {
                 in_shape: None,
                 ended_early: volume.and_then(|v| v.ended),
             },
-            alpha: AlphaReport::from(alpha),
+            alpha: AlphaReport::new(weighed.alpha, weighed.coordinates.unit),
             weights: WeightsReport::of(weighed),
             shape: None,
             engine: None,
@@ -263,7 +293,9 @@ impl Display for Report {
         if let Some(ended) = &self.points.ended_early {
             write!(f, "\n          {ended}")?;
         }
-        writeln!(f, "\nweights   {} (squared lengths)", self.weights)?;
+        let unit = self.coordinates.unit.symbol();
+        writeln!(f, "\nlengths   in {}", self.coordinates)?;
+        writeln!(f, "weights   {} (squared lengths)", self.weights)?;
         writeln!(f, "parameter {}", self.alpha)?;
         if let Some(shape) = &self.shape {
             writeln!(f, "cells     {:>9} interior", shape.cells.interior)?;
@@ -273,11 +305,15 @@ impl Display for Report {
             if let Some(Betti { b0, b1, b2 }) = shape.betti {
                 writeln!(f, "topology  {b0} components, {b1} tunnels, {b2} voids")?;
             }
-            writeln!(f, "volume    {:.6}", shape.volume)?;
-            writeln!(f, "area      {:.6}, singular facets {:.6}", shape.area, shape.singular_area)?;
+            writeln!(f, "volume    {:.6} {unit}³", shape.volume)?;
+            let (area, singular) = (shape.area, shape.singular_area);
+            writeln!(f, "area      {area:.6} {unit}², singular facets {singular:.6} {unit}²")?;
             if let [largest, _, ..] = &shape.components[..] {
                 let Component { vertices, volume, .. } = largest;
-                writeln!(f, "largest   component: {vertices} vertices, volume {volume:.6}")?;
+                writeln!(
+                    f,
+                    "largest   component: {vertices} vertices, volume {volume:.6} {unit}³"
+                )?;
             }
             if let Some(voids) = &shape.voids
                 && let Some(largest) = voids.first()
@@ -285,7 +321,7 @@ impl Display for Report {
                 let sum = voids.iter().fold(0.0, |sum, void| sum + void.volume);
                 writeln!(
                     f,
-                    "voids     {sum:.6} in all, the largest {:.6}, filled at α = {}",
+                    "voids     {sum:.6} {unit}³ in all, the largest {:.6} {unit}³, filled at α = {} {unit}²",
                     largest.volume, largest.filling_alpha
                 )?;
             }

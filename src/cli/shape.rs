@@ -8,7 +8,7 @@ use walpha::alpha_shape;
 use walpha::export::{Content, Exporter, Format, Target, UnknownFormat, write_all};
 use walpha::shown::shown;
 
-use super::args::{FormatArgs, PipelineArgs, ShapeArgs};
+use super::args::{PipelineArgs, ShapeArgs};
 use super::output::tell;
 use super::picture::PictureArgs;
 use super::progress::Progress;
@@ -26,8 +26,6 @@ pub struct Shape {
     /// simplices), .png (a picture); or - (standard output, with --format). Files that are there are replaced.
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
-    #[command(flatten)]
-    format: FormatArgs,
     /// Write text where a format has a binary form too (PLY).
     #[arg(long)]
     ascii: bool,
@@ -40,10 +38,10 @@ pub struct Shape {
 impl Shape {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         // Before the long work: a bad option, extension or place costs nothing yet.
-        self.shape.check(self.pipeline.weights.alpha())?;
+        self.shape.check(self.pipeline.weights.alpha(1.0))?;
         let mut targets = Vec::new();
         for path in &self.output {
-            let name = self.format.name(path)?;
+            let name = self.pipeline.input.output(path)?;
             let exporter: Box<dyn Exporter> = if PictureArgs::wanted(&name) {
                 Box::new(self.picture)
             } else {
@@ -56,10 +54,10 @@ impl Shape {
 
         let mut progress = Progress::new(global);
         let weighed = pipeline::weighted_points(&self.pipeline, &mut progress)?;
-        let alpha = self.pipeline.weights.alpha();
-        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, alpha);
-        let options = self.shape.options(alpha);
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
+        let options = self.shape.options(weighed.alpha);
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
+        let shape = shape.meaning(weighed.coordinates);
         report.add_shape(&shape);
         let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
             Some(format!("{}: {}", shown(target.path()), exporter.remark(&shape)?))

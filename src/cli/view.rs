@@ -9,12 +9,11 @@ use clap::Args;
 use serde::Serialize;
 use walpha::export::Target;
 use walpha::ladder::Filtration;
-use walpha::points::Units;
 use walpha::render::{Original, Page, Subject};
 use walpha::shown::shown;
 
 use super::Global;
-use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, Level, SelectArgs, WeightArgs};
 use super::output::{name, tell};
 use super::pipeline::{self, Weighed};
 use super::progress::Progress;
@@ -37,9 +36,10 @@ pub struct View {
     /// topology.
     #[arg(long, value_name = "A,A,…", default_value = "auto", allow_hyphen_values = true)]
     alphas: Alphas,
-    /// Gray level of the isosurface to compare, for volumes.
-    #[arg(long, value_name = "G", default_value_t = 50.0, allow_negative_numbers = true)]
-    isovalue: f64,
+    /// Where the isosurface to compare is, for volumes: a gray level, as in 50, or a value of INPUT, as
+    /// in 300v.
+    #[arg(long, value_name = "G", default_value = "50", allow_negative_numbers = true)]
+    isovalue: Level,
     #[command(flatten)]
     haar: HaarArgs,
     #[command(flatten)]
@@ -70,23 +70,28 @@ impl View {
         if !html {
             bail!("{}: a page can be written as .html", shown(&self.output));
         }
-        if !self.isovalue.is_finite() {
-            bail!("--isovalue must be a finite gray level");
-        }
         let target = Target::open(&self.output)?;
         let mut progress = Progress::new(global);
         let weights = WeightArgs::from(self.weights);
         let read = pipeline::read(&self.input, &mut progress)?;
         let (weighed, volume) =
             pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
-        let told = self.told(&weighed, &weights);
-        let domain = pipeline::domain(&weighed, self.select.units());
+        let weighed = weighed.in_values();
+        let told = self.told(&weighed);
+        let domain = pipeline::domain(&weighed);
+        let (alpha, unit) = (weighed.alpha, weighed.coordinates.unit);
+        let facts = weighed.volume.as_ref();
+        let original = volume.as_ref().zip(facts).map(|(volume, facts)| Original {
+            volume,
+            isovalue: self.isovalue.gray(&facts.range),
+            units: facts.units,
+        });
         let points = weighed.points;
         let filtration = progress.stage("filtration", || Filtration::new(points))?;
         let alphas = match &self.alphas {
             Alphas::Given(alphas) => alphas.clone(),
             Alphas::Auto => progress.stage("curve", || {
-                pipeline::readable(&filtration, &filtration.curve(), READABLE, weights.alpha())
+                pipeline::readable(&filtration, &filtration.curve(), READABLE, alpha)
             }),
         };
         let levels = filtration.levels(&alphas);
@@ -95,23 +100,16 @@ impl View {
         }
         let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
         // The level the weights are meant for, or the last below it.
-        let first = levels.alphas().partition_point(|alpha| *alpha <= weights.alpha());
+        let first = levels.alphas().partition_point(|level| *level <= alpha);
         let title = format!("Alpha shapes of {}", self.input.input);
         let subject = Subject {
             title: &title,
             facts: &told,
-            unit: match self.select.units() {
-                Units::Voxel if volume.is_some() => "voxels",
-                _ => "units of the input",
-            },
+            unit: unit.symbol(),
             levels: &levels,
             ladder: &ladder,
             first: first.saturating_sub(1),
-            original: volume.as_ref().map(|volume| Original {
-                volume,
-                isovalue: self.isovalue,
-                units: self.select.units(),
-            }),
+            original,
         };
         let page = progress.stage("page", || Page::new(&subject))?;
         if !global.quiet {
@@ -136,7 +134,7 @@ impl View {
     }
 
     /// What the page tells besides the levels' numbers.
-    fn told(&self, weighed: &Weighed, weights: &WeightArgs) -> Vec<(String, String)> {
+    fn told(&self, weighed: &Weighed) -> Vec<(String, String)> {
         let mut told = vec![("input".to_owned(), self.input.input.clone())];
         if let Some(volume) = &weighed.volume {
             let [x, y, z] = volume.dims;
@@ -155,7 +153,8 @@ impl View {
             ));
         }
         told.push(("points".into(), weighed.points.len().to_string()));
-        let alpha = AlphaReport::from(weights.alpha());
+        let alpha = AlphaReport::new(weighed.alpha, weighed.coordinates.unit);
+        told.push(("lengths in".into(), weighed.coordinates.to_string()));
         told.push((
             "weights ω".into(),
             format!("{}, frozen at {alpha}", WeightsReport::of(weighed)),

@@ -34,7 +34,11 @@ impl Exporter for Glb {
         let surface = Surface::of(shape);
         let mut file = File::default();
         let mut document = json!({
-            "asset": { "version": "2.0", "generator": "walpha" },
+            "asset": {
+                "version": "2.0",
+                "generator": "walpha",
+                "extras": { "coordinates": shape.coordinates() },
+            },
             "scene": 0,
             "scenes": [{}],
         });

@@ -23,6 +23,7 @@ impl Exporter for Json {
         file.info = Some(serde_json::json!({
             "program": concat!("walpha ", env!("CARGO_PKG_VERSION")),
             "balls": shape.options().balls,
+            "coordinates": shape.coordinates(),
             "values": shape.points().values,
         }));
         file.write_json(out).map_err(|error| match error {

@@ -33,6 +33,8 @@ mod off;
 mod part;
 mod place;
 mod ply;
+mod scratch;
+mod stated;
 mod stl;
 mod target;
 mod unfinished;
@@ -47,12 +49,13 @@ pub use npz::Npz;
 pub use obj::Obj;
 pub use off::Off;
 pub use ply::Ply;
+pub use scratch::Scratch;
 pub use stl::Stl;
 pub use target::{Content, Filled, Target, TargetError, put_all, write_all};
 pub use unfinished::{NewFolder, abandon, sweep};
 pub use volume::{
-    VolumeFormat, write_volume_nifti, write_volume_npy, write_volume_nrrd, write_volume_raw,
-    write_volume_vti,
+    VolumeFormat, write_volume_metaimage, write_volume_nifti, write_volume_npy, write_volume_nrrd,
+    write_volume_raw, write_volume_tiff, write_volume_vti,
 };
 pub use vtp::Vtp;
 pub use vtu::Vtu;

@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::Exporter;
+use super::{Exporter, stated};
 use crate::shape::{AlphaShape, Surface};
 
 /// Wavefront OBJ: the groups `regular` and `singular` hold facets, `edges` singular edges and
@@ -13,6 +13,7 @@ impl Exporter for Obj {
         let surface = Surface::of(shape);
         let positions = &shape.points().positions;
         writeln!(out, "# walpha: {}", shape.options().alpha)?;
+        write!(out, "{}", stated::line("#", shape.coordinates()))?;
         for &v in &surface.vertices {
             let [x, y, z] = positions[v as usize];
             writeln!(out, "v {x} {y} {z}")?;

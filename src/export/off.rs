@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::Exporter;
+use super::{Exporter, stated};
 use crate::shape::{AlphaShape, Surface};
 
 /// OFF, the object file format of Geomview: boundary facets with a colour each, regular ones
@@ -14,6 +14,7 @@ impl Exporter for Off {
         let positions = &shape.points().positions;
         writeln!(out, "OFF")?;
         writeln!(out, "# walpha: {}", shape.options().alpha)?;
+        write!(out, "{}", stated::line("#", shape.coordinates()))?;
         let facets = surface.regular.len() + surface.singular.len();
         writeln!(out, "{} {facets} 0", surface.vertices.len())?;
         for &v in &surface.vertices {

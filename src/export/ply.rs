@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::Exporter;
+use super::{Exporter, stated};
 use crate::shape::{AlphaShape, Class, Surface};
 
 /// PLY: vertices of the boundary with weight, value and input index; facets with their class
@@ -21,9 +21,10 @@ impl Exporter for Ply {
         let format = if self.ascii { "ascii" } else { "binary_little_endian" };
         write!(
             out,
-            "ply\nformat {format} 1.0\ncomment walpha: {}\nelement vertex {}\n\
+            "ply\nformat {format} 1.0\ncomment walpha: {}\n{}element vertex {}\n\
              property double x\nproperty double y\nproperty double z\nproperty double weight\n",
             shape.options().alpha,
+            stated::line("comment", shape.coordinates()),
             surface.vertices.len(),
         )?;
         if points.values.is_some() {

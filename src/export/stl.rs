@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::Exporter;
+use super::{Exporter, stated};
 use crate::shape::{AlphaShape, Surface};
 
 /// Binary STL: the regular facets, counter-clockwise seen from outside, with their normals.
@@ -15,8 +15,9 @@ impl Exporter for Stl {
         let positions = &shape.points().positions;
         let mut head = [b' '; 80];
         // Some readers take a file for text if its head begins with "solid".
-        let about = b"walpha, boundary of an alpha shape";
-        head[..about.len()].copy_from_slice(about);
+        let stated = stated::comment(shape.coordinates());
+        let about = format!("walpha, boundary of an alpha shape{stated}");
+        head[..about.len()].copy_from_slice(about.as_bytes());
         out.write_all(&head)?;
         let count = u32::try_from(surface.regular.len())
             .map_err(|_| io::Error::other("more facets than STL can count"))?;

@@ -1,7 +1,7 @@
 use std::io::{self, Write};
 
-use super::Exporter;
 use super::vtu::{Appended, bytes};
+use super::{Exporter, stated};
 use crate::shape::{AlphaShape, Class, Sheets, Surface};
 
 /// VTP, VTK's polygons: the boundary, singular edges and singular vertices. Cell data are their
@@ -23,9 +23,10 @@ impl Exporter for Vtp {
             file.xml,
             "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
              <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-             <PolyData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" \
+             <PolyData>\n{}<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" \
              NumberOfStrips=\"0\" NumberOfPolys=\"{facets}\">\n<PointData>\n",
             shape.options().alpha,
+            stated::field_data(shape.coordinates()),
             vertices.len(),
             surface.points.len(),
             surface.edges.len(),

@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::Exporter;
+use super::{Exporter, stated};
 use crate::shape::{AlphaShape, Simplices};
 
 /// VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as
@@ -32,8 +32,9 @@ impl Exporter for Vtu {
             file.xml,
             "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
              <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-             <UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
+             <UnstructuredGrid>\n{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
             shape.options().alpha,
+            stated::field_data(shape.coordinates()),
             vertices.len(),
             grid.types.len(),
         )?;

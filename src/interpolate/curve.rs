@@ -239,21 +239,23 @@ impl Bench<'_> {
     }
 }
 
-/// Writes an error curve as CSV, a line for each measurement. What there is not is left empty.
+/// Writes an error curve as CSV, a line for each measurement: errors in gray levels, and the RMSE in
+/// values, of which a gray level is `step`. What there is not is left empty.
 ///
 /// # Errors
 /// What the writer says.
-pub fn write_curve_csv(curve: &[CurvePoint], out: &mut dyn Write) -> io::Result<()> {
+pub fn write_curve_csv(curve: &[CurvePoint], step: f64, out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
-        "method,weights,count,hidden,coverage,rmse_inside,max_inside,rmse_filled,max_filled"
+        "method,weights,count,hidden,coverage,rmse_inside,max_inside,rmse_filled,max_filled,\
+         rmse_inside_values,rmse_filled_values"
     )?;
     let text = |number: Option<f64>| number.map_or_else(String::new, |number| number.to_string());
     for point in curve {
         let weights = point.weighting.map_or_else(String::new, |w| w.to_string());
         writeln!(
             out,
-            "{},{weights},{},{},{},{},{},{},{}",
+            "{},{weights},{},{},{},{},{},{},{},{},{}",
             point.method,
             point.count,
             point.hidden,
@@ -262,6 +264,8 @@ pub fn write_curve_csv(curve: &[CurvePoint], out: &mut dyn Write) -> io::Result<
             text(point.inside.max),
             text(point.filled.rmse),
             text(point.filled.max),
+            text(point.inside.rmse.map(|rmse| rmse * step)),
+            text(point.filled.rmse.map(|rmse| rmse * step)),
         )?;
     }
     out.flush()

@@ -10,7 +10,7 @@ const CHUNK: usize = 1 << 16;
 /// How far F is from a volume, on the samples that the shape covers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Deviation {
-    /// Samples of the volume.
+    /// Samples of the volume that are not missing.
     pub samples: usize,
     /// Samples on the shape.
     pub covered: usize,
@@ -32,10 +32,11 @@ impl Deviation {
         assert_eq!(original.dims(), resampled.volume().dims(), "one grid");
         let pairs = original.as_slice().par_chunks(CHUNK);
         let pairs = pairs.zip(resampled.volume().as_slice().par_chunks(CHUNK)).enumerate();
-        let part = |(chunk, (original, ours)): (usize, (&[f32], &[f32]))| {
+        let part = |(chunk, (theirs, ours)): (usize, (&[f32], &[f32]))| {
             let (mut count, mut sum, mut max) = (0, 0.0, 0f64);
-            for (i, (f, g)) in original.iter().zip(ours).enumerate() {
-                if resampled.is_inside(chunk * CHUNK + i) {
+            for (i, (f, g)) in theirs.iter().zip(ours).enumerate() {
+                let sample = chunk * CHUNK + i;
+                if resampled.is_inside(sample) && !original.is_missing(sample) {
                     let difference = (f64::from(*f) - f64::from(*g)).abs();
                     count += 1;
                     sum += difference * difference;
@@ -49,11 +50,17 @@ impl Deviation {
         let sum: f64 = parts.iter().map(|part| part.1).sum();
         let max = parts.iter().map(|part| part.2).fold(0.0, f64::max);
         Self {
-            samples: original.dims().samples(),
+            samples: original.samples_there(),
             covered,
             rmse: (covered > 0).then(|| (sum / covered as f64).sqrt()),
             max: (covered > 0).then_some(max),
         }
+    }
+
+    /// The same where a gray level is `step` of another unit.
+    pub fn scaled(&self, step: f64) -> Self {
+        let scaled = |error: Option<f64>| error.map(|error| error * step);
+        Self { rmse: scaled(self.rmse), max: scaled(self.max), ..*self }
     }
 
     /// The share of samples on the shape.

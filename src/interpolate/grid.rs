@@ -1,7 +1,7 @@
 use std::ops::Range;
 
 use crate::points::Units;
-use crate::volume::{Dims, Frame, Volume};
+use crate::volume::{Coordinates, Dims, Frame, Volume};
 
 /// A grid of places to sample F at.
 ///
@@ -39,15 +39,9 @@ impl Grid {
         let (counts, n) = (volume.dims().xyz(), dims.xyz());
         let axes: [Vec<f64>; 3] = [0, 1, 2].map(|k| steps(0.0, (counts[k] - 1) as f64, n[k]));
         let step = [0, 1, 2].map(|k| step(0.0, (counts[k] - 1) as f64, n[k]));
-        let spacing = [0, 1, 2].map(|k| source.spacing[k] * step[k]);
-        let origin = source.to_world([0, 1, 2].map(|k| axes[k][0]));
+        let frame = source.part([0, 1, 2].map(|k| axes[k][0]), step);
         let world = World { frame: source, inverse: inverse(source.axes()) };
-        Self {
-            dims,
-            axes,
-            world: (units == Units::World).then_some(world),
-            frame: Frame { origin, spacing, direction: source.direction },
-        }
+        Self { dims, axes, world: (units == Units::World).then_some(world), frame }
     }
 
     /// As many samples as asked for over a box, given by its corners (x, y, z).
@@ -56,7 +50,9 @@ impl Grid {
         let axes: [Vec<f64>; 3] = [0, 1, 2].map(|k| steps(low[k], high[k], n[k]));
         let spacing = [0, 1, 2].map(|k| step(low[k], high[k], n[k]));
         let origin = [0, 1, 2].map(|k| axes[k][0]);
-        Self { dims, axes, world: None, frame: Frame { origin, spacing, ..Frame::VOXEL } }
+        let coordinates = Coordinates::default();
+        let frame = Frame { origin, spacing, coordinates, ..Frame::VOXEL };
+        Self { dims, axes, world: None, frame }
     }
 
     /// Sizes along the axes.

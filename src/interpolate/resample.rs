@@ -50,6 +50,11 @@ impl Resampled {
         &self.volume
     }
 
+    /// Gives the values away.
+    pub fn into_volume(self) -> Volume {
+        self.volume
+    }
+
     /// Whether a sample, by its index in memory order, is on the shape.
     pub fn is_inside(&self, sample: usize) -> bool {
         self.owners[sample] != NOTHING

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::PointsError;
 use crate::haar::{Budget, Cut};
 use crate::memory;
-use crate::volume::Volume;
+use crate::volume::{Coordinates, Volume};
 
 /// Voxels looked at as one piece of work.
 const CHUNK: usize = 1 << 16;
@@ -65,6 +65,14 @@ pub struct Points {
 }
 
 impl Units {
+    /// What coordinates of this volume's points mean in these units.
+    pub fn coordinates(self, volume: &Volume) -> Coordinates {
+        match self {
+            Self::Voxel => Coordinates::VOXEL,
+            Self::World => volume.frame().coordinates,
+        }
+    }
+
     /// Where a voxel of a volume, by its index x + X·(y + Y·z), stands in these units.
     pub fn position(self, volume: &Volume, voxel: u32) -> [f64; 3] {
         let [nx, ny, _] = volume.dims().xyz();
@@ -91,7 +99,7 @@ impl Points {
 
 /// Selects voxels, in order of their index x + X·(y + Y·z).
 ///
-/// `volume` gives the values of the points and the grid, `smoothed` is the truncated volume, which
+/// `volume` gives the values of the points and the grid, and its missing samples take no part; `smoothed` is the truncated volume, which
 /// `gray_min` judges, and `differences` are its [`difference`](super::difference)s. O(n),
 /// parallel, the same on any number of threads.
 ///
@@ -114,16 +122,21 @@ pub fn select(
     let standard = differences.as_standard_layout();
     let flat = standard.as_slice().expect("standard layout");
     let voxels = match selection.gray_min {
-        None => chosen(flat, n as u64, &selection.rule)?,
+        None if !volume.has_missing() => chosen(flat, n as u64, &selection.rule)?,
         Some(least) if least.is_nan() => {
             return Err(PointsError::Number { what: "--gray-min", given: least, need: "a number" });
         }
-        Some(least) => {
-            let mask =
-                |(&l, &gray): (&f64, &f32)| if f64::from(gray) >= least { l } else { f64::NAN };
+        least => {
+            let least = least.unwrap_or(f64::NEG_INFINITY);
+            let takes_part =
+                |i: usize, gray: f32| f64::from(gray) >= least && !volume.is_missing(i);
+            let mask = |(i, (&l, &gray)): (usize, (&f64, &f32))| {
+                if takes_part(i, gray) { l } else { f64::NAN }
+            };
             let bytes = size_of_val(flat);
-            memory::afford(bytes, || format!("--gray-min on {} samples", volume.dims()))?;
-            let masked: Vec<f64> = flat.par_iter().zip(smoothed.as_slice()).map(mask).collect();
+            memory::afford(bytes, || format!("the choice among {} samples", volume.dims()))?;
+            let pairs = flat.par_iter().zip(smoothed.as_slice()).enumerate();
+            let masked: Vec<f64> = pairs.map(mask).collect();
             let available = masked.par_iter().filter(|l| !l.is_nan()).count() as u64;
             chosen(&masked, available, &selection.rule)?
         }

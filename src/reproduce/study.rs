@@ -7,7 +7,7 @@ use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, select, weigh,
 };
 use crate::shape::{Alpha, AlphaShape, Balls, Engine, ShapeOptions, alpha_shape};
-use crate::volume::Volume;
+use crate::volume::{LengthUnit, Volume};
 
 /// The paper's points.
 pub(super) const PAPER_POINTS: usize = 15956;
@@ -63,7 +63,12 @@ impl<'a> Study<'a> {
 
     /// `walpha COMMAND INPUT` with the options that select our points.
     pub fn command(&self, command: &str) -> String {
-        format!("walpha {command} {} {}", text::shell(self.subject.name), self.select)
+        let (input, select) = (text::shell(self.subject.name), &self.select);
+        // The paper's lengths are voxels, whatever the file says.
+        match self.subject.volume.frame().coordinates.unit {
+            LengthUnit::Voxel => format!("walpha {command} {input} {select}"),
+            _ => format!("walpha {command} {input} --units voxel {select}"),
+        }
     }
 
     /// The shape with these weights at this α, in its whole triangulation.

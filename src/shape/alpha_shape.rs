@@ -9,6 +9,7 @@ use super::{Alpha, Balls, Betti, Class, Complex, Measures, Sheets, Simplices, di
 use crate::memory::NoMemory;
 use crate::points::WeightedPoints;
 use crate::triangulation::{Lattice, Maker, Sites, SitesError, TriangulationError};
+use crate::volume::Coordinates;
 
 /// Which program computes the shape; all give the same answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -91,6 +92,7 @@ impl ShapeOptions {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlphaShape {
     points: WeightedPoints,
+    coordinates: Coordinates,
     options: ShapeOptions,
     /// Weights (α + ω)², where the balls are read so.
     squared: Option<Vec<f64>>,
@@ -192,6 +194,7 @@ pub fn alpha_shape(
     drop(sites);
     Ok(AlphaShape {
         points,
+        coordinates: Coordinates::default(),
         options: *options,
         squared,
         complex,
@@ -275,6 +278,7 @@ impl AlphaShape {
         let measures = Measures::of(&complex, &self.points.positions);
         Self {
             points: self.points.clone(),
+            coordinates: self.coordinates,
             options: ShapeOptions { alpha, exterior, ..self.options },
             squared: self.squared.clone(),
             complex,
@@ -284,6 +288,16 @@ impl AlphaShape {
             sheets: None,
             measures,
         }
+    }
+
+    /// The same shape, said to stand in these coordinates. Numbers stay what they are.
+    pub fn meaning(self, coordinates: Coordinates) -> Self {
+        Self { coordinates, ..self }
+    }
+
+    /// What the coordinates of the points mean, as far as anybody said it.
+    pub fn coordinates(&self) -> Coordinates {
+        self.coordinates
     }
 
     /// The points as they were given, duplicates and hidden ones included.

@@ -34,7 +34,7 @@ pub enum VolumeError {
     },
     /// A NaN or an infinity among the samples.
     #[error(
-        "sample (x, y, z) = {at:?} is {value}: every sample must be a finite number; replace it first"
+        "sample (x, y, z) = {at:?} is {value}: every sample must be a finite number; give --nan VALUE to replace NaN, or --nan alone to leave it out"
     )]
     NotFinite {
         /// The offending value.
@@ -51,6 +51,20 @@ pub enum VolumeError {
         low: f64,
         /// The value meant to become 255.
         high: f64,
+    },
+    /// A region without samples, or beyond the volume.
+    #[error(
+        "the region {}:{},{}:{},{}:{} is no part of a volume of {dims} samples: give indices from 0 on, \
+         each first one below its end, as in --roi 20:40,20:40,10:30",
+        first[0], end[0], first[1], end[1], first[2], end[2]
+    )]
+    Region {
+        /// The first index of each axis.
+        first: [usize; 3],
+        /// One behind the last of each axis.
+        end: [usize; 3],
+        /// The volume.
+        dims: Dims,
     },
     /// The operating system refused.
     #[error("cannot read {}: {source}{}", shown(path), next_step(path, source.kind()))]

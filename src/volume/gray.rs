@@ -24,9 +24,32 @@ impl GrayRange {
     /// The range that leaves values as they are.
     pub const IDENTITY: Self = Self { low: 0.0, high: 255.0 };
 
+    /// Whether values are gray levels as they stand.
+    pub fn is_identity(&self) -> bool {
+        *self == Self::IDENTITY
+    }
+
+    /// How much of a value a gray level is.
+    pub fn step(&self) -> f64 {
+        (self.high - self.low) / 255.0
+    }
+
+    /// The value that a gray level stands for. Gray levels are `f32`: a value that their rounding does
+    /// not tell from a whole number is that number, so that those of a file come back as they were.
+    pub fn value(&self, gray: f64) -> f64 {
+        if self.is_identity() {
+            return gray;
+        }
+        let width = self.high - self.low;
+        let value = self.low + gray * width / 255.0;
+        let whole = value.round();
+        let unsure = width * f64::from(f32::EPSILON);
+        if (value - whole).abs() <= unsure { whole } else { value }
+    }
+
     /// The gray level of a value. An empty range (constant volume) maps everything to 0.
     pub fn gray(&self, value: f64) -> f64 {
-        if *self == Self::IDENTITY {
+        if self.is_identity() {
             value
         } else if self.high == self.low {
             0.0

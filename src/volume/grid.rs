@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use super::VolumeError;
+use super::{Conversion, Coordinates, VolumeError};
 
 /// The number of samples along each axis of a volume, checked once: none is zero, and the volume
 /// has at most [`Dims::MAX_SAMPLES`] samples, so a voxel index fits `u32` and a byte count `u64`.
@@ -74,7 +74,7 @@ impl std::fmt::Display for Dims {
 }
 
 /// Where a grid lies in the world: sample (i, j, k) along (x, y, z) stands at
-/// `origin + direction · (spacing ∘ (i, j, k))`, in the units of the file.
+/// `origin + direction · (spacing ∘ (i, j, k))`, in coordinates that say of themselves what they mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// World position of the first sample, (x, y, z).
@@ -83,6 +83,8 @@ pub struct Frame {
     pub spacing: [f64; 3],
     /// Unit vectors of the grid's axes: `direction[r][c]` is world component r of grid axis c.
     pub direction: [[f64; 3]; 3],
+    /// What world positions mean; voxels where a file says nothing of its grid.
+    pub coordinates: Coordinates,
 }
 
 impl Frame {
@@ -91,12 +93,15 @@ impl Frame {
         origin: [0.0; 3],
         spacing: [1.0; 3],
         direction: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        coordinates: Coordinates::VOXEL,
     };
 
     /// The frame whose grid axes step by these vectors from one sample to the next: `axes[c]` is
-    /// the step of grid axis c. `None` where one is zero or not finite.
+    /// the step of grid axis c. Nothing is known of the space and the unit. `None` where an axis is
+    /// zero or not finite.
     pub fn from_axes(origin: [f64; 3], axes: [[f64; 3]; 3]) -> Option<Self> {
-        let mut frame = Self { origin, ..Self::VOXEL };
+        let coordinates = Coordinates::default();
+        let mut frame = Self { origin, coordinates, ..Self::VOXEL };
         for (c, axis) in axes.iter().enumerate() {
             // Scaled, so that an axis along the world's has its length to the last bit.
             let largest = axis.iter().fold(0f64, |so_far, v| so_far.max(v.abs()));
@@ -109,6 +114,38 @@ impl Frame {
         // A zero axis has divided 0 by 0.
         let numbers = origin.iter().chain(&frame.spacing).chain(frame.direction.as_flattened());
         numbers.copied().all(f64::is_finite).then_some(frame)
+    }
+
+    /// The same grid, said to stand in these coordinates. Numbers stay what they are.
+    pub fn meaning(self, coordinates: Coordinates) -> Self {
+        Self { coordinates, ..self }
+    }
+
+    /// The same places in other coordinates, as far as both are known: axes are turned, and lengths
+    /// converted. What is not known stays as it is. Signs are exact, lengths rounded once.
+    pub fn to(self, coordinates: Coordinates) -> Self {
+        let conversion: Conversion = self.coordinates.to(coordinates);
+        let columns = [0, 1, 2].map(|c| conversion.direction(self.direction.map(|row| row[c])));
+        Self {
+            origin: conversion.position(self.origin),
+            spacing: self.spacing.map(|length| conversion.length(length)),
+            direction: [0, 1, 2].map(|r| columns.map(|column| column[r])),
+            coordinates: conversion.to,
+        }
+    }
+
+    /// The grid of every `step`-th sample from the sample `first` on, both as (x, y, z); fractions
+    /// are places between samples.
+    pub fn part(self, first: [f64; 3], step: [f64; 3]) -> Self {
+        let spacing = [0, 1, 2].map(|k| self.spacing[k] * step[k]);
+        Self { origin: self.to_world(first), spacing, ..self }
+    }
+
+    /// The volume of the cell between eight samples.
+    pub fn cell(&self) -> f64 {
+        let [a, b, c] = self.axes();
+        let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
+        (a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)).abs()
     }
 
     /// The steps of the grid's axes, as [`Frame::from_axes`] takes them.

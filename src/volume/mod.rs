@@ -12,20 +12,24 @@
 //! # Ok::<(), walpha::VolumeError>(())
 //! ```
 
+mod coordinates;
 mod dtype;
 mod error;
 mod gray;
 mod grid;
+mod part;
 mod read;
 mod sample;
 #[expect(clippy::module_inception, reason = "the type gives the floor its name")]
 mod volume;
 
+pub use coordinates::{Conversion, Coordinates, LengthUnit, Space};
 pub use dtype::{Dtype, Endian, UnknownName};
 pub use error::VolumeError;
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
+pub use part::{Region, downsample};
 pub(crate) use read::{Element, Lines, MOST_EXPANSION, NPY_MAGIC, NpyFile, VtkXml, io_error};
-pub use read::{RawLayout, ReadOptions, data_files, read};
+pub use read::{RawLayout, ReadOptions, Series, data_files, format_name, read, series};
 pub use sample::{SAMPLES, open, phantom, sample};
-pub use volume::Volume;
+pub use volume::{Nan, Volume};

@@ -1,7 +1,7 @@
 use ndarray::{Array3, ArrayView3};
 use rayon::prelude::*;
 
-use super::{Dims, Frame, Gray, GrayRange, VolumeError};
+use super::{Dims, Dtype, Frame, Gray, GrayRange, VolumeError};
 
 /// A grid of finite samples, stored `[z, y, x]` (x fastest) in standard layout.
 ///
@@ -20,8 +20,22 @@ pub struct Volume {
     samples: Array3<f32>,
     dims: Dims,
     frame: Frame,
-    /// Set by readers of unsigned 8-bit data, whose values are gray levels already.
+    /// Whether values are gray levels already, as those of unsigned 8-bit files are.
     gray_levels: bool,
+    /// How the file stores a sample; `f32` where there is no file.
+    dtype: Dtype,
+    /// Samples that the file has no number for, if there are any.
+    missing: Option<Vec<bool>>,
+}
+
+/// What becomes of samples that are NaN.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Nan {
+    /// This value stands in for them.
+    Value(f32),
+    /// They are missing: the least of the other values stands in for them, and they take no part where
+    /// points are selected and errors measured.
+    Mask,
 }
 
 impl Volume {
@@ -31,6 +45,11 @@ impl Volume {
     /// An axis of length zero, more than [`Dims::MAX_SAMPLES`] samples, or a NaN or infinity
     /// ([`VolumeError::NotFinite`] names the first).
     pub fn new(samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
+        Self::of_file(samples, frame)?.settled(None)
+    }
+
+    /// The same for readers: NaN may be among the samples until [`Volume::settled`] has seen them.
+    pub(crate) fn of_file(samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
         let (z, y, x) = samples.dim();
         let dims = Dims::new(x as u64, y as u64, z as u64)?;
         let samples = if samples.is_standard_layout() {
@@ -38,12 +57,81 @@ impl Volume {
         } else {
             samples.as_standard_layout().into_owned()
         };
-        let flat = samples.as_slice().expect("standard layout");
-        if let Some(index) = first_not_finite(flat) {
-            let at = [index % x, index / x % y, index / (x * y)];
-            return Err(VolumeError::NotFinite { value: flat[index], at });
+        let (gray_levels, dtype, missing) = (false, Dtype::F32, None);
+        let volume = Self { samples, dims, frame, gray_levels, dtype, missing };
+        volume.refuse(f32::is_infinite)?;
+        Ok(volume)
+    }
+
+    /// Says what NaN are, and refuses what is no number after that.
+    pub(crate) fn settled(mut self, nan: Option<Nan>) -> Result<Self, VolumeError> {
+        let value = match nan {
+            Some(Nan::Value(value)) => value,
+            Some(Nan::Mask) if self.as_slice().par_iter().any(|v| v.is_nan()) => {
+                self.missing = Some(self.as_slice().par_iter().map(|v| v.is_nan()).collect());
+                // Infinite where all are NaN, which is refused below.
+                self.value_range().0
+            }
+            _ => f32::NAN,
+        };
+        if nan.is_some() {
+            self.samples.par_mapv_inplace(|v| if v.is_nan() { value } else { v });
         }
-        Ok(Self { samples, dims, frame, gray_levels: false })
+        self.refuse(|v| !v.is_finite())?;
+        Ok(self)
+    }
+
+    /// Refuses samples that are wrong, with the place of the first.
+    fn refuse(&self, wrong: impl Fn(f32) -> bool + Sync) -> Result<(), VolumeError> {
+        let Some(index) = first(self.as_slice(), wrong) else { return Ok(()) };
+        let [x, y, _] = self.dims.xyz();
+        let at = [index % x, index / x % y, index / (x * y)];
+        Err(VolumeError::NotFinite { value: self.as_slice()[index], at })
+    }
+
+    /// Says how the file stores a sample. Unsigned 8-bit samples are gray levels.
+    pub(crate) fn with_dtype(self, dtype: Dtype) -> Self {
+        Self { dtype, gray_levels: dtype == Dtype::U8, ..self }
+    }
+
+    /// How the file stores a sample; `f32` where there is no file.
+    pub fn dtype(&self) -> Dtype {
+        self.dtype
+    }
+
+    /// Whether the file has no number for a sample, by its index in memory order; the least of all
+    /// values stands in for it.
+    pub fn is_missing(&self, sample: usize) -> bool {
+        self.missing.as_ref().is_some_and(|missing| missing[sample])
+    }
+
+    /// How many samples are not missing.
+    pub fn samples_there(&self) -> usize {
+        let missing =
+            self.missing.as_deref().map_or(0, |missing| missing.par_iter().filter(|&&m| m).count());
+        self.dims.samples() - missing
+    }
+
+    /// Whether there are such samples.
+    pub fn has_missing(&self) -> bool {
+        self.missing.is_some()
+    }
+
+    /// Which samples are missing, if any are.
+    pub(crate) fn missing(&self) -> Option<ArrayView3<'_, bool>> {
+        let view = |missing| ArrayView3::from_shape(self.dims.shape(), missing);
+        self.missing.as_deref().map(|missing| view(missing).expect("one for each sample"))
+    }
+
+    /// Other samples of the same kind.
+    pub(crate) fn like(&self, samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
+        let (gray_levels, dtype) = (self.gray_levels, self.dtype);
+        Ok(Self { gray_levels, dtype, ..Self::new(samples, frame)? })
+    }
+
+    /// The same volume where these samples are missing.
+    pub(crate) fn with_missing(self, missing: Option<Vec<bool>>) -> Self {
+        Self { missing, ..self }
     }
 
     /// Says that the samples are gray levels 0..255 already, as those of unsigned 8-bit files are.
@@ -65,6 +153,11 @@ impl Volume {
     /// Where the grid lies in the world.
     pub fn frame(&self) -> &Frame {
         &self.frame
+    }
+
+    /// The same samples with their grid elsewhere, or told in other coordinates.
+    pub fn with_frame(self, frame: Frame) -> Self {
+        Self { frame, ..self }
     }
 
     /// The samples, `[z, y, x]`.
@@ -113,19 +206,31 @@ impl Volume {
                 range
             }
         };
-        if range != GrayRange::IDENTITY {
+        if !range.is_identity() {
             self.samples.par_mapv_inplace(|v| range.gray(v.into()) as f32);
         }
         Ok((self.with_gray_levels(), range))
     }
 }
 
-/// The first index whose value is a NaN or an infinity: whole chunks are judged at once, and only
-/// one with such a value is searched.
-fn first_not_finite(values: &[f32]) -> Option<usize> {
+impl Volume {
+    /// The volume with the values that its gray levels stand for: what [`Volume::into_gray`] did, undone.
+    /// In place.
+    pub fn into_values(mut self, range: &GrayRange) -> Self {
+        if !range.is_identity() {
+            self.samples.par_mapv_inplace(|gray| range.value(gray.into()) as f32);
+            self.gray_levels = false;
+        }
+        self
+    }
+}
+
+/// The first index of a wrong value: whole chunks are judged at once, and only one with such a value is
+/// searched.
+fn first(values: &[f32], wrong: impl Fn(f32) -> bool + Sync) -> Option<usize> {
     const CHUNK: usize = 1 << 14;
-    let has_one = |chunk: &[f32]| chunk.iter().fold(false, |found, v| found | !v.is_finite());
+    let has_one = |chunk: &[f32]| chunk.iter().fold(false, |found, &v| found | wrong(v));
     let chunk = values.par_chunks(CHUNK).position_first(has_one)?;
-    let inside = values[chunk * CHUNK..].iter().position(|v| !v.is_finite())?;
+    let inside = values[chunk * CHUNK..].iter().position(|&v| wrong(v))?;
     Some(chunk * CHUNK + inside)
 }

@@ -10,14 +10,15 @@ use walpha::ladder::focus;
 use walpha::points::{Points, Units, difference, select, weigh};
 use walpha::shape::{Betti, Measures, ShapeOptions};
 use walpha::{
-    HaarOptions, Selection, SelectionRule, Tolerance, Truncation, Volume, alpha_shape, haar,
+    Coordinates, GrayRange, HaarOptions, Selection, SelectionRule, Tolerance, Truncation, Volume,
+    alpha_shape, haar,
 };
 
 use super::super::Global;
 use super::super::args::WeightArgs;
 use super::super::folder::Folder;
 use super::super::output::{name, tell};
-use super::super::pipeline::{Domain, Input, read};
+use super::super::pipeline::{Domain, Grays, Input, read, side};
 use super::super::progress::Progress;
 use super::super::report::{AlphaReport, SCHEMA_VERSION};
 use super::{Ladder, Mesh, short};
@@ -27,6 +28,8 @@ use super::{Ladder, Mesh, short};
 struct Facts {
     schema_version: u32,
     input: String,
+    /// Of points and all lengths.
+    coordinates: Coordinates,
     alpha: AlphaReport,
     weights: String,
     domain: Domain,
@@ -69,35 +72,42 @@ impl Ladder {
         mut folder: Folder,
     ) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
-        let Input::Volume(volume, _) = read(&self.input, &mut progress)? else {
+        let Input::Volume(Grays { volume, range, written }) = read(&self.input, &mut progress)?
+        else {
             bail!("levels of detail are made of a volume, and this is a point file; use --alphas");
         };
         let weights = WeightArgs::from(self.weights);
-        let units = self.select.units();
+        let (volume, units) = self.select.place(volume)?;
+        let alpha = weights.alpha(side(&volume, units));
+        let coordinates = units.coordinates(&volume);
         let domain = Domain::of_grid(&volume, units);
         let mut stages = Stages { volume: &volume, units, smoothed: None };
-        let full = match &self.roi {
+        let full = match &self.focus {
             None => None,
             Some(region) => {
-                let wanted = (self.haar.options(), self.select.selection());
+                let wanted = (self.haar.options(), self.select.selection(&range));
                 let points = progress.stage("points", || stages.points(&wanted.0, &wanted.1))?.0;
                 if !points.positions.iter().any(|&p| region.contains(p)) {
-                    bail!("no point lies in --roi: it is in the units of the points, x first");
+                    bail!("no point lies in --focus: it is in the units of the points, x first");
                 }
                 Some((points, region))
             }
         };
         let mut rows = Vec::new();
-        for wanted in self.wanted() {
+        for wanted in self.wanted(&range) {
             let (coarse, truncation) =
                 progress.stage("points", || stages.points(&wanted.haar, &wanted.selection))?;
-            let points = match &full {
+            let mut points = match &full {
                 Some((full, region)) => focus(full, &coarse, region),
                 None => coarse,
             };
-            let weighted = weigh(&points, weights.weighting(false), weights.alpha().squared())?;
-            let options = ShapeOptions::new(weights.alpha());
+            if let Some(values) = &mut points.values {
+                values.iter_mut().for_each(|value| *value = written.value(*value));
+            }
+            let weighted = weigh(&points, weights.weighting(false), alpha.squared())?;
+            let options = ShapeOptions::new(alpha);
             let shape = progress.stage("shape", || alpha_shape(weighted, &options))?;
+            let shape = shape.meaning(coordinates);
             let mut row = Row {
                 points: points.len(),
                 kept: truncation.kept,
@@ -127,7 +137,8 @@ impl Ladder {
         let facts = Facts {
             schema_version: SCHEMA_VERSION,
             input: self.input.input.clone(),
-            alpha: AlphaReport::from(weights.alpha()),
+            coordinates,
+            alpha: AlphaReport::new(alpha, coordinates.unit),
             weights: weights.weighting(false).to_string(),
             domain,
             points_in_region: full.as_ref().map(in_region),
@@ -140,8 +151,8 @@ impl Ladder {
         tell(global, &facts)
     }
 
-    fn wanted(&self) -> Vec<Wanted> {
-        let (haar, selection) = (self.haar.options(), self.select.selection());
+    fn wanted(&self, range: &GrayRange) -> Vec<Wanted> {
+        let (haar, selection) = (self.haar.options(), self.select.selection(range));
         let by_count = self.counts.iter().map(|&count| Wanted {
             name: count.to_string(),
             haar,
@@ -184,6 +195,7 @@ impl Stages<'_> {
 impl Display for Facts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "input     {}", name(&self.input))?;
+        writeln!(f, "lengths   in {}", self.coordinates)?;
         writeln!(f, "weights   {}", self.weights)?;
         writeln!(f, "parameter {}", self.alpha)?;
         if let Some(points) = self.points_in_region {

@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Write as _};
 use std::io;
 
 use serde::Serialize;
-use walpha::Alpha;
+use walpha::Coordinates;
 use walpha::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
 use walpha::shape::{Betti, ByClass, Measures, Void, number_or_name};
 
@@ -21,6 +21,8 @@ pub struct Facts {
     points: usize,
     hidden: usize,
     duplicates: usize,
+    /// Of points and all lengths.
+    coordinates: Coordinates,
     alpha_ref: AlphaReport,
     weights: WeightsReport,
     domain: Domain,
@@ -53,14 +55,15 @@ struct Row {
 }
 
 impl Facts {
-    pub fn new(input: &str, weighed: &Weighed, alpha_ref: Alpha, domain: Domain) -> Self {
+    pub fn new(input: &str, weighed: &Weighed, domain: Domain) -> Self {
         Self {
             schema_version: SCHEMA_VERSION,
             input: input.to_owned(),
             points: weighed.points.len(),
             hidden: 0,
             duplicates: 0,
-            alpha_ref: AlphaReport::from(alpha_ref),
+            coordinates: weighed.coordinates,
+            alpha_ref: AlphaReport::new(weighed.alpha, weighed.coordinates.unit),
             weights: WeightsReport::of(weighed),
             domain,
             simplices: [0; 4],
@@ -124,6 +127,7 @@ impl Display for Facts {
             "points    {}, {} duplicates, {} hidden",
             self.points, self.duplicates, self.hidden
         )?;
+        writeln!(f, "lengths   in {}", self.coordinates)?;
         writeln!(f, "weights   {} (squared lengths), frozen at {}", self.weights, self.alpha_ref)?;
         writeln!(
             f,

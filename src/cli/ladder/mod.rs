@@ -30,7 +30,7 @@ use regions::region;
 /// and detail.csv and detail.json tell error and size.
 ///
 /// Examples: walpha ladder sample:skull --alphas 1,2,5,10,20,50 -o ladder;
-/// walpha ladder sample:skull --counts 1000,4000,16000 --roi 20:40,20:40,20:40 -o detail
+/// walpha ladder sample:skull --counts 1000,4000,16000 --focus 20:40,20:40,20:40 -o detail
 #[derive(Args)]
 pub struct Ladder {
     #[command(flatten)]
@@ -58,7 +58,7 @@ pub struct Ladder {
     /// of the level) at every level of detail; borders belong to it. In the units of the points.
     #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = region,
           allow_hyphen_values = true)]
-    roi: Option<Region>,
+    focus: Option<Region>,
     /// Meshes to write for each level, by extension, as in ply,vtu [default: none for α, ply for
     /// levels of detail].
     #[arg(long, value_name = "EXT,EXT,…", value_delimiter = ',')]
@@ -77,8 +77,8 @@ const READABLE: usize = 24;
 impl Ladder {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let detail = !(self.counts.is_empty() && self.epsilons.is_empty());
-        if self.roi.is_some() && !detail {
-            bail!("--roi belongs to levels of detail: give --counts or --epsilons too");
+        if self.focus.is_some() && !detail {
+            bail!("--focus belongs to levels of detail: give --counts or --epsilons too");
         }
         once("--counts", &self.counts)?;
         once("--epsilons", &self.epsilons)?;
@@ -105,17 +105,19 @@ impl Ladder {
         let read = pipeline::read(&self.input, &mut progress)?;
         let (weighed, _) =
             pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
-        let domain = pipeline::domain(&weighed, self.select.units());
-        let mut facts = Facts::new(&self.input.input, &weighed, weights.alpha(), domain);
+        let weighed = weighed.in_values();
+        let domain = pipeline::domain(&weighed);
+        let mut facts = Facts::new(&self.input.input, &weighed, domain);
+        let (alpha, coordinates) = (weighed.alpha, weighed.coordinates);
         let points = weighed.points;
         let filtration = progress.stage("filtration", || Filtration::new(points))?;
         let curve = progress.stage("curve", || filtration.curve());
         let suggested = progress.stage("curve", || filtration.suggest(&curve));
         let alphas = match &self.alphas {
             Alphas::Given(alphas) => alphas.clone(),
-            Alphas::Auto => progress.stage("curve", || {
-                pipeline::readable(&filtration, &curve, READABLE, weights.alpha())
-            }),
+            Alphas::Auto => {
+                progress.stage("curve", || pipeline::readable(&filtration, &curve, READABLE, alpha))
+            }
         };
         let levels = progress.stage("ladder", || filtration.levels(&alphas));
         let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
@@ -132,7 +134,7 @@ impl Ladder {
                 if meshes.is_empty() {
                     break;
                 }
-                let shape = levels.shape(k, false, level.betti);
+                let shape = levels.shape(k, false, level.betti).meaning(coordinates);
                 for mesh in &meshes {
                     let name = level_name(&ladder, k, level, &mesh.extension);
                     folder.write(&name, |out| mesh.exporter.write(&shape, out))?;

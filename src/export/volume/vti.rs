@@ -1,29 +1,33 @@
 use std::io::{self, Write};
 
+use super::super::stated::field_data;
 use super::write_volume_raw;
-use crate::volume::Volume;
+use crate::volume::{Coordinates, Space, Volume};
 
-/// Writes a volume as VTI, VTK's image data: point data `gray`, appended raw.
+/// Writes a volume as VTI, VTK's image data: point data `value`, appended raw. A known space is LPS; the
+/// field data `SPACE` and `UNIT` tell it.
 ///
 /// # Errors
 /// Whatever `out` returns.
 pub fn write_volume_vti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let [x, y, z] = volume.dims().xyz().map(|size| size - 1);
     let extent = format!("0 {x} 0 {y} 0 {z}");
-    let frame = volume.frame();
+    let lps = Coordinates { space: Space::Lps, unit: volume.frame().coordinates.unit };
+    let frame = volume.frame().to(lps);
     let numbers =
         |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
     write!(
         out,
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-         <ImageData WholeExtent=\"{extent}\" Origin=\"{}\" Spacing=\"{}\" Direction=\"{}\">\n\
-         <Piece Extent=\"{extent}\">\n<PointData Scalars=\"gray\">\n\
-         <DataArray type=\"Float32\" Name=\"gray\" format=\"appended\" offset=\"0\"/>\n\
+         <ImageData WholeExtent=\"{extent}\" Origin=\"{}\" Spacing=\"{}\" Direction=\"{}\">\n{}\
+         <Piece Extent=\"{extent}\">\n<PointData Scalars=\"value\">\n\
+         <DataArray type=\"Float32\" Name=\"value\" format=\"appended\" offset=\"0\"/>\n\
          </PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_",
         numbers(&frame.origin),
         numbers(&frame.spacing),
         numbers(frame.direction.as_flattened()),
+        field_data(frame.coordinates),
     )?;
     out.write_all(&(volume.dims().samples() as u64 * 4).to_le_bytes())?;
     write_volume_raw(volume, out)?;

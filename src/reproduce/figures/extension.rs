@@ -26,7 +26,7 @@ pub(super) fn error_against_points(bench: &mut Bench<'_>) -> Result<Item, Reprod
     let picture = bench.file("extension-1.png", figure.to_png()?);
     let svg = bench.file("extension-1.svg", figure.to_svg()?.into_bytes());
     let mut csv = Vec::new();
-    write_curve_csv(&curve, &mut csv)?;
+    write_curve_csv(&curve, study.subject.range.step(), &mut csv)?;
     let csv = bench.file("extension-1.csv", csv);
     let facts = at_the_papers_size(&curve, n as usize);
     Ok(Item {

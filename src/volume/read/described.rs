@@ -1,12 +1,14 @@
 use std::io::{BufReader, Read};
 use std::path::Path;
 
+use bzip2::read::MultiBzDecoder;
 use flate2::read::{MultiGzDecoder, ZlibDecoder};
 use ndarray::Array3;
 
+use super::frames::Frames;
 use super::payload::{Length, Payload};
 use super::{format_error, payload_error, text};
-use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, Frame, Volume, VolumeError};
 
 /// A volume as the header of a file describes it, x fastest.
 #[derive(Clone, Debug)]
@@ -16,6 +18,7 @@ pub(super) struct Described {
     pub endian: Endian,
     pub frame: Frame,
     pub encoding: Encoding,
+    pub frames: Frames,
 }
 
 /// How samples become bytes.
@@ -29,11 +32,18 @@ pub(super) enum Encoding {
     Gzip,
     /// Compressed, with the header of zlib.
     Zlib,
+    /// Compressed with bzip2.
+    Bzip2,
 }
 
 impl Described {
-    /// Bytes of the samples where they are not compressed.
+    /// Bytes of all volumes of the file where they are not compressed.
     pub fn bytes(&self) -> u64 {
+        self.each().saturating_mul(self.frames.count)
+    }
+
+    /// Bytes of one volume.
+    fn each(&self) -> u64 {
         (self.dims.samples() * self.dtype.size()) as u64
     }
 
@@ -48,16 +58,23 @@ impl Described {
             Encoding::Zlib => {
                 self.decode(path, ZlibDecoder::new(compressed), Length::of_gzip(bytes))
             }
+            Encoding::Bzip2 => {
+                self.decode(path, MultiBzDecoder::new(compressed), Length::of_bzip2(bytes))
+            }
             Encoding::Text => {
-                let count = self.dims.samples() as u64;
-                let samples = text::numbers(compressed, bytes, self.dtype, count)
+                let count = self.dims.samples();
+                let all = (count as u64).saturating_mul(self.frames.count);
+                let mut samples = text::numbers(compressed, bytes, self.dtype, all)
                     .map_err(|what| format_error(path, what))?;
+                samples.drain(..count * self.frames.index as usize);
+                samples.truncate(count);
                 self.volume(samples)
             }
         }
     }
 
     fn decode(self, path: &Path, reader: impl Read, length: Length) -> Result<Volume, VolumeError> {
+        let (reader, length) = self.frames.one(path, reader, length, self.each())?;
         let samples = Payload { reader, length }
             .samples(self.dtype, self.endian, self.dims.samples() as u64)
             .map_err(payload_error(path, &self.dims, self.dtype))?;
@@ -68,8 +85,8 @@ impl Described {
     pub fn volume(self, samples: Vec<f32>) -> Result<Volume, VolumeError> {
         let samples =
             Array3::from_shape_vec(self.dims.shape(), samples).expect("count was checked");
-        let volume = Volume::new(samples, self.frame)?;
-        Ok(if self.dtype == Dtype::U8 { volume.with_gray_levels() } else { volume })
+        let volume = Volume::of_file(samples, self.frame)?.with_dtype(self.dtype);
+        Ok(volume)
     }
 }
 
@@ -78,8 +95,10 @@ pub(super) fn frame(
     path: &Path,
     origin: [f64; 3],
     axes: [[f64; 3]; 3],
+    coordinates: Coordinates,
 ) -> Result<Frame, VolumeError> {
-    Frame::from_axes(origin, axes).ok_or_else(|| {
+    let frame = Frame::from_axes(origin, axes).map(|frame| frame.meaning(coordinates));
+    frame.ok_or_else(|| {
         let what = format!(
             "places its grid at {origin:?} with steps {axes:?} along its axes: spacing must not be \
              0, and all numbers finite; correct its header"

@@ -29,6 +29,27 @@ pub(super) enum Kind {
     Dicom,
 }
 
+impl Kind {
+    /// For people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Npy => "NPY",
+            Self::Npz => "NPZ",
+            Self::Inrimage => "INRIMAGE",
+            Self::InrimageGzip => "INRIMAGE, gzip",
+            Self::Nifti => "NIfTI",
+            Self::NiftiGzip => "NIfTI, gzip",
+            Self::Nrrd => "NRRD",
+            Self::MetaImage => "MetaImage",
+            Self::VtkLegacy => "VTK structured points",
+            Self::VtkXml => "VTK image data (XML)",
+            Self::Tiff => "TIFF",
+            #[cfg(feature = "dicom")]
+            Self::Dicom => "DICOM",
+        }
+    }
+}
+
 /// What each extension stands for.
 const EXTENSIONS: [(&str, Kind); 15] = [
     (".npy", Kind::Npy),
@@ -63,17 +84,18 @@ const REFUSED: [(&[u8], &str); 8] = [
 
 /// What a file is, by its first bytes, then by its extension.
 pub(super) fn kind(path: &Path, start: &[u8]) -> Result<Kind, VolumeError> {
-    if let Some(kind) = by_content(start) {
-        return Ok(kind);
-    }
-    if let Some((_, what)) = REFUSED.iter().find(|(magic, _)| start.starts_with(magic)) {
-        return Err(format_error(path, format!("is {what}")));
-    }
+    // First, because the bytes before the mark are anybody's: some scanners write a TIFF header there.
     if start.get(128..132) == Some(b"DICM") {
         #[cfg(feature = "dicom")]
         return Ok(Kind::Dicom);
         #[cfg(not(feature = "dicom"))]
         return Err(format_error(path, format!("is a DICOM file, {}", without("dicom"))));
+    }
+    if let Some(kind) = by_content(start) {
+        return Ok(kind);
+    }
+    if let Some((_, what)) = REFUSED.iter().find(|(magic, _)| start.starts_with(magic)) {
+        return Err(format_error(path, format!("is {what}")));
     }
     if start.starts_with(&[0x1f, 0x8b]) {
         return unpacked(path);

@@ -5,7 +5,7 @@ use ndarray::Array3;
 
 use super::payload::{Length, Payload};
 use super::{io_error, payload_error};
-use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, Frame, Volume, VolumeError};
 
 /// The first bytes of each INRIMAGE-4 file.
 pub(super) const MAGIC: &[u8] = b"#INRIMAGE-4#{";
@@ -33,8 +33,7 @@ pub(crate) fn read(
         .samples(dtype, endian, dims.samples() as u64)
         .map_err(payload_error(path, &dims, dtype))?;
     let samples = Array3::from_shape_vec(dims.shape(), samples).expect("count was checked");
-    let volume = Volume::new(samples, frame)?;
-    Ok(if dtype == Dtype::U8 { volume.with_gray_levels() } else { volume })
+    Ok(Volume::of_file(samples, frame)?.with_dtype(dtype))
 }
 
 struct Header {
@@ -158,6 +157,9 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
         frame.origin[axis] = number(origin, 0.0)?;
         if frame.spacing[axis] <= 0.0 {
             return Err(said(format!("{spacing} in its header must be a positive length")));
+        }
+        if value(spacing).or(value(origin)).is_some() {
+            frame.coordinates = Coordinates::default();
         }
     }
     Ok(Header { dims, dtype, endian, frame })

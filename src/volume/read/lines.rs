@@ -34,6 +34,18 @@ impl<R: BufRead> Lines<R> {
         Ok((found > 0).then(|| String::from_utf8_lossy(&line).into_owned()))
     }
 
+    /// Passes over bytes that are no lines.
+    pub fn skip(&mut self, bytes: u64) -> io::Result<()> {
+        let passed = io::copy(&mut (&mut self.reader).take(bytes), &mut io::sink())?;
+        self.bytes += passed;
+        Ok(())
+    }
+
+    /// Whether nothing follows.
+    pub fn at_end(&mut self) -> io::Result<bool> {
+        Ok(self.reader.fill_buf()?.is_empty())
+    }
+
     /// Bytes of the lines so far.
     pub fn bytes(&self) -> u64 {
         self.bytes

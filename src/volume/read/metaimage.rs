@@ -2,15 +2,21 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use super::described::{Described, Encoding, frame};
+use super::described::{self, Described, Encoding, diagonal};
 use super::detached::{self, beside};
+use super::frames::Frames;
 use super::lines::Lines;
 use super::nrrd::numbered;
 use super::{format_error, io_error};
-use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Volume, VolumeError};
 
 /// Keys one of which stands in the first line of a MetaImage header.
 const FIRST_KEYS: [&str; 4] = ["ObjectType", "NDims", "Comment", "ObjectSubType"];
+
+/// Keys of the grid's place, each by its names.
+const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
+const ORIGIN: [&str; 3] = ["Offset", "Origin", "Position"];
+const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
 
 /// Whether a file begins as a MetaImage header does.
 pub(super) fn is_header(start: &[u8]) -> bool {
@@ -23,13 +29,13 @@ pub(super) fn is_header(start: &[u8]) -> bool {
 /// other files (`.mhd`: one, a `LIST`, or a numbered row), raw, zlib-compressed or text.
 ///
 /// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame.
-/// Several channels are refused.
-pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
+/// A fourth axis counts volumes, of which `frame` is read; several channels are refused.
+pub(super) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut lines = Lines::new(BufReader::new(file));
     let header = Header::read(path, &mut lines)?;
-    let described = header.described(path)?;
+    let described = header.described(path, frame)?;
     let Some(names) = header.names(path, &mut lines)? else {
         let bytes = length - lines.bytes();
         return described.read(path, lines.into_inner(), bytes);
@@ -115,31 +121,24 @@ impl Header {
         self.field(keys).is_some_and(|value| value.eq_ignore_ascii_case("true"))
     }
 
-    /// As many numbers as the key should have.
-    fn numbers<const N: usize>(
+    /// As many numbers as the key should have; where it is not there, `silent` ones.
+    fn numbers(
         &self,
         path: &Path,
         keys: &[&str],
         count: usize,
-        default: [f64; N],
-    ) -> Result<[f64; N], VolumeError> {
-        let Some(text) = self.field(keys) else { return Ok(default) };
+        silent: f64,
+    ) -> Result<Vec<f64>, VolumeError> {
+        let Some(text) = self.field(keys) else { return Ok(vec![silent; count]) };
         let numbers: Option<Vec<f64>> =
             text.split_whitespace().map(|number| number.parse().ok()).collect();
-        let mut all = default;
-        match numbers {
-            Some(numbers) if numbers.len() == count => {
-                all[..count].copy_from_slice(&numbers);
-                Ok(all)
-            }
-            _ => {
-                let what = format!("{} = {text} in its header is not {count} numbers", keys[0]);
-                Err(format_error(path, what))
-            }
-        }
+        numbers.filter(|numbers| numbers.len() == count).ok_or_else(|| {
+            let what = format!("{} = {text} in its header is not {count} numbers", keys[0]);
+            format_error(path, what)
+        })
     }
 
-    fn described(&self, path: &Path) -> Result<Described, VolumeError> {
+    fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
         let said = |what: String| format_error(path, what);
         let needed = |key: &str| {
             self.field(&[key])
@@ -151,15 +150,18 @@ impl Header {
         let count = match needed("NDims")? {
             "2" => 2,
             "3" => 3,
+            "4" => 4,
             other => return Err(said(format!("has NDims = {other}: a volume has 3 axes"))),
         };
         let sizes = needed("DimSize")?;
         let size: Option<Vec<u64>> = sizes.split_whitespace().map(|n| n.parse().ok()).collect();
-        let dims = match size.as_deref() {
-            Some(&[x, y]) if count == 2 => Dims::new(x, y, 1)?,
-            Some(&[x, y, z]) if count == 3 => Dims::new(x, y, z)?,
+        let (dims, volumes) = match size.as_deref() {
+            Some(&[x, y]) if count == 2 => (Dims::new(x, y, 1)?, 1),
+            Some(&[x, y, z]) if count == 3 => (Dims::new(x, y, z)?, 1),
+            Some(&[x, y, z, t]) if count == 4 => (Dims::new(x, y, z)?, t),
             _ => return Err(said(format!("DimSize = {sizes} is not {count} sizes"))),
         };
+        let frames = Frames::choose(path, &[volumes], frame)?;
         let channels = self.field(&["ElementNumberOfChannels"]).unwrap_or("1");
         if channels != "1" {
             return Err(said(format!(
@@ -180,27 +182,38 @@ impl Header {
             Encoding::Raw
         };
 
-        let keys = ["ElementSpacing", "ElementSize"];
-        let spacing = self.numbers(path, &keys, count, [1.0; 3])?;
-        let keys = ["Offset", "Origin", "Position"];
-        let origin = self.numbers(path, &keys, count, [0.0; 3])?;
-        let keys = ["TransformMatrix", "Rotation", "Orientation"];
-        let mut axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        if count == 3 {
-            let identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-            let matrix = self.numbers::<9>(path, &keys, 9, identity)?;
-            axes.as_flattened_mut().copy_from_slice(&matrix);
-        } else {
-            let matrix = self.numbers::<4>(path, &keys, 4, [1.0, 0.0, 0.0, 1.0])?;
-            axes[0][..2].copy_from_slice(&matrix[..2]);
-            axes[1][..2].copy_from_slice(&matrix[2..]);
+        let spacing = self.numbers(path, &SPACING, count, 1.0)?;
+        let origin = self.numbers(path, &ORIGIN, count, 0.0)?;
+        let [origin, spacing] = [(origin, 0.0), (spacing, 1.0)].map(|(numbers, silent)| {
+            [0, 1, 2].map(|k: usize| numbers.get(k).copied().unwrap_or(silent))
+        });
+        // The rows of the matrix are the grid's axes, in as many dimensions as the image has.
+        let mut axes = diagonal([1.0; 3]);
+        if self.field(&MATRIX).is_some() {
+            let matrix = self.numbers(path, &MATRIX, count * count, 0.0)?;
+            for (axis, row) in axes.iter_mut().zip(matrix.chunks(count)) {
+                let components = count.min(3);
+                axis[..components].copy_from_slice(&row[..components]);
+            }
         }
         for (axis, length) in axes.iter_mut().zip(spacing) {
             *axis = axis.map(|component| component * length);
         }
-        let frame = frame(path, origin, axes)?;
+        let frame = described::frame(path, origin, axes, self.coordinates())?;
         let endian = if big { Endian::Big } else { Endian::Little };
-        Ok(Described { dims, dtype, endian, frame, encoding })
+        Ok(Described { dims, dtype, endian, frame, encoding, frames })
+    }
+
+    /// MetaImage is LPS, and in millimetres unless `DistanceUnits` say otherwise.
+    fn coordinates(&self) -> Coordinates {
+        let keys = [SPACING.as_slice(), &ORIGIN, &MATRIX].concat();
+        if self.field(&keys).is_none() {
+            return Coordinates::VOXEL;
+        }
+        match self.field(&["DistanceUnits"]).map(LengthUnit::named) {
+            Some(unit) if unit.is_known() => Coordinates { unit, ..Coordinates::PATIENT },
+            _ => Coordinates::PATIENT,
+        }
     }
 
     /// Bytes before the samples of each data file; `None` where they stand at its end.

@@ -4,9 +4,12 @@ use std::path::{Path, PathBuf};
 
 use super::described::{Described, Encoding, diagonal, frame};
 use super::detached::naming;
+use super::frames::Frames;
 use super::payload::{Length, Payload};
 use super::{format_error, io_error, payload_error};
-use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use crate::volume::{
+    Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Space, Volume, VolumeError,
+};
 
 /// Length of the header of version 1, which its first number repeats.
 const HEADER_1: usize = 348;
@@ -21,9 +24,14 @@ pub(super) fn is_header(start: &[u8]) -> bool {
 /// Reads NIfTI-1 and NIfTI-2 (nifti.nimh.nih.gov): `.nii`, `.nii.gz`, or a pair `.hdr` and `.img`.
 ///
 /// `scl_slope` and `scl_inter` are applied. The frame is that of `sform`, else of `qform`, else of
-/// `pixdim` alone, in the space the file means (x to the right, y to the front, z up). Axes beyond
-/// the third must have one sample; colours and complex numbers are refused.
-pub(super) fn read(path: &Path, reader: impl Read, length: Length) -> Result<Volume, VolumeError> {
+/// `pixdim` alone, which says nothing of the space; the other two are RAS. Axes beyond
+/// the third count volumes, of which `frame` is read; colours and complex numbers are refused.
+pub(super) fn read(
+    path: &Path,
+    reader: impl Read,
+    length: Length,
+    frame: Option<u64>,
+) -> Result<Volume, VolumeError> {
     let mut reader = reader;
     let mut header = Vec::new();
     let mut fill = |size: usize, header: &mut Vec<u8>| -> Result<(), VolumeError> {
@@ -43,7 +51,7 @@ pub(super) fn read(path: &Path, reader: impl Read, length: Length) -> Result<Vol
         fill(HEADER_2, &mut header)?;
     }
     let header = Header { bytes: header, version, endian };
-    let described = header.described(path)?;
+    let described = header.described(path, frame)?;
     let (slope, inter) = header.scaling();
     if header.is_pair(path)? {
         let image = path.with_extension("img");
@@ -80,7 +88,9 @@ fn samples(
     reader: impl Read,
     length: Length,
 ) -> Result<Volume, VolumeError> {
-    let Described { dims, dtype, endian, .. } = described;
+    let Described { dims, dtype, endian, frames, .. } = described;
+    let each = (dims.samples() * dtype.size()) as u64;
+    let (reader, length) = frames.one(path, reader, length, each)?;
     let payload = Payload { reader, length };
     let fail = payload_error(path, &dims, dtype);
     let count = dims.samples() as u64;
@@ -97,7 +107,7 @@ fn samples(
         samples.iter().map(|v| (v * slope + inter) as f32).collect()
     };
     // Scaled bytes are no gray levels.
-    Described { dtype: Dtype::F32, ..described }.volume(scaled)
+    Ok(described.volume(scaled)?.with_dtype(Dtype::F32))
 }
 
 /// Version and byte order, by the first number.
@@ -197,7 +207,7 @@ impl Header {
         Err(format_error(path, format!("has samples at byte {offset} (vox_offset), in its header")))
     }
 
-    fn described(&self, path: &Path) -> Result<Described, VolumeError> {
+    fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
         let said = |what: String| format_error(path, what);
         let axes = self.dim(0);
         if !(1..=7).contains(&axes) {
@@ -208,12 +218,9 @@ impl Header {
         if sizes.iter().any(|&size| size < 0) {
             return Err(said(format!("has axes of {sizes:?} samples: its header is damaged")));
         }
-        if sizes[3..].iter().any(|&size| size > 1) {
-            return Err(said(format!(
-                "has axes of {sizes:?} samples: a volume has three; extract one first"
-            )));
-        }
-        let [x, y, z, ..] = sizes.map(|size| size as u64);
+        let sizes = sizes.map(|size| size as u64);
+        let frames = Frames::choose(path, &sizes[3..], frame)?;
+        let [x, y, z, ..] = sizes;
         let dims = Dims::new(x, y, z)?;
         let dtype = match self.short(70, 12) {
             2 => Dtype::U8,
@@ -241,7 +248,8 @@ impl Header {
             }
         };
         let frame = self.frame(path)?;
-        Ok(Described { dims, dtype, endian: self.endian, frame, encoding: Encoding::Raw })
+        let (endian, encoding) = (self.endian, Encoding::Raw);
+        Ok(Described { dims, dtype, endian, frame, encoding, frames })
     }
 
     /// Slope and intercept; a slope of 0 means none.
@@ -260,13 +268,17 @@ impl Header {
             let row = |r: usize| [0, 1, 2, 3].map(|c| self.real(280, 400, 4 * r + c));
             let rows = [row(0), row(1), row(2)];
             let column = |c: usize| [0, 1, 2].map(|r| rows[r][c]);
-            return frame(path, column(3), [column(0), column(1), column(2)]);
+            let axes = [column(0), column(1), column(2)];
+            return frame(path, column(3), axes, self.coordinates(Space::Ras));
         }
         // 0 stands for "unknown" in some files.
         let length = |i: usize| if pixdim(i) == 0.0 { 1.0 } else { pixdim(i).abs() };
         let spacing = [1, 2, 3].map(length);
         if self.code(252, 344) <= 0 {
-            return frame(path, [0.0; 3], diagonal(spacing));
+            let coordinates = self.coordinates(Space::Unknown);
+            let said = spacing != [1.0; 3] || coordinates.unit.is_known();
+            let coordinates = if said { coordinates } else { Coordinates::VOXEL };
+            return frame(path, [0.0; 3], diagonal(spacing), coordinates);
         }
         let mut imaginary = [0, 1, 2].map(|i| self.real(256, 352, i));
         let square: f64 = imaginary.iter().map(|v| v * v).sum();
@@ -287,6 +299,22 @@ impl Header {
         }
         let axis = |c: usize| [0, 1, 2].map(|r| rotation[r][c] * spacing[c]);
         let origin = [0, 1, 2].map(|i| self.real(268, 376, i));
-        frame(path, origin, [axis(0), axis(1), axis(2)])
+        frame(path, origin, [axis(0), axis(1), axis(2)], self.coordinates(Space::Ras))
+    }
+
+    /// The unit of `xyzt_units`; a patient is measured in millimetres where it names none.
+    fn coordinates(&self, space: Space) -> Coordinates {
+        let code = match self.version {
+            1 => self.at::<1>(123, 0)[0],
+            _ => self.at::<4>(0, 500)[0],
+        };
+        let unit = match code & 7 {
+            1 => LengthUnit::Metre,
+            2 => LengthUnit::Millimetre,
+            3 => LengthUnit::Micrometre,
+            _ if space.is_known() => LengthUnit::Millimetre,
+            _ => LengthUnit::Unstated,
+        };
+        Coordinates { space, unit }
     }
 }

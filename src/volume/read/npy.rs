@@ -4,6 +4,7 @@ use std::path::Path;
 
 use ndarray::{Array3, ShapeBuilder};
 
+use super::frames::Frames;
 use super::payload::{Element, Length, Payload};
 use super::{io_error, payload_error_of};
 use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
@@ -26,9 +27,25 @@ pub(crate) struct NpyFile<R = BufReader<File>> {
     payload: Payload<R>,
 }
 
-/// Reads a three-dimensional array, axes `[z, y, x]`, in C or Fortran order.
-pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
-    volume(path, NpyFile::open(path)?)
+/// Reads an array of three axes `[z, y, x]`, in C or Fortran order, or the one numbered `frame` of an
+/// array of four, in C order.
+pub(super) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+    let file = NpyFile::open(path)?;
+    if let (&[count, z, y, x], false) = (file.shape.as_slice(), file.fortran) {
+        let each =
+            [z, y, x, file.dtype.size() as u64].iter().fold(1, |n: u64, m| n.saturating_mul(*m));
+        let frames = Frames::choose(path, &[count], frame)?;
+        let Payload { reader, length } = file.payload;
+        let (reader, length) = frames.one(path, reader, length, each)?;
+        let payload = Payload { reader, length };
+        let NpyFile { fortran, dtype, endian, boolean, .. } = file;
+        return volume(
+            path,
+            NpyFile { shape: vec![z, y, x], fortran, dtype, endian, boolean, payload },
+        );
+    }
+    Frames::choose(path, &[], frame)?;
+    volume(path, file)
 }
 
 /// The volume an array is.
@@ -43,11 +60,13 @@ pub(super) fn volume<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Volume, V
         });
     };
     let dims = Dims::new(x, y, z)?;
-    let gray_levels = file.dtype == Dtype::U8 && !file.boolean;
+    let dtype = file.dtype;
+    let gray_levels = dtype == Dtype::U8 && !file.boolean;
     let shape = dims.shape().set_f(file.fortran);
     let samples = Array3::from_shape_vec(shape, file.values(path)?).expect("count was checked");
-    let volume = Volume::new(samples, Frame::VOXEL)?;
-    Ok(if gray_levels { volume.with_gray_levels() } else { volume })
+    let volume = Volume::of_file(samples, Frame::VOXEL)?;
+    // Booleans are bytes, and no gray levels.
+    Ok(volume.with_dtype(if gray_levels || dtype != Dtype::U8 { dtype } else { Dtype::I8 }))
 }
 
 impl NpyFile {

@@ -10,27 +10,35 @@ use super::payload::MOST_EXPANSION;
 use super::{format_error, io_error};
 use crate::volume::{Volume, VolumeError};
 
-/// Reads NPZ, NumPy's archive of arrays (`savez`, `savez_compressed`): its only array of three axes.
-pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
+/// Reads NPZ, NumPy's archive of arrays (`savez`, `savez_compressed`): its only array of three axes, or
+/// the one of this name.
+pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut archive = ZipArchive::new(BufReader::new(file)).map_err(damaged(path))?;
     let mut found: Vec<(usize, String)> = Vec::new();
     for i in 0..archive.len() {
         let (name, array) = member(path, &mut archive, i, length)?;
-        if array.shape.len() == 3 {
+        let named = |wanted: &str| name.strip_suffix(".npy").unwrap_or(&name) == wanted;
+        if array.shape.len() == 3 && wanted.is_none_or(named) {
             found.push((i, name));
         }
     }
     match found.as_slice() {
         [(i, _)] => npy::volume(path, member(path, &mut archive, *i, length)?.1),
-        [] => Err(format_error(path, "holds no array of three axes: there is no volume in it")),
+        [] => Err(format_error(
+            path,
+            match wanted {
+                Some(name) => format!("holds no array {name:?} of three axes; see --array"),
+                None => "holds no array of three axes: there is no volume in it".into(),
+            },
+        )),
         several => {
             let names: Vec<&str> = several.iter().map(|(_, name)| name.as_str()).collect();
             Err(format_error(
                 path,
                 format!(
-                    "holds several arrays of three axes, {}: save one of them as .npy",
+                    "holds several arrays of three axes, {}: choose one with --array",
                     names.join(", ")
                 ),
             ))

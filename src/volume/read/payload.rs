@@ -35,6 +35,11 @@ impl Length {
         Self::AtMost(compressed.saturating_mul(MOST_EXPANSION))
     }
 
+    /// The same for bzip2, which packs 900 kB of runs, each of 255 bytes in 5, into as few as 40 bytes.
+    pub fn of_bzip2(compressed: u64) -> Self {
+        Self::AtMost(compressed.saturating_mul(1 << 21))
+    }
+
     /// What is left after a header.
     pub fn minus(self, header: u64) -> Self {
         match self {

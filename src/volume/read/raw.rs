@@ -37,8 +37,7 @@ pub(super) fn read(path: &Path, layout: &RawLayout) -> Result<Volume, VolumeErro
             other => payload_error(path, &dims, dtype)(other),
         })?;
     let samples = Array3::from_shape_vec(dims.shape(), samples).expect("count was checked");
-    let volume = Volume::new(samples, Frame::VOXEL)?;
-    Ok(if dtype == Dtype::U8 { volume.with_gray_levels() } else { volume })
+    Ok(Volume::of_file(samples, Frame::VOXEL)?.with_dtype(dtype))
 }
 
 fn wrong_length(layout: &RawLayout, needed: u64, length: u64) -> String {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
 
 use super::described::{Described, Encoding};
+use super::frames::Frames;
 use super::payload::MOST_EXPANSION;
 use super::tiff::{self, Page};
 use super::{format_error, io_error};
@@ -38,7 +39,7 @@ pub(super) fn read(folder: &Path) -> Result<Volume, VolumeError> {
     };
     let dims = Dims::new(size[0], size[1], paths.len() as u64)?;
     let (endian, frame, encoding) = (Endian::Little, Frame::VOXEL, Encoding::Raw);
-    Described { dims, dtype, endian, frame, encoding }.volume(stack)
+    Described { dims, dtype, endian, frame, encoding, frames: Frames::ONE }.volume(stack)
 }
 
 /// The slices of a folder, in order.

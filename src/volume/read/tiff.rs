@@ -8,8 +8,9 @@ use tiff::tags::{ByteOrder, Tag};
 use tiff::{ColorType, TiffError};
 
 use super::described::{Described, Encoding, diagonal, frame};
+use super::frames::Frames;
 use super::{format_error, io_error};
-use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Volume, VolumeError};
 
 /// The most a compression that TIFF knows expands by: LZW writes up to 4096 bytes for a code of 12
 /// bits.
@@ -190,6 +191,7 @@ fn behind_one_page(
 #[derive(Debug)]
 struct About {
     spacing: [f64; 3],
+    unit: LengthUnit,
     /// Slices, as ImageJ counts them.
     images: Option<u64>,
 }
@@ -206,7 +208,7 @@ impl About {
         if text.contains("<OME") {
             return Self::of_ome(path, &text);
         }
-        Ok(Self { spacing: [1.0; 3], images: None })
+        Ok(Self { spacing: [1.0; 3], unit: LengthUnit::Voxel, images: None })
     }
 
     fn of_imagej(
@@ -225,7 +227,9 @@ impl About {
         };
         let slices = value("spacing").and_then(|text| text.trim().parse().ok());
         let spacing = [along(Tag::XResolution), along(Tag::YResolution), slices.unwrap_or(1.0)];
-        Ok(Self { spacing, images: count("images") })
+        let unit = value("unit").map(LengthUnit::named);
+        let silent = if spacing == [1.0; 3] { LengthUnit::Voxel } else { LengthUnit::Unstated };
+        Ok(Self { spacing, unit: unit.unwrap_or(silent), images: count("images") })
     }
 
     fn of_ome(path: &Path, text: &str) -> Result<Self, VolumeError> {
@@ -253,10 +257,24 @@ impl About {
             };
             let size = |name| number(name).map(|size| size.unwrap_or(1.0) as u64);
             one_axis(path, [size("SizeZ")?, size("SizeC")?, size("SizeT")?])?;
-            let length = |name| number(name).map(|length| length.unwrap_or(1.0));
-            let spacing =
-                [length("PhysicalSizeX")?, length("PhysicalSizeY")?, length("PhysicalSizeZ")?];
-            return Ok(Self { spacing, images: None });
+            let text = |name: &str| -> Result<Option<String>, VolumeError> {
+                let attribute = pixels.try_get_attribute(name).map_err(|error| damaged(&error))?;
+                Ok(attribute.map(|attribute| attribute.value.to_string()))
+            };
+            let mut about = Self { spacing: [1.0; 3], unit: LengthUnit::Voxel, images: None };
+            for (k, axis) in ["X", "Y", "Z"].into_iter().enumerate() {
+                let Some(length) = number(&format!("PhysicalSize{axis}"))? else { continue };
+                // The schema's default.
+                let unit = text(&format!("PhysicalSize{axis}Unit"))?;
+                let unit = unit.map_or(LengthUnit::Micrometre, |name| LengthUnit::named(&name));
+                if about.unit == LengthUnit::Voxel {
+                    about.unit = unit;
+                }
+                let [from, unit] =
+                    [unit, about.unit].map(|unit| Coordinates { unit, ..Coordinates::default() });
+                about.spacing[k] = from.to(unit).length(length);
+            }
+            return Ok(about);
         }
     }
 
@@ -267,8 +285,10 @@ impl About {
         dtype: Dtype,
         endian: Endian,
     ) -> Result<Described, VolumeError> {
-        let frame = frame(path, [0.0; 3], diagonal(self.spacing))?;
-        Ok(Described { dims, dtype, endian, frame, encoding: Encoding::Raw })
+        let coordinates = Coordinates { unit: self.unit, ..Coordinates::default() };
+        let frame = frame(path, [0.0; 3], diagonal(self.spacing), coordinates)?;
+        let (encoding, frames) = (Encoding::Raw, Frames::ONE);
+        Ok(Described { dims, dtype, endian, frame, encoding, frames })
     }
 }
 

@@ -2,13 +2,14 @@ use std::path::Path;
 
 use super::described::{Described, Encoding, frame};
 use super::format_error;
-use super::vtk::to_centres;
+use super::frames::Frames;
+use super::vtk::{choice, to_centres};
 use super::vtk_xml::VtkXml;
-use crate::volume::{Dims, Endian, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Endian, LengthUnit, Space, Volume, VolumeError};
 
-/// Reads VTI, VTK's image data in XML, in one piece: the active scalars of its points, or else its
-/// first array of points, or of cells, whose samples stand at the cells' centres.
-pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
+/// Reads VTI, VTK's image data in XML, in one piece: the array of this name; or else the active scalars of
+/// its points, its first array of points, or that of cells, whose samples stand at the cells' centres.
+pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
     let said = |what: String| format_error(path, what);
     let file = VtkXml::open(path)?;
     if file.kind() != "ImageData" {
@@ -40,24 +41,10 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
         }
     }
 
-    let array = |data: &str| {
-        let data = file.children(piece, data).next()?;
-        let active = file.attribute(data, "Scalars");
-        let named = |&array: &usize| active.is_some() && file.attribute(array, "Name") == active;
-        file.children(data, "DataArray")
-            .find(named)
-            .or_else(|| file.children(data, "DataArray").next())
-    };
-    let array = match (array("PointData"), array("CellData")) {
-        (Some(array), _) => array,
-        (None, Some(array)) => {
-            to_centres(&mut dims, &mut corner, axes);
-            array
-        }
-        (None, None) => {
-            return Err(said("has no array of samples: there is no volume in it".into()));
-        }
-    };
+    let (array, cells) = choose(&file, piece, wanted).map_err(said)?;
+    if cells {
+        to_centres(&mut dims, &mut corner, axes);
+    }
     let components = file.components(array);
     if components != "1" {
         return Err(said(format!(
@@ -65,8 +52,39 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
         )));
     }
     let dims = Dims::new(dims[0], dims[1], dims[2])?;
-    let (frame, dtype) = (frame(path, corner, axes)?, file.dtype(array)?);
+    let (frame, dtype) =
+        (frame(path, corner, axes, coordinates(&file, image)?)?, file.dtype(array)?);
     let samples = file.values(array, dims.samples() as u64)?;
-    Described { dims, dtype, endian: Endian::Little, frame, encoding: Encoding::Raw }
-        .volume(samples)
+    let (endian, encoding, frames) = (Endian::Little, Encoding::Raw, Frames::ONE);
+    Described { dims, dtype, endian, frame, encoding, frames }.volume(samples)
+}
+
+/// The array to read, and whether it is one of cells. Those of points come first; which one was taken is
+/// said where there are others.
+fn choose(file: &VtkXml, piece: usize, wanted: Option<&str>) -> Result<(usize, bool), String> {
+    let name = |array: usize| file.attribute(array, "Name").unwrap_or_default();
+    let mut arrays = Vec::new();
+    for (data, cells) in [("PointData", false), ("CellData", true)] {
+        let Some(data) = file.children(piece, data).next() else { continue };
+        let active = file.attribute(data, "Scalars");
+        let mut here: Vec<usize> = file.children(data, "DataArray").collect();
+        // The sort keeps the order of the others.
+        here.sort_by_key(|&array| active != Some(name(array)));
+        arrays.extend(here.into_iter().map(|array| (array, cells)));
+    }
+    let names: Vec<(&str, bool)> =
+        arrays.iter().map(|&(array, cells)| (name(array), cells)).collect();
+    let place = choice(&names, wanted)?;
+    Ok(arrays[place])
+}
+
+/// What the field data `SPACE` and `UNIT` say, as our own files have them.
+fn coordinates(file: &VtkXml, image: usize) -> Result<Coordinates, VolumeError> {
+    let space = match file.field_text(image, "SPACE")?.as_deref() {
+        Some("LPS") => Space::Lps,
+        Some("RAS") => Space::Ras,
+        _ => Space::Unknown,
+    };
+    let unit = file.field_text(image, "UNIT")?.map(|name| LengthUnit::named(&name));
+    Ok(Coordinates { space, unit: unit.unwrap_or_default() })
 }

@@ -13,16 +13,22 @@ use zarrs::group::Group;
 use super::described::{Described, Encoding, diagonal, frame};
 use super::folder::is_zarr;
 use super::format_error;
+use super::frames::Frames;
 use crate::progress;
 use crate::shown::shown;
-use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Volume, VolumeError};
 
 /// Reads a Zarr array of version 2 or 3 in a folder, or a level of an OME-Zarr pyramid (0, the finest,
 /// unless `level` says otherwise).
 ///
-/// The last three axes are z, y and x, and those before them must have one entry. Scale and translation
+/// The last three axes are z, y and x; those before them count volumes, of which
+/// the one numbered `frame_index` is read. Scale and translation
 /// of a pyramid give the frame. Memory for the samples and some rows of chunks at a time.
-pub(super) fn read(path: &Path, level: Option<u32>) -> Result<Volume, VolumeError> {
+pub(super) fn read(
+    path: &Path,
+    level: Option<u32>,
+    frame_index: Option<u64>,
+) -> Result<Volume, VolumeError> {
     let said = |what: String| format_error(path, what);
     let damaged = |error: &dyn std::fmt::Display| {
         said(format!("is a Zarr store that cannot be read ({error}): copy it again"))
@@ -33,7 +39,7 @@ pub(super) fn read(path: &Path, level: Option<u32>) -> Result<Volume, VolumeErro
             return Err(said(format!("is one array and has no level {level}; leave --level away")));
         }
         let array = Array::open(store, "/").map_err(|error| damaged(&error))?;
-        return volume(path, &array, &[]);
+        return volume(path, &array, &[], Coordinates::VOXEL, frame_index);
     }
     let group = Group::open(Arc::clone(&store), "/").map_err(|error| damaged(&error))?;
     let attributes = Value::Object(group.attributes().clone());
@@ -68,7 +74,23 @@ pub(super) fn read(path: &Path, level: Option<u32>) -> Result<Volume, VolumeErro
     let transforms = [&dataset["coordinateTransformations"], &pyramid["coordinateTransformations"]];
     let transforms: Vec<&Value> =
         transforms.into_iter().filter_map(Value::as_array).flatten().collect();
-    volume(path, &array, &transforms)
+    let unit = unit(&pyramid["axes"]).map_err(said)?;
+    let coordinates = Coordinates { unit, ..Coordinates::default() };
+    volume(path, &array, &transforms, coordinates, frame_index)
+}
+
+/// The unit of the axes of space, which must have one in common.
+fn unit(axes: &Value) -> Result<LengthUnit, String> {
+    let of_space = |axis: &&Value| axis["type"] == "space";
+    let axes = axes.as_array().into_iter().flatten().filter(of_space);
+    let mut units = axes.map(|axis| axis["unit"].as_str().unwrap_or_default());
+    let first = units.next().unwrap_or_default();
+    match units.find(|&unit| unit != first) {
+        None => Ok(LengthUnit::named(first)),
+        Some(other) => {
+            Err(format!("has axes in {first:?} and {other:?}: give them one unit in its metadata"))
+        }
+    }
 }
 
 fn is_array(folder: &Path) -> bool {
@@ -95,16 +117,18 @@ fn volume(
     path: &Path,
     array: &Array<FilesystemStore>,
     transforms: &[&Value],
+    coordinates: Coordinates,
+    frame_index: Option<u64>,
 ) -> Result<Volume, VolumeError> {
     let said = |what: String| format_error(path, what);
     let shape = array.shape().to_vec();
     let [before @ .., z, y, x] = &shape[..] else {
         return Err(said(format!("has the shape {shape:?}: a volume has three axes, z, y and x")));
     };
-    if before.iter().any(|&size| size != 1) {
-        return Err(said(format!(
-            "has the shape {shape:?}, several channels or times: extract one volume first"
-        )));
+    let mut left = Frames::choose(path, before, frame_index)?.index;
+    let mut leading = vec![0; before.len()];
+    for (index, &size) in leading.iter_mut().zip(before).rev() {
+        (*index, left) = (left % size, left / size);
     }
     let dims = Dims::new(*x, *y, *z)?;
     let (mut scale, mut origin) = ([1.0; 3], [0.0; 3]);
@@ -130,18 +154,19 @@ fn volume(
             }
         }
     }
-    let frame = frame(path, origin, diagonal(scale))?;
-    let (dtype, samples) = samples(path, array, dims)?;
+    let frame = frame(path, origin, diagonal(scale), coordinates)?;
+    let (dtype, samples) = samples(path, array, dims, &leading)?;
     let (endian, encoding) = (Endian::Little, Encoding::Raw);
-    Described { dims, dtype, endian, frame, encoding }.volume(samples)
+    Described { dims, dtype, endian, frame, encoding, frames: Frames::ONE }.volume(samples)
 }
 
 fn samples(
     path: &Path,
     array: &Array<FilesystemStore>,
     dims: Dims,
+    leading: &[u64],
 ) -> Result<(Dtype, Vec<f32>), VolumeError> {
-    let read = Read { path, array, dims };
+    let read = Read { path, array, dims, leading };
     Ok(match array.data_type() {
         DataType::UInt8 => (Dtype::U8, read.all(|v: u8| v.into())?),
         DataType::Int8 => (Dtype::I8, read.all(|v: i8| v.into())?),
@@ -171,6 +196,8 @@ struct Read<'a> {
     path: &'a Path,
     array: &'a Array<FilesystemStore>,
     dims: Dims,
+    /// Along the axes before the last three.
+    leading: &'a [u64],
 }
 
 impl Read<'_> {
@@ -179,7 +206,7 @@ impl Read<'_> {
         &self,
         convert: impl Fn(T) -> f32 + Send + Sync,
     ) -> Result<Vec<f32>, VolumeError> {
-        let Self { path, array, dims } = self;
+        let Self { path, array, dims, leading } = self;
         let said = |what: String| format_error(path, what);
         let axes = array.dimensionality();
         let damaged = |error: &dyn std::fmt::Display| {
@@ -213,8 +240,8 @@ impl Read<'_> {
         for (slices, rows) in steps(z, thick)
             .flat_map(|slices| steps(y, high).map(move |rows| (slices.clone(), rows)))
         {
-            let mut ranges = vec![0..1; axes];
-            ranges[axes - 3..].clone_from_slice(&[slices.clone(), rows.clone(), 0..x]);
+            let mut ranges: Vec<_> = leading.iter().map(|&i| i..i + 1).collect();
+            ranges.extend([slices.clone(), rows.clone(), 0..x]);
             let part = ArraySubset::new_with_ranges(&ranges);
             let part: Vec<T> =
                 array.retrieve_array_subset_elements(&part).map_err(|error| damaged(&error))?;

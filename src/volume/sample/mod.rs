@@ -7,7 +7,7 @@ use std::path::Path;
 
 pub use phantom::phantom;
 
-use super::{ReadOptions, Volume, VolumeError, read};
+use super::{Frame, ReadOptions, Volume, VolumeError, read};
 use crate::near::nearest;
 
 /// The samples there are, as a user writes them.
@@ -20,7 +20,11 @@ const PHANTOM_SIZE: u64 = 64;
 /// # Errors
 /// Those of [`sample`] and [`read()`].
 pub fn open(input: &str, options: &ReadOptions) -> Result<Volume, VolumeError> {
-    if input.starts_with("sample:") { sample(input) } else { read(Path::new(input), options) }
+    if input.starts_with("sample:") {
+        options.part(sample(input)?)
+    } else {
+        read(Path::new(input), options)
+    }
 }
 
 /// A sample by its name: one of [`SAMPLES`].
@@ -32,7 +36,8 @@ pub fn open(input: &str, options: &ReadOptions) -> Result<Volume, VolumeError> {
 /// No sample has this name; the skull is not installed or its archive damaged; N is no size.
 pub fn sample(name: &str) -> Result<Volume, VolumeError> {
     match name.strip_prefix("sample:") {
-        Some("skull") => skull::skull(),
+        // Its header has numbers, but the paper's lengths are voxels.
+        Some("skull") => Ok(skull::skull()?.settled(None)?.with_frame(Frame::VOXEL)),
         Some("phantom") => phantom(PHANTOM_SIZE),
         Some(other) if other.starts_with("phantom@") => match other["phantom@".len()..].parse() {
             Ok(size) => phantom(size),

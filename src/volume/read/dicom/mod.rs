@@ -10,54 +10,102 @@ use rayon::prelude::*;
 
 use super::described::{Described, Encoding};
 use super::folder::dicom_files;
-use super::format_error;
+use super::frames::Frames;
+use super::{Series, format_error};
 use crate::progress;
-use crate::shown::shown;
 use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
-use slice::Slice;
+use slice::{Found, Slice};
 use stack::stacked;
 
 /// Reads the series that a file belongs to: all slices of it in the same folder.
-pub(super) fn read_series_of(path: &Path) -> Result<Volume, VolumeError> {
-    let one = Slice::open(path)?;
+pub(super) fn read_series_of(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
+    if wanted.is_some() {
+        let what = "is one file, and its series is read: leave --series away, or name the folder";
+        return Err(format_error(path, what));
+    }
+    let one = Found::open(path)?;
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
-    let mut slices = slices(&dicom_files(folder)?)?;
-    slices.retain(|slice| slice.series == one.series);
-    assemble(path, slices)
+    one.slice?;
+    let mut found = found(&dicom_files(folder, false)?)?;
+    found.retain(|other| other.series == one.series);
+    assemble(path, slices(found)?)
 }
 
-/// Reads the one series in a folder.
-pub(super) fn read_folder(folder: &Path, files: &[PathBuf]) -> Result<Volume, VolumeError> {
-    let slices = slices(files)?;
-    let mut series: Vec<(&str, usize, &Path)> = Vec::new();
-    for slice in &slices {
-        match series.iter_mut().find(|(name, ..)| *name == slice.series) {
-            Some((_, count, _)) => *count += 1,
-            None => series.push((&slice.series, 1, &slice.path)),
+/// Reads the one series in a folder, or the one wanted.
+pub(super) fn read_folder(
+    folder: &Path,
+    files: &[PathBuf],
+    wanted: Option<&str>,
+) -> Result<Volume, VolumeError> {
+    let mut found = found(files)?;
+    let series = listed(&found);
+    let list = || series.iter().map(Series::to_string).collect::<Vec<_>>().join("; ");
+    let chosen = match (wanted, &series[..]) {
+        (None, []) => return assemble(folder, slices(found)?),
+        (None, [one]) => one,
+        (None, several) => {
+            let count = several.len();
+            let what = format!(
+                "holds {count} DICOM series: {}; choose one with --series, or name a file of it",
+                list()
+            );
+            return Err(format_error(folder, what));
         }
-    }
-    if series.len() > 1 {
-        let list: Vec<String> = series
-            .iter()
-            .map(|(_, count, path)| format!("{count} slices with {}", shown(path)))
-            .collect();
-        let what = format!(
-            "holds {} DICOM series, {}; name a file of the one to read",
-            series.len(),
-            list.join(", ")
-        );
-        return Err(format_error(folder, what));
-    }
-    assemble(folder, slices)
+        (Some(wanted), _) => {
+            // Digits alone may end a UID, too, and are a number first of all.
+            let is_it = |one: &&Series| match wanted.parse::<usize>() {
+                Ok(number) => one.number == number,
+                Err(_) => one.uid.ends_with(wanted),
+            };
+            series.iter().find(is_it).ok_or_else(|| {
+                format_error(folder, format!("has no series {wanted}: there are {}", list()))
+            })?
+        }
+    };
+    found.retain(|one| one.series == chosen.uid);
+    assemble(folder, slices(found)?)
 }
 
-/// The slices among these files; indices of media (DICOMDIR) are none.
-fn slices(files: &[PathBuf]) -> Result<Vec<Slice>, VolumeError> {
+/// The series in a folder that have images, in the order of the names of their files.
+pub(super) fn series(files: &[PathBuf]) -> Result<Vec<Series>, VolumeError> {
+    Ok(listed(&found(files)?))
+}
+
+/// What these files are; indices of media (DICOMDIR) are passed over.
+fn found(files: &[PathBuf]) -> Result<Vec<Found>, VolumeError> {
     let is_index = |path: &PathBuf| path.file_name().is_some_and(|name| name == "DICOMDIR");
-    files.par_iter().filter(|path| !is_index(path)).map(|path| Slice::open(path)).collect()
+    files.par_iter().filter(|path| !is_index(path)).map(|path| Found::open(path)).collect()
+}
+
+fn slices(found: Vec<Found>) -> Result<Vec<Slice>, VolumeError> {
+    found.into_iter().map(|one| one.slice).collect()
+}
+
+fn listed(found: &[Found]) -> Vec<Series> {
+    let mut list: Vec<Series> = Vec::new();
+    for one in found.iter().filter(|one| one.size.is_some()) {
+        let known = list.iter().position(|series| series.uid == one.series);
+        let place = known.unwrap_or_else(|| {
+            let number = list.len() + 1;
+            let (modality, description) = (one.modality.clone(), one.description.clone());
+            let (uid, size) = (one.series.clone(), one.size.unwrap_or_default());
+            list.push(Series {
+                number,
+                uid,
+                modality,
+                description,
+                size,
+                slices: 0,
+                file: one.path.clone(),
+            });
+            list.len() - 1
+        });
+        list[place].slices += 1;
+    }
+    list
 }
 
 /// The volume of slices of one series.
@@ -65,7 +113,6 @@ fn assemble(path: &Path, slices: Vec<Slice>) -> Result<Volume, VolumeError> {
     let (slices, frame) = stacked(path, slices)?;
     let first = &slices[0];
     let dims = Dims::new(first.columns, first.rows, slices.len() as u64)?;
-    let gray_levels = slices.iter().all(|slice| slice.gray_levels);
     let mut samples = Vec::new();
     samples.try_reserve_exact(dims.samples()).map_err(|_| {
         let bytes = dims.samples() * size_of::<f32>();
@@ -79,7 +126,9 @@ fn assemble(path: &Path, slices: Vec<Slice>) -> Result<Volume, VolumeError> {
         samples.extend(pixels.into_iter().flatten());
         progress::report((16 * done + batch.len()) as u64, slices.len() as u64);
     }
-    let dtype = if gray_levels { Dtype::U8 } else { Dtype::F32 };
+    let dtype =
+        slices.iter().map(|slice| slice.dtype).reduce(|a, b| if a == b { a } else { Dtype::F32 });
+    let dtype = dtype.unwrap_or(Dtype::F32);
     let (endian, encoding) = (Endian::Little, Encoding::Raw);
-    Described { dims, dtype, endian, frame, encoding }.volume(samples)
+    Described { dims, dtype, endian, frame, encoding, frames: Frames::ONE }.volume(samples)
 }

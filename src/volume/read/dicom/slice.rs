@@ -4,13 +4,15 @@ use dicom_object::{DefaultDicomObject, OpenFileOptions, Tag};
 use dicom_pixeldata::PixelDecoder;
 
 use super::claims;
-use crate::volume::VolumeError;
 use crate::volume::read::format_error;
 use crate::volume::read::payload::MOST_EXPANSION;
+use crate::volume::{Dtype, VolumeError};
 
 // By their names in part 6 of the standard.
 const SLICE_THICKNESS: Tag = Tag(0x0018, 0x0050);
 const SPACING_BETWEEN_SLICES: Tag = Tag(0x0018, 0x0088);
+const MODALITY: Tag = Tag(0x0008, 0x0060);
+const SERIES_DESCRIPTION: Tag = Tag(0x0008, 0x103E);
 const SERIES_INSTANCE_UID: Tag = Tag(0x0020, 0x000E);
 const IMAGE_POSITION: Tag = Tag(0x0020, 0x0032);
 const IMAGE_ORIENTATION: Tag = Tag(0x0020, 0x0037);
@@ -29,8 +31,6 @@ const PIXEL_DATA: Tag = Tag(0x7FE0, 0x0010);
 #[derive(Clone, Debug)]
 pub(super) struct Slice {
     pub path: PathBuf,
-    /// The unique name of its series.
-    pub series: String,
     pub columns: u64,
     pub rows: u64,
     /// Where its first pixel lies, in mm: x to the patient's left, y to the back, z to the head.
@@ -41,21 +41,55 @@ pub(super) struct Slice {
     pub spacing: [f64; 2],
     /// Distance to the next slice as the header has it, for a series of one.
     pub thickness: f64,
-    /// Whether its values are gray levels 0 to 255 as they stand.
-    pub gray_levels: bool,
+    /// The type of a pixel, where they stand for themselves; else `f32`.
+    pub dtype: Dtype,
 }
 
-impl Slice {
+/// A file of a series, whether it is a slice or not.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub path: PathBuf,
+    /// The unique name of its series.
+    pub series: String,
+    /// As CT or MR.
+    pub modality: String,
+    pub description: String,
+    /// Columns and rows, if it is an image.
+    pub size: Option<[u64; 2]>,
+    /// What it is as a slice, or why it is none.
+    pub slice: Result<Slice, VolumeError>,
+}
+
+impl Found {
     /// Reads what stands before the pixels.
     pub fn open(path: &Path) -> Result<Self, VolumeError> {
-        let said = |what: String| format_error(path, what);
         claims::check(path)?;
         let object = OpenFileOptions::new()
             .read_until(PIXEL_DATA)
             .open_file(path)
             .map_err(|error| damaged(path, &error))?;
+        let text = |tag| {
+            let element = object.get(tag).and_then(|e| e.to_str().ok());
+            element.map(|text| text.trim().to_owned()).unwrap_or_default()
+        };
         let header = Header { path, object: &object };
-        let text = |tag| object.get(tag).and_then(|e| e.to_str().ok()).map(|t| t.trim().to_owned());
+        let number = |tag| header.number(tag).ok().flatten().map(|n| n as u64);
+        Ok(Self {
+            path: path.to_owned(),
+            series: text(SERIES_INSTANCE_UID),
+            modality: text(MODALITY),
+            description: text(SERIES_DESCRIPTION),
+            size: number(COLUMNS).zip(number(ROWS)).map(|(columns, rows)| [columns, rows]),
+            slice: Slice::of(path, &object),
+        })
+    }
+}
+
+impl Slice {
+    /// Of what stands before the pixels.
+    fn of(path: &Path, object: &DefaultDicomObject) -> Result<Self, VolumeError> {
+        let said = |what: String| format_error(path, what);
+        let header = Header { path, object };
         let frames = header.number(NUMBER_OF_FRAMES)?.unwrap_or(1.0);
         if frames > 1.0 {
             return Err(said(format!(
@@ -95,14 +129,13 @@ impl Slice {
         let intercept = header.number(RESCALE_INTERCEPT)?.unwrap_or(0.0);
         Ok(Self {
             path: path.to_owned(),
-            series: text(SERIES_INSTANCE_UID).unwrap_or_default(),
             columns,
             rows,
             position,
             orientation: [[a, b, c], [d, e, f]],
             spacing: [of_columns, of_rows],
             thickness,
-            gray_levels: bits == 8.0 && unsigned && (slope, intercept) == (1.0, 0.0),
+            dtype: dtype(bits, unsigned, slope, intercept),
         })
     }
 
@@ -121,6 +154,18 @@ impl Slice {
             return Err(format_error(path, what));
         }
         Ok(pixels)
+    }
+}
+
+/// The type of the numbers that pixels stand for: that of the file, if these are shifted by whole steps.
+fn dtype(bits: f64, unsigned: bool, slope: f64, intercept: f64) -> Dtype {
+    match (bits as u64, unsigned) {
+        (8, true) if (slope, intercept) == (1.0, 0.0) => Dtype::U8,
+        _ if slope != 1.0 || intercept.fract() != 0.0 => Dtype::F32,
+        (8, false) => Dtype::I8,
+        (16, true) if intercept >= 0.0 => Dtype::U16,
+        (16, _) => Dtype::I16,
+        _ => Dtype::F32,
     }
 }
 

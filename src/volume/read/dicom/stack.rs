@@ -3,7 +3,7 @@ use std::path::Path;
 use super::slice::Slice;
 use crate::shown::shown;
 use crate::volume::read::format_error;
-use crate::volume::{Frame, VolumeError};
+use crate::volume::{Coordinates, Frame, VolumeError};
 
 /// Unit vectors this alike are one; headers have six digits or more.
 const SAME_DIRECTION: f64 = 1e-3;
@@ -61,7 +61,8 @@ pub(super) fn stacked(
         None => normal.map(|n| n * first.thickness),
     };
     let axes = [column.map(|v| v * first.spacing[0]), row.map(|v| v * first.spacing[1]), step];
-    let frame = super::super::described::frame(path, slices[0].position, axes)?;
+    let frame =
+        super::super::described::frame(path, slices[0].position, axes, Coordinates::PATIENT)?;
     Ok((slices, frame))
 }
 

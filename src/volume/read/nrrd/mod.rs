@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::described::{Described, Encoding};
 use super::detached::{self, beside};
+use super::frames::Frames;
 use super::lines::Lines;
 use super::{format_error, io_error};
 use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
@@ -20,16 +21,16 @@ pub(super) const MAGIC: &[u8] = b"NRRD000";
 /// Reads NRRD ("nearly raw raster data", teem.sourceforge.net/nrrd/format.html) with its samples
 /// behind the header (`.nrrd`) or in other files (`.nhdr`: one, a `LIST`, or a numbered row).
 ///
-/// Encodings raw, gzip and text; every scalar type. `space directions` and `space origin`, or
-/// `spacings` and `axis mins`, give the frame, in the space the file names. An axis of one sample beyond the third is
-/// dropped; axes of colours or vectors, `bzip2`, `hex` and `line skip` are refused.
-pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
+/// Encodings raw, gzip, bzip2 and text; every scalar type. `space directions` and `space origin`, or
+/// `spacings` and `axis mins`, give the frame, in the space the file names. Axes beyond the third count
+/// volumes, of which `frame` is read; axes of colours or vectors, `hex` and `line skip` are refused.
+pub(super) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
     let said = |what: String| format_error(path, what);
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut lines = Lines::new(BufReader::new(file));
     let header = Header::read(path, &mut lines)?;
-    let described = header.described(path)?;
+    let described = header.described(path, frame)?;
     let skip = header.skip(path, &described)?;
     match &header.files {
         None => {
@@ -111,7 +112,7 @@ impl Header {
         self.field(name).ok_or_else(missing)
     }
 
-    fn described(&self, path: &Path) -> Result<Described, VolumeError> {
+    fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
         let said = |what: String| format_error(path, what);
         let sizes = self.needed(path, "sizes")?;
         let mut axes: Vec<(usize, u64)> = sizes
@@ -140,13 +141,11 @@ impl Header {
             }
         }
         while axes.len() > 3 {
-            let Some(single) = axes.iter().position(|&(_, size)| size == 1) else {
-                return Err(said(format!(
-                    "has {all} axes, sizes: {sizes}: a volume has three; extract one first"
-                )));
-            };
+            let Some(single) = axes.iter().position(|&(_, size)| size == 1) else { break };
             axes.remove(single);
         }
+        let beyond: Vec<u64> = axes.iter().skip(3).map(|&(_, size)| size).collect();
+        axes.truncate(3);
         let size = |axis: usize| axes.get(axis).map_or(1, |&(_, size)| size);
         let dims = Dims::new(size(0), size(1), size(2))?;
         let kept: Vec<usize> = axes.iter().map(|&(axis, _)| axis).collect();
@@ -160,6 +159,7 @@ impl Header {
         let encoding = match self.needed(path, "encoding")?.to_lowercase().as_str() {
             "raw" => Encoding::Raw,
             "gzip" | "gz" => Encoding::Gzip,
+            "bzip2" | "bz2" => Encoding::Bzip2,
             "text" | "txt" | "ascii" => Encoding::Text,
             other => {
                 return Err(said(format!(
@@ -176,8 +176,9 @@ impl Header {
                 return Err(said(format!("endian: {given} is no byte order: give little or big")));
             }
         };
+        let frames = Frames::choose(path, &beyond, frame)?;
         let frame = self.frame(path, all, &kept, dims.xyz())?;
-        Ok(Described { dims, dtype, endian, frame, encoding })
+        Ok(Described { dims, dtype, endian, frame, encoding, frames })
     }
 
     /// Bytes before the samples; `None` where they stand at the end of the file.

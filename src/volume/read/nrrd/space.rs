@@ -5,7 +5,7 @@ use std::path::Path;
 use super::Header;
 use crate::volume::read::described::{diagonal, frame};
 use crate::volume::read::format_error;
-use crate::volume::{Frame, VolumeError};
+use crate::volume::{Coordinates, Frame, LengthUnit, Space, VolumeError};
 
 impl Header {
     /// Where the grid lies; `kept` are the axes that are read, of `all`, and `dims` their sizes.
@@ -59,7 +59,31 @@ impl Header {
                 _ => return Err(said(format!("space origin: {text} is no vector of numbers"))),
             };
         }
-        frame(path, origin, steps)
+        frame(path, origin, steps, self.coordinates(kept))
+    }
+
+    /// The space the file names, and its unit: of `space units`, or else of `units`. A patient is
+    /// measured in millimetres where neither is there, as ITK and Slicer take it.
+    fn coordinates(&self, kept: &[usize]) -> Coordinates {
+        let places = ["space directions", "space origin", "spacings", "axis mins", "axismins"];
+        if places.iter().all(|name| self.field(name).is_none()) {
+            return Coordinates::VOXEL;
+        }
+        let space = match self.field("space").unwrap_or_default().to_lowercase().as_str() {
+            "left-posterior-superior" | "lps" => Space::Lps,
+            "right-anterior-superior" | "ras" => Space::Ras,
+            "left-anterior-superior" | "las" => Space::Las,
+            _ => Space::Unknown,
+        };
+        let of_axes = || self.field("units").map(|text| (text, kept.first().copied().unwrap_or(0)));
+        let named = self.field("space units").map(|text| (text, 0)).or_else(of_axes);
+        let named = named.and_then(|(text, axis)| quoted(text).nth(axis));
+        let unit = match named.map(LengthUnit::named) {
+            Some(unit) if unit != LengthUnit::Unstated => unit,
+            _ if space.is_known() => LengthUnit::Millimetre,
+            _ => LengthUnit::Unstated,
+        };
+        Coordinates { space, unit }
     }
 
     /// A number for each axis; `None` where the field is not there or has NaN, which stands for
@@ -79,6 +103,11 @@ impl Header {
         })?;
         Ok(numbers.into_iter().map(|number| (!number.is_nan()).then_some(number)).collect())
     }
+}
+
+/// Words such as `"mm" "mm" ""`, without their quotes.
+fn quoted(text: &str) -> impl Iterator<Item = &str> {
+    text.split('"').skip(1).step_by(2)
 }
 
 /// Vectors such as `(1,0,0) none (0,0,2)`, of up to three components.

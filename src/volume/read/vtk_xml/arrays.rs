@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use flate2::read::ZlibDecoder;
 
-use super::{Appended, VtkXml, XmlElement};
+use super::{Appended, Compressor, VtkXml, XmlElement};
 use crate::volume::read::base64::Base64;
 use crate::volume::read::payload::{Element, Length, MOST_EXPANSION, Payload};
 use crate::volume::read::{payload_error_of, text};
@@ -53,6 +53,27 @@ impl VtkXml {
         }
     }
 
+    /// A text of the field data of a dataset: the first string of an array of strings, which VTK writes
+    /// as the numbers of its characters, up to a 0.
+    pub fn field_text(&self, dataset: usize, name: &str) -> Result<Option<String>, VolumeError> {
+        /// Nothing that is looked for is longer.
+        const LONGEST: u64 = 1000;
+        let Some(fields) = self.children(dataset, "FieldData").next() else { return Ok(None) };
+        let named = |&array: &usize| self.attribute(array, "Name") == Some(name);
+        let Some(array) = self.children(fields, "Array").find(named) else { return Ok(None) };
+        if self.attribute(array, "format") != Some("ascii") {
+            return Ok(None);
+        }
+        let XmlElement { text: start, text_end, .. } = self.elements[array];
+        let end = text_end.unwrap_or(start).min(start + LONGEST);
+        let mut text = String::new();
+        let read = self.part(start, end)?.read_to_string(&mut text);
+        read.map_err(|error| self.said(format!("has damaged field data {name}: {error}")))?;
+        let bytes: Vec<u8> = text.split_whitespace().map_while(|byte| byte.parse().ok()).collect();
+        let first = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
+        Ok(Some(String::from_utf8_lossy(first).into_owned()))
+    }
+
     /// Reads an array behind its length, or behind the lengths of its compressed blocks; there are
     /// at most `most` bytes.
     fn decoded<T: Element>(
@@ -72,7 +93,7 @@ impl VtkXml {
             _ => self.said(format!("has a damaged array {}: {error}", self.name(array))),
         };
         let first = self.word(&mut data).map_err(cut)?;
-        if !self.compressed {
+        let Some(compressor) = self.compressor else {
             if first > most {
                 return Err(self.said(format!(
                     "claims {first} bytes for its array {}, but at most {most} follow: it is \
@@ -82,7 +103,7 @@ impl VtkXml {
             }
             let payload = Payload { reader: data.take(first), length: Length::Exactly(first) };
             return payload.samples(dtype, self.endian, count).map_err(located);
-        }
+        };
         let [block, last] =
             [self.word(&mut data).map_err(cut)?, self.word(&mut data).map_err(cut)?];
         if first > most / self.word as u64 {
@@ -103,7 +124,8 @@ impl VtkXml {
         };
         let sizes = (0..first).map(|_| self.word(&mut data)).collect::<io::Result<Vec<u64>>>();
         let sizes = sizes.map_err(cut)?.into_iter();
-        let reader = Blocks { data, sizes, block: block.max(last), ready: io::Cursor::default() };
+        let (block, ready) = (block.max(last), io::Cursor::default());
+        let reader = Blocks { data, compressor, sizes, block, ready };
         let payload = Payload { reader, length: Length::Exactly(bytes) };
         payload.samples(dtype, self.endian, count).map_err(located)
     }
@@ -121,9 +143,10 @@ impl VtkXml {
     }
 }
 
-/// Blocks compressed one by one with zlib.
+/// Blocks compressed one by one.
 struct Blocks<R> {
     data: R,
+    compressor: Compressor,
     /// Compressed bytes of those to come.
     sizes: std::vec::IntoIter<u64>,
     /// The most bytes of one.
@@ -144,8 +167,19 @@ impl<R: Read> Read for Blocks<R> {
             if (packed.len() as u64) < size {
                 return Err(io::ErrorKind::UnexpectedEof.into());
             }
-            let mut bytes = Vec::new();
-            ZlibDecoder::new(&packed[..]).take(self.block).read_to_end(&mut bytes)?;
+            let bytes = match self.compressor {
+                Compressor::Zlib => {
+                    let mut bytes = Vec::new();
+                    ZlibDecoder::new(&packed[..]).take(self.block).read_to_end(&mut bytes)?;
+                    bytes
+                }
+                // LZ4 repeats a byte for each byte of 255 in its code, so this much is no lie.
+                Compressor::Lz4 => {
+                    let most = self.block.min(size.saturating_mul(256)) as usize;
+                    lz4_flex::block::decompress(&packed, most)
+                        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?
+                }
+            };
             self.ready = io::Cursor::new(bytes);
         }
     }

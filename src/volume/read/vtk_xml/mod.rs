@@ -14,14 +14,14 @@ use crate::volume::{Endian, VolumeError};
 
 /// A file of VTK's XML formats (VTK User's Guide, "VTK File Formats"): its elements, and the arrays
 /// they hold, which are read on demand. Arrays may be text, base64, or appended raw or in base64, and
-/// compressed with zlib.
+/// compressed with zlib or LZ4.
 pub(crate) struct VtkXml {
     path: PathBuf,
     length: u64,
     endian: Endian,
     /// Bytes of a length in front of an array.
     word: usize,
-    compressed: bool,
+    compressor: Option<Compressor>,
     elements: Vec<XmlElement>,
     appended: Option<Appended>,
 }
@@ -35,6 +35,13 @@ struct XmlElement {
     /// Where its text begins in the file, and where it ends: at its end or its first child.
     text: u64,
     text_end: Option<u64>,
+}
+
+/// How the blocks of arrays are compressed.
+#[derive(Clone, Copy, Debug)]
+enum Compressor {
+    Zlib,
+    Lz4,
 }
 
 /// Where appended arrays begin, and whether they are in base64.
@@ -66,7 +73,7 @@ impl VtkXml {
             length,
             endian: Endian::Little,
             word: 4,
-            compressed: false,
+            compressor: None,
             elements: Vec::new(),
             appended: None,
         };
@@ -200,12 +207,13 @@ impl VtkXml {
                 return Err(self.said(format!("has header_type {other:?}, not UInt32 or UInt64")));
             }
         };
-        self.compressed = match attribute("compressor") {
-            None | Some("") => false,
-            Some("vtkZLibDataCompressor") => true,
+        self.compressor = match attribute("compressor") {
+            None | Some("") => None,
+            Some("vtkZLibDataCompressor") => Some(Compressor::Zlib),
+            Some("vtkLZ4DataCompressor") => Some(Compressor::Lz4),
             Some(other) => {
                 return Err(self.said(format!(
-                    "is compressed by {other}, which is not read: choose ZLib or none where it is \
+                    "is compressed by {other}, which is not read: choose LZ4, ZLib or none where it is \
                      written"
                 )));
             }

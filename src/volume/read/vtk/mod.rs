@@ -1,63 +1,84 @@
+//! The legacy VTK format.
+
+mod arrays;
+
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::described::{Described, Encoding, frame};
+use super::frames::Frames;
 use super::lines::Lines;
 use super::{format_error, io_error, text};
-use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, Volume, VolumeError};
+
+use arrays::Array;
 
 /// The first bytes of each legacy VTK file.
 pub(super) const MAGIC: &[u8] = b"# vtk DataFile";
 
-/// Words that may follow the samples of the first attribute.
-const KEYWORDS: [&str; 14] = [
-    "METADATA",
-    "SCALARS",
-    "COLOR_SCALARS",
-    "LOOKUP_TABLE",
-    "VECTORS",
-    "NORMALS",
-    "TEXTURE_COORDINATES",
-    "TENSORS",
-    "TENSORS6",
-    "FIELD",
-    "GLOBAL_IDS",
-    "PEDIGREE_IDS",
-    "POINT_DATA",
-    "CELL_DATA",
-];
-
 /// Reads the legacy VTK format (VTK User's Guide, "VTK File Formats"), text or binary (big endian):
-/// the first attribute of a `STRUCTURED_POINTS` dataset, which must be one scalar a point or cell.
-///
-/// Samples of cells stand at their centres.
-pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
+/// the scalars of this name of a `STRUCTURED_POINTS` dataset; or else the first ones of its points, or of
+/// its cells, which stand at the cells' centres.
+pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
+    let said = |what: String| format_error(path, what);
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut lines = Lines::new(BufReader::new(file));
-    let (described, colours) = header(path, &mut lines)?;
-    let left = length - lines.bytes();
+    let (grid, arrays) = header(path, &mut lines)?;
+    // Without a name only scalars come in question, those of points first.
+    let mut arrays: Vec<Array> =
+        arrays.into_iter().filter(|array| array.components == 1 || wanted.is_some()).collect();
+    arrays.sort_by_key(|array| array.cells);
+    let names: Vec<(&str, bool)> =
+        arrays.iter().map(|array| (array.name.as_str(), array.cells)).collect();
+    let array = arrays.swap_remove(choice(&names, wanted).map_err(said)?);
+    let described = grid.described(path, &array)?;
+    if array.values != described.dims.samples() as u64 {
+        let (values, dims) = (array.values, described.dims);
+        return Err(said(format!("has a field of {values} values for {dims} samples")));
+    }
     let mut reader = lines.into_inner();
-    if described.encoding == Encoding::Text {
-        let mut text = Vec::new();
-        reader.read_to_end(&mut text).map_err(io_error(path))?;
-        let end = end_of_numbers(&text);
-        if colours {
-            let count = described.dims.samples() as u64;
-            let mut shares: Vec<f32> = text::numbers(&text[..end], end as u64, Dtype::F32, count)
-                .map_err(|what| format_error(path, what))?;
-            shares.iter_mut().for_each(|share| *share = (*share * 255.0).round());
-            return described.volume(shares);
-        }
+    reader.seek(SeekFrom::Start(array.start)).map_err(io_error(path))?;
+    let left = array.end.unwrap_or(length).saturating_sub(array.start);
+    match described.encoding {
+        Encoding::Text => read_text(path, described, &array, reader.take(left)),
+        _ => read_binary(path, described, &array, reader, length - array.start),
+    }
+}
+
+fn read_text(
+    path: &Path,
+    described: Described,
+    array: &Array,
+    mut reader: impl Read,
+) -> Result<Volume, VolumeError> {
+    let mut text = Vec::new();
+    reader.read_to_end(&mut text).map_err(io_error(path))?;
+    let end = end_of_numbers(&text);
+    if !array.colours {
         return described.read(path, &text[..end], end as u64);
     }
+    let count = described.dims.samples() as u64;
+    let mut shares: Vec<f32> = text::numbers(&text[..end], end as u64, Dtype::F32, count)
+        .map_err(|what| format_error(path, what))?;
+    shares.iter_mut().for_each(|share| *share = (*share * 255.0).round());
+    described.volume(shares)
+}
+
+fn read_binary(
+    path: &Path,
+    described: Described,
+    array: &Array,
+    mut reader: impl BufRead,
+    left: u64,
+) -> Result<Volume, VolumeError> {
     let bytes = described.bytes();
     if left < bytes {
         return described.read(path, reader, left);
     }
     let volume = described.read(path, (&mut reader).take(bytes), bytes)?;
-    if !at_keyword(&mut reader).map_err(io_error(path))? {
+    if array.last && !at_keyword(&mut reader).map_err(io_error(path))? {
         let what = format!(
             "has {} bytes behind the {bytes} of its samples: it is too long or mislabelled",
             left - bytes
@@ -67,12 +88,34 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
     Ok(volume)
 }
 
-/// Reads up to the samples. Says too whether they are `COLOR_SCALARS`, as VTK calls bytes, which
-/// text gives as shares of 255.
+/// Which of some arrays, each with its name and whether it is one of cells: that of the name wanted, or
+/// else the first, which is said where there are others.
+pub(super) fn choice(arrays: &[(&str, bool)], wanted: Option<&str>) -> Result<usize, String> {
+    let told = |&(name, cells): &(&str, bool)| match cells {
+        true => format!("{name} (of cells)"),
+        false => name.to_owned(),
+    };
+    let all = || arrays.iter().map(told).collect::<Vec<_>>().join(", ");
+    if let Some(wanted) = wanted {
+        return arrays.iter().position(|(name, _)| *name == wanted).ok_or_else(|| {
+            format!("has no array {wanted:?}, but {}: give one of these to --array", all())
+        });
+    }
+    match arrays {
+        [] => Err("has no array of one value a voxel: there is no volume in it".into()),
+        [_] => Ok(0),
+        _ => {
+            tracing::warn!("of the arrays {} the first is read; --array names another", all());
+            Ok(0)
+        }
+    }
+}
+
+/// Reads the grid, and finds the arrays.
 fn header(
     path: &Path,
     lines: &mut Lines<BufReader<File>>,
-) -> Result<(Described, bool), VolumeError> {
+) -> Result<(Grid, Vec<Array>), VolumeError> {
     let said = |what: String| format_error(path, what);
     let first = lines.next().map_err(io_error(path))?.unwrap_or_default();
     if !first.as_bytes().starts_with(MAGIC) {
@@ -101,47 +144,18 @@ fn header(
                 let rows: [f64; 9] = numbers(path, &words)?;
                 grid.direction = [0, 1, 2].map(|r| [0, 1, 2].map(|c| rows[3 * r + c]));
             }
-            "POINT_DATA" => grid.cells = false,
-            "CELL_DATA" => grid.cells = true,
-            "SCALARS" => {
-                let components = words.get(3).unwrap_or(&"1");
-                let dtype = scalar(path, words.get(2), components)?;
-                let table = lines.next().map_err(io_error(path))?.unwrap_or_default();
-                if !table.starts_with("LOOKUP_TABLE") {
-                    return Err(said(
-                        "has no LOOKUP_TABLE line below SCALARS: it is damaged".into(),
-                    ));
-                }
-                return Ok((grid.described(path, dtype)?, false));
-            }
-            "COLOR_SCALARS" => {
-                let components = words.get(2).unwrap_or(&"(missing)");
-                let dtype = scalar(path, Some(&"unsigned_char"), components)?;
-                return Ok((grid.described(path, dtype)?, true));
-            }
-            "FIELD" => {
-                // VTK writes here whatever is not its active attribute.
-                let array = lines.next().map_err(io_error(path))?.unwrap_or_default();
-                let words: Vec<&str> = array.split_whitespace().collect();
-                let &[_, components, count, name] = words.as_slice() else {
-                    return Err(said(format!("has a FIELD with a line {array:?}: it is damaged")));
-                };
-                let dtype = scalar(path, Some(&name), components)?;
-                let described = grid.described(path, dtype)?;
-                if count.parse() != Ok(described.dims.samples() as u64) {
-                    return Err(said(format!(
-                        "has a field of {count} values for {} samples",
-                        described.dims
-                    )));
-                }
-                return Ok((described, false));
-            }
             "METADATA" => {
                 while lines.next().map_err(io_error(path))?.is_some_and(|line| !line.is_empty()) {}
             }
+            "POINT_DATA" | "CELL_DATA" => {
+                let text = grid
+                    .text
+                    .ok_or_else(|| said("has no ASCII or BINARY line before its samples".into()))?;
+                return Ok((grid, arrays::find(path, lines, &line, text)?));
+            }
             other => {
                 return Err(said(format!(
-                    "has {other:?} where SCALARS are expected: only a scalar first attribute is read"
+                    "has {other:?} where POINT_DATA or CELL_DATA are expected: it is damaged"
                 )));
             }
         }
@@ -156,7 +170,6 @@ struct Grid {
     origin: [f64; 3],
     spacing: [f64; 3],
     direction: [[f64; 3]; 3],
-    cells: bool,
 }
 
 impl Default for Grid {
@@ -168,13 +181,12 @@ impl Default for Grid {
             origin: [0.0; 3],
             spacing: [1.0; 3],
             direction: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-            cells: false,
         }
     }
 }
 
 impl Grid {
-    fn described(&self, path: &Path, dtype: Dtype) -> Result<Described, VolumeError> {
+    fn described(&self, path: &Path, array: &Array) -> Result<Described, VolumeError> {
         let damaged =
             |what: &str| format_error(path, format!("has no {what} line before its samples"));
         let text = self.text.ok_or_else(|| damaged("ASCII or BINARY"))?;
@@ -188,13 +200,15 @@ impl Grid {
         let mut dims = dims.map(|size| size as u64);
         let axes = [0, 1, 2].map(|c| [0, 1, 2].map(|r| self.direction[r][c] * self.spacing[c]));
         let mut origin = self.origin;
-        if self.cells {
+        if array.cells {
             to_centres(&mut dims, &mut origin, axes);
         }
         let encoding = if text { Encoding::Text } else { Encoding::Raw };
-        let frame = frame(path, origin, axes)?;
+        let frame = frame(path, origin, axes, Coordinates::default())?;
         let dims = Dims::new(dims[0], dims[1], dims[2])?;
-        Ok(Described { dims, dtype, endian: Endian::Big, frame, encoding })
+        let dtype = arrays::scalar(path, &array.kind, array.components)?;
+        let (endian, frames) = (Endian::Big, Frames::ONE);
+        Ok(Described { dims, dtype, endian, frame, encoding, frames })
     }
 }
 
@@ -217,42 +231,11 @@ fn numbers<const N: usize>(path: &Path, words: &[&str]) -> Result<[f64; N], Volu
     })
 }
 
-fn scalar(path: &Path, name: Option<&&str>, components: &str) -> Result<Dtype, VolumeError> {
-    if components != "1" {
-        return Err(format_error(
-            path,
-            format!(
-                "has {components} values a voxel: only scalar volumes are read; extract one first"
-            ),
-        ));
-    }
-    let name = name.copied().unwrap_or("(missing)");
-    Ok(match name {
-        "unsigned_char" => Dtype::U8,
-        "char" | "signed_char" => Dtype::I8,
-        "unsigned_short" => Dtype::U16,
-        "short" => Dtype::I16,
-        "unsigned_int" => Dtype::U32,
-        "int" => Dtype::I32,
-        // As on all systems but Windows; there VTK writes vtktypeint64.
-        "unsigned_long" | "vtktypeuint64" => Dtype::U64,
-        "long" | "vtktypeint64" | "vtkIdType" => Dtype::I64,
-        "float" => Dtype::F32,
-        "double" => Dtype::F64,
-        _ => {
-            return Err(format_error(
-                path,
-                format!("holds samples of type {name}, which is not read"),
-            ));
-        }
-    })
-}
-
 /// Where the text of numbers ends: at its end, or at a line that begins with a keyword.
 fn end_of_numbers(text: &[u8]) -> usize {
     let mut start = 0;
     for line in text.split_inclusive(|&byte| byte == b'\n') {
-        if KEYWORDS.iter().any(|keyword| line.starts_with(keyword.as_bytes())) {
+        if arrays::KEYWORDS.iter().any(|keyword| line.starts_with(keyword.as_bytes())) {
             return start;
         }
         start += line.len();
@@ -265,5 +248,6 @@ fn at_keyword(reader: &mut impl BufRead) -> std::io::Result<bool> {
     let mut rest = Vec::new();
     reader.take(4096).read_to_end(&mut rest)?;
     let rest = rest.trim_ascii_start();
-    Ok(rest.is_empty() || KEYWORDS.iter().any(|keyword| rest.starts_with(keyword.as_bytes())))
+    Ok(rest.is_empty()
+        || arrays::KEYWORDS.iter().any(|keyword| rest.starts_with(keyword.as_bytes())))
 }
