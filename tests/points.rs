@@ -236,7 +236,7 @@ fn written_points_are_read_back() {
         write_npy(&points, std::fs::File::create(&npy).unwrap()).unwrap();
         for path in [csv, npy] {
             assert!(is_point_file(&path).unwrap());
-            let back = read_points(&path).unwrap();
+            let back = read_points(&path, None).unwrap();
             assert_eq!(weigh(&back, Weighting::Column, 1.0).unwrap(), points, "{path:?}");
         }
     }
@@ -248,7 +248,7 @@ fn csv_columns_may_stand_anywhere() {
     let path = folder.path().join("points.csv");
     std::fs::write(&path, "\u{feff}name,Z, y ,weight,X\na,3,2,0.5,1\n\"b, c\",6,5,-1e1,4\n")
         .unwrap();
-    let points = read_points(&path).unwrap();
+    let points = read_points(&path, None).unwrap();
     assert_eq!(points.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
     assert_eq!(points.weights, Some(vec![0.5, -10.0]));
     assert_eq!(points.values, None);
@@ -260,7 +260,7 @@ fn bad_point_files_say_where_they_are_bad() {
     let refuse = |name: &str, bytes: &[u8], parts: &[&str]| {
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).unwrap();
-        let text = read_points(&path).unwrap_err().to_string();
+        let text = read_points(&path, None).unwrap_err().to_string();
         for part in parts.iter().chain(&[name]) {
             assert!(text.contains(part), "{part:?} is missing in: {text}");
         }
@@ -283,7 +283,7 @@ fn bad_point_files_say_where_they_are_bad() {
     let infinite = ndarray::arr2(&[[1.0, 2.0, f64::INFINITY, 0.0]]);
     refuse("inf.npy", &npy(infinite), &["row 0", "z is inf"]);
     refuse("none.npy", &npy(ndarray::Array2::zeros((0, 4))), &["no point"]);
-    let text = read_points(Path::new("no/such.csv")).unwrap_err().to_string();
+    let text = read_points(Path::new("no/such.csv"), None).unwrap_err().to_string();
     assert!(text.contains("no/such.csv"), "{text}");
 }
 

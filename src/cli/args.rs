@@ -8,16 +8,22 @@ use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
 use walpha::export::Target;
 use walpha::interpolate::Adaptive;
+use walpha::points::Columns;
 use walpha::shape::{Engine, ShapeOptions};
 use walpha::volume::{Dtype, Endian, RawLayout, ReadOptions};
 use walpha::{
     Alpha, Balls, Decomposition, Dims, Gray, GrayRange, HaarOptions, Selection, SelectionRule,
-    Tolerance, Units, Weighting,
+    Tolerance, Units, Volume, Weighting,
 };
+
+use super::given::{Given, misused};
+use super::parameter::Parameter;
 
 /// What to read.
 #[derive(Args, Clone)]
 pub struct InputArgs {
+    #[command(flatten)]
+    pub given: Given,
     /// Volume or point file, sample:skull, sample:phantom or sample:phantom@N.
     #[arg(value_name = "INPUT")]
     pub input: String,
@@ -29,12 +35,22 @@ pub struct InputArgs {
     /// Values that become gray 0 and 255 [default: as they are for unsigned 8 bits, else min..max].
     #[arg(long, value_name = "LO..HI", value_parser = gray_range, allow_hyphen_values = true)]
     gray: Option<GrayRange>,
+    /// What the columns of a table of points are (CSV, XYZ): x, y and z, perhaps weight and value, and
+    /// others by any name, as in x,y,z,nx,ny,nz [default: what its first line says, or else its
+    /// numbers].
+    #[arg(long, value_name = "NAME,NAME,…")]
+    columns: Option<Columns>,
 }
 
 impl InputArgs {
     /// How to read a volume.
     pub fn options(&self) -> ReadOptions {
         ReadOptions { raw: self.raw.layout(), level: self.level }
+    }
+
+    /// What the columns of a table of points are.
+    pub fn columns(&self) -> Option<&Columns> {
+        self.columns.as_ref()
     }
 
     /// How values become gray levels.
@@ -97,13 +113,23 @@ pub struct FormatArgs {
 }
 
 impl FormatArgs {
+    /// Refuses the option where every path has an extension.
+    pub fn check<'a>(&self, mut paths: impl Iterator<Item = &'a PathBuf>) -> anyhow::Result<()> {
+        if self.format.is_some() && paths.all(|path| path.extension().is_some()) {
+            misused!(
+                "--format has no effect: the extension of each output says its format; leave it away"
+            );
+        }
+        Ok(())
+    }
+
     /// A path whose extension tells the format: the path itself, if it has one.
     pub fn name(&self, path: &Path) -> anyhow::Result<PathBuf> {
         match &self.format {
             _ if path.extension().is_some() => Ok(path.to_owned()),
             Some(format) => Ok(format!("output.{}", format.trim_start_matches('.')).into()),
             None if path == Path::new(Target::STDOUT) => {
-                bail!("standard output has no extension; name the format, as in --format nrrd")
+                misused!("standard output has no extension; name the format, as in --format nrrd")
             }
             None => Ok(path.to_owned()),
         }
@@ -165,16 +191,17 @@ pub struct SelectArgs {
     #[arg(long, value_name = "E", value_parser = not_negative)]
     target_rmse: Option<f64>,
     /// Keep N samples.
-    #[arg(long, value_name = "N", group = "rule")]
+    #[arg(long, value_name = "N", group = "rule", value_parser = clap::value_parser!(u64).range(1..))]
     count: Option<u64>,
     /// Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609].
-    #[arg(long, value_name = "R", group = "rule")]
+    #[arg(long, value_name = "R", group = "rule", value_parser = share)]
     ratio: Option<f64>,
     /// Keep the samples whose gray difference is at least T gray levels.
-    #[arg(long, value_name = "T", group = "rule")]
+    #[arg(long, value_name = "T", group = "rule", value_parser = not_nan,
+          allow_negative_numbers = true)]
     threshold: Option<f64>,
     /// Leave out samples below this gray level after truncation.
-    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", value_parser = not_nan, allow_negative_numbers = true)]
     gray_min: Option<f64>,
     /// Coordinates in voxels, or in the file's units; then α, weights and sizes are too.
     #[arg(long, value_enum, default_value_t, value_name = "UNITS")]
@@ -210,12 +237,12 @@ impl SelectArgs {
     pub fn adaptive(&self, samples: usize) -> anyhow::Result<Option<Adaptive>> {
         if self.select != SelectArg::Adaptive {
             if self.target_rmse.is_some() {
-                bail!("--target-rmse belongs to --select adaptive: add it, or use --count");
+                misused!("--target-rmse belongs to --select adaptive: add it, or use --count");
             }
             return Ok(None);
         }
         if self.threshold.is_some() || self.gray_min.is_some() {
-            bail!(
+            misused!(
                 "--threshold and --gray-min choose by gray levels, which --select adaptive does \
                  not: use --count, --ratio or --target-rmse"
             );
@@ -226,10 +253,8 @@ impl SelectArgs {
             SelectionRule::Ratio(_) if self.ratio.is_none() && self.target_rmse.is_some() => {
                 samples as u64
             }
-            SelectionRule::Ratio(ratio) if ratio > 0.0 && ratio <= 1.0 => {
-                (ratio * samples as f64).round() as u64
-            }
-            _ => bail!("--ratio must be a share above 0 and up to 1, as in 0.0609 for 6.09 %"),
+            SelectionRule::Ratio(ratio) => (ratio * samples as f64).round() as u64,
+            SelectionRule::Threshold(_) => unreachable!("refused above"),
         };
         Ok(Some(Adaptive { count, rmse }))
     }
@@ -243,27 +268,57 @@ impl SelectArgs {
     }
 }
 
+/// α as it is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AlphaArg {
+    /// The smallest at which all points are in one solid component.
+    Auto,
+    /// This.
+    Given(Alpha),
+}
+
+impl FromStr for AlphaArg {
+    type Err = anyhow::Error;
+
+    fn from_str(text: &str) -> anyhow::Result<Self> {
+        if text.trim() == "auto" { Ok(Self::Auto) } else { Ok(Self::Given(alpha(text)?)) }
+    }
+}
+
 /// α and the weights in proportion to it.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Weights and α")]
 pub struct WeightArgs {
-    /// The parameter α, a squared length; `inf` gives the convex hull.
-    #[arg(long, value_name = "A", value_parser = alpha, group = "parameter", default_value = "10",
-          allow_negative_numbers = true)]
-    alpha: Alpha,
+    /// The parameter α, a squared length in the units of the points; `inf` gives the convex hull, and
+    /// `auto` the smallest α at which all points are in one solid component [default: auto for
+    /// scattered points; for a volume 10·h², where h³ is the volume of a voxel].
+    #[arg(long, value_name = "A", group = "parameter", allow_negative_numbers = true)]
+    alpha: Option<AlphaArg>,
     /// The parameter as a radius: α = R².
-    #[arg(long, value_name = "R", value_parser = alpha_radius, group = "parameter")]
+    #[arg(long, value_name = "R", value_parser = alpha_radius, group = "parameter",
+          allow_negative_numbers = true)]
     alpha_radius: Option<Alpha>,
     /// Weights ω (squared lengths): common=C, min-max (eq. 4.1), barycentric (eq. 4.2),
-    /// barycentric-n (N times that) or column (from the input).
+    /// barycentric-n (N times that) or column (from the input) [default: column where the input has
+    /// weights, else common=0].
     #[arg(long, value_name = "KIND", allow_hyphen_values = true)]
     weights: Option<Weighting>,
 }
 
 impl WeightArgs {
-    /// The parameter α.
-    pub fn alpha(&self) -> Alpha {
-        self.alpha_radius.unwrap_or(self.alpha)
+    /// α as it is asked for, if it is.
+    pub fn alpha(&self) -> Option<AlphaArg> {
+        self.alpha_radius.map(AlphaArg::Given).or(self.alpha)
+    }
+
+    /// α for work on a volume that makes several sets of points.
+    pub fn of_volume(&self, volume: &Volume, units: Units) -> anyhow::Result<Parameter> {
+        match self.alpha() {
+            None => Parameter::of_volume(volume, units),
+            asked => Parameter::given(asked).ok_or_else(|| {
+                anyhow!("there are several sets of points, each with an `auto` of its own; give α as a number")
+            }),
+        }
     }
 
     /// The weights asked for; without a word, those of the input, or else none.
@@ -278,12 +333,12 @@ impl WeightArgs {
 #[command(next_help_heading = "Weights, frozen")]
 pub struct FrozenArgs {
     /// The α, a squared length, for which weights are computed; they stay the same at every level,
-    /// so that levels are nested.
-    #[arg(long, value_name = "A", value_parser = alpha, default_value = "10",
-          allow_negative_numbers = true)]
-    alpha_ref: Alpha,
+    /// so that levels are nested [default: as --alpha of `walpha shape`].
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    alpha_ref: Option<AlphaArg>,
     /// Weights ω (squared lengths): common=C, min-max (eq. 4.1), barycentric (eq. 4.2),
-    /// barycentric-n (N times that) or column (from the input).
+    /// barycentric-n (N times that) or column (from the input) [default: column where the input has
+    /// weights, else common=0].
     #[arg(long, value_name = "KIND", allow_hyphen_values = true)]
     weights: Option<Weighting>,
 }
@@ -348,7 +403,7 @@ enum EngineArg {
     Reference,
 }
 
-#[derive(Clone, Copy, Default, ValueEnum)]
+#[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
 enum BallsArg {
     #[default]
     Power,
@@ -356,6 +411,11 @@ enum BallsArg {
 }
 
 impl ShapeArgs {
+    /// Whether `--balls radius` is in force, under which α is no squared length.
+    pub fn radii(&self) -> bool {
+        self.balls == BallsArg::Radius
+    }
+
     /// The stage's options.
     pub fn options(&self, alpha: Alpha) -> ShapeOptions {
         let balls = match self.balls {
@@ -407,6 +467,31 @@ fn bytes(text: &str) -> anyhow::Result<u64> {
 
 fn number(text: &str) -> anyhow::Result<f64> {
     text.trim().parse().map_err(|_| anyhow!("{text:?} is no number; give one as in 10 or 2.5"))
+}
+
+fn share(text: &str) -> anyhow::Result<f64> {
+    let share = number(text)?;
+    if !(share > 0.0 && share <= 1.0) {
+        bail!("a share above 0 and up to 1 is needed; give it as in 0.0609 for 6.09 %");
+    }
+    Ok(share)
+}
+
+fn not_nan(text: &str) -> anyhow::Result<f64> {
+    let number = number(text)?;
+    if number.is_nan() {
+        bail!("a gray level is needed; give it as in 50 or 12.5");
+    }
+    Ok(number)
+}
+
+/// A number that is not infinite.
+pub fn finite(text: &str) -> anyhow::Result<f64> {
+    let number = number(text)?;
+    if !number.is_finite() {
+        bail!("a finite number is needed; give it as in 50 or 12.5");
+    }
+    Ok(number)
 }
 
 pub fn not_negative(text: &str) -> anyhow::Result<f64> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::bail;
-use clap::Args;
+use clap::{Args, Command};
 use serde::Serialize;
 use walpha::alpha_shape;
 use walpha::check::schema::PlacedComplex;
@@ -12,6 +12,7 @@ use walpha::check::{Certificate, Claim, Comparison, Extent, Finding, Placed, com
 use walpha::shown::shown;
 
 use super::args::{PipelineArgs, ShapeArgs};
+use super::given::misused;
 use super::output::tell;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
@@ -119,17 +120,23 @@ impl Check {
     /// The complex to judge.
     fn complex(&self, progress: &mut Progress) -> anyhow::Result<PlacedComplex> {
         let path = Path::new(&self.pipeline.input.input);
+        let given = &self.pipeline.input.given;
         if complex_file::is_complex(path) {
+            let ours = ShapeArgs::augment_args(PipelineArgs::augment_args(Command::new("check")));
+            let options = ours.get_arguments().filter(|arg| !arg.is_positional());
+            let names: Vec<&str> = options.map(|arg| arg.get_id().as_str()).collect();
+            given.refuse(&names, format!("{} is a complex, made already", shown(path)))?;
             return progress.stage("read", || complex_file::read(path, self.points.as_deref()));
         }
         if self.points.is_some() {
-            bail!(
+            misused!(
                 "--points belongs to a complex (.json, .npz), and {} is none; leave it away",
                 shown(path)
             );
         }
-        let weighed = pipeline::weighted_points(&self.pipeline, progress)?;
-        let mut options = self.shape.options(self.pipeline.weights.alpha());
+        let mut weighed = pipeline::weighted_points(&self.pipeline, progress)?;
+        let alpha = weighed.find_parameter(&self.shape, progress)?.alpha;
+        let mut options = self.shape.options(alpha);
         // The whole triangulation can be judged wholly. Several blocks are judged as they are.
         options.exterior |=
             options.blocks.is_none_or(|blocks| blocks.get() == 1) && options.memory.is_none();

@@ -3,8 +3,10 @@
 use std::io::IsTerminal;
 
 use clap::error::ErrorKind;
+use walpha::export::UnknownFormat;
 use walpha::shown::escaped;
 
+use super::given::Usage;
 use super::progress;
 
 /// Whether standard error takes colours: a terminal, and NO_COLOR is not set (<https://no-color.org>).
@@ -23,17 +25,23 @@ struct Complaint {
 /// Tells why a command failed. The work that was going on is the one last announced.
 pub fn tell(command: &str, error: &anyhow::Error) {
     let what = match progress::current().as_str() {
-        "" => "could not start".to_owned(),
+        _ if is_usage(error) => "cannot do this".to_owned(),
+        "" => "could not start".into(),
         "read" => "could not read its input".into(),
         "haar" => "could not transform the volume".into(),
         "points" => "could not make weighted points".into(),
-        "shape" => "could not compute the shape".into(),
+        "alpha" | "shape" => "could not compute the shape".into(),
         "write" => "could not write its result".into(),
         other => format!("could not finish: {other}"),
     };
     let (why, next) = parted(&with_contexts(error));
     let next = next.unwrap_or_else(|| help(command));
     Complaint { what: format!("{command} {what}"), why, next }.print();
+}
+
+/// Whether the command line makes no sense, whatever is in the files.
+pub fn is_usage(error: &anyhow::Error) -> bool {
+    error.is::<Usage>() || error.is::<UnknownFormat>()
 }
 
 /// Tells what is wrong with a command line; `configured` if some of it comes from a file.

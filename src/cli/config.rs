@@ -5,6 +5,7 @@
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use anyhow::{Context, anyhow, bail};
 use clap::parser::ValueSource;
@@ -51,7 +52,7 @@ pub fn with_file(command: &Command, mut args: Vec<OsString>) -> anyhow::Result<V
     let said = |arg: &Arg| {
         of_command.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine)
     };
-    let mut more = Vec::new();
+    let (mut more, mut set) = (Vec::new(), Vec::new());
     for (key, value) in settings {
         let Some(arg) = option(subcommand, &key) else { continue };
         if said(arg) || rivals(subcommand, arg).into_iter().any(said) {
@@ -66,10 +67,20 @@ pub fn with_file(command: &Command, mut args: Vec<OsString>) -> anyhow::Result<V
             continue;
         }
         more.extend(text.into_iter().map(OsString::from));
+        set.push(arg.get_id().to_string());
     }
     let end = args.iter().position(|arg| arg == "--").unwrap_or(args.len());
     args.splice(end..end, more);
+    SET.get_or_init(|| set);
     Ok(args)
+}
+
+/// The names of the options that the file set, for this process.
+static SET: OnceLock<Vec<String>> = OnceLock::new();
+
+/// Whether the file set this option.
+pub fn has_set(name: &str) -> bool {
+    SET.get().is_some_and(|set| set.iter().any(|known| known == name))
 }
 
 /// The options in force as a file for `--config`: what was given, and defaults.

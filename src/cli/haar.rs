@@ -41,12 +41,17 @@ struct Facts {
 
 impl Haar {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
+        self.format.check(self.output.iter())?;
         let target = match &self.output {
             None => None,
             Some(path) => Some((VolumeFormat::of(&self.format.name(path)?)?, Target::open(path)?)),
         };
         let mut progress = Progress::new(global);
-        let Input::Volume(volume, _) = read(&self.input, &mut progress)? else {
+        let read = read(&self.input, &mut progress)?;
+        if matches!(read, Input::Volume(..)) {
+            read.accepts(&self.input)?;
+        }
+        let Input::Volume(volume, _) = read else {
             bail!("{} holds points; name a volume", self.input.input);
         };
         let options = self.haar.options();

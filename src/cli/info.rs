@@ -61,7 +61,7 @@ impl Info {
 
     fn look(&self) -> anyhow::Result<Content> {
         if pipeline::is_points(&self.input)? {
-            let points = read_points(self.input.input.as_ref())?;
+            let points = read_points(self.input.input.as_ref(), self.input.columns())?;
             let axis = |end: fn(f64, f64) -> f64, start: f64, axis: usize| {
                 points.positions.iter().fold(start, |so_far, p| end(so_far, p[axis]))
             };

@@ -12,6 +12,7 @@ use walpha::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
 use walpha::{AlphaShape, Volume, alpha_shape};
 
 use super::args::{FormatArgs, PipelineArgs, ShapeArgs};
+use super::given::misused;
 use super::output::tell;
 use super::progress::Progress;
 use super::report::{Report, number_or_null_or_name};
@@ -104,21 +105,22 @@ impl Interpolate {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         if self.curve {
             if self.pipeline.input.raw.grid().is_some() {
-                bail!("--curve measures on the samples of INPUT: leave --dims away");
+                misused!("--curve measures on the samples of INPUT: leave --dims away");
             }
             let base = self.output.as_deref().expect("clap requires it");
             return curve::run(global, &self.pipeline, base);
         }
+        self.format.check(self.output.iter())?;
         let output = match &self.output {
             None => None,
             Some(path) => Some((VolumeFormat::of(&self.format.name(path)?)?, Target::open(path)?)),
         };
         let mask = self.mask.as_deref().map(open).transpose()?;
         let mut progress = Progress::new(global);
-        let (weighed, volume) = pipeline::points_and_volume(&self.pipeline, &mut progress)?;
+        let (mut weighed, volume) = pipeline::points_and_volume(&self.pipeline, &mut progress)?;
         let volume = volume.as_ref();
-        let alpha = self.pipeline.weights.alpha();
-        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, alpha);
+        let alpha = weighed.find_parameter(&self.shape, &mut progress)?.alpha;
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
         let grid = self.grid(volume, &weighed.points.positions)?;
         let options = self.shape.options(alpha);
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;

@@ -9,12 +9,14 @@ mod complex_file;
 mod config;
 mod curve;
 mod folder;
+mod given;
 mod haar;
 mod info;
 mod interpolate;
 mod ladder;
 mod man;
 mod output;
+mod parameter;
 mod picture;
 mod pipeline;
 mod points;
@@ -162,7 +164,7 @@ pub fn run() -> ExitCode {
         Err(error) => {
             progress::clear();
             complaint::tell(&name, &error);
-            ExitCode::FAILURE
+            if complaint::is_usage(&error) { ExitCode::from(USAGE) } else { ExitCode::FAILURE }
         }
     }
 }

@@ -12,7 +12,9 @@ use walpha::{
     volume,
 };
 
-use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, WeightArgs};
+use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, ShapeArgs, WeightArgs};
+use super::given::{Usage, misused};
+use super::parameter::Parameter;
 use super::progress::Progress;
 
 /// What INPUT turned out to be.
@@ -27,11 +29,40 @@ pub enum Input {
 pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> {
     progress.stage("read", || {
         if is_points(args)? {
-            return Ok(Input::Points(read_points(Path::new(&args.input))?));
+            return Ok(Input::Points(read_points(Path::new(&args.input), args.columns())?));
         }
         let (volume, range) = volume::open(&args.input, &args.options())?.into_gray(args.gray())?;
         Ok(Input::Volume(volume, range))
     })
+}
+
+/// Options that speak of a volume.
+const OF_VOLUMES: [&str; 14] = [
+    "level",
+    "gray",
+    "haar",
+    "rms",
+    "epsilon",
+    "coefficients",
+    "select",
+    "target_rmse",
+    "count",
+    "ratio",
+    "threshold",
+    "gray_min",
+    "units",
+    "isovalue",
+];
+
+impl Input {
+    /// Refuses options that have no effect on what INPUT is.
+    pub fn accepts(&self, args: &InputArgs) -> Result<(), Usage> {
+        let holds = |what| format!("{} holds {what}", args.input);
+        match self {
+            Self::Volume(..) => args.given.refuse(&["columns"], holds("a volume")),
+            Self::Points(_) => args.given.refuse(&OF_VOLUMES, holds("points, and no volume")),
+        }
+    }
 }
 
 /// Whether INPUT is a point file.
@@ -45,6 +76,31 @@ pub struct Weighed {
     pub points: WeightedPoints,
     pub weighting: Weighting,
     pub volume: Option<VolumeFacts>,
+    /// α; none where it is to be looked for, and the weights do not need it.
+    pub parameter: Option<Parameter>,
+}
+
+impl Weighed {
+    /// α, looked for if it was not needed before.
+    pub fn find_parameter(
+        &mut self,
+        shape: &ShapeArgs,
+        progress: &mut Progress,
+    ) -> anyhow::Result<Parameter> {
+        let parameter = match self.parameter {
+            Some(parameter) => parameter,
+            None => Parameter::found(self.points.clone(), progress)?,
+        };
+        if shape.radii() && parameter.is_found() {
+            misused!(
+                "with --balls radius, α is a radius, and auto finds squared ones; give --alpha A, as \
+                 in --alpha {}",
+                parameter.alpha.squared().abs().sqrt()
+            );
+        }
+        self.parameter = Some(parameter);
+        Ok(parameter)
+    }
 }
 
 /// What is to be told about a volume.
@@ -88,7 +144,9 @@ pub fn points_and_volume(
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Volume>)> {
     let PipelineArgs { input, haar, select, weights } = args;
-    weigh_input(read(input, progress)?, haar, select, weights, progress)
+    let read = read(input, progress)?;
+    read.accepts(input)?;
+    weigh_input(read, haar, select, weights, progress)
 }
 
 /// The same from what was read already.
@@ -100,6 +158,7 @@ pub fn weigh_input(
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Volume>)> {
     let mut original = None;
+    let mut parameter = Parameter::given(weights.alpha());
     let (mut points, volume) = match input {
         Input::Points(points) => (points, None),
         Input::Volume(volume, range) => {
@@ -110,6 +169,9 @@ pub fn weigh_input(
                 progress.stage("points", || selected_points(&volume, &smoothed, select))?;
             let boxes = [Units::Voxel, Units::World].map(|units| box_volume(&volume, units));
             let facts = VolumeFacts { dims: volume.dims().xyz(), boxes, range, truncation, ended };
+            if weights.alpha().is_none() {
+                parameter = Some(Parameter::of_volume(&volume, select.units())?);
+            }
             original = Some(volume);
             (selected, Some(facts))
         }
@@ -120,9 +182,16 @@ pub fn weigh_input(
         if scattered && weighting.needs_differences() {
             points.differences = Some(points::scattered_difference(&points)?);
         }
-        weigh(&points, weighting, weights.alpha().squared())
+        anyhow::Ok(points)
     })?;
-    Ok((Weighed { points, weighting, volume }, original))
+    if parameter.is_none() && weighting.needs_differences() {
+        // What is wrong with the weights is told before the search.
+        weigh(&points, weighting, 0.0)?;
+        parameter = Some(Parameter::found_unweighted(&points, progress)?);
+    }
+    let alpha = parameter.map_or(0.0, |parameter| parameter.alpha.squared());
+    let points = progress.stage("points", || weigh(&points, weighting, alpha))?;
+    Ok((Weighed { points, weighting, volume, parameter }, original))
 }
 
 /// Points as asked for: by differences, or adaptively, where fewer may do.
@@ -184,7 +253,12 @@ pub fn domain(weighed: &Weighed, units: Units) -> Domain {
 /// The box between the outermost samples.
 fn box_volume(volume: &Volume, units: Units) -> f64 {
     let steps: f64 = volume.dims().xyz().map(|n| (n - 1) as f64).iter().product();
-    let cell = match units {
+    steps * cell_volume(volume, units)
+}
+
+/// The box of one voxel.
+pub fn cell_volume(volume: &Volume, units: Units) -> f64 {
+    match units {
         Units::Voxel => 1.0,
         Units::World => {
             let frame = volume.frame();
@@ -193,8 +267,7 @@ fn box_volume(volume: &Volume, units: Units) -> f64 {
             let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
             (a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)).abs()
         }
-    };
-    steps * cell
+    }
 }
 
 /// Readable critical values, those suggested, and the α that the weights are meant for.
@@ -206,10 +279,15 @@ pub fn readable(
 ) -> Vec<Alpha> {
     let mut alphas = filtration.readable(curve, count);
     alphas.push(reference);
+    alphas.extend(suggested(filtration, curve));
+    alphas
+}
+
+/// The suggested values of α that are finite.
+pub fn suggested(filtration: &Filtration, curve: &Curve) -> Vec<Alpha> {
     let suggested = filtration.suggest(curve);
     let [low, high] = suggested.plateau;
     let also = [suggested.all_points, suggested.one_region, suggested.no_void, low, high];
-    let finite = also.iter().filter(|alpha| alpha.is_finite());
-    alphas.extend(finite.filter_map(|&alpha| Alpha::from_squared(alpha).ok()));
-    alphas
+    let finite = also.into_iter().filter(|alpha| alpha.is_finite());
+    finite.filter_map(|alpha| Alpha::from_squared(alpha).ok()).collect()
 }

@@ -30,6 +30,7 @@ pub struct Points {
 
 impl Points {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
+        self.format.check(self.output.iter())?;
         let target = match &self.output {
             None => None,
             Some(path) => {
@@ -55,8 +56,7 @@ impl Points {
                 })
             })?;
         }
-        let mut report =
-            Report::of_points(&self.pipeline.input.input, &weighed, self.pipeline.weights.alpha());
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         tell(global, &report)

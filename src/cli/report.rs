@@ -5,17 +5,18 @@ use std::fmt::{self, Display};
 
 use serde::{Serialize, Serializer};
 use walpha::points::WeightSummary;
-use walpha::shape::{Betti, Component, Engine, Void, number_or_name};
-use walpha::{Alpha, AlphaShape, Class, GrayRange, Simplices, Truncation, memory};
+use walpha::shape::{Betti, Component, Cuts, Engine, Void, number_or_name};
+use walpha::{AlphaShape, Class, GrayRange, Simplices, Truncation, memory};
 
+use super::parameter::Parameter;
 use super::pipeline::{Ended, VolumeFacts, Weighed};
 
 /// Counted up when a field changes its meaning or goes; new fields may come at any time.
 pub const SCHEMA_VERSION: u32 = 1;
 
 /// The stages whose times are told, in the order of the work.
-const STAGES: [&str; 8] =
-    ["read", "haar", "points", "shape", "fill", "interpolate", "write", "total"];
+const STAGES: [&str; 9] =
+    ["read", "haar", "points", "alpha", "shape", "fill", "interpolate", "write", "total"];
 
 /// What `walpha shape` and `walpha points` did. A fact that is not known is null.
 #[derive(Serialize)]
@@ -24,12 +25,16 @@ pub struct Report {
     input: InputReport,
     haar: Option<HaarReport>,
     points: PointsReport,
-    alpha: AlphaReport,
+    /// Null where no α was needed.
+    alpha: Option<Parameter>,
     weights: WeightsReport,
     #[serde(skip_serializing_if = "Option::is_none")]
     shape: Option<ShapeReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     engine: Option<Engine>,
+    /// Where the boundary was cut apart, if it is written as that of a solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    solid: Option<Cuts>,
     files: Vec<String>,
     seconds: BTreeMap<&'static str, f64>,
     peak_memory_bytes: Option<u64>,
@@ -60,15 +65,6 @@ struct PointsReport {
     in_shape: Option<usize>,
     /// Adaptive selection needed fewer than asked for.
     ended_early: Option<Ended>,
-}
-
-/// α as a squared length and as a radius.
-#[derive(Serialize)]
-pub struct AlphaReport {
-    #[serde(serialize_with = "number_or_name")]
-    squared: f64,
-    #[serde(serialize_with = "number_or_null_or_name")]
-    radius: Option<f64>,
 }
 
 /// What the weights are.
@@ -127,18 +123,6 @@ impl Display for Counts {
     }
 }
 
-impl From<Alpha> for AlphaReport {
-    fn from(alpha: Alpha) -> Self {
-        Self { squared: alpha.squared(), radius: alpha.radius() }
-    }
-}
-
-impl Display for AlphaReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        Alpha::from_squared(self.squared).map_err(|_| fmt::Error)?.fmt(f)
-    }
-}
-
 impl WeightsReport {
     /// The weights of some points.
     pub fn of(weighed: &Weighed) -> Self {
@@ -169,7 +153,7 @@ impl Display for HaarReport {
 
 impl Report {
     /// What is known before there is a shape.
-    pub fn of_points(name: &str, weighed: &Weighed, alpha: Alpha) -> Self {
+    pub fn of_points(name: &str, weighed: &Weighed) -> Self {
         let volume = weighed.volume.as_ref();
         Self {
             schema_version: SCHEMA_VERSION,
@@ -187,10 +171,11 @@ impl Report {
                 in_shape: None,
                 ended_early: volume.and_then(|v| v.ended),
             },
-            alpha: AlphaReport::from(alpha),
+            alpha: weighed.parameter,
             weights: WeightsReport::of(weighed),
             shape: None,
             engine: None,
+            solid: None,
             files: Vec::new(),
             seconds: BTreeMap::new(),
             peak_memory_bytes: None,
@@ -216,6 +201,11 @@ impl Report {
             components: largest_components(shape),
             voids: shape.voids(),
         });
+    }
+
+    /// Adds where the boundary was cut apart.
+    pub fn add_solid(&mut self, cuts: Cuts) {
+        self.solid = Some(cuts);
     }
 
     /// Adds what it cost and what it left.
@@ -263,7 +253,9 @@ impl Display for Report {
             write!(f, "\n          {ended}")?;
         }
         writeln!(f, "\nweights   {} (squared lengths)", self.weights)?;
-        writeln!(f, "parameter {}", self.alpha)?;
+        if let Some(alpha) = &self.alpha {
+            writeln!(f, "parameter {alpha}")?;
+        }
         if let Some(shape) = &self.shape {
             writeln!(f, "cells     {:>9} interior", shape.cells.interior)?;
             writeln!(f, "facets    {}", shape.facets)?;
@@ -291,6 +283,17 @@ impl Display for Report {
             if self.points.in_shape == Some(0) {
                 writeln!(f, "the shape is empty: every α + ω is negative; raise --alpha")?;
             }
+        }
+        match self.solid {
+            None => {}
+            Some(cuts) if cuts == Cuts::default() => {
+                writeln!(f, "solid     the boundary is a manifold as it is")?;
+            }
+            Some(Cuts { edges, vertices, midpoints }) => writeln!(
+                f,
+                "solid     the boundary is no manifold: cut apart at {edges} edges, with {vertices} vertices \
+                 more and {midpoints} in the middle of edges"
+            )?,
         }
         for file in &self.files {
             writeln!(f, "wrote     {file}")?;

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use walpha::alpha_shape;
-use walpha::export::{Content, Exporter, Format, Target, UnknownFormat, write_all};
+use walpha::export::{Content, ExportOptions, Exporter, Format, Target, UnknownFormat, write_all};
+use walpha::shape::Surface;
 use walpha::shown::shown;
 
 use super::args::{FormatArgs, PipelineArgs, ShapeArgs};
@@ -31,6 +32,13 @@ pub struct Shape {
     /// Write text where a format has a binary form too (PLY).
     #[arg(long)]
     ascii: bool,
+    /// Write boundaries as those of solids, for programs that print or compute with them: regular
+    /// facets alone, closed, oriented, and cut apart where parts touch along edges or at vertices.
+    #[arg(long)]
+    solid: bool,
+    /// Put regular and singular facets, edges and vertices into groups of their own (OBJ).
+    #[arg(long)]
+    groups: bool,
     #[command(flatten)]
     shape: ShapeArgs,
     #[command(flatten)]
@@ -38,9 +46,39 @@ pub struct Shape {
 }
 
 impl Shape {
+    /// Refuses options that no output has a use for.
+    fn check(&self) -> anyhow::Result<()> {
+        self.format.check(self.output.iter())?;
+        let names: Vec<PathBuf> =
+            self.output.iter().map(|path| self.format.name(path)).collect::<Result<_, _>>()?;
+        let written = |format| names.iter().any(|name| Format::of(name).is_ok_and(|f| f == format));
+        let given = &self.pipeline.input.given;
+        if !names.iter().any(|name| PictureArgs::wanted(name)) {
+            given.refuse(&PictureArgs::NAMES, "no picture (.png) is written")?;
+        }
+        if !written(Format::Ply) {
+            given.refuse(&["ascii"], "only PLY has a binary form and a text form")?;
+        }
+        if !written(Format::Obj) {
+            given.refuse(&["groups"], "only OBJ has groups")?;
+        }
+        if !names.iter().any(|name| Format::of(name).is_ok_and(Format::is_boundary)) {
+            given.refuse(&["solid"], "no output holds a boundary alone")?;
+        }
+        Ok(())
+    }
+
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         // Before the long work: a bad extension or place costs nothing yet.
+        self.check()?;
         let mut targets = Vec::new();
+        let export = ExportOptions {
+            ascii: self.ascii,
+            solid: self.solid,
+            groups: self.groups,
+            input: Some(self.pipeline.input.input.clone()),
+            unit: None,
+        };
         for path in &self.output {
             let name = self.format.name(path)?;
             let exporter: Box<dyn Exporter> = if PictureArgs::wanted(&name) {
@@ -48,18 +86,21 @@ impl Shape {
             } else {
                 let known = Format::ALL.into_iter().map(|(_, extension)| extension);
                 let unknown = |_| UnknownFormat::new(path, "a shape", known.chain(["png"]));
-                Format::of(&name).map_err(unknown)?.exporter(self.ascii)
+                Format::of(&name).map_err(unknown)?.exporter(&export)
             };
             targets.push((Target::open(path)?, exporter));
         }
 
         let mut progress = Progress::new(global);
-        let weighed = pipeline::weighted_points(&self.pipeline, &mut progress)?;
-        let alpha = self.pipeline.weights.alpha();
-        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, alpha);
+        let mut weighed = pipeline::weighted_points(&self.pipeline, &mut progress)?;
+        let alpha = weighed.find_parameter(&self.shape, &mut progress)?.alpha;
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
         let options = self.shape.options(alpha);
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
         report.add_shape(&shape);
+        if self.solid {
+            report.add_solid(Surface::solid(&shape).1);
+        }
         let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
             Some(format!("{}: {}", shown(target.path()), exporter.remark(&shape)?))
         };

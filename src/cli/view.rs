@@ -7,18 +7,23 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
-use walpha::export::Target;
+use walpha::Alpha;
+use walpha::export::{Target, UnknownFormat};
 use walpha::ladder::Filtration;
 use walpha::points::Units;
 use walpha::render::{Original, Page, Subject};
 use walpha::shown::shown;
 
 use super::Global;
-use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::args::{
+    AlphaArg, Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs, finite,
+};
+use super::given::misused;
 use super::output::tell;
+use super::parameter::Parameter;
 use super::pipeline::{self, Weighed};
 use super::progress::Progress;
-use super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport};
+use super::report::{SCHEMA_VERSION, WeightsReport};
 
 /// Make a page that shows the shapes in a browser: self-contained, no network needed.
 ///
@@ -33,12 +38,17 @@ pub struct View {
     /// Page to write (.html), replaced if it is there.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Levels of the slider: squared lengths, as in 1,2,5,inf; or auto, for critical values of the
-    /// topology.
+    /// The α, a squared length, that the page opens at: a number, `inf`, or `auto`, the smallest at
+    /// which all points are in one solid component [default: --alpha-ref].
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    alpha: Option<AlphaArg>,
+    /// Levels of the slider: squared lengths, as in 1,2,5,inf; or auto, for critical values that
+    /// each show something else, most where the shape gets its form.
     #[arg(long, value_name = "A,A,…", default_value = "auto", allow_hyphen_values = true)]
     alphas: Alphas,
     /// Gray level of the isosurface to compare, for volumes.
-    #[arg(long, value_name = "G", default_value_t = 50.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", default_value_t = 50.0, value_parser = finite,
+          allow_negative_numbers = true)]
     isovalue: f64,
     #[command(flatten)]
     haar: HaarArgs,
@@ -49,7 +59,7 @@ pub struct View {
 }
 
 /// Levels that `--alphas auto` chooses, suggested ones not counted.
-const READABLE: usize = 16;
+const STOPS: usize = 28;
 
 #[derive(Serialize)]
 struct Facts {
@@ -68,34 +78,36 @@ impl View {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let html = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("html"));
         if !html {
-            bail!("{}: a page can be written as .html", shown(&self.output));
-        }
-        if !self.isovalue.is_finite() {
-            bail!("--isovalue must be a finite gray level");
+            bail!(UnknownFormat::new(&self.output, "a page", ["html"]));
         }
         let target = Target::open(&self.output)?;
         let mut progress = Progress::new(global);
         let weights = WeightArgs::from(self.weights);
         let read = pipeline::read(&self.input, &mut progress)?;
+        read.accepts(&self.input)?;
         let (weighed, volume) =
             pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
-        let told = self.told(&weighed, &weights);
         let domain = pipeline::domain(&weighed, self.select.units());
-        let points = weighed.points;
-        let filtration = progress.stage("filtration", || Filtration::new(points))?;
+        let filtration =
+            progress.stage("filtration", || Filtration::new(weighed.points.clone()))?;
+        let reference = Parameter::of(weighed.parameter, &filtration);
+        let told = self.told(&weighed, reference);
+        let opening = match self.alpha {
+            None => reference.alpha,
+            Some(asked) => Parameter::of(Parameter::given(Some(asked)), &filtration).alpha,
+        };
         let alphas = match &self.alphas {
-            Alphas::Given(alphas) => alphas.clone(),
-            Alphas::Auto => progress.stage("curve", || {
-                pipeline::readable(&filtration, &filtration.curve(), READABLE, weights.alpha())
-            }),
+            Alphas::Given(alphas) => [&alphas[..], self.alpha.map(|_| opening).as_slice()].concat(),
+            Alphas::Auto => progress.stage("curve", || stops(&filtration, opening)),
         };
         let levels = filtration.levels(&alphas);
         if levels.len() > Page::MOST_LEVELS {
-            bail!("{} levels are too many for a page: at most {}", levels.len(), Page::MOST_LEVELS);
+            let (levels, most) = (levels.len(), Page::MOST_LEVELS);
+            misused!("{levels} levels are too many for a page; give --alphas at most {most}");
         }
         let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
-        // The level the weights are meant for, or the last below it.
-        let first = levels.alphas().partition_point(|alpha| *alpha <= weights.alpha());
+        // That level, or the last below it.
+        let first = levels.alphas().partition_point(|alpha| *alpha <= opening);
         let title = format!("Alpha shapes of {}", self.input.input);
         let subject = Subject {
             title: &title,
@@ -136,7 +148,7 @@ impl View {
     }
 
     /// What the page tells besides the levels' numbers.
-    fn told(&self, weighed: &Weighed, weights: &WeightArgs) -> Vec<(String, String)> {
+    fn told(&self, weighed: &Weighed, reference: Parameter) -> Vec<(String, String)> {
         let mut told = vec![("input".to_owned(), self.input.input.clone())];
         if let Some(volume) = &weighed.volume {
             let [x, y, z] = volume.dims;
@@ -155,14 +167,24 @@ impl View {
             ));
         }
         told.push(("points".into(), weighed.points.len().to_string()));
-        let alpha = AlphaReport::from(weights.alpha());
         told.push((
             "weights ω".into(),
-            format!("{}, frozen at {alpha}", WeightsReport::of(weighed)),
+            format!("{}, frozen at {reference}", WeightsReport::of(weighed)),
         ));
         told.push(("made by".into(), format!("walpha {}", env!("CARGO_PKG_VERSION"))));
         told
     }
+}
+
+/// Levels that each show something, and something else than the one before: the one to open at,
+/// suggested ones, and others between.
+fn stops(filtration: &Filtration, opening: Alpha) -> Vec<Alpha> {
+    let curve = filtration.curve();
+    let mut alphas = filtration.stops(&curve, STOPS);
+    alphas.push(opening);
+    alphas.extend(pipeline::suggested(filtration, &curve));
+    let distinct = filtration.levels(&alphas).distinct(opening);
+    if distinct.is_empty() { vec![opening] } else { distinct }
 }
 
 impl Display for Facts {

@@ -1,23 +1,21 @@
 use std::io::{self, Write};
 
-use super::Exporter;
-use crate::shape::{AlphaShape, Surface};
+use super::{ExportOptions, Exporter};
+use crate::shape::AlphaShape;
 
 /// OFF, the object file format of Geomview: boundary facets with a colour each, regular ones
 /// light, singular ones orange. It knows no edges or lone points, so singular ones are left out.
-#[derive(Clone, Copy, Debug)]
-pub struct Off;
+#[derive(Clone, Debug, Default)]
+pub struct Off(pub ExportOptions);
 
 impl Exporter for Off {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let surface = Surface::of(shape);
-        let positions = &shape.points().positions;
+        let surface = self.0.surface(shape);
         writeln!(out, "OFF")?;
         writeln!(out, "# walpha: {}", shape.options().alpha)?;
         let facets = surface.regular.len() + surface.singular.len();
-        writeln!(out, "{} {facets} 0", surface.vertices.len())?;
-        for &v in &surface.vertices {
-            let [x, y, z] = positions[v as usize];
+        writeln!(out, "{} {facets} 0", surface.vertex_count())?;
+        for [x, y, z] in surface.positions(&shape.points().positions) {
             writeln!(out, "{x} {y} {z}")?;
         }
         for [a, b, c] in &surface.regular {

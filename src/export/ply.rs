@@ -1,33 +1,36 @@
 use std::io::{self, Write};
 
-use super::Exporter;
-use crate::shape::{AlphaShape, Class, Surface};
+use super::{ExportOptions, Exporter, colour};
+use crate::shape::{AlphaShape, Class};
 
-/// PLY: vertices of the boundary with weight, value and input index; facets with their class
+/// PLY: vertices of the boundary with weight, input index and, where known, value and the colour
+/// (red, green, blue) that it has between the least and the most; facets with their class
 /// (2 regular, 3 singular), their component and, where known, the [sheets](crate::shape::Sheets) in
 /// front and behind, −1 for none; singular edges. Coordinates are doubles. Binary little-endian, or
-/// text.
-#[derive(Clone, Copy, Debug)]
-pub struct Ply {
-    /// Text instead of binary.
-    pub ascii: bool,
-}
+/// text. Of a solid there are no sheets.
+#[derive(Clone, Debug, Default)]
+pub struct Ply(pub ExportOptions);
 
 impl Exporter for Ply {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let surface = Surface::of(shape);
+        let Self(options) = self;
+        let surface = options.surface(shape);
         let points = shape.points();
-        let sheets: Option<Vec<_>> = shape.sheets().map(|sheets| sheets.sides().collect());
-        let format = if self.ascii { "ascii" } else { "binary_little_endian" };
+        let sheets = shape.sheets().filter(|_| !options.solid);
+        let sheets: Option<Vec<_>> = sheets.map(|sheets| sheets.sides().collect());
+        let values: Option<Vec<f64>> = points.values.as_ref().map(|v| surface.numbers(v).collect());
+        let format = if options.ascii { "ascii" } else { "binary_little_endian" };
         write!(
             out,
             "ply\nformat {format} 1.0\ncomment walpha: {}\nelement vertex {}\n\
              property double x\nproperty double y\nproperty double z\nproperty double weight\n",
             shape.options().alpha,
-            surface.vertices.len(),
+            surface.vertex_count(),
         )?;
-        if points.values.is_some() {
-            writeln!(out, "property double value")?;
+        if values.is_some() {
+            out.write_all(
+                b"property double value\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n",
+            )?;
         }
         write!(
             out,
@@ -39,20 +42,24 @@ impl Exporter for Ply {
             surface.edges.len(),
         )?;
 
-        let mut row = Row { ascii: self.ascii, out, started: false };
-        for &v in &surface.vertices {
-            let i = v as usize;
-            for coordinate in points.positions[i] {
-                row.put(coordinate, f64::to_le_bytes)?;
+        let mut row = Row { ascii: options.ascii, out, started: false };
+        let colours = values.as_deref().map(colour::bytes);
+        let vertices: Vec<u32> = surface.indices().collect();
+        let places = surface.positions(&points.positions).zip(surface.numbers(&points.weights));
+        for (i, (place, weight)) in places.enumerate() {
+            for number in [place[0], place[1], place[2], weight] {
+                row.put(number, f64::to_le_bytes)?;
             }
-            row.put(points.weights[i], f64::to_le_bytes)?;
-            if let Some(values) = &points.values {
+            if let (Some(values), Some(colours)) = (&values, &colours) {
                 row.put(values[i], f64::to_le_bytes)?;
+                for part in colours[i] {
+                    row.put(part, u8::to_le_bytes)?;
+                }
             }
-            row.put(v, u32::to_le_bytes)?;
+            row.put(vertices[i], u32::to_le_bytes)?;
             row.end()?;
         }
-        let (components, vertices) = (shape.component_numbers(), &surface.vertices);
+        let components = shape.component_numbers();
         for (i, facet) in surface.facets().enumerate() {
             row.put(3u8, u8::to_le_bytes)?;
             for &v in facet {

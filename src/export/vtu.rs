@@ -1,15 +1,17 @@
 use std::io::{self, Write};
 
-use super::Exporter;
+use super::{ExportOptions, Exporter};
 use crate::shape::{AlphaShape, Simplices};
 
 /// VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as
 /// cell data (1 interior, 2 regular, 3 singular); `weight`, `value` and `input_index` as point
-/// data. Arrays are appended raw, little-endian, with 64-bit sizes.
+/// data. Field data say how it was made: `alpha` (a squared length), `alpha_radius` where there is one,
+/// `class_legend`, `made_by` (program and version) and, where known, `input` and `unit`, the unit of length. Arrays are
+/// appended raw, little-endian, with 64-bit sizes.
 ///
 /// Where a complex holds exterior simplices they are written too, as class 0.
-#[derive(Clone, Copy, Debug)]
-pub struct Vtu;
+#[derive(Clone, Debug, Default)]
+pub struct Vtu(pub ExportOptions);
 
 impl Exporter for Vtu {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
@@ -32,8 +34,13 @@ impl Exporter for Vtu {
             file.xml,
             "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
              <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-             <UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
+             <UnstructuredGrid>\n",
             shape.options().alpha,
+        )?;
+        file.field_data(shape, &self.0)?;
+        write!(
+            file.xml,
+            "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
             vertices.len(),
             grid.types.len(),
         )?;
@@ -102,7 +109,54 @@ pub(super) struct Appended {
     pub data: Vec<u8>,
 }
 
+/// What the numbers of `class` mean.
+const LEGEND: &str = "0 exterior, 1 interior, 2 regular, 3 singular";
+
 impl Appended {
+    /// How the shape was made, for whoever finds the file later.
+    pub fn field_data(&mut self, shape: &AlphaShape, options: &ExportOptions) -> io::Result<()> {
+        let alpha = shape.options().alpha;
+        writeln!(self.xml, "<FieldData>")?;
+        for (name, number) in [("alpha", Some(alpha.squared())), ("alpha_radius", alpha.radius())] {
+            if let Some(number) = number {
+                // Not as text: VTK reads no "inf".
+                self.field("DataArray", "Float64", name, &number.to_le_bytes())?;
+            }
+        }
+        let made_by = format!("walpha {}", env!("CARGO_PKG_VERSION"));
+        let texts = [
+            ("made_by", Some(made_by.as_str())),
+            ("class_legend", Some(LEGEND)),
+            ("input", options.input.as_deref()),
+            ("unit", options.unit.as_deref()),
+        ];
+        for (name, text) in texts {
+            if let Some(text) = text {
+                // A zero ends it, so there is none in it.
+                let text = text.replace('\0', " ") + "\0";
+                self.field("Array", "String", name, text.as_bytes())?;
+            }
+        }
+        writeln!(self.xml, "</FieldData>")
+    }
+
+    /// One number or text about the whole.
+    fn field(&mut self, element: &str, kind: &str, name: &str, bytes: &[u8]) -> io::Result<()> {
+        writeln!(
+            self.xml,
+            "<{element} type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"1\" \
+             format=\"appended\" offset=\"{}\"/>",
+            self.data.len()
+        )?;
+        self.append(bytes);
+        Ok(())
+    }
+
+    fn append(&mut self, bytes: &[u8]) {
+        self.data.extend((bytes.len() as u64).to_le_bytes());
+        self.data.extend(bytes);
+    }
+
     pub fn array(
         &mut self,
         kind: &str,
@@ -116,8 +170,7 @@ impl Appended {
              format=\"appended\" offset=\"{}\"/>",
             self.data.len()
         )?;
-        self.data.extend((bytes.len() as u64).to_le_bytes());
-        self.data.extend(bytes);
+        self.append(&bytes);
         Ok(())
     }
 }

@@ -10,13 +10,13 @@ fn points_of_every_format_are_read() {
     for (name, bytes) in point_examples() {
         let path = save(folder.path(), name, bytes);
         assert!(walpha::points::is_point_file(&path).unwrap(), "{name}");
-        let points = read_points(&path).unwrap_or_else(|e| panic!("{e}"));
+        let points = read_points(&path, None).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(points.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{name}");
         assert_eq!(points.values, Some(vec![7.0, 8.0]), "{name}");
         assert_eq!(points.weights, None, "{name}");
     }
     let atoms = "2\na molecule\nC 1 2 3\nH 4 5 6 0.1\n";
-    let points = read_points(&save(folder.path(), "m.xyz", atoms)).unwrap();
+    let points = read_points(&save(folder.path(), "m.xyz", atoms), None).unwrap();
     assert_eq!((points.len(), points.values), (2, None));
     for (name, bytes) in examples() {
         let path = save(folder.path(), name, bytes);
@@ -29,7 +29,7 @@ fn points_of_every_format_are_read() {
 fn damaged_points_say_what_is_wrong() {
     let folder = tempfile::tempdir().unwrap();
     let refuses = |name: &str, text: &str, part: &str| {
-        let error = read_points(&save(folder.path(), name, text)).unwrap_err().to_string();
+        let error = read_points(&save(folder.path(), name, text), None).unwrap_err().to_string();
         assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
     };
     let rows = "2 0 1\n1 2 3 0 7\n4 5 6 0 8\n";
@@ -106,7 +106,7 @@ fn the_command_weighs_scattered_values() {
     save(folder.path(), "s.csv", &text);
     for weights in ["min-max", "barycentric", "barycentric-n"] {
         common::ok(folder.path(), &["points", "s.csv", "--weights", weights, "-o", "w.csv"]);
-        let weights = read_points(&folder.path().join("w.csv")).unwrap().weights.unwrap();
+        let weights = read_points(&folder.path().join("w.csv"), None).unwrap().weights.unwrap();
         assert!(weights.iter().any(|&w| w > 0.0));
     }
     save(folder.path(), "bare.csv", text.replace("value", "other"));

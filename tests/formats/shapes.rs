@@ -2,7 +2,7 @@ use std::fs;
 use std::path::Path;
 
 use walpha::Points;
-use walpha::export::Format;
+use walpha::export::{ExportOptions, Format};
 use walpha::points::{WeightedPoints, read_points};
 use walpha::shape::{Alpha, ShapeOptions, alpha_shape};
 
@@ -18,7 +18,7 @@ fn shape() -> walpha::AlphaShape {
 
 fn exported(format: Format, shape: &walpha::AlphaShape) -> Vec<u8> {
     let mut bytes = Vec::new();
-    format.exporter(false).write(shape, &mut bytes).unwrap();
+    format.exporter(&ExportOptions::default()).write(shape, &mut bytes).unwrap();
     bytes
 }
 
@@ -31,7 +31,7 @@ fn written_shapes_are_read_back() {
         [(Format::Ply, "ply", 4), (Format::Vtp, "vtp", 4), (Format::Vtu, "vtu", 5)]
     {
         let path = save(folder.path(), &format!("s.{extension}"), exported(format, &shape));
-        let back = read_points(&path).unwrap();
+        let back = read_points(&path, None).unwrap();
         assert_eq!(back.positions, shape.points().positions[..corners], "{extension}");
         assert_eq!(back.values.unwrap(), [1.0, 2.0, 3.0, 5.0, 10.0][..corners], "{extension}");
         assert_eq!(back.weights, Some(vec![0.0; corners]), "{extension}");
@@ -81,7 +81,7 @@ fn payloads(path: &Path) -> impl FnMut(&str) -> Vec<u8> {
 
 #[test]
 fn stl_says_when_the_boundary_is_no_manifold() {
-    assert_eq!(Format::Stl.exporter(false).remark(&shape()), None);
+    assert_eq!(Format::Stl.exporter(&ExportOptions::default()).remark(&shape()), None);
     // Two tetrahedra that touch at a vertex.
     let folder = tempfile::tempdir().unwrap();
     let text = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n-1 -1 0\n-1 0 -1\n0 -1 -1\n";

@@ -17,9 +17,10 @@ use super::super::Global;
 use super::super::args::WeightArgs;
 use super::super::folder::Folder;
 use super::super::output::tell;
+use super::super::parameter::Parameter;
 use super::super::pipeline::{Domain, Input, read};
 use super::super::progress::Progress;
-use super::super::report::{AlphaReport, SCHEMA_VERSION};
+use super::super::report::SCHEMA_VERSION;
 use super::{Ladder, Mesh, short};
 
 /// What `walpha ladder` did over detail.
@@ -27,7 +28,7 @@ use super::{Ladder, Mesh, short};
 struct Facts {
     schema_version: u32,
     input: String,
-    alpha: AlphaReport,
+    alpha: Parameter,
     weights: String,
     domain: Domain,
     /// Points with full detail, which each level has besides its own; null without a region.
@@ -74,6 +75,8 @@ impl Ladder {
         };
         let weights = WeightArgs::from(self.weights);
         let units = self.select.units();
+        let parameter = weights.of_volume(&volume, units)?;
+        let alpha = parameter.alpha;
         let domain = Domain::of_grid(&volume, units);
         let mut stages = Stages { volume: &volume, units, smoothed: None };
         let full = match &self.roi {
@@ -95,8 +98,8 @@ impl Ladder {
                 Some((full, region)) => focus(full, &coarse, region),
                 None => coarse,
             };
-            let weighted = weigh(&points, weights.weighting(false), weights.alpha().squared())?;
-            let options = ShapeOptions::new(weights.alpha());
+            let weighted = weigh(&points, weights.weighting(false), alpha.squared())?;
+            let options = ShapeOptions::new(alpha);
             let shape = progress.stage("shape", || alpha_shape(weighted, &options))?;
             let mut row = Row {
                 points: points.len(),
@@ -127,7 +130,7 @@ impl Ladder {
         let facts = Facts {
             schema_version: SCHEMA_VERSION,
             input: self.input.input.clone(),
-            alpha: AlphaReport::from(weights.alpha()),
+            alpha: parameter,
             weights: weights.weighting(false).to_string(),
             domain,
             points_in_region: full.as_ref().map(in_region),

@@ -5,12 +5,12 @@ use std::fmt::{self, Display, Write as _};
 use std::io;
 
 use serde::Serialize;
-use walpha::Alpha;
 use walpha::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
 use walpha::shape::{Betti, ByClass, Measures, Void, number_or_name};
 
+use super::super::parameter::Parameter;
 use super::super::pipeline::{Domain, Weighed};
-use super::super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport};
+use super::super::report::{SCHEMA_VERSION, WeightsReport};
 
 /// What `walpha ladder` did over α.
 #[derive(Serialize)]
@@ -20,7 +20,7 @@ pub struct Facts {
     points: usize,
     hidden: usize,
     duplicates: usize,
-    alpha_ref: AlphaReport,
+    alpha_ref: Parameter,
     weights: WeightsReport,
     domain: Domain,
     /// Cells, facets, edges, vertices of the triangulation.
@@ -52,14 +52,14 @@ struct Row {
 }
 
 impl Facts {
-    pub fn new(input: &str, weighed: &Weighed, alpha_ref: Alpha, domain: Domain) -> Self {
+    pub fn new(input: &str, weighed: &Weighed, alpha_ref: Parameter, domain: Domain) -> Self {
         Self {
             schema_version: SCHEMA_VERSION,
             input: input.to_owned(),
             points: weighed.points.len(),
             hidden: 0,
             duplicates: 0,
-            alpha_ref: AlphaReport::from(alpha_ref),
+            alpha_ref,
             weights: WeightsReport::of(weighed),
             domain,
             simplices: [0; 4],

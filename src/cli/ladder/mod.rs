@@ -7,15 +7,17 @@ mod regions;
 use std::fmt::{Display, LowerExp};
 use std::path::{Path, PathBuf};
 
-use anyhow::{anyhow, bail};
+use anyhow::anyhow;
 use clap::Args;
-use walpha::export::{Exporter, Format};
+use walpha::export::{ExportOptions, Exporter, Format};
 use walpha::ladder::{Filtration, Ladder as Levels, Level, Region};
 use walpha::render::ladder_figure;
 
 use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
 use super::folder::Folder;
+use super::given::misused;
 use super::output::tell;
+use super::parameter::Parameter;
 use super::progress::Progress;
 use super::{Global, pipeline};
 use facts::{Facts, write_levels, write_voids};
@@ -78,7 +80,7 @@ impl Ladder {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let detail = !(self.counts.is_empty() && self.epsilons.is_empty());
         if self.roi.is_some() && !detail {
-            bail!("--roi belongs to levels of detail: give --counts or --epsilons too");
+            misused!("--roi belongs to levels of detail: give --counts or --epsilons too");
         }
         once("--counts", &self.counts)?;
         once("--epsilons", &self.epsilons)?;
@@ -103,18 +105,20 @@ impl Ladder {
         let mut progress = Progress::new(global);
         let weights = WeightArgs::from(self.weights);
         let read = pipeline::read(&self.input, &mut progress)?;
+        read.accepts(&self.input)?;
         let (weighed, _) =
             pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
         let domain = pipeline::domain(&weighed, self.select.units());
-        let mut facts = Facts::new(&self.input.input, &weighed, weights.alpha(), domain);
-        let points = weighed.points;
-        let filtration = progress.stage("filtration", || Filtration::new(points))?;
+        let filtration =
+            progress.stage("filtration", || Filtration::new(weighed.points.clone()))?;
+        let reference = Parameter::of(weighed.parameter, &filtration);
+        let mut facts = Facts::new(&self.input.input, &weighed, reference, domain);
         let curve = progress.stage("curve", || filtration.curve());
         let suggested = progress.stage("curve", || filtration.suggest(&curve));
         let alphas = match &self.alphas {
             Alphas::Given(alphas) => alphas.clone(),
             Alphas::Auto => progress.stage("curve", || {
-                pipeline::readable(&filtration, &curve, READABLE, weights.alpha())
+                pipeline::readable(&filtration, &curve, READABLE, reference.alpha)
             }),
         };
         let levels = progress.stage("ladder", || filtration.levels(&alphas));
@@ -167,7 +171,9 @@ fn short(number: impl Display + LowerExp) -> String {
 /// Refuses what is named twice, as one file would replace the other.
 fn once<T: PartialEq + Display>(option: &str, values: &[T]) -> anyhow::Result<()> {
     match values.iter().enumerate().find(|(k, value)| values[..*k].contains(value)) {
-        Some((_, value)) => bail!("{option} names {value} twice; each level has a file of its own"),
+        Some((_, value)) => {
+            misused!("{option} names {value} twice; each level has a file of its own")
+        }
         None => Ok(()),
     }
 }
@@ -189,7 +195,7 @@ fn meshes(asked: &[String], silent: &[&str]) -> anyhow::Result<Vec<Mesh>> {
         let name = format!("level.{extension}");
         let format =
             Format::of(Path::new(&name)).map_err(|unknown| anyhow!("--mesh: {unknown}"))?;
-        Ok(Mesh { exporter: format.exporter(false), extension })
+        Ok(Mesh { exporter: format.exporter(&ExportOptions::default()), extension })
     };
     extensions.into_iter().map(mesh).collect()
 }
