@@ -21,14 +21,14 @@ use super::parameter::Parameter;
 
 /// What to read.
 #[derive(Args, Clone)]
+#[command(next_help_heading = "Input")]
 pub struct InputArgs {
+    /// What was given, the command's own options aside.
     #[command(flatten)]
     pub given: Given,
     /// Volume or point file, sample:skull, sample:phantom or sample:phantom@N.
-    #[arg(value_name = "INPUT")]
+    #[arg(value_name = "INPUT", help_heading = None::<&str>)]
     pub input: String,
-    #[command(flatten)]
-    pub raw: RawArgs,
     /// Level of a pyramid (OME-Zarr) to read; 0 is the finest [default: 0].
     #[arg(long, value_name = "N", conflicts_with = "dims")]
     level: Option<u32>,
@@ -40,6 +40,8 @@ pub struct InputArgs {
     /// numbers].
     #[arg(long, value_name = "NAME,NAME,…")]
     columns: Option<Columns>,
+    #[command(flatten)]
+    pub raw: RawArgs,
 }
 
 impl InputArgs {
@@ -191,7 +193,7 @@ pub struct SelectArgs {
     #[arg(long, value_name = "E", value_parser = not_negative)]
     target_rmse: Option<f64>,
     /// Keep N samples.
-    #[arg(long, value_name = "N", group = "rule", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", group = "rule", value_parser = count)]
     count: Option<u64>,
     /// Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609].
     #[arg(long, value_name = "R", group = "rule", value_parser = share)]
@@ -391,7 +393,7 @@ pub struct ShapeArgs {
     exterior: bool,
 }
 
-#[derive(Clone, Copy, Default, ValueEnum)]
+#[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
 enum EngineArg {
     /// CGAL's triangulation in blocks.
     #[cfg_attr(feature = "cgal", default)]
@@ -414,6 +416,18 @@ impl ShapeArgs {
     /// Whether `--balls radius` is in force, under which α is no squared length.
     pub fn radii(&self) -> bool {
         self.balls == BallsArg::Radius
+    }
+
+    /// Refuses options that the engine has no use for.
+    pub fn check(&self) -> anyhow::Result<()> {
+        if self.engine == EngineArg::Reference && self.blocks.is_some_and(|blocks| blocks.get() > 1)
+        {
+            misused!(
+                "--blocks has no effect: the reference engine knows no blocks; leave it away, or take \
+                 --engine native"
+            );
+        }
+        Ok(())
     }
 
     /// The stage's options.
@@ -467,6 +481,13 @@ fn bytes(text: &str) -> anyhow::Result<u64> {
 
 fn number(text: &str) -> anyhow::Result<f64> {
     text.trim().parse().map_err(|_| anyhow!("{text:?} is no number; give one as in 10 or 2.5"))
+}
+
+fn count(text: &str) -> anyhow::Result<u64> {
+    match text.trim().parse() {
+        Ok(0) => bail!("a count from 1 up is needed; give it as in 15956"),
+        count => count.map_err(|_| anyhow!("{text:?} is no whole number; give one as in 15956")),
+    }
 }
 
 fn share(text: &str) -> anyhow::Result<f64> {

@@ -23,18 +23,23 @@ use super::{DIFFERENT, Global, complex_file, pipeline};
 /// INPUT is a volume or points, which an engine makes a shape of, or a complex (.json, .npz). The
 /// checker shares no code with the engines and CGAL. Exit code 3 when something is found.
 ///
-/// Examples: walpha check sample:skull --weights min-max;
-/// walpha check theirs.json --points cloud.csv
+/// Examples:
+///
+/// walpha check ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30
+///
+/// walpha check skull.json
+///
+/// walpha check theirs.json --points skull.csv
 #[derive(Args)]
 pub struct Check {
-    #[command(flatten)]
-    pipeline: PipelineArgs,
     /// Points of the complex, where its file lists none: .csv or .npy.
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
     /// Build the answer from the definition too, and compare (at most 200 points).
     #[arg(long)]
     enumerate: bool,
+    #[command(flatten)]
+    pipeline: PipelineArgs,
     #[command(flatten)]
     shape: ShapeArgs,
 }
@@ -64,6 +69,7 @@ struct Facts {
 
 impl Check {
     pub fn run(self, global: Global) -> anyhow::Result<ExitCode> {
+        self.shape.check()?;
         let mut progress = Progress::new(global);
         let judged = self.complex(&mut progress)?;
         let n = judged.positions.len();

@@ -23,8 +23,9 @@ const NOT_CONFIGURED: [&str; 4] = [FILE, PRINT, "help", "version"];
 
 /// The two options, for every command.
 pub fn options_of_it() -> [Arg; 2] {
-    let file = Arg::new(FILE).long(FILE).global(true).value_name("FILE");
-    let print = Arg::new(PRINT).long(PRINT).global(true).action(ArgAction::SetTrue);
+    let option = |name| Arg::new(name).long(name).global(true).help_heading(super::EVERY_COMMAND);
+    let file = option(FILE).value_name("FILE");
+    let print = option(PRINT).action(ArgAction::SetTrue);
     [
         file.value_parser(clap::value_parser!(PathBuf)).help(
             "TOML file with options by their long names, as in alpha = 4; the command line wins",

@@ -17,17 +17,21 @@ use super::report::{HaarReport, SCHEMA_VERSION};
 
 /// Transform a volume, drop small coefficients, and restore it.
 ///
-/// Example: walpha haar sample:skull --rms 2 -o smooth.npy
+/// Examples:
+///
+/// walpha haar ct.nii.gz --rms 4 -o smooth.nii.gz
+///
+/// walpha haar sample:skull --coefficients 20000 -o smooth.npy
 #[derive(Args)]
 pub struct Haar {
-    #[command(flatten)]
-    input: InputArgs,
     /// File to write the restored gray levels to, as f32, replaced if it is there: .nrrd, .nii,
     /// .nii.gz, .vti, .npy or .raw; or - (standard output, with --format).
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
     format: FormatArgs,
+    #[command(flatten)]
+    input: InputArgs,
     #[command(flatten)]
     haar: HaarArgs,
 }

@@ -4,6 +4,7 @@ use clap::Args;
 use serde::Serialize;
 use walpha::Frame;
 use walpha::points::read_points;
+use walpha::shown::number;
 use walpha::volume;
 
 use super::args::InputArgs;
@@ -14,7 +15,13 @@ use super::{Global, pipeline};
 
 /// Say what a file holds, without computing anything.
 ///
-/// Example: walpha info sample:skull --json
+/// Examples:
+///
+/// walpha info ct.nii.gz
+///
+/// walpha info scan.xyz --columns x,y,z,nx,ny,nz
+///
+/// walpha info sample:skull --json
 #[derive(Args)]
 pub struct Info {
     #[command(flatten)]
@@ -113,15 +120,16 @@ impl std::fmt::Display for Content {
                 data_files,
             } => {
                 writeln!(f, "volume    {x}×{y}×{z} samples (x, y, z)")?;
-                writeln!(f, "spacing   {} {} {}", spacing[0], spacing[1], spacing[2])?;
-                writeln!(f, "origin    {} {} {}", origin[0], origin[1], origin[2])?;
+                writeln!(f, "spacing   {}", spacing.map(number).join(" "))?;
+                writeln!(f, "origin    {}", origin.map(number).join(" "))?;
                 if *direction != Frame::VOXEL.direction {
                     for (i, axis) in ["x", "y", "z"].iter().enumerate() {
-                        let [r, a, s] = direction.map(|row| row[i]);
-                        writeln!(f, "axis {axis}    {r} {a} {s}")?;
+                        let steps = direction.map(|row| number(row[i]));
+                        writeln!(f, "axis {axis}    {}", steps.join(" "))?;
                     }
                 }
                 let gray = if *gray_levels { ", gray levels as they are" } else { "" };
+                let (min, max) = (number(f64::from(*min)), number(f64::from(*max)));
                 writeln!(f, "values    {min} to {max}{gray}")?;
                 match &data_files[..] {
                     [] => Ok(()),
@@ -134,7 +142,7 @@ impl std::fmt::Display for Content {
             Self::Points { count, low, high, weights, values } => {
                 writeln!(f, "points    {count}")?;
                 for (i, axis) in ["x", "y", "z"].iter().enumerate() {
-                    writeln!(f, "{axis}         {} to {}", low[i], high[i])?;
+                    writeln!(f, "{axis}         {} to {}", number(low[i]), number(high[i]))?;
                 }
                 let has = |there: bool| if there { "yes" } else { "no" };
                 writeln!(f, "weights   {}\nvalues    {}", has(*weights), has(*values))

@@ -30,7 +30,12 @@ use super::{Global, curve, pipeline};
 /// those selected, for each way to select them and the weights common=0, min-max and barycentric, as
 /// CSV, PNG and SVG.
 ///
-/// Examples: walpha interpolate sample:skull --select adaptive --fill -o skull.nrrd;
+/// Examples:
+///
+/// walpha interpolate ct.nii.gz --select adaptive --count 100000 --fill -o again.nii.gz
+///
+/// walpha interpolate scattered.csv --dims 64,64,64 -o grid.nrrd
+///
 /// walpha interpolate sample:skull --curve -o curves/
 #[derive(Args)]
 #[command(mut_arg("dims", |arg| {
@@ -39,8 +44,6 @@ use super::{Global, curve, pipeline};
         .help_heading("Grid")
 }))]
 pub struct Interpolate {
-    #[command(flatten)]
-    pipeline: PipelineArgs,
     /// Volume to write F to, as f32: .nrrd, .nii, .nii.gz, .vti, .npy or .raw; or - (standard output,
     /// with --format). With --curve: a folder, or what names of files begin with. Files that are
     /// there are replaced.
@@ -61,6 +64,8 @@ pub struct Interpolate {
     curve: bool,
     #[command(flatten)]
     format: FormatArgs,
+    #[command(flatten)]
+    pipeline: PipelineArgs,
     #[command(flatten)]
     shape: ShapeArgs,
 }
@@ -111,6 +116,7 @@ impl Interpolate {
             return curve::run(global, &self.pipeline, base);
         }
         self.format.check(self.output.iter())?;
+        self.shape.check()?;
         let output = match &self.output {
             None => None,
             Some(path) => Some((VolumeFormat::of(&self.format.name(path)?)?, Target::open(path)?)),

@@ -37,7 +37,7 @@ pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> 
 }
 
 /// Options that speak of a volume.
-const OF_VOLUMES: [&str; 14] = [
+const OF_VOLUMES: [&str; 13] = [
     "level",
     "gray",
     "haar",
@@ -51,7 +51,6 @@ const OF_VOLUMES: [&str; 14] = [
     "threshold",
     "gray_min",
     "units",
-    "isovalue",
 ];
 
 impl Input {

@@ -6,6 +6,7 @@ use std::fmt::{self, Display};
 use serde::{Serialize, Serializer};
 use walpha::points::WeightSummary;
 use walpha::shape::{Betti, Component, Cuts, Engine, Void, number_or_name};
+use walpha::shown::number;
 use walpha::{AlphaShape, Class, GrayRange, Simplices, Truncation, memory};
 
 use super::parameter::Parameter;
@@ -230,6 +231,7 @@ impl Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "input     {}", self.input.name)?;
         if let (Some([x, y, z]), Some([low, high])) = (self.input.dims, self.input.gray_range) {
+            let (low, high) = (number(low), number(high));
             write!(f, "  {x}×{y}×{z} samples, values {low}..{high} are gray 0..255")?;
         }
         writeln!(f)?;

@@ -10,6 +10,7 @@ use walpha::shape::Surface;
 use walpha::shown::shown;
 
 use super::args::{FormatArgs, PipelineArgs, ShapeArgs};
+use super::given::misused;
 use super::output::tell;
 use super::picture::PictureArgs;
 use super::progress::Progress;
@@ -18,11 +19,15 @@ use super::{Global, pipeline};
 
 /// Compute the weighted alpha shape of a volume or of points.
 ///
-/// Example: walpha shape sample:skull --weights min-max --alpha 10 -o skull.ply skull.vtu
+/// Examples:
+///
+/// walpha shape ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 --units world -o bone.ply
+///
+/// walpha shape sample:skull --weights min-max --alpha 10 -o skull.ply skull.vtu
+///
+/// walpha shape scan.xyz --alpha auto --solid -o scan.stl
 #[derive(Args)]
 pub struct Shape {
-    #[command(flatten)]
-    pipeline: PipelineArgs,
     /// Files to write: .ply, .off, .obj, .stl, .glb, .vtp (boundary), .vtu, .npz or .json (all
     /// simplices), .png (a picture); or - (standard output, with --format). Files that are there are replaced.
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
@@ -40,9 +45,19 @@ pub struct Shape {
     #[arg(long)]
     groups: bool,
     #[command(flatten)]
+    pipeline: PipelineArgs,
+    #[command(flatten)]
     shape: ShapeArgs,
     #[command(flatten)]
     picture: PictureArgs,
+}
+
+/// Refuses a switch that has no effect.
+fn unused(name: &str, given: bool, why: &str) -> anyhow::Result<()> {
+    if given {
+        misused!("{name} has no effect: {why}; leave it away");
+    }
+    Ok(())
 }
 
 impl Shape {
@@ -52,18 +67,19 @@ impl Shape {
         let names: Vec<PathBuf> =
             self.output.iter().map(|path| self.format.name(path)).collect::<Result<_, _>>()?;
         let written = |format| names.iter().any(|name| Format::of(name).is_ok_and(|f| f == format));
-        let given = &self.pipeline.input.given;
+        self.shape.check()?;
         if !names.iter().any(|name| PictureArgs::wanted(name)) {
+            let given = &self.pipeline.input.given;
             given.refuse(&PictureArgs::NAMES, "no picture (.png) is written")?;
         }
         if !written(Format::Ply) {
-            given.refuse(&["ascii"], "only PLY has a binary form and a text form")?;
+            unused("--ascii", self.ascii, "only PLY has a binary form and a text form")?;
         }
         if !written(Format::Obj) {
-            given.refuse(&["groups"], "only OBJ has groups")?;
+            unused("--groups", self.groups, "only OBJ has groups")?;
         }
         if !names.iter().any(|name| Format::of(name).is_ok_and(Format::is_boundary)) {
-            given.refuse(&["solid"], "no output holds a boundary alone")?;
+            unused("--solid", self.solid, "no output holds a boundary alone")?;
         }
         Ok(())
     }

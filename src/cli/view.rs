@@ -12,7 +12,7 @@ use walpha::export::{Target, UnknownFormat};
 use walpha::ladder::Filtration;
 use walpha::points::Units;
 use walpha::render::{Original, Page, Subject};
-use walpha::shown::shown;
+use walpha::shown::{number, shown};
 
 use super::Global;
 use super::args::{
@@ -21,7 +21,7 @@ use super::args::{
 use super::given::misused;
 use super::output::tell;
 use super::parameter::Parameter;
-use super::pipeline::{self, Weighed};
+use super::pipeline::{self, Input, Weighed};
 use super::progress::Progress;
 use super::report::{SCHEMA_VERSION, WeightsReport};
 
@@ -30,11 +30,15 @@ use super::report::{SCHEMA_VERSION, WeightsReport};
 /// A slider goes over α with the weights frozen; the boundary is coloured by F or by class, singular
 /// facets and edges, points sized by weight and an isosurface of the volume can be shown and hidden.
 ///
-/// Example: walpha view sample:skull --weights min-max -o skull.html
+/// Examples:
+///
+/// walpha view ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 --units world -o bone.html
+///
+/// walpha view sample:skull --weights min-max -o skull.html
+///
+/// walpha view scan.xyz -o scan.html
 #[derive(Args)]
 pub struct View {
-    #[command(flatten)]
-    input: InputArgs,
     /// Page to write (.html), replaced if it is there.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -46,10 +50,11 @@ pub struct View {
     /// each show something else, most where the shape gets its form.
     #[arg(long, value_name = "A,A,…", default_value = "auto", allow_hyphen_values = true)]
     alphas: Alphas,
-    /// Gray level of the isosurface to compare, for volumes.
-    #[arg(long, value_name = "G", default_value_t = 50.0, value_parser = finite,
-          allow_negative_numbers = true)]
-    isovalue: f64,
+    /// Gray level of the isosurface to compare, for volumes [default: 50].
+    #[arg(long, value_name = "G", value_parser = finite, allow_negative_numbers = true)]
+    isovalue: Option<f64>,
+    #[command(flatten)]
+    input: InputArgs,
     #[command(flatten)]
     haar: HaarArgs,
     #[command(flatten)]
@@ -85,6 +90,9 @@ impl View {
         let weights = WeightArgs::from(self.weights);
         let read = pipeline::read(&self.input, &mut progress)?;
         read.accepts(&self.input)?;
+        if self.isovalue.is_some() && matches!(read, Input::Points(_)) {
+            misused!("--isovalue has no effect: points have no isosurface; leave it away");
+        }
         let (weighed, volume) =
             pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
         let domain = pipeline::domain(&weighed, self.select.units());
@@ -116,12 +124,16 @@ impl View {
                 Units::Voxel if volume.is_some() => "voxels",
                 _ => "units of the input",
             },
+            value: match volume {
+                Some(_) => "value of the original volume, in gray levels",
+                None => "the column value of the input",
+            },
             levels: &levels,
             ladder: &ladder,
             first: first.saturating_sub(1),
             original: volume.as_ref().map(|volume| Original {
                 volume,
-                isovalue: self.isovalue,
+                isovalue: self.isovalue.unwrap_or(50.0),
                 units: self.select.units(),
             }),
         };
@@ -152,7 +164,7 @@ impl View {
         let mut told = vec![("input".to_owned(), self.input.input.clone())];
         if let Some(volume) = &weighed.volume {
             let [x, y, z] = volume.dims;
-            let (low, high) = (volume.range.low, volume.range.high);
+            let (low, high) = (number(volume.range.low), number(volume.range.high));
             told.push((
                 "volume".into(),
                 format!("{x}×{y}×{z} samples, values {low} to {high} are gray 0 to 255"),

@@ -121,6 +121,10 @@ pub fn select(
                 |(&l, &gray): (&f64, &f32)| if f64::from(gray) >= least { l } else { f64::NAN };
             let masked: Vec<f64> = flat.par_iter().zip(smoothed.as_slice()).map(mask).collect();
             let available = masked.par_iter().filter(|l| !l.is_nan()).count() as u64;
+            if available == 0 {
+                let highest = f64::from(smoothed.value_range().1);
+                return Err(PointsError::Masked { least, highest });
+            }
             chosen(&masked, available, &selection.rule)?
         }
     };

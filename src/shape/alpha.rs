@@ -1,5 +1,7 @@
 use serde::{Deserialize, Serialize, Serializer};
 
+use crate::shown::number;
+
 /// The parameter α of a shape: a **squared** length, as in CGAL and in Edelsbrunner 1992.
 ///
 /// α = ∞ gives the convex hull; with weights a negative α is legal. It is never NaN.
@@ -44,10 +46,18 @@ impl Alpha {
 impl std::fmt::Display for Alpha {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.radius() {
-            Some(radius) => write!(f, "α = {} (squared length; √α = {radius:.6})", self.0),
-            None => write!(f, "α = {} (squared length; negative, so no radius)", self.0),
+            Some(radius) => {
+                let (alpha, radius) = (number(self.0), number(six_digits(radius)));
+                write!(f, "α = {alpha} (squared length; √α = {radius})")
+            }
+            None => write!(f, "α = {} (squared length; negative, so no radius)", number(self.0)),
         }
     }
+}
+
+/// A number rounded to six significant digits.
+fn six_digits(number: f64) -> f64 {
+    format!("{number:.5e}").parse().unwrap_or(number)
 }
 
 /// The number given as α is none.

@@ -135,6 +135,9 @@ fn of_head(report: &Value) -> Vec<Shown> {
     let mut all = [
         words(&report["paper"]),
         words(&report["paper"]),
+        words(&report["source"]),
+        words(&report["version"]),
+        words(&report["date"]),
         said("Table 1"),
         words(&input["name"]),
         each(&input["dims"], rounded),

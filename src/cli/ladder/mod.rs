@@ -31,12 +31,15 @@ use regions::region;
 /// error of the wavelet stage (--epsilons) there is a mesh for each level of detail, at α = --alpha-ref,
 /// and detail.csv and detail.json tell error and size.
 ///
-/// Examples: walpha ladder sample:skull --alphas 1,2,5,10,20,50 -o ladder;
+/// Examples:
+///
+/// walpha ladder ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 --units world -o ladder
+///
+/// walpha ladder sample:skull --alphas 1,2,5,10,20,50 -o ladder
+///
 /// walpha ladder sample:skull --counts 1000,4000,16000 --roi 20:40,20:40,20:40 -o detail
 #[derive(Args)]
 pub struct Ladder {
-    #[command(flatten)]
-    input: InputArgs,
     /// Folder to write to, made if it is not there; files in it are replaced, all at the end.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -65,6 +68,8 @@ pub struct Ladder {
     /// levels of detail].
     #[arg(long, value_name = "EXT,EXT,…", value_delimiter = ',')]
     mesh: Vec<String>,
+    #[command(flatten)]
+    input: InputArgs,
     #[command(flatten)]
     haar: HaarArgs,
     #[command(flatten)]
