@@ -72,16 +72,22 @@ def exports(check):
             expected += facets["interior"] if extension == "vtu" else 0
             try:
                 check.equal(name, count(files[extension]), expected)
-            except Exception as error:  # Whatever a foreign reader throws is a finding.
+            except (Exception, SystemExit) as error:  # Whatever a foreign reader throws is a finding.
                 check.judge(name, f"{type(error).__name__}: {error}")
-    scalars(check, files)
-    field_data(check, files)
+    for part in [scalars, field_data]:
+        try:
+            part(check, files)
+        except (Exception, SystemExit) as error:
+            check.judge(part.__doc__, f"{type(error).__name__}: {error}")
     upright(check, files["glb"])
 
 
 def scalars(check, files):
     """Colours and scalars of a PLY arrive."""
     points = meshio.read(files["ply"]).point_data
+    for colour in ["red", "green", "blue"]:
+        # meshio takes bytes for signed.
+        points[colour] = np.asarray(points[colour]).astype("u1")
     check.equal("meshio reads scalars of our ply", sorted({"value", "weight", "red", "green", "blue"} & set(points)), ["blue", "green", "red", "value", "weight"])
     colours = np.asarray(open3d.io.read_triangle_mesh(files["ply"]).vertex_colors)
     check.equal("Open3D reads colours of our ply", 255 * colours[:, 0], points["red"], 1e-3)
@@ -95,12 +101,16 @@ def scalars(check, files):
 
 
 def field_data(check, files):
+    """VTK reads how a file was made."""
     for extension, reader in [("vtp", vtk.vtkXMLPolyDataReader()), ("vtu", vtk.vtkXMLUnstructuredGridReader())]:
         reader.SetFileName(files[extension])
         reader.Update()
         data = reader.GetOutput().GetFieldData()
         texts = [data.GetAbstractArray(name) for name in ["input", "made_by", "class_legend"]]
-        texts = [array and array.GetValue(0) for array in texts]
+        if extension == "vtu":
+            texts = [bytes(vtk_to_numpy(array)).decode() for array in texts]
+        else:
+            texts = [array.GetValue(0) for array in texts]
         check.judge(f"VTK reads texts of our {extension}", None if texts[0] == "sample:phantom@24" and texts[1].startswith("walpha ") and "2 regular" in texts[2] else str(texts))
         check.equal(f"VTK reads α of our {extension}", vtk_to_numpy(data.GetArray("alpha")), [2.5])
     run = check.run("shape", "sample:phantom@16", "--alpha", "inf", "-o", check.path("hull.vtu"))

@@ -152,7 +152,7 @@ fn check_names_a_wrong_simplex() {
     assert_eq!(run(f, &["check", "c.json", "--points", "p.csv"]).0, 3);
     fails(f, 1, "compare a.json missing.json", &["missing.json"]);
     fails(f, 1, "check sample:phantom@16 --enumerate", &["at most 200 points"]);
-    fails(f, 1, "check sample:phantom --points p.csv", &["--points belongs to a complex"]);
+    fails(f, 2, "check sample:phantom --points p.csv", &["--points belongs to a complex"]);
     ok(f, &["check", "sample:phantom@12", "--weights", "min-max", "--enumerate", "--count", "50"]);
 }
 
@@ -215,7 +215,7 @@ fn no_option_is_without_effect() {
         ("shape sample:phantom@8 --columns x,y,z", "--columns has no effect"),
         ("shape sample:phantom@8 --size 9x9 -o a.ply", "no picture (.png) is written"),
         ("shape sample:phantom@8 --ascii -o a.obj", "only PLY has a binary form"),
-        ("shape sample:phantom@8 --groups -o a.ply", "only OBJ has groups"),
+        ("shape sample:phantom@8 --groups -o a.stl", "only OBJ, OFF and PLY"),
         ("shape sample:phantom@8 --solid -o a.vtu", "no output holds a boundary alone"),
         ("shape sample:phantom@8 --format ply -o a.ply", "--format has no effect"),
         ("shape sample:phantom@8 --engine reference --blocks 2", "--blocks has no effect"),
@@ -251,16 +251,29 @@ fn alpha_is_found_where_nobody_gives_it() {
     assert_eq!(silent["alpha"], asked["alpha"]);
     assert_eq!(silent["alpha"]["origin"], "auto");
     assert_eq!(
-        (&silent["points"]["in_shape"], &silent["shape"]["betti"]["b0"]),
+        (&silent["points"]["in_shape"], &silent["shape"]["betti"][0]),
         (&16.into(), &1.into())
     );
     // It is the smallest: just below it the shape falls apart, or leaves a point out.
     let alpha = silent["alpha"]["squared"].as_f64().unwrap();
     let solid = |alpha: f64| {
-        let made = json(f, &["ladder", "two.csv", "--alphas", &alpha.to_string(), "-o", "ladder"]);
-        let level = &made["levels"][0];
-        let all = level["vertices"]["singular"] == 0 && level["cells"].as_u64().unwrap() > 0;
-        all && level["solid_components"] == 1
+        ok(f, &["shape", "two.csv", "--alpha", &alpha.to_string(), "-o", "two.json", "-q"]);
+        let made: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(f.join("two.json")).unwrap()).unwrap();
+        let cells: Vec<Vec<u64>> = serde_json::from_value(made["cells"].clone()).unwrap();
+        let shared = |a: &[u64], b: &[u64]| a.iter().filter(|v| b.contains(v)).count();
+        let mut reached = vec![0];
+        let mut next = 0;
+        while let Some(&cell) = reached.get(next) {
+            next += 1;
+            for other in 0..cells.len() {
+                if shared(&cells[cell], &cells[other]) == 3 && !reached.contains(&other) {
+                    reached.push(other);
+                }
+            }
+        }
+        let points: std::collections::BTreeSet<&u64> = cells.iter().flatten().collect();
+        points.len() == 16 && reached.len() == cells.len()
     };
     assert!(solid(alpha));
     assert!(!solid(alpha.next_down()));
@@ -285,12 +298,11 @@ fn alpha_is_found_where_nobody_gives_it() {
     );
     let volume = json(f, &["shape", "sample:phantom@8", "--alpha", "auto"]);
     assert_eq!(volume["alpha"]["squared"], 4.75);
-    let skull =
-        "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nspacings: 0.5 0.5 4\nencoding: raw\n\n";
+    let skull = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nspacings: 0.25 0.5 1\nencoding: raw\n\n";
     let samples: Vec<u8> = (0..512u32).map(|i| (i * i % 251) as u8).collect();
     fs::write(f.join("v.nrrd"), [skull.as_bytes(), &samples].concat()).unwrap();
     let volume = json(f, &["shape", "v.nrrd", "--units", "world"]);
-    assert_eq!(volume["alpha"]["squared"], 10.0, "0.5·0.5·4 is the cube of 1");
+    assert_eq!(volume["alpha"]["squared"], 2.5, "0.25·0.5·1 is the cube of 0.5");
 }
 
 #[test]

@@ -31,7 +31,6 @@ fn errors_say_what_why_and_what_next() {
     fs::write(f.join("flat.csv"), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n1,1,0\n").unwrap();
     fs::write(f.join("notes.txt"), "hello").unwrap();
     fs::create_dir(f.join("empty")).unwrap();
-    fs::write(f.join("secret.npy"), b"\x93NUMPY\x01\0").unwrap();
     let cases = [
         (1, "shape sample:skul", "could not read its input", "did you mean sample:skull?"),
         (1, "shape skull", "could not read its input", "did you mean sample:skull?"),
@@ -54,7 +53,6 @@ fn errors_say_what_why_and_what_next() {
             "could not make weighted points",
             "from 1 to 512",
         ),
-        (1, "info secret.npy", "could not read its input", "walpha info --help"),
         (1, "reproduce --input sample:fantom", "could not read its input", "sample:phantom?"),
         (2, "shpe sample:phantom", "unrecognized subcommand 'shpe'", "'shape'"),
         (2, "shape sample:phantom --alpa 3", "unexpected argument '--alpa'", "'--alpha'"),
@@ -108,8 +106,8 @@ fn what_a_file_says_wrongly_is_told() {
         ("[shap]\nalpha = 4", "shap", "did you mean shape?"),
         ("config = 'b.toml'", "config", ""),
         ("alpha = ", "is no TOML file", "--print-config"),
-        ("exterior = 3", "exterior = 3 makes no sense", "either true or false"),
-        ("alpha = true", "alpha = true makes no sense", "a text or a number is needed"),
+        ("exterior = 3", "exterior = 3 makes no sense", "give true or false"),
+        ("alpha = true", "alpha = true makes no sense", "give a text or a number"),
     ];
     for (text, why, next) in cases {
         fs::write(f.join("c.toml"), text).unwrap();
@@ -275,7 +273,7 @@ fn help_leads_with_what_is_special() {
         let places = order.each_ref().map(|word| at(word));
         assert!(places.is_sorted(), "{order:?} at {places:?} in\n{help}");
         assert!(at("--json") > at("Every command:"), "{help}");
-        assert!(at("[default: column where the input has") > at("--weights"), "{help}");
+        assert!(at("[default: column") > at("--weights"), "{help}");
     }
     for command in ["points", "haar", "interpolate", "info", "ladder", "reproduce"] {
         let help = ok(folder.path(), &[command, "--help"]);

@@ -140,7 +140,7 @@ fn impossible_selections_say_what_is_possible() {
     };
     assert!(refuse(SelectionRule::Count(0), None).contains("1 to 24"));
     assert!(refuse(SelectionRule::Count(25), None).contains("1 to 24"));
-    assert!(refuse(SelectionRule::Count(1), Some(1.0)).contains("1 to 0"));
+    assert!(refuse(SelectionRule::Count(1), Some(1.0)).contains("no voxel reaches"));
     assert!(refuse(SelectionRule::Threshold(0.5), None).contains("none of 24 voxels"));
     for ratio in [0.0, -0.1, 1.1, f64::NAN] {
         assert!(refuse(SelectionRule::Ratio(ratio), None).contains("--ratio"));

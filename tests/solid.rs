@@ -73,15 +73,28 @@ fn a_manifold_stays_as_it_is() {
     assert_eq!(solid.regular, Surface::of(&shape).regular);
 }
 
-/// Two cubes that share an edge: it stands there twice.
+/// Two tetrahedra that share an edge, or a vertex: it stands there twice.
 #[test]
 fn parts_that_touch_are_cut_apart() {
-    let mut positions = CUBE.to_vec();
-    positions.extend(CUBE.map(|[x, y, z]| [x + 1.0, y + 1.0, z]));
-    let along_an_edge = is_solid(&shape(unweighted(&positions), 0.75));
+    let positions = [
+        [0.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, 0.5, 0.5],
+        [0.5, 1.0, 0.5],
+        [-1.0, -0.5, 0.5],
+        [-0.5, -1.0, 0.5],
+    ];
+    let along_an_edge = is_solid(&shape(unweighted(&positions), 0.6));
     assert_eq!(along_an_edge, Cuts { edges: 1, vertices: 2, midpoints: 0 });
-    let mut positions = CUBE.to_vec();
-    positions.extend(CUBE.map(|[x, y, z]| [x + 1.0, y + 1.0, z + 1.0]));
+    let positions = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [-1.0, -1.0, 0.0],
+        [-1.0, 0.0, -1.0],
+        [0.0, -1.0, -1.0],
+    ];
     let at_a_vertex = is_solid(&shape(unweighted(&positions), 0.75));
     assert_eq!(at_a_vertex, Cuts { edges: 0, vertices: 1, midpoints: 0 });
 }

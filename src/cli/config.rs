@@ -207,13 +207,13 @@ fn texts(arg: &Arg, value: &Value) -> anyhow::Result<Vec<String>> {
     let one = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
         Value::Integer(_) | Value::Float(_) => Ok(value.to_string()),
-        _ => bail!("a text or a number is needed"),
+        _ => bail!("a list or table is no value; give a text or a number"),
     };
     if !arg.get_action().takes_values() {
         return match value {
             Value::Boolean(true) => Ok(vec![format!("--{long}")]),
             Value::Boolean(false) => Ok(Vec::new()),
-            _ => bail!("the option {long} is either true or false"),
+            _ => bail!("{long} is a switch; give true or false"),
         };
     }
     let values = match value {

@@ -41,7 +41,8 @@ pub struct Shape {
     /// facets alone, closed, oriented, and cut apart where parts touch along edges or at vertices.
     #[arg(long)]
     solid: bool,
-    /// Put regular and singular facets, edges and vertices into groups of their own (OBJ).
+    /// Tell regular and singular facets apart, where some programs do not expect it: by groups (OBJ),
+    /// colours (OFF) or numbers (PLY, with components and sheets).
     #[arg(long)]
     groups: bool,
     #[command(flatten)]
@@ -75,8 +76,8 @@ impl Shape {
         if !written(Format::Ply) {
             unused("--ascii", self.ascii, "only PLY has a binary form and a text form")?;
         }
-        if !written(Format::Obj) {
-            unused("--groups", self.groups, "only OBJ has groups")?;
+        if ![Format::Obj, Format::Off, Format::Ply].into_iter().any(written) {
+            unused("--groups", self.groups, "only OBJ, OFF and PLY can tell facets apart")?;
         }
         if !names.iter().any(|name| Format::of(name).is_ok_and(Format::is_boundary)) {
             unused("--solid", self.solid, "no output holds a boundary alone")?;

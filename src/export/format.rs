@@ -28,7 +28,8 @@ pub struct ExportOptions {
     /// The boundary as that of a [solid](Surface::solid): regular facets alone, closed, oriented and
     /// cut apart into a manifold. For formats of boundaries.
     pub solid: bool,
-    /// Regular facets, singular ones, edges and points as groups of their own: OBJ.
+    /// Regular and singular facets told apart, where some programs do not expect it: by groups (OBJ, edges
+    /// and points too), colours (OFF) or numbers (PLY, components and sheets too).
     pub groups: bool,
     /// What the shape was made of, to be told in the file: VTP and VTU.
     pub input: Option<String>,

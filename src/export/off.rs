@@ -3,8 +3,8 @@ use std::io::{self, Write};
 use super::{ExportOptions, Exporter};
 use crate::shape::AlphaShape;
 
-/// OFF, the object file format of Geomview: boundary facets with a colour each, regular ones
-/// light, singular ones orange. It knows no edges or lone points, so singular ones are left out.
+/// OFF, the object file format of Geomview: boundary facets; where groups are asked for with a colour
+/// each, regular ones light, singular ones orange. It knows no edges or lone points, so singular ones are left out.
 #[derive(Clone, Debug, Default)]
 pub struct Off(pub ExportOptions);
 
@@ -18,11 +18,13 @@ impl Exporter for Off {
         for [x, y, z] in surface.positions(&shape.points().positions) {
             writeln!(out, "{x} {y} {z}")?;
         }
-        for [a, b, c] in &surface.regular {
-            writeln!(out, "3 {a} {b} {c} 225 220 210")?;
-        }
-        for [a, b, c] in &surface.singular {
-            writeln!(out, "3 {a} {b} {c} 230 130 40")?;
+        for (facets, colour) in
+            [(&surface.regular, " 225 220 210"), (&surface.singular, " 230 130 40")]
+        {
+            let colour = if self.0.groups { colour } else { "" };
+            for [a, b, c] in facets {
+                writeln!(out, "3 {a} {b} {c}{colour}")?;
+            }
         }
         Ok(())
     }

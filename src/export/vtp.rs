@@ -7,7 +7,7 @@ use crate::shape::{AlphaShape, Class, Sheets};
 /// VTP, VTK's polygons: the boundary, singular edges and singular vertices. Cell data are their
 /// `class` (2 regular, 3 singular), the `component` of the shape they belong to and, where known, the
 /// [sheets](crate::shape::Sheets) in front (`sheet`) and behind (`sheet_behind`), −1 for none; point
-/// data are `weight`, `value` and `input_index`. Field data say what [`Vtu`](super::Vtu)'s do. Of a solid
+/// data are `weight`, `value` and `input_index`. Field data say what [`Vtu`](super::Vtu)'s do, texts as such. Of a solid
 /// there are no sheets. Arrays are appended raw, little-endian, with 64-bit
 /// sizes.
 #[derive(Clone, Debug, Default)]
@@ -27,7 +27,7 @@ impl Exporter for Vtp {
              <PolyData>\n",
             shape.options().alpha,
         )?;
-        file.field_data(shape, &self.0)?;
+        file.field_data(shape, &self.0, true)?;
         write!(
             file.xml,
             "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" \

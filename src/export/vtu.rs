@@ -6,8 +6,8 @@ use crate::shape::{AlphaShape, Simplices};
 /// VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as
 /// cell data (1 interior, 2 regular, 3 singular); `weight`, `value` and `input_index` as point
 /// data. Field data say how it was made: `alpha` (a squared length), `alpha_radius` where there is one,
-/// `class_legend`, `made_by` (program and version) and, where known, `input` and `unit`, the unit of length. Arrays are
-/// appended raw, little-endian, with 64-bit sizes.
+/// `class_legend`, `made_by` (program and version) and, where known, `input` and `unit`, the unit of length; texts
+/// are numbers of UTF-8, as meshio refuses a file with texts. Arrays are appended raw, little-endian, with 64-bit sizes.
 ///
 /// Where a complex holds exterior simplices they are written too, as class 0.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +37,7 @@ impl Exporter for Vtu {
              <UnstructuredGrid>\n",
             shape.options().alpha,
         )?;
-        file.field_data(shape, &self.0)?;
+        file.field_data(shape, &self.0, false)?;
         write!(
             file.xml,
             "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
@@ -113,14 +113,19 @@ pub(super) struct Appended {
 const LEGEND: &str = "0 exterior, 1 interior, 2 regular, 3 singular";
 
 impl Appended {
-    /// How the shape was made, for whoever finds the file later.
-    pub fn field_data(&mut self, shape: &AlphaShape, options: &ExportOptions) -> io::Result<()> {
+    /// How the shape was made, for whoever finds the file later; texts as such, or as numbers.
+    pub fn field_data(
+        &mut self,
+        shape: &AlphaShape,
+        options: &ExportOptions,
+        texts_as_such: bool,
+    ) -> io::Result<()> {
         let alpha = shape.options().alpha;
         writeln!(self.xml, "<FieldData>")?;
         for (name, number) in [("alpha", Some(alpha.squared())), ("alpha_radius", alpha.radius())] {
             if let Some(number) = number {
                 // Not as text: VTK reads no "inf".
-                self.field("DataArray", "Float64", name, &number.to_le_bytes())?;
+                self.field("DataArray", "Float64", name, 1, &number.to_le_bytes())?;
             }
         }
         let made_by = format!("walpha {}", env!("CARGO_PKG_VERSION"));
@@ -133,18 +138,29 @@ impl Appended {
         for (name, text) in texts {
             if let Some(text) = text {
                 // A zero ends it, so there is none in it.
-                let text = text.replace('\0', " ") + "\0";
-                self.field("Array", "String", name, text.as_bytes())?;
+                let text = text.replace('\0', " ");
+                if texts_as_such {
+                    self.field("Array", "String", name, 1, (text + "\0").as_bytes())?;
+                } else {
+                    self.field("DataArray", "UInt8", name, text.len(), text.as_bytes())?;
+                }
             }
         }
         writeln!(self.xml, "</FieldData>")
     }
 
-    /// One number or text about the whole.
-    fn field(&mut self, element: &str, kind: &str, name: &str, bytes: &[u8]) -> io::Result<()> {
+    /// Numbers or a text about the whole.
+    fn field(
+        &mut self,
+        element: &str,
+        kind: &str,
+        name: &str,
+        tuples: usize,
+        bytes: &[u8],
+    ) -> io::Result<()> {
         writeln!(
             self.xml,
-            "<{element} type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"1\" \
+            "<{element} type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"{tuples}\" \
              format=\"appended\" offset=\"{}\"/>",
             self.data.len()
         )?;

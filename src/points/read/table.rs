@@ -33,16 +33,20 @@ pub(super) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, Poi
             (_, Some(_)) => {}
             (Ok(named), None) => rows.are(named),
             (Err(unknown), None) => {
-                let what = format!(
-                    "its first line must hold numbers, or name the columns x, y and z, and perhaps weight \
-                     and value: {unknown}"
-                );
+                let what = format!("{FIRST_LINE}: {unknown}");
                 return Err(format(path, what));
             }
         }
     }
+    if first {
+        return Err(format(path, format!("is empty: {FIRST_LINE}")));
+    }
     rows.finish()
 }
+
+/// What a first line is to be.
+const FIRST_LINE: &str = "its first line must name the columns x, y and z, perhaps weight and value, or \
+                          hold numbers alone";
 
 /// Whether a first line is one of data: it begins with a number, and names none.
 fn is_numbers(words: &[&str]) -> bool {

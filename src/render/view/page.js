@@ -106,7 +106,7 @@
   // The eye, so far away that all is seen however narrow the scene is.
   const home = plot.layout.scene.camera;
   function camera() {
-    const narrow = Math.max(1, 1.15 * scene.clientHeight / scene.clientWidth);
+    const narrow = Math.max(1, 1.35 * scene.clientHeight / scene.clientWidth);
     const eye = Object.fromEntries(["x", "y", "z"].map((axis) => [axis, narrow * home.eye[axis]]));
     return { ...structuredClone(home), eye };
   }
@@ -146,7 +146,6 @@
     } while (again);
     busy = false;
   }
-  slider.addEventListener("input", refresh);
   colour.addEventListener("change", refresh);
 
   // From where the slider is to its end, from the start if it is there already.
@@ -169,7 +168,10 @@
     playing = setInterval(step, 700);
     return refresh();
   });
-  slider.addEventListener("pointerdown", stop);
+  slider.addEventListener("input", () => {
+    stop();
+    return refresh();
+  });
   byId("reset").addEventListener("click", () => Plotly.relayout(scene, { "scene.camera": camera() }));
   byId("save").addEventListener("click", () => Plotly.downloadImage(scene, {
     format: "png", filename: `${document.title}, ${levels[Number(slider.value)].name}`, scale: 2,

@@ -83,8 +83,12 @@ fn rgb(index: usize) -> Rgb {
 }
 
 fn layout(unit: &str) -> Layout {
-    let axis =
-        |name: &str| Axis::new().title(Title::with_text(format!("{name} ({unit})"))).n_ticks(6);
+    // Beside an axis is no room for a sentence.
+    let label = |name: &str| match unit.contains(' ') {
+        true => name.to_owned(),
+        false => format!("{name} ({unit})"),
+    };
+    let axis = |name: &str| Axis::new().title(Title::with_text(label(name))).n_ticks(6);
     let camera = Camera::new()
         .center(CameraCenter::from((0.0, 0.0, -0.16)))
         .eye(Eye::from((1.0, -1.62, 0.6)));
