@@ -248,6 +248,7 @@ def look(browser, checks, page, screen, out):
     move(browser, start)
     before = picture(browser)
     browser.evaluate("Plotly.relayout('scene', { 'scene.camera.eye': { x: 2, y: 2, z: 0 } }).then(() => true)")
+    time.sleep(2)
     turned = picture(browser)
     browser.evaluate("document.getElementById('reset').click()")
     eye = "(({ x, y, z }) => [x, y, z])(document.getElementById('scene')._fullLayout.scene.camera.eye)"

@@ -154,9 +154,18 @@ fn stops_show_something_else_each() {
             &format!("{} {} {}\n", place + size * r * turn.cos(), size * r * turn.sin(), size * z);
     }
     fs::write(f.join("balls.xyz"), text).unwrap();
-    for input in ["balls.xyz", "sample:phantom@20"] {
-        ok(f, &["view", input, "-o", "page.html", "-q"]);
-        let alpha = json(f, &["shape", input])["alpha"]["squared"].as_f64().unwrap();
+    for (input, above) in [("balls.xyz", false), ("sample:phantom@20", false), ("balls.xyz", true)]
+    {
+        let mut alpha = json(f, &["shape", input])["alpha"]["squared"].as_f64().unwrap();
+        let mut args = vec!["view", input, "-o", "page.html", "-q"];
+        let text;
+        if above {
+            // One sees what one sees at the α suggested, which must go then.
+            alpha = alpha.next_up();
+            text = format!("--alpha={alpha}");
+            args.push(&text);
+        }
+        ok(f, &args);
         let html = fs::read_to_string(f.join("page.html")).unwrap();
         let data: Value = serde_json::from_str(element(&html, "data")).unwrap();
         let levels = data["levels"].as_array().unwrap();

@@ -162,7 +162,7 @@ impl Report {
         Self {
             schema_version: 1,
             paper: "Volume Modeling of Scattered Data based on Weighted Alpha Shapes",
-            source: "a paper in English with a Korean abstract; the copy followed here names neither \
+            source: "in English, with a Korean abstract; the copy followed here names neither \
                      authors nor a journal, and its latest reference is of 2004",
             version: env!("CARGO_PKG_VERSION"),
             date: date.into(),

@@ -149,14 +149,20 @@ fn pcd_examples() -> [(&'static str, Vec<u8>); 4] {
         let sizes = [pieces.len(), by_field.len()].map(|n| (n as u32).to_le_bytes()).concat();
         [sizes, pieces].concat()
     };
-    // As they are; and with the second and third normals as copies of what stands 12 bytes before.
+    // As they are; and with the second and third normals as copies of what stands 12 bytes before, too.
     let literal = |bytes: &[u8]| {
         bytes.chunks(32).flat_map(|c| [&[c.len() as u8 - 1], c].concat()).collect::<Vec<u8>>()
     };
     let (before, after) = (3 * (4 + 4 + 8) + 12, 3 * (4 + 4 + 8) + 36);
-    let copied =
-        [literal(&by_field[..before]), vec![7 << 5, 24 - 9, 11], literal(&by_field[after..])]
-            .concat();
+    let copied = [
+        // The zeros of z = 3 as copies of the first of them.
+        literal(&by_field[..25]),
+        vec![3 << 5, 0],
+        literal(&by_field[30..before]),
+        vec![7 << 5, 24 - 9, 11],
+        literal(&by_field[after..]),
+    ]
+    .concat();
     [
         ("text.pcd", pcd("ascii", text.as_bytes())),
         ("binary.pcd", pcd("binary", &side_by_side)),
