@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use walpha::export::{Format, Target};
+use walpha::export::{ExportOptions, Format, Target};
 use walpha::haar::smooth;
 use walpha::points::{difference, select, weigh};
 use walpha::volume::{ReadOptions, open};
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let weighted = weigh(&points, Weighting::MinMax, alpha.squared())?;
     let shape = alpha_shape(weighted, &ShapeOptions::new(alpha))?;
 
-    let exporter = Format::of(Path::new(&output))?.exporter(false);
+    let exporter = Format::of(Path::new(&output))?.exporter(&ExportOptions::default());
     Target::open(Path::new(&output))?.write(|out| exporter.write(&shape, out))?;
     println!("{} of {} coefficients, {} points", truncation.kept, truncation.total, points.len());
     println!("{output}: {:?}, volume {}", shape.betti(), shape.measures().volume);

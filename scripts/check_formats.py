@@ -4,9 +4,9 @@
     scripts/check_formats.py [--walpha target/release/walpha] [--env /tmp/walpha-formats]
 
 Makes a Python environment (once) with VTK, nibabel, pynrrd, tifffile, SimpleITK, Pillow, trimesh,
-pydicom and zarr, writes files of every flavour with these and reads them with walpha, then writes files
+pydicom, zarr, meshio, Open3D, pymeshlab and laspy, writes files of every flavour with these and reads them with walpha, then writes files
 with walpha and reads them with these. Prints a line for each; exits with 1 when one is wrong, and with
-77 when the packages cannot be had. DICOM and Zarr are passed over where walpha was built without them.
+77 when the packages cannot be had. DICOM, Zarr and LAS are passed over where walpha was built without them.
 """
 
 import argparse
@@ -20,9 +20,9 @@ import tempfile
 import venv
 
 PACKAGES = ["numpy", "vtk", "nibabel", "pynrrd", "tifffile", "imagecodecs", "SimpleITK", "pillow", "trimesh", "scipy"]
-PACKAGES += ["pydicom", "zarr"]
+PACKAGES += ["pydicom", "zarr", "meshio", "open3d", "pymeshlab", "laspy[lazrs]"]
 # Seconds for the installation of all of them.
-PATIENCE = 150
+PATIENCE = 600
 
 
 def enter(folder):
@@ -730,6 +730,7 @@ PARTS = [read_nrrd, read_itk, read_nifti, read_vtk, read_tiff, read_slices, read
 PARTS += [read_points, scattered, write_shapes, read_dicom, read_zarr]
 
 if "--inside" in sys.argv:
+    import check_exports
     import nibabel as nib
     import nrrd
     import numpy as np
@@ -742,6 +743,8 @@ if "--inside" in sys.argv:
     from PIL import Image
     from scipy.spatial import Delaunay
     from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+    PARTS += check_exports.PARTS
 
 if __name__ == "__main__":
     main()

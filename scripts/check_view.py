@@ -25,7 +25,7 @@ FLAGS = [
     "--use-angle=swiftshader", "--disable-gpu-sandbox", "--hide-scrollbars", "--no-first-run",
     "--disable-background-networking", "--remote-debugging-pipe",
 ]
-SCREENS = {"desk": (1280, 900, False), "phone": (400, 800, True)}
+SCREENS = {"desk": (1280, 900, False), "phone": (390, 844, True)}
 
 
 class Browser:
@@ -147,6 +147,29 @@ COLOURS = """(async () => {
 })()"""
 
 
+# The share of pixels with a green that only the colours of F have.
+INKED = """(async () => {
+  const image = await createImageBitmap(await (await fetch('data:image/png;base64,%s')).blob());
+  const canvas = new OffscreenCanvas(image.width, image.height);
+  const context = canvas.getContext('2d');
+  context.drawImage(image, 0, 0);
+  const pixels = context.getImageData(0, 0, image.width, image.height).data;
+  let green = 0;
+  for (let i = 0; i < pixels.length; i += 4) {
+    if (pixels[i + 1] > pixels[i] + 40 && pixels[i + 1] > pixels[i + 2] + 8) green += 1;
+  }
+  return 4 * green / pixels.length;
+})()"""
+
+
+def choose(browser, colour):
+    browser.evaluate(
+        "(() => { const c = document.getElementById('colour'); c.value = '%s';"
+        " c.dispatchEvent(new Event('change')) })()" % colour
+    )
+    browser.wait(f"document.getElementById('scene').dataset.colour === '{colour}'")
+
+
 def drawn(level):
     return f"document.getElementById('scene').dataset.level === '{level}'"
 
@@ -209,12 +232,31 @@ def look(browser, checks, page, screen, out):
     second = picture(browser)
     checks.say(f"{screen}: the slider changes the picture", moved and second != first)
     checks.say(f"{screen}: and back", move(browser, start) and picture(browser) == first)
-    browser.evaluate(
-        "(() => { const c = document.getElementById('colour'); c.value = 'class';"
-        " c.dispatchEvent(new Event('change')) })()"
+    valued = browser.evaluate("document.querySelector('#colour option[value=value]') !== null")
+    choose(browser, "class")
+    checks.say(f"{screen}: only F and classes are two pictures", (picture(browser) != first) == valued)
+    inked = browser.evaluate(INKED % picture(browser))
+    checks.say(f"{screen}: by class nothing has a colour of F", inked < 0.002, f"{100 * inked:.2f} % of the pixels")
+    if valued:
+        choose(browser, "value")
+        checks.say(f"{screen}: and F is back as it was", picture(browser) == first)
+        choose(browser, "class")
+    browser.evaluate("document.getElementById('level').value = document.getElementById('level').max - 1")
+    browser.evaluate("document.getElementById('play').click()")
+    end = browser.wait("document.getElementById('scene').dataset.level === document.getElementById('level').max")
+    checks.say(f"{screen}: play goes to the end", end)
+    move(browser, start)
+    before = picture(browser)
+    browser.evaluate("Plotly.relayout('scene', { 'scene.camera.eye': { x: 2, y: 2, z: 0 } }).then(() => true)")
+    time.sleep(2)
+    turned = picture(browser)
+    browser.evaluate("document.getElementById('reset').click()")
+    eye = "(({ x, y, z }) => [x, y, z])(document.getElementById('scene')._fullLayout.scene.camera.eye)"
+    time.sleep(2)
+    checks.say(
+        f"{screen}: the view can be reset", turned != before and picture(browser) == before,
+        str(browser.evaluate(eye)),
     )
-    browser.wait("document.getElementById('scene').dataset.colour === 'class'")
-    checks.say(f"{screen}: the colour changes the picture", picture(browser) != first)
     if not mobile:
         said = hover(browser)
         right = said.startswith("point ") and "ω = " in said

@@ -1,4 +1,4 @@
-//! Names of files as messages show them.
+//! Names of files and numbers as messages show them.
 
 use std::path::Path;
 
@@ -6,6 +6,22 @@ use std::path::Path;
 /// colours, are escaped.
 pub fn shown(path: &Path) -> String {
     escaped(&path.to_string_lossy(), |_| false)
+}
+
+/// A number for people to read: as it is, or with an exponent where it would begin or end in many
+/// zeros.
+pub fn number(value: f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && size.is_finite() && !(1e-4..1e15).contains(&size) {
+        format!("{value:e}")
+    } else {
+        value.to_string()
+    }
+}
+
+/// A number rounded to six significant digits.
+pub fn six_digits(number: f64) -> f64 {
+    format!("{number:.5e}").parse().unwrap_or(number)
 }
 
 /// A text with its control characters escaped, but for those `kept`.
@@ -24,6 +40,13 @@ pub fn escaped(text: &str, kept: impl Fn(char) -> bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_not_made_of_zeros() {
+        let told =
+            [0.0, -2.5, 0.000_000_000_000_217_145_52, 1e-4, 3e300, f64::INFINITY].map(number);
+        assert_eq!(told, ["0", "-2.5", "2.1714552e-13", "0.0001", "3e300", "inf"]);
+    }
 
     #[test]
     fn nothing_reaches_the_terminal_but_text() {

@@ -152,7 +152,7 @@ fn check_names_a_wrong_simplex() {
     assert_eq!(run(f, &["check", "c.json", "--points", "p.csv"]).0, 3);
     fails(f, 1, "compare a.json missing.json", &["missing.json"]);
     fails(f, 1, "check sample:phantom@16 --enumerate", &["at most 200 points"]);
-    fails(f, 1, "check sample:phantom --points p.csv", &["--points belongs to a complex"]);
+    fails(f, 2, "check sample:phantom --points p.csv", &["--points belongs to a complex"]);
     ok(f, &["check", "sample:phantom@12", "--weights", "min-max", "--enumerate", "--count", "50"]);
 }
 
@@ -186,20 +186,133 @@ fn usage_errors_exit_with_2() {
     fails(f, 2, "shape a.raw --dims 2,0,2 --dtype u8", &["empty"]);
     fails(f, 2, "shape a.raw --dims 2,2,2", &["--dtype"]);
     fails(f, 2, "shape sample:phantom --threads 0", &["--threads"]);
+    fails(f, 2, "shape sample:phantom --ratio 2", &["a share above 0 and up to 1"]);
+    fails(f, 2, "shape sample:phantom --ratio 0", &["a share above 0 and up to 1"]);
+    fails(f, 2, "shape sample:phantom --ratio nan", &["a share above 0 and up to 1"]);
+    fails(f, 2, "shape sample:phantom --count 0", &["a count from 1 up"]);
+    fails(f, 2, "shape sample:phantom --threshold nan", &["a gray level is needed"]);
+    fails(f, 2, "shape sample:phantom --gray-min nan", &["a gray level is needed"]);
+    fails(f, 2, "shape sample:phantom -o a.xyz", &["`xyz`", ".ply"]);
+    fails(f, 2, "points sample:phantom -o a.ply", &[".csv, .npy"]);
+    fails(f, 2, "haar sample:phantom -o a.ply", &[".npy"]);
+    fails(f, 2, "view sample:phantom -o a.htm", &["did you mean .html?"]);
+}
+
+/// What has no effect on this input, or on these outputs, is refused, and what to do is said.
+#[test]
+fn no_option_is_without_effect() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    fs::write(f.join("cube.csv"), cube()).unwrap();
+    ok(f, &["shape", "cube.csv", "--alpha", "1", "-o", "cube.json", "-q"]);
+    let cases = [
+        ("shape cube.csv --ratio 0.1", "--ratio has no effect: cube.csv holds points"),
+        ("shape cube.csv --rms 1 --units voxel", "--rms, --units have no effect"),
+        ("points cube.csv --gray 0..9", "--gray has no effect"),
+        ("interpolate cube.csv --dims 4,4,4 --haar standard", "--haar has no effect"),
+        ("view cube.csv -o a.html --isovalue 7", "--isovalue has no effect"),
+        ("ladder cube.csv -o a --count 9", "--count has no effect"),
+        ("shape sample:phantom@8 --columns x,y,z", "--columns has no effect"),
+        ("shape sample:phantom@8 --size 9x9 -o a.ply", "no picture (.png) is written"),
+        ("shape sample:phantom@8 --ascii -o a.obj", "only PLY has a binary form"),
+        ("shape sample:phantom@8 --groups -o a.stl", "only OBJ, OFF and PLY"),
+        ("shape sample:phantom@8 --solid -o a.vtu", "no output holds a boundary alone"),
+        ("shape sample:phantom@8 --format ply -o a.ply", "--format has no effect"),
+        ("shape sample:phantom@8 --engine reference --blocks 2", "--blocks has no effect"),
+        ("check cube.json --alpha 1", "--alpha has no effect: cube.json is a complex"),
+        ("check cube.json --engine native", "--engine has no effect"),
+        ("shape cube.csv --balls radius", "give --alpha A, as in --alpha 0.8"),
+    ];
+    for (args, words) in cases {
+        fails(f, 2, args, &[words]);
+    }
+    // A file of options is for all inputs.
+    fs::write(f.join("walpha.toml"), "ratio = 0.1\n").unwrap();
+    ok(f, &["shape", "cube.csv", "--config", "walpha.toml"]);
+    assert_eq!(run(f, &["check", "cube.json"]).0, 0);
+}
+
+#[test]
+fn alpha_is_found_where_nobody_gives_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    // Two cubes of different sizes, and a gap of four between them.
+    let corner = |i: u32| [i & 1, i >> 1 & 1, i >> 2].map(f64::from);
+    let cubes = [(0.0, 1.0), (5.0, 3.0)];
+    let mut text = "x,y,z,value\n".to_owned();
+    for (place, side) in cubes {
+        for [x, y, z] in (0..8).map(corner) {
+            text += &format!("{},{},{},{}\n", place + side * x, side * y, side * z, x + y);
+        }
+    }
+    fs::write(f.join("two.csv"), &text).unwrap();
+    let silent = json(f, &["shape", "two.csv"]);
+    let asked = json(f, &["shape", "two.csv", "--alpha", "auto"]);
+    assert_eq!(silent["alpha"], asked["alpha"]);
+    assert_eq!(silent["alpha"]["origin"], "auto");
+    assert_eq!(
+        (&silent["points"]["in_shape"], &silent["shape"]["betti"][0]),
+        (&16.into(), &1.into())
+    );
+    // It is the smallest: just below it the shape falls apart, or leaves a point out.
+    let alpha = silent["alpha"]["squared"].as_f64().unwrap();
+    let solid = |alpha: f64| {
+        ok(f, &["shape", "two.csv", "--alpha", &alpha.to_string(), "-o", "two.json", "-q"]);
+        let made: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(f.join("two.json")).unwrap()).unwrap();
+        let cells: Vec<Vec<u64>> = serde_json::from_value(made["cells"].clone()).unwrap();
+        let shared = |a: &[u64], b: &[u64]| a.iter().filter(|v| b.contains(v)).count();
+        let mut reached = vec![0];
+        let mut next = 0;
+        while let Some(&cell) = reached.get(next) {
+            next += 1;
+            for other in 0..cells.len() {
+                if shared(&cells[cell], &cells[other]) == 3 && !reached.contains(&other) {
+                    reached.push(other);
+                }
+            }
+        }
+        let points: std::collections::BTreeSet<&u64> = cells.iter().flatten().collect();
+        points.len() == 16 && reached.len() == cells.len()
+    };
+    assert!(solid(alpha));
+    assert!(!solid(alpha.next_down()));
+    // The same number, given, gives the same shape; and every command finds it.
+    let given = json(f, &["shape", "two.csv", "--alpha", &alpha.to_string()]);
+    assert_eq!(given["shape"], silent["shape"]);
+    assert_eq!(given["alpha"]["origin"], "given");
+    let interpolated = json(f, &["interpolate", "two.csv", "--dims", "3,3,3"]);
+    assert_eq!(interpolated["alpha"], silent["alpha"]);
+    assert_eq!(run(f, &["check", "two.csv"]).0, 0);
+    let weighted = json(f, &["shape", "two.csv", "--weights", "min-max"]);
+    assert_eq!(weighted["alpha"]["origin"], "auto-unweighted");
+    assert_eq!(
+        (&weighted["alpha"]["squared"], &weighted["weights"]["max"]),
+        (&alpha.into(), &alpha.into())
+    );
+    // A volume has a scale of its own.
+    let volume = json(f, &["shape", "sample:phantom@8"]);
+    assert_eq!(
+        (&volume["alpha"]["squared"], &volume["alpha"]["origin"]),
+        (&10.0.into(), &"default".into())
+    );
+    let volume = json(f, &["shape", "sample:phantom@8", "--alpha", "auto"]);
+    assert_eq!(volume["alpha"]["squared"], 4.75);
+    let skull = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nspacings: 0.25 0.5 1\nencoding: raw\n\n";
+    let samples: Vec<u8> = (0..512u32).map(|i| (i * i % 251) as u8).collect();
+    fs::write(f.join("v.nrrd"), [skull.as_bytes(), &samples].concat()).unwrap();
+    let volume = json(f, &["shape", "v.nrrd", "--units", "world"]);
+    assert_eq!(volume["alpha"]["squared"], 2.5, "0.25·0.5·1 is the cube of 0.5");
 }
 
 #[test]
 fn bad_selections_exit_with_1() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
-    fails(f, 1, "shape sample:phantom@8 --ratio 2", &["--ratio 2"]);
-    fails(f, 1, "shape sample:phantom@8 --ratio 0", &["--ratio 0"]);
-    fails(f, 1, "shape sample:phantom@8 --ratio nan", &["--ratio NaN"]);
-    fails(f, 1, "shape sample:phantom@8 --count 0", &["from 1 to 512"]);
     fails(f, 1, "shape sample:phantom@8 --count 513", &["from 1 to 512"]);
     fails(f, 1, "shape sample:phantom@8 --count 3", &["3 distinct points", "at least 4"]);
     fails(f, 1, "shape sample:phantom@8 --threshold 300", &["none of 512 voxels"]);
-    fails(f, 1, "shape sample:phantom@8 --gray-min 300", &["31", "0"]);
+    fails(f, 1, "shape sample:phantom@8 --gray-min 300", &["no voxel reaches", "give less"]);
     fails(f, 1, "shape sample:phantom@1 --ratio 1", &["1 distinct points"]);
     fails(f, 1, "shape sample:phantom@8 --weights column", &["column"]);
     fails(f, 1, "shape sample:phantom@8 --weights min-max --alpha inf", &["proportional to α"]);
@@ -280,11 +393,8 @@ fn bad_outputs_exit_with_1() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     fs::create_dir(f.join("folder.ply")).unwrap();
-    fails(f, 1, "shape sample:phantom@8 -o a.xyz", &["`xyz`", ".ply"]);
     fails(f, 1, "shape sample:phantom@8 -o nowhere/a.ply", &["nowhere/a.ply"]);
     fails(f, 1, "shape sample:phantom@8 -o folder.ply", &["folder.ply"]);
-    fails(f, 1, "points sample:phantom@8 -o a.ply", &[".csv, .npy"]);
-    fails(f, 1, "haar sample:phantom@8 -o a.ply", &[".npy"]);
     // A failure after the target was opened leaves what stood there.
     fs::write(f.join("old.ply"), "precious").unwrap();
     fails(f, 1, "shape sample:phantom@8 --count 3 -o old.ply", &["3 distinct points"]);

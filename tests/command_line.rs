@@ -40,14 +40,19 @@ fn errors_say_what_why_and_what_next() {
         (1, "shape skull.raw --dims 64,64,64 --dtype u8", "could not read its input", "--dims"),
         (1, "haar flat.csv", "could not read its input", "name a volume"),
         (1, "shape flat.csv", "could not compute the shape", "select more points"),
-        (1, "shape sample:phantom@8 -o a.plx", "could not start", "did you mean .ply?"),
-        (1, "points sample:phantom@8 -o a.cvs", "could not start", "did you mean .csv?"),
-        (1, "haar sample:phantom@8 -o a.nrd", "could not start", "did you mean .nrrd?"),
-        (1, "haar sample:phantom@8 -o -", "could not start", "--format nrrd"),
+        (2, "shape sample:phantom@8 -o a.plx", "cannot do this", "did you mean .ply?"),
+        (2, "points sample:phantom@8 -o a.cvs", "cannot do this", "did you mean .csv?"),
+        (2, "haar sample:phantom@8 -o a.nrd", "cannot do this", "did you mean .nrrd?"),
+        (2, "haar sample:phantom@8 -o -", "cannot do this", "--format nrrd"),
         (1, "haar sample:phantom@8 -o no/a.npy", "could not start", "choose a place"),
-        (1, "check flat.csv --points flat.csv", "could not start", "leave it away"),
+        (2, "check flat.csv --points flat.csv", "cannot do this", "leave it away"),
         (1, "compare a.txt b.txt", "could not start", "docs/cross-checking.md"),
-        (1, "points sample:phantom@8 --count 0", "could not make weighted points", "from 1 to 512"),
+        (
+            1,
+            "points sample:phantom@8 --count 999",
+            "could not make weighted points",
+            "from 1 to 512",
+        ),
         (1, "reproduce --input sample:fantom", "could not read its input", "sample:phantom?"),
         (2, "shpe sample:phantom", "unrecognized subcommand 'shpe'", "'shape'"),
         (2, "shape sample:phantom --alpa 3", "unexpected argument '--alpa'", "'--alpha'"),
@@ -106,8 +111,8 @@ fn what_a_file_says_wrongly_is_told() {
         ("[shap]\nalpha = 4", "shap", "did you mean shape?"),
         ("config = 'b.toml'", "config", ""),
         ("alpha = ", "is no TOML file", "--print-config"),
-        ("exterior = 3", "exterior = 3 makes no sense", "either true or false"),
-        ("alpha = true", "alpha = true makes no sense", "a text or a number is needed"),
+        ("exterior = 3", "exterior = 3 makes no sense", "give true or false"),
+        ("alpha = true", "alpha = true makes no sense", "give a text or a number"),
     ];
     for (text, why, next) in cases {
         fs::write(f.join("c.toml"), text).unwrap();
@@ -268,5 +273,33 @@ fn colours_stay_out_of_files() {
     for args in [&["shape", "sample:skul", "-v"][..], &["shape", "--help"], &["shape", "--x"]] {
         let (_, stdout, stderr) = run(folder.path(), args);
         assert!(!stdout.contains('\x1b') && !stderr.contains('\x1b'), "{args:?}");
+    }
+}
+
+/// The command's own options stand first, those of every command last; each shows how it is used, on a
+/// CT, too.
+#[test]
+fn help_leads_with_what_is_special() {
+    let folder = tempfile::tempdir().unwrap();
+    for (command, own) in [("shape", "--output"), ("view", "--alphas"), ("check", "--enumerate")] {
+        let help = ok(folder.path(), &[command, "--help"]);
+        let at = |word: &str| help.find(word).unwrap_or_else(|| panic!("no {word} in\n{help}"));
+        assert!(help.contains("Examples:") && help.contains("ct.nii.gz"), "{help}");
+        let order = ["Usage:", "Options:", &format!("{own} <"), "Input:", "Every command:"];
+        let order = if command == "check" {
+            order.map(|o| o.trim_end_matches(" <").into())
+        } else {
+            order.map(String::from)
+        };
+        let places = order.each_ref().map(|word| at(word));
+        assert!(places.is_sorted(), "{order:?} at {places:?} in\n{help}");
+        assert!(at("--json") > at("Every command:"), "{help}");
+        assert!(at("[default: column") > at("--weights"), "{help}");
+    }
+    for command in ["points", "haar", "interpolate", "info", "ladder", "reproduce"] {
+        let help = ok(folder.path(), &[command, "--help"]);
+        let (head, _) = help.split_once("Usage:").unwrap();
+        assert!(head.matches(&format!("walpha {command}")).count() >= 2, "{head}");
+        assert!(head.contains("ct.nii.gz"), "{head}");
     }
 }

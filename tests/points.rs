@@ -140,7 +140,7 @@ fn impossible_selections_say_what_is_possible() {
     };
     assert!(refuse(SelectionRule::Count(0), None).contains("1 to 24"));
     assert!(refuse(SelectionRule::Count(25), None).contains("1 to 24"));
-    assert!(refuse(SelectionRule::Count(1), Some(1.0)).contains("1 to 0"));
+    assert!(refuse(SelectionRule::Count(1), Some(1.0)).contains("no voxel reaches"));
     assert!(refuse(SelectionRule::Threshold(0.5), None).contains("none of 24 voxels"));
     for ratio in [0.0, -0.1, 1.1, f64::NAN] {
         assert!(refuse(SelectionRule::Ratio(ratio), None).contains("--ratio"));
@@ -237,7 +237,7 @@ fn written_points_are_read_back() {
         write_npy(&points, std::fs::File::create(&npy).unwrap()).unwrap();
         for path in [csv, npy] {
             assert!(is_point_file(&path).unwrap());
-            let back = read_points(&path).unwrap();
+            let back = read_points(&path, None).unwrap();
             assert_eq!(weigh(&back, Weighting::Column, 1.0).unwrap(), points, "{path:?}");
         }
     }
@@ -249,7 +249,7 @@ fn csv_columns_may_stand_anywhere() {
     let path = folder.path().join("points.csv");
     std::fs::write(&path, "\u{feff}name,Z, y ,weight,X\na,3,2,0.5,1\n\"b, c\",6,5,-1e1,4\n")
         .unwrap();
-    let points = read_points(&path).unwrap();
+    let points = read_points(&path, None).unwrap();
     assert_eq!(points.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
     assert_eq!(points.weights, Some(vec![0.5, -10.0]));
     assert_eq!(points.values, None);
@@ -261,7 +261,7 @@ fn bad_point_files_say_where_they_are_bad() {
     let refuse = |name: &str, bytes: &[u8], parts: &[&str]| {
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).unwrap();
-        let text = read_points(&path).unwrap_err().to_string();
+        let text = read_points(&path, None).unwrap_err().to_string();
         for part in parts.iter().chain(&[name]) {
             assert!(text.contains(part), "{part:?} is missing in: {text}");
         }
@@ -284,7 +284,7 @@ fn bad_point_files_say_where_they_are_bad() {
     let infinite = ndarray::arr2(&[[1.0, 2.0, f64::INFINITY, 0.0]]);
     refuse("inf.npy", &npy(infinite), &["row 0", "z is inf"]);
     refuse("none.npy", &npy(ndarray::Array2::zeros((0, 4))), &["no point"]);
-    let text = read_points(Path::new("no/such.csv")).unwrap_err().to_string();
+    let text = read_points(Path::new("no/such.csv"), None).unwrap_err().to_string();
     assert!(text.contains("no/such.csv"), "{text}");
 }
 

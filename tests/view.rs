@@ -131,8 +131,83 @@ fn bad_wishes_are_refused_before_the_work() {
         ),
     ] {
         let (code, _, stderr) = run(folder.path(), args);
-        assert_eq!(code, 1, "{stderr}");
+        assert_eq!(code, 2, "{stderr}");
         assert!(stderr.contains(word), "{stderr}");
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+/// Each stop of the slider shows something, and something else than the one before; the page opens where
+/// all points are in one solid component.
+#[test]
+fn stops_show_something_else_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    // Two balls of points, of different density, far from each other.
+    let mut text = String::new();
+    for i in 0..400 {
+        let k = f64::from(i);
+        let (z, turn) = (1.0 - (2.0 * k + 1.0) / 400.0, 2.399_963_2 * k);
+        let r = (1.0 - z * z).sqrt();
+        let (size, place) = if i % 4 == 0 { (0.2, 3.0) } else { (1.0, 0.0) };
+        text +=
+            &format!("{} {} {}\n", place + size * r * turn.cos(), size * r * turn.sin(), size * z);
+    }
+    fs::write(f.join("balls.xyz"), text).unwrap();
+    for (input, above) in [("balls.xyz", false), ("sample:phantom@20", false), ("balls.xyz", true)]
+    {
+        let mut alpha = json(f, &["shape", input])["alpha"]["squared"].as_f64().unwrap();
+        let mut args = vec!["view", input, "-o", "page.html", "-q"];
+        let text;
+        if above {
+            // One sees what one sees at the α suggested, which must go then.
+            alpha = alpha.next_up();
+            text = format!("--alpha={alpha}");
+            args.push(&text);
+        }
+        ok(f, &args);
+        let html = fs::read_to_string(f.join("page.html")).unwrap();
+        let data: Value = serde_json::from_str(element(&html, "data")).unwrap();
+        let levels = data["levels"].as_array().unwrap();
+        assert!((12..=40).contains(&levels.len()), "{input}: {}", levels.len());
+        let facets = bytes(&data["arrays"]["facetSpans"]);
+        let edges = bytes(&data["arrays"]["edgeSpans"]);
+        for k in 0..levels.len() as u8 {
+            let seen = count(&facets, k, 2) + count(&facets, k, 3) + count(&edges, k, 3);
+            assert!(seen > 0, "{input}: nothing at level {k}");
+            let state = |span: &[u8], k: u8| span.iter().filter(|&&level| level <= k).count();
+            let other = |spans: &[u8], states: usize| {
+                let short = spans.chunks(3).map(|span| &span[..states]);
+                short.filter(|span| k > 0 && state(span, k) != state(span, k - 1)).count()
+            };
+            // A facet turns from singular to regular to interior; of an edge one sees the first.
+            assert!(
+                k == 0 || other(&facets, 3) + other(&edges, 2) > 0,
+                "{input}: level {k} is that before"
+            );
+        }
+        // Where it opens.
+        let (_, slider) = html.split_once("type=\"range\"").unwrap();
+        let (_, value) = slider.split_once("value=\"").unwrap();
+        let at: usize = value.split('"').next().unwrap().parse().unwrap();
+        let name = levels[at]["name"].as_str().unwrap().trim_start_matches("α = ");
+        assert!(name.chars().filter(char::is_ascii_digit).count() <= 7, "{name}");
+        let told: f64 = name.parse().unwrap();
+        assert!((told - alpha).abs() <= 5e-4 * alpha, "{input} opens at {told}, not {alpha}");
+        assert!(at > 0 && at + 1 < levels.len(), "{input} opens at {at}");
+    }
+    ok(f, &["view", "balls.xyz", "-o", "page.html", "-q", "--alpha", "0.5", "--alphas", "0.1,1,2"]);
+    let html = fs::read_to_string(f.join("page.html")).unwrap();
+    assert!(html.contains("\"name\":\"α = 0.5\"") && html.contains("value=\"1\""));
+}
+
+#[test]
+fn the_page_explains_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    ok(folder.path(), &["view", "sample:phantom@12", "-o", "page.html", "-q"]);
+    let html = fs::read_to_string(folder.path().join("page.html")).unwrap();
+    assert!(element(&html, "plot").contains("F: value of the original volume, in gray levels"));
+    for id in ["play", "reset", "save", "scene", "level", "colour"] {
+        assert!(html.contains(&format!("id=\"{id}\"")), "{id}");
+    }
 }

@@ -19,7 +19,7 @@ pub fn volume(name: &str, bytes: &[u8]) {
 pub fn points(name: &str, bytes: &[u8]) {
     let (_folder, path) = file(name, bytes);
     let _ = is_point_file(&path);
-    let _ = read_points(&path);
+    let _ = read_points(&path, None);
 }
 
 /// Reads bytes as the one slice of a folder, PNG or else JPEG.

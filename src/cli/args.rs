@@ -5,36 +5,48 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use anyhow::{anyhow, bail};
-use clap::error::ErrorKind;
 use clap::{Args, ValueEnum};
 use walpha::export::Target;
 use walpha::interpolate::Adaptive;
-use walpha::shape::{Engine, ShapeError, ShapeOptions};
+use walpha::points::Columns;
+use walpha::shape::{Engine, ShapeOptions};
 use walpha::volume::{Dtype, Endian, Nan, RawLayout, ReadOptions, Region};
 use walpha::{
     Alpha, Balls, Coordinates, Decomposition, Dims, Gray, GrayRange, HaarOptions, LengthUnit,
     Selection, SelectionRule, Space, Tolerance, Units, Volume, Weighting,
 };
 
+use super::given::{Given, Usage, misused};
+use super::parameter::Parameter;
+
 /// What to read.
 #[derive(Args, Clone)]
+#[command(next_help_heading = "Input")]
 pub struct InputArgs {
+    /// What was given, the command's own options aside.
+    #[command(flatten)]
+    pub given: Given,
     /// Volume or point file, - (standard input), sample:skull, sample:phantom or sample:phantom@N.
-    #[arg(value_name = "INPUT")]
+    #[arg(value_name = "INPUT", help_heading = None::<&str>)]
     pub input: String,
-    #[command(flatten)]
-    pub raw: RawArgs,
-    #[command(flatten)]
-    part: PartArgs,
     /// Format where no name tells it, as of standard input and output (-): --format nrrd.
     #[arg(long, value_name = "EXTENSION")]
     format: Option<String>,
+    #[command(flatten)]
+    part: PartArgs,
     /// Values that become gray 0 and 255 [default: as they are for unsigned 8 bits, else min..max].
     #[arg(long, value_name = "LO..HI", value_parser = gray_range, allow_hyphen_values = true)]
     gray: Option<GrayRange>,
     /// Write gray levels 0..255, and not the values of INPUT that they stand for.
     #[arg(long)]
     gray_out: bool,
+    /// What the columns of a table of points are (CSV, XYZ): x, y and z, perhaps weight and value, and
+    /// others by any name, as in x,y,z,nx,ny,nz [default: what its first line says, or else its
+    /// numbers].
+    #[arg(long, value_name = "NAME,NAME,…")]
+    columns: Option<Columns>,
+    #[command(flatten)]
+    pub raw: RawArgs,
 }
 
 impl InputArgs {
@@ -65,15 +77,39 @@ impl InputArgs {
             _ if path.extension().is_some() => Ok(path.to_owned()),
             Some(_) => Ok(format!("output{}", self.extension()).into()),
             None if path == Path::new(Target::STDOUT) => {
-                bail!("standard output has no extension; name the format, as in --format nrrd")
+                misused!("standard output has no extension; name the format, as in --format nrrd")
             }
             None => Ok(path.to_owned()),
         }
     }
 
+    /// Refuses --format where nothing needs it.
+    pub fn check_format<'a>(
+        &self,
+        mut outputs: impl Iterator<Item = &'a PathBuf>,
+    ) -> anyhow::Result<()> {
+        let used = self.input == Target::STDOUT || outputs.any(|path| path.extension().is_none());
+        if self.format.is_some() && !used {
+            misused!(
+                "--format has no effect: the extension of each file says its format; leave it away"
+            );
+        }
+        Ok(())
+    }
+
+    /// What the columns of a table of points are.
+    pub fn columns(&self) -> Option<&Columns> {
+        self.columns.as_ref()
+    }
+
     /// How values become gray levels.
     pub fn gray(&self) -> Gray {
         self.gray.map_or(Gray::Automatic, Gray::Range)
+    }
+
+    /// Whether gray levels are written, not values.
+    pub fn writes_gray(&self) -> bool {
+        self.gray_out
     }
 
     /// The values that gray levels stand for in what is written, where `range` became 0..255.
@@ -212,16 +248,17 @@ pub struct SelectArgs {
     #[arg(long, value_name = "E", value_parser = not_negative)]
     target_rmse: Option<f64>,
     /// Keep N samples.
-    #[arg(long, value_name = "N", group = "rule")]
+    #[arg(long, value_name = "N", group = "rule", value_parser = count)]
     count: Option<u64>,
     /// Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609].
-    #[arg(long, value_name = "R", group = "rule")]
+    #[arg(long, value_name = "R", group = "rule", value_parser = share)]
     ratio: Option<f64>,
     /// Keep the samples whose gray difference is at least T gray levels.
-    #[arg(long, value_name = "T", group = "rule")]
+    #[arg(long, value_name = "T", group = "rule", value_parser = not_nan,
+          allow_negative_numbers = true)]
     threshold: Option<f64>,
     /// Leave out samples below this gray level after truncation.
-    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", value_parser = not_nan, allow_negative_numbers = true)]
     gray_min: Option<f64>,
     /// Leave out samples below this value of INPUT, as in --value-min 300 for Hounsfield units.
     #[arg(long, value_name = "V", allow_negative_numbers = true, conflicts_with = "gray_min")]
@@ -310,12 +347,12 @@ impl SelectArgs {
     pub fn adaptive(&self, samples: usize) -> anyhow::Result<Option<Adaptive>> {
         if self.select != SelectArg::Adaptive {
             if self.target_rmse.is_some() {
-                bail!("--target-rmse belongs to --select adaptive: add it, or use --count");
+                misused!("--target-rmse belongs to --select adaptive: add it, or use --count");
             }
             return Ok(None);
         }
         if self.threshold.is_some() || self.gray_min.or(self.value_min).is_some() {
-            bail!(
+            misused!(
                 "--threshold, --gray-min and --value-min choose by gray levels, which --select \
                  adaptive does not: use --count, --ratio or --target-rmse"
             );
@@ -326,10 +363,8 @@ impl SelectArgs {
             SelectionRule::Ratio(_) if self.ratio.is_none() && self.target_rmse.is_some() => {
                 samples as u64
             }
-            SelectionRule::Ratio(ratio) if ratio > 0.0 && ratio <= 1.0 => {
-                (ratio * samples as f64).round() as u64
-            }
-            _ => bail!("--ratio must be a share above 0 and up to 1, as in 0.0609 for 6.09 %"),
+            SelectionRule::Ratio(ratio) => (ratio * samples as f64).round() as u64,
+            SelectionRule::Threshold(_) => unreachable!("refused above"),
         };
         Ok(Some(Adaptive { count, rmse }))
     }
@@ -340,32 +375,57 @@ impl SelectArgs {
     }
 }
 
-/// The α of the paper, in squares of a voxel's side.
-const SILENT_ALPHA: f64 = 10.0;
+/// α as it is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AlphaArg {
+    /// The smallest at which all points are in one solid component.
+    Auto,
+    /// This.
+    Given(Alpha),
+}
+
+impl FromStr for AlphaArg {
+    type Err = anyhow::Error;
+
+    fn from_str(text: &str) -> anyhow::Result<Self> {
+        if text.trim() == "auto" { Ok(Self::Auto) } else { Ok(Self::Given(alpha(text)?)) }
+    }
+}
 
 /// α and the weights in proportion to it.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Weights and α")]
 pub struct WeightArgs {
-    /// The parameter α, a squared length; `inf` gives the convex hull [default: 10 h² where a voxel
-    /// has the volume h³, so 10 in voxels].
-    #[arg(long, value_name = "A", value_parser = alpha, group = "parameter",
-          allow_negative_numbers = true)]
-    alpha: Option<Alpha>,
+    /// The parameter α, a squared length in the units of the points; `inf` gives the convex hull, and
+    /// `auto` the smallest α at which all points are in one solid component [default: auto for
+    /// scattered points; for a volume 10·h², where h³ is the volume of a voxel].
+    #[arg(long, value_name = "A", group = "parameter", allow_negative_numbers = true)]
+    alpha: Option<AlphaArg>,
     /// The parameter as a radius: α = R².
-    #[arg(long, value_name = "R", value_parser = alpha_radius, group = "parameter")]
+    #[arg(long, value_name = "R", value_parser = alpha_radius, group = "parameter",
+          allow_negative_numbers = true)]
     alpha_radius: Option<Alpha>,
     /// Weights ω (squared lengths): common=C, min-max (eq. 4.1), barycentric (eq. 4.2),
-    /// barycentric-n (N times that) or column (from the input).
+    /// barycentric-n (N times that) or column (from the input) [default: column where the input has
+    /// weights, else common=0].
     #[arg(long, value_name = "KIND", allow_hyphen_values = true)]
     weights: Option<Weighting>,
 }
 
 impl WeightArgs {
-    /// The parameter α, for a grid whose voxels have the volume of a cube of side `h`.
-    pub fn alpha(&self, h: f64) -> Alpha {
-        let silent = || Alpha::from_squared(SILENT_ALPHA * h * h).unwrap_or(Alpha::INFINITE);
-        self.alpha_radius.or(self.alpha).unwrap_or_else(silent)
+    /// α as it is asked for, if it is.
+    pub fn alpha(&self) -> Option<AlphaArg> {
+        self.alpha_radius.map(AlphaArg::Given).or(self.alpha)
+    }
+
+    /// α for work on a volume that makes several sets of points.
+    pub fn of_volume(&self, volume: &Volume, units: Units) -> anyhow::Result<Parameter> {
+        match self.alpha() {
+            None => Parameter::of_volume(volume, units),
+            asked => Parameter::given(asked, units.coordinates(volume).unit).ok_or_else(|| {
+                anyhow!("there are several sets of points, each with an `auto` of its own; give α as a number")
+            }),
+        }
     }
 
     /// The weights asked for; without a word, those of the input, or else none.
@@ -380,11 +440,12 @@ impl WeightArgs {
 #[command(next_help_heading = "Weights, frozen")]
 pub struct FrozenArgs {
     /// The α, a squared length, for which weights are computed; they stay the same at every level,
-    /// so that levels are nested [default: 10 h² where a voxel has the volume h³, so 10 in voxels].
-    #[arg(long, value_name = "A", value_parser = alpha, allow_negative_numbers = true)]
-    alpha_ref: Option<Alpha>,
+    /// so that levels are nested [default: as --alpha of `walpha shape`].
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    alpha_ref: Option<AlphaArg>,
     /// Weights ω (squared lengths): common=C, min-max (eq. 4.1), barycentric (eq. 4.2),
-    /// barycentric-n (N times that) or column (from the input).
+    /// barycentric-n (N times that) or column (from the input) [default: column where the input has
+    /// weights, else common=0].
     #[arg(long, value_name = "KIND", allow_hyphen_values = true)]
     weights: Option<Weighting>,
 }
@@ -402,6 +463,12 @@ pub enum Level {
     Gray(f64),
     /// As the file has it.
     Value(f64),
+}
+
+impl Default for Level {
+    fn default() -> Self {
+        Self::Gray(50.0)
+    }
 }
 
 impl Level {
@@ -474,7 +541,7 @@ pub struct ShapeArgs {
     exterior: bool,
 }
 
-#[derive(Clone, Copy, Default, ValueEnum)]
+#[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
 enum EngineArg {
     /// CGAL's triangulation in blocks.
     #[cfg_attr(feature = "cgal", default)]
@@ -486,7 +553,7 @@ enum EngineArg {
     Reference,
 }
 
-#[derive(Clone, Copy, Default, ValueEnum)]
+#[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
 enum BallsArg {
     #[default]
     Power,
@@ -494,14 +561,26 @@ enum BallsArg {
 }
 
 impl ShapeArgs {
-    /// Whether they go together: what does not is an error of usage, and is told before the work.
-    pub fn check(&self, alpha: Alpha) -> Result<(), clap::Error> {
-        // What is wrong in the first line, why and what next in the second, as clap has them.
-        let usage = |error: ShapeError| {
-            let text = error.to_string().replacen(": ", "\n", 1);
-            clap::Error::raw(ErrorKind::ArgumentConflict, text)
+    /// Whether `--balls radius` is in force, under which α is no squared length.
+    pub fn radii(&self) -> bool {
+        self.balls == BallsArg::Radius
+    }
+
+    /// Refuses options that have no use for each other, before the work.
+    pub fn check(&self, alpha: Option<AlphaArg>) -> anyhow::Result<()> {
+        if self.engine == EngineArg::Reference && self.blocks.is_some_and(|blocks| blocks.get() > 1)
+        {
+            misused!(
+                "--blocks has no effect: the reference engine knows no blocks; leave it away, or take \
+                 --engine native"
+            );
+        }
+        let alpha = match alpha {
+            Some(AlphaArg::Given(alpha)) => alpha,
+            // What is found is finite.
+            Some(AlphaArg::Auto) | None => Alpha::from_squared(0.0)?,
         };
-        self.options(alpha).check().map_err(usage)
+        Ok(self.options(alpha).check().map_err(|error| Usage(error.to_string()))?)
     }
 
     /// The stage's options.
@@ -587,6 +666,29 @@ fn bytes(text: &str) -> anyhow::Result<u64> {
 
 fn number(text: &str) -> anyhow::Result<f64> {
     text.trim().parse().map_err(|_| anyhow!("{text:?} is no number; give one as in 10 or 2.5"))
+}
+
+fn count(text: &str) -> anyhow::Result<u64> {
+    match text.trim().parse() {
+        Ok(0) => bail!("a count from 1 up is needed; give it as in 15956"),
+        count => count.map_err(|_| anyhow!("{text:?} is no whole number; give one as in 15956")),
+    }
+}
+
+fn share(text: &str) -> anyhow::Result<f64> {
+    let share = number(text)?;
+    if !(share > 0.0 && share <= 1.0) {
+        bail!("a share above 0 and up to 1 is needed; give it as in 0.0609 for 6.09 %");
+    }
+    Ok(share)
+}
+
+fn not_nan(text: &str) -> anyhow::Result<f64> {
+    let number = number(text)?;
+    if number.is_nan() {
+        bail!("a gray level is needed; give it as in 50 or 12.5");
+    }
+    Ok(number)
 }
 
 pub fn not_negative(text: &str) -> anyhow::Result<f64> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::bail;
-use clap::Args;
+use clap::{Args, Command};
 use serde::Serialize;
 use walpha::alpha_shape;
 use walpha::check::schema::PlacedComplex;
@@ -12,6 +12,7 @@ use walpha::check::{Certificate, Claim, Comparison, Extent, Finding, Placed, com
 use walpha::shown::shown;
 
 use super::args::{PipelineArgs, ShapeArgs};
+use super::given::misused;
 use super::output::{name, tell};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
@@ -22,18 +23,23 @@ use super::{DIFFERENT, Global, complex_file, pipeline};
 /// INPUT is a volume or points, which an engine makes a shape of, or a complex (.json, .npz). The
 /// checker shares no code with the engines and CGAL. Exit code 3 when something is found.
 ///
-/// Examples: walpha check sample:skull --weights min-max;
-/// walpha check theirs.json --points cloud.csv
+/// Examples:
+///
+/// walpha check ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30
+///
+/// walpha check skull.json
+///
+/// walpha check theirs.json --points skull.csv
 #[derive(Args)]
 pub struct Check {
-    #[command(flatten)]
-    pipeline: PipelineArgs,
     /// Points of the complex, where its file lists none: .csv or .npy.
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
     /// Build the answer from the definition too, and compare (at most 200 points).
     #[arg(long)]
     enumerate: bool,
+    #[command(flatten)]
+    pipeline: PipelineArgs,
     #[command(flatten)]
     shape: ShapeArgs,
 }
@@ -63,6 +69,7 @@ struct Facts {
 
 impl Check {
     pub fn run(self, global: Global) -> anyhow::Result<ExitCode> {
+        self.shape.check(self.pipeline.weights.alpha())?;
         let mut progress = Progress::new(global);
         let judged = self.complex(&mut progress)?;
         let n = judged.positions.len();
@@ -119,18 +126,23 @@ impl Check {
     /// The complex to judge.
     fn complex(&self, progress: &mut Progress) -> anyhow::Result<PlacedComplex> {
         let path = Path::new(&self.pipeline.input.input);
+        let given = &self.pipeline.input.given;
         if complex_file::is_complex(path) {
+            let ours = ShapeArgs::augment_args(PipelineArgs::augment_args(Command::new("check")));
+            let options = ours.get_arguments().filter(|arg| !arg.is_positional());
+            let names: Vec<&str> = options.map(|arg| arg.get_id().as_str()).collect();
+            given.refuse(&names, format!("{} is a complex, made already", shown(path)))?;
             return progress.stage("read", || complex_file::read(path, self.points.as_deref()));
         }
         if self.points.is_some() {
-            bail!(
+            misused!(
                 "--points belongs to a complex (.json, .npz), and {} is none; leave it away",
                 shown(path)
             );
         }
-        self.shape.check(self.pipeline.weights.alpha(1.0))?;
-        let weighed = pipeline::weighted_points(&self.pipeline, progress)?;
-        let mut options = self.shape.options(weighed.alpha);
+        let mut weighed = pipeline::weighted_points(&self.pipeline, progress)?;
+        let alpha = weighed.find_parameter(&self.shape, progress)?.alpha;
+        let mut options = self.shape.options(alpha);
         // The whole triangulation can be judged wholly. Several blocks are judged as they are.
         options.exterior |=
             options.blocks.is_none_or(|blocks| blocks.get() == 1) && options.memory.is_none();

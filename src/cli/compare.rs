@@ -19,7 +19,12 @@ use super::{DIFFERENT, Global, complex_file};
 /// are compared where both complexes list some; windings and lists of hidden points and duplicates
 /// are not. Exit code 3 when anything compared differs.
 ///
-/// Example: walpha compare ours.json theirs.npz
+/// Examples, of files that `walpha shape sample:skull --weights min-max -o skull.json` and the same
+/// with --engine reference -o reference.npz make:
+///
+/// walpha compare skull.json reference.npz
+///
+/// walpha compare skull.json theirs.json --json
 #[derive(Args)]
 pub struct Compare {
     /// A complex: .json or .npz, as docs/cross-checking.md describes.

@@ -3,8 +3,10 @@
 use std::io::IsTerminal;
 
 use clap::error::ErrorKind;
+use walpha::export::UnknownFormat;
 use walpha::shown::escaped;
 
+use super::given::Usage;
 use super::progress;
 
 /// Whether standard error takes colours: a terminal, and NO_COLOR is not set (<https://no-color.org>).
@@ -23,17 +25,23 @@ struct Complaint {
 /// Tells why a command failed. The work that was going on is the one last announced.
 pub fn tell(command: &str, error: &anyhow::Error) {
     let what = match progress::current().as_str() {
-        "" => "could not start".to_owned(),
+        _ if is_usage(error) => "cannot do this".to_owned(),
+        "" => "could not start".into(),
         "read" => "could not read its input".into(),
         "haar" => "could not transform the volume".into(),
         "points" => "could not make weighted points".into(),
-        "shape" => "could not compute the shape".into(),
+        "alpha" | "shape" => "could not compute the shape".into(),
         "write" => "could not write its result".into(),
         other => format!("could not finish: {other}"),
     };
-    let (why, next) = parted(&with_contexts(error));
+    let (why, next) = reasons(error);
     let next = next.unwrap_or_else(|| help(command));
     Complaint { what: format!("{command} {what}"), why, next }.print();
+}
+
+/// Whether the command line makes no sense, whatever is in the files.
+pub fn is_usage(error: &anyhow::Error) -> bool {
+    error.is::<Usage>() || error.is::<UnknownFormat>()
 }
 
 /// Tells what is wrong with a command line; `configured` if some of it comes from a file.
@@ -99,26 +107,40 @@ fn help(command: &str) -> String {
     format!("`{command} --help` tells what it takes")
 }
 
-/// An error with the contexts it was given, but without causes that its text has already.
-fn with_contexts(error: &anyhow::Error) -> String {
-    let mut text = error.to_string();
-    for cause in error.chain().skip(1).map(ToString::to_string) {
-        if !text.contains(&cause) {
-            text = format!("{text}: {cause}");
+/// The reason in an error and its causes, without what has been said already, and the last advice.
+fn reasons(error: &anyhow::Error) -> (String, Option<String>) {
+    let text = error.to_string().replace('\n', " ");
+    let (mut why, mut next) = parted(&text);
+    for cause in error.chain().skip(1).map(|cause| cause.to_string().replace('\n', " ")) {
+        if text.contains(&cause) {
+            continue;
         }
+        let (reason, advice) = parted(&cause);
+        if !why.contains(&reason) {
+            why = format!("{why}: {reason}");
+        }
+        next = advice.or(next);
     }
-    text.replace('\n', " ")
+    (why, next)
 }
 
-/// The reason in a message, and its advice: what follows the last semicolon, or else the last colon,
-/// as all messages of the library are built. A colon behind a file's name parts nothing.
+/// How advice begins. What follows a colon and begins otherwise is a cause.
+const ADVICE: [&str; 40] = [
+    "add", "allow", "ask", "build", "check", "choose", "clean", "convert", "copy", "correct",
+    "crop", "did", "export", "for", "give", "is", "install", "leave", "lower", "make", "move",
+    "name", "omit", "open", "pack", "put", "raise", "read", "remove", "rename", "replace", "save",
+    "select", "set", "take", "try", "unpack", "use", "wait", "write",
+];
+
+/// The reason in a message, and its advice: what follows the last semicolon, or else the last colon if
+/// it begins as advice does.
 fn parted(text: &str) -> (String, Option<String>) {
-    let semicolon = text.rsplit_once("; ");
-    let colon = || {
-        text.rsplit_once(": ")
-            .filter(|(head, _)| head.contains(' ') && !std::path::Path::new(head).exists())
+    let advice = |tail: &str| {
+        let first = tail.split(|c: char| !c.is_ascii_lowercase()).next().unwrap_or_default();
+        ADVICE.contains(&first)
     };
-    match semicolon.or_else(colon) {
+    let colon = || text.rsplit_once(": ").filter(|(_, tail)| advice(tail));
+    match text.rsplit_once("; ").or_else(colon) {
         Some((why, next)) => (why.to_owned(), Some(next.to_owned())),
         None => (text.to_owned(), None),
     }
@@ -134,6 +156,8 @@ mod tests {
             ("cannot read a.csv: not there; check the path", Some("check the path")),
             ("gray range 1..0 is empty: give LO < HI", Some("give LO < HI")),
             ("a.csv: holds no point", None),
+            ("a.npy ends early: its header claims 3 points", None),
+            ("cannot read a.csv: Permission denied (os error 13)", None),
             ("it failed", None),
         ];
         for (text, advice) in cases {
@@ -142,8 +166,11 @@ mod tests {
     }
 
     #[test]
-    fn causes_are_told_once() {
+    fn causes_are_told_once_and_before_advice() {
         let error = anyhow::anyhow!("no room").context("cannot write a: no room").context("shape");
-        assert_eq!(with_contexts(&error), "shape: cannot write a: no room");
+        assert_eq!(reasons(&error), ("shape: cannot write a: no room".into(), None));
+        let error = anyhow::anyhow!("it is a folder").context("cannot read a; check the path");
+        let told = ("cannot read a: it is a folder".into(), Some("check the path".into()));
+        assert_eq!(reasons(&error), told);
     }
 }

@@ -30,7 +30,7 @@ pub fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<PlacedComplex>
     let file = if json { ComplexFile::read_json(file) } else { ComplexFile::read_npz(file) };
     let mut file = file.with_context(|| shown(path))?;
     if let Some(points) = points {
-        let points = read_points(points)?;
+        let points = read_points(points, None)?;
         file.points = points.positions;
         file.weights = points.weights.or(file.weights);
     }

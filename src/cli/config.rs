@@ -5,6 +5,7 @@
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use anyhow::{Context, anyhow, bail};
 use clap::parser::ValueSource;
@@ -22,8 +23,9 @@ const NOT_CONFIGURED: [&str; 4] = [FILE, PRINT, "help", "version"];
 
 /// The two options, for every command.
 pub fn options_of_it() -> [Arg; 2] {
-    let file = Arg::new(FILE).long(FILE).global(true).value_name("FILE");
-    let print = Arg::new(PRINT).long(PRINT).global(true).action(ArgAction::SetTrue);
+    let option = |name| Arg::new(name).long(name).global(true).help_heading(super::EVERY_COMMAND);
+    let file = option(FILE).value_name("FILE");
+    let print = option(PRINT).action(ArgAction::SetTrue);
     [
         file.value_parser(clap::value_parser!(PathBuf)).help(
             "TOML file with options by their long names, as in alpha = 4; the command line wins",
@@ -51,7 +53,7 @@ pub fn with_file(command: &Command, mut args: Vec<OsString>) -> anyhow::Result<V
     let said = |arg: &Arg| {
         of_command.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine)
     };
-    let mut more = Vec::new();
+    let (mut more, mut set) = (Vec::new(), Vec::new());
     for (key, value) in settings {
         let Some(arg) = option(subcommand, &key) else { continue };
         if said(arg) || rivals(subcommand, arg).into_iter().any(said) {
@@ -66,10 +68,20 @@ pub fn with_file(command: &Command, mut args: Vec<OsString>) -> anyhow::Result<V
             continue;
         }
         more.extend(text.into_iter().map(OsString::from));
+        set.push(arg.get_id().to_string());
     }
     let end = args.iter().position(|arg| arg == "--").unwrap_or(args.len());
     args.splice(end..end, more);
+    SET.get_or_init(|| set);
     Ok(args)
+}
+
+/// The names of the options that the file set, for this process.
+static SET: OnceLock<Vec<String>> = OnceLock::new();
+
+/// Whether the file set this option.
+pub fn has_set(name: &str) -> bool {
+    SET.get().is_some_and(|set| set.iter().any(|known| known == name))
 }
 
 /// The options in force as a file for `--config`: what was given, and defaults.
@@ -195,13 +207,13 @@ fn texts(arg: &Arg, value: &Value) -> anyhow::Result<Vec<String>> {
     let one = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
         Value::Integer(_) | Value::Float(_) => Ok(value.to_string()),
-        _ => bail!("a text or a number is needed"),
+        _ => bail!("a list or table is no value; give a text or a number"),
     };
     if !arg.get_action().takes_values() {
         return match value {
             Value::Boolean(true) => Ok(vec![format!("--{long}")]),
             Value::Boolean(false) => Ok(Vec::new()),
-            _ => bail!("the option {long} is either true or false"),
+            _ => bail!("{long} is a switch; give true or false"),
         };
     }
     let values = match value {

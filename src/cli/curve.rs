@@ -14,8 +14,9 @@ use walpha::{LengthUnit, SelectionRule, Volume, Weighting, haar};
 
 use super::Global;
 use super::args::{PipelineArgs, SelectArgs};
+use super::given::misused;
 use super::output::{name, tell};
-use super::pipeline::{Grays, Input, read, side};
+use super::pipeline::{Grays, Input, read};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 
@@ -45,7 +46,7 @@ pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Resu
     let options = CurveOptions {
         counts: counts(&volume, select)?,
         weightings: vec![Weighting::Common(0.0), Weighting::MinMax, Weighting::Barycentric],
-        alpha: weights.alpha(side(&volume, units)),
+        alpha: weights.of_volume(&volume, units)?.alpha,
         units,
     };
     let show = |method: Method| match method {
@@ -87,7 +88,9 @@ fn counts(volume: &Volume, select: &SelectArgs) -> anyhow::Result<Vec<u64>> {
     let whole = match select.rule() {
         SelectionRule::Count(count) => count as f64,
         SelectionRule::Ratio(ratio) => ratio * volume.dims().samples() as f64,
-        SelectionRule::Threshold(_) => bail!("--curve needs --count or --ratio"),
+        SelectionRule::Threshold(_) => {
+            misused!("--curve needs a number of points; give --count or --ratio")
+        }
     };
     Ok([0.0625, 0.125, 0.25, 0.5, 1.0, 2.0].map(|f| (f * whole).round() as u64).into())
 }

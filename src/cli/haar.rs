@@ -17,15 +17,19 @@ use super::report::{HaarReport, SCHEMA_VERSION};
 
 /// Transform a volume, drop small coefficients, and restore it.
 ///
-/// Example: walpha haar sample:skull --rms 2 -o smooth.npy
+/// Examples:
+///
+/// walpha haar ct.nii.gz --rms 4 -o smooth.nii.gz
+///
+/// walpha haar sample:skull --coefficients 20000 -o smooth.npy
 #[derive(Args)]
 pub struct Haar {
-    #[command(flatten)]
-    input: InputArgs,
     /// File to write the restored values to, as f32, replaced if it is there: .nrrd, .nii, .nii.gz,
     /// .mha, .vti, .tif, .npy or .raw; or - (standard output, with --format).
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    input: InputArgs,
     #[command(flatten)]
     haar: HaarArgs,
 }
@@ -39,13 +43,17 @@ struct Facts {
 
 impl Haar {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
+        self.input.check_format(self.output.iter())?;
         let target = match &self.output {
             None => None,
             Some(path) => Some((VolumeFormat::of(&self.input.output(path)?)?, Target::open(path)?)),
         };
         let mut progress = Progress::new(global);
-        let Input::Volume(Grays { volume, range, written }) = read(&self.input, &mut progress)?
-        else {
+        let read = read(&self.input, &mut progress)?;
+        if matches!(read, Input::Volume(..)) {
+            read.accepts(&self.input)?;
+        }
+        let Input::Volume(Grays { volume, range, written }) = read else {
             bail!("{} holds points; name a volume", self.input.input);
         };
         let options = self.haar.options();

@@ -5,6 +5,7 @@ use std::path::Path;
 use clap::Args;
 use serde::Serialize;
 use walpha::points::read_points;
+use walpha::shown::number;
 use walpha::volume::{self, Series};
 use walpha::{Coordinates, Frame, LengthUnit};
 
@@ -16,7 +17,13 @@ use super::{Global, pipeline};
 
 /// Say what a file holds, without computing anything.
 ///
-/// Example: walpha info sample:skull --json
+/// Examples:
+///
+/// walpha info ct.nii.gz
+///
+/// walpha info scan.xyz --columns x,y,z,nx,ny,nz
+///
+/// walpha info sample:skull --json
 #[derive(Args)]
 pub struct Info {
     #[command(flatten)]
@@ -74,7 +81,7 @@ impl Info {
 
     fn look(&self, input: &str) -> anyhow::Result<Content> {
         if pipeline::is_points(&self.input, input)? {
-            let points = read_points(input.as_ref())?;
+            let points = read_points(input.as_ref(), self.input.columns())?;
             let axis = |end: fn(f64, f64) -> f64, start: f64, axis: usize| {
                 points.positions.iter().fold(start, |so_far, p| end(so_far, p[axis]))
             };
@@ -149,15 +156,16 @@ impl std::fmt::Display for Content {
                 };
                 writeln!(f, "space     {stated}")?;
                 let unit = unit.symbol();
-                writeln!(f, "spacing   {} {} {} {unit}", spacing[0], spacing[1], spacing[2])?;
-                writeln!(f, "origin    {} {} {} {unit}", origin[0], origin[1], origin[2])?;
+                writeln!(f, "spacing   {} {unit}", spacing.map(number).join(" "))?;
+                writeln!(f, "origin    {} {unit}", origin.map(number).join(" "))?;
                 if *direction != Frame::VOXEL.direction {
                     for (i, axis) in ["x", "y", "z"].iter().enumerate() {
-                        let [r, a, s] = direction.map(|row| row[i]);
-                        writeln!(f, "axis {axis}    {r} {a} {s}")?;
+                        let steps = direction.map(|row| number(row[i]));
+                        writeln!(f, "axis {axis}    {}", steps.join(" "))?;
                     }
                 }
                 let gray = if *gray_levels { ", gray levels as they are" } else { "" };
+                let (min, max) = (number(f64::from(*min)), number(f64::from(*max)));
                 writeln!(f, "values    {min} to {max}{gray}")?;
                 match &data_files[..] {
                     [] => Ok(()),
@@ -175,7 +183,7 @@ impl std::fmt::Display for Content {
             Self::Points { count, low, high, weights, values } => {
                 writeln!(f, "points    {count}")?;
                 for (i, axis) in ["x", "y", "z"].iter().enumerate() {
-                    writeln!(f, "{axis}         {} to {}", low[i], high[i])?;
+                    writeln!(f, "{axis}         {} to {}", number(low[i]), number(high[i]))?;
                 }
                 let has = |there: bool| if there { "yes" } else { "no" };
                 writeln!(f, "weights   {}\nvalues    {}", has(*weights), has(*values))

@@ -12,6 +12,7 @@ use walpha::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
 use walpha::{AlphaShape, GrayRange, Units, Volume, alpha_shape};
 
 use super::args::{PipelineArgs, ShapeArgs};
+use super::given::misused;
 use super::output::tell;
 use super::pipeline::{VolumeFacts, Weighed};
 use super::progress::Progress;
@@ -30,7 +31,12 @@ use super::{Global, curve, pipeline};
 /// those selected, for each way to select them and the weights common=0, min-max and barycentric, as
 /// CSV, PNG and SVG.
 ///
-/// Examples: walpha interpolate sample:skull --select adaptive --fill -o skull.nrrd;
+/// Examples:
+///
+/// walpha interpolate ct.nii.gz --select adaptive --count 100000 --fill -o again.nii.gz
+///
+/// walpha interpolate scattered.csv --dims 64,64,64 -o grid.nrrd
+///
 /// walpha interpolate sample:skull --curve -o curves/
 #[derive(Args)]
 #[command(mut_arg("dims", |arg| {
@@ -39,8 +45,6 @@ use super::{Global, curve, pipeline};
         .help_heading("Grid")
 }))]
 pub struct Interpolate {
-    #[command(flatten)]
-    pipeline: PipelineArgs,
     /// Volume to write F to, as f32: .nrrd, .nii, .nii.gz, .mha, .vti, .tif, .npy or .raw; or - (standard
     /// output, with --format). With --curve: a folder, or what names of files begin with. Files that are
     /// there are replaced.
@@ -59,6 +63,8 @@ pub struct Interpolate {
         "engine", "blocks", "memory", "exterior",
     ])]
     curve: bool,
+    #[command(flatten)]
+    pipeline: PipelineArgs,
     #[command(flatten)]
     shape: ShapeArgs,
 }
@@ -130,12 +136,13 @@ impl Interpolate {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         if self.curve {
             if self.pipeline.input.raw.grid().is_some() {
-                bail!("--curve measures on the samples of INPUT: leave --dims away");
+                misused!("--curve measures on the samples of INPUT: leave --dims away");
             }
             let base = self.output.as_deref().expect("clap requires it");
             return curve::run(global, &self.pipeline, base);
         }
-        self.shape.check(self.pipeline.weights.alpha(1.0))?;
+        self.pipeline.input.check_format(self.output.iter())?;
+        self.shape.check(self.pipeline.weights.alpha())?;
         let output = match &self.output {
             None => None,
             Some(path) => {
@@ -144,11 +151,12 @@ impl Interpolate {
         };
         let mask = self.mask.as_deref().map(open).transpose()?;
         let mut progress = Progress::new(global);
-        let (weighed, volume) = pipeline::points_and_volume(&self.pipeline, &mut progress)?;
+        let (mut weighed, volume) = pipeline::points_and_volume(&self.pipeline, &mut progress)?;
+        let alpha = weighed.find_parameter(&self.shape, &mut progress)?.alpha;
         let original = Original::of(volume.as_ref(), &weighed);
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
         let grid = self.grid(original, &weighed.points.positions)?;
-        let options = self.shape.options(weighed.alpha);
+        let options = self.shape.options(alpha);
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
         report.add_shape(&shape);
         let sampled = progress.stage("interpolate", || sample(&shape, &grid, original))?;

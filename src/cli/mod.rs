@@ -9,12 +9,14 @@ mod complex_file;
 mod config;
 mod curve;
 mod folder;
+mod given;
 mod haar;
 mod info;
 mod interpolate;
 mod ladder;
 mod man;
 mod output;
+mod parameter;
 mod picture;
 mod pipeline;
 mod points;
@@ -49,8 +51,16 @@ use output::{is_broken_pipe, print};
 /// into cells, facets, edges and vertices.
 ///
 /// INPUT is a volume (NRRD, NIfTI, MetaImage, VTK, VTI, TIFF, INRIMAGE, NPY, NPZ, a folder of PNG, JPEG
-/// or TIFF slices, raw with --dims), a point file (CSV, TSV, XYZ, PLY, VTU, VTP, NPY), or one of
-/// sample:skull, sample:phantom, sample:phantom@N. α and weights are squared lengths.
+/// or TIFF slices, raw with --dims), a point file (CSV, TSV, XYZ, PWN, PLY, OFF, OBJ, STL, PCD, LAS, VTU,
+/// VTP, NPY), or one of sample:skull, sample:phantom, sample:phantom@N. α and weights are squared lengths.
+///
+/// Examples:
+///
+/// walpha shape ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.ply
+///
+/// walpha view scan.xyz -o scan.html
+///
+/// walpha reproduce
 #[derive(Parser)]
 #[command(name = "walpha", version = VERSION, max_term_width = 100, arg_required_else_help = true)]
 struct Cli {
@@ -67,6 +77,7 @@ const VERSION: &str = concat!(
 
 /// Options of every command.
 #[derive(Args, Clone, Copy)]
+#[command(next_help_heading = EVERY_COMMAND)]
 struct Global {
     /// Print one JSON object instead of text.
     #[arg(long, global = true)]
@@ -102,6 +113,8 @@ enum Command {
     Man(man::Man),
 }
 
+/// What is above options that all commands have, behind their own.
+const EVERY_COMMAND: &str = "Every command";
 /// The exit code of wrong arguments.
 const USAGE: u8 = 2;
 /// The exit code of a check or comparison that found something.
@@ -167,7 +180,7 @@ pub fn run() -> ExitCode {
                 return ExitCode::from(USAGE);
             }
             complaint::tell(&name, &error);
-            ExitCode::FAILURE
+            if complaint::is_usage(&error) { ExitCode::from(USAGE) } else { ExitCode::FAILURE }
         }
     }
 }

@@ -67,6 +67,9 @@ enum ColourArg {
 }
 
 impl PictureArgs {
+    /// The names of these options.
+    pub const NAMES: [&str; 4] = ["view", "camera", "colour", "size"];
+
     /// Whether a path asks for a picture.
     pub fn wanted(path: &Path) -> bool {
         path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case("png"))

@@ -14,7 +14,9 @@ use walpha::{
     WeightedPoints, Weighting, haar, points, volume,
 };
 
-use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, WeightArgs};
+use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, ShapeArgs, WeightArgs};
+use super::given::{Usage, misused};
+use super::parameter::Parameter;
 use super::progress::Progress;
 
 /// What INPUT turned out to be.
@@ -39,7 +41,7 @@ pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> 
     progress.stage("read", || {
         with_file(args, |input| {
             if is_points(args, input)? {
-                return Ok(Input::Points(read_points(Path::new(input))?));
+                return Ok(Input::Points(read_points(Path::new(input), args.columns())?));
             }
             let (volume, range) = volume::open(input, &args.options())?.into_gray(args.gray())?;
             Ok(Input::Volume(Grays { volume, range, written: args.written(range) }))
@@ -64,6 +66,43 @@ pub fn with_file<T>(
         .map_err(|error| anyhow!("{}", format!("{error:#}").replace(&path, "standard input")))
 }
 
+/// Options that speak of a volume.
+const OF_VOLUMES: [&str; 22] = [
+    "level",
+    "array",
+    "frame",
+    "series",
+    "nan",
+    "roi",
+    "downsample",
+    "gray",
+    "gray_out",
+    "haar",
+    "rms",
+    "epsilon",
+    "coefficients",
+    "select",
+    "target_rmse",
+    "count",
+    "ratio",
+    "threshold",
+    "gray_min",
+    "value_min",
+    "units",
+    "space",
+];
+
+impl Input {
+    /// Refuses options that have no effect on what INPUT is.
+    pub fn accepts(&self, args: &InputArgs) -> Result<(), Usage> {
+        let holds = |what| format!("{} holds {what}", args.input);
+        match self {
+            Self::Volume(..) => args.given.refuse(&["columns"], holds("a volume")),
+            Self::Points(_) => args.given.refuse(&OF_VOLUMES, holds("points, and no volume")),
+        }
+    }
+}
+
 /// Whether an input is a point file.
 pub fn is_points(args: &InputArgs, input: &str) -> anyhow::Result<bool> {
     let volume = input.starts_with("sample:") || args.options().raw.is_some();
@@ -75,11 +114,34 @@ pub struct Weighed {
     /// With gray levels as values, where they come from a volume.
     pub points: WeightedPoints,
     pub weighting: Weighting,
-    /// As asked for, or what is fit for the volume.
-    pub alpha: Alpha,
     /// What the coordinates of the points mean.
     pub coordinates: Coordinates,
     pub volume: Option<VolumeFacts>,
+    /// α; none where it is to be looked for, and the weights do not need it.
+    pub parameter: Option<Parameter>,
+}
+
+impl Weighed {
+    /// α, looked for if it was not needed before.
+    pub fn find_parameter(
+        &mut self,
+        shape: &ShapeArgs,
+        progress: &mut Progress,
+    ) -> anyhow::Result<Parameter> {
+        let parameter = match self.parameter {
+            Some(parameter) => parameter,
+            None => Parameter::found(self.points.clone(), self.coordinates.unit, progress)?,
+        };
+        if shape.radii() && parameter.is_found() {
+            misused!(
+                "with --balls radius, α is a radius, and auto finds squared ones; give --alpha A, as \
+                 in --alpha {}",
+                parameter.alpha.squared().abs().sqrt()
+            );
+        }
+        self.parameter = Some(parameter);
+        Ok(parameter)
+    }
 }
 
 /// What is to be told about a volume.
@@ -137,7 +199,9 @@ pub fn points_and_volume(
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Volume>)> {
     let PipelineArgs { input, haar, select, weights } = args;
-    weigh_input(read(input, progress)?, haar, select, weights, progress)
+    let read = read(input, progress)?;
+    read.accepts(input)?;
+    weigh_input(read, haar, select, weights, progress)
 }
 
 /// The same from what was read already.
@@ -149,13 +213,17 @@ pub fn weigh_input(
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Volume>)> {
     let mut original = None;
-    let (mut coordinates, mut alpha) = (Coordinates::default(), weights.alpha(1.0));
+    let mut coordinates = Coordinates::default();
+    let mut parameter = Parameter::given(weights.alpha(), coordinates.unit);
     let (mut points, volume) = match input {
         Input::Points(points) => (points, None),
         Input::Volume(Grays { volume, range, written }) => {
             let (volume, units) = select.place(volume)?;
             coordinates = units.coordinates(&volume);
-            alpha = weights.alpha(side(&volume, units));
+            parameter = match weights.alpha() {
+                None => Some(Parameter::of_volume(&volume, units)?),
+                asked => Parameter::given(asked, coordinates.unit),
+            };
             let options = haar.options();
             let (smoothed, truncation) =
                 progress.stage("haar", || haar::smooth(&volume, &options))?;
@@ -174,9 +242,16 @@ pub fn weigh_input(
         if scattered && weighting.needs_differences() {
             points.differences = Some(points::scattered_difference(&points)?);
         }
-        weigh(&points, weighting, alpha.squared())
+        anyhow::Ok(points)
     })?;
-    Ok((Weighed { points, weighting, alpha, coordinates, volume }, original))
+    if parameter.is_none() && weighting.needs_differences() {
+        // What is wrong with the weights is told before the search.
+        weigh(&points, weighting, 0.0)?;
+        parameter = Some(Parameter::found_unweighted(&points, coordinates.unit, progress)?);
+    }
+    let alpha = parameter.map_or(0.0, |parameter| parameter.alpha.squared());
+    let points = progress.stage("points", || weigh(&points, weighting, alpha))?;
+    Ok((Weighed { points, weighting, coordinates, volume, parameter }, original))
 }
 
 /// Points as asked for: by differences, or adaptively, where fewer may do.
@@ -272,10 +347,15 @@ pub fn readable(
 ) -> Vec<Alpha> {
     let mut alphas = filtration.readable(curve, count);
     alphas.push(reference);
+    alphas.extend(suggested(filtration, curve));
+    alphas
+}
+
+/// The suggested values of α that are finite.
+pub fn suggested(filtration: &Filtration, curve: &Curve) -> Vec<Alpha> {
     let suggested = filtration.suggest(curve);
     let [low, high] = suggested.plateau;
     let also = [suggested.all_points, suggested.one_region, suggested.no_void, low, high];
-    let finite = also.iter().filter(|alpha| alpha.is_finite());
-    alphas.extend(finite.filter_map(|&alpha| Alpha::from_squared(alpha).ok()));
-    alphas
+    let finite = also.into_iter().filter(|alpha| alpha.is_finite());
+    finite.filter_map(|alpha| Alpha::from_squared(alpha).ok()).collect()
 }

@@ -15,19 +15,24 @@ use super::{Global, pipeline};
 
 /// Select points from a volume and weigh them.
 ///
-/// Example: walpha points sample:skull --count 15956 --weights min-max -o skull.csv
+/// Examples:
+///
+/// walpha points ct.nii.gz --gray 0..1000 --gray-min 64 --count 100000 -o bone.csv
+///
+/// walpha points sample:skull --count 15956 --weights min-max -o skull.csv
 #[derive(Args)]
 pub struct Points {
-    #[command(flatten)]
-    pipeline: PipelineArgs,
     /// File to write, replaced if it is there: .csv (header x,y,z,weight,value) or .npy (the same
     /// columns); or - (standard output, with --format).
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    pipeline: PipelineArgs,
 }
 
 impl Points {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
+        self.pipeline.input.check_format(self.output.iter())?;
         let target = match &self.output {
             None => None,
             Some(path) => {

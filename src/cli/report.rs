@@ -5,20 +5,22 @@ use std::fmt::{self, Display};
 
 use serde::{Serialize, Serializer};
 use walpha::points::WeightSummary;
-use walpha::shape::{Betti, Component, Engine, Void, number_or_name};
+use walpha::shape::{Betti, Component, Cuts, Engine, Void, number_or_name};
+use walpha::shown::number;
 use walpha::{
-    Alpha, AlphaShape, Class, Coordinates, GrayRange, LengthUnit, Simplices, Truncation, memory,
+    AlphaShape, Class, Coordinates, GrayRange, LengthUnit, Simplices, Truncation, memory,
 };
 
 use super::output::name;
+use super::parameter::Parameter;
 use super::pipeline::{Ended, VolumeFacts, Weighed};
 
 /// Counted up when a field changes its meaning or goes; new fields may come at any time.
 pub const SCHEMA_VERSION: u32 = 1;
 
 /// The stages whose times are told, in the order of the work.
-const STAGES: [&str; 8] =
-    ["read", "haar", "points", "shape", "fill", "interpolate", "write", "total"];
+const STAGES: [&str; 9] =
+    ["read", "haar", "points", "alpha", "shape", "fill", "interpolate", "write", "total"];
 
 /// What `walpha shape` and `walpha points` did. A fact that is not known is null.
 #[derive(Serialize)]
@@ -30,12 +32,16 @@ pub struct Report {
     coordinates: Coordinates,
     haar: Option<HaarReport>,
     points: PointsReport,
-    alpha: AlphaReport,
+    /// Null where no α was needed.
+    alpha: Option<Parameter>,
     weights: WeightsReport,
     #[serde(skip_serializing_if = "Option::is_none")]
     shape: Option<ShapeReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     engine: Option<Engine>,
+    /// Where the boundary was cut apart, if it is written as that of a solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    solid: Option<Cuts>,
     files: Vec<String>,
     seconds: BTreeMap<&'static str, f64>,
     peak_memory_bytes: Option<u64>,
@@ -69,16 +75,6 @@ struct PointsReport {
     in_shape: Option<usize>,
     /// Adaptive selection needed fewer than asked for.
     ended_early: Option<Ended>,
-}
-
-/// α as a squared length and as a radius, and the unit of length.
-#[derive(Serialize)]
-pub struct AlphaReport {
-    #[serde(serialize_with = "number_or_name")]
-    squared: f64,
-    #[serde(serialize_with = "number_or_null_or_name")]
-    radius: Option<f64>,
-    unit: LengthUnit,
 }
 
 /// What the weights are.
@@ -136,26 +132,6 @@ impl Display for Counts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { interior, regular, singular } = self;
         write!(f, "{interior:>9} interior {regular:>9} regular {singular:>9} singular")
-    }
-}
-
-impl AlphaReport {
-    /// An α where lengths are in this unit.
-    pub fn new(alpha: Alpha, unit: LengthUnit) -> Self {
-        Self { squared: alpha.squared(), radius: alpha.radius(), unit }
-    }
-}
-
-impl Display for AlphaReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { squared, radius, unit } = self;
-        let unit = unit.symbol();
-        match radius {
-            Some(radius) => {
-                write!(f, "α = {squared} {unit}² (squared length; √α = {radius:.6} {unit})")
-            }
-            None => write!(f, "α = {squared} {unit}² (squared length; negative, so no radius)"),
-        }
     }
 }
 
@@ -218,10 +194,11 @@ impl Report {
                 in_shape: None,
                 ended_early: volume.and_then(|v| v.ended),
             },
-            alpha: AlphaReport::new(weighed.alpha, weighed.coordinates.unit),
+            alpha: weighed.parameter,
             weights: WeightsReport::of(weighed),
             shape: None,
             engine: None,
+            solid: None,
             files: Vec::new(),
             seconds: BTreeMap::new(),
             peak_memory_bytes: None,
@@ -249,6 +226,11 @@ impl Report {
         });
     }
 
+    /// Adds where the boundary was cut apart.
+    pub fn add_solid(&mut self, cuts: Cuts) {
+        self.solid = Some(cuts);
+    }
+
     /// Adds what it cost and what it left.
     pub fn finish(&mut self, seconds: Vec<(&'static str, f64)>, files: Vec<String>) {
         self.seconds = seconds.into_iter().collect();
@@ -271,6 +253,7 @@ impl Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "input     {}", name(&self.input.name))?;
         if let (Some([x, y, z]), Some([low, high])) = (self.input.dims, self.input.gray_range) {
+            let (low, high) = (number(low), number(high));
             write!(f, "  {x}×{y}×{z} samples, values {low}..{high} are gray 0..255")?;
         }
         writeln!(f)?;
@@ -296,7 +279,9 @@ impl Display for Report {
         let unit = self.coordinates.unit.symbol();
         writeln!(f, "\nlengths   in {}", self.coordinates)?;
         writeln!(f, "weights   {} (squared lengths)", self.weights)?;
-        writeln!(f, "parameter {}", self.alpha)?;
+        if let Some(alpha) = &self.alpha {
+            writeln!(f, "parameter {alpha}")?;
+        }
         if let Some(shape) = &self.shape {
             writeln!(f, "cells     {:>9} interior", shape.cells.interior)?;
             writeln!(f, "facets    {}", shape.facets)?;
@@ -328,6 +313,17 @@ impl Display for Report {
             if self.points.in_shape == Some(0) {
                 writeln!(f, "the shape is empty: every α + ω is negative; raise --alpha")?;
             }
+        }
+        match self.solid {
+            None => {}
+            Some(cuts) if cuts == Cuts::default() => {
+                writeln!(f, "solid     the boundary is a manifold as it is")?;
+            }
+            Some(Cuts { edges, vertices, midpoints }) => writeln!(
+                f,
+                "solid     the boundary is no manifold: cut apart at {edges} edges, with {vertices} vertices \
+                 more and {midpoints} in the middle of edges"
+            )?,
         }
         for file in &self.files {
             writeln!(f, "wrote     {}", name(file))?;

@@ -1,6 +1,7 @@
 //! `walpha reproduce`: the paper, made again.
 
 use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::Args;
 use walpha::reproduce::{File, Report, Subject, page, reproduce};
@@ -17,7 +18,11 @@ use super::progress::Progress;
 ///
 /// Writes PNG, SVG and OFF files, report.html (self-contained) and report.json into a folder.
 ///
-/// Example: walpha reproduce --out paper
+/// Examples:
+///
+/// walpha reproduce
+///
+/// walpha reproduce --input ct.nii.gz --out paper
 #[derive(Args)]
 pub struct Reproduce {
     /// Volume or sample [default: sample:skull, or sample:phantom where CGAL's data is not
@@ -36,10 +41,12 @@ const PHANTOM: &str = "sample:phantom";
 impl Reproduce {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
+        // Before the long work.
+        let mut folder = Folder::open(&self.out, "--out", &["report.html", "report.json"])?;
         let (name, volume) = progress.stage("read", || self.volume(global))?;
         let (volume, range) = volume.into_gray(Gray::Automatic)?;
-        let mut folder = Folder::open(&self.out, "--out", &["report.html", "report.json"])?;
-        let subject = Subject { volume: &volume, range, name: &name };
+        let date = today();
+        let subject = Subject { volume: &volume, range, name: &name, date: &date };
         let made = reproduce(&subject, &mut |stage| progress.show(stage))?;
         let mut files = made.files;
         files.push(File {
@@ -84,6 +91,35 @@ impl Reproduce {
     }
 }
 
+/// The day in UTC, or that of SOURCE_DATE_EPOCH (<https://reproducible-builds.org/specs/source-date-epoch/>).
+fn today() -> String {
+    let asked = std::env::var("SOURCE_DATE_EPOCH").ok().and_then(|seconds| seconds.parse().ok());
+    // Beyond the year 9999 it is a mistake.
+    let asked = asked.filter(|&seconds: &u64| seconds < 253_402_300_800);
+    let now = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    date(asked.unwrap_or_else(now) / 86_400)
+}
+
+/// The date so many days after 1970-01-01.
+fn date(mut days: u64) -> String {
+    let leap = |year: u64| year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let mut year = 1970;
+    while days >= 365 + u64::from(leap(year)) {
+        days -= 365 + u64::from(leap(year));
+        year += 1;
+    }
+    let lengths = [31, 28 + u64::from(leap(year)), 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
+    let mut month = 1;
+    for length in lengths {
+        if days < length {
+            break;
+        }
+        days -= length;
+        month += 1;
+    }
+    format!("{year:04}-{month:02}-{:02}", days + 1)
+}
+
 /// What the terminal is told: the verdicts, and where to look.
 fn text(report: &Report, out: &Path, files: usize) -> String {
     let mut text = String::new();
@@ -104,4 +140,17 @@ fn text(report: &Report, out: &Path, files: usize) -> String {
     let page = out.join("report.html");
     text += &format!("wrote     {files} files; open {} ({seconds:.1} s)\n", shown(&page));
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn days_are_dates() {
+        let days = [0, 58, 59, 11_016, 20_453, 20_454];
+        let dates =
+            ["1970-01-01", "1970-02-28", "1970-03-01", "2000-02-29", "2025-12-31", "2026-01-01"];
+        assert_eq!(days.map(date), dates);
+    }
 }

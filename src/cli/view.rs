@@ -7,39 +7,54 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
-use walpha::export::Target;
+use walpha::Alpha;
+use walpha::export::{Target, UnknownFormat};
 use walpha::ladder::Filtration;
 use walpha::render::{Original, Page, Subject};
-use walpha::shown::shown;
+use walpha::shown::{number, shown};
 
 use super::Global;
-use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, Level, SelectArgs, WeightArgs};
+use super::args::{
+    AlphaArg, Alphas, FrozenArgs, HaarArgs, InputArgs, Level, SelectArgs, WeightArgs,
+};
+use super::given::misused;
 use super::output::{name, tell};
-use super::pipeline::{self, Weighed};
+use super::parameter::Parameter;
+use super::pipeline::{self, Input, Weighed};
 use super::progress::Progress;
-use super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport};
+use super::report::{SCHEMA_VERSION, WeightsReport};
 
 /// Make a page that shows the shapes in a browser: self-contained, no network needed.
 ///
 /// A slider goes over α with the weights frozen; the boundary is coloured by F or by class, singular
 /// facets and edges, points sized by weight and an isosurface of the volume can be shown and hidden.
 ///
-/// Example: walpha view sample:skull --weights min-max -o skull.html
+/// Examples:
+///
+/// walpha view ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.html
+///
+/// walpha view sample:skull --weights min-max -o skull.html
+///
+/// walpha view scan.xyz -o scan.html
 #[derive(Args)]
 pub struct View {
-    #[command(flatten)]
-    input: InputArgs,
     /// Page to write (.html), replaced if it is there.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Levels of the slider: squared lengths, as in 1,2,5,inf; or auto, for critical values of the
-    /// topology.
+    /// The α, a squared length, that the page opens at: a number, `inf`, or `auto`, the smallest at
+    /// which all points are in one solid component [default: --alpha-ref].
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    alpha: Option<AlphaArg>,
+    /// Levels of the slider: squared lengths, as in 1,2,5,inf; or auto, for critical values that
+    /// each show something else, most where the shape gets its form.
     #[arg(long, value_name = "A,A,…", default_value = "auto", allow_hyphen_values = true)]
     alphas: Alphas,
     /// Where the isosurface to compare is, for volumes: a gray level, as in 50, or a value of INPUT, as
-    /// in 300v.
-    #[arg(long, value_name = "G", default_value = "50", allow_negative_numbers = true)]
-    isovalue: Level,
+    /// in 300v [default: 50].
+    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    isovalue: Option<Level>,
+    #[command(flatten)]
+    input: InputArgs,
     #[command(flatten)]
     haar: HaarArgs,
     #[command(flatten)]
@@ -49,7 +64,7 @@ pub struct View {
 }
 
 /// Levels that `--alphas auto` chooses, suggested ones not counted.
-const READABLE: usize = 16;
+const STOPS: usize = 28;
 
 #[derive(Serialize)]
 struct Facts {
@@ -68,44 +83,59 @@ impl View {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let html = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("html"));
         if !html {
-            bail!("{}: a page can be written as .html", shown(&self.output));
+            bail!(UnknownFormat::new(&self.output, "a page", ["html"]));
         }
         let target = Target::open(&self.output)?;
         let mut progress = Progress::new(global);
         let weights = WeightArgs::from(self.weights);
         let read = pipeline::read(&self.input, &mut progress)?;
+        read.accepts(&self.input)?;
+        if self.isovalue.is_some() && matches!(read, Input::Points(_)) {
+            misused!("--isovalue has no effect: points have no isosurface; leave it away");
+        }
         let (weighed, volume) =
             pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
         let weighed = weighed.in_values();
-        let told = self.told(&weighed);
+        let unit = weighed.coordinates.unit;
         let domain = pipeline::domain(&weighed);
-        let (alpha, unit) = (weighed.alpha, weighed.coordinates.unit);
+        let filtration =
+            progress.stage("filtration", || Filtration::new(weighed.points.clone()))?;
+        let reference = Parameter::of(weighed.parameter, unit, &filtration);
+        let told = self.told(&weighed, reference);
+        let opening = match self.alpha {
+            None => reference.alpha,
+            asked => Parameter::of(Parameter::given(asked, unit), unit, &filtration).alpha,
+        };
         let facts = weighed.volume.as_ref();
         let original = volume.as_ref().zip(facts).map(|(volume, facts)| Original {
             volume,
-            isovalue: self.isovalue.gray(&facts.range),
+            isovalue: self.isovalue.unwrap_or_default().gray(&facts.range),
             units: facts.units,
         });
-        let points = weighed.points;
-        let filtration = progress.stage("filtration", || Filtration::new(points))?;
         let alphas = match &self.alphas {
-            Alphas::Given(alphas) => alphas.clone(),
-            Alphas::Auto => progress.stage("curve", || {
-                pipeline::readable(&filtration, &filtration.curve(), READABLE, alpha)
-            }),
+            Alphas::Given(alphas) => [&alphas[..], self.alpha.map(|_| opening).as_slice()].concat(),
+            Alphas::Auto => progress.stage("curve", || stops(&filtration, opening)),
         };
         let levels = filtration.levels(&alphas);
         if levels.len() > Page::MOST_LEVELS {
-            bail!("{} levels are too many for a page: at most {}", levels.len(), Page::MOST_LEVELS);
+            let (levels, most) = (levels.len(), Page::MOST_LEVELS);
+            misused!("{levels} levels are too many for a page; give --alphas at most {most}");
         }
         let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
-        // The level the weights are meant for, or the last below it.
-        let first = levels.alphas().partition_point(|level| *level <= alpha);
+        // That level, or the last below it.
+        let first = levels.alphas().partition_point(|alpha| *alpha <= opening);
         let title = format!("Alpha shapes of {}", self.input.input);
         let subject = Subject {
             title: &title,
             facts: &told,
             unit: unit.symbol(),
+            value: match facts {
+                Some(_) if self.input.writes_gray() => {
+                    "value of the original volume, in gray levels"
+                }
+                Some(_) => "value of the original volume",
+                None => "the column value of the input",
+            },
             levels: &levels,
             ladder: &ladder,
             first: first.saturating_sub(1),
@@ -134,11 +164,11 @@ impl View {
     }
 
     /// What the page tells besides the levels' numbers.
-    fn told(&self, weighed: &Weighed) -> Vec<(String, String)> {
+    fn told(&self, weighed: &Weighed, reference: Parameter) -> Vec<(String, String)> {
         let mut told = vec![("input".to_owned(), self.input.input.clone())];
         if let Some(volume) = &weighed.volume {
             let [x, y, z] = volume.dims;
-            let (low, high) = (volume.range.low, volume.range.high);
+            let (low, high) = (number(volume.range.low), number(volume.range.high));
             told.push((
                 "volume".into(),
                 format!("{x}×{y}×{z} samples, values {low} to {high} are gray 0 to 255"),
@@ -153,15 +183,25 @@ impl View {
             ));
         }
         told.push(("points".into(), weighed.points.len().to_string()));
-        let alpha = AlphaReport::new(weighed.alpha, weighed.coordinates.unit);
         told.push(("lengths in".into(), weighed.coordinates.to_string()));
         told.push((
             "weights ω".into(),
-            format!("{}, frozen at {alpha}", WeightsReport::of(weighed)),
+            format!("{}, frozen at {reference}", WeightsReport::of(weighed)),
         ));
         told.push(("made by".into(), format!("walpha {}", env!("CARGO_PKG_VERSION"))));
         told
     }
+}
+
+/// Levels that each show something, and something else than the one before: the one to open at,
+/// suggested ones, and others between.
+fn stops(filtration: &Filtration, opening: Alpha) -> Vec<Alpha> {
+    let curve = filtration.curve();
+    let mut alphas = filtration.stops(&curve, STOPS);
+    alphas.push(opening);
+    alphas.extend(pipeline::suggested(filtration, &curve));
+    let distinct = filtration.levels(&alphas).distinct(opening);
+    if distinct.is_empty() { vec![opening] } else { distinct }
 }
 
 impl Display for Facts {

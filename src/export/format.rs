@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::{Glb, Json, Npz, Obj, Off, Ply, Stl, Vtp, Vtu};
 use crate::near::nearest;
-use crate::shape::AlphaShape;
+use crate::shape::{AlphaShape, Surface};
 use crate::shown::shown;
 
 /// A way to write a shape down.
@@ -17,6 +17,28 @@ pub trait Exporter {
     /// What whoever reads the file should know of this shape, if anything.
     fn remark(&self, _shape: &AlphaShape) -> Option<String> {
         None
+    }
+}
+
+/// How a shape is written down.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ExportOptions {
+    /// Text where the format has a binary form too: PLY.
+    pub ascii: bool,
+    /// The boundary as that of a [solid](Surface::solid): regular facets alone, closed, oriented and
+    /// cut apart into a manifold. For formats of boundaries.
+    pub solid: bool,
+    /// Regular and singular facets told apart, where some programs do not expect it: by groups (OBJ, edges
+    /// and points too), colours (OFF) or numbers (PLY, components and sheets too).
+    pub groups: bool,
+    /// What the shape was made of, to be told in the file: VTP and VTU.
+    pub input: Option<String>,
+}
+
+impl ExportOptions {
+    /// The boundary to write.
+    pub(super) fn surface(&self, shape: &AlphaShape) -> Surface {
+        if self.solid { Surface::solid(shape).0 } else { Surface::of(shape) }
     }
 }
 
@@ -86,16 +108,22 @@ impl Format {
         UnknownFormat::find(path, "a shape", &Self::ALL)
     }
 
-    /// Its writer. `ascii` asks for text where the format has a binary form too.
-    pub fn exporter(self, ascii: bool) -> Box<dyn Exporter> {
+    /// Whether it holds the boundary alone, and so may be that of a solid.
+    pub fn is_boundary(self) -> bool {
+        !matches!(self, Self::Vtu | Self::Npz | Self::Json)
+    }
+
+    /// Its writer.
+    pub fn exporter(self, options: &ExportOptions) -> Box<dyn Exporter> {
+        let options = options.clone();
         match self {
-            Self::Ply => Box::new(Ply { ascii }),
-            Self::Off => Box::new(Off),
-            Self::Obj => Box::new(Obj),
-            Self::Stl => Box::new(Stl),
-            Self::Glb => Box::new(Glb),
-            Self::Vtu => Box::new(Vtu),
-            Self::Vtp => Box::new(Vtp),
+            Self::Ply => Box::new(Ply(options)),
+            Self::Off => Box::new(Off(options)),
+            Self::Obj => Box::new(Obj(options)),
+            Self::Stl => Box::new(Stl(options)),
+            Self::Glb => Box::new(Glb(options)),
+            Self::Vtu => Box::new(Vtu(options)),
+            Self::Vtp => Box::new(Vtp(options)),
             Self::Npz => Box::new(Npz),
             Self::Json => Box::new(Json),
         }

@@ -1,24 +1,20 @@
+use std::f64::consts::FRAC_1_SQRT_2;
 use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use super::Exporter;
+use super::{ExportOptions, Exporter, colour};
 use crate::shape::{AlphaShape, Surface};
 
 /// GLB, glTF 2.0 in one binary file: the boundary as triangles, singular edges as lines and singular
 /// vertices as points. Vertices are coloured by F from dark blue (least) over green to yellow (most)
-/// where it is known. Coordinates are rounded to `f32`.
-#[derive(Clone, Copy, Debug)]
-pub struct Glb;
+/// where it is known. Coordinates are rounded to `f32`; the scene turns them, so that our z is glTF's y,
+/// which is up.
+#[derive(Clone, Debug, Default)]
+pub struct Glb(pub ExportOptions);
 
-/// Five colours of the map "viridis", red, green and blue in linear light, as glTF wants them.
-const COLOURS: [[f32; 3]; 5] = [
-    [0.0578, 0.0003, 0.0887],
-    [0.0437, 0.0844, 0.2582],
-    [0.0152, 0.2831, 0.2623],
-    [0.1119, 0.5841, 0.1221],
-    [0.9823, 0.7991, 0.0185],
-];
+/// A quarter turn about x, as a quaternion: z becomes y, and y becomes −z.
+const UPRIGHT: [f64; 4] = [-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2];
 
 /// glTF's numbers: component types, buffer targets, primitive modes.
 const FLOAT: u32 = 5126;
@@ -31,7 +27,7 @@ const TRIANGLES: u32 = 4;
 
 impl Exporter for Glb {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let surface = Surface::of(shape);
+        let surface = self.0.surface(shape);
         let mut file = File::default();
         let mut document = json!({
             "asset": {
@@ -43,10 +39,10 @@ impl Exporter for Glb {
             "scenes": [{}],
         });
         // glTF knows no empty mesh.
-        if !surface.vertices.is_empty() {
+        if surface.vertex_count() > 0 {
             let primitives = file.primitives(shape, &surface);
             document["scenes"][0] = json!({ "nodes": [0] });
-            document["nodes"] = json!([{ "mesh": 0 }]);
+            document["nodes"] = json!([{ "mesh": 0, "rotation": UPRIGHT }]);
             document["meshes"] = json!([{ "primitives": primitives }]);
             let material = |double: bool| {
                 json!({
@@ -90,16 +86,20 @@ struct File {
 impl File {
     fn primitives(&mut self, shape: &AlphaShape, surface: &Surface) -> Vec<Value> {
         let points = shape.points();
-        let of_vertex = |&v: &u32| points.positions[v as usize].map(|c| c as f32);
-        let positions: Vec<[f32; 3]> = surface.vertices.iter().map(of_vertex).collect();
+        let places = surface.positions(&points.positions);
+        let positions: Vec<[f32; 3]> = places.map(|place| place.map(|c| c as f32)).collect();
         let bound = |pick: fn(f32, f32) -> f32| {
             [0, 1, 2].map(|axis| positions.iter().map(|p| p[axis]).reduce(pick))
         };
         let bounds = json!({ "min": bound(f32::min), "max": bound(f32::max) });
         let mut attributes = json!({ "POSITION": self.vectors(&positions, bounds) });
         if let Some(values) = &points.values {
-            let values: Vec<f64> = surface.vertices.iter().map(|&v| values[v as usize]).collect();
-            attributes["COLOR_0"] = self.vectors(&colours(&values), json!({})).into();
+            let values: Vec<f64> = surface.numbers(values).collect();
+            let colours: Vec<_> = colour::linear(&values)
+                .into_iter()
+                .map(|colour| colour.map(|c| c as f32))
+                .collect();
+            attributes["COLOR_0"] = self.vectors(&colours, json!({})).into();
         }
         let lists: [(&[u32], u32, u32); 4] = [
             (surface.regular.as_flattened(), TRIANGLES, 0),
@@ -147,19 +147,4 @@ impl File {
         self.accessors.push(accessor);
         self.accessors.len() - 1
     }
-}
-
-/// A colour for each value, linear from the least to the most.
-fn colours(values: &[f64]) -> Vec<[f32; 3]> {
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let steps = COLOURS.len() - 1;
-    let colour = |value: &f64| {
-        let share = if high > low { (value - low) / (high - low) } else { 0.0 };
-        let place = share * steps as f64;
-        let from = (place as usize).min(steps - 1);
-        let part = (place - from as f64) as f32;
-        [0, 1, 2].map(|c| COLOURS[from][c] + part * (COLOURS[from + 1][c] - COLOURS[from][c]))
-    };
-    values.iter().map(colour).collect()
 }

@@ -5,7 +5,7 @@
 //!
 //! ```
 //! use std::path::Path;
-//! use walpha::export::{Format, Target};
+//! use walpha::export::{ExportOptions, Format, Target};
 //! use walpha::points::{Points, Weighting, weigh};
 //! use walpha::shape::{Alpha, ShapeOptions, alpha_shape};
 //!
@@ -13,7 +13,7 @@
 //! let points = weigh(&Points { positions, ..Points::default() }, Weighting::Common(0.0), 1.0)?;
 //! let shape = alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(1.0)?))?;
 //!
-//! let exporter = Format::of(Path::new("tetrahedron.off"))?.exporter(false);
+//! let exporter = Format::of(Path::new("tetrahedron.off"))?.exporter(&ExportOptions::default());
 //! let mut bytes = Vec::new();
 //! exporter.write(&shape, &mut bytes)?;
 //! assert!(bytes.starts_with(b"OFF"));
@@ -24,6 +24,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod colour;
 mod format;
 mod glb;
 mod json;
@@ -42,7 +43,7 @@ mod volume;
 mod vtp;
 mod vtu;
 
-pub use format::{Exporter, Format, UnknownFormat};
+pub use format::{ExportOptions, Exporter, Format, UnknownFormat};
 pub use glb::Glb;
 pub use json::Json;
 pub use npz::Npz;

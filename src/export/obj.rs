@@ -1,41 +1,39 @@
 use std::io::{self, Write};
 
-use super::{Exporter, stated};
-use crate::shape::{AlphaShape, Surface};
+use super::{ExportOptions, Exporter, stated};
+use crate::shape::AlphaShape;
 
-/// Wavefront OBJ: the groups `regular` and `singular` hold facets, `edges` singular edges and
-/// `points` singular vertices. Numbering starts at 1.
-#[derive(Clone, Copy, Debug)]
-pub struct Obj;
+/// Wavefront OBJ: facets, regular ones first, singular edges and singular vertices; in one group, or
+/// if asked in the groups `regular`, `singular`, `edges` and `points`. Numbering starts at 1.
+#[derive(Clone, Debug, Default)]
+pub struct Obj(pub ExportOptions);
 
 impl Exporter for Obj {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let surface = Surface::of(shape);
-        let positions = &shape.points().positions;
+        let surface = self.0.surface(shape);
         writeln!(out, "# walpha: {}", shape.options().alpha)?;
         write!(out, "{}", stated::line("#", shape.coordinates()))?;
-        for &v in &surface.vertices {
-            let [x, y, z] = positions[v as usize];
+        for [x, y, z] in surface.positions(&shape.points().positions) {
             writeln!(out, "v {x} {y} {z}")?;
         }
-        group(out, "regular", "f", &surface.regular)?;
-        group(out, "singular", "f", &surface.singular)?;
-        group(out, "edges", "l", &surface.edges)?;
+        let name = |group| self.0.groups.then_some(group);
+        elements(out, name("regular"), "f", &surface.regular)?;
+        elements(out, name("singular"), "f", &surface.singular)?;
+        elements(out, name("edges"), "l", &surface.edges)?;
         let points: Vec<[u32; 1]> = surface.points.iter().map(|&v| [v]).collect();
-        group(out, "points", "p", &points)
+        elements(out, name("points"), "p", &points)
     }
 }
 
-fn group<const N: usize>(
+fn elements<const N: usize>(
     out: &mut dyn Write,
-    name: &str,
+    group: Option<&str>,
     element: &str,
     rows: &[[u32; N]],
 ) -> io::Result<()> {
-    if rows.is_empty() {
-        return Ok(());
+    if let (Some(group), false) = (group, rows.is_empty()) {
+        writeln!(out, "g {group}")?;
     }
-    writeln!(out, "g {name}")?;
     for row in rows {
         write!(out, "{element}")?;
         for v in row {

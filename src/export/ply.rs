@@ -1,81 +1,98 @@
 use std::io::{self, Write};
 
-use super::{Exporter, stated};
+use super::{ExportOptions, Exporter, colour, stated};
 use crate::shape::{AlphaShape, Class, Surface};
 
-/// PLY: vertices of the boundary with weight, value and input index; facets with their class
-/// (2 regular, 3 singular), their component and, where known, the [sheets](crate::shape::Sheets) in
-/// front and behind, −1 for none; singular edges. Coordinates are doubles. Binary little-endian, or
-/// text.
-#[derive(Clone, Copy, Debug)]
-pub struct Ply {
-    /// Text instead of binary.
-    pub ascii: bool,
-}
+/// PLY: vertices of the boundary with weight, input index and, where known, value and the colour
+/// (red, green, blue) that it has between the least and the most; facets. Where groups are asked for,
+/// facets come with their class (2 regular, 3 singular), their component and, where known and not of a
+/// solid, the [sheets](crate::shape::Sheets) in front and behind, −1 for none. Coordinates are doubles.
+/// Binary little-endian, or text.
+///
+/// Singular edges are left out, as most programs refuse a PLY file with edges; meshio cannot read numbers
+/// of facets.
+#[derive(Clone, Debug, Default)]
+pub struct Ply(pub ExportOptions);
 
 impl Exporter for Ply {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let surface = Surface::of(shape);
-        let points = shape.points();
-        let sheets: Option<Vec<_>> = shape.sheets().map(|sheets| sheets.sides().collect());
-        let format = if self.ascii { "ascii" } else { "binary_little_endian" };
+        let Self(options) = self;
+        let surface = options.surface(shape);
+        let sheets = shape.sheets().filter(|_| options.groups && !options.solid);
+        let sheets: Option<Vec<_>> = sheets.map(|sheets| sheets.sides().collect());
+        let valued = shape.points().values.is_some();
         write!(
             out,
-            "ply\nformat {format} 1.0\ncomment walpha: {}\n{}element vertex {}\n\
-             property double x\nproperty double y\nproperty double z\nproperty double weight\n",
+            "ply\nformat {} 1.0\ncomment walpha: {}\n{}element vertex {}\n\
+             property double x\nproperty double y\nproperty double z\nproperty double weight\n{}\
+             property uint index\nelement face {}\nproperty list uchar uint vertex_indices\n{}{}end_header\n",
+            if options.ascii { "ascii" } else { "binary_little_endian" },
             shape.options().alpha,
             stated::line("comment", shape.coordinates()),
-            surface.vertices.len(),
-        )?;
-        if points.values.is_some() {
-            writeln!(out, "property double value")?;
-        }
-        write!(
-            out,
-            "property uint index\nelement face {}\nproperty list uchar uint vertex_indices\n\
-             property uchar class\nproperty uint component\n{}element edge {}\n\
-             property uint vertex1\nproperty uint vertex2\nend_header\n",
+            surface.vertex_count(),
+            if valued { VALUED } else { "" },
             surface.regular.len() + surface.singular.len(),
+            if options.groups { "property uchar class\nproperty uint component\n" } else { "" },
             if sheets.is_some() { "property int sheet\nproperty int sheet_behind\n" } else { "" },
-            surface.edges.len(),
         )?;
-
-        let mut row = Row { ascii: self.ascii, out, started: false };
-        for &v in &surface.vertices {
-            let i = v as usize;
-            for coordinate in points.positions[i] {
-                row.put(coordinate, f64::to_le_bytes)?;
-            }
-            row.put(points.weights[i], f64::to_le_bytes)?;
-            if let Some(values) = &points.values {
-                row.put(values[i], f64::to_le_bytes)?;
-            }
-            row.put(v, u32::to_le_bytes)?;
-            row.end()?;
-        }
-        let (components, vertices) = (shape.component_numbers(), &surface.vertices);
+        let mut row = Row { ascii: options.ascii, out, started: false };
+        vertices(&mut row, shape, &surface)?;
+        let (components, indices) =
+            (shape.component_numbers(), surface.indices().collect::<Vec<_>>());
         for (i, facet) in surface.facets().enumerate() {
             row.put(3u8, u8::to_le_bytes)?;
             for &v in facet {
                 row.put(v, u32::to_le_bytes)?;
             }
-            let regular = i < surface.regular.len();
-            let class = if regular { Class::Regular } else { Class::Singular };
-            row.put(class as u8, u8::to_le_bytes)?;
-            row.put(components[vertices[facet[0] as usize] as usize], u32::to_le_bytes)?;
+            if options.groups {
+                let regular = i < surface.regular.len();
+                let class = if regular { Class::Regular } else { Class::Singular };
+                row.put(class as u8, u8::to_le_bytes)?;
+                let component = components[indices[facet[0] as usize] as usize];
+                row.put(component, u32::to_le_bytes)?;
+            }
             for &sheet in sheets.iter().flat_map(|sheets| &sheets[i]) {
                 row.put(sheet, i32::to_le_bytes)?;
             }
             row.end()?;
         }
-        for edge in &surface.edges {
-            for &v in edge {
-                row.put(v, u32::to_le_bytes)?;
-            }
-            row.end()?;
-        }
         Ok(())
     }
+
+    fn remark(&self, shape: &AlphaShape) -> Option<String> {
+        let edges = self.0.surface(shape).edges.len();
+        (edges > 0).then(|| {
+            format!(
+                "{edges} singular edges are left out, as most programs refuse a PLY file with edges; OBJ, \
+                 GLB and VTP have them"
+            )
+        })
+    }
+}
+
+/// What a vertex with a value has.
+const VALUED: &str =
+    "property double value\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
+
+fn vertices(row: &mut Row<'_>, shape: &AlphaShape, surface: &Surface) -> io::Result<()> {
+    let points = shape.points();
+    let values: Option<Vec<f64>> = points.values.as_ref().map(|v| surface.numbers(v).collect());
+    let colours = values.as_deref().map(colour::bytes);
+    let places = surface.positions(&points.positions).zip(surface.numbers(&points.weights));
+    for (i, ((place, weight), index)) in places.zip(surface.indices()).enumerate() {
+        for number in [place[0], place[1], place[2], weight] {
+            row.put(number, f64::to_le_bytes)?;
+        }
+        if let (Some(values), Some(colours)) = (&values, &colours) {
+            row.put(values[i], f64::to_le_bytes)?;
+            for part in colours[i] {
+                row.put(part, u8::to_le_bytes)?;
+            }
+        }
+        row.put(index, u32::to_le_bytes)?;
+        row.end()?;
+    }
+    Ok(())
 }
 
 /// Numbers of one element, as text on a line or as bytes.

@@ -5,7 +5,7 @@ use crate::volume::{Coordinates, LengthUnit};
 /// For the comments of a file, behind what stands there: ` SPACE=LPS UNIT=mm`, as 3D Slicer looks for
 /// it; `UNIT` alone where the space is not known, and nothing where nothing is.
 pub(super) fn comment(coordinates: Coordinates) -> String {
-    told(coordinates).into_iter().map(|(name, value)| format!(" {name}={value}")).collect()
+    pairs(coordinates).into_iter().map(|(name, value)| format!(" {name}={value}")).collect()
 }
 
 /// The same as a line of its own, behind the word or sign that begins a comment; none where nothing is
@@ -19,7 +19,7 @@ pub(super) fn line(sign: &str, coordinates: Coordinates) -> String {
 
 /// The same as VTK's field data in XML: arrays of one string each, in the numbers of its characters.
 pub(super) fn field_data(coordinates: Coordinates) -> String {
-    let told = told(coordinates);
+    let told = pairs(coordinates);
     if told.is_empty() {
         return String::new();
     }
@@ -33,7 +33,8 @@ pub(super) fn field_data(coordinates: Coordinates) -> String {
     format!("<FieldData>\n{}</FieldData>\n", told.iter().map(array).collect::<String>())
 }
 
-fn told(Coordinates { space, unit }: Coordinates) -> Vec<(&'static str, &'static str)> {
+/// The names and texts of what is known.
+pub(super) fn pairs(Coordinates { space, unit }: Coordinates) -> Vec<(&'static str, &'static str)> {
     let space = space.is_known().then(|| ("SPACE", space.name()));
     let unit = (unit != LengthUnit::Unstated).then(|| ("UNIT", unit.ascii()));
     space.into_iter().chain(unit).collect()

@@ -1,18 +1,18 @@
 use std::io::{self, Write};
 
-use super::{Exporter, stated};
-use crate::shape::{AlphaShape, Surface};
+use super::{ExportOptions, Exporter, stated};
+use crate::shape::AlphaShape;
 
 /// Binary STL: the regular facets, counter-clockwise seen from outside, with their normals.
 /// Coordinates are rounded to `f32`. Singular facets, edges and vertices bound no solid and are left
 /// out.
-#[derive(Clone, Copy, Debug)]
-pub struct Stl;
+#[derive(Clone, Debug, Default)]
+pub struct Stl(pub ExportOptions);
 
 impl Exporter for Stl {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let surface = Surface::of(shape);
-        let positions = &shape.points().positions;
+        let surface = self.0.surface(shape);
+        let positions: Vec<_> = surface.positions(&shape.points().positions).collect();
         let mut head = [b' '; 80];
         // Some readers take a file for text if its head begins with "solid".
         let stated = stated::comment(shape.coordinates());
@@ -23,7 +23,7 @@ impl Exporter for Stl {
             .map_err(|_| io::Error::other("more facets than STL can count"))?;
         out.write_all(&count.to_le_bytes())?;
         for facet in &surface.regular {
-            let corners = facet.map(|v| positions[surface.vertices[v as usize] as usize]);
+            let corners = facet.map(|v| positions[v as usize]);
             for vector in [normal(corners), corners[0], corners[1], corners[2]] {
                 for component in vector {
                     out.write_all(&(component as f32).to_le_bytes())?;
@@ -35,12 +35,12 @@ impl Exporter for Stl {
     }
 
     fn remark(&self, shape: &AlphaShape) -> Option<String> {
-        let defects = Surface::of(shape).manifold_defects();
+        let defects = self.0.surface(shape).manifold_defects();
         (!defects.is_empty()).then(|| {
             format!(
                 "the boundary is not manifold: {} edges lie on more than two facets, and parts touch \
-                 at {} other vertices; programs that want a solid may refuse it, and another α may \
-                 help",
+                 at {} other vertices; programs that want a solid may refuse it: --solid cuts it apart \
+                 there",
                 defects.edges, defects.vertices
             )
         })

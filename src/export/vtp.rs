@@ -1,37 +1,42 @@
 use std::io::{self, Write};
 
 use super::vtu::{Appended, bytes};
-use super::{Exporter, stated};
-use crate::shape::{AlphaShape, Class, Sheets, Surface};
+use super::{ExportOptions, Exporter};
+use crate::shape::{AlphaShape, Class, Sheets};
 
 /// VTP, VTK's polygons: the boundary, singular edges and singular vertices. Cell data are their
 /// `class` (2 regular, 3 singular), the `component` of the shape they belong to and, where known, the
 /// [sheets](crate::shape::Sheets) in front (`sheet`) and behind (`sheet_behind`), −1 for none; point
-/// data are `weight`, `value` and `input_index`. Arrays are appended raw, little-endian, with 64-bit
+/// data are `weight`, `value` and `input_index`. Field data say what [`Vtu`](super::Vtu)'s do, texts as such. Of a solid
+/// there are no sheets. Arrays are appended raw, little-endian, with 64-bit
 /// sizes.
-#[derive(Clone, Copy, Debug)]
-pub struct Vtp;
+#[derive(Clone, Debug, Default)]
+pub struct Vtp(pub ExportOptions);
 
 impl Exporter for Vtp {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let surface = Surface::of(shape);
+        let surface = self.0.surface(shape);
         let points = shape.points();
-        let vertices = &surface.vertices;
+        let vertices: Vec<u32> = surface.indices().collect();
         let facets = surface.regular.len() + surface.singular.len();
         let mut file = Appended::default();
         write!(
             file.xml,
             "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
              <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-             <PolyData>\n{}<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" \
-             NumberOfStrips=\"0\" NumberOfPolys=\"{facets}\">\n<PointData>\n",
+             <PolyData>\n",
             shape.options().alpha,
-            stated::field_data(shape.coordinates()),
+        )?;
+        file.field_data(shape, &self.0, true)?;
+        write!(
+            file.xml,
+            "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" \
+             NumberOfStrips=\"0\" NumberOfPolys=\"{facets}\">\n<PointData>\n",
             vertices.len(),
             surface.points.len(),
             surface.edges.len(),
         )?;
-        let of = |column: &[f64]| bytes(vertices.iter().map(|&v| column[v as usize].to_le_bytes()));
+        let of = |column: &[f64]| bytes(surface.numbers(column).map(f64::to_le_bytes));
         file.array("Float64", "weight", 1, of(&points.weights))?;
         if let Some(values) = &points.values {
             file.array("Float64", "value", 1, of(values))?;
@@ -50,7 +55,7 @@ impl Exporter for Vtp {
         let components = shape.component_numbers();
         let component = |v: u32| components[vertices[v as usize] as usize].to_le_bytes();
         file.array("UInt32", "component", 1, bytes(firsts.map(component)))?;
-        if let Some(sheets) = shape.sheets() {
+        if let Some(sheets) = shape.sheets().filter(|_| !self.0.solid) {
             let none = surface.points.iter().map(|_| [Sheets::NONE; 2]);
             let edges = sheets.edges.iter().map(|&sheet| [sheet as i32, Sheets::NONE]);
             let sides: Vec<_> = none.chain(edges).chain(sheets.sides()).collect();
@@ -64,7 +69,7 @@ impl Exporter for Vtp {
             }
         }
         write!(file.xml, "</CellData>\n<Points>\n")?;
-        let positions = vertices.iter().flat_map(|&v| points.positions[v as usize]);
+        let positions = surface.positions(&points.positions).flatten();
         file.array("Float64", "Points", 3, bytes(positions.map(f64::to_le_bytes)))?;
         writeln!(file.xml, "</Points>")?;
         cells(&mut file, "Verts", 1, &surface.points)?;

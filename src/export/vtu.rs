@@ -1,15 +1,17 @@
 use std::io::{self, Write};
 
-use super::{Exporter, stated};
+use super::{ExportOptions, Exporter, stated};
 use crate::shape::{AlphaShape, Simplices};
 
 /// VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as
 /// cell data (1 interior, 2 regular, 3 singular); `weight`, `value` and `input_index` as point
-/// data. Arrays are appended raw, little-endian, with 64-bit sizes.
+/// data. Field data say how it was made: `alpha` (a squared length), `alpha_radius` where there is one,
+/// `class_legend`, `made_by` (program and version) and, where known, `input` and `unit`, the unit of length; texts
+/// are numbers of UTF-8, as meshio refuses a file with texts. Arrays are appended raw, little-endian, with 64-bit sizes.
 ///
 /// Where a complex holds exterior simplices they are written too, as class 0.
-#[derive(Clone, Copy, Debug)]
-pub struct Vtu;
+#[derive(Clone, Debug, Default)]
+pub struct Vtu(pub ExportOptions);
 
 impl Exporter for Vtu {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
@@ -32,9 +34,13 @@ impl Exporter for Vtu {
             file.xml,
             "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
              <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-             <UnstructuredGrid>\n{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
+             <UnstructuredGrid>\n",
             shape.options().alpha,
-            stated::field_data(shape.coordinates()),
+        )?;
+        file.field_data(shape, &self.0, false)?;
+        write!(
+            file.xml,
+            "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
             vertices.len(),
             grid.types.len(),
         )?;
@@ -103,7 +109,68 @@ pub(super) struct Appended {
     pub data: Vec<u8>,
 }
 
+/// What the numbers of `class` mean.
+const LEGEND: &str = "0 exterior, 1 interior, 2 regular, 3 singular";
+
 impl Appended {
+    /// How the shape was made, for whoever finds the file later; texts as such, or as numbers.
+    pub fn field_data(
+        &mut self,
+        shape: &AlphaShape,
+        options: &ExportOptions,
+        texts_as_such: bool,
+    ) -> io::Result<()> {
+        let alpha = shape.options().alpha;
+        writeln!(self.xml, "<FieldData>")?;
+        for (name, number) in [("alpha", Some(alpha.squared())), ("alpha_radius", alpha.radius())] {
+            if let Some(number) = number {
+                // Not as text: VTK reads no "inf".
+                self.field("DataArray", "Float64", name, 1, &number.to_le_bytes())?;
+            }
+        }
+        let made_by = format!("walpha {}", env!("CARGO_PKG_VERSION"));
+        let texts = [
+            ("made_by", Some(made_by.as_str())),
+            ("class_legend", Some(LEGEND)),
+            ("input", options.input.as_deref()),
+        ];
+        let texts = texts.into_iter().filter_map(|(name, text)| Some((name, text?)));
+        for (name, text) in texts.chain(stated::pairs(shape.coordinates())) {
+            // A zero ends it, so there is none in it.
+            let text = text.replace('\0', " ");
+            if texts_as_such {
+                self.field("Array", "String", name, 1, (text + "\0").as_bytes())?;
+            } else {
+                self.field("DataArray", "UInt8", name, text.len(), text.as_bytes())?;
+            }
+        }
+        writeln!(self.xml, "</FieldData>")
+    }
+
+    /// Numbers or a text about the whole.
+    fn field(
+        &mut self,
+        element: &str,
+        kind: &str,
+        name: &str,
+        tuples: usize,
+        bytes: &[u8],
+    ) -> io::Result<()> {
+        writeln!(
+            self.xml,
+            "<{element} type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"{tuples}\" \
+             format=\"appended\" offset=\"{}\"/>",
+            self.data.len()
+        )?;
+        self.append(bytes);
+        Ok(())
+    }
+
+    fn append(&mut self, bytes: &[u8]) {
+        self.data.extend((bytes.len() as u64).to_le_bytes());
+        self.data.extend(bytes);
+    }
+
     pub fn array(
         &mut self,
         kind: &str,
@@ -117,8 +184,7 @@ impl Appended {
              format=\"appended\" offset=\"{}\"/>",
             self.data.len()
         )?;
-        self.data.extend((bytes.len() as u64).to_le_bytes());
-        self.data.extend(bytes);
+        self.append(&bytes);
         Ok(())
     }
 }

@@ -1,9 +1,10 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::Filtration;
 use super::levels::ByLevel;
+use super::stops::Sight;
 use super::values::Value;
+use super::{Filtration, Levels};
 use crate::shape::{Alpha, Betti, each_number_or_name};
 
 /// The topology of a filtration at every α at which a simplex comes.
@@ -20,6 +21,8 @@ pub struct Curve {
     pub solid_components: Vec<u64>,
     /// Vertices of the triangulation that no cell of the shape has, from each value on.
     pub loose: Vec<u64>,
+    /// What can be seen from each value on.
+    pub(super) sights: Vec<Sight>,
     largest_weight: f64,
 }
 
@@ -47,25 +50,42 @@ impl Filtration {
     /// The topology at all critical values. O(n log n).
     pub fn curve(&self) -> Curve {
         let values = self.values();
-        let alphas: Vec<Alpha> = values
-            .iter()
-            .map(|value| Alpha::from_squared(value.above()).expect("radii are numbers"))
-            .collect();
-        let levels = self.levels(&alphas);
-        assert_eq!(levels.len(), values.len(), "one level for each value");
+        let levels = self.levels_of(&values);
         let (betti, solid_components) =
             rayon::join(|| levels.betti(), || levels.solid_components());
         let weights = &self.points().weights;
         Curve {
             betti,
             solid_components,
-            loose: self.loose(&levels.cells, levels.len()),
+            loose: self.loose(&levels),
+            sights: levels.sights(),
             largest_weight: weights.iter().copied().fold(f64::NEG_INFINITY, f64::max),
             values,
         }
     }
 
-    fn loose(&self, first: &[u32], levels: usize) -> Vec<u64> {
+    /// The smallest α at which all points are in one solid component: [`Suggestions::one_region`],
+    /// for less than half of what a [`Curve`] costs. O(n log n).
+    pub fn one_region(&self) -> Alpha {
+        let values = self.values();
+        let levels = self.levels_of(&values);
+        let (loose, solid) = rayon::join(|| self.loose(&levels), || levels.solid_components());
+        let first = (0..values.len()).find(|&k| loose[k] == 0 && solid[k] == 1);
+        let first = values[first.expect("the whole triangulation is one solid")];
+        Alpha::from_squared(self.first_alpha(first)).expect("radii are numbers")
+    }
+
+    /// A level for each critical value.
+    fn levels_of(&self, values: &[Value]) -> Levels<'_> {
+        let alpha = |value: &Value| Alpha::from_squared(value.above()).expect("radii are numbers");
+        let levels = self.levels(&values.iter().map(alpha).collect::<Vec<_>>());
+        assert_eq!(levels.len(), values.len(), "one level for each value");
+        levels
+    }
+
+    /// Vertices that no cell has, at each level.
+    fn loose(&self, levels: &Levels<'_>) -> Vec<u64> {
+        let (first, levels) = (&levels.cells, levels.len());
         let vertices = self.whole.complex().vertices.len();
         let mut covered = vec![levels as u32; vertices];
         for (cell, &level) in self.whole.complex().cells.vertices.iter().zip(first) {
@@ -132,7 +152,7 @@ impl Filtration {
     }
 
     /// The first doubles that are not below critical values.
-    fn alphas_at<const M: usize>(&self, curve: &Curve, values: [usize; M]) -> [f64; M] {
+    pub(super) fn alphas_at<const M: usize>(&self, curve: &Curve, values: [usize; M]) -> [f64; M] {
         values.map(|k| self.first_alpha(curve.values[k]))
     }
 }
@@ -159,7 +179,7 @@ impl Curve {
     }
 
     /// The squared radius of the largest balls at a value.
-    fn size(&self, k: usize) -> f64 {
+    pub(super) fn size(&self, k: usize) -> f64 {
         self.values[k].above() + self.largest_weight
     }
 

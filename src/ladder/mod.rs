@@ -30,6 +30,7 @@ mod incidence;
 mod levels;
 mod region;
 mod shape;
+mod stops;
 mod table;
 mod topology;
 mod values;

@@ -31,6 +31,16 @@ pub enum PointsError {
         /// Voxels that take part.
         available: u64,
     },
+    /// The mask leaves no voxel.
+    #[error(
+        "no voxel reaches --gray-min {least}: after truncation gray levels end at {highest}; give less"
+    )]
+    Masked {
+        /// The least gray level asked for.
+        least: f64,
+        /// The highest there is.
+        highest: f64,
+    },
     /// The threshold or the mask leaves no voxel.
     #[error(
         "none of {voxels} voxels is selected: lower --threshold or --gray-min, or give --ratio"

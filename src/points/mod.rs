@@ -27,7 +27,7 @@ mod write;
 
 pub use difference::{difference, difference_row};
 pub use error::PointsError;
-pub use read::{is_point_file, read_points};
+pub use read::{Columns, UnknownColumns, is_point_file, read_points};
 pub use scattered::scattered_difference;
 pub use select::{Points, Selection, SelectionRule, Units, points_at, select};
 pub use weigh::{UnknownWeighting, WeightSummary, WeightedPoints, Weighting, weigh};

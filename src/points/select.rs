@@ -138,6 +138,10 @@ pub fn select(
             let pairs = flat.par_iter().zip(smoothed.as_slice()).enumerate();
             let masked: Vec<f64> = pairs.map(mask).collect();
             let available = masked.par_iter().filter(|l| !l.is_nan()).count() as u64;
+            if available == 0 {
+                let highest = f64::from(smoothed.value_range().1);
+                return Err(PointsError::Masked { least, highest });
+            }
             chosen(&masked, available, &selection.rule)?
         }
     };

@@ -14,7 +14,7 @@ const STYLE: &str = include_str!("page.css");
 pub fn page(report: &Report, files: &[File]) -> String {
     let mut html =
         String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-    let title = format!("{}: the paper, reproduced", report.paper);
+    let title = format!("{}, reproduced", report.paper);
     let _ = write!(
         html,
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -40,7 +40,8 @@ fn head(html: &mut String, report: &Report) {
     let [low, high] = input.gray_range;
     let _ = write!(
         html,
-        "<h1>{}: the paper, reproduced</h1>\n\
+        "<h1>{}, reproduced</h1>\n\
+         <p class=\"soft\">The paper: {}. This report: walpha {}, {}.</p>\n{}\
          <p>Table 1 and the figures, made again on <b>{}</b> ({x}×{y}×{z} samples, values {} to {} \
          taken as gray levels 0 to 255). Each claim of the paper is held against our numbers, and nothing is tuned \
          to agree.</p>\n\
@@ -48,6 +49,10 @@ fn head(html: &mut String, report: &Report) {
          ε = {}, RMS {} gray levels. <b>α and ω are squared lengths</b>, in voxels: at α = 10 with \
          ω = 0 the balls have radius √10.</p>\n",
         escape(report.paper),
+        report.source,
+        report.version,
+        escape(&report.date),
+        in_plain_words(report),
         escape(&input.name),
         number(low),
         number(high),
@@ -59,6 +64,33 @@ fn head(html: &mut String, report: &Report) {
         number(input.haar.epsilon),
         number(input.haar.rms),
     );
+}
+
+/// What it all comes to.
+fn in_plain_words(report: &Report) -> String {
+    let verdict = |part: &str| {
+        let mut findings = report.items.iter().flat_map(|item| &item.findings);
+        findings.find(|finding| finding.claim.contains(part)).map(|finding| finding.verdict)
+    };
+    let filled = match verdict("the hole is filled") {
+        Some(Verdict::Reproduced) => "With them the hole of its last figures is filled here.",
+        _ => "So the hole that its last figures are to show filled is not filled.",
+    };
+    let weights = match verdict("Barycentric weights give another shape") {
+        Some(Verdict::Reproduced) => {
+            "Its weights in proportion to differences change the shape a little."
+        }
+        _ => {
+            "What does not hold is what it says of weights in proportion to differences: taken as its \
+             equation has them they are so small that the shape with them is the one without."
+        }
+    };
+    format!(
+        "<p><b>In plain words.</b> The method works: a small share of the samples, those where the volume \
+         changes most, makes a shape of tetrahedra that shows what is in it, and the shape grows and \
+         shrinks with α as the paper says. {weights} {filled} Some claims cannot be decided, as the paper \
+         does not say how it got there.</p>\n"
+    )
 }
 
 /// Claims and verdicts at a glance.
@@ -103,16 +135,22 @@ fn section(html: &mut String, item: &Item, files: &[File]) {
     if let Some(file) = picture.and_then(|name| files.iter().find(|file| file.name == *name)) {
         let _ = writeln!(
             html,
-            "<figure><img alt=\"{}\" src=\"data:image/png;base64,{}\"></figure>",
+            "<figure><a href=\"{}\"><img alt=\"{}\" src=\"data:image/png;base64,{}\"></a>\
+             <figcaption>Tap the figure to open it large.</figcaption></figure>",
+            escape(&file.name),
             escape(&item.title),
             base64(&file.bytes)
         );
     }
+    html.push_str("<div class=\"findings\">\n");
     item.findings.iter().for_each(|finding| judgement(html, finding));
+    html.push_str("</div>\n<div class=\"tables\">\n");
     item.tables.iter().for_each(|table| rows(html, table));
     shapes(html, &item.shapes);
     if !item.facts.is_empty() {
-        html.push_str("<h3>Numbers</h3>\n<div class=\"wide\"><table class=\"facts\"><tbody>\n");
+        html.push_str(
+            "<div class=\"wide\"><table class=\"facts\"><caption>Numbers</caption><tbody>\n",
+        );
         for fact in &item.facts {
             let _ = writeln!(
                 html,
@@ -123,6 +161,7 @@ fn section(html: &mut String, item: &Item, files: &[File]) {
         }
         html.push_str("</tbody></table></div>\n");
     }
+    html.push_str("</div>\n");
     if !item.commands.is_empty() {
         let _ = writeln!(
             html,
@@ -131,7 +170,9 @@ fn section(html: &mut String, item: &Item, files: &[File]) {
         );
     }
     if !item.files.is_empty() {
-        let _ = writeln!(html, "<p class=\"soft\">Files: {}</p>", escape(&item.files.join(", ")));
+        let link = |name: &String| format!("<a href=\"{0}\">{0}</a>", escape(name));
+        let links: Vec<String> = item.files.iter().map(link).collect();
+        let _ = writeln!(html, "<p class=\"soft\">Files: {}</p>", links.join(", "));
     }
     html.push_str("</section>\n");
 }
@@ -169,7 +210,7 @@ fn shapes(html: &mut String, shapes: &[ShapeNumbers]) {
         return;
     }
     html.push_str(
-        "<h3>Shapes</h3>\n<div class=\"wide\"><table class=\"shapes\"><thead><tr><th></th>",
+        "<div class=\"wide\"><table class=\"shapes\"><caption>Shapes</caption><thead><tr><th></th>",
     );
     for shape in shapes {
         let _ = write!(html, "<th>{}</th>", escape(&shape.label));

@@ -38,6 +38,8 @@ pub struct Subject<'a> {
     pub range: GrayRange,
     /// What a user writes to get this volume: a sample's name, or a file.
     pub name: &'a str,
+    /// The day to write into the report, as 2025-12-31.
+    pub date: &'a str,
 }
 
 /// The report, and the files that belong beside it.
@@ -82,7 +84,7 @@ pub fn reproduce(
         items.push(make(&mut bench)?);
     }
     let files = bench.files;
-    let report = Report::new(study.input(), items, clock.stop());
+    let report = Report::new(study.input(), subject.date, items, clock.stop());
     Ok(Reproduction { report, files })
 }
 

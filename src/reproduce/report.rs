@@ -12,6 +12,12 @@ pub struct Report {
     pub schema_version: u32,
     /// What is made again.
     pub paper: &'static str,
+    /// Who wrote it, and where it appeared, as far as it says.
+    pub source: &'static str,
+    /// The version of this program.
+    pub version: &'static str,
+    /// The day on which the report was made.
+    pub date: String,
     /// What it is made again on.
     pub input: Input,
     /// Table and figures, in the paper's order.
@@ -145,12 +151,21 @@ impl Fact {
 }
 
 impl Report {
-    pub(super) fn new(input: Input, items: Vec<Item>, seconds: Vec<(&'static str, f64)>) -> Self {
+    pub(super) fn new(
+        input: Input,
+        date: &str,
+        items: Vec<Item>,
+        seconds: Vec<(&'static str, f64)>,
+    ) -> Self {
         let findings = || items.iter().flat_map(|item| &item.findings);
         let count = |verdict| findings().filter(|finding| finding.verdict == verdict).count();
         Self {
             schema_version: 1,
             paper: "Volume Modeling of Scattered Data based on Weighted Alpha Shapes",
+            source: "in English, with a Korean abstract; the copy followed here names neither \
+                     authors nor a journal, and its latest reference is of 2004",
+            version: env!("CARGO_PKG_VERSION"),
+            date: date.into(),
             verdicts: Verdict::ALL.map(|verdict| (verdict, count(verdict))).into(),
             input,
             items,

@@ -1,5 +1,7 @@
 use serde::{Deserialize, Serialize, Serializer};
 
+use crate::shown::{number, six_digits};
+
 /// The parameter α of a shape: a **squared** length, as in CGAL and in Edelsbrunner 1992.
 ///
 /// α = ∞ gives the convex hull; with weights a negative α is legal. It is never NaN.
@@ -15,7 +17,7 @@ impl Alpha {
     /// # Errors
     /// [`NotAnAlpha`] for NaN.
     pub fn from_squared(squared: f64) -> Result<Self, NotAnAlpha> {
-        if squared.is_nan() { Err(NotAnAlpha { given: squared }) } else { Ok(Self(squared)) }
+        if squared.is_nan() { Err(NotAnAlpha::NaN) } else { Ok(Self(squared)) }
     }
 
     /// α given by the radius it is the square of, rounded once.
@@ -23,7 +25,11 @@ impl Alpha {
     /// # Errors
     /// [`NotAnAlpha`] for NaN and for a negative radius.
     pub fn from_radius(radius: f64) -> Result<Self, NotAnAlpha> {
-        if radius >= 0.0 { Ok(Self(radius * radius)) } else { Err(NotAnAlpha { given: radius }) }
+        match radius {
+            _ if radius.is_nan() => Err(NotAnAlpha::NaN),
+            _ if radius < 0.0 => Err(NotAnAlpha::Radius(radius)),
+            _ => Ok(Self(radius * radius)),
+        }
     }
 
     /// α as a squared length.
@@ -40,19 +46,24 @@ impl Alpha {
 impl std::fmt::Display for Alpha {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.radius() {
-            Some(radius) => write!(f, "α = {} (squared length; √α = {radius:.6})", self.0),
-            None => write!(f, "α = {} (squared length; negative, so no radius)", self.0),
+            Some(radius) => {
+                let (alpha, radius) = (number(self.0), number(six_digits(radius)));
+                write!(f, "α = {alpha} (squared length; √α = {radius})")
+            }
+            None => write!(f, "α = {} (squared length; negative, so no radius)", number(self.0)),
         }
     }
 }
 
 /// The number given as α is none.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "α cannot be {given}: give a number (squared length), or `inf` for the convex hull; a radius must not be negative"
-)]
-pub struct NotAnAlpha {
-    given: f64,
+pub enum NotAnAlpha {
+    /// NaN.
+    #[error("α cannot be NaN: give a number (a squared length), or `inf` for the convex hull")]
+    NaN,
+    /// A negative radius.
+    #[error("a radius must not be negative, and {0} is: give a length from 0 up, or α itself")]
+    Radius(f64),
 }
 
 /// What a point with weight ω is at parameter α.

@@ -23,22 +23,9 @@ impl Surface {
     /// Where the regular facets make no manifold. Singular simplices, which bound nothing, are not
     /// looked at. O(n log n).
     pub fn manifold_defects(&self) -> ManifoldDefects {
-        // Each edge of each facet, with the corners of the facet at its ends.
-        let mut sides: Vec<([u32; 2], [u32; 2])> = Vec::with_capacity(3 * self.regular.len());
-        for (facet, row) in self.regular.iter().enumerate() {
-            for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-                let corner = |i: usize| (3 * facet + i) as u32;
-                let (mut ends, mut corners) = ([row[i], row[j]], [corner(i), corner(j)]);
-                if ends[0] > ends[1] {
-                    ends.reverse();
-                    corners.reverse();
-                }
-                sides.push((ends, corners));
-            }
-        }
-        sides.sort_unstable();
+        let sides = self.sides();
         let mut fans = UnionFind::new(3 * self.regular.len());
-        let mut on_defect = vec![false; self.vertices.len()];
+        let mut on_defect = vec![false; self.vertex_count()];
         let mut edges = 0;
         for around in sides.chunk_by(|a, b| a.0 == b.0) {
             if let [(_, a), (_, b)] = around {
@@ -49,7 +36,7 @@ impl Surface {
                 around[0].0.iter().for_each(|&v| on_defect[v as usize] = true);
             }
         }
-        let mut fans_of = vec![0usize; self.vertices.len()];
+        let mut fans_of = vec![0usize; self.vertex_count()];
         for (corner, &v) in self.regular.as_flattened().iter().enumerate() {
             let corner = corner as u32;
             fans_of[v as usize] += usize::from(fans.find(corner) == corner);

@@ -76,7 +76,7 @@ proptest! {
         let reader = thread::spawn(move || {
             let _ = open(&path);
             let _ = walpha::points::is_point_file(&path);
-            let _ = read_points(&path);
+            let _ = read_points(&path, None);
             let _ = done.send(());
         });
         // A reader that hangs stays behind; one that panics sends nothing, and is told by its join.

@@ -1,5 +1,5 @@
 use walpha::Points;
-use walpha::points::{PointsError, read_points, scattered_difference};
+use walpha::points::{Columns, PointsError, read_points, scattered_difference};
 
 use crate::common;
 use crate::files::*;
@@ -10,13 +10,13 @@ fn points_of_every_format_are_read() {
     for (name, bytes) in point_examples() {
         let path = save(folder.path(), name, bytes);
         assert!(walpha::points::is_point_file(&path).unwrap(), "{name}");
-        let points = read_points(&path).unwrap_or_else(|e| panic!("{e}"));
+        let points = read_points(&path, None).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(points.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{name}");
         assert_eq!(points.values, Some(vec![7.0, 8.0]), "{name}");
         assert_eq!(points.weights, None, "{name}");
     }
     let atoms = "2\na molecule\nC 1 2 3\nH 4 5 6 0.1\n";
-    let points = read_points(&save(folder.path(), "m.xyz", atoms)).unwrap();
+    let points = read_points(&save(folder.path(), "m.xyz", atoms), None).unwrap();
     assert_eq!((points.len(), points.values), (2, None));
     for (name, bytes) in examples() {
         let path = save(folder.path(), name, bytes);
@@ -29,7 +29,7 @@ fn points_of_every_format_are_read() {
 fn damaged_points_say_what_is_wrong() {
     let folder = tempfile::tempdir().unwrap();
     let refuses = |name: &str, text: &str, part: &str| {
-        let error = read_points(&save(folder.path(), name, text)).unwrap_err().to_string();
+        let error = read_points(&save(folder.path(), name, text), None).unwrap_err().to_string();
         assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
     };
     let rows = "2 0 1\n1 2 3 0 7\n4 5 6 0 8\n";
@@ -106,11 +106,227 @@ fn the_command_weighs_scattered_values() {
     save(folder.path(), "s.csv", &text);
     for weights in ["min-max", "barycentric", "barycentric-n"] {
         common::ok(folder.path(), &["points", "s.csv", "--weights", weights, "-o", "w.csv"]);
-        let weights = read_points(&folder.path().join("w.csv")).unwrap().weights.unwrap();
+        let weights = read_points(&folder.path().join("w.csv"), None).unwrap().weights.unwrap();
         assert!(weights.iter().any(|&w| w > 0.0));
     }
     save(folder.path(), "bare.csv", text.replace("value", "other"));
     let (code, _, said) =
         common::run(folder.path(), &["points", "bare.csv", "--weights", "min-max"]);
     assert!(code == 1 && said.contains("column `value`"), "{said}");
+}
+
+/// A PCD of the fields x, y, z, a normal of three numbers, and intensity.
+fn pcd(data: &str, bytes: &[u8]) -> Vec<u8> {
+    let head = format!(
+        "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z normal intensity\nSIZE 4 4 8 4 2\nTYPE F F F F U\n\
+         COUNT 1 1 1 3 1\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA {data}\n"
+    );
+    [head.as_bytes(), bytes].concat()
+}
+
+/// Two points with values 7 and 8, and one without a place between them.
+fn pcd_examples() -> [(&'static str, Vec<u8>); 4] {
+    let nan = f32::NAN;
+    let rows = [(1f32, 2f32, 3f64, 7u16), (nan, nan, f64::NAN, 9), (4.0, 5.0, 6.0, 8)];
+    let text: String = rows.iter().map(|(x, y, z, i)| format!("{x} {y} {z} 0 0 1 {i}\n")).collect();
+    let normal = [0f32, 0.0, 1.0].map(f32::to_le_bytes).concat();
+    let side_by_side: Vec<u8> = rows
+        .iter()
+        .flat_map(|(x, y, z, i)| {
+            [&x.to_le_bytes()[..], &y.to_le_bytes(), &z.to_le_bytes(), &normal, &i.to_le_bytes()]
+                .concat()
+        })
+        .collect();
+    let by_field = [
+        rows.iter().flat_map(|row| row.0.to_le_bytes()).collect::<Vec<u8>>(),
+        rows.iter().flat_map(|row| row.1.to_le_bytes()).collect(),
+        rows.iter().flat_map(|row| row.2.to_le_bytes()).collect(),
+        normal.repeat(3),
+        rows.iter().flat_map(|row| row.3.to_le_bytes()).collect(),
+    ]
+    .concat();
+    let packed = |pieces: Vec<u8>| {
+        let sizes = [pieces.len(), by_field.len()].map(|n| (n as u32).to_le_bytes()).concat();
+        [sizes, pieces].concat()
+    };
+    // As they are; and with the second and third normals as copies of what stands 12 bytes before, too.
+    let literal = |bytes: &[u8]| {
+        bytes.chunks(32).flat_map(|c| [&[c.len() as u8 - 1], c].concat()).collect::<Vec<u8>>()
+    };
+    let (before, after) = (3 * (4 + 4 + 8) + 12, 3 * (4 + 4 + 8) + 36);
+    let copied = [
+        // The zeros of z = 3 as copies of the first of them.
+        literal(&by_field[..25]),
+        vec![3 << 5, 0],
+        literal(&by_field[30..before]),
+        vec![7 << 5, 24 - 9, 11],
+        literal(&by_field[after..]),
+    ]
+    .concat();
+    [
+        ("text.pcd", pcd("ascii", text.as_bytes())),
+        ("binary.pcd", pcd("binary", &side_by_side)),
+        ("literal.pcd", pcd("binary_compressed", &packed(literal(&by_field)))),
+        ("copied.pcd", pcd("binary_compressed", &packed(copied))),
+    ]
+}
+
+#[test]
+fn point_clouds_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in pcd_examples() {
+        let points = read_points(&save(folder.path(), name, bytes), None).unwrap();
+        assert_eq!(points.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{name}");
+        assert_eq!(points.values, Some(vec![7.0, 8.0]), "{name}");
+    }
+    let [text, binary, packed, _] = pcd_examples();
+    let refuses = |name: &str, bytes: &[u8], part: &str| {
+        let error = read_points(&save(folder.path(), name, bytes), None).unwrap_err().to_string();
+        assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
+    };
+    let cut = |bytes: &[u8]| bytes[..bytes.len() - 5].to_vec();
+    refuses("a.pcd", &binary.1[..60], "truncated");
+    refuses("b.pcd", &cut(&binary.1), "claims 3 points of 30 bytes");
+    refuses("c.pcd", &cut(&packed.1), "compressed data");
+    let text = String::from_utf8(text.1).unwrap();
+    refuses("d.pcd", text.replace("POINTS 3", "POINTS 4").as_bytes(), "claims 4 points");
+    refuses("e.pcd", text.replace("FIELDS x", "FIELDS q").as_bytes(), "without x, y or z");
+    refuses("f.pcd", text.replace("SIZE 4", "SIZE 8 4").as_bytes(), "different lengths");
+    refuses("g.pcd", text.replace("ascii", "utf-8").as_bytes(), "ascii, binary");
+    refuses("h.pcd", text.replace("POINTS 3", "POINTS 999999999999").as_bytes(), "cannot hold");
+}
+
+/// The corners of a tetrahedron, in the order in which its facets name them.
+const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.5], [0.0, 4.0, 0.0], [4.0, 0.0, 0.0], [0.0, 0.0, 4.0]];
+const FACETS: [[usize; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+
+#[test]
+fn vertices_of_meshes_are_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let lines = |begin: &str, end: &str| -> String {
+        CORNERS.iter().map(|[x, y, z]| format!("{begin}{x} {y} {z}{end}\n")).collect()
+    };
+    let faces: String = FACETS.iter().map(|[a, b, c]| format!("3 {a} {b} {c}\n")).collect();
+    let mut binary = [b' '; 80].to_vec();
+    // The word that text begins with.
+    binary[..5].copy_from_slice(b"solid");
+    binary.extend(4u32.to_le_bytes());
+    let mut text = "solid a\n".to_owned();
+    for facet in FACETS {
+        binary.extend([0; 12]);
+        text += "facet normal 0 0 1\nouter loop\n";
+        for [x, y, z] in facet.map(|v| CORNERS[v]) {
+            [x, y, z].iter().for_each(|&c| binary.extend((c as f32).to_le_bytes()));
+            text += &format!(" vertex {x} {y} {z}\n");
+        }
+        binary.extend([0; 2]);
+        text += "endloop\nendfacet\n";
+    }
+    text += "endsolid a\n";
+    let files: [(&str, Vec<u8>); 8] = [
+        ("a.off", format!("OFF # a mesh\n\n4 4 6\n{}{faces}", lines("", "")).into()),
+        ("counts.off", format!("OFF 4 4 0\n{}{faces}", lines("", "")).into()),
+        ("colours.off", format!("COFF\n4 4 0\n{}{faces}", lines("", " 9 9 9 255")).into()),
+        ("a.obj", format!("# a\nmtllib b\n{}vn 0 0 1\nf 1//1 2//1 3//1\n", lines("v ", "")).into()),
+        ("colours.obj", lines("v ", " 0.5 0.5 1").into()),
+        ("text.stl", text.clone().into()),
+        ("binary.stl", binary.clone()),
+        ("a.pwn", format!("4\n{}{}", lines("", ""), "0 0 1\n".repeat(4)).into()),
+    ];
+    for (name, bytes) in files {
+        let path = save(folder.path(), name, bytes);
+        assert!(walpha::points::is_point_file(&path).unwrap(), "{name}");
+        let points = read_points(&path, None).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(points.positions, CORNERS, "{name}");
+        assert_eq!((points.weights, points.values), (None, None), "{name}");
+    }
+    let refuses = |name: &str, bytes: &[u8], part: &str| {
+        let error = read_points(&save(folder.path(), name, bytes), None).unwrap_err().to_string();
+        assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
+    };
+    refuses("a.off", format!("OFF\n4 9 0\n{}{faces}", lines("", "")).as_bytes(), "truncated");
+    refuses("a.off", b"OFF\nhello\n", "how many vertices");
+    refuses("a.off", b"4OFF\n1 0 0\n1 2 3 4\n", "three coordinates");
+    refuses("a.off", b"OFF BINARY\n", "binary");
+    refuses("a.obj", b"v 1 2\n", "line 1: z");
+    refuses("a.obj", b"f 1 2 3\n", "no point");
+    refuses("a.stl", &binary[..200], "truncated");
+    refuses("a.stl", text[..90].as_bytes(), "truncated");
+    refuses("a.pwn", b"2\n0 0 0\n1 1 1\n0 0 1\n", "claims 2 points");
+}
+
+#[test]
+fn tables_need_no_header() {
+    let folder = tempfile::tempdir().unwrap();
+    let places = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
+    let columns = |names: &str| names.parse::<Columns>().unwrap();
+    let cases = [
+        ("plain.csv", "1,2,3\n4,5,6\n", None, None),
+        ("semicolons.csv", "1;2;3;0,5\n4;5;6;7\n", None, Some(vec![0.5, 7.0])),
+        ("named.csv", "z;y;x;value\n3;2;1;0,5\n6;5;4;7\n", None, Some(vec![0.5, 7.0])),
+        ("tabs.tsv", "1\t2\t3\t0.5\n4\t5\t6\t7\n", None, Some(vec![0.5, 7.0])),
+        ("normals.xyz", "1 2 3 0 0.6 0.8\n4 5 6 0 0 0\n", None, None),
+        ("colours.xyz", "1 2 3 255 0 17\n4 5 6 1 2 3\n", None, None),
+        ("remark.xyz", "# scanned today\n1 2 3\n4 5 6\n", None, None),
+        ("normals.pwn", "1 2 3 0 0 1\n4 5 6 1 0 0\n", None, None),
+        ("five.xyz", "9 1 2 3 0.5\n9 4 5 6 7\n", Some("id,x,y,z,value"), Some(vec![0.5, 7.0])),
+        ("other.csv", "a,b,c\n1,2,3\n4,5,6\n", Some("x,y,z"), None),
+    ];
+    for (name, text, names, values) in cases {
+        let path = save(folder.path(), name, text);
+        let points =
+            read_points(&path, names.map(columns).as_ref()).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(points.positions, places, "{name}");
+        assert_eq!(points.values, values, "{name}");
+    }
+    let refuses = |name: &str, text: &str, names: Option<&str>, part: &str| {
+        let path = save(folder.path(), name, text);
+        let error = read_points(&path, names.map(columns).as_ref()).unwrap_err().to_string();
+        assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
+    };
+    refuses("six.xyz", "1 2 3 4 5 0.6\n", None, "--columns x,y,z,nx,ny,nz");
+    refuses("five.xyz", "1 2 3 4 5\n", None, "--columns x,y,z,weight,value");
+    refuses("nine.xyz", "1 2 3 4 5 6 7 8 9\n", None, "--columns x,y,z,-,-,-,-,-,-");
+    refuses("a.xyz", "1 2 3 4\n", Some("x,y,z"), "line 1 has 4 columns");
+    refuses("a.ply", PLY, Some("x,y,z"), "leave --columns away");
+    for (names, part) in [("x,y", "do not name z"), ("x,y,z,X", "name x twice")] {
+        assert!(names.parse::<Columns>().unwrap_err().to_string().contains(part), "{names}");
+    }
+}
+
+/// Of CGAL's own examples all are read but one, whose lines are triangles; it says what to do.
+#[test]
+fn cgal_s_point_sets_are_read() {
+    let archive = std::path::Path::new("/usr/share/doc/libcgal-dev/data.tar.gz");
+    let Ok(file) = std::fs::File::open(archive) else {
+        eprintln!("skipped: {} is not installed", archive.display());
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let mut files = tar::Archive::new(flate2::read::GzDecoder::new(file));
+    let mut counts = std::collections::BTreeMap::new();
+    for entry in files.entries().unwrap() {
+        let mut entry = entry.unwrap();
+        let name = entry.path().unwrap().to_path_buf();
+        let wanted = name.parent().is_some_and(|parent| parent.ends_with("points_3"));
+        let extension = name.extension().unwrap_or_default().to_string_lossy().into_owned();
+        if !wanted || !["xyz", "pwn", "off", "ply"].contains(&extension.as_str()) {
+            continue;
+        }
+        let path = folder.path().join(name.file_name().unwrap());
+        entry.unpack(&path).unwrap();
+        match read_points(&path, None) {
+            Ok(points) => {
+                assert!(!points.is_empty(), "{name:?}");
+                *counts.entry(extension).or_insert(0) += 1;
+            }
+            Err(error) => {
+                assert!(name.ends_with("triangles.xyz"), "{error}");
+                assert!(error.to_string().contains("has 9 columns"), "{error}");
+                let columns: Columns = "x,y,z,-,-,-,-,-,-".parse().unwrap();
+                assert_eq!(read_points(&path, Some(&columns)).unwrap().len(), 10);
+            }
+        }
+    }
+    assert_eq!((counts["xyz"], counts["pwn"], counts["off"]), (16, 3, 1), "{counts:?}");
 }

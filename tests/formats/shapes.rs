@@ -2,7 +2,7 @@ use std::fs;
 use std::path::Path;
 
 use walpha::Points;
-use walpha::export::Format;
+use walpha::export::{ExportOptions, Format};
 use walpha::points::{WeightedPoints, read_points};
 use walpha::shape::{Alpha, ShapeOptions, alpha_shape};
 
@@ -18,7 +18,7 @@ fn shape() -> walpha::AlphaShape {
 
 fn exported(format: Format, shape: &walpha::AlphaShape) -> Vec<u8> {
     let mut bytes = Vec::new();
-    format.exporter(false).write(shape, &mut bytes).unwrap();
+    format.exporter(&ExportOptions::default()).write(shape, &mut bytes).unwrap();
     bytes
 }
 
@@ -31,7 +31,7 @@ fn written_shapes_are_read_back() {
         [(Format::Ply, "ply", 4), (Format::Vtp, "vtp", 4), (Format::Vtu, "vtu", 5)]
     {
         let path = save(folder.path(), &format!("s.{extension}"), exported(format, &shape));
-        let back = read_points(&path).unwrap();
+        let back = read_points(&path, None).unwrap();
         assert_eq!(back.positions, shape.points().positions[..corners], "{extension}");
         assert_eq!(back.values.unwrap(), [1.0, 2.0, 3.0, 5.0, 10.0][..corners], "{extension}");
         assert_eq!(back.weights, Some(vec![0.0; corners]), "{extension}");
@@ -81,7 +81,7 @@ fn payloads(path: &Path) -> impl FnMut(&str) -> Vec<u8> {
 
 #[test]
 fn stl_says_when_the_boundary_is_no_manifold() {
-    assert_eq!(Format::Stl.exporter(false).remark(&shape()), None);
+    assert_eq!(Format::Stl.exporter(&ExportOptions::default()).remark(&shape()), None);
     // Two tetrahedra that touch at a vertex.
     let folder = tempfile::tempdir().unwrap();
     let text = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n-1 -1 0\n-1 0 -1\n0 -1 -1\n";
@@ -94,4 +94,87 @@ fn stl_says_when_the_boundary_is_no_manifold() {
     assert!(!said.contains("two.ply"), "{said}");
     let (_, _, said) = common::run(folder.path(), &[&args[..], &["--quiet"]].concat());
     assert_eq!(said, "");
+}
+
+fn text(format: Format, options: &ExportOptions, shape: &walpha::AlphaShape) -> String {
+    let mut bytes = Vec::new();
+    format.exporter(options).write(shape, &mut bytes).unwrap();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+#[test]
+fn vertices_are_coloured_by_their_values() {
+    let shape = shape();
+    let options = ExportOptions { ascii: true, ..ExportOptions::default() };
+    let ply = text(Format::Ply, &options, &shape);
+    let (head, body) = ply.split_once("end_header\n").unwrap();
+    assert!(
+        head.contains("property uchar red\nproperty uchar green\nproperty uchar blue\n"),
+        "{head}"
+    );
+    assert!(!head.contains("element edge"), "which meshio, trimesh and others refuse: {head}");
+    assert!(head.ends_with("vertex_indices\n"), "meshio reads no numbers of facets: {head}");
+    let groups = text(Format::Ply, &ExportOptions { groups: true, ..options.clone() }, &shape);
+    assert!(groups.contains("property uchar class\nproperty uint component\nproperty int sheet"));
+    // Of the values 1, 2, 3 and 5 on the hull the least is dark, the most light.
+    let rows: Vec<&str> = body.lines().take(4).collect();
+    assert_eq!(rows[0], "0 0 0 0 1 68 1 84 0");
+    assert_eq!(rows[3], "0 0 4 0 5 253 231 37 3");
+}
+
+#[test]
+fn groups_are_made_where_they_are_asked_for() {
+    let shape = shape();
+    let plain = ExportOptions::default();
+    let groups = ExportOptions { groups: true, ..ExportOptions::default() };
+    assert!(!text(Format::Obj, &plain, &shape).contains("\ng "));
+    assert!(text(Format::Obj, &groups, &shape).contains("\ng regular\nf "));
+    let facets = |off: String| {
+        off.lines()
+            .filter(|line| line.starts_with("3 "))
+            .map(|l| l.split(' ').count())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(facets(text(Format::Off, &plain, &shape)), [4; 4]);
+    assert_eq!(facets(text(Format::Off, &groups, &shape)), [7; 4]);
+}
+
+#[test]
+fn files_say_how_they_were_made() {
+    let shape = shape();
+    let options =
+        ExportOptions { input: Some("a <file> & \"more\".csv".into()), ..ExportOptions::default() };
+    let vtp = text(Format::Vtp, &options, &shape);
+    for word in ["walpha ", "a <file> & \"more\".csv\0", "2 regular, 3 singular\0"] {
+        assert!(vtp.contains(word), "{word}");
+    }
+    for name in ["alpha", "alpha_radius", "made_by", "class_legend", "input"] {
+        let named = format!("Name=\"{name}\" NumberOfTuples=");
+        assert!(vtp.contains(&named), "{name}");
+        assert!(text(Format::Vtu, &options, &shape).contains(&named), "{name}");
+    }
+    let vtu = text(Format::Vtu, &options, &shape);
+    assert!(!vtu.contains("String"), "which meshio refuses");
+    let glb = exported(Format::Glb, &shape);
+    let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+    let document: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
+    // A quarter turn: (x, y, z) becomes (x, z, -y).
+    let [x, y, z, w] = [0, 1, 2, 3].map(|k| document["nodes"][0]["rotation"][k].as_f64().unwrap());
+    let half = 0.5f64.sqrt();
+    assert!((x + half).abs() < 1e-12 && y == 0.0 && z == 0.0 && (w - half).abs() < 1e-12);
+}
+
+#[test]
+fn the_report_says_where_a_solid_was_cut() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n-1 -1 0\n-1 0 -1\n0 -1 -1\n";
+    save(folder.path(), "two.xyz", text);
+    let args = ["shape", "two.xyz", "--alpha", "0.75", "--solid", "-o", "two.stl", "two.ply"];
+    let said = common::ok(folder.path(), &args);
+    assert!(said.contains("cut apart at 0 edges, with 1 vertices more"), "{said}");
+    let made = common::json(folder.path(), &args);
+    assert_eq!(made["solid"], serde_json::json!({ "edges": 0, "vertices": 1, "midpoints": 0 }));
+    assert_eq!(read_points(&folder.path().join("two.ply"), None).unwrap().len(), 8);
+    let (_, _, stderr) = common::run(folder.path(), &args);
+    assert!(!stderr.contains("manifold"), "{stderr}");
 }

@@ -51,6 +51,11 @@ pub fn numbers_stand_in_the_report(files: &BTreeMap<String, Vec<u8>>, report: &V
     // The letters alone may stand in a picture, which is written in 64 signs without a colon.
     let elsewhere = ["<script", "http:", "https:"].into_iter().find(|part| html.contains(part));
     assert_eq!(elsewhere, None, "a page on its own");
+    let made =
+        format!("walpha {}, {}.", env!("CARGO_PKG_VERSION"), report["date"].as_str().unwrap());
+    assert!(html.contains(&made), "{made}");
+    assert!(html.contains("In plain words.") && html.contains("is not filled"), "what it comes to");
+    assert!(html.contains("<a href=\"figure-10.png\"><img"), "figures open large");
     let mut sections = html.split("<section").skip(1);
     for item in report["items"].as_array().unwrap() {
         let section = sections.next().expect("a section for each item");
@@ -135,6 +140,9 @@ fn of_head(report: &Value) -> Vec<Shown> {
     let mut all = [
         words(&report["paper"]),
         words(&report["paper"]),
+        words(&report["source"]),
+        words(&report["version"]),
+        words(&report["date"]),
         said("Table 1"),
         words(&input["name"]),
         each(&input["dims"], rounded),

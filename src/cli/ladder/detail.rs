@@ -18,9 +18,10 @@ use super::super::Global;
 use super::super::args::WeightArgs;
 use super::super::folder::Folder;
 use super::super::output::{name, tell};
-use super::super::pipeline::{Domain, Grays, Input, read, side};
+use super::super::parameter::Parameter;
+use super::super::pipeline::{Domain, Grays, Input, read};
 use super::super::progress::Progress;
-use super::super::report::{AlphaReport, SCHEMA_VERSION};
+use super::super::report::SCHEMA_VERSION;
 use super::{Ladder, Mesh, short};
 
 /// What `walpha ladder` did over detail.
@@ -30,7 +31,7 @@ struct Facts {
     input: String,
     /// Of points and all lengths.
     coordinates: Coordinates,
-    alpha: AlphaReport,
+    alpha: Parameter,
     weights: String,
     domain: Domain,
     /// Points with full detail, which each level has besides its own; null without a region.
@@ -78,7 +79,8 @@ impl Ladder {
         };
         let weights = WeightArgs::from(self.weights);
         let (volume, units) = self.select.place(volume)?;
-        let alpha = weights.alpha(side(&volume, units));
+        let parameter = weights.of_volume(&volume, units)?;
+        let alpha = parameter.alpha;
         let coordinates = units.coordinates(&volume);
         let domain = Domain::of_grid(&volume, units);
         let mut stages = Stages { volume: &volume, units, smoothed: None };
@@ -138,7 +140,7 @@ impl Ladder {
             schema_version: SCHEMA_VERSION,
             input: self.input.input.clone(),
             coordinates,
-            alpha: AlphaReport::new(alpha, coordinates.unit),
+            alpha: parameter,
             weights: weights.weighting(false).to_string(),
             domain,
             points_in_region: full.as_ref().map(in_region),

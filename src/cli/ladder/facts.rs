@@ -10,8 +10,9 @@ use walpha::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
 use walpha::shape::{Betti, ByClass, Measures, Void, number_or_name};
 
 use super::super::output::name;
+use super::super::parameter::Parameter;
 use super::super::pipeline::{Domain, Weighed};
-use super::super::report::{AlphaReport, SCHEMA_VERSION, WeightsReport};
+use super::super::report::{SCHEMA_VERSION, WeightsReport};
 
 /// What `walpha ladder` did over α.
 #[derive(Serialize)]
@@ -23,7 +24,7 @@ pub struct Facts {
     duplicates: usize,
     /// Of points and all lengths.
     coordinates: Coordinates,
-    alpha_ref: AlphaReport,
+    alpha_ref: Parameter,
     weights: WeightsReport,
     domain: Domain,
     /// Cells, facets, edges, vertices of the triangulation.
@@ -55,7 +56,7 @@ struct Row {
 }
 
 impl Facts {
-    pub fn new(input: &str, weighed: &Weighed, domain: Domain) -> Self {
+    pub fn new(input: &str, weighed: &Weighed, alpha_ref: Parameter, domain: Domain) -> Self {
         Self {
             schema_version: SCHEMA_VERSION,
             input: input.to_owned(),
@@ -63,7 +64,7 @@ impl Facts {
             hidden: 0,
             duplicates: 0,
             coordinates: weighed.coordinates,
-            alpha_ref: AlphaReport::new(weighed.alpha, weighed.coordinates.unit),
+            alpha_ref,
             weights: WeightsReport::of(weighed),
             domain,
             simplices: [0; 4],

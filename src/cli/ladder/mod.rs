@@ -7,15 +7,17 @@ mod regions;
 use std::fmt::{Display, LowerExp};
 use std::path::{Path, PathBuf};
 
-use anyhow::{anyhow, bail};
+use anyhow::anyhow;
 use clap::Args;
-use walpha::export::{Exporter, Format};
+use walpha::export::{ExportOptions, Exporter, Format};
 use walpha::ladder::{Filtration, Ladder as Levels, Level, Region};
 use walpha::render::ladder_figure;
 
 use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
 use super::folder::Folder;
+use super::given::misused;
 use super::output::tell;
+use super::parameter::Parameter;
 use super::progress::Progress;
 use super::{Global, pipeline};
 use facts::{Facts, write_levels, write_voids};
@@ -29,12 +31,15 @@ use regions::region;
 /// error of the wavelet stage (--epsilons) there is a mesh for each level of detail, at α = --alpha-ref,
 /// and detail.csv and detail.json tell error and size.
 ///
-/// Examples: walpha ladder sample:skull --alphas 1,2,5,10,20,50 -o ladder;
+/// Examples:
+///
+/// walpha ladder ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o ladder
+///
+/// walpha ladder sample:skull --alphas 1,2,5,10,20,50 -o ladder
+///
 /// walpha ladder sample:skull --counts 1000,4000,16000 --focus 20:40,20:40,20:40 -o detail
 #[derive(Args)]
 pub struct Ladder {
-    #[command(flatten)]
-    input: InputArgs,
     /// Folder to write to, made if it is not there; files in it are replaced, all at the end.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -64,6 +69,8 @@ pub struct Ladder {
     #[arg(long, value_name = "EXT,EXT,…", value_delimiter = ',')]
     mesh: Vec<String>,
     #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
     haar: HaarArgs,
     #[command(flatten)]
     select: SelectArgs,
@@ -78,7 +85,7 @@ impl Ladder {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let detail = !(self.counts.is_empty() && self.epsilons.is_empty());
         if self.focus.is_some() && !detail {
-            bail!("--focus belongs to levels of detail: give --counts or --epsilons too");
+            misused!("--focus belongs to levels of detail: give --counts or --epsilons too");
         }
         once("--counts", &self.counts)?;
         once("--epsilons", &self.epsilons)?;
@@ -103,21 +110,23 @@ impl Ladder {
         let mut progress = Progress::new(global);
         let weights = WeightArgs::from(self.weights);
         let read = pipeline::read(&self.input, &mut progress)?;
+        read.accepts(&self.input)?;
         let (weighed, _) =
             pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
         let weighed = weighed.in_values();
         let domain = pipeline::domain(&weighed);
-        let mut facts = Facts::new(&self.input.input, &weighed, domain);
-        let (alpha, coordinates) = (weighed.alpha, weighed.coordinates);
-        let points = weighed.points;
-        let filtration = progress.stage("filtration", || Filtration::new(points))?;
+        let filtration =
+            progress.stage("filtration", || Filtration::new(weighed.points.clone()))?;
+        let coordinates = weighed.coordinates;
+        let reference = Parameter::of(weighed.parameter, coordinates.unit, &filtration);
+        let mut facts = Facts::new(&self.input.input, &weighed, reference, domain);
         let curve = progress.stage("curve", || filtration.curve());
         let suggested = progress.stage("curve", || filtration.suggest(&curve));
         let alphas = match &self.alphas {
             Alphas::Given(alphas) => alphas.clone(),
-            Alphas::Auto => {
-                progress.stage("curve", || pipeline::readable(&filtration, &curve, READABLE, alpha))
-            }
+            Alphas::Auto => progress.stage("curve", || {
+                pipeline::readable(&filtration, &curve, READABLE, reference.alpha)
+            }),
         };
         let levels = progress.stage("ladder", || filtration.levels(&alphas));
         let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
@@ -169,7 +178,9 @@ fn short(number: impl Display + LowerExp) -> String {
 /// Refuses what is named twice, as one file would replace the other.
 fn once<T: PartialEq + Display>(option: &str, values: &[T]) -> anyhow::Result<()> {
     match values.iter().enumerate().find(|(k, value)| values[..*k].contains(value)) {
-        Some((_, value)) => bail!("{option} names {value} twice; each level has a file of its own"),
+        Some((_, value)) => {
+            misused!("{option} names {value} twice; each level has a file of its own")
+        }
         None => Ok(()),
     }
 }
@@ -191,7 +202,7 @@ fn meshes(asked: &[String], silent: &[&str]) -> anyhow::Result<Vec<Mesh>> {
         let name = format!("level.{extension}");
         let format =
             Format::of(Path::new(&name)).map_err(|unknown| anyhow!("--mesh: {unknown}"))?;
-        Ok(Mesh { exporter: format.exporter(false), extension })
+        Ok(Mesh { exporter: format.exporter(&ExportOptions::default()), extension })
     };
     extensions.into_iter().map(mesh).collect()
 }

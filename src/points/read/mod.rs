@@ -1,14 +1,23 @@
 //! Points from files: by what the file holds first, then by its extension.
 
+mod columns;
+mod las;
 mod npy;
+mod obj;
+mod off;
+mod pcd;
 mod ply;
+mod stl;
 mod table;
 mod vtk;
 mod xyz;
 
+pub use columns::{Columns, UnknownColumns};
+
 use std::io::Read;
 use std::path::Path;
 
+use self::xyz::Counted;
 use super::{Points, PointsError};
 use crate::volume::{NPY_MAGIC, NpyFile, VtkXml, io_error};
 
@@ -20,13 +29,19 @@ const COLUMNS: [&str; 5] = ["x", "y", "z", "weight", "value"];
 enum Kind {
     Table,
     Xyz,
+    Pwn,
     Ply,
+    Off,
+    Obj,
+    Stl,
+    Pcd,
+    Las,
     Vtk,
     Npy,
 }
 
 /// Whether a file holds points rather than a volume, by its content or else by its extension: CSV,
-/// TSV, XYZ, PLY, VTU, VTP, or an NPY array of two axes.
+/// TSV, XYZ, PWN, PLY, OFF, OBJ, STL, PCD, LAS, LAZ, VTU, VTP, or an NPY array of two axes.
 ///
 /// # Errors
 /// A file that begins as NPY or VTK's XML does and cannot be read.
@@ -42,24 +57,41 @@ pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
 /// Reads points, with their weights and values where the file has such columns. Points are counted
 /// from 0.
 ///
-/// - CSV and TSV: the first line names the columns, x, y and z among them, perhaps weight and value,
-///   in any order and case; other columns are passed over.
-/// - XYZ: columns x, y, z and perhaps value between white space, or those that a first line names; or
-///   atoms as chemistry writes them.
+/// - CSV, TSV (fields between commas, semicolons or tabs) and XYZ (between white space): the first line
+///   may name the columns, x, y and z among them, perhaps weight and value, in any order and case; others
+///   are passed over. Without names, `columns` tells them; without both, x y z are read, perhaps with a
+///   value, with a normal or with a colour behind, which are passed over. XYZ may be atoms as chemistry
+///   writes them, too.
+/// - PWN: as XYZ; or the number of points, the points, and as many normals.
+/// - OFF, OBJ, STL: the vertices; of STL each place once.
+/// - PCD: the fields x, y, z, perhaps weight, and value or else intensity.
+/// - LAS and LAZ, with the feature `las`: coordinates, and the intensity as value.
 /// - PLY (text, or binary of either byte order), VTU and VTP: the vertices, with their properties or
 ///   point data `weight` and `value`; VTK's active scalars are the values where none are named so.
 /// - NPY: an array n×4 (x, y, z, weight) or n×5 (x, y, z, weight, value).
 ///
 /// # Errors
 /// The file cannot be read, is truncated or longer than it claims, a column is missing or named twice,
-/// a number is not finite (the message has its place), or the file holds no point.
-pub fn read_points(path: &Path) -> Result<Points, PointsError> {
-    let points = match kind(path)? {
-        Some(Kind::Npy) => npy::read(path)?,
-        Some(Kind::Xyz) => xyz::read(path)?,
-        Some(Kind::Ply) => ply::read(path)?,
-        Some(Kind::Vtk) => vtk::read(path)?,
-        Some(Kind::Table) | None => table::read(path)?,
+/// a number is not finite (the message has its place), the file holds no point, or `columns` are given for
+/// a format that tells its own.
+pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
+    let kind = kind(path)?.unwrap_or(Kind::Table);
+    if columns.is_some() && !matches!(kind, Kind::Table | Kind::Xyz | Kind::Pwn) {
+        let what = "says itself what its columns are: leave --columns away";
+        return Err(format(path, what.into()));
+    }
+    let points = match kind {
+        Kind::Npy => npy::read(path)?,
+        Kind::Xyz => xyz::read(path, columns, Counted::Atoms)?,
+        Kind::Pwn => xyz::read(path, columns, Counted::PointsThenNormals)?,
+        Kind::Ply => ply::read(path)?,
+        Kind::Off => off::read(path)?,
+        Kind::Obj => obj::read(path)?,
+        Kind::Stl => stl::read(path)?,
+        Kind::Pcd => pcd::read(path)?,
+        Kind::Las => las::read(path)?,
+        Kind::Vtk => vtk::read(path)?,
+        Kind::Table => table::read(path, columns)?,
     };
     if points.is_empty() {
         return Err(format(path, "holds no point: there is nothing to shape".into()));
@@ -73,7 +105,13 @@ fn kind(path: &Path) -> Result<Option<Kind>, PointsError> {
     let of_extension = match extension.to_str() {
         Some("csv" | "tsv") => Some(Kind::Table),
         Some("xyz") => Some(Kind::Xyz),
+        Some("pwn") => Some(Kind::Pwn),
         Some("ply") => Some(Kind::Ply),
+        Some("off") => Some(Kind::Off),
+        Some("obj") => Some(Kind::Obj),
+        Some("stl") => Some(Kind::Stl),
+        Some("pcd") => Some(Kind::Pcd),
+        Some("las" | "laz") => Some(Kind::Las),
         Some("vtu" | "vtp") => Some(Kind::Vtk),
         _ => None,
     };
@@ -89,6 +127,10 @@ fn kind(path: &Path) -> Result<Option<Kind>, PointsError> {
         Some(Kind::Ply)
     } else if VtkXml::is_header(&start) {
         Some(Kind::Vtk)
+    } else if start.starts_with(b"LASF") {
+        Some(Kind::Las)
+    } else if start.starts_with(b"# .PCD") {
+        Some(Kind::Pcd)
     } else {
         of_extension
     })

@@ -1,67 +1,66 @@
 use std::io::BufReader;
 use std::path::Path;
 
-use super::{COLUMNS, Points, PointsError, format};
+use super::columns::{Columns, Rows};
+use super::{Points, PointsError, format};
 use crate::volume::{Lines, io_error};
 
-/// Reads CSV, or TSV, whose fields are separated by tabs; the first line names the columns.
-pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
-    let said =
-        |error: csv::Error| format(path, format!("is no CSV or TSV file of points: {error}"));
+/// Reads CSV, or tables whose fields are separated by tabs or semicolons; then 0,5 is a half. The first
+/// line may name the columns.
+pub(super) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
+    let said = |error: csv::Error| format(path, format!("is no table of points: {error}"));
+    let delimiter = delimiter(path)?;
     let mut reader = csv::ReaderBuilder::new()
-        .delimiter(delimiter(path)?)
+        .delimiter(delimiter)
+        .has_headers(false)
         .trim(csv::Trim::All)
         .from_path(path)
         .map_err(said)?;
-    let header = reader.headers().map_err(said)?.clone();
-    let mut places = [None; COLUMNS.len()];
-    for (place, name) in header.iter().enumerate() {
-        let name = name.trim_start_matches('\u{feff}');
-        let Some(column) = COLUMNS.iter().position(|c| c.eq_ignore_ascii_case(name)) else {
-            continue;
-        };
-        if places[column].replace(place).is_some() {
-            return Err(format(path, format!("names column {name} twice in its first line")));
-        }
-    }
-    let [Some(x), Some(y), Some(z), weight, value] = places else {
-        let names = header.iter().collect::<Vec<_>>().join(",");
-        let what = format!(
-            "its first line must name the columns x, y and z, and may name weight and value; it is \
-             {names:?}"
-        );
-        return Err(format(path, what));
-    };
-    let mut points = Points {
-        weights: weight.map(|_| Vec::new()),
-        values: value.map(|_| Vec::new()),
-        ..Points::default()
-    };
+    let mut rows = Rows::new(path, columns.cloned());
+    rows.decimal_comma = delimiter == b';';
     let mut record = csv::StringRecord::new();
+    let mut first = true;
     while reader.read_record(&mut record).map_err(said)? {
         let line = record.position().map_or(0, csv::Position::line);
-        let number = |place: usize| match record[place].parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
-            _ => {
-                let (name, text) = (&header[place], &record[place]);
-                let what = format!("line {line}, column {name}: {text:?} is no finite number");
-                Err(format(path, what))
-            }
-        };
-        points.positions.push([number(x)?, number(y)?, number(z)?]);
-        for (column, place) in [(&mut points.weights, weight), (&mut points.values, value)] {
-            if let (Some(column), Some(place)) = (column, place) {
-                column.push(number(place)?);
+        let words: Vec<&str> = record.iter().collect();
+        if !std::mem::take(&mut first) || is_numbers(&words) {
+            rows.push(line, &words)?;
+            continue;
+        }
+        let names: Vec<&str> =
+            words.iter().map(|word| word.trim_start_matches(['\u{feff}', '#', ' '])).collect();
+        match (Columns::named(&names), columns) {
+            (_, Some(_)) => {}
+            (Ok(named), None) => rows.are(named),
+            (Err(unknown), None) => {
+                let what = format!("{FIRST_LINE}: {unknown}");
+                return Err(format(path, what));
             }
         }
     }
-    Ok(points)
+    if first {
+        return Err(format(path, format!("is empty: {FIRST_LINE}")));
+    }
+    rows.finish()
 }
 
-/// A tab where the first line has one and no comma.
+/// What a first line is to be.
+const FIRST_LINE: &str = "its first line must name the columns x, y and z, perhaps weight and value, or \
+                          hold numbers alone";
+
+/// Whether a first line is one of data: it begins with a number, and names none.
+fn is_numbers(words: &[&str]) -> bool {
+    let number = |word: &&str| {
+        let word = word.trim_start_matches('\u{feff}').replace(',', ".");
+        word.parse::<f64>().is_ok()
+    };
+    words.iter().any(number)
+}
+
+/// What the first line has: a semicolon, a comma or a tab, in this order.
 fn delimiter(path: &Path) -> Result<u8, PointsError> {
     let file = std::fs::File::open(path).map_err(io_error(path))?;
     let line = Lines::new(BufReader::new(file)).next().map_err(io_error(path))?;
     let line = line.unwrap_or_default();
-    Ok(if line.contains('\t') && !line.contains(',') { b'\t' } else { b',' })
+    Ok(*b";,\t".iter().find(|&&byte| line.contains(char::from(byte))).unwrap_or(&b','))
 }

@@ -23,6 +23,7 @@ pub(super) fn page(subject: &Subject<'_>, packed: &Packed) -> String {
     );
     let last = subject.levels.len() - 1;
     let first = subject.first;
+    let valued = subject.levels.points().values.is_some();
     let _ = write!(
         html,
         "<p>α and ω are squared lengths, in {unit} squared: at a level, a point of weight ω is a ball \
@@ -30,17 +31,17 @@ pub(super) fn page(subject: &Subject<'_>, packed: &Packed) -> String {
          before.</p>\n\
          <form><label for=\"level\">level <output id=\"name\"></output></label>\n\
          <input id=\"level\" type=\"range\" min=\"0\" max=\"{last}\" value=\"{first}\">\n\
+         <button id=\"play\" type=\"button\">Play</button>\n\
          <label for=\"colour\">colour <select id=\"colour\">{}\
-         <option value=\"class\">class</option></select></label></form>\n\
+         <option value=\"class\">class</option></select></label>\n\
+         <button id=\"reset\" type=\"button\">Reset view</button>\n\
+         <button id=\"save\" type=\"button\">Save picture</button></form>\n\
          <div id=\"scene\" role=\"img\" aria-label=\"The shape in three dimensions\"></div>\n\
-         <p class=\"soft\">Drag to turn, pinch or scroll to zoom; tap a point for its index, F, ω and \
+         <p class=\"soft\">Drag to turn, pinch or scroll to zoom; tap a point for its index, {}ω and \
          class; tap a name above the scene to show or hide it.{}</p>\n\
-         <table id=\"numbers\"></table>\n<table>\n",
-        if subject.levels.points().values.is_some() {
-            "<option value=\"value\">F</option>"
-        } else {
-            ""
-        },
+         <div class=\"tables\">\n<table id=\"numbers\"></table>\n<table>\n",
+        if valued { "<option value=\"value\">F</option>" } else { "" },
+        if valued { format!("F ({}), ", escape(subject.value)) } else { String::new() },
         packed
             .simplified
             .as_ref()
@@ -59,7 +60,7 @@ pub(super) fn page(subject: &Subject<'_>, packed: &Packed) -> String {
     });
     let _ = write!(
         html,
-        "</table>\n<script id=\"plot\" type=\"application/json\">{}</script>\n\
+        "</table>\n</div>\n<script id=\"plot\" type=\"application/json\">{}</script>\n\
          <script id=\"data\" type=\"application/json\">{}</script>\n\
          <script>\n{SCRIPT}</script>\n</body>\n</html>\n",
         inert(&plot(subject).to_json()),
@@ -82,23 +83,33 @@ fn level(level: &Level) -> serde_json::Value {
         format!("{} interior, {} regular, {} singular", c.interior, c.regular, c.singular)
     };
     let radius = if level.alpha >= 0.0 {
-        format!("√α = {:.4}", level.alpha.sqrt())
+        format!("√α = {}", significant(level.alpha.sqrt()))
     } else {
         "negative, so no radius".into()
     };
     json!({
-        "name": format!("α = {:.6}", level.alpha),
+        "name": format!("α = {}", significant(level.alpha)),
         "rows": [
-            ["α", format!("{} ({radius})", level.alpha)],
+            ["α", format!("{} ({radius})", significant(level.alpha))],
             ["cells", level.cells.to_string()],
             ["facets", by_class(level.facets)],
             ["edges", by_class(level.edges)],
             ["vertices", by_class(level.vertices)],
             ["topology", format!("{b0} components, {b1} tunnels, {b2} voids")],
-            ["volume", format!("{:.3}, coverage {:.2} %", level.measures.volume, 100.0 * level.coverage)],
-            ["voids", format!("{:.3} in all", level.void_volume())],
+            ["volume", format!("{}, coverage {:.2} %", significant(level.measures.volume), 100.0 * level.coverage)],
+            ["voids", format!("{} in all", significant(level.void_volume()))],
         ],
     })
+}
+
+/// A number with four significant digits at most.
+fn significant(number: f64) -> String {
+    if number.is_infinite() {
+        return if number > 0.0 { "∞".into() } else { "−∞".into() };
+    }
+    // Rounded by way of a text with an exponent; parsing gives the nearest double.
+    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+    crate::shown::number(rounded)
 }
 
 fn escape(text: &str) -> String {
@@ -108,4 +119,15 @@ fn escape(text: &str) -> String {
 /// JSON that cannot end the script element it stands in.
 fn inert(json: &str) -> String {
     json.replace('<', "\\u003c")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn four_digits_are_enough() {
+        let told = [9.5, 0.016_074_782_699_769_346, 12_345.678, 2e-13, 0.0, f64::INFINITY];
+        assert_eq!(told.map(significant), ["9.5", "0.01607", "12350", "2e-13", "0", "∞"]);
+    }
 }

@@ -17,6 +17,8 @@ pub struct Subject<'a> {
     pub facts: &'a [(String, String)],
     /// What coordinates are measured in, as "voxels".
     pub unit: &'a str,
+    /// What F is, with its unit, as "value of the original volume, in gray levels".
+    pub value: &'a str,
     /// The shapes.
     pub levels: &'a Levels<'a>,
     /// Their numbers.

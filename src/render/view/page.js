@@ -11,6 +11,7 @@
   };
   const data = Object.fromEntries(Object.entries(arrays).map(([name, array]) => [name, unpack(array)]));
   const [BOUNDARY, SINGULAR, EDGES, POINTS, ISOSURFACE] = [0, 1, 2, 3, 4];
+  const EVEN = { ambient: 0.93, diffuse: 0.18, specular: 0, roughness: 1 };
   const CLASSES = ["exterior", "interior", "regular", "singular"];
   const classAt = (spans, row, level) => {
     const [first, regular, interior] = [spans[3 * row], spans[3 * row + 1], spans[3 * row + 2]];
@@ -28,7 +29,7 @@
     const corner = (k) => Uint32Array.from(rows, (row) => facets[3 * row + k]);
     return { i: corner(0), j: corner(1), k: corner(2) };
   };
-  const short = (number) => Number(number.toPrecision(6)).toString();
+  const short = (number) => Number(number.toPrecision(4)).toString();
 
   const facetCount = data.facets.length / 3;
   function facetsAt(level, wanted) {
@@ -85,8 +86,13 @@
     const traces = plot.data.map((trace) => ({ ...trace }));
     for (const [trace, wanted] of [[BOUNDARY, 2], [SINGULAR, 3]]) {
       Object.assign(traces[trace], { x: data.x, y: data.y, z: data.z, text }, facetsAt(level, wanted));
-      if (byValue) traces[trace].intensity = data.values;
-      else traces[trace].showscale = false;
+      if (byValue) {
+        // Nearly without shades: a colour means a value, wherever the facet looks.
+        Object.assign(traces[trace], { intensity: data.values, lighting: EVEN });
+      } else {
+        for (const key of ["colorscale", "intensitymode", "colorbar"]) delete traces[trace][key];
+        traces[trace].showscale = false;
+      }
     }
     Object.assign(traces[EDGES], linesAt(level));
     Object.assign(traces[POINTS], pointsAt(level, text, byValue));
@@ -94,15 +100,22 @@
     return traces;
   }
 
-  const scene = document.getElementById("scene");
-  const slider = document.getElementById("level");
-  const colour = document.getElementById("colour");
+  const byId = (id) => document.getElementById(id);
+  const [scene, slider, colour, play] = ["scene", "level", "colour", "play"].map(byId);
+
+  // The eye, so far away that all is seen however narrow the scene is.
+  const home = plot.layout.scene.camera;
+  function camera() {
+    const narrow = Math.max(1, 1.35 * scene.clientHeight / scene.clientWidth);
+    const eye = Object.fromEntries(["x", "y", "z"].map((axis) => [axis, narrow * home.eye[axis]]));
+    return { ...structuredClone(home), eye };
+  }
+
   function show() {
     const level = Number(slider.value);
     const { name, rows } = levels[level];
-    document.getElementById("name").textContent = name;
-    const table = document.getElementById("numbers");
-    table.replaceChildren(...rows.map(([head, value]) => {
+    byId("name").textContent = name;
+    byId("numbers").replaceChildren(...rows.map(([head, value]) => {
       const row = document.createElement("tr");
       row.append(document.createElement("th"), document.createElement("td"));
       [row.firstChild.textContent, row.lastChild.textContent] = [head, value];
@@ -111,7 +124,10 @@
     const traces = fill(level, colour.value === "value");
     // What was switched on or off stays so, and the camera where it is.
     (scene.data ?? []).forEach((trace, k) => { traces[k].visible = trace.visible; });
-    return Plotly.react(scene, traces, plot.layout, plot.config);
+    if (colour.value === scene.dataset.colour) return Plotly.react(scene, traces, plot.layout, plot.config);
+    // A mesh that had a colour scale keeps it, so that other colours need another mesh.
+    plot.layout.scene.camera = scene._fullLayout?.scene?.camera ?? camera();
+    return Plotly.newPlot(scene, traces, plot.layout, plot.config);
   }
 
   plot.layout.uirevision = "the same scene";
@@ -122,12 +138,44 @@
   async function refresh() {
     if (busy) { again = true; return; }
     busy = true;
-    do { again = false; await show(); } while (again);
+    do {
+      again = false;
+      const [level, chosen] = [slider.value, colour.value];
+      await show();
+      [scene.dataset.level, scene.dataset.colour] = [level, chosen];
+    } while (again);
     busy = false;
-    scene.dataset.level = slider.value;
-    scene.dataset.colour = colour.value;
   }
-  slider.addEventListener("input", refresh);
   colour.addEventListener("change", refresh);
+
+  // From where the slider is to its end, from the start if it is there already.
+  let playing = null;
+  function stop() {
+    clearInterval(playing);
+    playing = null;
+    play.textContent = "Play";
+  }
+  function step() {
+    if (Number(slider.value) >= Number(slider.max)) return stop();
+    if (busy) return undefined;
+    slider.value = Number(slider.value) + 1;
+    return refresh();
+  }
+  play.addEventListener("click", () => {
+    if (playing !== null) return stop();
+    if (slider.value === slider.max) slider.value = 0;
+    play.textContent = "Stop";
+    playing = setInterval(step, 700);
+    return refresh();
+  });
+  slider.addEventListener("input", () => {
+    stop();
+    return refresh();
+  });
+  byId("reset").addEventListener("click", () => Plotly.relayout(scene, { "scene.camera": camera() }));
+  byId("save").addEventListener("click", () => Plotly.downloadImage(scene, {
+    format: "png", filename: `${document.title}, ${levels[Number(slider.value)].name}`, scale: 2,
+    width: scene.clientWidth, height: scene.clientHeight,
+  }));
   refresh();
 })();

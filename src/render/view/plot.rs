@@ -20,7 +20,11 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
     let valued = subject.levels.points().values.is_some();
     let colour_bar = || {
         ColorBar::new()
-            .title(Title::with_text("F").side(Side::Top))
+            .title(
+                Title::with_text(format!("F: {}", subject.value))
+                    .side(Side::Top)
+                    .font(Font::new().size(12)),
+            )
             .orientation(Orientation::Horizontal)
             .thickness(12)
             .y(0.0)
@@ -79,11 +83,15 @@ fn rgb(index: usize) -> Rgb {
 }
 
 fn layout(unit: &str) -> Layout {
-    let axis =
-        |name: &str| Axis::new().title(Title::with_text(format!("{name} ({unit})"))).n_ticks(6);
+    // Beside an axis is no room for a sentence.
+    let label = |name: &str| match unit.contains(' ') {
+        true => name.to_owned(),
+        false => format!("{name} ({unit})"),
+    };
+    let axis = |name: &str| Axis::new().title(Title::with_text(label(name))).n_ticks(6);
     let camera = Camera::new()
-        .center(CameraCenter::from((0.0, 0.0, -0.08)))
-        .eye(Eye::from((0.9, -1.45, 0.55)));
+        .center(CameraCenter::from((0.0, 0.0, -0.16)))
+        .eye(Eye::from((1.0, -1.62, 0.6)));
     let scene = LayoutScene::new()
         .aspect_mode(AspectMode::Data)
         .camera(camera)
@@ -93,7 +101,7 @@ fn layout(unit: &str) -> Layout {
     Layout::new()
         .scene(scene)
         .auto_size(true)
-        .margin(Margin::new().left(0).right(0).top(8).bottom(60))
+        .margin(Margin::new().left(0).right(0).top(8).bottom(10))
         .show_legend(true)
         .legend(
             Legend::new()

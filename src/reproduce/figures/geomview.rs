@@ -4,7 +4,7 @@ use super::super::stage::{Eye, panel};
 use super::super::study::{ALPHA, Shaped};
 use super::super::{Fact, Finding, Item, ReproduceError, Verdict};
 use super::{Bench, figure};
-use crate::export::{Exporter, Off};
+use crate::export::{ExportOptions, Exporter, Off};
 use crate::render::{Figure, Picture};
 use crate::shape::Surface;
 
@@ -117,7 +117,8 @@ impl Side {
         name: &str,
     ) -> Result<Self, ReproduceError> {
         let mut bytes = Vec::new();
-        Off.write(&shaped.shape, &mut bytes)?;
+        Off(ExportOptions { groups: true, ..ExportOptions::default() })
+            .write(&shaped.shape, &mut bytes)?;
         let mesh = OffMesh::parse(&String::from_utf8_lossy(&bytes))?;
         let surface = Surface::of(&shaped.shape);
         let positions = &shaped.shape.points().positions;

@@ -61,7 +61,7 @@ impl<'a> Bench<'a> {
     /// The boundary of a shape as a PLY file; gives its name.
     fn mesh(&mut self, name: &str, shaped: &Shaped) -> Result<String, ReproduceError> {
         let mut bytes = Vec::new();
-        Ply { ascii: false }.write(&shaped.shape, &mut bytes)?;
+        Ply::default().write(&shaped.shape, &mut bytes)?;
         Ok(self.file(name, bytes))
     }
 

@@ -115,7 +115,8 @@ pub(super) fn kind(path: &Path, start: &[u8]) -> Result<Kind, VolumeError> {
             format!(
                 "is of no format known by content: NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz), \
                  MetaImage (.mha, .mhd), VTK (.vtk, .vti), TIFF, INRIMAGE (.inr, .inr.gz), NPY, NPZ \
-                 (.npy, .npz) and folders of slices are read; {}for raw samples give --dims X,Y,Z and \
+                 (.npy, .npz) and folders of slices are read as volumes, CSV, TSV, XYZ, PWN, PLY, OFF, OBJ, \
+                 STL, PCD, LAS, LAZ, VTU and VTP as points; {}for raw samples give --dims X,Y,Z and \
                  --dtype",
                 near.unwrap_or_default()
             ),

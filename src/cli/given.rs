@@ -1,0 +1,70 @@
+//! What was said on the command line, and whether it can have an effect.
+
+use std::fmt;
+
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+
+use super::config;
+
+/// The names of the options that the user gave on the command line; those of a file of `--config` are
+/// for all inputs, and need not fit this one.
+///
+/// It must be the first field that a command parses: others take their values out of the matches.
+#[derive(Clone, Debug, Default)]
+pub struct Given(Vec<String>);
+
+impl Given {
+    /// Refuses options that would have no effect; `why` follows their names.
+    pub fn refuse(&self, names: &[&str], why: impl fmt::Display) -> Result<(), Usage> {
+        let wanted = self.0.iter().filter(|name| names.contains(&name.as_str()));
+        let options: Vec<String> =
+            wanted.map(|name| format!("--{}", name.replace('_', "-"))).collect();
+        match &options[..] {
+            [] => Ok(()),
+            [one] => Err(Usage(format!("{one} has no effect: {why}; leave it away"))),
+            several => {
+                let names = several.join(", ");
+                Err(Usage(format!("{names} have no effect: {why}; leave them away")))
+            }
+        }
+    }
+}
+
+impl FromArgMatches for Given {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let typed = |name: &str| {
+            matches.value_source(name) == Some(ValueSource::CommandLine) && !config::has_set(name)
+        };
+        let names = matches.ids().map(|id| id.as_str().to_owned());
+        Ok(Self(names.filter(|name| typed(name)).collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for Given {
+    fn augment_args(command: Command) -> Command {
+        command
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        command
+    }
+}
+
+/// What makes no sense on a command line, whatever is in the files: exit code 2.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct Usage(pub String);
+
+/// Ends with a [`Usage`].
+macro_rules! misused {
+    ($($text:tt)*) => {
+        return Err($crate::cli::given::Usage(format!($($text)*)).into())
+    };
+}
+pub(crate) use misused;

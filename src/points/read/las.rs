@@ -1,0 +1,34 @@
+//! LAS and LAZ, what laser scanners write.
+
+use std::path::Path;
+
+use super::{Points, PointsError, format};
+
+/// Reads the places of the points, and their intensity as values. Numbers are those that the file's
+/// scales and offsets make, in doubles.
+#[cfg(feature = "las")]
+pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
+    let said =
+        |error: las::Error| format(path, format!("is no LAS file that can be read: {error}"));
+    let mut reader = las::Reader::from_path(path).map_err(said)?;
+    let mut points = Points { values: Some(Vec::new()), ..Points::default() };
+    for point in reader.points() {
+        let point = point.map_err(said)?;
+        points.positions.push([point.x, point.y, point.z]);
+        points.values.get_or_insert_default().push(f64::from(point.intensity));
+    }
+    let claimed = reader.header().number_of_points();
+    if points.len() as u64 != claimed {
+        let what = format!("claims {claimed} points, but has {}: it is truncated", points.len());
+        return Err(format(path, what));
+    }
+    Ok(points)
+}
+
+/// Says that the feature is missing.
+#[cfg(not(feature = "las"))]
+pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
+    let what = "is a LAS or LAZ file, which this walpha was built without; build it with `cargo install \
+                --path . --features las`, or convert the points to PLY";
+    Err(format(path, what.into()))
+}

@@ -1,0 +1,79 @@
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use super::{COLUMNS, Points, PointsError, format};
+use crate::volume::{Lines, io_error};
+
+/// Reads the vertices of an OFF file in text, with normals, colours or texture coordinates (NOFF, COFF,
+/// STOFF) or without: the first three numbers of each line. Its faces must be there as it claims.
+pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
+    let said = |what: String| format(path, what);
+    let file = std::fs::File::open(path).map_err(io_error(path))?;
+    let mut rows = Tokens { lines: Lines::new(BufReader::new(file)), number: 0 };
+    let head = rows.next(path)?.unwrap_or_default();
+    let mut words = head.split_whitespace().peekable();
+    if let Some(kind) = words.next_if(|word| word.ends_with("OFF")) {
+        let prefix = kind.trim_end_matches("OFF").replace("ST", "").replace(['C', 'N'], "");
+        if !prefix.is_empty() {
+            return Err(said(format!("is {kind}: only points of three coordinates are read")));
+        }
+    }
+    if words.peek() == Some(&"BINARY") {
+        return Err(said("is binary: OFF is read as text; convert it".into()));
+    }
+    let mut counts: Vec<u64> = words.map_while(|word| word.parse().ok()).collect();
+    if counts.is_empty() {
+        let line = rows.next(path)?.unwrap_or_default();
+        counts = line.split_whitespace().map_while(|word| word.parse().ok()).collect();
+    }
+    let [vertices, faces, ..] = counts[..] else {
+        return Err(said("does not say how many vertices and faces it has: it is damaged".into()));
+    };
+    let cut =
+        || said(format!("ends before its {vertices} vertices and {faces} faces: it is truncated"));
+    let mut points = Points::default();
+    for _ in 0..vertices {
+        let line = rows.next(path)?.ok_or_else(cut)?;
+        points.positions.push(position(path, rows.number, line.split_whitespace())?);
+    }
+    for _ in 0..faces {
+        rows.next(path)?.ok_or_else(cut)?;
+    }
+    Ok(points)
+}
+
+/// The first three words of a line, as coordinates.
+pub(super) fn position<'a>(
+    path: &Path,
+    line: u64,
+    mut words: impl Iterator<Item = &'a str>,
+) -> Result<[f64; 3], PointsError> {
+    let mut position = [0.0; 3];
+    for (number, name) in position.iter_mut().zip(COLUMNS) {
+        let word = words.next().unwrap_or_default();
+        let read = word.parse().ok().filter(|number: &f64| number.is_finite());
+        *number = read.ok_or_else(|| {
+            format(path, format!("line {line}: {name} is {word:?}, no finite number"))
+        })?;
+    }
+    Ok(position)
+}
+
+/// Lines without remarks and empty ones.
+struct Tokens<R> {
+    lines: Lines<R>,
+    number: u64,
+}
+
+impl<R: BufRead> Tokens<R> {
+    fn next(&mut self, path: &Path) -> Result<Option<String>, PointsError> {
+        while let Some(line) = self.lines.next().map_err(io_error(path))? {
+            self.number += 1;
+            let text = line.split('#').next().unwrap_or_default().trim();
+            if !text.is_empty() {
+                return Ok(Some(text.to_owned()));
+            }
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,247 @@
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use super::{Points, PointsError, format};
+use crate::volume::{Lines, io_error};
+
+/// Reads PCD, the Point Cloud Library's format: text, binary or compressed, with the fields x, y and z,
+/// perhaps weight, and value or else intensity. Points without a place (NaN, as scanners mark them) are
+/// left out.
+pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
+    let said = |what: String| format(path, what);
+    let file = std::fs::File::open(path).map_err(io_error(path))?;
+    let length = file.metadata().map_err(io_error(path))?.len();
+    let mut lines = Lines::new(BufReader::new(file));
+    let mut header = Header::default();
+    let data = loop {
+        let line = lines.next().map_err(io_error(path))?;
+        let line =
+            line.ok_or_else(|| said("ends inside its PCD header: it is truncated".into()))?;
+        if let Some(data) = line.strip_prefix("DATA ") {
+            break data.trim().to_owned();
+        }
+        header.take(&line).map_err(said)?;
+    };
+    header.check(length).map_err(said)?;
+    let mut bytes = Vec::new();
+    lines.into_inner().read_to_end(&mut bytes).map_err(io_error(path))?;
+    let rows = match data.as_str() {
+        "ascii" => header.text(&String::from_utf8_lossy(&bytes)),
+        "binary" => header.binary(&bytes, false),
+        "binary_compressed" => unpacked(&bytes).and_then(|bytes| header.binary(&bytes, true)),
+        other => Err(format!("has DATA {other}: ascii, binary and binary_compressed are read")),
+    };
+    header.points(rows.map_err(said)?).map_err(said)
+}
+
+#[derive(Default)]
+struct Header {
+    names: Vec<String>,
+    sizes: Vec<usize>,
+    types: Vec<String>,
+    /// Numbers of each field.
+    counts: Vec<usize>,
+    points: usize,
+}
+
+/// A column to read: numbers behind the start of a point, their type and size.
+struct Field {
+    index: usize,
+    offset: usize,
+}
+
+impl Header {
+    fn take(&mut self, line: &str) -> Result<(), String> {
+        let damaged = || format!("has a header line {line:?}, which is not understood");
+        let mut words = line.split_whitespace();
+        let key = words.next().unwrap_or("#");
+        let numbers = || words.clone().map(str::parse).collect::<Result<Vec<usize>, _>>();
+        match key {
+            "FIELDS" => self.names = words.map(str::to_ascii_lowercase).collect(),
+            "TYPE" => self.types = words.map(str::to_owned).collect(),
+            "SIZE" => self.sizes = numbers().map_err(|_| damaged())?,
+            "COUNT" => self.counts = numbers().map_err(|_| damaged())?,
+            "POINTS" => {
+                self.points = words.next().and_then(|n| n.parse().ok()).ok_or_else(damaged)?;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Refuses lists of different lengths, and more points than the file can hold.
+    fn check(&mut self, length: u64) -> Result<(), String> {
+        let fields = self.names.len();
+        if self.counts.is_empty() {
+            self.counts = vec![1; fields];
+        }
+        if [self.sizes.len(), self.types.len(), self.counts.len()] != [fields; 3] || fields == 0 {
+            return Err(
+                "has FIELDS, SIZE, TYPE and COUNT of different lengths: it is damaged".into()
+            );
+        }
+        if self.sizes.iter().chain(&self.counts).any(|&n| n > 1 << 16) {
+            return Err("has fields of more than 65536 bytes or numbers: it is damaged".into());
+        }
+        // Compressed to a hundredth, which is more than LZF can.
+        if self.points as u64 > length.saturating_mul(256) {
+            let points = self.points;
+            return Err(format!("claims {points} points, which {length} bytes cannot hold"));
+        }
+        Ok(())
+    }
+
+    /// Where the field of a name is: its place in the lists, and in a row of numbers or bytes.
+    fn field(&self, name: &str, bytes: bool) -> Option<Field> {
+        let index = self.names.iter().position(|known| known == name)?;
+        let width = |k: usize| self.counts[k] * if bytes { self.sizes[k] } else { 1 };
+        Some(Field { index, offset: (0..index).map(width).sum() })
+    }
+
+    /// x, y, z, weight and value of each point.
+    fn fields(&self, bytes: bool) -> Result<[Option<Field>; 5], String> {
+        let field = |name| self.field(name, bytes);
+        let fields = [
+            field("x"),
+            field("y"),
+            field("z"),
+            field("weight"),
+            field("value").or(field("intensity")),
+        ];
+        match fields[..3].iter().all(Option::is_some) {
+            true => Ok(fields),
+            false => Err(format!("has the fields {}, without x, y or z", self.names.join(", "))),
+        }
+    }
+
+    fn text(&self, text: &str) -> Result<Vec<[Option<f64>; 5]>, String> {
+        let fields = self.fields(false)?;
+        let width: usize = self.counts.iter().sum();
+        let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
+        if lines.len() != self.points {
+            return Err(format!("claims {} points, but has {} lines", self.points, lines.len()));
+        }
+        let mut rows = Vec::new();
+        for line in lines {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            if words.len() != width {
+                return Err(format!(
+                    "has {} numbers in the line {line:?}, not {width}",
+                    words.len()
+                ));
+            }
+            let mut row = [None; 5];
+            for (slot, field) in row.iter_mut().zip(&fields) {
+                let Some(field) = field else { continue };
+                let word = words[field.offset];
+                *slot =
+                    Some(word.parse().map_err(|_| format!("has {word:?}, which is no number"))?);
+            }
+            rows.push(row);
+        }
+        Ok(rows)
+    }
+
+    /// Numbers of a point side by side, or all of a field.
+    fn binary(&self, bytes: &[u8], by_field: bool) -> Result<Vec<[Option<f64>; 5]>, String> {
+        let fields = self.fields(true)?;
+        let width: usize =
+            self.sizes.iter().zip(&self.counts).map(|(size, count)| size * count).sum();
+        if bytes.len() < width.saturating_mul(self.points) {
+            let points = self.points;
+            return Err(format!(
+                "claims {points} points of {width} bytes, and has {}",
+                bytes.len()
+            ));
+        }
+        let at = |row: usize, field: &Field| {
+            let own = self.sizes[field.index] * self.counts[field.index];
+            let start = match by_field {
+                true => self.points * field.offset + row * own,
+                false => row * width + field.offset,
+            };
+            let kind = self.types[field.index].as_str();
+            number(kind, &bytes[start..start + self.sizes[field.index]])
+        };
+        let row = |row: usize| {
+            let mut numbers = [None; 5];
+            for (slot, field) in numbers.iter_mut().zip(&fields) {
+                *slot = field.as_ref().map(|field| at(row, field)).transpose()?;
+            }
+            Ok(numbers)
+        };
+        (0..self.points).map(row).collect()
+    }
+
+    fn points(&self, rows: Vec<[Option<f64>; 5]>) -> Result<Points, String> {
+        let placed =
+            |row: &[Option<f64>; 5]| row[..3].iter().all(|c| c.is_some_and(|c| !c.is_nan()));
+        let kept: Vec<_> = rows.into_iter().filter(placed).collect();
+        let left_out = self.points - kept.len();
+        if left_out > 0 {
+            tracing::warn!(
+                "{left_out} of {} points have no place (NaN) and are left out",
+                self.points
+            );
+        }
+        let column = |k: usize| kept.iter().map(|row| row[k]).collect();
+        Ok(Points {
+            positions: kept
+                .iter()
+                .map(|row| [0, 1, 2].map(|k| row[k].unwrap_or(f64::NAN)))
+                .collect(),
+            weights: column(3),
+            values: column(4),
+            differences: None,
+        })
+    }
+}
+
+/// A little-endian number.
+fn number(kind: &str, bytes: &[u8]) -> Result<f64, String> {
+    Ok(match (kind, bytes) {
+        ("F", &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
+        ("F", &[a, b, c, d, e, f, g, h]) => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
+        ("U", bytes @ ([_] | [_, _] | [_, _, _, _])) => {
+            bytes.iter().rev().fold(0.0, |n, &byte| 256.0 * n + f64::from(byte))
+        }
+        ("I", &[a]) => f64::from(i8::from_le_bytes([a])),
+        ("I", &[a, b]) => f64::from(i16::from_le_bytes([a, b])),
+        ("I", &[a, b, c, d]) => f64::from(i32::from_le_bytes([a, b, c, d])),
+        _ => return Err(format!("has a field of type {kind} and {} bytes", bytes.len())),
+    })
+}
+
+/// Unpacks LZF: two sizes, then pieces that are literal or stand further ahead in the output.
+fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, String> {
+    let damaged = || "has compressed data that are damaged or truncated: copy it again".to_owned();
+    let sizes = bytes.first_chunk::<8>().ok_or_else(damaged)?;
+    let size = |k: usize| u32::from_le_bytes([sizes[k], sizes[k + 1], sizes[k + 2], sizes[k + 3]]);
+    let (packed, whole) = (size(0) as usize, size(4) as usize);
+    let mut rest = bytes[8..].get(..packed).ok_or_else(damaged)?;
+    let mut out = Vec::new();
+    let mut take = |count: usize| {
+        let (head, tail) = rest.split_at_checked(count)?;
+        rest = tail;
+        Some(head)
+    };
+    while let Some(&[control]) = take(1) {
+        if control < 32 {
+            out.extend(take(usize::from(control) + 1).ok_or_else(damaged)?);
+            continue;
+        }
+        let mut length = usize::from(control >> 5) + 2;
+        if length == 9 {
+            length += usize::from(take(1).ok_or_else(damaged)?[0]);
+        }
+        let low = usize::from(take(1).ok_or_else(damaged)?[0]);
+        let back = (usize::from(control & 31) << 8) + low + 1;
+        let start = out.len().checked_sub(back).ok_or_else(damaged)?;
+        // Pieces may reach into themselves.
+        (start..start + length).for_each(|from| out.push(out[from]));
+        if out.len() > whole {
+            return Err(damaged());
+        }
+    }
+    if out.len() == whole { Ok(out) } else { Err(damaged()) }
+}

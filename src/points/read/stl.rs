@@ -1,0 +1,78 @@
+use std::collections::HashSet;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use super::off::position;
+use super::{Points, PointsError, format};
+use crate::volume::{Lines, io_error};
+
+/// Bytes before the facets of a binary STL file: a head, and how many there are.
+const HEAD: u64 = 84;
+/// Bytes of a facet: its normal, its corners, and two more.
+const FACET: u64 = 50;
+
+/// Reads the vertices of an STL file, binary or text: the corners of its facets, each place once.
+pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
+    let file = std::fs::File::open(path).map_err(io_error(path))?;
+    let length = file.metadata().map_err(io_error(path))?.len();
+    let mut reader = BufReader::new(file);
+    let mut head = Vec::new();
+    (&mut reader).take(HEAD).read_to_end(&mut head).map_err(io_error(path))?;
+    let count = head.last_chunk().map_or(0, |&count| u64::from(u32::from_le_bytes(count)));
+    // Binary files may begin with the word, too; their length tells.
+    if head.starts_with(b"solid") && length != HEAD + FACET * count {
+        return text(path);
+    }
+    if (head.len() as u64) < HEAD || length < HEAD + FACET * count {
+        let what =
+            format!("claims {count} facets, which {length} bytes cannot hold: it is truncated");
+        return Err(format(path, what));
+    }
+    let mut corners = Corners::default();
+    let mut facet = [0; FACET as usize];
+    for _ in 0..count {
+        reader.read_exact(&mut facet).map_err(io_error(path))?;
+        let (numbers, _) = facet.as_chunks();
+        let numbers: Vec<f64> =
+            numbers.iter().map(|&bytes| f64::from(f32::from_le_bytes(bytes))).collect();
+        numbers[3..].as_chunks().0.iter().for_each(|&corner| corners.add(corner));
+    }
+    Ok(corners.points)
+}
+
+fn text(path: &Path) -> Result<Points, PointsError> {
+    let file = std::fs::File::open(path).map_err(io_error(path))?;
+    let mut lines = Lines::new(BufReader::new(file));
+    let mut corners = Corners::default();
+    let (mut number, mut ended) = (0, false);
+    while let Some(line) = lines.next().map_err(io_error(path))? {
+        number += 1;
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("vertex") => corners.add(position(path, number, words)?),
+            Some("endsolid") => ended = true,
+            _ => {}
+        }
+    }
+    if ended {
+        Ok(corners.points)
+    } else {
+        Err(format(path, "ends without endsolid: it is truncated; copy it again".into()))
+    }
+}
+
+/// Places, each once, in the order in which they come.
+#[derive(Default)]
+struct Corners {
+    points: Points,
+    seen: HashSet<[u64; 3]>,
+}
+
+impl Corners {
+    fn add(&mut self, corner: [f64; 3]) {
+        // Not −0, which is the same place as 0.
+        if self.seen.insert(corner.map(|c| (c + 0.0).to_bits())) {
+            self.points.positions.push(corner);
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! LAS and LAZ against the crate that writes them.
+#![cfg(feature = "las")]
+
+use walpha::points::{is_point_file, read_points};
+
+/// Coordinates are whole numbers of thousandths, so that the format's scales keep them.
+fn write(path: &std::path::Path) {
+    let mut builder = las::Builder::from((1, 2));
+    builder.point_format.is_compressed = path.extension().is_some_and(|e| e == "laz");
+    let transform = las::Transform { scale: 0.001, offset: 0.0 };
+    builder.transforms = las::Vector { x: transform, y: transform, z: transform };
+    let mut writer = las::Writer::from_path(path, builder.into_header().unwrap()).unwrap();
+    for k in 0..5u16 {
+        let (x, y, z) = (f64::from(k), f64::from(2 * k), -f64::from(k));
+        let point = las::Point { x, y, z, intensity: 100 * k, ..las::Point::default() };
+        writer.write_point(point).unwrap();
+    }
+    writer.close().unwrap();
+}
+
+#[test]
+fn clouds_of_scanners_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.las", "a.laz"] {
+        let path = folder.path().join(name);
+        write(&path);
+        // By content, whatever its name is.
+        let other = folder.path().join("cloud.dat");
+        std::fs::copy(&path, &other).unwrap();
+        for path in [&path, &other] {
+            assert!(is_point_file(path).unwrap(), "{name}");
+            let points = read_points(path, None).unwrap();
+            let expected: Vec<_> = (0..5).map(f64::from).map(|k| [k, 2.0 * k, -k]).collect();
+            assert_eq!(points.positions, expected, "{name}");
+            assert_eq!(points.values, Some(vec![0.0, 100.0, 200.0, 300.0, 400.0]), "{name}");
+        }
+        let bytes = std::fs::read(&path).unwrap();
+        std::fs::write(&path, &bytes[..bytes.len() - 30]).unwrap();
+        let error = read_points(&path, None).unwrap_err().to_string();
+        assert!(error.contains(name), "{error}");
+    }
+}
