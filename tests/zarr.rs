@@ -161,7 +161,7 @@ fn what_is_no_volume_is_told() {
     array(f, "/flat", &[4, 5]);
     refuses(&f.join("flat"), "three axes");
     array(f, "/colours", &[3, 2, 2, 2]);
-    refuses(&f.join("colours"), "several channels");
+    refuses(&f.join("colours"), "choose one with --frame");
     let turned = json!([{"path": "colours", "coordinateTransformations": [{"type": "affine"}]}]);
     array(f, "/colours", &[1, 2, 2, 2]);
     pyramid(f, 2, turned);

@@ -25,10 +25,11 @@ pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeEr
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut lines = Lines::new(BufReader::new(file));
-    let (grid, arrays) = header(path, &mut lines)?;
-    // Without a name only scalars come in question, those of points first.
-    let mut arrays: Vec<Array> =
-        arrays.into_iter().filter(|array| array.components == 1 || wanted.is_some()).collect();
+    let (grid, mut arrays) = header(path, &mut lines)?;
+    // Without a name only scalars come in question, where there are any, and those of points first.
+    if wanted.is_none() && arrays.iter().any(|array| array.components == 1) {
+        arrays.retain(|array| array.components == 1);
+    }
     arrays.sort_by_key(|array| array.cells);
     let names: Vec<(&str, bool)> =
         arrays.iter().map(|array| (array.name.as_str(), array.cells)).collect();
@@ -36,7 +37,9 @@ pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeEr
     let described = grid.described(path, &array)?;
     if array.values != described.dims.samples() as u64 {
         let (values, dims) = (array.values, described.dims);
-        return Err(said(format!("has a field of {values} values for {dims} samples")));
+        return Err(said(format!(
+            "has {values} values for {dims} samples: it is truncated or mislabelled"
+        )));
     }
     let mut reader = lines.into_inner();
     reader.seek(SeekFrom::Start(array.start)).map_err(io_error(path))?;
