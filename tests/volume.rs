@@ -276,7 +276,7 @@ fn damaged_gzip_streams_are_refused() {
     let mut flipped = whole.clone();
     let last = flipped.len() - 6;
     flipped[last] ^= 0xff;
-    refuses(&flipped, &["(gzip, zlib or base64) are damaged"]);
+    refuses(&flipped, &["(gzip, zlib, bzip2, LZ4 or base64) are damaged"]);
 }
 
 #[test]

@@ -107,11 +107,6 @@ impl InputArgs {
         self.gray.map_or(Gray::Automatic, Gray::Range)
     }
 
-    /// Whether gray levels are written, not values.
-    pub fn writes_gray(&self) -> bool {
-        self.gray_out
-    }
-
     /// The values that gray levels stand for in what is written, where `range` became 0..255.
     pub fn written(&self, range: GrayRange) -> GrayRange {
         if self.gray_out { GrayRange::IDENTITY } else { range }

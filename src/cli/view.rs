@@ -7,11 +7,11 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
-use walpha::Alpha;
 use walpha::export::{Target, UnknownFormat};
 use walpha::ladder::Filtration;
 use walpha::render::{Original, Page, Subject};
 use walpha::shown::{number, shown};
+use walpha::{Alpha, GrayRange};
 
 use super::Global;
 use super::args::{
@@ -130,7 +130,7 @@ impl View {
             facts: &told,
             unit: unit.symbol(),
             value: match facts {
-                Some(_) if self.input.writes_gray() => {
+                Some(facts) if facts.written == GrayRange::IDENTITY => {
                     "value of the original volume, in gray levels"
                 }
                 Some(_) => "value of the original volume",

@@ -173,7 +173,8 @@ fn lengths_are_in_the_unit_of_the_file() {
         ("lps.obj", "# SPACE=LPS UNIT=mm\n"),
         ("lps.off", "# SPACE=LPS UNIT=mm\n"),
         ("lps.stl", " SPACE=LPS UNIT=mm "),
-        ("lps.vtp", "Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\">76 80 83 0<"),
+        ("lps.vtp", "Name=\"SPACE\" NumberOfTuples=\"1\" format=\"appended\""),
+        ("lps.vtp", "LPS\0"),
         ("ras.ply", "comment SPACE=RAS UNIT=mm\n"),
     ] {
         let bytes = std::fs::read(f.join(name)).unwrap();

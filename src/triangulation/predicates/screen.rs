@@ -21,6 +21,9 @@ pub(crate) struct Screen<'a> {
     power: f64,
 }
 
+/// A few times the smallest double: 2⁻¹⁰⁶⁰.
+const LOST: f64 = f64::from_bits(1 << 14);
+
 impl<'a> Screen<'a> {
     /// Looks at all points. O(n).
     ///
@@ -49,14 +52,15 @@ impl<'a> Screen<'a> {
         let terms = 6.0 * width * depth * height;
         // Four differences of heights, each of at most twice the largest.
         let power_terms = 4.0 * terms * 2.0 * highest;
+        // What products lose that fall below the smallest doubles, times what they are multiplied by; ∞
+        // where one may overflow.
+        let lost = LOST * (1.0 + width) * (1.0 + depth) * (1.0 + height) * (1.0 + highest);
         let sure = |terms: f64, degree: usize, exact: bool| {
             if exact && predicates.holds(terms, degree) {
                 0.0
-            } else if terms > 1e-200 && terms < 1e250 {
-                // A difference is off by less than 2⁻⁵⁰ of the largest; see `ROUNDING`.
-                terms * ROUNDING
             } else {
-                f64::INFINITY
+                // A difference is off by less than 2⁻⁵⁰ of the largest; see `ROUNDING`.
+                terms * ROUNDING + lost
             }
         };
         let on_lattice = lattice.step != 0.0;
