@@ -251,7 +251,7 @@ fn vertices_of_meshes_are_points() {
     refuses("a.obj", b"v 1 2\n", "line 1: z");
     refuses("a.obj", b"f 1 2 3\n", "no point");
     refuses("a.stl", &binary[..200], "truncated");
-    refuses("a.stl", text[..90].as_bytes(), "truncated");
+    refuses("a.stl", &text.as_bytes()[..90], "truncated");
     refuses("a.pwn", b"2\n0 0 0\n1 1 1\n0 0 1\n", "claims 2 points");
 }
 
