@@ -45,7 +45,7 @@ fn errors_say_what_why_and_what_next() {
         (2, "haar sample:phantom@8 -o a.nrd", "cannot do this", "did you mean .nrrd?"),
         (2, "haar sample:phantom@8 -o -", "cannot do this", "--format nrrd"),
         (1, "haar sample:phantom@8 -o no/a.npy", "could not start", "choose a place"),
-        (2, "check flat.csv --points flat.csv", "cannot do this", "leave it away"),
+        (2, "check flat.csv --points flat.csv", "cannot do this", "omit it"),
         (1, "compare a.txt b.txt", "could not start", "docs/cross-checking.md"),
         (
             1,

@@ -115,7 +115,7 @@ fn levels_of_a_pyramid_are_chosen_and_placed() {
         // A level by its own name.
         assert_eq!(open(&f.join("1"), None).unwrap().dims().xyz(), [3, 2, 2]);
         let text = open(&f.join("1"), Some(0)).unwrap_err().to_string();
-        assert!(text.contains("leave --level away"), "{text}");
+        assert!(text.contains("omit --level"), "{text}");
     }
 }
 

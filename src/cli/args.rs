@@ -90,9 +90,7 @@ impl InputArgs {
     ) -> anyhow::Result<()> {
         let used = self.input == Target::STDOUT || outputs.any(|path| path.extension().is_none());
         if self.format.is_some() && !used {
-            misused!(
-                "--format has no effect: the extension of each file says its format; leave it away"
-            );
+            misused!("--format has no effect: the extension of each file says its format; omit it");
         }
         Ok(())
     }
@@ -295,11 +293,10 @@ impl PlaceArgs {
         };
         let asked = match self.space {
             Some(_) if units == Units::Voxel => {
-                bail!("--space is for world coordinates, and these are voxels: leave it away")
+                bail!("--space is for world coordinates, and these are voxels: omit it")
             }
             Some(_) if !space.is_known() => bail!(
-                "the input does not say how its axes lie in a patient, and --space cannot know: leave \
-                 it away"
+                "the input does not say how its axes lie in a patient, and --space cannot know: omit it"
             ),
             Some(SpaceArg::Ras) => Space::Ras,
             _ => Space::Lps,
@@ -566,7 +563,7 @@ impl ShapeArgs {
         if self.engine == EngineArg::Reference && self.blocks.is_some_and(|blocks| blocks.get() > 1)
         {
             misused!(
-                "--blocks has no effect: the reference engine knows no blocks; leave it away, or take \
+                "--blocks has no effect: the reference engine knows no blocks; omit it, or take \
                  --engine native"
             );
         }

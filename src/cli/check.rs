@@ -74,9 +74,7 @@ impl Check {
         let judged = self.complex(&mut progress)?;
         let n = judged.positions.len();
         if self.enumerate && n > MOST_ENUMERATED {
-            bail!(
-                "--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}; leave it away"
-            );
+            bail!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}; omit it");
         }
         let extent = Extent::of(&judged.complex, judged.alpha);
         let claim = Claim {
@@ -136,7 +134,7 @@ impl Check {
         }
         if self.points.is_some() {
             misused!(
-                "--points belongs to a complex (.json, .npz), and {} is none; leave it away",
+                "--points belongs to a complex (.json, .npz), and {} is none; omit it",
                 shown(path)
             );
         }

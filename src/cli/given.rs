@@ -22,10 +22,10 @@ impl Given {
             wanted.map(|name| format!("--{}", name.replace('_', "-"))).collect();
         match &options[..] {
             [] => Ok(()),
-            [one] => Err(Usage(format!("{one} has no effect: {why}; leave it away"))),
+            [one] => Err(Usage(format!("{one} has no effect: {why}; omit it"))),
             several => {
                 let names = several.join(", ");
-                Err(Usage(format!("{names} have no effect: {why}; leave them away")))
+                Err(Usage(format!("{names} have no effect: {why}; omit them")))
             }
         }
     }

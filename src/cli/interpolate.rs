@@ -136,7 +136,7 @@ impl Interpolate {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         if self.curve {
             if self.pipeline.input.raw.grid().is_some() {
-                misused!("--curve measures on the samples of INPUT: leave --dims away");
+                misused!("--curve measures on the samples of INPUT: omit --dims");
             }
             let base = self.output.as_deref().expect("clap requires it");
             return curve::run(global, &self.pipeline, base);

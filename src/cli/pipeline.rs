@@ -269,7 +269,7 @@ fn selected_points(
     if volume.has_missing() {
         bail!(
             "--select adaptive interpolates between all samples, and some are missing: give --nan a \
-             value, or leave adaptive away"
+             value, or omit adaptive"
         );
     }
     let mut voxels = adaptive_voxels(volume, &goal, units)?;

@@ -54,7 +54,7 @@ pub struct Shape {
 /// Refuses a switch that has no effect.
 fn unused(name: &str, given: bool, why: &str) -> anyhow::Result<()> {
     if given {
-        misused!("{name} has no effect: {why}; leave it away");
+        misused!("{name} has no effect: {why}; omit it");
     }
     Ok(())
 }

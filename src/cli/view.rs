@@ -91,7 +91,7 @@ impl View {
         let read = pipeline::read(&self.input, &mut progress)?;
         read.accepts(&self.input)?;
         if self.isovalue.is_some() && matches!(read, Input::Points(_)) {
-            misused!("--isovalue has no effect: points have no isosurface; leave it away");
+            misused!("--isovalue has no effect: points have no isosurface; omit it");
         }
         let (weighed, volume) =
             pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;

@@ -130,8 +130,8 @@ pub enum ShapeError {
     Memory(#[from] NoMemory),
     /// Memory is bounded by cutting the points into blocks, which this shape is not made in.
     #[error(
-        "--memory cannot be kept {when}: that takes the whole triangulation at once; leave --memory \
-         away, or {instead}"
+        "--memory cannot be kept {when}: that takes the whole triangulation at once; omit \
+         --memory, or {instead}"
     )]
     Unbounded {
         /// What asks for the whole triangulation.

@@ -57,7 +57,7 @@ fn one_of_several_volumes_is_read() {
     }
     let one = save(folder.path(), "tiff.tif", tiff(2, None));
     let options = ReadOptions { frame: Some(0), ..ReadOptions::default() };
-    assert!(read(&one, &options).unwrap_err().to_string().contains("leave --frame away"));
+    assert!(read(&one, &options).unwrap_err().to_string().contains("omit --frame"));
 }
 
 #[test]

@@ -4,6 +4,10 @@ use std::path::Path;
 
 use super::{Points, PointsError, format};
 
+/// Points read at once.
+#[cfg(feature = "las")]
+const BATCH: u64 = 1 << 16;
+
 /// Reads the places of the points, and their intensity as values. Numbers are those that the file's
 /// scales and offsets make, in doubles.
 #[cfg(feature = "las")]
@@ -12,10 +16,12 @@ pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
         |error: las::Error| format(path, format!("is no LAS file that can be read: {error}"));
     let mut reader = las::Reader::from_path(path).map_err(said)?;
     let mut points = Points { values: Some(Vec::new()), ..Points::default() };
-    for point in reader.points() {
-        let point = point.map_err(said)?;
-        points.positions.push([point.x, point.y, point.z]);
-        points.values.get_or_insert_default().push(f64::from(point.intensity));
+    // In batches, as a header may claim more points than there are.
+    let mut batch = las::PointDataBuilder::new().for_header(reader.header()).build();
+    while reader.fill_points(BATCH, &mut batch).map_err(said)? > 0 {
+        let places = batch.x().zip(batch.y()).zip(batch.z());
+        points.positions.extend(places.map(|((x, y), z)| [x, y, z]));
+        points.values.get_or_insert_default().extend(batch.intensity().map(f64::from));
     }
     let claimed = reader.header().number_of_points();
     if points.len() as u64 != claimed {

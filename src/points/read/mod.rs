@@ -77,7 +77,7 @@ pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
 pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
     let kind = kind(path)?.unwrap_or(Kind::Table);
     if columns.is_some() && !matches!(kind, Kind::Table | Kind::Xyz | Kind::Pwn) {
-        let what = "says itself what its columns are: leave --columns away";
+        let what = "says itself what its columns are: omit --columns";
         return Err(format(path, what.into()));
     }
     let points = match kind {

@@ -10,10 +10,10 @@ pub(super) fn read(folder: &Path, options: &ReadOptions) -> Result<Volume, Volum
     let zarr = is_zarr(folder);
     let series = if zarr { Vec::new() } else { dicom_files(folder, true)? };
     for (given, fits, what) in [
-        (options.level.is_some(), zarr, "is no pyramid: leave --level away"),
-        (options.frame.is_some(), zarr, "holds one volume: leave --frame away"),
-        (options.series.is_some(), !series.is_empty(), "is no DICOM series: leave --series away"),
-        (options.array.is_some(), false, "has no arrays with names: leave --array away"),
+        (options.level.is_some(), zarr, "is no pyramid: omit --level"),
+        (options.frame.is_some(), zarr, "holds one volume: omit --frame"),
+        (options.series.is_some(), !series.is_empty(), "is no DICOM series: omit --series"),
+        (options.array.is_some(), false, "has no arrays with names: omit --array"),
     ] {
         if given && !fits {
             return Err(format_error(folder, what));

@@ -96,10 +96,10 @@ impl ReadOptions {
         #[cfg(not(feature = "dicom"))]
         let series = false;
         for (given, fits, what) in [
-            (self.level.is_some(), false, "is no pyramid: leave --level away"),
-            (self.array.is_some(), arrays, "has no arrays with names: leave --array away"),
-            (self.frame.is_some(), frames, "is of a format of one volume: leave --frame away"),
-            (self.series.is_some(), series, "is no DICOM series: leave --series away"),
+            (self.level.is_some(), false, "is no pyramid: omit --level"),
+            (self.array.is_some(), arrays, "has no arrays with names: omit --array"),
+            (self.frame.is_some(), frames, "is of a format of one volume: omit --frame"),
+            (self.series.is_some(), series, "is no DICOM series: omit --series"),
         ] {
             if given && !fits {
                 return Err(format_error(path, what));

@@ -36,7 +36,7 @@ pub(super) fn read(
     let store = Arc::new(FilesystemStore::new(path).map_err(|error| damaged(&error))?);
     if is_array(path) {
         if let Some(level) = level {
-            return Err(said(format!("is one array and has no level {level}; leave --level away")));
+            return Err(said(format!("is one array and has no level {level}; omit --level")));
         }
         let array = Array::open(store, "/").map_err(|error| damaged(&error))?;
         return volume(path, &array, &[], Coordinates::VOXEL, frame_index);

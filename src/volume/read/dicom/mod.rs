@@ -20,7 +20,7 @@ use stack::stacked;
 /// Reads the series that a file belongs to: all slices of it in the same folder.
 pub(super) fn read_series_of(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
     if wanted.is_some() {
-        let what = "is one file, and its series is read: leave --series away, or name the folder";
+        let what = "is one file, and its series is read: omit --series, or name the folder";
         return Err(format_error(path, what));
     }
     let one = Found::open(path)?;
