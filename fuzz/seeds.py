@@ -203,6 +203,41 @@ def ply():
     return files
 
 
+def off():
+    return [b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", b"# a comment\nCOFF 1 0 0\n1 2 3 0 0 255 1\n", b"NOFF\n1 0 0\n1 2 3 0 0 1\n"]
+
+
+def obj():
+    return [b"o a\nv 0 0 0\nv 1 0 0 1\nv 0 1 0 0.5 0.5 0.5\nvn 0 0 1\nf 1//1 2//1 3//1\n"]
+
+
+def stl():
+    text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"
+    return [text.encode(), bytes(80) + struct.pack("<I12fH", 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)]
+
+
+def pcd():
+    head = "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z w\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA {}\n"
+    # One literal run of 32 bytes, then one of 16: LZF that packs nothing.
+    packed = b"\x1f" + F32[:32] + b"\x0f" + F32[32:48]
+    return [
+        head.format("ascii").encode() + b"0 0 0 1\n1 0 0 2\n0 1 0 3\n",
+        head.format("binary").encode() + F32,
+        head.format("binary_compressed").encode() + struct.pack("<II", len(packed), 48) + packed,
+    ]
+
+
+def las():
+    """Two points of format 0 in LAS 1.2."""
+    head = bytearray(227)
+    head[0:4] = b"LASF"
+    head[24:26] = b"\1\2"
+    struct.pack_into("<HHHIIBHI5I", head, 90, 1, 2020, 227, 227, 0, 0, 20, 2, 2, 0, 0, 0, 0)
+    struct.pack_into("<3d3d6d", head, 131, 0.01, 0.01, 0.01, 0, 0, 0, 1, 0, 1, 0, 1, 0)
+    points = b"".join(struct.pack("<iiiHBBbBH", at, at, at, 7, 0b1001, 2, 0, 0, 1) for at in (0, 100))
+    return [bytes(head) + points]
+
+
 def dicom():
     """A slice of 3 columns and 2 rows, explicit little endian; the second one in a deflated file."""
 
@@ -304,7 +339,8 @@ TARGETS = {
     "inrimage": inrimage, "npy": npys, "npz": npz, "nrrd": nrrd, "metaimage": metaimage, "nifti": nifti,
     "nifti_gzip": lambda: [gzip.compress(file) for file in nifti()], "vtk_legacy": vtk_legacy, "vti": vti,
     "tiff": tiffs, "table": table, "xyz": xyz, "ply": ply, "vtk_geometry": vtk_geometry,
-    "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes, "check_json": check_json, "check_npz": check_npz,
+    "off": off, "obj": obj, "stl": stl,
+    "pcd": pcd, "las": las, "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes, "check_json": check_json, "check_npz": check_npz,
 }
 
 if __name__ == "__main__":
