@@ -156,7 +156,6 @@ pub fn run() -> ExitCode {
         }
         Cli::from_arg_matches(&matches).map(|cli| Ok((cli, is_piped(&matches))))
     });
-    let configured = args.len() > typed.len();
     let done = match parsed {
         Ok(Ok((Cli { global, command }, piped))) => execute(Global { piped, ..global }, command),
         Ok(Err(matches)) => print_config(&command, &matches),
@@ -165,7 +164,7 @@ pub fn run() -> ExitCode {
             error.print().map(|()| ExitCode::SUCCESS).map_err(Into::into)
         }
         Err(error) => {
-            complaint::tell_usage(&name, &error, configured);
+            complaint::tell_usage(&name, &error, args.len() > typed.len());
             return ExitCode::from(USAGE);
         }
     };
@@ -175,10 +174,6 @@ pub fn run() -> ExitCode {
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             progress::clear();
-            if let Some(usage) = error.downcast_ref::<clap::Error>() {
-                complaint::tell_usage(&name, usage, configured);
-                return ExitCode::from(USAGE);
-            }
             complaint::tell(&name, &error);
             if complaint::is_usage(&error) { ExitCode::from(USAGE) } else { ExitCode::FAILURE }
         }

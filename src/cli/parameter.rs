@@ -89,9 +89,7 @@ impl Parameter {
         let unweighted = weigh(points, Weighting::Common(0.0), 0.0)?;
         Ok(Self { origin: Origin::AutoUnweighted, ..Self::found(unweighted, unit, progress)? })
     }
-}
 
-impl Parameter {
     /// Whether it was looked for.
     pub fn is_found(self) -> bool {
         matches!(self.origin, Origin::Auto | Origin::AutoUnweighted)

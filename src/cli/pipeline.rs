@@ -142,6 +142,15 @@ impl Weighed {
         self.parameter = Some(parameter);
         Ok(parameter)
     }
+
+    /// The points with the values that are written: those of the file, unless gray levels were asked
+    /// for.
+    pub fn in_values(mut self) -> Self {
+        if let (Some(volume), Some(values)) = (&self.volume, &mut self.points.values) {
+            values.iter_mut().for_each(|value| *value = volume.written.value(*value));
+        }
+        self
+    }
 }
 
 /// What is to be told about a volume.
@@ -174,17 +183,6 @@ impl Display for Ended {
             0.0 => write!(f, "no sample differs from the interpolant of these any more"),
             rmse => write!(f, "these reach an RMSE of {rmse} gray levels"),
         }
-    }
-}
-
-impl Weighed {
-    /// The points with the values that are written: those of the file, unless gray levels were asked
-    /// for.
-    pub fn in_values(mut self) -> Self {
-        if let (Some(volume), Some(values)) = (&self.volume, &mut self.points.values) {
-            values.iter_mut().for_each(|value| *value = volume.written.value(*value));
-        }
-        self
     }
 }
 

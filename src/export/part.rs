@@ -2,11 +2,10 @@
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
-
-use tempfile::TempPath;
+use std::path::Path;
 
 use super::place::Place;
-use super::unfinished::{Entry, Gate, gate};
+use super::unfinished::{Gate, Temporary};
 
 /// A temporary file to be filled.
 #[derive(Debug)]
@@ -18,8 +17,7 @@ pub(super) struct Part {
 /// A complete file that waits to be put in its place.
 #[derive(Debug)]
 pub(super) struct Whole {
-    temporary: Option<TempPath>,
-    entry: &'static Entry,
+    temporary: Temporary,
     place: Place,
     way: Way,
 }
@@ -39,26 +37,14 @@ impl Part {
     pub fn beside(place: Place) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(".walpha-").suffix(".part");
-        let mut gate = gate();
-        let mut entry = None;
         let private = place.existing.is_some();
-        // Entered before it is there, so that no signal finds it unknown. Errors do not name the
-        // temporary file, which means nothing to anybody.
-        let made = builder.make_in(place.folder(), |path| {
-            let entered = gate.enter(path, false)?;
-            let file = create(path, private).inspect_err(|_| entered.strike())?;
-            entry = Some(entered);
-            Ok(file)
-        });
-        let (file, temporary) = made?.into_parts();
-        let entry = entry.expect("entered before it was made");
-        let mut whole = Whole { temporary: Some(temporary), entry, place, way: Way::Renamed };
-        // The drop of what follows waits for the gate.
-        drop(gate);
-        if let Some(existing) = &whole.place.existing {
-            whole.way = way(&file, existing, &whole.place)?;
-        }
-        Ok(Self { file, whole })
+        let create = |path: &Path| create(path, private);
+        let (file, temporary) = Temporary::make(&builder, place.folder(), create)?;
+        let way = match &place.existing {
+            Some(existing) => way(&file, existing, &place)?,
+            None => Way::Renamed,
+        };
+        Ok(Self { file, whole: Whole { temporary, place, way } })
     }
 
     /// Fills the file and closes it; says how many bytes it has.
@@ -78,7 +64,7 @@ impl Part {
 
 impl Whole {
     /// Gives the file its name. The gate is held, so that an interrupt waits.
-    pub fn put(&mut self, _: &Gate) -> io::Result<()> {
+    pub fn put(&mut self, gate: &Gate) -> io::Result<()> {
         let Some(temporary) = self.temporary.take() else { return Ok(()) };
         match self.way {
             Way::Renamed => temporary.persist(&self.place.path).map_err(|refused| refused.error)?,
@@ -87,16 +73,8 @@ impl Whole {
                 &mut File::open(&temporary)?,
             )?,
         }
-        self.entry.strike();
+        self.temporary.settle(gate);
         Ok(())
-    }
-}
-
-impl Drop for Whole {
-    fn drop(&mut self) {
-        let _gate = gate();
-        self.temporary = None;
-        self.entry.strike();
     }
 }
 
@@ -119,14 +97,14 @@ fn overwrite(file: &mut File, content: &mut File) -> io::Result<()> {
 
 /// A new file. One that replaces another is nobody else's to read before it is like that one.
 #[cfg(unix)]
-fn create(path: &std::path::Path, private: bool) -> io::Result<File> {
+fn create(path: &Path, private: bool) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;
     let mode = if private { 0o600 } else { 0o666 };
     OpenOptions::new().write(true).create_new(true).mode(mode).open(path)
 }
 
 #[cfg(not(unix))]
-fn create(path: &std::path::Path, _: bool) -> io::Result<File> {
+fn create(path: &Path, _: bool) -> io::Result<File> {
     OpenOptions::new().write(true).create_new(true).open(path)
 }
 
@@ -155,12 +133,12 @@ fn way(_: &File, _: &Metadata, _: &Place) -> io::Result<Way> {
 
 /// Whether more is said of who may read a file than by its mode.
 #[cfg(target_os = "linux")]
-fn has_access_list(path: &std::path::Path) -> bool {
+fn has_access_list(path: &Path) -> bool {
     let mut no_room: [u8; 0] = [];
     rustix::fs::getxattr(path, "system.posix_acl_access", &mut no_room).is_ok()
 }
 
 #[cfg(all(unix, not(target_os = "linux")))]
-fn has_access_list(_: &std::path::Path) -> bool {
+fn has_access_list(_: &Path) -> bool {
     false
 }

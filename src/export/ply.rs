@@ -60,8 +60,9 @@ impl Exporter for Ply {
     }
 
     fn remark(&self, shape: &AlphaShape) -> Option<String> {
-        let edges = self.0.surface(shape).edges.len();
-        (edges > 0).then(|| {
+        // A solid has none.
+        let edges = shape.complex().edges.of(Class::Singular).count();
+        (edges > 0 && !self.0.solid).then(|| {
             format!(
                 "{edges} singular edges are left out, as most programs refuse a PLY file with edges; OBJ, \
                  GLB and VTP have them"

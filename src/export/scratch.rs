@@ -2,16 +2,13 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use tempfile::TempPath;
-
-use super::unfinished::{Entry, gate};
+use super::unfinished::Temporary;
 
 /// A file with a name for a while, which goes when it is dropped, and also when the process is
 /// interrupted.
 #[derive(Debug)]
 pub struct Scratch {
-    temporary: Option<TempPath>,
-    entry: &'static Entry,
+    temporary: Temporary,
 }
 
 impl Scratch {
@@ -23,33 +20,15 @@ impl Scratch {
     pub fn of(reader: &mut dyn Read, ending: &str) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
         builder.prefix("walpha-").suffix(ending);
-        let mut gate = gate();
-        let mut entry = None;
-        // Entered before it is there, so that no signal finds it unknown.
-        let made = builder.make_in(std::env::temp_dir(), |path| {
-            let entered = gate.enter(path, false)?;
-            let file = File::create_new(path).inspect_err(|_| entered.strike())?;
-            entry = Some(entered);
-            Ok(file)
-        });
-        let (mut file, temporary) = made?.into_parts();
-        drop(gate);
-        let entry = entry.expect("entered before it was made");
-        let scratch = Self { temporary: Some(temporary), entry };
+        let folder = std::env::temp_dir();
+        let (mut file, temporary) =
+            Temporary::make(&builder, &folder, |path| File::create_new(path))?;
         io::copy(reader, &mut file)?;
-        Ok(scratch)
+        Ok(Self { temporary })
     }
 
     /// Where it is.
     pub fn path(&self) -> &Path {
-        self.temporary.as_deref().expect("only a drop takes it")
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _gate = gate();
-        self.temporary = None;
-        self.entry.strike();
+        self.temporary.path().expect("it is never taken")
     }
 }

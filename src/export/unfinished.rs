@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
+use tempfile::TempPath;
+
 /// A file or folder that goes again unless it is finished. Entries are never freed, and their list
 /// is read without a lock: the handler of a signal may do so at any moment.
 #[derive(Debug)]
@@ -103,6 +105,58 @@ pub fn abandon(code: i32) -> ! {
     let _for_good = gate();
     sweep();
     std::process::exit(code)
+}
+
+/// A file that goes when it is dropped, and also when the process is interrupted.
+#[derive(Debug)]
+pub(super) struct Temporary {
+    path: Option<TempPath>,
+    entry: &'static Entry,
+}
+
+impl Temporary {
+    /// Makes one in a folder, as `create` does. Errors do not name it: its name means nothing to anybody.
+    pub fn make(
+        names: &tempfile::Builder<'_, '_>,
+        folder: &Path,
+        create: impl Fn(&Path) -> io::Result<fs::File>,
+    ) -> io::Result<(fs::File, Self)> {
+        let mut gate = gate();
+        let mut entry = None;
+        // Entered before it is there, so that no signal finds it unknown.
+        let made = names.make_in(folder, |path| {
+            let entered = gate.enter(path, false)?;
+            let file = create(path).inspect_err(|_| entered.strike())?;
+            entry = Some(entered);
+            Ok(file)
+        });
+        let (file, path) = made?.into_parts();
+        let entry = entry.expect("entered before it was made");
+        Ok((file, Self { path: Some(path), entry }))
+    }
+
+    /// Where it is, until it is taken.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// The path, to be renamed or dropped under the gate.
+    pub fn take(&mut self) -> Option<TempPath> {
+        self.path.take()
+    }
+
+    /// What was taken stands under its name, or is gone.
+    pub fn settle(&self, _: &Gate) {
+        self.entry.strike();
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        let _gate = gate();
+        self.path = None;
+        self.entry.strike();
+    }
 }
 
 /// A folder made for files to come. Dropped before it is kept, it goes again if it is empty.

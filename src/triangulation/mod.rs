@@ -172,7 +172,7 @@ impl Maker {
 
 /// CGAL's `Regular_triangulation_3`, copied out; its own memory is given back before cells are numbered.
 fn cgal(positions: &[[f64; 3]], weights: &[f64]) -> Result<Triangulation, TriangulationError> {
-    let copied = || {
+    let copied = || -> Result<_, TriangulationError> {
         let made = crate::cgal::regular(positions, weights)?;
         let count = made.cells();
         if count > Triangulation::MOST_CELLS {
@@ -180,13 +180,12 @@ fn cgal(positions: &[[f64; 3]], weights: &[f64]) -> Result<Triangulation, Triang
         }
         let (mut cells, mut beside) = (filled(count, [0; 4])?, filled(count, [0; 4])?);
         made.copy(&mut cells, &mut beside)?;
-        Ok(cells
-            .into_iter()
-            .zip(beside)
-            .map(|(corners, beside)| Cell { corners, beside })
-            .collect())
+        Ok((cells, beside))
     };
-    let cells = copied()?;
+    let (corners, beside) = copied()?;
+    let mut cells = room(corners.len())?;
+    let both = corners.into_iter().zip(beside);
+    cells.extend(both.map(|(corners, beside)| Cell { corners, beside }));
     Triangulation::along_points(cells, positions.len() as u32)
 }
 

@@ -179,7 +179,8 @@ impl Cavity {
         if self.boundary.len() < self.facets + 4 {
             self.boundary.resize(2 * self.boundary.len(), Facet::default());
         }
-        let Some(room) = self.boundary[self.facets..].first_chunk_mut::<4>() else { return };
+        let room = self.boundary[self.facets..].first_chunk_mut::<4>();
+        let room = room.expect("made above");
         let [a, b, c, d] = cell;
         let facets = [[b, d, c], [a, c, d], [b, a, d], [a, b, c]];
         let mut at = 0;

@@ -21,7 +21,7 @@ pub(crate) struct Screen<'a> {
     power: f64,
 }
 
-/// A few times the smallest double: 2⁻¹⁰⁶⁰.
+/// 2¹⁴ times the smallest double: 2⁻¹⁰⁶⁰.
 const LOST: f64 = f64::from_bits(1 << 14);
 
 impl<'a> Screen<'a> {
