@@ -9,7 +9,8 @@ use tracing::{Event, Metadata, Subscriber};
 use walpha::interpolate::{Adaptive, adaptive_voxels};
 use walpha::ladder::Filtration;
 use walpha::progress::TARGET;
-use walpha::{Gray, HaarOptions, Units, Volume, WeightedPoints, haar, volume};
+use walpha::shape::{Engine, ShapeOptions};
+use walpha::{Alpha, Gray, HaarOptions, Units, Volume, WeightedPoints, alpha_shape, haar, volume};
 
 /// Keeps what is reported.
 #[derive(Clone, Default)]
@@ -75,12 +76,30 @@ fn the_wavelet_stage_moves() {
     assert_moves(2, || drop(haar::smooth(&phantom(), &HaarOptions::default()).unwrap()));
 }
 
+/// The points of a lattice.
+fn lattice(side: usize) -> WeightedPoints {
+    let at = |i: usize| [i % side, i / side % side, i / side / side].map(|c| c as f64);
+    let positions: Vec<_> = (0..side.pow(3)).map(at).collect();
+    WeightedPoints { weights: vec![0.0; positions.len()], positions, values: None }
+}
+
 #[test]
 fn a_filtration_moves() {
-    let at = |i: usize| [i % 5, i / 5 % 5, i / 25].map(|c| c as f64);
-    let positions: Vec<_> = (0..125).map(at).collect();
-    let points = WeightedPoints { weights: vec![0.0; 125], positions, values: None };
-    assert_moves(5, || drop(Filtration::new(points).unwrap()));
+    assert_moves(5, || drop(Filtration::new(lattice(5)).unwrap()));
+}
+
+#[test]
+fn a_shape_moves_within_its_blocks() {
+    // Threads of other names would report to nobody.
+    let here = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread();
+    let here = here.build().unwrap();
+    let (alpha, engine) = (Alpha::from_squared(1.0).unwrap(), Engine::Native);
+    for blocks in [1, 3] {
+        let blocks = std::num::NonZeroUsize::new(blocks);
+        let options = ShapeOptions { engine, blocks, ..ShapeOptions::new(alpha) };
+        let work = || drop(alpha_shape(lattice(27), &options).unwrap());
+        here.install(|| assert_moves(4 + 2 * blocks.unwrap().get(), work));
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@ use super::fill::corners;
 use super::raster::NOTHING;
 use super::{Deviation, Grid, Interpolant, InterpolateError, Resampled};
 use crate::points::{Units, WeightedPoints};
-use crate::progress;
+use crate::progress::{Share, report, within};
 use crate::shape::{Alpha, ShapeOptions, alpha_shape};
 use crate::volume::{Dims, Volume};
 
@@ -64,7 +64,8 @@ pub fn adaptive_voxels(
     let grid = Grid::of(volume, units);
     loop {
         let points = points(volume, &voxels, units);
-        let shape = alpha_shape(points, &ShapeOptions::new(Alpha::INFINITE))?;
+        let options = ShapeOptions::new(Alpha::INFINITE);
+        let shape = within(Share::NONE, || alpha_shape(points, &options))?;
         let interpolant = Interpolant::new(&shape)?;
         let resampled = interpolant.resample(&grid)?;
         let Deviation { rmse: Some(rmse), max: Some(max), .. } = Deviation::of(volume, &resampled)
@@ -72,7 +73,7 @@ pub fn adaptive_voxels(
             return Ok(voxels);
         };
         tracing::debug!(points = voxels.len(), rmse, "adaptive");
-        progress::report(voxels.len() as u64, goal.count);
+        report(voxels.len() as u64, goal.count);
         let room = goal.count as usize - voxels.len();
         let batch = ((voxels.len() as f64 * BATCH).ceil() as usize).max(FIRST_BATCH).min(room);
         if rmse <= goal.rmse || batch == 0 {

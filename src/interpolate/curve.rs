@@ -9,7 +9,7 @@ use crate::haar::{HaarOptions, Tolerance, smooth};
 use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, points_at, select, weigh,
 };
-use crate::progress;
+use crate::progress::{self, Share};
 use crate::shape::{Alpha, ShapeError, ShapeOptions, alpha_shape};
 use crate::triangulation::TriangulationError;
 use crate::volume::Volume;
@@ -99,16 +99,7 @@ pub fn error_curve(
     for (done, method) in Method::ALL.into_iter().enumerate() {
         announce(method);
         progress::report(done as u64, Method::ALL.len() as u64);
-        if method == Method::Haar {
-            curve.extend(bench.haar()?);
-            continue;
-        }
-        let selections = bench.selections(method)?;
-        for &weighting in &options.weightings {
-            for points in &selections {
-                curve.extend(bench.measure(method, weighting, points)?);
-            }
-        }
+        progress::within(Share::NONE, || bench.add(method, &mut curve))?;
     }
     Ok(curve)
 }
@@ -121,6 +112,21 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
+    /// Adds what is measured of a method.
+    fn add(&self, method: Method, curve: &mut Vec<CurvePoint>) -> Result<(), InterpolateError> {
+        if method == Method::Haar {
+            curve.extend(self.haar()?);
+            return Ok(());
+        }
+        let selections = self.selections(method)?;
+        for &weighting in &self.options.weightings {
+            for points in &selections {
+                curve.extend(self.measure(method, weighting, points)?);
+            }
+        }
+        Ok(())
+    }
+
     /// The counts that there are samples for.
     fn counts(&self) -> impl Iterator<Item = u64> {
         let samples = self.volume.dims().samples() as u64;

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::incidence::Incidence;
 use crate::memory;
 use crate::points::WeightedPoints;
-use crate::progress;
+use crate::progress::{Share, report, within};
 use crate::shape::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape};
 use crate::triangulation::{Interval, Predicates};
 
@@ -39,24 +39,24 @@ impl Filtration {
     pub fn new(points: WeightedPoints) -> Result<Self, ShapeError> {
         let engine = Engine::Native;
         let options = ShapeOptions { engine, exterior: true, ..ShapeOptions::new(Alpha::INFINITE) };
-        let whole = alpha_shape(points, &options)?;
+        let share = |from, to| Share { from, to, of: 8 };
+        let whole = within(share(0, 4), || alpha_shape(points, &options))?;
         let complex = whole.complex();
         memory::afford(Self::bytes(complex), || {
             format!("the filtration of {} cells", complex.cells.len())
         })?;
-        let done = |parts| progress::report(parts, 8);
-        done(4);
+        let done = |parts| within(share(4, 8), || report(parts, 4));
         let incidence = Incidence::of(complex, whole.points().len());
-        done(5);
+        done(1);
         let spheres = Predicates::new(&whole.points().positions, &whole.points().weights);
         let cells =
             complex.cells.vertices.par_iter().map(|&cell| spheres.squared_radius(cell)).collect();
-        done(6);
+        done(2);
         let facets = gabriel_facets(complex, &incidence, &spheres);
-        done(7);
+        done(3);
         let edges = gabriel_edges(complex, &incidence, &spheres);
         let vertices = gabriel_vertices(complex, &incidence, &spheres);
-        done(8);
+        done(4);
         Ok(Self { whole, incidence, cells, facets, edges, vertices })
     }
 

@@ -157,14 +157,16 @@ pub enum Maker {
 
 impl Maker {
     /// The triangulation of points that are sites, or some of them. [`Maker::Native`] is fast where
-    /// points near each other in the slices are near each other in space.
+    /// points near each other in the slices are near each other in space. `inserted` hears now and then
+    /// how many more points are in; CGAL cannot be asked before it is done.
     pub(crate) fn make(
         self,
         positions: &[[f64; 3]],
         weights: &[f64],
+        inserted: impl FnMut(usize),
     ) -> Result<Triangulation, TriangulationError> {
         match self {
-            Self::Native => native::native(positions, weights),
+            Self::Native => native::native(positions, weights, inserted),
             Self::Cgal => cgal(positions, weights),
         }
     }
@@ -197,7 +199,7 @@ pub fn triangulate(sites: &Sites<'_>, maker: Maker) -> Result<Triangulation, Tri
     let along = sites.curve();
     let positions: Vec<_> = along.iter().map(|&i| sites.positions()[i as usize]).collect();
     let weights: Vec<_> = along.iter().map(|&i| sites.weights()[i as usize]).collect();
-    let mut triangulation = maker.make(&positions, &weights)?;
+    let mut triangulation = maker.make(&positions, &weights, |_| {})?;
     for v in triangulation.cells.as_flattened_mut() {
         *v = along.get(*v as usize).copied().unwrap_or(*v);
     }

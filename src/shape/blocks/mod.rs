@@ -22,8 +22,8 @@ mod plan;
 use rayon::prelude::*;
 
 use super::{Complex, ShapeError};
-use crate::progress;
-use crate::triangulation::{Lattice, Maker, Sites, SitesError, TriangulationError};
+use crate::progress::Piece;
+use crate::triangulation::{Lattice, Maker, Sites, SitesError, Triangulation, TriangulationError};
 
 use classify::{Owned, Shelves, classify};
 use merge::merge;
@@ -83,10 +83,11 @@ pub(super) fn run(
     let blocks: Vec<usize> = (0..partition.len()).collect();
     let mut owned: Vec<Owned> = Vec::with_capacity(blocks.len());
     let (mut bytes, mut points) = (0, 0);
+    let work = Piece::new(WORK * sites.input().len() as u64);
     for batch in blocks.chunks(plan.at_once) {
         let done: Result<Vec<_>, ShapeError> = batch
             .par_iter()
-            .map(|&block| decide(sites, partition, block, question, shelves))
+            .map(|&block| decide(sites, partition, block, question, shelves, &work))
             .collect();
         for done in done? {
             bytes += done.merged_bytes();
@@ -94,7 +95,6 @@ pub(super) fn run(
             owned.push(done);
         }
         plan.keeps(bytes, points, sites.input().len())?;
-        progress::report(owned.len() as u64, partition.len() as u64);
         plan.give_back();
     }
     Ok(merge(sites, plan, owned, question.exterior, shelves))
@@ -107,15 +107,42 @@ fn decide(
     block: usize,
     question: &Question,
     shelves: Shelves,
+    work: &Piece,
 ) -> Result<Owned, ShapeError> {
+    let classified = |points: &Block, made| {
+        let owned = classify(points, made, question, shelves);
+        work.add((WORK - TRIANGULATION) * u64::from(points.own));
+        owned
+    };
     if partition.len() > 1 {
         let points = partition.block(sites, question.alpha, block);
-        match question.maker.make(&points.positions, &points.weights) {
+        match triangulate(&points, question.maker, work) {
             Err(TriangulationError::Sites(SitesError::Flat { .. })) => {}
-            made => return Ok(classify(&points, made?, question, shelves)),
+            made => return Ok(classified(&points, made?)),
         }
     }
     let points = partition.block(sites, f64::INFINITY, block);
-    let made = question.maker.make(&points.positions, &points.weights)?;
-    Ok(classify(&points, made, question, shelves))
+    let made = triangulate(&points, question.maker, work)?;
+    Ok(classified(&points, made))
+}
+
+/// What a point counts for as work, and the part of that which its triangulation takes.
+const WORK: u64 = 3;
+const TRIANGULATION: u64 = 2;
+
+fn triangulate(
+    points: &Block,
+    maker: Maker,
+    work: &Piece,
+) -> Result<Triangulation, TriangulationError> {
+    let (own, all) = (TRIANGULATION * u64::from(points.own), points.input.len() as u64);
+    let (mut inside, mut counted) = (0, 0);
+    let made = maker.make(&points.positions, &points.weights, |more| {
+        inside += more as u64;
+        let units = own * inside / all;
+        work.add(units - counted);
+        counted = units;
+    })?;
+    work.add(own - counted);
+    Ok(made)
 }

@@ -20,6 +20,9 @@ use super::predicates::{Predicates, Screen};
 use super::{Cell, GONE, Triangulation, TriangulationError};
 use cavity::Cavity;
 
+/// So many insertions are counted at once: some milliseconds.
+const TOGETHER: usize = 4096;
+
 /// The regular triangulation of points: finite numbers of sane magnitude, no two places equal.
 /// Expected O(n log n) for points of even density.
 ///
@@ -28,11 +31,15 @@ use cavity::Cavity;
 pub(super) fn native(
     positions: &[[f64; 3]],
     weights: &[f64],
+    mut inserted: impl FnMut(usize),
 ) -> Result<Triangulation, TriangulationError> {
     let predicates = Predicates::new(positions, weights);
     let screen = Screen::new(&predicates)?;
     let mut native = Native::start(&screen)?;
-    for v in rounds(screen.len() as u32) {
+    for (i, v) in rounds(screen.len() as u32).enumerate() {
+        if i % TOGETHER == TOGETHER - 1 {
+            inserted(TOGETHER);
+        }
         if !native.first.contains(&v) {
             native.insert(v)?;
         }
