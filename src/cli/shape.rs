@@ -96,10 +96,10 @@ impl Shape {
         for path in &self.output {
             let name = self.pipeline.input.output(path)?;
             let exporter: Box<dyn Exporter> = if PictureArgs::wanted(&name) {
-                Box::new(self.picture)
+                self.picture.exporter()
             } else {
                 let known = Format::ALL.into_iter().map(|(_, extension)| extension);
-                let unknown = |_| UnknownFormat::new(path, "a shape", known.chain(["png"]));
+                let unknown = |_| UnknownFormat::new(path, "a shape", known.chain(PictureArgs::EXTENSIONS));
                 Format::of(&name).map_err(unknown)?.exporter(&export)
             };
             targets.push((Target::open(path)?, exporter));

@@ -1,7 +1,7 @@
 use super::super::outline::{area, loops};
 use super::super::{Fact, Finding, Item, ReproduceError, Table, Verdict, text};
 use super::Bench;
-use crate::plane::{
+use super::super::plane::{
     AlphaHull, Curvature, EksShape, Piece, WeightedPlaneShape, eks_shape, sample_discs,
     sample_points, weighted_plane_shape,
 };

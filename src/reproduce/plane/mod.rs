@@ -1,4 +1,4 @@
-//! Floor 3: alpha shapes in the plane, as in Figures 2 to 4 of the paper.
+//! Alpha shapes in the plane, as in Figures 2 to 4 of the paper.
 //!
 //! Two families share the name. Those of Edelsbrunner, Kirkpatrick and Seidel (1983) are made of
 //! *generalised discs* whose α is a signed curvature, [`Curvature`]: [`eks_shape`]. The weighted
@@ -12,7 +12,7 @@
 //!
 //! ```
 //! use walpha::Alpha;
-//! use walpha::plane::{Curvature, eks_shape, weighted_plane_shape};
+//! use walpha::reproduce::plane::{Curvature, eks_shape, weighted_plane_shape};
 //!
 //! let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]];
 //! // α = 0 makes half-planes of the discs, and the convex hull of the shape.
