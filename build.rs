@@ -2,7 +2,8 @@
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    // Documentation on docs.rs is built where there is no CGAL.
+    println!("cargo::rerun-if-env-changed=DOCS_RS");
+    // Documentation on docs.rs is built where there is no CGAL; nor do checks link it.
     #[cfg(feature = "cgal")]
     if std::env::var_os("DOCS_RS").is_none() {
         bridge::build();

@@ -27,8 +27,10 @@ use regions::region;
 /// Shapes at many α from one triangulation, or at several levels of detail.
 ///
 /// Over α, weights are frozen, so that the shapes are nested: ladder.csv and ladder.json have counts,
-/// Betti numbers, volume and area of each level, voids.csv has every void with the α that fills it,
-/// ladder.png and ladder.svg draw it. The α to try are suggested. Over points (--counts) or the
+/// Betti numbers, volume and area of each level, voids.csv has every void with the α that fills
+#[cfg_attr(feature = "render", doc = " it, ladder.png and ladder.svg draw it.")]
+#[cfg_attr(not(feature = "render"), doc = " it.")]
+/// The α to try are suggested. Over points (--counts) or the
 /// error of the wavelet stage (--epsilons) there is a mesh for each level of detail, at α = --alpha-ref,
 /// and detail.csv and detail.json tell error and size.
 ///

@@ -1,10 +1,10 @@
 use super::super::outline::{area, loops};
-use super::super::{Fact, Finding, Item, ReproduceError, Table, Verdict, text};
-use super::Bench;
 use super::super::plane::{
     AlphaHull, Curvature, EksShape, Piece, WeightedPlaneShape, eks_shape, sample_discs,
     sample_points, weighted_plane_shape,
 };
+use super::super::{Fact, Finding, Item, ReproduceError, Table, Verdict, text};
+use super::Bench;
 use crate::render::{Content, Drawing, Figure, PALETTE, Panel, Pen, Rgb, Size, Step};
 use crate::shape::{Alpha, Class};
 
