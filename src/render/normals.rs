@@ -4,7 +4,7 @@ use super::vector::{V3, add, along, cross, dot, length, scale, sub, unit};
 /// weighed by their angle there, so that it does not matter how a flat part is cut into triangles
 /// (Thürmer and Wüthrich 1998, doi:10.1080/10867651.1998.10487487). Of length 1, or 0 where
 /// nothing gives a direction.
-pub(super) fn vertex_normals(positions: &[V3], triangles: &[[u32; 3]]) -> Vec<V3> {
+pub(crate) fn vertex_normals(positions: &[V3], triangles: &[[u32; 3]]) -> Vec<V3> {
     let mut sums = vec![[0.0; 3]; positions.len()];
     for corners in triangles {
         let p = corners.map(|c| positions[c as usize]);
@@ -20,7 +20,7 @@ pub(super) fn vertex_normals(positions: &[V3], triangles: &[[u32; 3]]) -> Vec<V3
 
 /// Normals of a surface made of lattice steps, as one would see them from further away: each
 /// round blends every normal with those of its neighbours along the triangles.
-pub(super) fn smoothed(mut normals: Vec<V3>, triangles: &[[u32; 3]], rounds: usize) -> Vec<V3> {
+pub(crate) fn smoothed(mut normals: Vec<V3>, triangles: &[[u32; 3]], rounds: usize) -> Vec<V3> {
     for _ in 0..rounds {
         let mut sums: Vec<V3> = normals.iter().map(|&n| scale(n, 2.0)).collect();
         for corners in triangles {

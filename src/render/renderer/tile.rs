@@ -1,7 +1,8 @@
 //! The pixels of one tile: which primitive is nearest in each sample, and what colour that makes.
 
-use super::Background;
-use super::raster::{Patch, PixelBox, Primitive, SAMPLES, Stage, sample_position};
+use crate::render::pixels::{Patch, PixelBox, SAMPLES, sample_position};
+use crate::render::primitives::{Primitive, Stage};
+use crate::render::scene::Background;
 
 /// Draws the primitives that may touch `area`, row by row.
 pub(super) fn draw(

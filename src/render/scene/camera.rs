@@ -1,5 +1,6 @@
-use super::vector::{V3, add, cross, dot, length, scale, sub, unit};
-use super::{RenderError, Size};
+use crate::render::error::RenderError;
+use crate::render::pixels::Size;
+use crate::render::vector::{V3, add, cross, dot, length, scale, sub, unit};
 
 /// How depth changes size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,7 +134,7 @@ impl Camera {
 
 /// A camera made ready for a picture: world to pixel and pixel to line of sight.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lens {
+pub(crate) struct Lens {
     pub eye: V3,
     pub right: V3,
     pub up: V3,
@@ -148,7 +149,7 @@ pub(super) struct Lens {
 }
 
 impl Lens {
-    pub(super) fn new(camera: &Camera, size: Size) -> Result<Self, RenderError> {
+    pub(crate) fn new(camera: &Camera, size: Size) -> Result<Self, RenderError> {
         let all = [camera.eye, camera.target, camera.up];
         if !all.as_flattened().iter().all(|v| v.abs() < 1e100) {
             return Err(RenderError::Camera("eye, target and up must be finite and below 1e100"));
@@ -184,13 +185,13 @@ impl Lens {
     }
 
     /// Into the eye's own axes: right, up, forward.
-    pub(super) fn view(&self, p: V3) -> V3 {
+    pub(crate) fn view(&self, p: V3) -> V3 {
         let p = sub(p, self.eye);
         [dot(p, self.right), dot(p, self.up), dot(p, self.forward)]
     }
 
     /// The pixel position (x right, y down) of a point in the eye's axes, in front of the eye.
-    pub(super) fn pixel(&self, v: V3) -> [f64; 2] {
+    pub(crate) fn pixel(&self, v: V3) -> [f64; 2] {
         let s = match self.projection {
             Projection::Perspective => self.focal / v[2],
             Projection::Orthographic => self.focal,
@@ -200,7 +201,7 @@ impl Lens {
 
     /// The line of sight through a pixel position, in the eye's axes: origin and direction, the
     /// direction's forward part being 1 so that the parameter along it is the depth.
-    pub(super) fn ray(&self, x: f64, y: f64) -> (V3, V3) {
+    pub(crate) fn ray(&self, x: f64, y: f64) -> (V3, V3) {
         let slope = [(x - self.centre[0]) / self.focal, (self.centre[1] - y) / self.focal];
         match self.projection {
             Projection::Perspective => ([0.0; 3], [slope[0], slope[1], 1.0]),
@@ -209,7 +210,7 @@ impl Lens {
     }
 
     /// A number that grows towards the eye and is linear over the picture on every plane.
-    pub(super) fn nearness(&self, depth: f64) -> f64 {
+    pub(crate) fn nearness(&self, depth: f64) -> f64 {
         match self.projection {
             Projection::Perspective => 1.0 / depth,
             Projection::Orthographic => -depth,
@@ -217,7 +218,7 @@ impl Lens {
     }
 
     /// A direction given along right, up and towards the eye, in world axes.
-    pub(super) fn world_direction(&self, right: f64, up: f64, back: f64) -> V3 {
+    pub(crate) fn world_direction(&self, right: f64, up: f64, back: f64) -> V3 {
         let d = add(scale(self.right, right), scale(self.up, up));
         add(d, scale(self.forward, -back))
     }

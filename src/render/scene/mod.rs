@@ -1,5 +1,12 @@
-use super::raster::render;
-use super::{Camera, Picture, RenderError, Rgb, Size};
+//! What is drawn, and from where.
+
+mod camera;
+
+pub(crate) use camera::Lens;
+pub use camera::{Camera, Projection, View};
+
+use super::error::RenderError;
+use super::pixels::Rgb;
 
 /// What stands before the camera. Built once, seen from anywhere.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -112,25 +119,6 @@ pub enum Background {
 }
 
 impl Scene {
-    /// Draws the scene: 16 samples for each pixel, key, fill and rim light fixed to the camera,
-    /// and sky light that reaches into hollows only as far as they are open. Solid surfaces of
-    /// zero area are invisible. 33 000 triangles and 20 000 balls at 1600×1200 take about a second
-    /// on two cores.
-    ///
-    /// # Errors
-    /// [`RenderError::Camera`] for a camera without a direction; [`RenderError::Index`],
-    /// [`RenderError::Attribute`] and [`RenderError::OutOfRange`] for a scene that contradicts
-    /// itself.
-    pub fn render(
-        &self,
-        camera: &Camera,
-        size: Size,
-        background: Background,
-    ) -> Result<Picture, RenderError> {
-        self.check()?;
-        render(self, camera, size, background)
-    }
-
     /// The box around all vertices, balls and tubes: its smallest and largest corner. `None` for
     /// an empty scene.
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
@@ -162,7 +150,8 @@ impl Scene {
         }
     }
 
-    fn check(&self) -> Result<(), RenderError> {
+    /// Whether it contradicts itself.
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
         let place = |p: &[f64; 3]| p.iter().all(|c| c.abs() < 1e100);
         let radius = |r: f64| (0.0..1e100).contains(&r);
         for (index, mesh) in self.meshes.iter().enumerate() {
@@ -211,6 +200,3 @@ impl Mesh {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,7 +1,7 @@
 use image::ImageEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 
-use super::RenderError;
+use crate::render::error::{MOST_PIXELS, RenderError};
 
 /// The pixels of a picture, checked once: both sides are 1 to [`Size::MAX_SIDE`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +12,7 @@ pub struct Size {
 
 impl Size {
     /// 16384: a gigabyte of pixels, and far inside the range of the fixed-point edges.
-    pub const MAX_SIDE: u32 = 1 << 14;
+    pub const MAX_SIDE: u32 = MOST_PIXELS;
 
     /// Checks a width and a height.
     ///
@@ -47,7 +47,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    pub(super) fn new(size: Size, pixels: Vec<[u8; 4]>) -> Self {
+    pub(crate) fn new(size: Size, pixels: Vec<[u8; 4]>) -> Self {
         debug_assert_eq!(pixels.len() as u64, u64::from(size.width) * u64::from(size.height));
         Self { size, pixels }
     }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::render::{Projection, View};
+use crate::render::{Ball, Colours, Mesh, Projection, Rgb, Shading, Tube, View};
 
 const RED: Rgb = Rgb([255, 0, 0]);
 const BLUE: Rgb = Rgb([0, 0, 255]);

@@ -1,14 +1,14 @@
-use super::camera::Lens;
-use super::occlusion::Side;
-use super::raster::{Patch, PixelBox, SAMPLE, SAMPLES, STEPS, Stage, sample_position};
-use super::vector::{V3, add, along, cross, dot, scale, sub, unit};
-use super::{Colours, Mesh, Projection, Shading, Size};
+use super::stage::Stage;
+use crate::render::light::Side;
+use crate::render::pixels::{Patch, PixelBox, SAMPLE, SAMPLES, STEPS, Size, sample_position};
+use crate::render::scene::{Colours, Lens, Mesh, Projection, Shading};
+use crate::render::vector::{V3, add, along, cross, dot, scale, sub, unit};
 
 /// A triangle, or a piece of one that reaches out of the picture, on the pixel grid.
 ///
 /// Corners are snapped to 1/256 pixel and edges decided in integers, so triangles that share an
 /// edge neither leave a gap nor cover a sample twice.
-pub(super) struct Triangle {
+pub(crate) struct Triangle {
     pub mesh: u32,
     pub bounds: PixelBox,
     triangle: u32,

@@ -1,10 +1,10 @@
-use super::camera::Lens;
-use super::raster::{Patch, PixelBox, SAMPLES, Stage, sample_position};
-use super::vector::{V3, add, along, dot, scale, sub, unit};
-use super::{Ball, Projection, Size};
+use super::stage::Stage;
+use crate::render::pixels::{Patch, PixelBox, SAMPLES, Size, sample_position};
+use crate::render::scene::{Ball, Lens, Projection};
+use crate::render::vector::{V3, add, along, dot, scale, sub, unit};
 
 /// A ball on the pixel grid: the exact outline and depth of a sphere, no facets.
-pub(super) struct Sphere {
+pub(crate) struct Sphere {
     pub bounds: PixelBox,
     ball: u32,
     /// In the eye's axes.

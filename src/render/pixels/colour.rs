@@ -1,4 +1,4 @@
-use super::vector::saturate;
+use crate::render::vector::saturate;
 
 /// A colour as files and screens have it: red, green, blue, 0 to 255 each (sRGB).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +12,7 @@ impl Rgb {
 
     /// Amounts of light, 0 to 1. The square stands in for the sRGB curve (exponent 2.2 or so):
     /// its inverse is a square root, which every machine rounds alike.
-    pub(super) fn light(self) -> [f32; 3] {
+    pub(crate) fn light(self) -> [f32; 3] {
         self.0.map(|c| {
             let c = f32::from(c) / 255.0;
             c * c

@@ -1,11 +1,11 @@
-use super::camera::Lens;
-use super::raster::{Patch, PixelBox, SAMPLES, Stage, sample_position};
 use super::sphere;
-use super::vector::{self, V3, along, dot, scale, sub, unit};
-use super::{Size, Tube};
+use super::stage::Stage;
+use crate::render::pixels::{Patch, PixelBox, SAMPLES, Size, sample_position};
+use crate::render::scene::{Lens, Tube};
+use crate::render::vector::{self, V3, along, dot, scale, sub, unit};
 
 /// A tube with round ends on the pixel grid.
-pub(super) struct Capsule {
+pub(crate) struct Capsule {
     pub bounds: PixelBox,
     tube: u32,
     /// In the eye's axes, cut off where the tube would reach the eye.

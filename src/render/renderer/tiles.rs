@@ -1,5 +1,5 @@
-use super::Size;
-use super::raster::{PixelBox, Primitive};
+use crate::render::pixels::{PixelBox, Size};
+use crate::render::primitives::Primitive;
 
 /// Which primitives may touch which tile, in rows of one array.
 pub(super) struct Tiles {

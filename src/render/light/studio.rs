@@ -1,11 +1,10 @@
-use super::Projection;
-use super::camera::Lens;
-use super::vector::{V3, add, dot, scale, sub, unit};
+use crate::render::scene::{Lens, Projection};
+use crate::render::vector::{V3, add, dot, scale, sub, unit};
 
 /// The lamps, fixed to the camera as in a photographer's studio, so that every panel of a figure
 /// is lit alike.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Studio {
+pub(crate) struct Studio {
     /// Towards the main lamp: upper left, before the subject.
     pub key: V3,
     /// Towards the weak lamp that keeps the shadow side readable.
@@ -27,7 +26,7 @@ const GLOSS: f64 = 0.035;
 const SHADOW: f64 = 0.05;
 
 impl Studio {
-    pub(super) fn new(lens: &Lens) -> Self {
+    pub(crate) fn new(lens: &Lens) -> Self {
         let lamp = |right, up, back| {
             unit(lens.world_direction(right, up, back)).expect("lamps have a direction")
         };
@@ -42,7 +41,7 @@ impl Studio {
     }
 
     /// The unit vector from a place to the eye.
-    pub(super) fn towards_eye(&self, place: V3) -> V3 {
+    pub(crate) fn towards_eye(&self, place: V3) -> V3 {
         match self.projection {
             Projection::Perspective => unit(sub(self.eye, place)).unwrap_or(self.back),
             Projection::Orthographic => self.back,
@@ -53,7 +52,7 @@ impl Studio {
     ///
     /// `sky` is the sky light that reaches it, `key` the share of the main lamp, both 1 in the
     /// open.
-    pub(super) fn shade(
+    pub(crate) fn shade(
         &self,
         albedo: [f32; 3],
         normal: V3,

@@ -1,6 +1,7 @@
-use super::{Content, Drawing, Figure, PALETTE, Panel, Pen, Rgb, Size};
 use crate::interpolate::{CurvePoint, Deviation, Method};
 use crate::points::Weighting;
+use crate::render::figure::{Content, Drawing, Figure, Panel, Pen};
+use crate::render::pixels::{PALETTE, Rgb, Size};
 
 /// The figure of an error curve (see [`error_curve`](crate::interpolate::error_curve)): RMSE of the
 /// filled interpolant, RMSE inside the shape at α (squared), coverage, and how many points are

@@ -1,5 +1,7 @@
-use super::{Content, Drawing, Figure, PALETTE, Panel, Pen, RenderError, Rgb, Size};
 use crate::ladder::{Curve, Ladder, Level, Suggestions};
+use crate::render::error::RenderError;
+use crate::render::figure::{Content, Drawing, Figure, Panel, Pen};
+use crate::render::pixels::{PALETTE, Rgb, Size};
 
 const BETTI: [(&str, Rgb); 3] =
     [("components b0", PALETTE[1]), ("tunnels b1", PALETTE[3]), ("voids b2", PALETTE[0])];
