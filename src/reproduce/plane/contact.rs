@@ -42,10 +42,6 @@ pub(super) enum Diagram {
 pub(super) fn of_discs(mesh: &Mesh, exact: &Exact, curve: &Curve, diagram: Diagram) -> Contacts {
     let radii: Vec<Ordering> =
         mesh.triangles.iter().map(|&t| exact.circumradius(t).against(curve)).collect();
-    let is_inside = |radius: Ordering| match diagram {
-        Diagram::Closest => radius.is_lt(),
-        Diagram::Farthest => radius.is_le(),
-    };
     let mut edges = BTreeSet::new();
     let mut arcs = BTreeSet::new();
     let mut circles = UnionFind::new(mesh.triangles.len());
@@ -88,13 +84,7 @@ pub(super) fn of_discs(mesh: &Mesh, exact: &Exact, curve: &Curve, diagram: Diagr
             }
         }
     }
-    let mut on_circle: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
-    for (triangle, row) in mesh.triangles.iter().enumerate() {
-        if radii[triangle].is_eq() {
-            on_circle.entry(circles.find(triangle as u32)).or_default().extend(row);
-        }
-    }
-    on_circle.values().for_each(|points| edges.extend(pairs(points)));
+    on_circles(mesh, &radii, circles).iter().for_each(|points| edges.extend(pairs(points)));
     if diagram == Diagram::Closest {
         // Two empty discs on both sides of pq cover each other's way from p to q.
         let both = arcs.clone();
@@ -102,12 +92,30 @@ pub(super) fn of_discs(mesh: &Mesh, exact: &Exact, curve: &Curve, diagram: Diagr
     }
     Contacts {
         edges: edges.into_iter().collect(),
-        inside: (mesh.triangles.iter().zip(&radii))
-            .filter(|&(_, &radius)| is_inside(radius))
-            .map(|(&row, _)| row)
-            .collect(),
+        inside: inside(mesh, &radii, diagram),
         arcs: arcs.into_iter().collect(),
     }
+}
+
+/// The points of each circle of the curve's radius; `circles` holds the triangles of one together.
+fn on_circles(mesh: &Mesh, radii: &[Ordering], mut circles: UnionFind) -> Vec<BTreeSet<u32>> {
+    let mut points: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
+    for (triangle, row) in mesh.triangles.iter().enumerate() {
+        if radii[triangle].is_eq() {
+            points.entry(circles.find(triangle as u32)).or_default().extend(row);
+        }
+    }
+    points.into_values().collect()
+}
+
+/// The triangles that no touching disc cuts off.
+fn inside(mesh: &Mesh, radii: &[Ordering], diagram: Diagram) -> Vec<[u32; 3]> {
+    let is_inside = |radius: &Ordering| match diagram {
+        Diagram::Closest => radius.is_lt(),
+        Diagram::Farthest => radius.is_le(),
+    };
+    let pairs = mesh.triangles.iter().zip(radii);
+    pairs.filter(|(_, radius)| is_inside(radius)).map(|(&row, _)| row).collect()
 }
 
 /// The contacts of half-planes, in the closest-point triangulation: the sides of the convex hull.
