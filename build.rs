@@ -2,7 +2,8 @@
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    // Documentation on docs.rs is built where there is no CGAL.
+    println!("cargo::rerun-if-env-changed=DOCS_RS");
+    // Documentation on docs.rs is built where there is no CGAL; nor do checks link it.
     #[cfg(feature = "cgal")]
     if std::env::var_os("DOCS_RS").is_none() {
         bridge::build();
@@ -17,9 +18,20 @@ mod bridge {
     /// The first CGAL whose `Regular_triangulation_3` and `Fixed_alpha_shape_3` the bridge is written for.
     const OLDEST: (u32, u32) = (5, 3);
 
-    const SOURCES: [&str; 4] =
-        ["cpp/bridge.cc", "cpp/plane.cc", "cpp/reference.cc", "cpp/regular.cc"];
-    const HEADERS: [&str; 6] = [
+    /// What the macro of cxx is written in.
+    const BRIDGES: &[&str] = &[
+        "src/cgal/ffi.rs",
+        #[cfg(feature = "paper")]
+        "src/cgal/plane.rs",
+    ];
+    const SOURCES: &[&str] = &[
+        "cpp/bridge.cc",
+        #[cfg(feature = "paper")]
+        "cpp/plane.cc",
+        "cpp/reference.cc",
+        "cpp/regular.cc",
+    ];
+    const HEADERS: &[&str] = &[
         "cpp/bridge.h",
         "cpp/classes.h",
         "cpp/kernel.h",
@@ -29,7 +41,7 @@ mod bridge {
     ];
 
     pub fn build() {
-        for file in SOURCES.iter().chain(&HEADERS) {
+        for file in SOURCES.iter().chain(HEADERS).chain(BRIDGES) {
             println!("cargo::rerun-if-changed={file}");
         }
         for variable in ["CGAL_DIR", "VCPKG_ROOT", "HOMEBREW_PREFIX"] {
@@ -45,7 +57,7 @@ mod bridge {
             }
         };
 
-        let mut build = cxx_build::bridge("src/cgal/ffi.rs");
+        let mut build = cxx_build::bridges(BRIDGES);
         build.files(SOURCES).std("c++17").opt_level(2).debug(false);
         // Interval arithmetic needs the rounding mode left alone; CGAL's assertions, which check it,
         // stay on (no NDEBUG): they cost nothing measurable. No -ffast-math, no -march, no LTO here.

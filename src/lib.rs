@@ -43,10 +43,11 @@ pub mod ladder;
 pub mod memory;
 pub mod near;
 mod number;
-pub mod plane;
 pub mod points;
 pub mod progress;
+#[cfg(feature = "render")]
 pub mod render;
+#[cfg(feature = "paper")]
 pub mod reproduce;
 pub mod shape;
 pub mod shown;

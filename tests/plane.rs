@@ -1,4 +1,5 @@
 //! Shapes in the plane against their definitions, degenerate sets above all.
+#![cfg(feature = "paper")]
 
 #[path = "plane/brute.rs"]
 mod brute;
@@ -10,7 +11,7 @@ use std::f64::consts::TAU;
 
 use brute::Point;
 use proptest::prelude::*;
-use walpha::plane::{
+use walpha::reproduce::plane::{
     Curvature, EksShape, Piece, WeightedPlaneShape, eks_shape, sample_discs, sample_points,
     weighted_plane_shape,
 };

@@ -1,4 +1,5 @@
 //! The paper, made again: files, numbers, and the same bytes each time.
+#![cfg(feature = "paper")]
 
 mod common;
 #[path = "reproduce/page.rs"]

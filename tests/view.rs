@@ -1,5 +1,6 @@
 //! The page of `walpha view`: self-contained, whole, and safe whatever its input is called. What it
 //! looks like in a browser, `scripts/check_view.py` checks.
+#![cfg(feature = "render")]
 
 mod common;
 

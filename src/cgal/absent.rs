@@ -7,8 +7,6 @@ const ABSENT: TriangulationError = TriangulationError::WithoutCgal;
 
 pub(crate) enum RawComplex {}
 
-pub(crate) enum RawTriangulation {}
-
 pub(crate) enum Regular {}
 
 pub(crate) fn give_back() {}
@@ -18,14 +16,6 @@ pub(crate) fn reference(_: &Sites<'_>, _: f64) -> Result<RawComplex, Triangulati
 }
 
 pub(crate) fn regular(_: &[[f64; 3]], _: &[f64]) -> Result<Regular, TriangulationError> {
-    Err(ABSENT)
-}
-
-pub(crate) fn regular_plane(_: &Sites<'_, 2>) -> Result<RawTriangulation, TriangulationError> {
-    Err(ABSENT)
-}
-
-pub(crate) fn farthest_plane(_: &Sites<'_, 2>) -> Result<RawTriangulation, TriangulationError> {
     Err(ABSENT)
 }
 
@@ -43,20 +33,6 @@ impl RawComplex {
     }
 
     pub fn vertices(&self) -> (&[[u32; 1]], &[u8]) {
-        match *self {}
-    }
-}
-
-impl RawTriangulation {
-    pub fn triangles(&self) -> &[[u32; 3]] {
-        match *self {}
-    }
-
-    pub fn edges(&self) -> &[[u32; 2]] {
-        match *self {}
-    }
-
-    pub fn vertices(&self) -> &[u32] {
         match *self {}
     }
 }

@@ -4,7 +4,6 @@
 pub(super) mod bridge {
     unsafe extern "C++" {
         include!("walpha/cpp/bridge.h");
-        include!("walpha/cpp/plane.h");
         include!("walpha/cpp/reference.h");
         include!("walpha/cpp/regular.h");
 
@@ -22,19 +21,6 @@ pub(super) mod bridge {
         fn vertex_classes(self: &Complex) -> &[u8];
 
         fn reference(positions: &[f64], weights: &[f64], alpha: f64) -> Result<UniquePtr<Complex>>;
-
-        /// A triangulation of the plane as flat arrays of input indices.
-        type PlaneTriangulation;
-
-        fn triangles(self: &PlaneTriangulation) -> &[u32];
-        fn edges(self: &PlaneTriangulation) -> &[u32];
-        fn vertices(self: &PlaneTriangulation) -> &[u32];
-
-        fn regular_plane(
-            positions: &[f64],
-            weights: &[f64],
-        ) -> Result<UniquePtr<PlaneTriangulation>>;
-        fn farthest_plane(positions: &[f64]) -> Result<UniquePtr<PlaneTriangulation>>;
 
         fn give_back();
 

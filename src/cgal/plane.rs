@@ -1,9 +1,33 @@
-use super::ffi::bridge;
+use bridge::{PlaneTriangulation, farthest_plane as farthest, regular_plane as regular};
+
 use super::thrown;
 use crate::triangulation::{Sites, TriangulationError};
 
+/// The entries of `cpp/plane.cc`, compiled with the feature `paper` alone.
+#[allow(unused_qualifications, reason = "in what the macro writes")]
+#[cxx::bridge(namespace = "walpha")]
+mod bridge {
+    unsafe extern "C++" {
+        include!("walpha/cpp/bridge.h");
+        include!("walpha/cpp/plane.h");
+
+        /// A triangulation of the plane as flat arrays of input indices.
+        type PlaneTriangulation;
+
+        fn triangles(self: &PlaneTriangulation) -> &[u32];
+        fn edges(self: &PlaneTriangulation) -> &[u32];
+        fn vertices(self: &PlaneTriangulation) -> &[u32];
+
+        fn regular_plane(
+            positions: &[f64],
+            weights: &[f64],
+        ) -> Result<UniquePtr<PlaneTriangulation>>;
+        fn farthest_plane(positions: &[f64]) -> Result<UniquePtr<PlaneTriangulation>>;
+    }
+}
+
 /// A triangulation of the plane as C++ lends it: rows of *site* indices in no particular order.
-pub(crate) struct RawTriangulation(cxx::UniquePtr<bridge::PlaneTriangulation>);
+pub(crate) struct RawTriangulation(cxx::UniquePtr<PlaneTriangulation>);
 
 /// CGAL's `Regular_triangulation_2` of the sites: the Delaunay triangulation when all weights are
 /// equal. A function of the set of sites: which of several triangulations of cocircular points
@@ -14,7 +38,7 @@ pub(crate) struct RawTriangulation(cxx::UniquePtr<bridge::PlaneTriangulation>);
 /// # Errors
 /// No memory, or a fault of the program.
 pub(crate) fn regular_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, TriangulationError> {
-    bridge::regular_plane(sites.positions().as_flattened(), sites.weights())
+    regular(sites.positions().as_flattened(), sites.weights())
         .map(RawTriangulation)
         .map_err(thrown("regular triangulation of the plane"))
 }
@@ -34,7 +58,7 @@ pub(crate) fn regular_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, Tr
 /// # Errors
 /// No memory, or a fault of the program.
 pub(crate) fn farthest_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, TriangulationError> {
-    bridge::farthest_plane(sites.positions().as_flattened())
+    farthest(sites.positions().as_flattened())
         .map(RawTriangulation)
         .map_err(thrown("farthest-point triangulation"))
 }
@@ -53,5 +77,22 @@ impl RawTriangulation {
     /// Points that are not hidden.
     pub fn vertices(&self) -> &[u32] {
         self.0.vertices()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cgal_throws_is_an_error() {
+        // Sites refuse an infinity, because CGAL throws where its exact numbers meet one.
+        let infinite = [0., 0., 1., 0., 0., 1., f64::INFINITY, 0.];
+        let Err(exception) = regular(&infinite, &[0.0; 4]) else { panic!("∞ was taken") };
+        let TriangulationError::Thrown { stage, text } = thrown("tried")(exception) else {
+            panic!("not what was thrown")
+        };
+        assert_eq!(stage, "tried");
+        assert!(text.starts_with("CGAL ERROR: assertion violation!"), "{text}");
     }
 }

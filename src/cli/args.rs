@@ -448,48 +448,6 @@ impl From<FrozenArgs> for WeightArgs {
     }
 }
 
-/// A gray level, or a value of the file: `50` or `300v`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Level {
-    /// As the wavelet stage has it.
-    Gray(f64),
-    /// As the file has it.
-    Value(f64),
-}
-
-impl Default for Level {
-    fn default() -> Self {
-        Self::Gray(50.0)
-    }
-}
-
-impl Level {
-    /// The gray level, where values `range` are gray 0..255.
-    pub fn gray(self, range: &GrayRange) -> f64 {
-        match self {
-            Self::Gray(gray) => gray,
-            Self::Value(value) => range.gray(value),
-        }
-    }
-}
-
-impl FromStr for Level {
-    type Err = anyhow::Error;
-
-    fn from_str(text: &str) -> anyhow::Result<Self> {
-        let (number, level): (_, fn(f64) -> Self) = match text.strip_suffix('v') {
-            Some(value) => (value, Self::Value),
-            None => (text, Self::Gray),
-        };
-        match self::number(number)? {
-            number if number.is_finite() => Ok(level(number)),
-            _ => bail!(
-                "a finite number is needed; give a gray level as in 50, or a value as in 300v"
-            ),
-        }
-    }
-}
-
 /// The α of a ladder.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Alphas {
@@ -656,7 +614,7 @@ fn bytes(text: &str) -> anyhow::Result<u64> {
     Ok(bytes)
 }
 
-fn number(text: &str) -> anyhow::Result<f64> {
+pub fn number(text: &str) -> anyhow::Result<f64> {
     text.trim().parse().map_err(|_| anyhow!("{text:?} is no number; give one as in 10 or 2.5"))
 }
 

@@ -8,6 +8,7 @@ use anyhow::{anyhow, bail};
 use serde::Serialize;
 use walpha::export::{Content, NewFolder, Target, write_all};
 use walpha::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
+#[cfg(feature = "render")]
 use walpha::render::error_figure;
 use walpha::shown::shown;
 use walpha::{LengthUnit, SelectionRule, Volume, Weighting, haar};
@@ -61,8 +62,15 @@ pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Resu
     let mut csv = Vec::new();
     write_curve_csv(&curve, range.step(), &mut csv)?;
     let alpha = options.alpha.squared();
+    #[cfg(feature = "render")]
     let figure = error_figure(&format!("Error against points: {}", input.input), alpha, &curve);
-    let files = [csv, figure.to_png()?, figure.to_svg()?.into_bytes()];
+    let files = [
+        csv,
+        #[cfg(feature = "render")]
+        figure.to_png()?,
+        #[cfg(feature = "render")]
+        figure.to_svg()?.into_bytes(),
+    ];
     write_all(targets.into_iter().zip(&files).map(|(target, bytes)| {
         let content = |out: &mut dyn Write| out.write_all(bytes);
         (target, Box::new(content) as Content<'_>)
@@ -77,7 +85,7 @@ pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Resu
         alpha,
         unit: units.coordinates(&volume).unit,
         curve,
-        files: paths.map(|path| path.display().to_string()).into(),
+        files: paths.iter().map(|path| path.display().to_string()).collect(),
         seconds,
     };
     tell(global, &facts)
@@ -95,10 +103,18 @@ fn counts(volume: &Volume, select: &SelectArgs) -> anyhow::Result<Vec<u64>> {
     Ok([0.0625, 0.125, 0.25, 0.5, 1.0, 2.0].map(|f| (f * whole).round() as u64).into())
 }
 
+/// What the curve is written as.
+const EXTENSIONS: &[&str] = &[
+    "csv",
+    #[cfg(feature = "render")]
+    "png",
+    #[cfg(feature = "render")]
+    "svg",
+];
+
 /// `curve.csv`, `.png` and `.svg` in a folder, made if it is not there, or files whose names begin as
 /// given.
-fn paths(base: &Path) -> anyhow::Result<(Option<NewFolder>, [PathBuf; 3])> {
-    const EXTENSIONS: [&str; 3] = ["csv", "png", "svg"];
+fn paths(base: &Path) -> anyhow::Result<(Option<NewFolder>, Vec<PathBuf>)> {
     let asked = base.to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
     let new = if asked { NewFolder::make(base) } else { Ok(None) }.map_err(|error| {
         anyhow!("cannot make the folder {}: {error}; choose another", shown(base))
@@ -110,13 +126,13 @@ fn paths(base: &Path) -> anyhow::Result<(Option<NewFolder>, [PathBuf; 3])> {
     } else {
         base.to_owned()
     };
-    let paths = EXTENSIONS.map(|extension| {
+    let named = |extension: &&str| {
         let mut path = stem.clone().into_os_string();
         path.push(".");
         path.push(extension);
         path.into()
-    });
-    Ok((new, paths))
+    };
+    Ok((new, EXTENSIONS.iter().map(named).collect()))
 }
 
 impl Display for Facts {

@@ -29,7 +29,8 @@ use super::{Global, curve, pipeline};
 ///
 /// With --curve: error and coverage over the number of points instead, from a sixteenth to twice
 /// those selected, for each way to select them and the weights common=0, min-max and barycentric, as
-/// CSV, PNG and SVG.
+#[cfg_attr(feature = "render", doc = " CSV, PNG and SVG.")]
+#[cfg_attr(not(feature = "render"), doc = " CSV.")]
 ///
 /// Examples:
 ///

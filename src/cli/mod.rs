@@ -17,14 +17,17 @@ mod ladder;
 mod man;
 mod output;
 mod parameter;
+#[cfg_attr(not(feature = "render"), path = "picture/absent.rs")]
 mod picture;
 mod pipeline;
 mod points;
 mod progress;
 mod report;
+#[cfg(feature = "paper")]
 mod reproduce;
 mod shape;
 mod signals;
+#[cfg(feature = "render")]
 mod view;
 
 use std::ffi::OsString;
@@ -99,6 +102,7 @@ struct Global {
 
 #[derive(Subcommand)]
 enum Command {
+    #[cfg(feature = "paper")]
     Reproduce(reproduce::Reproduce),
     Shape(shape::Shape),
     Points(points::Points),
@@ -108,6 +112,7 @@ enum Command {
     Check(check::Check),
     Compare(compare::Compare),
     Ladder(ladder::Ladder),
+    #[cfg(feature = "render")]
     View(view::View),
     Completions(completions::Completions),
     Man(man::Man),
@@ -234,6 +239,7 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
     tracing_subscriber::registry().with(listener).with(log).init();
     start_threads(global.threads)?;
     match command {
+        #[cfg(feature = "paper")]
         Command::Reproduce(reproduce) => reproduce.run(global)?,
         Command::Shape(shape) => shape.run(global)?,
         Command::Points(points) => points.run(global)?,
@@ -245,6 +251,7 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
         Command::Check(check) => return check.run(global),
         Command::Compare(compare) => return compare.run(global),
         Command::Ladder(ladder) => ladder.run(global)?,
+        #[cfg(feature = "render")]
         Command::View(view) => view.run(global)?,
     }
     Ok(ExitCode::SUCCESS)

@@ -35,11 +35,6 @@ pub fn print(text: &str) -> io::Result<()> {
     out.flush()
 }
 
-/// Prints one JSON object.
-pub fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
-    Ok(print(&json(value)?)?)
-}
-
 fn json(value: &impl Serialize) -> serde_json::Result<String> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
 }

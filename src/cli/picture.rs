@@ -70,9 +70,18 @@ impl PictureArgs {
     /// The names of these options.
     pub const NAMES: [&str; 4] = ["view", "camera", "colour", "size"];
 
+    /// Extensions of pictures.
+    pub const EXTENSIONS: [&str; 1] = ["png"];
+
     /// Whether a path asks for a picture.
     pub fn wanted(path: &Path) -> bool {
-        path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case("png"))
+        let extension = path.extension().and_then(OsStr::to_str);
+        extension.is_some_and(|e| Self::EXTENSIONS.iter().any(|png| e.eq_ignore_ascii_case(png)))
+    }
+
+    /// What writes the picture.
+    pub fn exporter(self) -> Box<dyn Exporter> {
+        Box::new(self)
     }
 
     fn draw(&self, shape: &AlphaShape) -> Result<Vec<u8>, RenderError> {

@@ -11,7 +11,7 @@ use walpha::{Gray, Volume, VolumeError};
 
 use super::Global;
 use super::folder::Folder;
-use super::output::{print, print_json};
+use super::output::print;
 use super::progress::Progress;
 
 /// Reproduce the paper: Table 1, the figures, and a report on its claims.
@@ -53,10 +53,8 @@ impl Reproduce {
             name: "report.html".into(),
             bytes: page(&made.report, &files).into_bytes(),
         });
-        files.push(File {
-            name: "report.json".into(),
-            bytes: (serde_json::to_string_pretty(&made.report)? + "\n").into_bytes(),
-        });
+        let json = serde_json::to_string_pretty(&made.report)? + "\n";
+        files.push(File { name: "report.json".into(), bytes: json.clone().into_bytes() });
         progress.stage("write", || -> anyhow::Result<()> {
             for file in &files {
                 folder.write(&file.name, |out| out.write_all(&file.bytes))?;
@@ -65,7 +63,7 @@ impl Reproduce {
         })?;
         progress.finish();
         if global.json {
-            print_json(&made.report)?;
+            print(&json)?;
         } else if !global.quiet {
             print(&text(&made.report, &self.out, files.len()))?;
         }

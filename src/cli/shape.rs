@@ -29,7 +29,9 @@ use super::{Global, pipeline};
 #[derive(Args)]
 pub struct Shape {
     /// Files to write: .ply, .off, .obj, .stl, .glb, .vtp (boundary), .vtu, .npz or .json (all
-    /// simplices), .png (a picture); or - (standard output, with --format). Files that are there are replaced.
+    #[cfg_attr(feature = "render", doc = " simplices), .png (a picture); or -")]
+    #[cfg_attr(not(feature = "render"), doc = " simplices); or -")]
+    /// (standard output, with --format). Files that are there are replaced.
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
     /// Write text where a format has a binary form too (PLY).
@@ -96,10 +98,11 @@ impl Shape {
         for path in &self.output {
             let name = self.pipeline.input.output(path)?;
             let exporter: Box<dyn Exporter> = if PictureArgs::wanted(&name) {
-                Box::new(self.picture)
+                self.picture.exporter()
             } else {
                 let known = Format::ALL.into_iter().map(|(_, extension)| extension);
-                let unknown = |_| UnknownFormat::new(path, "a shape", known.chain(["png"]));
+                let unknown =
+                    |_| UnknownFormat::new(path, "a shape", known.chain(PictureArgs::EXTENSIONS));
                 Format::of(&name).map_err(unknown)?.exporter(&export)
             };
             targets.push((Target::open(path)?, exporter));

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use anyhow::bail;
 use clap::Args;
@@ -15,7 +16,7 @@ use walpha::{Alpha, GrayRange};
 
 use super::Global;
 use super::args::{
-    AlphaArg, Alphas, FrozenArgs, HaarArgs, InputArgs, Level, SelectArgs, WeightArgs,
+    self, AlphaArg, Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs,
 };
 use super::given::misused;
 use super::output::{name, tell};
@@ -61,6 +62,48 @@ pub struct View {
     select: SelectArgs,
     #[command(flatten)]
     weights: FrozenArgs,
+}
+
+/// A gray level, or a value of the file: `50` or `300v`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Level {
+    /// As the wavelet stage has it.
+    Gray(f64),
+    /// As the file has it.
+    Value(f64),
+}
+
+impl Default for Level {
+    fn default() -> Self {
+        Self::Gray(50.0)
+    }
+}
+
+impl Level {
+    /// The gray level, where values `range` are gray 0..255.
+    fn gray(self, range: &GrayRange) -> f64 {
+        match self {
+            Self::Gray(gray) => gray,
+            Self::Value(value) => range.gray(value),
+        }
+    }
+}
+
+impl FromStr for Level {
+    type Err = anyhow::Error;
+
+    fn from_str(text: &str) -> anyhow::Result<Self> {
+        let (number, level): (_, fn(f64) -> Self) = match text.strip_suffix('v') {
+            Some(value) => (value, Self::Value),
+            None => (text, Self::Gray),
+        };
+        match args::number(number)? {
+            number if number.is_finite() => Ok(level(number)),
+            _ => bail!(
+                "a finite number is needed; give a gray level as in 50, or a value as in 300v"
+            ),
+        }
+    }
 }
 
 /// Levels that `--alphas auto` chooses, suggested ones not counted.

@@ -1,5 +1,7 @@
-use super::Size;
 use crate::memory::NoMemory;
+
+/// Pixels along each side of a picture, at most.
+pub(super) const MOST_PIXELS: u32 = 1 << 14;
 
 /// What can be wrong with the description of a picture.
 #[derive(Debug, thiserror::Error)]
@@ -21,7 +23,7 @@ pub enum RenderError {
     /// A picture without pixels, or with too many.
     #[error(
         "a picture of {width}×{height} pixels is impossible: each side must be 1 to {}",
-        Size::MAX_SIDE
+        MOST_PIXELS
     )]
     Size {
         /// Pixels asked for along the rows.

@@ -20,41 +20,26 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod camera;
-mod capsule;
-mod colour;
-mod drawing;
+pub(crate) mod base64;
+mod charts;
 mod error;
-mod error_figure;
-mod facets;
 mod figure;
-mod ladder;
 mod light;
 mod marching;
-mod occlusion;
-mod picture;
-mod raster;
+mod normals;
+mod pixels;
+mod primitives;
+mod renderer;
 mod scene;
 mod shape;
-mod sphere;
-mod svg;
-mod ticks;
-mod tile;
-mod tiles;
-mod triangle;
 mod vector;
 mod view;
 
-pub use camera::{Camera, Projection, View};
-pub use colour::{ColourMap, PALETTE, Rgb};
-pub use drawing::{Drawing, Pen, Step};
+pub use charts::{error_figure, ladder_figure};
 pub use error::RenderError;
-pub use error_figure::error_figure;
-pub use figure::{ColourBar, Content, Figure, Panel};
-pub use ladder::ladder_figure;
+pub use figure::{ColourBar, Content, Drawing, Figure, Panel, Pen, Step};
 pub use marching::Isosurface;
-pub use picture::{Picture, Size};
-pub use scene::{Background, Ball, Colours, Mesh, Scene, Shading, Tube};
+pub use pixels::{ColourMap, PALETTE, Picture, Rgb, Size};
+pub use scene::{Background, Ball, Camera, Colours, Mesh, Projection, Scene, Shading, Tube, View};
 pub use shape::{Colouring, ShapeStyle, class_colours, plain_colours};
-pub(crate) use svg::base64;
 pub use view::{Original, Page, Subject};

@@ -1,5 +1,7 @@
-use super::facets::{smoothed, vertex_normals};
-use super::{Ball, ColourMap, Colours, Mesh, PALETTE, RenderError, Rgb, Scene, Shading, Tube};
+use super::error::RenderError;
+use super::normals::{smoothed, vertex_normals};
+use super::pixels::{ColourMap, PALETTE, Rgb};
+use super::scene::{Ball, Colours, Mesh, Scene, Shading, Tube};
 use crate::shape::{Class, Complex, Simplices};
 
 /// What the colours of a drawn shape mean.

@@ -1,7 +1,7 @@
 use super::OffError;
+use super::plane::{NotACurvature, PlaneError};
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
-use crate::plane::{NotACurvature, PlaneError};
 use crate::points::PointsError;
 use crate::render::RenderError;
 use crate::shape::ShapeError;

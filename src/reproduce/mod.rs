@@ -12,6 +12,7 @@ mod hull;
 mod numbers;
 mod off;
 mod outline;
+pub mod plane;
 mod report;
 mod stage;
 mod study;

@@ -1,6 +1,6 @@
 //! Areas and closed curves of outlines made of segments and arcs.
 
-use crate::plane::Piece;
+use super::plane::Piece;
 
 /// The area on the left of closed curves (Green's theorem). Rounded.
 pub(super) fn area(pieces: &[Piece]) -> f64 {
@@ -40,7 +40,7 @@ pub(super) fn loops(pieces: &[Piece]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::Arc;
+    use crate::reproduce::plane::Arc;
 
     /// The two halves of a circle, turning left or right.
     fn ring(centre: [f64; 2], radius: f64, counter_clockwise: bool) -> Vec<Piece> {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use walpha::plane::{Arc, Piece};
+use walpha::reproduce::plane::{Arc, Piece};
 
 /// A disc: centre and radius.
 pub type Disc = ([f64; 2], f64);

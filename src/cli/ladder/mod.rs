@@ -11,6 +11,7 @@ use anyhow::anyhow;
 use clap::Args;
 use walpha::export::{ExportOptions, Exporter, Format};
 use walpha::ladder::{Filtration, Ladder as Levels, Level, Region};
+#[cfg(feature = "render")]
 use walpha::render::ladder_figure;
 
 use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
@@ -26,8 +27,10 @@ use regions::region;
 /// Shapes at many α from one triangulation, or at several levels of detail.
 ///
 /// Over α, weights are frozen, so that the shapes are nested: ladder.csv and ladder.json have counts,
-/// Betti numbers, volume and area of each level, voids.csv has every void with the α that fills it,
-/// ladder.png and ladder.svg draw it. The α to try are suggested. Over points (--counts) or the
+/// Betti numbers, volume and area of each level, voids.csv has every void with the α that fills
+#[cfg_attr(feature = "render", doc = " it, ladder.png and ladder.svg draw it.")]
+#[cfg_attr(not(feature = "render"), doc = " it.")]
+/// The α to try are suggested. Over points (--counts) or the
 /// error of the wavelet stage (--epsilons) there is a mesh for each level of detail, at α = --alpha-ref,
 /// and detail.csv and detail.json tell error and size.
 ///
@@ -92,7 +95,15 @@ impl Ladder {
         let meshes = meshes(&self.mesh, if detail { &["ply"] } else { &[] })?;
         let names: &[&str] = match detail {
             true => &["detail.csv", "detail.json"],
-            false => &["ladder.csv", "voids.csv", "ladder.png", "ladder.svg", "ladder.json"],
+            false => &[
+                "ladder.csv",
+                "voids.csv",
+                #[cfg(feature = "render")]
+                "ladder.png",
+                #[cfg(feature = "render")]
+                "ladder.svg",
+                "ladder.json",
+            ],
         };
         let folder = Folder::open(&self.output, "--output", names)?;
         if detail {
@@ -131,14 +142,20 @@ impl Ladder {
         let levels = progress.stage("ladder", || filtration.levels(&alphas));
         let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
 
-        let title = format!("Ladder of {}, ω frozen", self.input.input);
-        let figure = ladder_figure(&title, &ladder, &curve, &suggested, domain.volume)?;
+        #[cfg(feature = "render")]
+        let figure = {
+            let title = format!("Ladder of {}, ω frozen", self.input.input);
+            ladder_figure(&title, &ladder, &curve, &suggested, domain.volume)?
+        };
         progress.stage("write", || -> anyhow::Result<()> {
             folder.write("ladder.csv", |out| write_levels(&ladder, out))?;
             folder.write("voids.csv", |out| write_voids(&ladder, out))?;
-            let (png, svg) = (figure.to_png()?, figure.to_svg()?);
-            folder.write("ladder.png", |out| out.write_all(&png))?;
-            folder.write("ladder.svg", |out| out.write_all(svg.as_bytes()))?;
+            #[cfg(feature = "render")]
+            {
+                let (png, svg) = (figure.to_png()?, figure.to_svg()?);
+                folder.write("ladder.png", |out| out.write_all(&png))?;
+                folder.write("ladder.svg", |out| out.write_all(svg.as_bytes()))?;
+            }
             for (k, level) in ladder.levels.iter().enumerate() {
                 if meshes.is_empty() {
                     break;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::render::Pen;
+use crate::render::pixels::ColourMap;
 
 fn square() -> Drawing {
     let mut drawing = Drawing::plane([[0.0, 0.0], [4.0, 4.0]]);

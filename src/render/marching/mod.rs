@@ -5,8 +5,9 @@ mod cases;
 use ndarray::{ArrayView2, ArrayView3, s};
 
 use self::cases::{CASES, CORNERS, EDGES};
+use super::error::RenderError;
+use super::scene::Mesh;
 use super::vector::{cross, length, sub};
-use super::{Mesh, RenderError};
 
 /// The surface that parts the samples at or above a value from those below it.
 ///

@@ -3,11 +3,11 @@ use std::fmt::Write;
 use plotly::Plot;
 use serde_json::json;
 
-use super::Subject;
 use super::pack::Packed;
 use super::plot::plot;
+use super::subject::Subject;
 use crate::ladder::Level;
-use crate::render::PALETTE;
+use crate::render::pixels::PALETTE;
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");

@@ -3,42 +3,10 @@
 mod html;
 mod pack;
 mod plot;
+mod subject;
 
-use crate::ladder::{Ladder, Levels};
-use crate::points::Units;
-use crate::volume::Volume;
-
-/// What a page shows.
-#[derive(Clone, Copy)]
-pub struct Subject<'a> {
-    /// Its heading.
-    pub title: &'a str,
-    /// What else is to be told, as pairs of a name and a value.
-    pub facts: &'a [(String, String)],
-    /// What coordinates are measured in, as "voxels".
-    pub unit: &'a str,
-    /// What F is, with its unit, as "value of the original volume, in gray levels".
-    pub value: &'a str,
-    /// The shapes.
-    pub levels: &'a Levels<'a>,
-    /// Their numbers.
-    pub ladder: &'a Ladder,
-    /// The level shown first.
-    pub first: usize,
-    /// What the points come from, to compare.
-    pub original: Option<Original<'a>>,
-}
-
-/// A volume that is shown by its isosurface, from every so many samples if it is large.
-#[derive(Clone, Copy)]
-pub struct Original<'a> {
-    /// The samples.
-    pub volume: &'a Volume,
-    /// Where the surface is.
-    pub isovalue: f64,
-    /// What the coordinates of the points are measured in.
-    pub units: Units,
-}
+use super::error::RenderError;
+pub use subject::{Original, Subject};
 
 /// A self-contained HTML page.
 #[derive(Clone, Debug)]
@@ -63,12 +31,12 @@ impl Page {
     /// library plotly.js, which draws it, is inside.
     ///
     /// # Errors
-    /// [`RenderError::Isosurface`](super::RenderError::Isosurface) for an isovalue that is no finite
+    /// [`RenderError::Isosurface`] for an isovalue that is no finite
     /// number.
     ///
     /// # Panics
     /// When there are no levels, or more than [`Page::MOST_LEVELS`].
-    pub fn new(subject: &Subject<'_>) -> Result<Self, super::RenderError> {
+    pub fn new(subject: &Subject<'_>) -> Result<Self, RenderError> {
         let levels = subject.levels.len();
         assert!((1..=Self::MOST_LEVELS).contains(&levels), "{levels} levels");
         let packed = pack::Packed::of(subject, Self::MOST_FACETS)?;

@@ -3,10 +3,12 @@ use std::collections::{BTreeMap, HashSet};
 use ndarray::s;
 use serde::Serialize;
 
-use super::{Original, Subject};
+use super::subject::{Original, Subject};
 use crate::ladder::Span;
 use crate::points::Units;
-use crate::render::{Isosurface, RenderError, base64};
+use crate::render::base64::base64;
+use crate::render::error::RenderError;
+use crate::render::marching::Isosurface;
 
 /// The arrays of a page, as base64 of little-endian numbers: each simplex once for all levels.
 pub(super) struct Packed {

@@ -10,27 +10,14 @@ use plotly::layout::{
 use plotly::traces::mesh3d::{IntensityMode, LightPosition, Lighting};
 use plotly::{Configuration, Layout, Mesh3D, Plot, Scatter3D};
 
-use super::Subject;
-use crate::render::PALETTE;
+use super::subject::Subject;
+use crate::render::pixels::PALETTE;
 
 /// The traces in the order in which the page's script fills them, and the layout. Traces without
 /// data: the arrays of a level are put together in the browser.
 pub(super) fn plot(subject: &Subject<'_>) -> Plot {
     let mut plot = Plot::new();
     let valued = subject.levels.points().values.is_some();
-    let colour_bar = || {
-        ColorBar::new()
-            .title(
-                Title::with_text(format!("F: {}", subject.value))
-                    .side(Side::Top)
-                    .font(Font::new().size(12)),
-            )
-            .orientation(Orientation::Horizontal)
-            .thickness(12)
-            .y(0.0)
-            .y_anchor(Anchor::Top)
-            .tick_font(Font::new().size(11))
-    };
     let mesh = |name: &str, colour: Rgb| {
         Mesh3D::<f64, f64, f64>::new(vec![], vec![], vec![], None::<Vec<usize>>, None, None)
             .name(name)
@@ -45,7 +32,9 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
         mesh.intensity_mode(IntensityMode::Vertex)
             .color_scale(ColorScale::Palette(ColorScalePalette::Viridis))
     };
-    plot.add_trace(by_value(mesh("boundary", rgb(1))).show_scale(valued).color_bar(colour_bar()));
+    plot.add_trace(
+        by_value(mesh("boundary", rgb(1))).show_scale(valued).color_bar(colour_bar(subject.value)),
+    );
     plot.add_trace(by_value(mesh("singular facets", rgb(0))).show_scale(false));
     plot.add_trace(
         Scatter3D::<f64, f64, f64>::new(vec![], vec![], vec![])
@@ -75,6 +64,16 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
         Configuration::new().responsive(true).display_mode_bar(DisplayModeBar::False),
     );
     plot
+}
+
+fn colour_bar(value: &str) -> ColorBar {
+    ColorBar::new()
+        .title(Title::with_text(format!("F: {}", value)).side(Side::Top).font(Font::new().size(12)))
+        .orientation(Orientation::Horizontal)
+        .thickness(12)
+        .y(0.0)
+        .y_anchor(Anchor::Top)
+        .tick_font(Font::new().size(11))
 }
 
 fn rgb(index: usize) -> Rgb {

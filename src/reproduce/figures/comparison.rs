@@ -1,47 +1,107 @@
 use super::super::compare::{Difference, PixelDifference, same_set};
 use super::super::stage::Eye;
-use super::super::study::{ALPHA, Shaped};
-use super::super::{Fact, Finding, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
+use super::super::study::ALPHA;
+use super::super::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
+use super::claim::{Claim, judge};
 use super::{Bench, figure};
 
-/// Figure 10: without weights and with barycentric ones; what would change the picture beside.
-pub(super) fn figure_10(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
-    let shapes = bench.shapes;
-    let (plain, literal) = (&shapes.plain, &shapes.barycentric);
-    let (scaled, min_max) = (&shapes.barycentric_n, &shapes.min_max);
-    let panels = vec![
-        bench.shape_panel("ω = 0 (the paper's left image)", plain)?,
-        bench.shape_panel("barycentric, equation 4.2 (its right image)", literal)?,
-        bench.shape_panel("N × barycentric (not in the paper)", scaled)?,
-        bench.shape_panel("min-max, equation 4.1", min_max)?,
-    ];
-    let title = format!("Figure 10. Unweighted and weighted shapes at α = {ALPHA}, one camera");
-    let picture = bench.file("figure-10.png", figure(&title, panels).to_png()?);
+/// Four shapes, and how far the paper's two differ: without weights, left, and with barycentric
+/// ones, right.
+struct Evidence {
+    /// ω = 0.
+    plain: ShapeNumbers,
+    /// Equation 4.2 as printed.
+    literal: ShapeNumbers,
+    /// N times that.
+    scaled: ShapeNumbers,
+    /// Equation 4.1.
+    min_max: ShapeNumbers,
+    /// ω = 0 at α plus the mean of these weights: for `scaled`, and for `min_max`.
+    raised: [ShapeNumbers; 2],
+    /// Simplices of left or right only.
+    apart: Difference,
+    /// Whether left and right are the same set of points in space.
+    same: bool,
+    /// How far their pictures differ.
+    pixels: PixelDifference,
+    /// Pixels of each.
+    all_pixels: usize,
+}
 
-    let (left, right) = (bench.view(plain, Eye::Portrait)?, bench.view(literal, Eye::Portrait)?);
-    let pixels = PixelDifference::between(&left, &right);
-    let apart = Difference::between(plain.shape.complex(), literal.shape.complex());
-    let (l, r) = (&plain.numbers, &literal.numbers);
-    let same = same_set(&plain.shape, &literal.shape);
-    let filled = !same && (r.betti.b1 < l.betti.b1 || r.betti.b2 < l.betti.b2);
-    // Raising α for all points is what weights must be better than.
-    let trials = [(min_max, &shapes.min_max_mean), (scaled, &shapes.shifted)];
-    let improved = improvement(l, &trials);
-    let findings = vec![
-        Finding {
-            claim: "“In the left image, we can find hole (cavity).”".into(),
-            verdict: Verdict::of(l.holes() > 0),
-            reason: format!(
+/// A weighted shape and the one without weights at α plus the mean weight, which weights must be
+/// better than.
+#[derive(Clone, Copy)]
+struct Trial<'a> {
+    weighted: &'a ShapeNumbers,
+    raised: &'a ShapeNumbers,
+}
+
+impl Evidence {
+    fn of(bench: &mut Bench<'_>) -> Result<Self, ReproduceError> {
+        let shapes = bench.shapes;
+        let (plain, literal) = (&shapes.plain, &shapes.barycentric);
+        let left = bench.view(plain, Eye::Portrait)?;
+        let right = bench.view(literal, Eye::Portrait)?;
+        Ok(Self {
+            plain: plain.numbers.clone(),
+            literal: literal.numbers.clone(),
+            scaled: shapes.barycentric_n.numbers.clone(),
+            min_max: shapes.min_max.numbers.clone(),
+            raised: [&shapes.shifted, &shapes.min_max_mean].map(|shaped| shaped.numbers.clone()),
+            apart: Difference::between(plain.shape.complex(), literal.shape.complex()),
+            same: same_set(&plain.shape, &literal.shape),
+            pixels: PixelDifference::between(&left, &right),
+            all_pixels: left.pixels().len(),
+        })
+    }
+
+    fn shown(&self) -> [&ShapeNumbers; 4] {
+        [&self.plain, &self.literal, &self.scaled, &self.min_max]
+    }
+
+    /// Whether the right shape is another one and has fewer tunnels or voids.
+    fn filled(&self) -> bool {
+        let (left, right) = (&self.plain.betti, &self.literal.betti);
+        !self.same && (right.b1 < left.b1 || right.b2 < left.b2)
+    }
+
+    fn trials(&self) -> [Trial<'_>; 2] {
+        let [scaled, min_max] = &self.raised;
+        [
+            Trial { weighted: &self.min_max, raised: min_max },
+            Trial { weighted: &self.scaled, raised: scaled },
+        ]
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        vec![
+            Fact::count("boundary facets that differ between left and right", self.apart.boundary),
+            Fact::count("cells that differ between left and right", self.apart.cells),
+            Fact::count("pixels that differ between left and right", self.pixels.pixels),
+            Fact::new("largest difference of a pixel (of 255)", self.pixels.largest.into()),
+            Fact::count("pixels of each", self.all_pixels),
+        ]
+    }
+}
+
+const CLAIMS: [Claim<Evidence>; 3] = [
+    Claim {
+        text: "“In the left image, we can find hole (cavity).”",
+        decide: |Evidence { plain, .. }| {
+            let reason = format!(
                 "ω = 0 has {} and {}, the voids of volume {}",
-                text::count(l.betti.b1, "tunnel", "tunnels"),
-                text::count(l.betti.b2, "void", "voids"),
-                text::number(l.void_volume)
-            ),
+                text::count(plain.betti.b1, "tunnel", "tunnels"),
+                text::count(plain.betti.b2, "void", "voids"),
+                text::number(plain.void_volume)
+            );
+            (Verdict::of(plain.holes() > 0), reason)
         },
-        Finding {
-            claim: "“In the right image, the hole is filled.”".into(),
-            verdict: Verdict::of(filled),
-            reason: format!(
+    },
+    Claim {
+        text: "“In the right image, the hole is filled.”",
+        decide: |e| {
+            let (l, r, pixels) = (&e.plain, &e.literal, &e.pixels);
+            let reason = format!(
                 "with equation 4.2 as printed b₁ is {} after {}, b₂ {} after {}, the voids' volume {} \
                  after {}; the two shapes are {} set of points in space. {} of {} pixels differ, by \
                  {} of 255 at most{}. N times these weights leave {} and {}, min-max {} and {}",
@@ -51,40 +111,59 @@ pub(super) fn figure_10(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
                 l.betti.b2,
                 text::number(r.void_volume),
                 text::number(l.void_volume),
-                if same { "the same" } else { "not the same" },
+                if e.same { "the same" } else { "not the same" },
                 pixels.pixels,
-                left.pixels().len(),
+                e.all_pixels,
                 pixels.largest,
-                if same { ", where triangles that are cut otherwise are shaded" } else { "" },
-                text::count(scaled.numbers.betti.b1, "tunnel", "tunnels"),
-                text::count(scaled.numbers.betti.b2, "void", "voids"),
-                text::count(min_max.numbers.betti.b1, "tunnel", "tunnels"),
-                text::count(min_max.numbers.betti.b2, "void", "voids"),
-            ),
+                if e.same { ", where triangles that are cut otherwise are shaded" } else { "" },
+                text::count(e.scaled.betti.b1, "tunnel", "tunnels"),
+                text::count(e.scaled.betti.b2, "void", "voids"),
+                text::count(e.min_max.betti.b1, "tunnel", "tunnels"),
+                text::count(e.min_max.betti.b2, "void", "voids"),
+            );
+            (Verdict::of(e.filled()), reason)
         },
-        Finding {
-            claim: "Weights can improve on what unweighted (common weighted) shapes do.".into(),
-            verdict: improved,
-            reason: format!(
+    },
+    Claim {
+        text: "Weights can improve on what unweighted (common weighted) shapes do.",
+        decide: |e| {
+            let reason = format!(
                 "tunnels and voids together, and the voids' volume: {} and {} with ω = 0 at \
                  α = {ALPHA}; {}. Weights improve a shape if both are less than without weights at \
                  either α; if only the count is, the measures disagree",
-                l.holes(),
-                text::number(l.void_volume),
-                trials.map(|(weighted, unweighted)| against(weighted, unweighted)).join("; ")
-            ),
+                e.plain.holes(),
+                text::number(e.plain.void_volume),
+                e.trials().map(against).join("; ")
+            );
+            (improvement(&e.plain, e.trials()), reason)
         },
+    },
+];
+
+/// Figure 10: without weights and with barycentric ones; what would change the picture beside.
+pub(super) fn figure_10(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
+    let shapes = bench.shapes;
+    let shown = [&shapes.plain, &shapes.barycentric, &shapes.barycentric_n, &shapes.min_max];
+    let titles = [
+        "ω = 0 (the paper's left image)",
+        "barycentric, equation 4.2 (its right image)",
+        "N × barycentric (not in the paper)",
+        "min-max, equation 4.1",
     ];
-    let shown = [plain, literal, scaled, min_max];
+    let panels =
+        titles.into_iter().zip(shown).map(|(title, shaped)| bench.shape_panel(title, shaped));
+    let panels = panels.collect::<Result<_, _>>()?;
+    let title = format!("Figure 10. Unweighted and weighted shapes at α = {ALPHA}, one camera");
+    let drawn = figure(&title, panels);
     let names = ["omega-0", "barycentric", "barycentric-n", "min-max"];
     let commands = shown
         .iter()
         .zip(names)
-        .map(|(shaped, name)| bench.drawing_command(shaped, &format!("figure-10-{name}.png")));
-    let commands = commands.collect();
-    let mut listed: Vec<_> = shown.iter().map(|shaped| shaped.numbers.clone()).collect();
+        .map(|(shaped, name)| bench.drawing_command(shaped, &format!("figure-10-{name}.png")))
+        .collect();
+    let evidence = Evidence::of(bench)?;
+    let mut listed: Vec<_> = evidence.shown().map(Clone::clone).into();
     listed.push(shapes.min_max_mean.numbers.clone());
-    let voids = voids(&shown);
     Ok(Item {
         id: "figure-10",
         title: "Figure 10. The hole, and whether it is filled".into(),
@@ -94,31 +173,24 @@ pub(super) fn figure_10(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
         ours: "Above, the paper's pair; below, weights that do change the shape: N times equation \
                4.2, and min-max. All from one camera at one scale."
             .into(),
-        picture: Some(picture),
+        picture: Some(bench.file("figure-10.png", drawn.to_png()?)),
         commands,
         shapes: listed,
-        facts: vec![
-            Fact::count("boundary facets that differ between left and right", apart.boundary),
-            Fact::count("cells that differ between left and right", apart.cells),
-            Fact::count("pixels that differ between left and right", pixels.pixels),
-            Fact::new("largest difference of a pixel (of 255)", pixels.largest.into()),
-            Fact::count("pixels of each", left.pixels().len()),
-        ],
-        tables: vec![voids],
-        findings,
+        facts: evidence.facts(),
+        tables: vec![voids(evidence.shown())],
+        findings: judge(&CLAIMS, &evidence),
         ..Item::default()
     })
 }
 
 /// Whether some weighted shape has fewer and smaller holes than ω = 0 has, at the same α and at α
 /// plus the mean weight.
-fn improvement(plain: &ShapeNumbers, trials: &[(&Shaped, &Shaped)]) -> Verdict {
-    let less = |of: &dyn Fn(&ShapeNumbers) -> f64, (weighted, raised): &(&Shaped, &Shaped)| {
-        let least = of(plain).min(of(&raised.numbers));
-        of(&weighted.numbers) < least
+fn improvement(plain: &ShapeNumbers, trials: [Trial<'_>; 2]) -> Verdict {
+    let less = |of: &dyn Fn(&ShapeNumbers) -> f64, trial: &Trial<'_>| {
+        of(trial.weighted) < of(plain).min(of(trial.raised))
     };
-    let fewer = |trial: &&(&Shaped, &Shaped)| less(&|n| n.holes() as f64, trial);
-    let smaller = |trial: &(&Shaped, &Shaped)| less(&|n| n.void_volume, trial);
+    let fewer = |trial: &&Trial<'_>| less(&|n| n.holes() as f64, trial);
+    let smaller = |trial: &Trial<'_>| less(&|n| n.void_volume, trial);
     let better: Vec<_> = trials.iter().filter(fewer).collect();
     if better.is_empty() {
         Verdict::NotReproduced
@@ -129,8 +201,7 @@ fn improvement(plain: &ShapeNumbers, trials: &[(&Shaped, &Shaped)]) -> Verdict {
     }
 }
 
-fn against(weighted: &Shaped, raised: &Shaped) -> String {
-    let (w, r) = (&weighted.numbers, &raised.numbers);
+fn against(Trial { weighted: w, raised: r }: Trial<'_>) -> String {
     format!(
         "{} and {} with {}, against {} and {} without weights at α plus their mean, {}",
         w.holes(),
@@ -143,10 +214,9 @@ fn against(weighted: &Shaped, raised: &Shaped) -> String {
 }
 
 /// The largest voids of each shape.
-fn voids(shown: &[&Shaped]) -> Table {
+fn voids(shown: [&ShapeNumbers; 4]) -> Table {
     const MOST: usize = 3;
-    let rows = shown.iter().flat_map(|shaped| {
-        let n = &shaped.numbers;
+    let rows = shown.into_iter().flat_map(|n| {
         n.largest_voids.iter().take(MOST).map(|void| {
             let corner = |p: [f64; 3]| p.map(text::number).join(", ");
             vec![

@@ -2,73 +2,113 @@ use super::super::compare::{PixelDifference, same_set};
 use super::super::off::OffMesh;
 use super::super::stage::{Eye, panel};
 use super::super::study::{ALPHA, Shaped};
-use super::super::{Fact, Finding, Item, ReproduceError, Verdict};
+use super::super::{Fact, Item, ReproduceError, ShapeNumbers, Verdict};
+use super::claim::{Claim, judge};
 use super::{Bench, figure};
 use crate::export::{ExportOptions, Exporter, Off};
-use crate::render::{Figure, Picture};
-use crate::shape::Surface;
+use crate::render::{Figure, Panel, Picture};
+use crate::shape::{Betti, Surface};
 
-/// Figure 11: the pair of Figure 10 as files for Geomview, drawn from these files.
-pub(super) fn figure_11(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
-    let shapes = bench.shapes;
-    let pair = [
-        ("ω = 0", &shapes.plain, "figure-11-left.off"),
-        ("barycentric, equation 4.2", &shapes.barycentric, "figure-11-right.off"),
-    ];
-    let mut sides = Vec::new();
-    for (title, shaped, name) in pair {
-        sides.push(Side::new(bench, title, shaped, name)?);
+/// The pair, read back from its files.
+struct Evidence {
+    /// Left and right.
+    sides: [Side; 2],
+    /// How far their pictures differ.
+    pixels: PixelDifference,
+    /// Whether they are the same set of points in space.
+    same: bool,
+    /// Left and right.
+    betti: [Betti; 2],
+}
+
+impl Evidence {
+    fn of(bench: &mut Bench<'_>) -> Result<Self, ReproduceError> {
+        let (plain, barycentric) = (&bench.shapes.plain, &bench.shapes.barycentric);
+        let left = Side::new(bench, "ω = 0", plain, LEFT)?;
+        let right = Side::new(bench, "barycentric, equation 4.2", barycentric, RIGHT)?;
+        Ok(Self {
+            pixels: PixelDifference::between(&left.picture, &right.picture),
+            same: same_set(&plain.shape, &barycentric.shape),
+            betti: [plain.numbers.betti, barycentric.numbers.betti],
+            sides: [left, right],
+        })
     }
-    let panels = sides.iter().map(|side| {
-        let caption = format!(
-            "{}: {} vertices, {} facets",
-            side.file,
-            side.mesh.positions.len(),
-            side.mesh.facets.len()
-        );
-        panel(side.title, side.picture.clone(), vec![caption])
-    });
-    let title = format!("Figure 11. The pair as OFF files, read back; α = {ALPHA}");
-    let drawn = Figure { legend: Vec::new(), ..figure(&title, panels.collect()) };
-    let picture = bench.file("figure-11.png", drawn.to_png()?);
 
-    let pixels = PixelDifference::between(&sides[0].picture, &sides[1].picture);
-    let same = same_set(&shapes.plain.shape, &shapes.barycentric.shape);
-    let findings = vec![
-        Finding {
-            claim: "The shapes can be shown by a second program, Geomview.".into(),
-            verdict: Verdict::of(sides.iter().all(|side| side.agrees)),
-            reason: format!(
+    /// Whether both files say just what the shapes' surfaces are.
+    fn agrees(&self) -> bool {
+        self.sides.iter().all(|side| side.agrees)
+    }
+
+    /// Whether the right shape is another one and has fewer tunnels or voids.
+    fn filled(&self) -> bool {
+        let [left, right] = &self.betti;
+        !self.same && (right.b1 < left.b1 || right.b2 < left.b2)
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let [left, right] = &self.sides;
+        vec![
+            Fact::count("vertices, left", left.mesh.positions.len()),
+            Fact::count("vertices, right", right.mesh.positions.len()),
+            Fact::count("facets, left", left.mesh.facets.len()),
+            Fact::count("facets, right", right.mesh.facets.len()),
+            Fact::count("pixels that differ", self.pixels.pixels),
+            Fact::new("largest difference of a pixel (of 255)", self.pixels.largest.into()),
+        ]
+    }
+}
+
+const LEFT: &str = "figure-11-left.off";
+const RIGHT: &str = "figure-11-right.off";
+
+const CLAIMS: [Claim<Evidence>; 2] = [
+    Claim {
+        text: "The shapes can be shown by a second program, Geomview.",
+        decide: |e| {
+            let reason = format!(
                 "written as OFF and read back by a reader of its own, {}",
-                if sides.iter().all(|side| side.agrees) {
+                if e.agrees() {
                     "both files have the vertices and facets of their shapes, number by number"
                 } else {
                     "a file differs from its shape"
                 }
-            ),
+            );
+            (Verdict::of(e.agrees()), reason)
         },
-        Finding {
-            claim: "The right image differs from the left: its hole is filled.".into(),
-            verdict: Verdict::of(!same && filled(&shapes.plain, &shapes.barycentric)),
-            reason: format!(
+    },
+    Claim {
+        text: "The right image differs from the left: its hole is filled.",
+        decide: |e| {
+            let [left, right] = &e.betti;
+            let reason = format!(
                 "the two surfaces are {}; {} of {} pixels differ, by {} of 255 at most; b₁ and b₂ are \
                  {} and {} on the left, {} and {} on the right",
-                if same {
+                if e.same {
                     "the same set of points in space, cut into triangles along other diagonals"
                 } else {
                     "not the same set of points in space"
                 },
-                pixels.pixels,
-                sides[0].picture.pixels().len(),
-                pixels.largest,
-                shapes.plain.numbers.betti.b1,
-                shapes.plain.numbers.betti.b2,
-                shapes.barycentric.numbers.betti.b1,
-                shapes.barycentric.numbers.betti.b2
-            ),
+                e.pixels.pixels,
+                e.sides[0].picture.pixels().len(),
+                e.pixels.largest,
+                left.b1,
+                left.b2,
+                right.b1,
+                right.b2
+            );
+            (Verdict::of(e.filled()), reason)
         },
-    ];
-    let commands = pair.map(|(_, shaped, name)| format!("{} -o {name}", shaped.numbers.command));
+    },
+];
+
+/// Figure 11: the pair of Figure 10 as files for Geomview, drawn from these files.
+pub(super) fn figure_11(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
+    let evidence = Evidence::of(bench)?;
+    let title = format!("Figure 11. The pair as OFF files, read back; α = {ALPHA}");
+    let panels = evidence.sides.iter().map(Side::panel).collect();
+    let drawn = Figure { legend: Vec::new(), ..figure(&title, panels) };
+    let numbers = [&bench.shapes.plain, &bench.shapes.barycentric].map(|s| s.numbers.clone());
+    let command = |(n, side): (&ShapeNumbers, &Side)| format!("{} -o {}", n.command, side.file);
     Ok(Item {
         id: "figure-11",
         title: "Figure 11. The pair in Geomview".into(),
@@ -77,26 +117,14 @@ pub(super) fn figure_11(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
             "Drawn from the OFF files themselves, each facet in its own plane, as Geomview does. \
                The format knows facets only: singular edges and vertices are left out."
                 .into(),
-        picture: Some(picture),
-        files: sides.iter().map(|side| side.file.clone()).collect(),
-        commands: commands.into(),
-        shapes: [&shapes.plain, &shapes.barycentric].map(|s| s.numbers.clone()).into(),
-        facts: vec![
-            Fact::count("vertices, left", sides[0].mesh.positions.len()),
-            Fact::count("vertices, right", sides[1].mesh.positions.len()),
-            Fact::count("facets, left", sides[0].mesh.facets.len()),
-            Fact::count("facets, right", sides[1].mesh.facets.len()),
-            Fact::count("pixels that differ", pixels.pixels),
-            Fact::new("largest difference of a pixel (of 255)", pixels.largest.into()),
-        ],
-        findings,
+        picture: Some(bench.file("figure-11.png", drawn.to_png()?)),
+        files: evidence.sides.iter().map(|side| side.file.clone()).collect(),
+        commands: numbers.iter().zip(&evidence.sides).map(command).collect(),
+        shapes: numbers.into(),
+        facts: evidence.facts(),
+        findings: judge(&CLAIMS, &evidence),
         ..Item::default()
     })
-}
-
-fn filled(left: &Shaped, right: &Shaped) -> bool {
-    let (l, r) = (left.numbers.betti, right.numbers.betti);
-    r.b1 < l.b1 || r.b2 < l.b2
 }
 
 /// One of the pair.
@@ -126,5 +154,11 @@ impl Side {
         let agrees = places.eq(mesh.positions.iter().copied()) && surface.facets().eq(&mesh.facets);
         let picture = bench.study.stage.render(&mesh.scene(), Eye::Portrait)?;
         Ok(Self { title, file: bench.file(name, bytes), mesh, picture, agrees })
+    }
+    fn panel(&self) -> Panel {
+        let Self { file, mesh, .. } = self;
+        let (vertices, facets) = (mesh.positions.len(), mesh.facets.len());
+        let caption = format!("{file}: {vertices} vertices, {facets} facets");
+        panel(self.title, self.picture.clone(), vec![caption])
     }
 }

@@ -1,6 +1,7 @@
 use super::super::stage::{Eye, panel};
 use super::super::study::{PAPER_POINTS, PAPER_SAMPLES, Study};
-use super::super::{Fact, Finding, Item, ReproduceError, Table, Verdict};
+use super::super::{Fact, Item, ReproduceError, Table, Verdict};
+use super::claim::{Claim, judge};
 use super::{Bench, VIEWS, figure};
 use crate::points::difference;
 use crate::render::{Figure, Isosurface, Scene};
@@ -10,68 +11,126 @@ use crate::volume::Volume;
 const THRESHOLD: f64 = 50.0;
 /// The data reduction rate the paper prints, in percent.
 const PRINTED_PERCENT: &str = "6.07";
+/// What its own numbers make of it.
+const COMPUTED_PERCENT: f64 = 100.0 * PAPER_POINTS as f64 / PAPER_SAMPLES as f64;
 
-/// Figure 5: the volume itself, as an isosurface, and what it costs in samples.
-pub(super) fn figure_5(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
-    let study = bench.study;
-    let volume = study.subject.volume;
-    let surface = Isosurface::new(volume.samples(), THRESHOLD)?;
-    let (vertices, triangles) = (surface.positions.len(), surface.triangles.len());
-    let (read, beside, area) = (surface.samples_read, surface.samples_beside, surface.area());
-    let scene = Scene { meshes: vec![surface.into_mesh()], ..Scene::default() };
-    let front = study.stage.render(&scene, Eye::Portrait)?;
-    let side = study.stage.render(&scene, Eye::Side)?;
-    let title = format!("Figure 5. The volume: isosurface at gray level {THRESHOLD}");
-    let captions = vec![
-        format!("marching cubes: {triangles} triangles, from all {read} samples"),
-        format!("{beside} of them lie beside the surface"),
-    ];
-    let panels = vec![panel(VIEWS[0], front, captions), panel(VIEWS[1], side, Vec::new())];
-    let drawn = Figure { legend: Vec::new(), ..figure(&title, panels) };
-    let picture = bench.file("figure-05.png", drawn.to_png()?);
+/// What the isosurface and the shape are made of.
+struct Evidence {
+    samples: usize,
+    /// That marching cubes reads.
+    read: usize,
+    /// Of these, those beside the surface.
+    beside: usize,
+    vertices: usize,
+    triangles: usize,
+    /// In squared voxels.
+    area: f64,
+    points: usize,
+    points_in_shape: usize,
+    /// What the threshold may be held against, and how many samples each leaves.
+    readings: [(&'static str, usize); 5],
+}
 
-    let points = study.points.len();
-    let in_shape = bench.shapes.plain.numbers.points_in_shape;
-    let samples = volume.dims().samples();
-    let fraction = 100.0 * PAPER_POINTS as f64 / PAPER_SAMPLES as f64;
-    let rounded = format!("{fraction:.2}");
-    let (readings, any) = readings(study, fraction);
-    let findings = vec![
-        Finding {
-            claim:
-                "Marching cubes needs all of the data points, alpha shapes only the selected ones."
-                    .into(),
-            verdict: Verdict::of(read == samples && points < samples),
-            reason: format!(
+impl Evidence {
+    fn of(bench: &Bench<'_>, surface: &Isosurface) -> Self {
+        let study = bench.study;
+        Self {
+            samples: study.subject.volume.dims().samples(),
+            read: surface.samples_read,
+            beside: surface.samples_beside,
+            vertices: surface.positions.len(),
+            triangles: surface.triangles.len(),
+            area: surface.area(),
+            points: study.points.len(),
+            points_in_shape: bench.shapes.plain.numbers.points_in_shape,
+            readings: readings(study),
+        }
+    }
+
+    /// A count of samples as a share of them all.
+    fn percent(&self, samples: usize) -> f64 {
+        100.0 * samples as f64 / self.samples as f64
+    }
+
+    /// Whether one reading of the threshold leaves as much as the paper says.
+    fn is_as_printed(&self) -> bool {
+        let paper: f64 = PRINTED_PERCENT.parse().expect("a number");
+        let near =
+            |n| [paper, COMPUTED_PERCENT].iter().any(|p| (self.percent(n) - p).abs() < 0.005);
+        self.readings.iter().any(|&(_, n)| near(n))
+    }
+
+    fn table(&self) -> Table {
+        let row = |&(name, n): &(&str, usize)| {
+            vec![name.into(), n.to_string(), format!("{:.3}", self.percent(n))]
+        };
+        Table {
+            caption: format!("Samples of at least {THRESHOLD}, by what that may mean"),
+            head: ["quantity", "samples", "share (%)"].map(String::from).into(),
+            rows: self.readings.iter().map(row).collect(),
+        }
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        vec![
+            Fact::count("samples that marching cubes reads", self.read),
+            Fact::count("samples beside the surface", self.beside),
+            Fact::count("points that the shape is made of", self.points),
+            Fact::count("points in the shape of Figure 6", self.points_in_shape),
+            Fact::count("triangles of the isosurface", self.triangles),
+            Fact::new("area of the isosurface (voxels²)", self.area),
+        ]
+    }
+}
+
+const CLAIMS: [Claim<Evidence>; 3] = [
+    Claim {
+        text: "Marching cubes needs all of the data points, alpha shapes only the selected ones.",
+        decide: |&Evidence { samples, read, beside, points, .. }| {
+            let reason = format!(
                 "marching cubes reads {read} of {samples} samples, and even if it knew where the \
                  surface is it would need {beside}; the shape is made of {points} points. Selecting \
                  them reads every sample once, though: the saving is in what is kept and \
                  triangulated"
-            ),
+            );
+            (Verdict::of(read == samples && points < samples), reason)
         },
-        Finding {
-            claim: format!(
-                "The data reduction rate is {PAPER_POINTS}/{PAPER_SAMPLES} = {PRINTED_PERCENT} %."
-            ),
-            verdict: Verdict::of(rounded == PRINTED_PERCENT),
-            reason: format!(
-                "{PAPER_POINTS}/{PAPER_SAMPLES} is {fraction:.3} %, which rounds to {rounded} %"
-            ),
+    },
+    Claim {
+        text: "The data reduction rate is 15956/262144 = 6.07 %.",
+        decide: |_| {
+            let rounded = format!("{COMPUTED_PERCENT:.2}");
+            let reason = format!(
+                "{PAPER_POINTS}/{PAPER_SAMPLES} is {COMPUTED_PERCENT:.3} %, which rounds to \
+                 {rounded} %"
+            );
+            (Verdict::of(rounded == PRINTED_PERCENT), reason)
         },
-        Finding {
-            claim: format!("The threshold value is {THRESHOLD} in the range from 0 to 255."),
-            verdict: if any { Verdict::Reproduced } else { Verdict::Undecided },
-            reason: if any {
-                format!("one reading of it leaves {fraction:.2} % of the samples, see the table")
-            } else {
-                format!(
-                    "the paper does not say what is held against {THRESHOLD}, and no reading we \
-                     tried leaves {PRINTED_PERCENT} or {fraction:.2} % of the samples of this \
-                     volume, see the table"
-                )
-            },
+    },
+    Claim {
+        text: "The threshold value is 50 in the range from 0 to 255.",
+        decide: |e| {
+            if e.is_as_printed() {
+                let reason = format!(
+                    "one reading of it leaves {COMPUTED_PERCENT:.2} % of the samples, see the table"
+                );
+                return (Verdict::Reproduced, reason);
+            }
+            let reason = format!(
+                "the paper does not say what is held against {THRESHOLD}, and no reading we tried \
+                 leaves {PRINTED_PERCENT} or {COMPUTED_PERCENT:.2} % of the samples of this volume, \
+                 see the table"
+            );
+            (Verdict::Undecided, reason)
         },
-    ];
+    },
+];
+
+/// Figure 5: the volume itself, as an isosurface, and what it costs in samples.
+pub(super) fn figure_5(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
+    let surface = Isosurface::new(bench.study.subject.volume.samples(), THRESHOLD)?;
+    let evidence = Evidence::of(bench, &surface);
+    let drawn = draw(bench.study, &evidence, surface)?;
     Ok(Item {
         id: "figure-5",
         title: "Figure 5. The original image".into(),
@@ -82,52 +141,49 @@ pub(super) fn figure_5(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
         ),
         ours: format!(
             "The isosurface of the original gray levels at {THRESHOLD}, by marching cubes: \
-             {vertices} vertices, {triangles} triangles."
+             {} vertices, {} triangles.",
+            evidence.vertices, evidence.triangles
         ),
-        picture: Some(picture),
+        picture: Some(bench.file("figure-05.png", drawn.to_png()?)),
         commands: vec![bench.reproduce_command()],
-        facts: vec![
-            Fact::count("samples that marching cubes reads", read),
-            Fact::count("samples beside the surface", beside),
-            Fact::count("points that the shape is made of", points),
-            Fact::count("points in the shape of Figure 6", in_shape),
-            Fact::count("triangles of the isosurface", triangles),
-            Fact::new("area of the isosurface (voxels²)", area),
-        ],
-        tables: vec![readings],
-        findings,
+        facts: evidence.facts(),
+        tables: vec![evidence.table()],
+        findings: judge(&CLAIMS, &evidence),
         ..Item::default()
     })
 }
 
-/// What a threshold of 50 may be held against, how much each leaves, and whether one leaves as
-/// much as the paper says.
-fn readings(study: &Study<'_>, fraction: f64) -> (Table, bool) {
-    let samples = study.subject.volume.as_slice().len();
+fn draw(
+    study: &Study<'_>,
+    &Evidence { triangles, read, beside, .. }: &Evidence,
+    surface: Isosurface,
+) -> Result<Figure, ReproduceError> {
+    let scene = Scene { meshes: vec![surface.into_mesh()], ..Scene::default() };
+    let front = study.stage.render(&scene, Eye::Portrait)?;
+    let side = study.stage.render(&scene, Eye::Side)?;
+    let captions = vec![
+        format!("marching cubes: {triangles} triangles, from all {read} samples"),
+        format!("{beside} of them lie beside the surface"),
+    ];
+    let panels = vec![panel(VIEWS[0], front, captions), panel(VIEWS[1], side, Vec::new())];
+    let title = format!("Figure 5. The volume: isosurface at gray level {THRESHOLD}");
+    Ok(Figure { legend: Vec::new(), ..figure(&title, panels) })
+}
+
+/// What a threshold of 50 may be held against, and how many samples each leaves.
+fn readings(study: &Study<'_>) -> [(&'static str, usize); 5] {
     let least = THRESHOLD;
     let differences = difference(&study.smoothed);
     let squares = root_mean_square_difference(&study.smoothed);
     let count = |values: &mut dyn Iterator<Item = f64>| values.filter(|&v| v >= least).count();
     let gray = |volume: &Volume| count(&mut volume.as_slice().iter().map(|&v| f64::from(v)));
-    let readings = [
+    [
         ("original gray level", gray(study.subject.volume)),
         ("gray level after truncation", gray(&study.smoothed)),
         ("L, the mean of the six differences", count(&mut differences.iter().copied())),
         ("the sum of the six differences", count(&mut differences.iter().map(|l| 6.0 * l))),
         ("the root mean square of the six differences", count(&mut squares.iter().copied())),
-    ];
-    let percent = |n: usize| 100.0 * n as f64 / samples as f64;
-    let paper: f64 = PRINTED_PERCENT.parse().expect("a number");
-    let near = |n: usize| [paper, fraction].iter().any(|p| (percent(n) - p).abs() < 0.005);
-    let table = Table {
-        caption: format!("Samples of at least {THRESHOLD}, by what that may mean"),
-        head: ["quantity", "samples", "share (%)"].map(String::from).into(),
-        rows: readings
-            .iter()
-            .map(|&(name, n)| vec![name.into(), n.to_string(), format!("{:.3}", percent(n))])
-            .collect(),
-    };
-    (table, readings.iter().any(|&(_, n)| near(n)))
+    ]
 }
 
 /// √(Σ d²/6) over the differences to the six neighbours: "averaged L² norm" taken literally.

@@ -1,14 +1,17 @@
 //! The table and the figures, one by one.
 
+mod barycentric;
+mod claim;
 mod common;
 mod comparison;
 mod extension;
 mod geomview;
 mod isosurface;
+mod min_max;
 mod plane;
 mod points;
 mod table;
-mod weighted;
+mod unweighted;
 
 use std::collections::BTreeMap;
 
@@ -29,10 +32,10 @@ pub(super) const ALL: [(&str, Make); 13] = [
     ("Figure 3", plane::figure_3),
     ("Figure 4", plane::figure_4),
     ("Figure 5", isosurface::figure_5),
-    ("Figure 6", common::figure_6),
+    ("Figure 6", unweighted::figure_6),
     ("Figure 7", common::figure_7),
-    ("Figure 8", weighted::figure_8),
-    ("Figure 9", weighted::figure_9),
+    ("Figure 8", min_max::figure_8),
+    ("Figure 9", barycentric::figure_9),
     ("Figure 10", comparison::figure_10),
     ("Figure 11", geomview::figure_11),
     ("Extension", extension::error_against_points),

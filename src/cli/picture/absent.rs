@@ -1,0 +1,22 @@
+//! What stands in for pictures where the command is built without them: no options, no file.
+
+use std::path::Path;
+
+use clap::Args;
+use walpha::export::Exporter;
+
+#[derive(Args, Clone, Copy)]
+pub struct PictureArgs {}
+
+impl PictureArgs {
+    pub const NAMES: [&str; 0] = [];
+    pub const EXTENSIONS: [&str; 0] = [];
+
+    pub fn wanted(_: &Path) -> bool {
+        false
+    }
+
+    pub fn exporter(self) -> Box<dyn Exporter> {
+        unreachable!("no path asks for a picture")
+    }
+}

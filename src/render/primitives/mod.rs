@@ -1,0 +1,75 @@
+//! Triangles, balls and tubes on the pixel grid: which samples each covers, and its light there.
+
+mod capsule;
+mod sphere;
+mod stage;
+mod triangle;
+
+use rayon::prelude::*;
+
+use super::pixels::{Patch, PixelBox, Size};
+use super::scene::{Lens, Scene};
+use capsule::Capsule;
+use sphere::Sphere;
+pub(crate) use stage::Stage;
+use triangle::Triangle;
+
+/// One thing that can be nearest in a sample.
+pub(crate) enum Primitive {
+    Triangle(Triangle),
+    Sphere(Sphere),
+    Capsule(Capsule),
+}
+
+impl Primitive {
+    /// All of a scene that may be in the picture.
+    pub(crate) fn all(scene: &Scene, lens: &Lens, size: Size) -> Vec<Self> {
+        let mut all = Vec::new();
+        for (mesh, layer) in scene.meshes.iter().enumerate() {
+            if layer.opacity > 0.0 {
+                let pieces: Vec<Vec<Triangle>> = (0..layer.triangles.len())
+                    .into_par_iter()
+                    .map(|triangle| Triangle::pieces(layer, mesh, triangle, lens, size))
+                    .collect();
+                all.extend(pieces.into_iter().flatten().map(Self::Triangle));
+            }
+        }
+        let spheres = scene.balls.iter().enumerate();
+        all.extend(spheres.filter_map(|(k, b)| Sphere::new(b, k, lens, size)).map(Self::Sphere));
+        let tubes = scene.tubes.iter().enumerate();
+        all.extend(tubes.filter_map(|(k, t)| Capsule::new(t, k, lens, size)).map(Self::Capsule));
+        all
+    }
+
+    pub(crate) fn bounds(&self) -> PixelBox {
+        match self {
+            Self::Triangle(t) => t.bounds,
+            Self::Sphere(s) => s.bounds,
+            Self::Capsule(c) => c.bounds,
+        }
+    }
+
+    pub(crate) fn cover(&self, lens: &Lens, within: PixelBox, visit: impl FnMut(&Patch)) {
+        match self {
+            Self::Triangle(t) => t.cover(within, visit),
+            Self::Sphere(s) => s.cover(lens, within, visit),
+            Self::Capsule(c) => c.cover(lens, within, visit),
+        }
+    }
+
+    /// The light that comes to the eye from what is seen at a pixel position.
+    pub(crate) fn shade(&self, stage: &Stage, x: f64, y: f64) -> [f32; 3] {
+        match self {
+            Self::Triangle(t) => t.shade(stage, x, y),
+            Self::Sphere(s) => s.shade(stage, x, y),
+            Self::Capsule(c) => c.shade(stage, x, y),
+        }
+    }
+
+    pub(crate) fn opacity(&self, scene: &Scene) -> f64 {
+        match self {
+            Self::Triangle(t) => scene.meshes[t.mesh as usize].opacity,
+            Self::Sphere(_) | Self::Capsule(_) => 1.0,
+        }
+    }
+}

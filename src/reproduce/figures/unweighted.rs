@@ -1,0 +1,132 @@
+use super::super::hull::Hull;
+use super::super::study::{ALPHA, Shapes};
+use super::super::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
+use super::claim::{Claim, judge};
+use super::{Bench, figure};
+
+/// The unweighted shapes by ascending α, the last of which is ∞.
+struct Evidence {
+    ladder: Vec<ShapeNumbers>,
+    /// The boundary at α = ∞.
+    hull: Hull,
+}
+
+impl Evidence {
+    fn of(shapes: &Shapes) -> Self {
+        let ladder = shapes.by_alpha();
+        let largest = ladder.last().expect("a ladder has steps");
+        let hull = Hull::of(&largest.shape);
+        Self { hull, ladder: ladder.iter().map(|shaped| shaped.numbers.clone()).collect() }
+    }
+
+    fn smallest(&self) -> &ShapeNumbers {
+        &self.ladder[0]
+    }
+
+    fn largest(&self) -> &ShapeNumbers {
+        &self.ladder[self.ladder.len() - 1]
+    }
+
+    /// The one of most voids.
+    fn hollow(&self) -> &ShapeNumbers {
+        self.ladder.iter().max_by_key(|n| n.betti.b2).expect("a ladder has steps")
+    }
+
+    /// Whether no shape has less volume than the one before, and the last has more than the first.
+    fn grows(&self) -> bool {
+        self.ladder.windows(2).all(|pair| pair[0].volume <= pair[1].volume)
+            && self.smallest().volume < self.largest().volume
+    }
+
+    fn table(&self) -> Table {
+        let rows = self.ladder.iter().map(|n| {
+            let cells = [n.cells as u64, n.betti.b0, n.betti.b1, n.betti.b2].map(|v| v.to_string());
+            let sizes = [n.volume, n.void_volume].map(text::number);
+            [&[text::number(n.alpha)], &cells[..], &sizes].concat()
+        });
+        Table {
+            caption: "The unweighted shape at other α (squared lengths)".into(),
+            head: ["α", "cells", "b0", "b1", "b2", "volume", "volume of voids"]
+                .map(String::from)
+                .into(),
+            rows: rows.collect(),
+        }
+    }
+}
+
+const CLAIMS: [Claim<Evidence>; 3] = [
+    Claim {
+        text: "As α increases the shape expands, as it decreases it shrinks.",
+        decide: |e| {
+            let (small, large) = (e.smallest(), e.largest());
+            let reason = format!(
+                "the volume goes from {} at α = {} to {} at α = {}, without a step back",
+                text::number(small.volume),
+                text::number(small.alpha),
+                text::number(large.volume),
+                text::number(large.alpha)
+            );
+            (Verdict::of(e.grows()), reason)
+        },
+    },
+    Claim {
+        text: "As α decreases the shape develops cavities.",
+        decide: |e| {
+            let (hollow, largest) = (e.hollow(), e.largest());
+            let reason = format!(
+                "{} at α = ∞, {} at α = {}",
+                text::count(largest.betti.b2, "void", "voids"),
+                text::count(hollow.betti.b2, "void", "voids"),
+                text::number(hollow.alpha)
+            );
+            (Verdict::of(hollow.betti.b2 > largest.betti.b2), reason)
+        },
+    },
+    Claim {
+        text: "For α = ∞ the α-shape is the convex hull of the points.",
+        decide: |Evidence { ladder, hull }| {
+            let largest = &ladder[ladder.len() - 1];
+            // The facets' determinants are whole numbers; so are the cells'.
+            let same = (hull.volume - largest.volume).abs() <= 1e-9 * largest.volume;
+            let reason = format!(
+                "{} of {} points lie beyond one of the {} boundary facets at α = ∞; the facets \
+                 enclose {}, the cells fill {}",
+                hull.outside,
+                largest.points,
+                hull.facets,
+                text::number(hull.volume),
+                text::number(largest.volume)
+            );
+            (Verdict::of(hull.outside == 0 && same), reason)
+        },
+    },
+];
+
+/// Figure 6: ω = 0, and how the shape depends on α.
+pub(super) fn figure_6(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
+    let plain = &bench.shapes.plain;
+    let evidence = Evidence::of(bench.shapes);
+    let title = format!("Figure 6. Common factor 0, α = {ALPHA} (√α = {:.3} voxels)", ALPHA.sqrt());
+    let drawn = figure(&title, bench.two_views(plain)?);
+    Ok(Item {
+        id: "figure-6",
+        title: "Figure 6. Common factor 0".into(),
+        paper: "All points weigh 0: the unweighted α-shape, at α = 10. It shrinks and develops \
+                cavities as α decreases, and becomes the convex hull as α grows."
+            .into(),
+        ours:
+            "The boundary of the shape, from two sides. The paper prints no count to compare with; \
+               ours stand below."
+                .into(),
+        picture: Some(bench.file("figure-06.png", drawn.to_png()?)),
+        commands: vec![bench.drawing_command(plain, "figure-06.png")],
+        files: vec![bench.mesh("figure-06.ply", plain)?],
+        shapes: vec![plain.numbers.clone()],
+        facts: vec![
+            Fact::new("volume of the convex hull, by its facets", evidence.hull.volume),
+            Fact::count("facets of the convex hull", evidence.hull.facets),
+        ],
+        tables: vec![evidence.table()],
+        findings: judge(&CLAIMS, &evidence),
+    })
+}
