@@ -30,11 +30,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A grid: nothing but ties, where programs differ if they decide by rounded numbers.
     let place = |i: usize| [i % 5, i / 5 % 5, i / 25].map(|c| c as f64);
     let positions: Vec<[f64; 3]> = (0..125).map(place).collect();
-    let alpha = 0.75;
+    let alpha = Alpha::from_squared(0.75)?;
 
     let points = Points { positions: positions.clone(), ..Points::default() };
-    let weighted = weigh(&points, Weighting::Common(0.0), alpha)?;
-    let shape = alpha_shape(weighted, &ShapeOptions::new(Alpha::from_squared(alpha)?))?;
+    let weighted = weigh(&points, Weighting::Common(0.0), alpha.squared())?;
+    let shape = alpha_shape(weighted, &ShapeOptions::new(alpha))?;
 
     let given = serde_json::json!({ "points": positions, "alpha": alpha });
     let mut python = Command::new("python3")
@@ -49,19 +49,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let theirs = ComplexFile::read_json(&answer.stdout[..])?.into_complex()?;
 
-    let ours = Placed {
-        positions: &positions,
-        weights: shape.power_weights(),
-        alpha: shape.power_alpha(),
-        complex: shape.complex(),
-    };
-    let theirs = Placed {
-        positions: &theirs.positions,
-        weights: &theirs.weights,
-        alpha: theirs.alpha,
-        complex: &theirs.complex,
-    };
-    let comparison = compare(ours, theirs)?;
+    let ours = Placed::new(&positions, shape.power_weights(), shape.power_alpha(), shape.complex());
+    let comparison = compare(ours, theirs.placed())?;
     for (name, d) in ["vertices", "edges", "facets", "cells"].iter().zip(&comparison.dimensions) {
         println!(
             "{name:<9}{:>5} equal, {} only ours, {} only GUDHI's",

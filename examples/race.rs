@@ -17,7 +17,7 @@ use std::time::Instant;
 use walpha::points::{Points, Selection, Units, difference, select, weigh};
 use walpha::shape::{Engine, ShapeOptions};
 use walpha::triangulation::{Maker, Sites, triangulate};
-use walpha::{Alpha, Class, Gray, Simplices, Volume, WeightedPoints, Weighting};
+use walpha::{Alpha, Gray, Simplices, Volume, WeightedPoints, Weighting};
 use walpha::{alpha_shape, memory, volume};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
@@ -270,8 +270,7 @@ fn run(engine: &str, points: &str, alpha: &str, threads: usize, memory: Option<u
 
 fn by_class<const N: usize>(simplices: &Simplices<N>) -> String {
     let counts = simplices.counts();
-    let of = |class: Class| counts[class as usize].to_string();
-    [Class::Interior, Class::Regular, Class::Singular].map(of).join(" ")
+    format!("{} {} {}", counts.interior, counts.regular, counts.singular)
 }
 
 /// A set by name: `skull@N` (the skull upsampled to N³ samples) or `random@N` (N random points).

@@ -22,8 +22,7 @@
 //! let weighted = weigh(&points, Weighting::MinMax, alpha.squared())?;
 //!
 //! let shape = alpha_shape(weighted, &ShapeOptions::new(alpha))?;
-//! let counts = shape.complex().facets.counts();
-//! assert!(counts[walpha::Class::Regular as usize] > 0);
+//! assert!(shape.complex().facets.counts().regular > 0);
 //! assert_eq!(shape.betti().map(|betti| betti.b0), Some(1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -35,7 +34,6 @@ pub use ndarray;
 
 #[cfg_attr(not(feature = "cgal"), path = "cgal/absent.rs")]
 mod cgal;
-pub mod check;
 pub mod export;
 pub mod haar;
 pub mod interpolate;
@@ -53,6 +51,9 @@ pub mod shape;
 pub mod shown;
 pub mod triangulation;
 pub mod volume;
+
+/// The exact checker: a crate of its own, `walpha-check`, for use in other programs.
+pub use walpha_check as check;
 
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
 pub use interpolate::Interpolant;

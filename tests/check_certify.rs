@@ -5,28 +5,16 @@ mod check_common;
 use std::num::NonZeroUsize;
 
 use check_common::{Answer, Case, Random, engine, grid, shape_of};
-use walpha::check::{Claim, Extent, Finding, NotJudged};
+use walpha::check::{Extent, Finding, NotJudged};
 use walpha::shape::{Engine, ShapeOptions};
 use walpha::{Alpha, WeightedPoints, alpha_shape};
 
-fn claim<'a>(case: &'a Case, answer: &'a Answer, extent: Extent) -> Claim<'a> {
-    Claim {
-        positions: &case.positions,
-        weights: &case.weights,
-        alpha: case.alpha,
-        complex: &answer.complex,
-        extent,
-        hidden: Some(&answer.hidden),
-        duplicates: Some(&answer.duplicates),
-    }
-}
-
 fn whole(case: &Case, answer: &Answer) -> Vec<Finding> {
-    claim(case, answer, Extent::Whole).findings().unwrap().0
+    case.findings(answer, Extent::Whole)
 }
 
 fn shape(case: &Case, answer: &Answer) -> Vec<Finding> {
-    claim(case, answer, Extent::Shape).findings().unwrap().0
+    case.findings(answer, Extent::Shape)
 }
 
 /// Points with ties, hidden points and duplicates.
@@ -62,7 +50,7 @@ fn a_grid_with_min_max_weights_is_certified() {
     let case = Case { positions, weights, alpha: 3.0 };
     let answer = engine(&case).unwrap();
     assert!(answer.hidden.len() > 50);
-    let (findings, certificate) = claim(&case, &answer, Extent::Whole).findings().unwrap();
+    let (findings, certificate) = case.claim(&answer, Extent::Whole).findings().unwrap();
     assert_eq!(findings, []);
     assert_eq!(certificate.not_judged, []);
     assert_eq!(certificate.six_volumes.to_string(), (6 * 11 * 11 * 11).to_string());
@@ -81,16 +69,7 @@ fn shapes_made_slab_by_slab_are_certified() {
         (options.engine, options.blocks) = (Engine::Native, NonZeroUsize::new(blocks));
         let points = WeightedPoints { positions, weights, values: None };
         let shape = alpha_shape(points, &options).unwrap();
-        let claim = Claim {
-            positions: &shape.points().positions,
-            weights: shape.power_weights(),
-            alpha: shape.power_alpha(),
-            complex: shape.complex(),
-            extent: Extent::of(shape.complex(), shape.power_alpha()),
-            hidden: shape.hidden(),
-            duplicates: Some(shape.duplicates()),
-        };
-        let (findings, certificate) = claim.findings().unwrap();
+        let (findings, certificate) = shape.claim().findings().unwrap();
         assert_eq!(findings, []);
         assert!(certificate.not_judged.contains(&NotJudged::HiddenAndHull));
         assert!(shape.complex().cells.len() > 1000);

@@ -3,20 +3,15 @@
 mod check_common;
 mod common;
 
-use check_common::{Answer, Case, Random, engine, engine_of, grid};
+use check_common::{Answer, Case, Random, definition, engine, engine_of, grid};
 use proptest::prelude::*;
 use walpha::Class;
-use walpha::check::enumerate;
 use walpha::shape::Engine;
 
 /// All answers must be equal, and so must be the decision that there is none.
 #[track_caller]
 fn agree(case: &Case) -> bool {
-    let expected = enumerate(&case.positions, &case.weights, case.alpha).map(|e| Answer {
-        complex: e.complex,
-        hidden: e.hidden,
-        duplicates: e.duplicates,
-    });
+    let expected = definition(case);
     for which in [Engine::Reference, Engine::Cgal, Engine::Native] {
         match (&expected, engine_of(case, which)) {
             (Ok(expected), Ok(got)) => {

@@ -199,7 +199,7 @@ proptest! {
 fn thinnest(shape: &AlphaShape, facet: &[u32; 3]) -> f64 {
     let at = |v: u32| shape.points().positions[v as usize];
     let on = |cell: &&[u32; 4]| facet.iter().all(|v| cell.contains(v));
-    let heights = shape.complex().cells.vertices.iter().filter(on).flat_map(|cell| {
+    let heights = shape.complex().cells.rows().iter().filter(on).flat_map(|cell| {
         let [a, b, c, d] = cell.map(at);
         [[a, b, c, d], [b, c, d, a], [c, d, a, b], [d, a, b, c]].map(|[a, b, c, apex]| {
             let normal = cross(minus(b, a), minus(c, a));
@@ -322,7 +322,7 @@ fn filling_covers_the_grid_and_keeps_the_points() {
         assert_eq!(resampled.covered(), volume.dims().samples());
         // Vertices have their values; hidden points need not.
         let mut vertices = 0;
-        for &[v] in &whole.complex().vertices.vertices {
+        for &[v] in whole.complex().vertices.rows() {
             let [x, y, z] = whole.points().positions[v as usize].map(|c| c as usize);
             assert_eq!(resampled.volume().samples()[[z, y, x]], volume.samples()[[z, y, x]]);
             vertices += 1;

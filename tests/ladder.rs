@@ -44,10 +44,10 @@ fn check(points: &WeightedPoints, squared: &[f64], engine: Engine) -> Filtration
 
 fn check_numbers(level: &Level, shape: &AlphaShape) {
     let complex = shape.complex();
-    assert_eq!(level.cells, complex.cells.counts()[Class::Interior as usize]);
-    assert_eq!(level.facets, complex.facets.by_class());
-    assert_eq!(level.edges, complex.edges.by_class());
-    assert_eq!(level.vertices, complex.vertices.by_class());
+    assert_eq!(level.cells, complex.cells.counts().interior);
+    assert_eq!(level.facets, complex.facets.counts());
+    assert_eq!(level.edges, complex.edges.counts());
+    assert_eq!(level.vertices, complex.vertices.counts());
     assert_eq!(Some(level.betti), shape.betti());
     let measures = shape.measures();
     assert!(close(level.measures.volume, measures.volume));
@@ -96,7 +96,7 @@ fn solid_components(shape: &AlphaShape) -> u64 {
 
 fn nested(small: &Level, large: &Level) -> bool {
     let total = |level: &Level| {
-        [level.cells, level.facets.total(), level.edges.total(), level.vertices.total()]
+        [level.cells, level.facets.in_shape(), level.edges.in_shape(), level.vertices.in_shape()]
     };
     total(small).iter().zip(total(large)).all(|(&a, b)| a <= b)
 }
@@ -182,7 +182,7 @@ fn a_tie_is_in() {
         check(&points, &[10f64.next_down(), 10.0, 110.0, 110f64.next_down()], Engine::Reference);
     let ladder = filtration.ladder(&alphas(&[10f64.next_down(), 10.0]), 1.0);
     let [below, at] = &ladder.levels[..] else { panic!() };
-    assert_eq!((below.facets.total(), at.facets.singular), (0, 4));
+    assert_eq!((below.facets.in_shape(), at.facets.singular), (0, 4));
     assert_eq!(filtration.suggest(&filtration.curve()).all_points, 110.0);
 }
 

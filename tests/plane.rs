@@ -146,8 +146,8 @@ fn points_on_a_line_have_cells_and_a_shape() {
     let points = [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [5.0, 5.0]];
     let shape = weighted(&points, &[0.0, 0.0, 0.0, 0.25], 0.5);
     let complex = shape.complex();
-    assert_eq!(complex.edges.vertices, [[0, 1], [1, 2]]);
-    assert_eq!(complex.vertices.classes[3], Class::Singular);
+    assert_eq!(complex.edges.rows(), [[0, 1], [1, 2]]);
+    assert_eq!(complex.vertices.classes()[3], Class::Singular);
     assert_eq!(complex.betti(), [2, 0]);
     assert_eq!(shape.cells().len(), 4);
     let alone = weighted(&points[..1], &[-2.0], 1.0);
@@ -168,8 +168,8 @@ fn samples_show_what_they_promise() {
     assert_eq!(points.len(), 14);
     assert_eq!(shape.hidden().len(), 1);
     assert!(!complex.triangles.is_empty());
-    assert!(complex.edges.counts()[Class::Singular as usize] > 0);
-    assert_eq!(complex.vertices.counts()[Class::Singular as usize], 1);
+    assert!(complex.edges.counts().singular > 0);
+    assert_eq!(complex.vertices.counts().singular, 1);
     assert_eq!(complex.betti(), [2, 1]);
 }
 
@@ -392,11 +392,11 @@ fn complex_agrees(points: &[[f64; 2]], weights: &[f64], alpha: f64) {
         row
     };
     assert_eq!(
-        complex.triangles.vertices.iter().map(|&row| sorted(row)).collect::<BTreeSet<_>>(),
+        complex.triangles.rows().iter().map(|&row| sorted(row)).collect::<BTreeSet<_>>(),
         triangles
     );
-    assert_eq!(complex.edges.vertices.iter().copied().collect::<BTreeSet<_>>(), edges);
-    assert_eq!(complex.vertices.vertices.iter().copied().collect::<BTreeSet<_>>(), vertices);
+    assert_eq!(complex.edges.rows().iter().copied().collect::<BTreeSet<_>>(), edges);
+    assert_eq!(complex.vertices.rows().iter().copied().collect::<BTreeSet<_>>(), vertices);
 }
 
 /// Whether the smallest orthogonal circle is small enough and has no point strictly inside.

@@ -5,7 +5,6 @@ use std::io::Cursor;
 use std::path::PathBuf;
 
 use walpha::check::schema::{ComplexFile, SchemaError};
-use walpha::check::{Claim, Extent};
 use walpha::points::{is_point_file, read_points};
 use walpha::volume::{ReadOptions, read};
 
@@ -51,16 +50,7 @@ pub fn check_npz(bytes: &[u8]) {
 
 fn judge(file: Result<ComplexFile, SchemaError>) {
     let Ok(placed) = file.and_then(ComplexFile::into_complex) else { return };
-    let claim = Claim {
-        positions: &placed.positions,
-        weights: &placed.weights,
-        alpha: placed.alpha,
-        complex: &placed.complex,
-        extent: Extent::of(&placed.complex, placed.alpha),
-        hidden: placed.hidden.as_deref(),
-        duplicates: placed.duplicates.as_deref(),
-    };
-    if let Ok((findings, _)) = claim.findings() {
+    if let Ok((findings, _)) = placed.claim().findings() {
         findings.iter().for_each(|finding| assert!(!finding.to_string().is_empty()));
     }
 }

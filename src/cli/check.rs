@@ -8,7 +8,7 @@ use clap::{Args, Command};
 use serde::Serialize;
 use walpha::alpha_shape;
 use walpha::check::schema::PlacedComplex;
-use walpha::check::{Certificate, Claim, Comparison, Extent, Finding, Placed, compare, enumerate};
+use walpha::check::{Certificate, Comparison, Extent, Finding, compare, enumerate};
 use walpha::shown::shown;
 
 use super::args::{PipelineArgs, ShapeArgs};
@@ -76,16 +76,7 @@ impl Check {
         if self.enumerate && n > MOST_ENUMERATED {
             bail!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}; omit it");
         }
-        let extent = Extent::of(&judged.complex, judged.alpha);
-        let claim = Claim {
-            positions: &judged.positions,
-            weights: &judged.weights,
-            alpha: judged.alpha,
-            complex: &judged.complex,
-            extent,
-            hidden: judged.hidden.as_deref(),
-            duplicates: judged.duplicates.as_deref(),
-        };
+        let claim = judged.claim();
         let started = std::time::Instant::now();
         let (mut findings, certificate) = progress.stage("certify", || claim.findings())?;
         let seconds = started.elapsed().as_secs_f64();
@@ -109,7 +100,7 @@ impl Check {
                 complex.edges.len(),
                 complex.vertices.len(),
             ],
-            extent: if extent == Extent::Whole { "whole" } else { "shape" },
+            extent: if claim.extent == Extent::Whole { "whole" } else { "shape" },
             valid: total == 0 && enumeration.as_ref().is_none_or(Comparison::is_equal),
             findings_total: total,
             findings,
@@ -145,23 +136,15 @@ impl Check {
         options.exterior |=
             options.blocks.is_none_or(|blocks| blocks.get() == 1) && options.memory.is_none();
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
-        Ok(PlacedComplex {
-            positions: shape.points().positions.clone(),
-            weights: shape.power_weights().to_vec(),
-            alpha: shape.power_alpha(),
-            complex: shape.complex().clone(),
-            hidden: shape.hidden().map(<[u32]>::to_vec),
-            duplicates: Some(shape.duplicates().to_vec()),
-        })
+        Ok(PlacedComplex::from(shape.claim()))
     }
 }
 
 /// How a complex (A) differs from the one its definition makes (B).
 fn by_definition(judged: &PlacedComplex) -> anyhow::Result<Comparison> {
-    let made = enumerate(&judged.positions, &judged.weights, judged.alpha)?;
-    let PlacedComplex { positions, weights, alpha, complex, .. } = judged;
-    let a = Placed { positions, weights, alpha: *alpha, complex };
-    Ok(compare(a, Placed { complex: &made.complex, ..a })?)
+    let judged = judged.placed();
+    let made = enumerate(judged.positions, judged.weights, judged.alpha)?;
+    Ok(compare(judged, judged.with_complex(&made.complex))?)
 }
 
 impl std::fmt::Display for Facts {

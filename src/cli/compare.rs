@@ -6,8 +6,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use serde::Serialize;
-use walpha::check::schema::PlacedComplex;
-use walpha::check::{Comparison, Placed, compare};
+use walpha::check::{Comparison, compare};
 
 use super::output::{name, tell};
 use super::report::SCHEMA_VERSION;
@@ -49,7 +48,7 @@ impl Compare {
     pub fn run(self, global: Global) -> anyhow::Result<ExitCode> {
         let read = |path: &Path| complex_file::read(path, None);
         let (a, b) = (read(&self.a)?, read(&self.b)?);
-        let comparison = compare(placed(&a), placed(&b))?;
+        let comparison = compare(a.placed(), b.placed())?;
         let facts = Facts {
             schema_version: SCHEMA_VERSION,
             a: self.a.display().to_string(),
@@ -69,9 +68,4 @@ impl Display for Facts {
         let verdict = if self.equal { "equal in all that was compared" } else { "different" };
         writeln!(f, "verdict   {verdict}")
     }
-}
-
-fn placed(complex: &PlacedComplex) -> Placed<'_> {
-    let PlacedComplex { positions, weights, alpha, complex, .. } = complex;
-    Placed { positions, weights, alpha: *alpha, complex }
 }

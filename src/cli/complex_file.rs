@@ -1,38 +1,45 @@
 //! Complexes that any program wrote.
 
-use std::fs::File;
-use std::io::{BufReader, ErrorKind};
+use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::{Context, bail};
-use walpha::check::schema::{ComplexFile, PlacedComplex};
+use walpha::check::schema::{ComplexFile, PlacedComplex, SchemaError};
 use walpha::points::read_points;
 use walpha::shown::shown;
 
 /// Whether a file is a complex by its name: `.json` or `.npz`.
 pub fn is_complex(path: &Path) -> bool {
-    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-    extension == "json" || extension == "npz"
+    ComplexFile::is_named(path)
 }
 
 /// Reads a complex, with points (and weights, if it has some) from a file of their own if one is
 /// given.
 pub fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<PlacedComplex> {
-    if !is_complex(path) {
-        bail!("{}: a complex is read from .json or .npz; see docs/cross-checking.md", shown(path));
-    }
-    let named = |error: std::io::Error| {
-        let hint = if error.kind() == ErrorKind::NotFound { "; check the path" } else { "" };
-        anyhow::anyhow!("cannot read {}: {error}{hint}", shown(path))
+    let mut file = match ComplexFile::open(path) {
+        Ok(file) => file,
+        Err(SchemaError::Extension) => {
+            bail!(
+                "{}: a complex is read from .json or .npz; see docs/cross-checking.md",
+                shown(path)
+            )
+        }
+        Err(SchemaError::Io(error)) => {
+            let hint = if error.kind() == ErrorKind::NotFound { "; check the path" } else { "" };
+            bail!("cannot read {}: {error}{hint}", shown(path))
+        }
+        Err(other) => return Err(other).with_context(|| shown(path)),
     };
-    let file = BufReader::new(File::open(path).map_err(named)?);
-    let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    let file = if json { ComplexFile::read_json(file) } else { ComplexFile::read_npz(file) };
-    let mut file = file.with_context(|| shown(path))?;
     if let Some(points) = points {
         let points = read_points(points, None)?;
         file.points = points.positions;
         file.weights = points.weights.or(file.weights);
     }
-    file.into_complex().with_context(|| shown(path))
+    match file.into_complex() {
+        Err(SchemaError::NoPoints) => bail!(
+            "{}: the file lists no points: add `points`, or give them in a file of their own with --points",
+            shown(path)
+        ),
+        made => made.with_context(|| shown(path)),
+    }
 }

@@ -5,11 +5,9 @@ use std::fmt::{self, Display};
 
 use serde::{Serialize, Serializer};
 use walpha::points::WeightSummary;
-use walpha::shape::{Betti, Component, Cuts, Engine, Void, number_or_name};
+use walpha::shape::{Betti, ByClass, Component, Cuts, Engine, Void, number_or_name};
 use walpha::shown::number;
-use walpha::{
-    AlphaShape, Class, Coordinates, GrayRange, LengthUnit, Simplices, Truncation, memory,
-};
+use walpha::{AlphaShape, Coordinates, GrayRange, LengthUnit, Truncation, memory};
 
 use super::output::name;
 use super::parameter::Parameter;
@@ -91,9 +89,12 @@ pub struct WeightsReport {
 #[derive(Serialize)]
 struct ShapeReport {
     cells: Cells,
-    facets: Counts,
-    edges: Counts,
-    vertices: Counts,
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    facets: ByClass<usize>,
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    edges: ByClass<usize>,
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    vertices: ByClass<usize>,
     betti: Option<Betti>,
     volume: f64,
     area: f64,
@@ -109,28 +110,12 @@ struct Cells {
     interior: usize,
 }
 
-#[derive(Serialize)]
-struct Counts {
-    interior: usize,
-    regular: usize,
-    singular: usize,
-}
+/// The simplices of a dimension in a line.
+struct Line<'a>(&'a ByClass<usize>);
 
-impl Counts {
-    fn of<const N: usize>(simplices: &Simplices<N>) -> Self {
-        let counts = simplices.counts();
-        let count = |class| counts[class as usize];
-        Self {
-            interior: count(Class::Interior),
-            regular: count(Class::Regular),
-            singular: count(Class::Singular),
-        }
-    }
-}
-
-impl Display for Counts {
+impl Display for Line<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { interior, regular, singular } = self;
+        let ByClass { interior, regular, singular, .. } = self.0;
         write!(f, "{interior:>9} interior {regular:>9} regular {singular:>9} singular")
     }
 }
@@ -213,10 +198,10 @@ impl Report {
         self.points.in_shape = Some(shape.points_in_shape());
         self.engine = Some(shape.options().engine);
         self.shape = Some(ShapeReport {
-            cells: Cells { interior: complex.cells.counts()[Class::Interior as usize] },
-            facets: Counts::of(&complex.facets),
-            edges: Counts::of(&complex.edges),
-            vertices: Counts::of(&complex.vertices),
+            cells: Cells { interior: complex.cells.counts().interior },
+            facets: complex.facets.counts(),
+            edges: complex.edges.counts(),
+            vertices: complex.vertices.counts(),
             betti: shape.betti(),
             volume: shape.measures().volume,
             area: shape.measures().area,
@@ -284,9 +269,9 @@ impl Display for Report {
         }
         if let Some(shape) = &self.shape {
             writeln!(f, "cells     {:>9} interior", shape.cells.interior)?;
-            writeln!(f, "facets    {}", shape.facets)?;
-            writeln!(f, "edges     {}", shape.edges)?;
-            writeln!(f, "vertices  {}", shape.vertices)?;
+            writeln!(f, "facets    {}", Line(&shape.facets))?;
+            writeln!(f, "edges     {}", Line(&shape.edges))?;
+            writeln!(f, "vertices  {}", Line(&shape.vertices))?;
             if let Some(Betti { b0, b1, b2 }) = shape.betti {
                 writeln!(f, "topology  {b0} components, {b1} tunnels, {b2} voids")?;
             }

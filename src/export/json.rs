@@ -12,14 +12,7 @@ pub struct Json;
 
 impl Exporter for Json {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let mut file = ComplexFile::new(
-            &shape.points().positions,
-            shape.power_weights(),
-            shape.power_alpha(),
-            shape.complex(),
-            shape.hidden(),
-            Some(shape.duplicates()),
-        );
+        let mut file = ComplexFile::new(shape.claim());
         file.info = Some(serde_json::json!({
             "program": concat!("walpha ", env!("CARGO_PKG_VERSION")),
             "balls": shape.options().balls,
@@ -27,8 +20,7 @@ impl Exporter for Json {
             "values": shape.points().values,
         }));
         file.write_json(out).map_err(|error| match error {
-            // What the system said stays what it is: a pipe may be broken.
-            SchemaError::Json(error) if error.is_io() => error.into(),
+            SchemaError::Io(error) => error,
             other => io::Error::other(other),
         })
     }

@@ -23,15 +23,15 @@ impl Exporter for Npz {
         let mut archive = Archive(ZipWriter::new(Cursor::new(Vec::new())));
         archive.rows("points", &points.positions)?;
         archive.list("weights", shape.power_weights())?;
-        archive.array("alpha", arr0(shape.power_alpha()))?;
-        archive.rows("cells", &complex.cells.vertices)?;
-        archive.rows("facets", &complex.facets.vertices)?;
-        archive.rows("edges", &complex.edges.vertices)?;
-        archive.list("vertices", complex.vertices.vertices.as_flattened())?;
-        archive.classes("cell_classes", &complex.cells.classes)?;
-        archive.classes("facet_classes", &complex.facets.classes)?;
-        archive.classes("edge_classes", &complex.edges.classes)?;
-        archive.classes("vertex_classes", &complex.vertices.classes)?;
+        archive.array("alpha", arr0(shape.power_alpha().squared()))?;
+        archive.rows("cells", complex.cells.rows())?;
+        archive.rows("facets", complex.facets.rows())?;
+        archive.rows("edges", complex.edges.rows())?;
+        archive.list("vertices", complex.vertices.rows().as_flattened())?;
+        archive.classes("cell_classes", complex.cells.classes())?;
+        archive.classes("facet_classes", complex.facets.classes())?;
+        archive.classes("edge_classes", complex.edges.classes())?;
+        archive.classes("vertex_classes", complex.vertices.classes())?;
         if let Some(hidden) = shape.hidden() {
             archive.list("hidden", hidden)?;
         }

@@ -11,7 +11,7 @@ pub struct Obj(pub ExportOptions);
 impl Exporter for Obj {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.0.surface(shape);
-        writeln!(out, "# walpha: {}", shape.options().alpha)?;
+        writeln!(out, "# walpha: {}", stated::alpha(shape.options().alpha))?;
         write!(out, "{}", stated::line("#", shape.coordinates()))?;
         for [x, y, z] in surface.positions(&shape.points().positions) {
             writeln!(out, "v {x} {y} {z}")?;

@@ -12,7 +12,7 @@ impl Exporter for Off {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.0.surface(shape);
         writeln!(out, "OFF")?;
-        writeln!(out, "# walpha: {}", shape.options().alpha)?;
+        writeln!(out, "# walpha: {}", stated::alpha(shape.options().alpha))?;
         write!(out, "{}", stated::line("#", shape.coordinates()))?;
         let facets = surface.regular.len() + surface.singular.len();
         writeln!(out, "{} {facets} 0", surface.vertex_count())?;

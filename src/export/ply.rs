@@ -27,7 +27,7 @@ impl Exporter for Ply {
              property double x\nproperty double y\nproperty double z\nproperty double weight\n{}\
              property uint index\nelement face {}\nproperty list uchar uint vertex_indices\n{}{}end_header\n",
             if options.ascii { "ascii" } else { "binary_little_endian" },
-            shape.options().alpha,
+            stated::alpha(shape.options().alpha),
             stated::line("comment", shape.coordinates()),
             surface.vertex_count(),
             if valued { VALUED } else { "" },

@@ -1,6 +1,17 @@
-//! What a file says of its coordinates, where the programs that read it look.
+//! What a file says of its α and its coordinates, where the programs that read it look.
 
+use crate::shape::Alpha;
+use crate::shown::{number, six_digits};
 use crate::volume::{Coordinates, LengthUnit};
+
+/// For a comment: α as a squared length, and as a radius where it is one.
+pub(super) fn alpha(alpha: Alpha) -> String {
+    let squared = number(alpha.squared());
+    match alpha.radius().map(six_digits).map(number) {
+        Some(radius) => format!("α = {squared} (squared length; √α = {radius})"),
+        None => format!("α = {squared} (squared length; negative, so no radius)"),
+    }
+}
 
 /// For the comments of a file, behind what stands there: ` SPACE=LPS UNIT=mm`, as 3D Slicer looks for
 /// it; `UNIT` alone where the space is not known, and nothing where nothing is.
@@ -38,4 +49,17 @@ pub(super) fn pairs(Coordinates { space, unit }: Coordinates) -> Vec<(&'static s
     let space = space.is_known().then(|| ("SPACE", space.name()));
     let unit = (unit != LengthUnit::Unstated).then(|| ("UNIT", unit.ascii()));
     space.into_iter().chain(unit).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn alpha_is_a_squared_length() {
+        let told = [10.0, -1e300, f64::INFINITY].map(|x| alpha(Alpha::from_squared(x).unwrap()));
+        assert_eq!(told[0], "α = 10 (squared length; √α = 3.16228)");
+        assert_eq!(told[1], "α = -1e300 (squared length; negative, so no radius)");
+        assert_eq!(told[2], "α = inf (squared length; √α = inf)");
+    }
 }

@@ -1,7 +1,7 @@
 use std::io::{self, Write};
 
 use super::vtu::{Appended, bytes};
-use super::{ExportOptions, Exporter};
+use super::{ExportOptions, Exporter, stated};
 use crate::shape::{AlphaShape, Class, Sheets};
 
 /// VTP, VTK's polygons: the boundary, singular edges and singular vertices. Cell data are their
@@ -25,7 +25,7 @@ impl Exporter for Vtp {
             "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
              <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
              <PolyData>\n",
-            shape.options().alpha,
+            stated::alpha(shape.options().alpha),
         )?;
         file.field_data(shape, &self.0, true)?;
         write!(

@@ -17,7 +17,7 @@ impl Exporter for Vtu {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let complex = shape.complex();
         let points = shape.points();
-        let vertices: Vec<u32> = complex.vertices.vertices.iter().map(|&[v]| v).collect();
+        let vertices: Vec<u32> = complex.vertices.rows().iter().map(|&[v]| v).collect();
         let number = |v: u32| vertices.binary_search(&v).expect("faces are closed") as i64;
 
         let mut grid = Grid::default();

@@ -88,7 +88,7 @@ impl Filtration {
         let (first, levels) = (&levels.cells, levels.len());
         let vertices = self.whole.complex().vertices.len();
         let mut covered = vec![levels as u32; vertices];
-        for (cell, &level) in self.whole.complex().cells.vertices.iter().zip(first) {
+        for (cell, &level) in self.whole.complex().cells.rows().iter().zip(first) {
             for &v in cell {
                 let at = &mut covered[self.incidence.vertex_rows[v as usize] as usize];
                 *at = level.min(*at);

@@ -50,7 +50,7 @@ impl Filtration {
         done(1);
         let spheres = Predicates::new(&whole.points().positions, &whole.points().weights);
         let cells =
-            complex.cells.vertices.par_iter().map(|&cell| spheres.squared_radius(cell)).collect();
+            complex.cells.rows().par_iter().map(|&cell| spheres.squared_radius(cell)).collect();
         done(2);
         let facets = gabriel_facets(complex, &incidence, &spheres);
         done(3);
@@ -94,7 +94,7 @@ fn gabriel_facets(
     // In a regular triangulation a sphere that holds a point holds one of the two beside it.
     let radius = |(&facet, sides): (&[u32; 3], &[u32; 2])| {
         let held = sides.iter().filter(|&&cell| cell != Incidence::OUTSIDE).any(|&cell| {
-            let cell = whole.cells.vertices[cell as usize];
+            let cell = whole.cells.rows()[cell as usize];
             let apex = cell.into_iter().find(|v| !facet.contains(v)).expect("a fourth corner");
             spheres.inside(facet, apex)
         });
@@ -111,11 +111,11 @@ fn gabriel_edges(
     let held = flags(whole.edges.len());
     incidence.facets.par_iter().zip(&incidence.facet_edges).for_each(|(facet, edges)| {
         for (&apex, &edge) in facet.iter().zip(edges) {
-            let row = whole.edges.vertices[edge as usize];
+            let row = whole.edges.rows()[edge as usize];
             raise(&held[edge as usize], || spheres.inside(row, apex));
         }
     });
-    radii(&whole.edges.vertices, &held, spheres)
+    radii(whole.edges.rows(), &held, spheres)
 }
 
 fn gabriel_vertices(
@@ -124,13 +124,13 @@ fn gabriel_vertices(
     spheres: &Predicates<'_>,
 ) -> Vec<Option<Interval>> {
     let held = flags(whole.vertices.len());
-    whole.edges.vertices.par_iter().for_each(|&[a, b]| {
+    whole.edges.rows().par_iter().for_each(|&[a, b]| {
         for (v, neighbour) in [(a, b), (b, a)] {
             let row = incidence.vertex_rows[v as usize];
             raise(&held[row as usize], || spheres.inside([v], neighbour));
         }
     });
-    radii(&whole.vertices.vertices, &held, spheres)
+    radii(whole.vertices.rows(), &held, spheres)
 }
 
 /// Flags only ever go up, so their final state does not depend on the order of threads.

@@ -22,13 +22,13 @@ impl Incidence {
 
     /// Looks everything up. Expected O(n log n).
     pub fn of(whole: &Complex, points: usize) -> Self {
-        let mut facets = whole.facets.vertices.clone();
+        let mut facets = whole.facets.rows().to_vec();
         // Only hull facets, which are oriented, are not sorted.
         facets.par_iter_mut().for_each(|row| row.sort_unstable());
         facets.par_sort_unstable();
         let facet_rows = Rows::new(&facets, points);
-        let edge_rows = Rows::new(&whole.edges.vertices, points);
-        let cell_facets: Vec<[u32; 4]> = (whole.cells.vertices.par_iter())
+        let edge_rows = Rows::new(whole.edges.rows(), points);
+        let cell_facets: Vec<[u32; 4]> = (whole.cells.rows().par_iter())
             .map(|cell| {
                 [0, 1, 2, 3].map(|opposite| {
                     let mut facet = [1, 2, 3].map(|step| cell[(opposite + step) % 4]);
@@ -49,7 +49,7 @@ impl Incidence {
             }
         }
         let mut vertex_rows = vec![0; points];
-        for (row, &[v]) in whole.vertices.vertices.iter().enumerate() {
+        for (row, &[v]) in whole.vertices.rows().iter().enumerate() {
             vertex_rows[v as usize] = row as u32;
         }
         Self { facets, cell_facets, facet_cells, facet_edges, vertex_rows }

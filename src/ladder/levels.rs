@@ -76,7 +76,7 @@ impl Filtration {
         let never = alphas.len() as u32;
         let incidence = &self.incidence;
 
-        let cells: Vec<u32> = (complex.cells.vertices.par_iter().zip(&self.cells))
+        let cells: Vec<u32> = (complex.cells.rows().par_iter().zip(&self.cells))
             .map(|(&cell, &radius)| level(&spheres, cell, radius, &alphas))
             .collect();
         let facets: Vec<Span> = (incidence.facets.par_iter().enumerate())
@@ -97,17 +97,17 @@ impl Filtration {
             on.iter().for_each(|&edge| edges[edge as usize].beside(facet));
         }
         edges.par_iter_mut().enumerate().for_each(|(row, span)| {
-            let edge = complex.edges.vertices[row];
+            let edge = complex.edges.rows()[row];
             span.own(self.edges[row].map(|radius| level(&spheres, edge, radius, &alphas)));
         });
         let mut vertices = vec![Span::until(never); complex.vertices.len()];
-        for (&edge, ends) in edges.iter().zip(&complex.edges.vertices) {
+        for (&edge, ends) in edges.iter().zip(complex.edges.rows()) {
             for &v in ends {
                 vertices[incidence.vertex_rows[v as usize] as usize].beside(edge);
             }
         }
         vertices.par_iter_mut().enumerate().for_each(|(row, span)| {
-            let vertex = complex.vertices.vertices[row];
+            let vertex = complex.vertices.rows()[row];
             span.own(self.vertices[row].map(|radius| level(&spheres, vertex, radius, &alphas)));
         });
         Levels { filtration: self, alphas, cells, facets, edges, vertices }

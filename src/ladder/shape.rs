@@ -3,7 +3,7 @@ use rayon::prelude::*;
 use super::Levels;
 use super::incidence::Incidence;
 use super::levels::Span;
-use crate::shape::{AlphaShape, Betti, Class, Complex, Simplices};
+use crate::shape::{AlphaShape, Betti, Class, Complex};
 
 impl Levels<'_> {
     /// The shape at a level, as [`alpha_shape`](crate::alpha_shape) makes it; with `exterior`,
@@ -27,14 +27,14 @@ impl Levels<'_> {
 
     /// The edges that are singular at some level. O(n).
     pub fn singular_edges(&self) -> Vec<([u32; 2], Span)> {
-        let rows = &self.filtration.whole.complex().edges.vertices;
+        let rows = self.filtration.whole.complex().edges.rows();
         let edges = rows.iter().copied().zip(self.edges.iter().copied());
         edges.filter(|(_, span)| span.first < span.regular).collect()
     }
 
     /// All vertices of the triangulation. O(n).
     pub fn vertices(&self) -> Vec<(u32, Span)> {
-        let rows = &self.filtration.whole.complex().vertices.vertices;
+        let rows = self.filtration.whole.complex().vertices.rows();
         rows.iter().map(|&[v]| v).zip(self.vertices.iter().copied()).collect()
     }
 
@@ -47,20 +47,22 @@ impl Levels<'_> {
         let cells = self.cells.iter().map(|&first| cell_class(first));
         let class = |span: &Span| span.class(level);
         let facets = self.facets.iter().map(class);
-        let mut oriented = select(&self.filtration.incidence.facets, facets.clone(), exterior);
+        let mut oriented: Vec<_> =
+            select(&self.filtration.incidence.facets, facets.clone(), exterior);
         let outward = self.outward(level);
         // Rows of both lists are in the same order.
         let mut at = outward.iter();
-        for (row, class) in oriented.vertices.iter_mut().zip(&oriented.classes) {
+        for (row, class) in &mut oriented {
             if *class == Class::Regular {
                 *row = *at.next().expect("each regular facet is turned");
             }
         }
+        oriented.par_sort_unstable_by_key(|pair| pair.0);
         Complex {
-            cells: select(&whole.cells.vertices, cells, exterior),
-            facets: sorted(oriented),
-            edges: select(&whole.edges.vertices, self.edges.iter().map(class), exterior),
-            vertices: select(&whole.vertices.vertices, self.vertices.iter().map(class), exterior),
+            cells: select(whole.cells.rows(), cells, exterior),
+            facets: oriented.into_iter().collect(),
+            edges: select(whole.edges.rows(), self.edges.iter().map(class), exterior),
+            vertices: select(whole.vertices.rows(), self.vertices.iter().map(class), exterior),
         }
     }
 
@@ -83,7 +85,7 @@ impl Levels<'_> {
         let inside = if comes(sides[0]) < comes(sides[1]) { sides[0] } else { sides[1] };
         let facets = &incidence.cell_facets[inside as usize];
         let opposite = facets.iter().position(|&facet| facet as usize == row).expect("its facet");
-        let cell = self.filtration.whole.complex().cells.vertices[inside as usize];
+        let cell = self.filtration.whole.complex().cells.rows()[inside as usize];
         // Seen from outside a positive cell, the corners after an even one turn clockwise.
         let mut facet = [1, 2, 3].map(|step| cell[(opposite + step) % 4]);
         if opposite % 2 == 1 {
@@ -95,19 +97,12 @@ impl Levels<'_> {
     }
 }
 
-fn select<const N: usize>(
+/// The rows that a level lists, each with its class.
+fn select<const N: usize, S: FromIterator<([u32; N], Class)>>(
     rows: &[[u32; N]],
     classes: impl Iterator<Item = Class>,
     exterior: bool,
-) -> Simplices<N> {
-    let wanted = rows.iter().zip(classes).filter(|&(_, c)| exterior || c != Class::Exterior);
-    let (vertices, classes) = wanted.unzip();
-    Simplices { vertices, classes }
-}
-
-fn sorted(facets: Simplices<3>) -> Simplices<3> {
-    let mut pairs: Vec<_> = facets.vertices.into_iter().zip(facets.classes).collect();
-    pairs.par_sort_unstable_by_key(|pair| pair.0);
-    let (vertices, classes) = pairs.into_iter().unzip();
-    Simplices { vertices, classes }
+) -> S {
+    let wanted = rows.iter().copied().zip(classes);
+    wanted.filter(|&(_, class)| exterior || class != Class::Exterior).collect()
 }

@@ -22,12 +22,15 @@ pub struct Level {
     pub alpha: f64,
     /// Cells of the shape.
     pub cells: usize,
-    /// Its facets.
-    pub facets: ByClass,
-    /// Its edges.
-    pub edges: ByClass,
-    /// Its vertices.
-    pub vertices: ByClass,
+    /// Its facets, and those of the triangulation outside it.
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    pub facets: ByClass<usize>,
+    /// Its edges, likewise.
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    pub edges: ByClass<usize>,
+    /// Its vertices, likewise.
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    pub vertices: ByClass<usize>,
     /// Components, tunnels, voids.
     pub betti: Betti,
     /// Components of the cells, joined through facets.
@@ -103,7 +106,7 @@ impl Levels<'_> {
         let volumes = self.fixed_order_sums(&self.cells, |row, &first, sums| {
             // Summed up over the levels below.
             if let Some(sum) = sums.get_mut(first as usize) {
-                sum[0] += six_volumes(whole.cells.vertices[row].map(at));
+                sum[0] += six_volumes(whole.cells.rows()[row].map(at));
             }
         });
         let areas = self.fixed_order_sums(&self.facets, |row, span, sums| {
@@ -148,24 +151,23 @@ impl Levels<'_> {
 }
 
 /// How many simplices of each class each level has.
-fn by_class(spans: &[Span], levels: usize) -> Vec<ByClass> {
-    let mut change = vec![[0i64; 4]; levels + 1];
+fn by_class(spans: &[Span], levels: usize) -> Vec<ByClass<usize>> {
+    let mut change = vec![ByClass::<i64>::default(); levels + 1];
     for span in spans {
         let mut class = Class::Exterior;
         for level in [span.first, span.regular, span.interior] {
             let next = span.class(level);
-            change[level as usize][class as usize] -= 1;
-            change[level as usize][next as usize] += 1;
+            change[level as usize][class] -= 1;
+            change[level as usize][next] += 1;
             class = next;
         }
     }
-    let mut now = [0i64; 4];
-    let level = |change: &[i64; 4]| {
-        (0..4).for_each(|class| now[class] += change[class]);
-        let count = |class: Class| now[class as usize] as usize;
-        let [interior, regular, singular] =
-            [Class::Interior, Class::Regular, Class::Singular].map(count);
-        ByClass { interior, regular, singular }
+    let mut now = ByClass { exterior: spans.len(), ..ByClass::default() };
+    let level = |change: &ByClass<i64>| {
+        for (class, change) in change.iter() {
+            now[class] = now[class].checked_add_signed(*change as isize).expect("a count");
+        }
+        now
     };
     change[..levels].iter().map(level).collect()
 }

@@ -16,7 +16,7 @@ impl Levels<'_> {
         let grow = |level| {
             count += vertices.at(level).len() as u64;
             for &edge in edges.at(level) {
-                let [a, b] = complex.edges.vertices[edge as usize];
+                let [a, b] = complex.edges.rows()[edge as usize];
                 count -= u64::from(sets.unite(a, b));
             }
             count

@@ -108,10 +108,10 @@ impl Firsts<'_> {
         let Filtration { whole, incidence, .. } = self.filtration;
         let complex = whole.complex();
         match row {
-            Row::Cell(i) => self.first(complex.cells.vertices[i as usize], known),
+            Row::Cell(i) => self.first(complex.cells.rows()[i as usize], known),
             Row::Facet(i) => self.first(incidence.facets[i as usize], known),
-            Row::Edge(i) => self.first(complex.edges.vertices[i as usize], known),
-            Row::Vertex(i) => self.first(complex.vertices.vertices[i as usize], known),
+            Row::Edge(i) => self.first(complex.edges.rows()[i as usize], known),
+            Row::Vertex(i) => self.first(complex.vertices.rows()[i as usize], known),
         }
     }
 

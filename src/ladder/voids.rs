@@ -51,7 +51,7 @@ impl Levels<'_> {
             levels: self,
             spheres: self.filtration.spheres(),
             sets: UnionFind::new(self.cells.len() + 1),
-            hollows: complex.cells.vertices.iter().enumerate().map(hollow).collect(),
+            hollows: complex.cells.rows().iter().enumerate().map(hollow).collect(),
             roots: Vec::new(),
             count: 1,
             next: (0..outside).collect(),
@@ -114,7 +114,7 @@ impl Complement<'_> {
             _ => {}
         }
         let filtration = self.levels.filtration;
-        let cells = &filtration.whole.complex().cells.vertices;
+        let cells = filtration.whole.complex().cells.rows();
         let (mut alpha, mut at) = (f64::NEG_INFINITY, root as usize);
         loop {
             hollow.raise(&mut alpha, &self.spheres, cells[at], filtration.cells[at]);

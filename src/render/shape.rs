@@ -86,9 +86,9 @@ impl Scene {
         {
             return Err(RenderError::Values { got: values.len(), points: positions.len() });
         }
-        let facets = complex.facets.vertices.as_flattened().iter();
-        let edges = complex.edges.vertices.as_flattened().iter();
-        let all = facets.chain(edges).chain(complex.vertices.vertices.as_flattened());
+        let facets = complex.facets.rows().as_flattened().iter();
+        let edges = complex.edges.rows().as_flattened().iter();
+        let all = facets.chain(edges).chain(complex.vertices.rows().as_flattened());
         if let Some(&vertex) = all.max().filter(|&&v| v as usize >= positions.len()) {
             return Err(RenderError::Point { vertex, points: positions.len() });
         }

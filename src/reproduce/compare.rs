@@ -119,8 +119,7 @@ mod tests {
     use crate::shape::{Alpha, ShapeOptions, alpha_shape};
 
     fn simplices(rows: &[([u32; 3], Class)]) -> Simplices<3> {
-        let (vertices, classes) = rows.iter().copied().unzip();
-        Simplices { vertices, classes }
+        rows.iter().copied().collect()
     }
 
     #[test]

@@ -220,7 +220,7 @@ fn shapes(html: &mut String, shapes: &[ShapeNumbers]) {
         let cells: String = shapes.iter().map(|s| format!("<td>{}</td>", value(s))).collect();
         let _ = writeln!(html, "<tr><td>{label}</td>{cells}</tr>");
     };
-    let classes = |c: &ByClass| format!("{} · {} · {}", c.interior, c.regular, c.singular);
+    let classes = |c: &ByClass<usize>| format!("{} · {} · {}", c.interior, c.regular, c.singular);
     row("α, and √α", &|s| format!("{}, {}", number(s.alpha), number(s.alpha.sqrt())));
     row("ω: least, mean, most", &|s| {
         let w = s.weights;

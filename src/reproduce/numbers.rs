@@ -1,7 +1,7 @@
 use serde::Serialize;
 
 use crate::points::WeightSummary;
-use crate::shape::{AlphaShape, Balls, Betti, ByClass, Class, Void, number_or_name};
+use crate::shape::{AlphaShape, Balls, Betti, ByClass, Void, number_or_name};
 
 /// What is measured of a shape.
 #[derive(Clone, Debug, Serialize)]
@@ -28,11 +28,14 @@ pub struct ShapeNumbers {
     /// Cells of the shape.
     pub cells: usize,
     /// Its facets.
-    pub facets: ByClass,
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    pub facets: ByClass<usize>,
     /// Its edges.
-    pub edges: ByClass,
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    pub edges: ByClass<usize>,
     /// Its vertices.
-    pub vertices: ByClass,
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    pub vertices: ByClass<usize>,
     /// Components, tunnels, voids.
     pub betti: Betti,
     /// The volume of all voids, in cubed voxels.
@@ -65,10 +68,10 @@ impl ShapeNumbers {
             duplicates: shape.duplicates().len(),
             hidden: shape.hidden().expect("the whole triangulation").len(),
             points_in_shape: shape.points_in_shape(),
-            cells: complex.cells.counts()[Class::Interior as usize],
-            facets: complex.facets.by_class(),
-            edges: complex.edges.by_class(),
-            vertices: complex.vertices.by_class(),
+            cells: complex.cells.counts().interior,
+            facets: complex.facets.counts(),
+            edges: complex.edges.counts(),
+            vertices: complex.vertices.counts(),
             betti: shape.betti().expect("the whole triangulation"),
             void_volume: voids.iter().fold(0.0, |sum, void| sum + void.volume),
             largest_voids: voids.into_iter().take(Self::VOIDS).collect(),

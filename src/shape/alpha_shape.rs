@@ -1,11 +1,12 @@
 use std::num::NonZeroUsize;
 
 use serde::{Deserialize, Serialize};
+use walpha_check::{Claim, Placed};
 
 use super::blocks::{self, Limits, Plan, PlanError, Question};
 use super::canonical::canonical;
 use super::topology::sheet_betti;
-use super::{Alpha, Balls, Betti, Class, Complex, Measures, Sheets, Simplices, direct_betti};
+use super::{Alpha, Balls, Betti, Complex, Measures, Sheets, Simplices, direct_betti};
 use crate::memory::NoMemory;
 use crate::points::WeightedPoints;
 use crate::triangulation::{Lattice, Maker, Sites, SitesError, TriangulationError};
@@ -79,7 +80,7 @@ impl ShapeOptions {
             Some(_) if self.exterior => {
                 unbounded("with the simplices outside the shape", "omit --exterior")
             }
-            Some(_) if power_alpha(self) == f64::INFINITY => {
+            Some(_) if power_alpha(self) == Alpha::INFINITE => {
                 unbounded("at α = inf, the convex hull", "give a finite --alpha")
             }
             Some(_) => Ok(()),
@@ -176,9 +177,9 @@ pub fn alpha_shape(
     };
     let sites = Sites::new(&points.positions, squared.as_deref().unwrap_or(&points.weights))?;
     let found = match options.engine {
-        Engine::Reference => by_reference(&sites, power_alpha(options))?,
-        Engine::Cgal => by_blocks(&sites, power_alpha(options), Maker::Cgal, options)?,
-        Engine::Native => by_blocks(&sites, power_alpha(options), Maker::Native, options)?,
+        Engine::Reference => by_reference(&sites, power_alpha(options).squared())?,
+        Engine::Cgal => by_blocks(&sites, Maker::Cgal, options)?,
+        Engine::Native => by_blocks(&sites, Maker::Native, options)?,
     };
     let Found { mut complex, boundary, hidden } = found;
     // Counted over what is outside, too.
@@ -222,16 +223,11 @@ fn by_reference(sites: &Sites<'_>, alpha: f64) -> Result<Found, ShapeError> {
     Ok(Found { complex, boundary: None, hidden })
 }
 
-fn by_blocks(
-    sites: &Sites<'_>,
-    alpha: f64,
-    maker: Maker,
-    options: &ShapeOptions,
-) -> Result<Found, ShapeError> {
+fn by_blocks(sites: &Sites<'_>, maker: Maker, options: &ShapeOptions) -> Result<Found, ShapeError> {
     let asked = options.blocks.map(NonZeroUsize::get);
     // Any α below −max ω asks for the empty shape, and doubles hold one.
     let largest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let alpha = alpha.max(-2.0 * largest.abs() - 1.0);
+    let alpha = power_alpha(options).squared().max(-2.0 * largest.abs() - 1.0);
     let plan = if options.exterior || alpha.is_infinite() {
         Plan::whole(sites)
     } else {
@@ -245,10 +241,10 @@ fn by_blocks(
 }
 
 /// The parameter at which the power weights are judged.
-fn power_alpha(options: &ShapeOptions) -> f64 {
+fn power_alpha(options: &ShapeOptions) -> Alpha {
     match options.balls {
-        Balls::Power => options.alpha.squared(),
-        Balls::Radius => 0.0,
+        Balls::Power => options.alpha,
+        Balls::Radius => Alpha::ZERO,
     }
 }
 
@@ -267,7 +263,7 @@ fn squared_radii(weights: &[f64], alpha: Alpha) -> Result<Vec<f64>, ShapeError> 
 
 /// Sites that are no vertices. Both lists ascend.
 fn hidden(sites: &[u32], vertices: &Simplices<1>) -> Vec<u32> {
-    let mut vertices = vertices.vertices.iter().peekable();
+    let mut vertices = vertices.rows().iter().peekable();
     sites.iter().copied().filter(|&site| vertices.next_if(|v| v[0] == site).is_none()).collect()
 }
 
@@ -316,8 +312,16 @@ impl AlphaShape {
     }
 
     /// The squared radius simplices are compared with: α, or 0 for [`Balls::Radius`].
-    pub fn power_alpha(&self) -> f64 {
+    pub fn power_alpha(&self) -> Alpha {
         power_alpha(&self.options)
+    }
+
+    /// What the shape claims to be, for the checker to judge.
+    pub fn claim(&self) -> Claim<'_> {
+        let (positions, weights) = (&self.points.positions, self.power_weights());
+        Claim::new(Placed::new(positions, weights, self.power_alpha(), &self.complex))
+            .with_hidden(self.hidden())
+            .with_duplicates(self.duplicates())
     }
 
     /// The simplices and their classes, in canonical order; exterior ones only if asked for.
@@ -354,6 +358,6 @@ impl AlphaShape {
 
     /// How many points are vertices of the shape.
     pub fn points_in_shape(&self) -> usize {
-        self.complex.vertices.len() - self.complex.vertices.counts()[Class::Exterior as usize]
+        self.complex.vertices.counts().in_shape()
     }
 }

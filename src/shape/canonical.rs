@@ -5,13 +5,6 @@ use rayon::prelude::*;
 use super::{Class, Complex, Simplices};
 use crate::cgal::RawComplex;
 
-impl Class {
-    /// The class with a number the bridge uses.
-    pub(super) fn from_number(number: u8) -> Self {
-        Self::ALL[usize::from(number)]
-    }
-}
-
 /// Translates site indices to input indices and puts everything in canonical order.
 pub(super) fn canonical(raw: &RawComplex, input: &[u32]) -> Complex {
     Complex {
@@ -33,14 +26,13 @@ fn simplices<const N: usize>(
         .par_iter()
         .zip(classes)
         .map(|(row, &number)| {
-            let class = Class::from_number(number);
+            let class = Class::from_number(number).expect("CGAL has four classes");
             (order(row.map(|site| input[site as usize]), class), class)
         })
         .collect();
     // Rows are distinct, so an unstable sort has one answer.
     pairs.par_sort_unstable_by_key(|pair| pair.0);
-    let (vertices, classes) = pairs.into_iter().unzip();
-    Simplices { vertices, classes }
+    pairs.into_iter().collect()
 }
 
 fn sorted<const N: usize>(mut row: [u32; N]) -> [u32; N] {

@@ -19,16 +19,16 @@ impl Measures {
     pub fn of(complex: &Complex, positions: &[[f64; 3]]) -> Self {
         let at = |v: u32| positions[v as usize];
         let area = |class| {
-            fixed_order_sum(&complex.facets.vertices, |i, facet| {
-                if complex.facets.classes[i] != class {
+            fixed_order_sum(complex.facets.rows(), |i, facet| {
+                if complex.facets.classes()[i] != class {
                     return 0.0;
                 }
                 facet_area(facet.map(at))
             })
         };
         // Divided last: sums of determinants on a lattice are whole numbers.
-        let volume = fixed_order_sum(&complex.cells.vertices, |i, cell| {
-            if complex.cells.classes[i] != Class::Interior {
+        let volume = fixed_order_sum(complex.cells.rows(), |i, cell| {
+            if complex.cells.classes()[i] != Class::Interior {
                 return 0.0;
             }
             six_volumes(cell.map(at))

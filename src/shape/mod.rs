@@ -2,7 +2,7 @@
 //!
 //! ```
 //! use walpha::points::{Points, Weighting, weigh};
-//! use walpha::shape::{Alpha, Class, ShapeOptions, alpha_shape};
+//! use walpha::shape::{Alpha, ShapeOptions, alpha_shape};
 //!
 //! // The corners of a cube lie on a sphere of squared radius 3/4: at this α, and no less, it is full.
 //! let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|c| c as f64);
@@ -10,17 +10,17 @@
 //! let weighted = weigh(&cube, Weighting::Common(0.0), 0.75)?;
 //! let shape = alpha_shape(weighted, &ShapeOptions::new(Alpha::from_squared(0.75)?))?;
 //! assert_eq!(shape.measures().volume, 1.0);
-//! assert_eq!(shape.complex().facets.counts()[Class::Regular as usize], 12);
+//! assert_eq!(shape.complex().facets.counts().regular, 12);
 //! let betti = shape.betti().expect("counted");
 //! assert_eq!((betti.b0, betti.b1, betti.b2), (1, 0, 0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod alpha;
 mod alpha_shape;
+mod balls;
 mod blocks;
 mod canonical;
-mod complex;
+mod infinite;
 mod manifold;
 mod measure;
 mod parts;
@@ -30,11 +30,11 @@ mod topology;
 mod union_find;
 mod voids;
 
-pub(crate) use alpha::each_number_or_name;
-pub use alpha::{Alpha, Balls, NotAnAlpha, number_or_name};
 pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
+pub use balls::Balls;
 pub use blocks::PlanError;
-pub use complex::{ByClass, Class, Complex, Simplices};
+pub(crate) use infinite::each_number_or_name;
+pub use infinite::number_or_name;
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;
 pub(crate) use measure::{facet_area, six_volumes};
@@ -45,3 +45,4 @@ pub use topology::{Betti, direct_betti};
 pub(crate) use union_find::UnionFind;
 pub(crate) use voids::Hollow;
 pub use voids::Void;
+pub use walpha_check::{Alpha, AlphaError, ByClass, Class, Complex, Simplices};

@@ -40,7 +40,7 @@ impl Sheets {
         });
         let mut next = || names.next().expect("a name for each side of the boundary");
         let (mut regular, mut singular) = (Vec::new(), Vec::new());
-        for class in &answer.complex.facets.classes {
+        for class in answer.complex.facets.classes() {
             match class {
                 Class::Regular => regular.push(next()),
                 Class::Singular => singular.push([next(), next()]),
@@ -131,7 +131,7 @@ impl AlphaShape {
         let at = |v: u32| positions[v as usize];
         let number = |v: u32| numbers[v as usize] as usize;
         let mut components: Vec<Component> = Vec::new();
-        for &[v] in &self.complex().vertices.vertices {
+        for &[v] in self.complex().vertices.rows() {
             let point = at(v);
             match number(v) {
                 n if n == NO_COMPONENT as usize => {}
@@ -223,7 +223,7 @@ impl Component {
 
 /// The vertices of a shape, united by its edges.
 pub(super) fn connected(complex: &Complex) -> UnionFind {
-    let points = complex.vertices.vertices.last().map_or(0, |&[v]| v as usize + 1);
+    let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
     let mut sets = UnionFind::new(points);
     for (&[a, b], class) in complex.edges.iter() {
         if class != Class::Exterior {

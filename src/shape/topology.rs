@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::parts::connected;
 use super::union_find::UnionFind;
-use super::{Class, Complex, Sheets, Simplices};
+use super::{Class, Complex, Sheets};
 
 /// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,17 +31,6 @@ impl From<[u64; 3]> for Betti {
     }
 }
 
-impl Complex {
-    /// The Euler characteristic of the shape: vertices − edges + facets − cells, exterior ones left
-    /// out.
-    pub fn euler_characteristic(&self) -> i64 {
-        fn inside<const N: usize>(simplices: &Simplices<N>) -> i64 {
-            (simplices.len() - simplices.counts()[Class::Exterior as usize]) as i64
-        }
-        inside(&self.vertices) - inside(&self.edges) + inside(&self.facets) - inside(&self.cells)
-    }
-}
-
 /// The Betti numbers of a shape within its *whole* regular triangulation, exterior simplices
 /// included, by direct count: b0 is the number of components; b2 the number of components of the
 /// complement less one, counted over exterior cells joined through exterior facets, the outside
@@ -60,7 +49,7 @@ pub fn direct_betti(whole: &Complex) -> Betti {
 /// sheets (Alexander duality), so sheets = b0 + b2, and b1 follows from the Euler characteristic.
 /// Every isolated vertex has a sheet of its own. O(n).
 pub(super) fn sheet_betti(complex: &Complex, b0: u64, sheets: &Sheets) -> Betti {
-    let lone = complex.vertices.counts()[Class::Singular as usize];
+    let lone = complex.vertices.counts().singular;
     let b2 = (sheets.count as usize + lone) as u64 - b0;
     let b1 = (b0 + b2) as i64 - complex.euler_characteristic();
     Betti { b0, b1: u64::try_from(b1).expect("b1 counts something"), b2 }
@@ -98,9 +87,9 @@ impl Complement {
         // Each facet of each exterior cell, so that the cells at one facet stand side by side.
         let mut sides: Vec<([u32; 3], u32)> = whole
             .cells
-            .vertices
+            .rows()
             .par_iter()
-            .zip(&whole.cells.classes)
+            .zip(whole.cells.classes())
             .enumerate()
             .filter(|(_, (_, class))| **class == Class::Exterior)
             .flat_map_iter(|(id, (&cell, _))| {
@@ -115,7 +104,7 @@ impl Complement {
 
         let outside = whole.cells.len() as u32;
         let mut sets = UnionFind::new(whole.cells.len() + 1);
-        let exterior_cells = whole.cells.counts()[Class::Exterior as usize];
+        let exterior_cells = whole.cells.counts().exterior;
         let mut united = 0;
         let mut at = 0;
         // Exterior facets are sorted rows in ascending order, so both lists run side by side.

@@ -29,7 +29,7 @@ pub use error::VolumeError;
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
 pub use part::{Region, downsample};
-pub(crate) use read::{Element, Lines, MOST_EXPANSION, NPY_MAGIC, NpyFile, VtkXml, io_error};
+pub(crate) use read::{Element, Lines, NpyFile, VtkXml, io_error};
 pub use read::{RawLayout, ReadOptions, Series, data_files, format_name, read, series};
 pub use sample::{SAMPLES, open, phantom, sample};
 pub use volume::{Nan, Volume};

@@ -42,9 +42,12 @@ struct Row {
     #[serde(serialize_with = "number_or_name")]
     alpha: f64,
     cells: usize,
-    facets: ByClass,
-    edges: ByClass,
-    vertices: ByClass,
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    facets: ByClass<usize>,
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    edges: ByClass<usize>,
+    #[serde(serialize_with = "ByClass::serialize_shape")]
+    vertices: ByClass<usize>,
     betti: Betti,
     solid_components: u64,
     #[serde(flatten)]
@@ -179,8 +182,8 @@ impl Display for Facts {
                 f,
                 "{alpha:>12} {:>8} {:>8} {:>8} {b0:>6} {b1:>6} {b2:>6} {:>6} {:>12.1} {:>8.2}% {:>12.1}",
                 level.cells,
-                level.facets.total(),
-                level.edges.total(),
+                level.facets.in_shape(),
+                level.edges.in_shape(),
                 level.solid_components,
                 level.measures.volume,
                 100.0 * level.coverage,

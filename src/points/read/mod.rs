@@ -17,9 +17,11 @@ pub use columns::{Columns, UnknownColumns};
 use std::io::Read;
 use std::path::Path;
 
+use walpha_check::npy::MAGIC;
+
 use self::xyz::Counted;
 use super::{Points, PointsError};
-use crate::volume::{NPY_MAGIC, NpyFile, VtkXml, io_error};
+use crate::volume::{NpyFile, VtkXml, io_error};
 
 /// The columns of a point file that are read.
 const COLUMNS: [&str; 5] = ["x", "y", "z", "weight", "value"];
@@ -121,7 +123,7 @@ fn kind(path: &Path) -> Result<Option<Kind>, PointsError> {
     let mut start = Vec::new();
     let file = std::fs::File::open(path).map_err(io_error(path))?;
     file.take(1024).read_to_end(&mut start).map_err(io_error(path))?;
-    Ok(if start.starts_with(NPY_MAGIC) {
+    Ok(if start.starts_with(MAGIC) {
         Some(Kind::Npy)
     } else if start.starts_with(b"ply\n") || start.starts_with(b"ply\r") {
         Some(Kind::Ply)

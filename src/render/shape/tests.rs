@@ -1,22 +1,19 @@
 use super::*;
 
+fn simplices<const N: usize>(rows: Vec<[u32; N]>, classes: Vec<Class>) -> Simplices<N> {
+    Simplices::new(rows, classes).unwrap()
+}
+
 /// A tetrahedron, a singular triangle, a singular edge and a lone vertex, far apart.
 fn shape() -> (Vec<[f64; 3]>, Complex) {
     let positions = (0..12).map(|k| [f64::from(k % 3), f64::from(k / 3), f64::from(k * k % 5)]);
-    let simplices = |vertices: Vec<[u32; 3]>, classes| Simplices { vertices, classes };
     let complex = Complex {
         facets: simplices(
             vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2], [4, 5, 6], [6, 7, 8]],
             [vec![Class::Regular; 4], vec![Class::Singular, Class::Exterior]].concat(),
         ),
-        edges: Simplices {
-            vertices: vec![[0, 1], [7, 8]],
-            classes: vec![Class::Regular, Class::Singular],
-        },
-        vertices: Simplices {
-            vertices: vec![[0], [9]],
-            classes: vec![Class::Regular, Class::Singular],
-        },
+        edges: simplices(vec![[0, 1], [7, 8]], vec![Class::Regular, Class::Singular]),
+        vertices: simplices(vec![[0], [9]], vec![Class::Regular, Class::Singular]),
         ..Complex::default()
     };
     (positions.collect(), complex)
@@ -28,7 +25,7 @@ fn each_class_becomes_what_it_should() {
     let style = ShapeStyle { colouring: Colouring::Classes, ..ShapeStyle::default() };
     let scene = Scene::of_shape(&positions, &complex, &style).unwrap();
     let [regular, singular] = &scene.meshes[..] else { panic!("{} meshes", scene.meshes.len()) };
-    assert_eq!(regular.triangles, complex.facets.vertices[..4]);
+    assert_eq!(regular.triangles, complex.facets.rows()[..4]);
     assert_eq!(regular.positions, positions[..4]);
     assert!(!regular.two_sided && singular.two_sided);
     assert_eq!(singular.triangles, [[0, 1, 2]]);

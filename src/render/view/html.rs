@@ -79,7 +79,7 @@ fn library() -> String {
 /// What the page tells of a level, as pairs.
 fn level(level: &Level) -> serde_json::Value {
     let [b0, b1, b2] = level.betti.into();
-    let by_class = |c: crate::shape::ByClass| {
+    let by_class = |c: crate::shape::ByClass<usize>| {
         format!("{} interior, {} regular, {} singular", c.interior, c.regular, c.singular)
     };
     let radius = if level.alpha >= 0.0 {

@@ -134,8 +134,7 @@ fn edge_class(edge: &Edge, exact: &Exact, triangles: &[bool]) -> Class {
 }
 
 fn of_shape<const N: usize>(rows: impl Iterator<Item = ([u32; N], Class)>) -> Simplices<N> {
-    let (vertices, classes) = rows.filter(|&(_, class)| class != Class::Exterior).unzip();
-    Simplices { vertices, classes }
+    rows.filter(|&(_, class)| class != Class::Exterior).collect()
 }
 
 impl PlaneComplex {
@@ -143,10 +142,10 @@ impl PlaneComplex {
     /// discs has the same. O(n log n).
     pub fn betti(&self) -> [u64; 2] {
         let number = |v: u32| {
-            self.vertices.vertices.binary_search(&[v]).expect("ends of edges are vertices") as u32
+            self.vertices.rows().binary_search(&[v]).expect("ends of edges are vertices") as u32
         };
         let mut sets = UnionFind::new(self.vertices.len());
-        let edges = self.edges.vertices.iter();
+        let edges = self.edges.rows().iter();
         let united = edges.filter(|row| sets.unite(number(row[0]), number(row[1]))).count();
         // b1 = b0 − χ = (V − united) − (V − E + T)
         let loops = self.edges.len() - united - self.triangles.len();
@@ -155,9 +154,9 @@ impl PlaneComplex {
 
     /// Numbers that keep their order, so that rows stay canonical.
     fn renumbered(mut self, number: impl Fn(u32) -> u32) -> Self {
-        let rows = self.triangles.vertices.as_flattened_mut().iter_mut();
-        let rows = rows.chain(self.edges.vertices.as_flattened_mut());
-        rows.chain(self.vertices.vertices.as_flattened_mut()).for_each(|v| *v = number(*v));
+        let rows = self.triangles.rows_mut().as_flattened_mut().iter_mut();
+        let rows = rows.chain(self.edges.rows_mut().as_flattened_mut());
+        rows.chain(self.vertices.rows_mut().as_flattened_mut()).for_each(|v| *v = number(*v));
         self
     }
 }

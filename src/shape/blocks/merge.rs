@@ -130,7 +130,7 @@ impl Merged<'_> {
             drop(rows);
             self.plan.give_back();
         }
-        Simplices { vertices, classes }
+        Simplices::new(vertices, classes).expect("as many classes as rows")
     }
 
     /// The common numbers of the sheets that boundary rows lie on.
@@ -173,8 +173,7 @@ impl Merged<'_> {
         let mut simplices = Simplices::default();
         for (site, class) in self.classes(blocks) {
             if let Some(class) = class.filter(|&class| exterior || class != Class::Exterior) {
-                simplices.vertices.push([site]);
-                simplices.classes.push(class);
+                simplices.push([site], class);
             }
         }
         simplices

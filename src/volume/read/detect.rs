@@ -3,8 +3,9 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
+use walpha_check::npy::MAGIC;
 
-use super::{VtkXml, format_error, inr, io_error, metaimage, nifti, npy, nrrd, vtk};
+use super::{VtkXml, format_error, inr, io_error, metaimage, nifti, nrrd, vtk};
 use crate::near::nearest;
 use crate::volume::VolumeError;
 
@@ -135,7 +136,7 @@ pub(super) fn without(feature: &str) -> String {
 
 fn by_content(start: &[u8]) -> Option<Kind> {
     const TIFF: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
-    Some(if start.starts_with(npy::MAGIC) {
+    Some(if start.starts_with(MAGIC) {
         Kind::Npy
     } else if start.starts_with(b"PK\x03\x04") || start.starts_with(b"PK\x05\x06") {
         Kind::Npz

@@ -37,9 +37,9 @@ use serde::Serialize;
 
 pub(crate) use inr::read as read_inr;
 pub(crate) use lines::Lines;
-pub(crate) use npy::{MAGIC as NPY_MAGIC, NpyFile};
+pub(crate) use npy::NpyFile;
 use payload::PayloadError;
-pub(crate) use payload::{Element, Length, MOST_EXPANSION};
+pub(crate) use payload::{Element, Length};
 pub use raw::RawLayout;
 pub(crate) use vtk_xml::VtkXml;
 

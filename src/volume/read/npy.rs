@@ -3,16 +3,12 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use ndarray::{Array3, ShapeBuilder};
+use walpha_check::npy::{Header, NpyError};
 
 use super::frames::Frames;
 use super::payload::{Element, Length, Payload};
 use super::{io_error, payload_error_of};
 use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
-
-/// The first bytes of each NPY file.
-pub(crate) const MAGIC: &[u8] = b"\x93NUMPY";
-/// NumPy itself refuses longer headers than this as unsafe.
-const MAX_HEADER: u64 = 10_000;
 
 /// An array as NPY describes it (format versions 1 to 3, numpy.lib.format).
 pub(crate) struct NpyFile<R = BufReader<File>> {
@@ -82,45 +78,18 @@ impl<R: Read> NpyFile<R> {
     /// Reads and checks the header of an array of so many bytes in a file.
     pub fn of(path: &Path, mut reader: R, length: u64) -> Result<Self, VolumeError> {
         let said = |what: String| VolumeError::Format { path: path.into(), what };
-        let cut = |error: std::io::Error| match error.kind() {
-            std::io::ErrorKind::UnexpectedEof => {
-                said("ends inside its NPY header: it is truncated; save it again".into())
-            }
-            _ => io_error(path)(error),
-        };
-        let mut preamble = [0; 8];
-        reader.read_exact(&mut preamble).map_err(cut)?;
-        if !preamble.starts_with(MAGIC) {
-            return Err(said("is no NPY file: it does not begin with \\x93NUMPY".into()));
-        }
-        let (width, header) = match preamble[6] {
-            1 => {
-                let mut bytes = [0; 2];
-                reader.read_exact(&mut bytes).map_err(cut)?;
-                (2, u64::from(u16::from_le_bytes(bytes)))
-            }
-            2 | 3 => {
-                let mut bytes = [0; 4];
-                reader.read_exact(&mut bytes).map_err(cut)?;
-                (4, u64::from(u32::from_le_bytes(bytes)))
-            }
-            other => return Err(said(format!("is NPY version {other}: 1, 2 and 3 are read"))),
-        };
-        if header > MAX_HEADER {
-            return Err(said(format!("has an NPY header of {header} bytes: it is damaged")));
-        }
-        let mut text = vec![0; header as usize];
-        reader.read_exact(&mut text).map_err(cut)?;
-        let text = String::from_utf8_lossy(&text).into_owned();
-        let (descr, fortran, shape) = dictionary(&text)
-            .ok_or_else(|| said(format!("has an NPY header that is not understood: {text:?}")))?;
+        let header = Header::read(&mut reader).map_err(|error| match error {
+            NpyError::Io(error) => io_error(path)(error),
+            other => said(other.to_string()),
+        })?;
+        let Header { descr, fortran, shape, .. } = header;
         let (dtype, endian, boolean) = element(&descr).ok_or_else(|| {
             said(format!(
                 "holds elements of type {descr}: only bool, integers of 8 to 64 bits, f4 and f8 \
                  are read; save a.astype('f4')"
             ))
         })?;
-        let length = Length::Exactly(length).minus(8 + width + header);
+        let length = Length::Exactly(length).minus(header.length);
         let payload = Payload { reader, length };
         Ok(Self { shape, fortran, dtype, endian, boolean, payload })
     }
@@ -133,33 +102,6 @@ impl<R: Read> NpyFile<R> {
             .samples(self.dtype, self.endian, count)
             .map_err(|error| payload_error_of(path, &claim, error))
     }
-}
-
-/// `descr`, `fortran_order` and `shape` of a header such as
-/// `{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4), }`.
-fn dictionary(text: &str) -> Option<(String, bool, Vec<u64>)> {
-    let after = |key: &str| {
-        let at = text.find(&format!("'{key}'"))? + key.len() + 2;
-        Some(text[at..].trim_start().strip_prefix(':')?.trim_start())
-    };
-    let descr = after("descr")?;
-    let descr = match descr.strip_prefix('\'') {
-        Some(quoted) => quoted.split_once('\'')?.0,
-        // A structured type is a list: shown as it is, and refused by the caller.
-        None => descr.split_once(']').map_or(descr, |(list, _)| list),
-    };
-    let order = after("fortran_order")?;
-    let fortran = if order.starts_with("True") {
-        true
-    } else if order.starts_with("False") {
-        false
-    } else {
-        return None;
-    };
-    let (tuple, _) = after("shape")?.strip_prefix('(')?.split_once(')')?;
-    let axes = tuple.split(',').map(str::trim).filter(|axis| !axis.is_empty());
-    let shape = axes.map(|axis| axis.trim_end_matches('L').parse().ok()).collect::<Option<_>>()?;
-    Some((descr.to_owned(), fortran, shape))
 }
 
 /// Type, byte order and whether it is boolean, of a NumPy type string such as `<f4`.

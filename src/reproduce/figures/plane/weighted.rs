@@ -169,7 +169,7 @@ fn draw_dual(shape: &WeightedPlaneShape) -> Drawing {
         drawing.disc(centre, radius, Pen::area(Rgb([238, 243, 248]), 1.0));
     }
     let complex = shape.complex();
-    for triangle in &complex.triangles.vertices {
+    for triangle in complex.triangles.rows() {
         drawing.polygon(&triangle.map(place), shaded(SHADE));
     }
     for (edge, class) in complex.edges.iter() {

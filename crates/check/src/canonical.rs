@@ -1,0 +1,39 @@
+//! The canonical order of rows, as `Complex` documents it.
+
+use crate::{Complex, Simplices};
+
+/// The vertices in ascending order.
+pub(crate) fn sorted<const N: usize>(mut row: [u32; N]) -> [u32; N] {
+    row.sort_unstable();
+    row
+}
+
+/// The faces of a positively oriented cell, each counter-clockwise seen from outside; the i-th is
+/// opposite to the i-th vertex.
+pub(crate) fn outward_facets([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
+    [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]
+}
+
+/// The lexicographically smallest even permutation of a row.
+pub(crate) fn smallest_even<const N: usize>(row: [u32; N]) -> [u32; N] {
+    let mut smallest = sorted(row);
+    let inversions = |i: usize| (i + 1..N).filter(|&j| row[j] < row[i]).count();
+    if (0..N).map(inversions).sum::<usize>() % 2 == 1 {
+        smallest.swap(N - 2, N - 1);
+    }
+    smallest
+}
+
+/// Puts rows into lexicographic order.
+pub(crate) fn sort(complex: &mut Complex) {
+    sort_rows(&mut complex.cells);
+    sort_rows(&mut complex.facets);
+    sort_rows(&mut complex.edges);
+    sort_rows(&mut complex.vertices);
+}
+
+fn sort_rows<const N: usize>(simplices: &mut Simplices<N>) {
+    let mut rows: Vec<_> = std::mem::take(simplices).into_iter().collect();
+    rows.sort_unstable();
+    *simplices = rows.into_iter().collect();
+}

@@ -1,0 +1,77 @@
+use serde::Serialize;
+
+use super::claim::MOST;
+use crate::exact::Exact;
+
+/// What was judged, and what could not be.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Certificate {
+    /// How many findings there were before the visitor stopped.
+    pub findings: usize,
+    /// Six times the volume of all cells; zero if rows were too wrong to add up.
+    pub six_volumes: Exact,
+    /// What was not judged, and why.
+    pub not_judged: Vec<NotJudged>,
+}
+
+/// Rules that were not applied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum NotJudged {
+    /// Whether a simplex of the shape is missing that nothing listed has as a face: this needs the
+    /// whole triangulation.
+    MissingSimplices,
+    /// Whether a singular facet or edge whose sphere carries further points is the one that the
+    /// perturbation chooses: this needs the whole triangulation.
+    TiedSingular,
+    /// Whether points that are no vertices are hidden, and the hull: these need the whole
+    /// triangulation.
+    HiddenAndHull,
+    /// Whether the listed duplicates are right: none are listed.
+    Duplicates,
+    /// Rules that rest on others which were broken, or the visitor stopped.
+    AfterFindings,
+}
+
+impl std::fmt::Display for NotJudged {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::MissingSimplices => "whether whole parts of the shape are missing (needs the exterior simplices)",
+            Self::TiedSingular => "whether singular simplices with ties are those that the perturbation chooses (needs the exterior simplices)",
+            Self::HiddenAndHull => "hidden points and the convex hull (need the exterior simplices)",
+            Self::Duplicates => "the list of duplicates (none is given)",
+            Self::AfterFindings => "rules that rest on the broken ones",
+        })
+    }
+}
+
+/// Why a claim cannot be judged at all.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CertifyError {
+    /// Positions and weights do not pair up.
+    #[error("{positions} positions but {weights} weights: each point needs one weight")]
+    Lengths {
+        /// Positions given.
+        positions: usize,
+        /// Weights given.
+        weights: usize,
+    },
+    /// A coordinate or weight is NaN or infinite.
+    #[error("point {0} has a coordinate or weight that is not finite; clean the input")]
+    NotFinite(usize),
+    /// More simplices or points than 32-bit numbers.
+    #[error("{0} cells or points are too many to check: at most {max} fit", max = MOST)]
+    TooMany(usize),
+    /// Memory for the links between simplices cannot be had.
+    #[error(
+        "the check of {cells} cells needs {bytes} bytes of memory, which cannot be had; make it smaller"
+    )]
+    Memory {
+        /// Cells of the complex.
+        cells: usize,
+        /// Bytes for it and its faces.
+        bytes: usize,
+    },
+}

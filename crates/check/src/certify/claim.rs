@@ -1,0 +1,178 @@
+use std::ops::ControlFlow;
+
+use super::structure::Structure;
+use super::{Certificate, CertifyError, Finding, NotJudged, rules};
+use crate::exact::Exact;
+use crate::{Alpha, Complex, Placed};
+
+/// How much a complex claims to hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// The whole regular triangulation, with the simplices that are not in the shape.
+    Whole,
+    /// The shape alone.
+    Shape,
+}
+
+impl Extent {
+    /// Whole if there is an exterior simplex, or if α = ∞, where all of the triangulation is in
+    /// the shape.
+    pub fn of(complex: &Complex, alpha: Alpha) -> Self {
+        let whole = complex.lists_exterior() || alpha == Alpha::INFINITE;
+        if whole { Self::Whole } else { Self::Shape }
+    }
+}
+
+/// A complex and what it claims to be: the α-complex of weighted points.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Claim<'a> {
+    /// The complex with its points.
+    pub placed: Placed<'a>,
+    /// How much of the triangulation the complex lists.
+    pub extent: Extent,
+    /// The points listed as hidden, if they are listed.
+    pub hidden: Option<&'a [u32]>,
+    /// Pairs (went, stayed) of points at one place, if they are listed.
+    pub duplicates: Option<&'a [[u32; 2]]>,
+}
+
+/// A side of a cell is numbered by 4 · cell + 0..4 in 32 bits.
+pub(super) const MOST: usize = (u32::MAX / 4) as usize;
+
+impl<'a> Claim<'a> {
+    /// The claim of a complex that says nothing of hidden points and duplicates; its extent is
+    /// that of [`Extent::of`].
+    pub fn new(placed: Placed<'a>) -> Self {
+        let extent = Extent::of(placed.complex, placed.alpha);
+        Self { placed, extent, hidden: None, duplicates: None }
+    }
+
+    /// With another extent.
+    pub fn with_extent(self, extent: Extent) -> Self {
+        Self { extent, ..self }
+    }
+
+    /// With these points listed as hidden.
+    pub fn with_hidden(self, hidden: impl Into<Option<&'a [u32]>>) -> Self {
+        Self { hidden: hidden.into(), ..self }
+    }
+
+    /// With these pairs (went, stayed) listed as duplicates.
+    pub fn with_duplicates(self, duplicates: impl Into<Option<&'a [[u32; 2]]>>) -> Self {
+        Self { duplicates: duplicates.into(), ..self }
+    }
+
+    /// Whether every rule that can be judged holds.
+    ///
+    /// # Errors
+    /// [`CertifyError`].
+    pub fn is_valid(&self) -> Result<bool, CertifyError> {
+        Ok(self.first_finding()?.is_none())
+    }
+
+    /// The first broken rule.
+    ///
+    /// # Errors
+    /// [`CertifyError`].
+    pub fn first_finding(&self) -> Result<Option<Finding>, CertifyError> {
+        let mut first = None;
+        self.visit(&mut |finding| {
+            first = Some(finding);
+            ControlFlow::Break(())
+        })?;
+        Ok(first)
+    }
+
+    /// All broken rules, and what was judged.
+    ///
+    /// # Errors
+    /// [`CertifyError`].
+    pub fn findings(&self) -> Result<(Vec<Finding>, Certificate), CertifyError> {
+        let mut all = Vec::new();
+        let certificate = self.visit(&mut |finding| {
+            all.push(finding);
+            ControlFlow::Continue(())
+        })?;
+        Ok((all, certificate))
+    }
+
+    /// Judges the complex, handing each finding to `visitor` until it breaks.
+    ///
+    /// The rules, each exact and each linear in the number of simplices (up to sorting):
+    /// 1. rows name distinct input points, and no simplex is listed twice;
+    /// 2. every face of a simplex is listed, so is each cell that has all its faces listed, and in
+    ///    a whole triangulation nothing else is;
+    /// 3. cells are positively oriented; a facet has at most two cells, one on each side;
+    /// 4. no cell is refuted by its neighbours' vertices, by the perturbed power test; in a shape
+    ///    alone, by no point nearby;
+    /// 5. the hull is convex, goes around once, and the cells' volumes add up to what it
+    ///    encloses (whole triangulations only);
+    /// 6. no point is more than one of vertex, hidden and duplicate, and each is one of them (in a
+    ///    shape alone: each that has no other inside or on its sphere is a vertex);
+    /// 7. every class is what the definition says, and regular facets turn counter-clockwise seen
+    ///    from outside.
+    ///
+    /// Rules that mean nothing once others are broken are not applied then; the certificate says
+    /// so.
+    ///
+    /// Findings come in the same order on any number of threads. In a shape alone, cost also
+    /// grows with the number of points within √(α + largest weight) of a simplex.
+    ///
+    /// # Errors
+    /// [`CertifyError`].
+    pub fn visit(
+        &self,
+        visitor: &mut dyn FnMut(Finding) -> ControlFlow<()>,
+    ) -> Result<Certificate, CertifyError> {
+        self.sane()?;
+        let mut certificate =
+            Certificate { findings: 0, six_volumes: Exact::default(), not_judged: Vec::new() };
+        if self.extent == Extent::Shape {
+            let local =
+                [NotJudged::MissingSimplices, NotJudged::TiedSingular, NotJudged::HiddenAndHull];
+            certificate.not_judged.extend(local);
+        }
+        if self.duplicates.is_none() {
+            certificate.not_judged.push(NotJudged::Duplicates);
+        }
+        let mut report = |findings: Vec<Finding>| {
+            findings.into_iter().try_for_each(|finding| {
+                certificate.findings += 1;
+                visitor(finding)
+            })
+        };
+        let mut volume = None;
+        let all_rules = rules::apply(self, &mut report, &mut volume).is_continue();
+        certificate.six_volumes = volume.unwrap_or_default();
+        if !all_rules {
+            certificate.not_judged.push(NotJudged::AfterFindings);
+        }
+        Ok(certificate)
+    }
+
+    fn sane(&self) -> Result<(), CertifyError> {
+        let Placed { positions, weights, complex, .. } = self.placed;
+        if positions.len() != weights.len() {
+            let (positions, weights) = (positions.len(), weights.len());
+            return Err(CertifyError::Lengths { positions, weights });
+        }
+        let most = positions.len().max(complex.cells.len());
+        if most > MOST {
+            return Err(CertifyError::TooMany(most));
+        }
+        let finite = |i: &usize| positions[*i].iter().chain([&weights[*i]]).all(|x| x.is_finite());
+        match (0..positions.len()).find(|i| !finite(i)) {
+            Some(index) => Err(CertifyError::NotFinite(index)),
+            None => afford(complex),
+        }
+    }
+}
+
+/// Asks for the memory that the check takes piece by piece, and gives it back: better refused now
+/// than halfway.
+fn afford(complex: &Complex) -> Result<(), CertifyError> {
+    let bytes = Structure::bytes(complex);
+    let cells = complex.cells.len();
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| CertifyError::Memory { cells, bytes })
+}

@@ -1,0 +1,180 @@
+//! The rules on classes: what the definition makes of each simplex against what it was given.
+
+use rayon::prelude::*;
+
+use super::emptiness::Emptiness;
+use super::faces::Faces;
+use super::index::NONE;
+use super::structure::{Half, Structure};
+use super::{Extent, Finding, Points};
+use crate::canonical::smallest_even;
+use crate::exact::{Side, collinear, orientation, power_value, radius, radius_value, side};
+use crate::{Alpha, Class, Simplices};
+
+/// Judges the classes of all simplices, that faces are listed, and that regular facets turn
+/// outward. Below cells a simplex is interior when all around it is, regular when it is a face
+/// of something in the shape, and singular when its own sphere has squared radius ≤ α and no
+/// point strictly inside.
+///
+/// In a whole triangulation that was found regular, only the neighbours of a simplex can be the
+/// first inside its sphere, so only they are asked; in a shape alone, all points nearby are.
+pub(super) fn judge(structure: &Structure, judge: &Judge) -> Vec<Finding> {
+    let complex = structure.complex;
+    let (cells, mut findings) = judge.cells(&complex.cells);
+    findings.extend(judge.compare(&complex.cells, &cells));
+
+    let facets = judge.facets(structure, &cells);
+    findings.extend(judge.compare(&complex.facets, &facets));
+    findings.extend(windings(structure, &cells, &facets));
+    if judge.extent == Extent::Whole {
+        let strays = (0..complex.facets.len()).filter(|&i| structure.halves(i).next().is_none());
+        let facet = |i: usize| complex.facets.rows()[i].into();
+        findings.extend(strays.map(|i| Finding::Stray { simplex: facet(i) }));
+    }
+
+    let of_facets = Faces {
+        higher: &complex.facets,
+        verdicts: &facets,
+        corners: [[1, 2], [0, 2], [0, 1]],
+        lower: &complex.edges,
+        index: &structure.edges,
+    };
+    let (edges, found) = of_facets.judge(judge);
+    findings.extend(found);
+    findings.extend(judge.compare(&complex.edges, &edges));
+
+    let of_edges = Faces {
+        higher: &complex.edges,
+        verdicts: &edges,
+        corners: [[1], [0]],
+        lower: &complex.vertices,
+        index: &structure.vertices,
+    };
+    let (vertices, found) = of_edges.judge(judge);
+    findings.extend(found);
+    findings.extend(judge.compare(&complex.vertices, &vertices));
+    findings
+}
+
+/// What a class depends on.
+pub(super) struct Judge<'a> {
+    pub points: Points<'a>,
+    pub alpha: Alpha,
+    pub extent: Extent,
+    /// In a shape alone.
+    pub emptiness: Option<&'a Emptiness<'a>>,
+}
+
+/// The class a simplex has, and the point that keeps it out of the shape, or [`NONE`].
+#[derive(Clone, Copy)]
+pub(super) struct Verdict {
+    pub(super) class: Class,
+    refuted_by: u32,
+}
+
+impl Verdict {
+    pub(super) fn of(class: Class) -> Self {
+        Self { class, refuted_by: NONE }
+    }
+}
+
+impl Judge<'_> {
+    fn cells(&self, cells: &Simplices<4>) -> (Vec<Verdict>, Vec<Finding>) {
+        let verdict = |&cell: &[u32; 4]| {
+            let inside = !self.flat(cell) && self.small(cell);
+            let class = if inside { Class::Interior } else { Class::Exterior };
+            let refuter = self.emptiness.filter(|_| inside);
+            let finding = refuter.and_then(|near| near.refuter_of_cell(cell)).map(|point| {
+                let corners = self.points.at(cell);
+                let power = power_value(corners.each_ref(), &self.points.get(point));
+                Finding::NotRegular { cell: cell.into(), point, power }
+            });
+            (Verdict::of(class), finding)
+        };
+        let (verdicts, findings): (Vec<_>, Vec<_>) = cells.rows().par_iter().map(verdict).unzip();
+        (verdicts, findings.into_iter().flatten().collect())
+    }
+
+    fn facets(&self, structure: &Structure, cells: &[Verdict]) -> Vec<Verdict> {
+        let rows = structure.complex.facets.rows().par_iter().enumerate();
+        let verdict = |(i, &facet): (usize, &[u32; 3])| {
+            let inside =
+                structure.halves(i).filter(|h| cells[h.cell].class == Class::Interior).count();
+            if inside > 0 {
+                return Verdict::of(if inside == 2 { Class::Interior } else { Class::Regular });
+            }
+            if self.flat(facet) || !self.small(facet) {
+                return Verdict::of(Class::Exterior);
+            }
+            let corners = self.points.at(facet);
+            let inside = |&q: &u32| side(corners.each_ref(), &self.points.get(q)) == Side::Inside;
+            let neighbours = structure.halves(i).map(|half| structure.apex(half));
+            self.alone(facet, neighbours.filter(inside).min())
+        };
+        rows.map(verdict).collect()
+    }
+
+    /// The verdict on a simplex with a small sphere and nothing of the shape above it.
+    pub(super) fn alone<const N: usize>(
+        &self,
+        row: [u32; N],
+        neighbour_inside: Option<u32>,
+    ) -> Verdict {
+        let inside = neighbour_inside.or_else(|| self.emptiness.and_then(|near| near.refuter(row)));
+        match inside {
+            Some(refuted_by) => Verdict { class: Class::Exterior, refuted_by },
+            None => Verdict::of(Class::Singular),
+        }
+    }
+
+    /// Where given classes differ from the verdicts.
+    fn compare<const N: usize>(&self, given: &Simplices<N>, verdicts: &[Verdict]) -> Vec<Finding> {
+        let rows = given.rows().par_iter().zip(given.classes()).zip(verdicts);
+        rows.filter(|((_, given), verdict)| **given != verdict.class)
+            .map(|((&row, &given), verdict)| {
+                let corners = self.points.at(row);
+                let corners = corners.each_ref();
+                let refuted_by = Some(verdict.refuted_by).filter(|&point| point != NONE);
+                Finding::Class {
+                    simplex: row.into(),
+                    given,
+                    expected: verdict.class,
+                    radius_squared: (!self.flat(row)).then(|| radius_value(corners)),
+                    refuted_by: refuted_by
+                        .map(|point| (point, power_value(corners, &self.points.get(point)))),
+                }
+            })
+            .collect()
+    }
+
+    pub(super) fn small<const N: usize>(&self, row: [u32; N]) -> bool {
+        radius(self.points.at(row).each_ref(), self.alpha).is_le()
+    }
+
+    pub(super) fn inside<const N: usize>(&self, row: [u32; N], q: u32) -> bool {
+        side(self.points.at(row).each_ref(), &self.points.get(q)) == Side::Inside
+    }
+
+    /// Whether the corners are affinely dependent, so that there is no sphere of theirs.
+    pub(super) fn flat<const N: usize>(&self, row: [u32; N]) -> bool {
+        match self.points.places(row)[..] {
+            [a, b] => a == b,
+            [a, b, c] => collinear(a, b, c),
+            [a, b, c, d] => orientation(a, b, c, d).is_eq(),
+            _ => false,
+        }
+    }
+}
+
+fn windings(structure: &Structure, cells: &[Verdict], facets: &[Verdict]) -> Vec<Finding> {
+    let rows = structure.complex.facets.rows().par_iter().enumerate();
+    let judge = |(i, &facet): (usize, &[u32; 3])| {
+        let inside = |half: &Half| cells[half.cell].class == Class::Interior;
+        let half = structure.halves(i).find(inside)?;
+        let outward = smallest_even(structure.outward(half)) == smallest_even(facet);
+        let behind = structure.apex(half);
+        (facets[i].class == Class::Regular && !outward)
+            .then(|| Finding::Winding { facet: facet.into(), behind })
+    };
+    rows.filter_map(judge).collect()
+}

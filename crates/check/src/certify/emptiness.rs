@@ -1,0 +1,76 @@
+use super::Points;
+use super::near::Grid;
+use crate::Alpha;
+use crate::exact::{RoundedSphere, Side, WeightedPoint, in_conflict, orientation, side};
+
+/// Answers whether a sphere is empty by asking all points nearby.
+///
+/// A point of weight ω inside a sphere of squared radius R² ≤ α is less than √(α + ω) away from
+/// its centre, and a vertex of weight ω at most as far. So it is enough to ask the points within
+/// √(α + largest ω) of the centre; where doubles cannot tell where that is, those within twice
+/// that of a vertex.
+pub(super) struct Emptiness<'a> {
+    points: Points<'a>,
+    grid: Grid,
+    heaviest: f64,
+    /// √(α + largest ω), rounded up; zero when nothing can be inside.
+    reach: f64,
+}
+
+impl<'a> Emptiness<'a> {
+    /// For spheres of squared radius up to `alpha`, and the points that stay at their place.
+    pub(super) fn new(points: Points<'a>, alpha: Alpha, stays: &[u32]) -> Self {
+        let heaviest = points.weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let sites = (0..points.len() as u32).filter(|&i| stays[i as usize] == i).collect();
+        let reach = (alpha.squared() + heaviest).next_up().max(0.0).sqrt().next_up();
+        Self { points, grid: Grid::new(points.positions, sites), heaviest, reach }
+    }
+
+    /// A point that refutes a cell, after perturbation, whose squared radius is at most α.
+    pub(super) fn refuter_of_cell(&self, cell: [u32; 4]) -> Option<u32> {
+        let corners = self.points.at(cell);
+        let [a, b, c, d] = corners.each_ref();
+        // Negatively oriented cells are another rule's business.
+        let order = orientation(a.position, b.position, c.position, d.position);
+        let positive = if order.is_gt() { [a, b, c, d] } else { [a, b, d, c] };
+        self.find(cell, |q| in_conflict(positive, q))
+    }
+
+    /// A point strictly inside the smallest orthogonal sphere of a simplex, whose squared radius
+    /// is at most α.
+    pub(super) fn refuter<const N: usize>(&self, simplex: [u32; N]) -> Option<u32> {
+        let corners = self.points.at(simplex);
+        self.find(simplex, |q| side(corners.each_ref(), q) == Side::Inside)
+    }
+
+    /// Whether no other point is inside or on the sphere of a point alone.
+    pub(super) fn alone(&self, point: u32) -> bool {
+        let site = self.points.get(point);
+        // |q − p|² ≤ ω of q − ω of p, whatever α is.
+        let reach = (self.heaviest - site.weight).next_up().max(0.0).sqrt().next_up();
+        let near = |index: u32| {
+            let within = index != point && side([&site], &self.points.get(index)) != Side::Outside;
+            within.then_some(())
+        };
+        self.grid.within(site.position, reach, near).is_none()
+    }
+
+    fn find<const N: usize>(
+        &self,
+        simplex: [u32; N],
+        refutes: impl Fn(&WeightedPoint) -> bool,
+    ) -> Option<u32> {
+        let corners = self.points.at(simplex);
+        let sphere =
+            RoundedSphere::new(corners.each_ref()).filter(|sphere| sphere.error < self.reach);
+        let (place, radius) = match &sphere {
+            Some(sphere) => (sphere.center, self.reach + sphere.error),
+            None => (corners[0].position, 2.0 * self.reach),
+        };
+        self.grid.within(place, radius.next_up(), |index| {
+            let q = self.points.get(index);
+            let outside = sphere.as_ref().is_some_and(|sphere| sphere.surely_outside(&q));
+            (!outside && !simplex.contains(&index) && refutes(&q)).then_some(index)
+        })
+    }
+}

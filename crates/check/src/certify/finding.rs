@@ -1,0 +1,226 @@
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::Class;
+use crate::exact::Exact;
+
+/// A simplex by the input indices of its vertices.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+pub struct Simplex(Vec<u32>);
+
+impl Simplex {
+    /// The vertices, as the judged complex lists them.
+    pub fn vertices(&self) -> &[u32] {
+        &self.0
+    }
+}
+
+impl<const N: usize> From<[u32; N]> for Simplex {
+    fn from(row: [u32; N]) -> Self {
+        Self(row.to_vec())
+    }
+}
+
+impl fmt::Display for Simplex {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = ["vertex", "edge", "facet", "cell"][self.0.len().clamp(1, 4) - 1];
+        write!(f, "{name} {:?}", self.0)
+    }
+}
+
+/// What is wrong with a complex: the rule that is broken, the simplex that breaks it, and the exact
+/// values that show it.
+///
+/// Serialized with the rule as `"rule"`, exact values as text.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "rule", rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Finding {
+    /// A vertex is no input point.
+    Index {
+        /// The row.
+        simplex: Simplex,
+        /// How many input points there are.
+        points: usize,
+    },
+    /// A row names a point twice.
+    RepeatedVertex {
+        /// The row.
+        simplex: Simplex,
+    },
+    /// A simplex is listed twice.
+    RepeatedSimplex {
+        /// The simplex.
+        simplex: Simplex,
+    },
+    /// A face of a listed simplex is not listed.
+    MissingFace {
+        /// The face.
+        face: Simplex,
+        /// A simplex that has it.
+        of: Simplex,
+    },
+    /// A simplex is the face of no cell, and the complex claims to be a triangulation.
+    Stray {
+        /// The simplex.
+        simplex: Simplex,
+    },
+    /// A whole triangulation has no cells.
+    NoCells,
+    /// A cell is not positively oriented, or flat.
+    Orientation {
+        /// The cell.
+        cell: Simplex,
+        /// det(b−a, c−a, d−a), which must be positive.
+        six_volumes: Exact,
+    },
+    /// A facet lies between more than two cells.
+    Crowded {
+        /// The facet.
+        facet: Simplex,
+        /// The cells that have it.
+        cells: Vec<Simplex>,
+    },
+    /// Two cells lie on the same side of the facet they share.
+    Overlap {
+        /// The facet.
+        facet: Simplex,
+        /// The cells.
+        cells: [Simplex; 2],
+    },
+    /// A point refutes a cell: it is inside the cell's orthogonal sphere.
+    NotRegular {
+        /// The cell.
+        cell: Simplex,
+        /// The point.
+        point: u32,
+        /// |point − centre|² − R² − ω of the point; zero when the perturbation decides.
+        power: Exact,
+    },
+    /// An edge of the hull is not between two facets of the hull.
+    HullEdge {
+        /// The edge.
+        edge: Simplex,
+        /// How many facets with only one cell it has.
+        facets: usize,
+    },
+    /// The hull bends inwards between two of its facets.
+    HullBends {
+        /// A facet of the hull, counter-clockwise seen from outside.
+        facet: Simplex,
+        /// The vertex of the neighbouring facet that is outside it.
+        point: u32,
+        /// Six times the volume between facet and point, which must not be positive.
+        six_volumes: Exact,
+    },
+    /// The hull does not go around the first cell exactly once.
+    HullWraps {
+        /// The first facet of the hull.
+        first: Simplex,
+        /// A facet that does not see the first cell's centroid from outside, or that lies in the same direction
+        /// from it as the first facet.
+        facet: Simplex,
+    },
+    /// The volumes of the cells do not add up to the volume that the hull encloses.
+    Volume {
+        /// Six times the cells' volume.
+        cells: Exact,
+        /// Six times the hull's volume.
+        hull: Exact,
+    },
+    /// A class is not what the definition says.
+    Class {
+        /// The simplex.
+        simplex: Simplex,
+        /// The class it was given.
+        given: Class,
+        /// The class it has.
+        expected: Class,
+        /// The squared radius of its smallest orthogonal sphere; none for a flat simplex.
+        radius_squared: Option<Exact>,
+        /// A point strictly inside that sphere, if this is what keeps the simplex out, and its
+        /// |point − centre|² − R² − ω.
+        refuted_by: Option<(u32, Exact)>,
+    },
+    /// A facet on the boundary turns clockwise seen from outside the shape.
+    Winding {
+        /// The facet.
+        facet: Simplex,
+        /// The vertex of the shape's cell beside it, which must lie behind the facet.
+        behind: u32,
+    },
+    /// A point that is no vertex is not hidden: it refutes the cell it lies in.
+    NotHidden {
+        /// The point.
+        point: u32,
+        /// The cell.
+        cell: Simplex,
+        /// |point − centre|² − R² − ω of the point; zero when the perturbation decides.
+        power: Exact,
+    },
+    /// A point that is no vertex lies outside the hull.
+    OutsideHull {
+        /// The point.
+        point: u32,
+        /// The facet of the hull that it is outside of.
+        facet: Simplex,
+        /// Six times the volume between them.
+        six_volumes: Exact,
+    },
+    /// All faces of a cell are listed, and the definition has it, but it is not listed. It is
+    /// judged as if it were, and what follows from its absence is not reported.
+    MissingCell {
+        /// The cell, positively oriented.
+        cell: Simplex,
+        /// The class it has.
+        class: Class,
+        /// The squared radius of its orthogonal sphere.
+        radius_squared: Exact,
+    },
+    /// A point is in the shape by itself, with no other point inside or on its sphere, but it is
+    /// not listed as a vertex.
+    MissingVertex {
+        /// The point.
+        point: u32,
+        /// The squared radius of its sphere, at most α.
+        radius_squared: Exact,
+    },
+    /// A point is neither vertex nor listed as hidden or duplicate.
+    Unaccounted {
+        /// The point.
+        point: u32,
+    },
+    /// A point is listed as hidden, and also as a vertex or a duplicate, or it does not exist.
+    NotOnlyHidden {
+        /// The point.
+        point: u32,
+    },
+    /// A point at the place of another is accounted for wrongly.
+    Duplicate {
+        /// The point.
+        point: u32,
+        /// The point listed as staying in its place, if any.
+        given: Option<u32>,
+        /// The point that stays: the heaviest, of equal weights the first; none if the point
+        /// itself does.
+        expected: Option<u32>,
+    },
+    /// A point that gives way to a heavier or earlier one at its place is a vertex.
+    DuplicateVertex {
+        /// The vertex.
+        point: u32,
+        /// The point that stays in its place.
+        stays: u32,
+    },
+}
+
+impl Finding {
+    /// The simplex whose class or winding is wrong.
+    pub(super) fn judged_class(&self) -> Option<&Simplex> {
+        match self {
+            Self::Class { simplex, .. } | Self::Winding { facet: simplex, .. } => Some(simplex),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Cells that are not listed though all their faces are.
+
+use rayon::prelude::*;
+
+use super::emptiness::Emptiness;
+use super::index::NONE;
+use super::structure::Structure;
+use super::{Finding, Points};
+use crate::canonical::{outward_facets, smallest_even, sort, sorted};
+use crate::exact::{in_conflict, orientation, radius, radius_value};
+use crate::{Alpha, Class, Complex};
+
+/// The cells that fill gaps between four listed facets, positively oriented, with their classes.
+///
+/// A gap is bounded by facets that lack a cell on its side. Of a whole triangulation its cell must
+/// not be refuted by the neighbours' vertices; of a shape alone it must fit α, and no point nearby
+/// may refute it. On a tied sphere the perturbation decides.
+pub(super) fn missing_cells(
+    structure: &Structure,
+    points: Points,
+    alpha: Alpha,
+    emptiness: Option<&Emptiness>,
+) -> Vec<([u32; 4], Class)> {
+    let facets = structure.complex.facets.rows();
+    let open = |facet: u32| facet != NONE && structure.sides[facet as usize][1] == NONE;
+    let open_rows = || (0..facets.len() as u32).into_par_iter().filter(|&facet| open(facet));
+    // The open facets around each edge, by the vertex opposite.
+    let edges = |facet: u32| {
+        let [a, b, c] = sorted(facets[facet as usize]);
+        [([a, b], c), ([a, c], b), ([b, c], a)]
+    };
+    let mut around: Vec<([u32; 2], u32)> = open_rows().flat_map_iter(edges).collect();
+    around.par_sort_unstable();
+    let apexes = |edge: [u32; 2]| {
+        let from = around.partition_point(|other| other.0 < edge);
+        &around[from..][..around[from..].partition_point(|other| other.0 == edge)]
+    };
+    let gaps = |facet: u32| {
+        let [a, b, c] = sorted(facets[facet as usize]);
+        let sides = [[a, b], [a, c], [b, c]].map(apexes);
+        let fewest = sides.into_iter().min_by_key(|apexes| apexes.len()).expect("three edges");
+        // Each gap is seen from the facet without its largest vertex.
+        fewest.iter().filter(move |(_, d)| *d > c).filter_map(move |&(_, d)| {
+            let others = [[a, b, d], [a, c, d], [b, c, d]].map(|facet| structure.facets.row(facet));
+            let gap = others.into_iter().all(open) && structure.cells.row([a, b, c, d]) == NONE;
+            let rows = [facet, others[0], others[1], others[2]];
+            gap.then(|| judge(structure, points, alpha, emptiness, [a, b, c, d], rows)).flatten()
+        })
+    };
+    open_rows().flat_map_iter(gaps).collect()
+}
+
+/// The cell of a gap and its class, if the definition has it.
+fn judge(
+    structure: &Structure,
+    points: Points,
+    alpha: Alpha,
+    emptiness: Option<&Emptiness>,
+    [a, b, c, d]: [u32; 4],
+    facets: [u32; 4],
+) -> Option<([u32; 4], Class)> {
+    let [p, q, r, s] = points.places([a, b, c, d]);
+    let cell = match orientation(p, q, r, s) {
+        std::cmp::Ordering::Greater => [a, b, c, d],
+        std::cmp::Ordering::Less => [a, b, d, c],
+        std::cmp::Ordering::Equal => return None,
+    };
+    let corners = points.at(cell);
+    let sides = outward_facets(cell).map(|facet| (sorted(facet), smallest_even(facet)));
+    for half in facets.iter().flat_map(|&facet| structure.halves(facet as usize)) {
+        let outward = structure.outward(half);
+        let same_side = sides.contains(&(sorted(outward), smallest_even(outward)));
+        if same_side || in_conflict(corners.each_ref(), &points.get(structure.apex(half))) {
+            return None;
+        }
+    }
+    let fits = radius(corners.each_ref(), alpha).is_le();
+    let missing = emptiness.is_none_or(|near| fits && near.refuter_of_cell(cell).is_none());
+    missing.then_some((cell, if fits { Class::Interior } else { Class::Exterior }))
+}
+
+/// The complex with these cells.
+pub(super) fn filled(complex: &Complex, missing: &[([u32; 4], Class)]) -> Complex {
+    let mut filled = complex.clone();
+    for &(cell, class) in missing {
+        filled.cells.push(smallest_even(cell), class);
+    }
+    sort(&mut filled);
+    filled
+}
+
+/// One finding for each missing cell.
+pub(super) fn findings(missing: &[([u32; 4], Class)], points: Points) -> Vec<Finding> {
+    let finding = |&(cell, class): &([u32; 4], Class)| Finding::MissingCell {
+        cell: smallest_even(cell).into(),
+        class,
+        radius_squared: radius_value(points.at(cell).each_ref()),
+    };
+    missing.iter().map(finding).collect()
+}

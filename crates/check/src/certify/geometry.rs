@@ -1,0 +1,53 @@
+//! Rules on cells and on pairs of neighbours.
+
+use rayon::prelude::*;
+
+use super::structure::{Half, Structure};
+use super::{Finding, Points};
+use crate::exact::{in_conflict, orientation, power_value, six_volume};
+
+/// Each cell is positively oriented.
+pub(super) fn orientations(cells: &[[u32; 4]], points: Points) -> Vec<Finding> {
+    let judge = |cell: &[u32; 4]| {
+        let corners = points.at(*cell);
+        let [a, b, c, d] = corners.map(|p| p.position);
+        (!orientation(a, b, c, d).is_gt()).then(|| Finding::Orientation {
+            cell: (*cell).into(),
+            six_volumes: six_volume(corners.each_ref()),
+        })
+    };
+    cells.par_iter().filter_map(judge).collect()
+}
+
+/// The cells on a facet are on different sides of it, and neither is refuted by the other's
+/// vertex. Cells must be positively oriented.
+///
+/// Over a convex domain this proves that the whole triangulation is regular: the lifted cells
+/// then make a function that is convex across every facet, hence convex.
+pub(super) fn neighbours(structure: &Structure, points: Points) -> Vec<Finding> {
+    let judge = |facet: usize| {
+        let mut halves = structure.halves(facet);
+        let (one, other) = (halves.next()?, halves.next()?);
+        overlap(structure, one, other).or_else(|| refuted(structure, points, one, other))
+    };
+    (0..structure.sides.len()).into_par_iter().filter_map(judge).collect()
+}
+
+fn overlap(structure: &Structure, one: Half, other: Half) -> Option<Finding> {
+    let [a, b, c] = structure.outward(one);
+    // Seen from the two sides, a facet turns the two ways.
+    let same_turn = [[a, b, c], [b, c, a], [c, a, b]].contains(&structure.outward(other));
+    let cell = |half: Half| structure.complex.cells.rows()[half.cell].into();
+    same_turn.then(|| Finding::Overlap { facet: [a, b, c].into(), cells: [cell(one), cell(other)] })
+}
+
+fn refuted(structure: &Structure, points: Points, one: Half, other: Half) -> Option<Finding> {
+    let cell = structure.complex.cells.rows()[one.cell];
+    let point = structure.apex(other);
+    let (corners, q) = (points.at(cell), points.get(point));
+    in_conflict(corners.each_ref(), &q).then(|| Finding::NotRegular {
+        cell: cell.into(),
+        point,
+        power: power_value(corners.each_ref(), &q),
+    })
+}

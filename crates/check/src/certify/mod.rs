@@ -1,0 +1,24 @@
+//! Certification: judging a complex that some engine or program made, without making one.
+
+mod certificate;
+mod claim;
+mod classes;
+mod emptiness;
+mod faces;
+mod finding;
+mod gaps;
+mod geometry;
+mod hull;
+mod index;
+mod message;
+mod near;
+mod places;
+mod points;
+mod rules;
+mod structure;
+
+use points::Points;
+
+pub use certificate::{Certificate, CertifyError, NotJudged};
+pub use claim::{Claim, Extent};
+pub use finding::{Finding, Simplex};

@@ -1,0 +1,138 @@
+use std::collections::BTreeSet;
+
+use rayon::prelude::*;
+
+use super::index::{Index, NONE};
+use super::{Finding, Points};
+use crate::Complex;
+use crate::canonical::outward_facets;
+
+/// How the listed simplices hang together.
+pub(super) struct Structure<'a> {
+    pub complex: &'a Complex,
+    pub cells: Index<4>,
+    pub facets: Index<3>,
+    pub edges: Index<2>,
+    pub vertices: Index<1>,
+    /// For each facet, the sides that cells have on it: 4 · cell + the number of the opposite
+    /// vertex, ascending; [`NONE`] where there is none. Of a crowded facet the first two.
+    pub sides: Vec<[u32; 2]>,
+    /// The rows of each cell's facets, opposite to its vertices.
+    pub cell_facets: Vec<[u32; 4]>,
+}
+
+/// A cell's side on a facet.
+#[derive(Clone, Copy)]
+pub(super) struct Half {
+    pub cell: usize,
+    /// Which vertex of the cell is opposite.
+    pub opposite: usize,
+}
+
+impl<'a> Structure<'a> {
+    /// What that of a complex takes, besides the complex.
+    pub(super) fn bytes(complex: &Complex) -> usize {
+        let cell = size_of::<([u32; 4], u32)>() + size_of::<[u32; 4]>();
+        let facet = size_of::<([u32; 3], u32)>() + size_of::<[u32; 2]>();
+        cell * complex.cells.len()
+            + facet * complex.facets.len()
+            + size_of::<([u32; 2], u32)>() * complex.edges.len()
+            + size_of::<([u32; 1], u32)>() * complex.vertices.len()
+    }
+
+    /// Links cells by their facets. Vertices of all rows must be valid.
+    pub(super) fn new(complex: &'a Complex, points: Points) -> (Self, Vec<Finding>) {
+        let n = points.len();
+        let (cell_index, mut findings) = Index::new(complex.cells.rows(), n);
+        let (facets, found) = Index::new(complex.facets.rows(), n);
+        findings.extend(found);
+        let (edges, found) = Index::new(complex.edges.rows(), n);
+        findings.extend(found);
+        let (vertices, found) = Index::new(complex.vertices.rows(), n);
+        findings.extend(found);
+
+        let cells = complex.cells.rows();
+        let cell_facets: Vec<[u32; 4]> = cells
+            .par_iter()
+            .map(|cell| outward_facets(*cell).map(|facet| facets.row(facet)))
+            .collect();
+        let mut crowded = BTreeSet::new();
+        let mut sides = vec![[NONE; 2]; complex.facets.len()];
+        for (cell, rows) in cell_facets.iter().enumerate() {
+            for (opposite, &row) in rows.iter().enumerate() {
+                let half = 4 * cell as u32 + opposite as u32;
+                match sides.get_mut(row as usize) {
+                    Some([first, _]) if *first == NONE => *first = half,
+                    Some([_, second]) if *second == NONE => *second = half,
+                    Some(_) => _ = crowded.insert(row),
+                    None => findings.push(Finding::MissingFace {
+                        face: outward_facets(cells[cell])[opposite].into(),
+                        of: cells[cell].into(),
+                    }),
+                }
+            }
+        }
+        findings.extend(crowded.into_iter().map(|row| Finding::Crowded {
+            facet: complex.facets.rows()[row as usize].into(),
+            cells: cells_with(cells, &cell_facets, row),
+        }));
+        let cells = cell_index;
+        (Self { complex, cells, facets, edges, vertices, sides, cell_facets }, findings)
+    }
+
+    /// The cells on a facet, at most two.
+    pub(super) fn halves(&self, facet: usize) -> impl Iterator<Item = Half> + use<> {
+        let present = self.sides[facet].into_iter().filter(|&half| half != NONE);
+        present.map(|half| Half { cell: half as usize / 4, opposite: half as usize % 4 })
+    }
+
+    /// The facets with exactly one cell, counter-clockwise seen from outside.
+    pub(super) fn hull(&self) -> Vec<[u32; 3]> {
+        (0..self.sides.len())
+            .into_par_iter()
+            .filter_map(|facet| {
+                let mut halves = self.halves(facet);
+                let half = halves.next()?;
+                halves.next().is_none().then(|| self.outward(half))
+            })
+            .collect()
+    }
+
+    /// The facet of a half, counter-clockwise seen from outside its cell.
+    pub(super) fn outward(&self, half: Half) -> [u32; 3] {
+        outward_facets(self.complex.cells.rows()[half.cell])[half.opposite]
+    }
+
+    /// The vertex of a half's cell that is not on its facet.
+    pub(super) fn apex(&self, half: Half) -> u32 {
+        self.complex.cells.rows()[half.cell][half.opposite]
+    }
+}
+
+fn cells_with(cells: &[[u32; 4]], facets: &[[u32; 4]], row: u32) -> Vec<super::Simplex> {
+    let has = |(_, rows): &(&[u32; 4], &[u32; 4])| rows.contains(&row);
+    cells.iter().zip(facets).filter(has).map(|(cell, _)| (*cell).into()).collect()
+}
+
+/// What is wrong with single rows: vertices that do not exist, or come twice.
+pub(super) fn rows(complex: &Complex, points: usize) -> Vec<Finding> {
+    let mut findings = row_findings(complex.cells.rows(), points);
+    findings.extend(row_findings(complex.facets.rows(), points));
+    findings.extend(row_findings(complex.edges.rows(), points));
+    findings.extend(row_findings(complex.vertices.rows(), points));
+    findings
+}
+
+fn row_findings<const N: usize>(rows: &[[u32; N]], points: usize) -> Vec<Finding> {
+    let judge = |row: &[u32; N]| {
+        let simplex = || (*row).into();
+        if row.iter().any(|&v| v as usize >= points) {
+            Some(Finding::Index { simplex: simplex(), points })
+        } else if (1..N).any(|i| row[..i].contains(&row[i])) {
+            Some(Finding::RepeatedVertex { simplex: simplex() })
+        } else {
+            None
+        }
+    };
+    rows.par_iter().filter_map(judge).collect()
+}

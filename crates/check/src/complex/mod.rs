@@ -1,0 +1,53 @@
+//! Complexes: the plain result type, which engines return, writers write and the checker judges.
+
+mod class;
+mod simplices;
+
+pub use class::{ByClass, Class};
+pub use simplices::{Simplices, SimplicesError};
+
+/// A classified simplicial complex over indexed points.
+///
+/// **Canonical order.** Cells are positively oriented (a, b, c turn counter-clockwise seen
+/// from d: det(b−a, c−a, d−a) > 0) and regular
+/// facets turn counter-clockwise seen from outside; each is written as the lexicographically
+/// smallest even permutation of its vertices. All other simplices are sorted. Rows are in
+/// lexicographic order. So equal complexes are equal byte by byte.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Complex {
+    /// Tetrahedra.
+    pub cells: Simplices<4>,
+    /// Triangles.
+    pub facets: Simplices<3>,
+    /// Edges.
+    pub edges: Simplices<2>,
+    /// Vertices of the triangulation, without the points that are hidden or duplicates.
+    pub vertices: Simplices<1>,
+}
+
+impl Complex {
+    /// Drops exterior simplices.
+    pub fn retain_shape(&mut self) {
+        self.cells.retain_shape();
+        self.facets.retain_shape();
+        self.edges.retain_shape();
+        self.vertices.retain_shape();
+    }
+
+    /// The Euler characteristic of the shape: vertices − edges + facets − cells, without exterior
+    /// simplices.
+    pub fn euler_characteristic(&self) -> i64 {
+        fn inside<const N: usize>(simplices: &Simplices<N>) -> i64 {
+            simplices.counts().in_shape() as i64
+        }
+        inside(&self.vertices) - inside(&self.edges) + inside(&self.facets) - inside(&self.cells)
+    }
+
+    /// Whether any simplex is exterior: the complex then claims to be a whole triangulation.
+    pub(crate) fn lists_exterior(&self) -> bool {
+        self.cells.classes().contains(&Class::Exterior)
+            || self.facets.classes().contains(&Class::Exterior)
+            || self.edges.classes().contains(&Class::Exterior)
+            || self.vertices.classes().contains(&Class::Exterior)
+    }
+}

@@ -1,0 +1,132 @@
+use std::cmp::Ordering;
+use std::ops::Add;
+
+use dashu_int::IBig;
+use dashu_int::ops::Gcd;
+use rayon::prelude::*;
+
+use super::binary::{Binary, Range};
+use super::frame::{cross, dot};
+use super::number::{Number, sign};
+
+/// The integer grid that holds a set of positions: coordinates in units of a power of two.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lattice {
+    exponent: i32,
+    bits: u32,
+}
+
+/// Tetrahedra summed at once, small enough for an `i128` to hold the sum if it holds each.
+const CHUNK: usize = 1 << 12;
+
+impl Lattice {
+    /// The coarsest lattice through all positions, which are finite.
+    pub(crate) fn through(positions: &[[f64; 3]]) -> Self {
+        let mut range = Range::EMPTY;
+        for &x in positions.as_flattened() {
+            range = range.with(Binary::new(x));
+        }
+        let exponent = range.unit().unwrap_or(0);
+        Self { exponent, bits: range.bits(exponent) }
+    }
+
+    /// The lattice's unit of length is two to this power.
+    pub(crate) fn exponent(self) -> i32 {
+        self.exponent
+    }
+
+    /// The exact sum of det(b−a, c−a, d−a) over tetrahedra, in cubed lattice units: six times
+    /// their volume. Cost linear, in parallel.
+    pub(crate) fn six_volumes<F>(self, count: usize, tetrahedron: F) -> IBig
+    where
+        F: Fn(usize) -> [[f64; 3]; 4] + Sync,
+    {
+        // A difference has one digit more than a coordinate, a 3×3 determinant three more still.
+        let fits = 3 * (self.bits + 1) + 3 + CHUNK.ilog2() <= 127;
+        let chunks = (0..count).into_par_iter().step_by(CHUNK);
+        let range = |start: usize| start..(start + CHUNK).min(count);
+        let sums = chunks.map(|start| {
+            if fits {
+                let det = |i| det4(tetrahedron(i).map(|p| self.small(p)));
+                IBig::from(range(start).map(det).sum::<i128>())
+            } else {
+                let det = |i| det4(tetrahedron(i).map(|p| self.big(p)));
+                range(start).map(det).fold(IBig::ZERO, Add::add)
+            }
+        });
+        sums.reduce(|| IBig::ZERO, Add::add)
+    }
+
+    /// The plane through three points that are not on one line, the same for whichever three:
+    /// normal and offset without common factor, the first number that is not zero positive.
+    pub(crate) fn plane(self, triangle: [[f64; 3]; 3]) -> [IBig; 4] {
+        let [a, b, c] = triangle.map(|p| self.big(p));
+        let [x, y, z] = cross(&minus(&b, &a), &minus(&c, &a));
+        let offset = dot(&[x.clone(), y.clone(), z.clone()], &a);
+        let plane = [x, y, z, offset];
+        let numbers = || plane.iter().filter(|number| !number.is_zero());
+        let divisor = numbers().cloned().reduce(|common, number| (&common).gcd(&number).into());
+        let (Some(divisor), Some(first)) = (divisor, numbers().next()) else { return plane };
+        let same_sign = sign(first) == sign(&divisor);
+        let divisor = if same_sign { divisor } else { -divisor };
+        plane.map(|number| number / &divisor)
+    }
+
+    fn small(self, p: [f64; 3]) -> [i128; 3] {
+        p.map(|x| Binary::new(x).small(self.exponent))
+    }
+
+    fn big(self, p: [f64; 3]) -> [IBig; 3] {
+        p.map(|x| Binary::new(x).big(self.exponent))
+    }
+}
+
+fn det4<T: Number>([a, b, c, d]: [[T; 3]; 4]) -> T {
+    dot(&cross(&minus(&b, &a), &minus(&c, &a)), &minus(&d, &a))
+}
+
+fn minus<T: Number>(u: &[T; 3], v: &[T; 3]) -> [T; 3] {
+    std::array::from_fn(|k| u[k].minus(&v[k]))
+}
+
+/// The centroid of a tetrahedron, from which a closed surface is looked at.
+pub(crate) struct Star {
+    lattice: Lattice,
+    /// Twelve times the centroid: an integer, and so is twelve times a triangle's.
+    center: [IBig; 3],
+}
+
+impl Star {
+    /// Looks from the centroid of a positively oriented cell.
+    pub(crate) fn new(lattice: Lattice, cell: [[f64; 3]; 4]) -> Self {
+        let [a, b, c, d] = cell.map(|p| lattice.big(p));
+        let center = std::array::from_fn(|k| (&a[k] + &b[k] + &c[k] + &d[k]) * 3);
+        Self { lattice, center }
+    }
+
+    /// Whether the centre is strictly on the inner side of a triangle that turns
+    /// counter-clockwise seen from outside.
+    pub(crate) fn inside(&self, triangle: [[f64; 3]; 3]) -> bool {
+        let [a, b, c] = triangle.map(|p| self.spoke(p));
+        det3(&a, &b, &c).is_gt()
+    }
+
+    /// Whether the ray from the centre through the centroid of `target` meets `triangle`, borders
+    /// included; the centre must be [inside](Self::inside) both.
+    pub(crate) fn ray_meets(&self, target: [[f64; 3]; 3], triangle: [[f64; 3]; 3]) -> bool {
+        let [a, b, c] = target.map(|p| self.spoke(p));
+        let ray = std::array::from_fn(|k| &a[k] + &b[k] + &c[k]);
+        let [a, b, c] = triangle.map(|p| self.spoke(p));
+        [(&a, &b), (&b, &c), (&c, &a)].iter().all(|(u, v)| det3(&ray, u, v).is_ge())
+    }
+
+    /// From the centre to a point, twelvefold.
+    fn spoke(&self, p: [f64; 3]) -> [IBig; 3] {
+        let p = self.lattice.big(p);
+        std::array::from_fn(|k| &p[k] * 12 - &self.center[k])
+    }
+}
+
+fn det3(u: &[IBig; 3], v: &[IBig; 3], w: &[IBig; 3]) -> Ordering {
+    sign(&dot(&cross(u, v), w))
+}

@@ -1,0 +1,47 @@
+//! An exact checker for weighted alpha shapes and regular triangulations in 3D, in Rust alone.
+//!
+//! [`enumerate`] makes the answer of few points from the definition; [`Claim`] judges any answer,
+//! of any size, by rules that are linear in it; [`compare()`] says how two answers differ;
+//! [`schema`] reads and writes the answers of other programs. Every decision is exact, from the
+//! input doubles on.
+//!
+//! ```
+//! use walpha_check::{Alpha, Claim, Placed, compare, enumerate};
+//!
+//! let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]];
+//! let weights = [0.0; 5];
+//! let alpha = Alpha::from_squared(0.75)?;
+//! let made = enumerate(&positions, &weights, alpha)?;
+//! let right = Placed::new(&positions, &weights, alpha, &made.complex);
+//! assert!(Claim::new(right).is_valid()?);
+//!
+//! // One cell less, and the checker names what is missing.
+//! let mut damaged = made.complex.clone();
+//! damaged.cells = made.complex.cells.clone().into_iter().skip(1).collect();
+//! let wrong = Placed::new(&positions, &weights, alpha, &damaged);
+//! let finding = Claim::new(wrong).first_finding()?.expect("a cell is missing");
+//! assert!(finding.to_string().starts_with("cell [0, 1, 2, 3] is missing"));
+//! assert!(!compare(right, wrong)?.is_equal());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod alpha;
+mod canonical;
+mod certify;
+mod compare;
+mod complex;
+mod enumerate;
+mod exact;
+pub mod npy;
+mod placed;
+pub mod schema;
+
+pub use alpha::{Alpha, AlphaError};
+pub use certify::{Certificate, CertifyError, Claim, Extent, Finding, NotJudged, Simplex};
+pub use compare::{
+    ClassDifference, CompareError, Comparison, Differences, Domain, WeightDifference, compare,
+};
+pub use complex::{ByClass, Class, Complex, Simplices, SimplicesError};
+pub use enumerate::{EnumerateError, Enumeration, enumerate};
+pub use exact::Exact;
+pub use placed::Placed;

@@ -1,0 +1,126 @@
+//! NPY, NumPy's file of one array (versions 1 to 3 of `numpy.lib.format`).
+//!
+//! ```
+//! use walpha_check::npy::Header;
+//!
+//! let mut file = b"\x93NUMPY\x01\x00\x3a\x00".to_vec();
+//! file.extend(b"{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3)}\n");
+//! let header = Header::read(&mut &file[..])?;
+//! assert_eq!((header.descr.as_str(), header.shape), ("<f8", vec![2, 3]));
+//! assert_eq!(header.length, file.len() as u64);
+//! # Ok::<(), walpha_check::npy::NpyError>(())
+//! ```
+
+use std::io::{self, ErrorKind, Read};
+
+/// The first bytes of every NPY file.
+pub const MAGIC: &[u8] = b"\x93NUMPY";
+/// NumPy itself refuses longer headers than this as unsafe.
+const MAX_HEADER: u64 = 10_000;
+
+/// What an NPY file says of its array.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Header {
+    /// The element type as NumPy writes it, such as `<f4` or `|u1`; text without meaning for a
+    /// structured type.
+    pub descr: String,
+    /// The first axis is the fastest in the file.
+    pub fortran: bool,
+    /// Lengths of the axes; empty for a scalar.
+    pub shape: Vec<u64>,
+    /// Bytes of the header; the elements follow.
+    pub length: u64,
+}
+
+/// Why a header cannot be read. The messages continue a sentence that begins with a name.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum NpyError {
+    /// The reader failed.
+    #[error("cannot be read: {0}")]
+    Io(#[source] io::Error),
+    /// The file ends inside the header.
+    #[error("ends inside its NPY header: it is truncated; save it again")]
+    Truncated,
+    /// The first bytes are others.
+    #[error("is no NPY file: it does not begin with \\x93NUMPY")]
+    Magic,
+    /// A version of the format that NumPy does not write.
+    #[error("is NPY version {0}: 1, 2 and 3 are read")]
+    Version(u8),
+    /// A header longer than NumPy accepts.
+    #[error("has an NPY header of {0} bytes: it is damaged")]
+    Length(u64),
+    /// The header is not the dictionary it should be.
+    #[error("has an NPY header that is not understood: {0:?}")]
+    Dictionary(String),
+}
+
+impl Header {
+    /// Reads a header, and leaves the reader at the first element.
+    ///
+    /// # Errors
+    /// [`NpyError`].
+    pub fn read(reader: &mut impl Read) -> Result<Self, NpyError> {
+        let preamble: [u8; 8] = bytes(reader)?;
+        if !preamble.starts_with(MAGIC) {
+            return Err(NpyError::Magic);
+        }
+        let (width, length) = match preamble[6] {
+            1 => (2, u64::from(u16::from_le_bytes(bytes(reader)?))),
+            2 | 3 => (4, u64::from(u32::from_le_bytes(bytes(reader)?))),
+            other => return Err(NpyError::Version(other)),
+        };
+        if length > MAX_HEADER {
+            return Err(NpyError::Length(length));
+        }
+        let mut text = vec![0; length as usize];
+        fill(reader, &mut text)?;
+        let text = String::from_utf8_lossy(&text).into_owned();
+        let Some((descr, fortran, shape)) = dictionary(&text) else {
+            return Err(NpyError::Dictionary(text));
+        };
+        Ok(Self { descr, fortran, shape, length: 8 + width + length })
+    }
+}
+
+fn bytes<const N: usize>(reader: &mut impl Read) -> Result<[u8; N], NpyError> {
+    let mut bytes = [0; N];
+    fill(reader, &mut bytes)?;
+    Ok(bytes)
+}
+
+fn fill(reader: &mut impl Read, bytes: &mut [u8]) -> Result<(), NpyError> {
+    reader.read_exact(bytes).map_err(|error| match error.kind() {
+        ErrorKind::UnexpectedEof => NpyError::Truncated,
+        _ => NpyError::Io(error),
+    })
+}
+
+/// `descr`, `fortran_order` and `shape` of a header such as
+/// `{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4), }`.
+fn dictionary(text: &str) -> Option<(String, bool, Vec<u64>)> {
+    let after = |key: &str| {
+        let at = text.find(&format!("'{key}'"))? + key.len() + 2;
+        Some(text[at..].trim_start().strip_prefix(':')?.trim_start())
+    };
+    let descr = after("descr")?;
+    let descr = match descr.strip_prefix('\'') {
+        Some(quoted) => quoted.split_once('\'')?.0,
+        // A structured type is a list: shown as it is, and refused by whoever wants numbers.
+        None => descr.split_once(']').map_or(descr, |(list, _)| list),
+    };
+    let order = after("fortran_order")?;
+    let fortran = if order.starts_with("True") {
+        true
+    } else if order.starts_with("False") {
+        false
+    } else {
+        return None;
+    };
+    let (tuple, _) = after("shape")?.strip_prefix('(')?.split_once(')')?;
+    let axes = tuple.split(',').map(str::trim).filter(|axis| !axis.is_empty());
+    let shape = axes.map(|axis| axis.trim_end_matches('L').parse().ok()).collect::<Option<_>>()?;
+    Some((descr.to_owned(), fortran, shape))
+}

@@ -1,0 +1,173 @@
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{ComplexFile, PlacedComplex, SchemaError};
+use crate::canonical::{outward_facets, smallest_even, sort, sorted};
+use crate::exact::orientation;
+use crate::{Class, Complex, Simplices};
+
+impl ComplexFile {
+    /// Fills in what is missing, turns cells and regular facets the canonical way, and sorts.
+    /// Flat cells and repeated rows stay, for the checker to find.
+    ///
+    /// # Errors
+    /// Fields that do not pair up, point numbers out of range, no points or simplices at all.
+    pub fn into_complex(self) -> Result<PlacedComplex, SchemaError> {
+        let n = self.points.len();
+        if n == 0 {
+            return Err(SchemaError::NoPoints);
+        }
+        if [
+            self.cells.is_none(),
+            self.facets.is_none(),
+            self.edges.is_none(),
+            self.vertices.is_none(),
+        ] == [true; 4]
+        {
+            return Err(SchemaError::NoSimplices);
+        }
+        let weights = self.weights.unwrap_or_else(|| vec![0.0; n]);
+        paired("weights", weights.len(), "points", n)?;
+        let numbers = self.hidden.iter().flatten();
+        in_range("hidden", numbers, n)?;
+        in_range("duplicates", self.duplicates.iter().flatten().flatten(), n)?;
+
+        let vertices = self.vertices.map(|list| list.into_iter().map(|v| [v]).collect());
+        let given = self.classes;
+        let cells =
+            rows(Names("cells", "classes.cells"), self.cells.or(Some(Vec::new())), given.cells, n)?;
+        let facets = rows(Names("facets", "classes.facets"), self.facets, given.facets, n)?;
+        let edges = rows(Names("edges", "classes.edges"), self.edges, given.edges, n)?;
+        let vertices = rows(Names("vertices", "classes.vertices"), vertices, given.vertices, n)?;
+
+        let cells = settle(cells, |_| Vec::new(), &Simplices::<4>::default());
+        let of_cell = |cell: &[u32; 4]| outward_facets(*cell).to_vec();
+        let facets = settle(facets, of_cell, &cells);
+        let of_facet = |&[a, b, c]: &[u32; 3]| vec![[a, b], [b, c], [a, c]];
+        let edges = settle(edges, of_facet, &facets);
+        let vertices = settle(vertices, |&[a, b]: &[u32; 2]| vec![[a], [b]], &edges);
+        let mut complex = Complex { cells, facets, edges, vertices };
+        turn(&mut complex, &self.points);
+        sort(&mut complex);
+        Ok(PlacedComplex {
+            positions: self.points,
+            weights,
+            alpha: self.alpha,
+            complex,
+            hidden: self.hidden,
+            duplicates: self.duplicates,
+        })
+    }
+}
+
+/// The names of a dimension's fields.
+struct Names(&'static str, &'static str);
+
+/// Listed rows with their classes, as far as the file has them.
+struct Listed<const N: usize> {
+    rows: Option<Vec<[u32; N]>>,
+    classes: Option<Vec<Class>>,
+}
+
+fn rows<const N: usize>(
+    Names(name, of_classes): Names,
+    rows: Option<Vec<[u32; N]>>,
+    classes: Option<Vec<Class>>,
+    points: usize,
+) -> Result<Listed<N>, SchemaError> {
+    in_range(name, rows.iter().flatten().flatten(), points)?;
+    if let Some(classes) = &classes {
+        paired(of_classes, classes.len(), name, rows.as_ref().map_or(0, Vec::len))?;
+    }
+    Ok(Listed { rows, classes })
+}
+
+fn paired(
+    name: &'static str,
+    got: usize,
+    of: &'static str,
+    expected: usize,
+) -> Result<(), SchemaError> {
+    if got == expected { Ok(()) } else { Err(SchemaError::Lengths { name, got, expected, of }) }
+}
+
+fn in_range<'a>(
+    name: &'static str,
+    mut indices: impl Iterator<Item = &'a u32>,
+    points: usize,
+) -> Result<(), SchemaError> {
+    match indices.find(|&&index| index as usize >= points) {
+        Some(&index) => Err(SchemaError::Index { name, index, points }),
+        None => Ok(()),
+    }
+}
+
+/// What the simplices above say of a face: whether any is in the shape, whether all are interior.
+#[derive(Clone, Copy)]
+struct Above {
+    count: usize,
+    in_shape: usize,
+    all_interior: bool,
+}
+
+/// Rows and classes of a dimension, from the file where it has them, from the one above where not.
+fn settle<const N: usize, const M: usize>(
+    listed: Listed<M>,
+    faces: impl Fn(&[u32; N]) -> Vec<[u32; M]>,
+    higher: &Simplices<N>,
+) -> Simplices<M> {
+    let mut above = BTreeMap::<[u32; M], Above>::new();
+    for (row, class) in higher.iter() {
+        for face in faces(row) {
+            let nothing = Above { count: 0, in_shape: 0, all_interior: true };
+            let above = above.entry(sorted(face)).or_insert(nothing);
+            above.count += 1;
+            above.in_shape += usize::from(class != Class::Exterior);
+            above.all_interior &= class == Class::Interior;
+        }
+    }
+    let derived = listed.rows.is_none();
+    let rows = listed
+        .rows
+        .unwrap_or_else(|| BTreeSet::from_iter(above.keys().copied()).into_iter().collect());
+    let implied = |row: &[u32; M]| match above.get(&sorted(*row)) {
+        // Nothing is above a cell.
+        _ if M == 4 => Class::Interior,
+        // A facet has two sides; around an edge or vertex all facets or edges must be interior.
+        Some(above) if above.in_shape > 0 => {
+            let closed = above.all_interior && (M < 3 || above.count == 2);
+            if closed { Class::Interior } else { Class::Regular }
+        }
+        _ if derived => Class::Exterior,
+        _ => Class::Singular,
+    };
+    let classes = listed.classes.unwrap_or_else(|| rows.iter().map(implied).collect());
+    rows.into_iter().zip(classes).collect()
+}
+
+/// Turns cells positive and regular facets outward, and sorts the vertices of other rows.
+fn turn(complex: &mut Complex, points: &[[f64; 3]]) {
+    for cell in complex.cells.rows_mut() {
+        let [a, b, c, d] = cell.map(|v| points[v as usize]);
+        if finite(&[a, b, c, d]) && orientation(a, b, c, d).is_lt() {
+            cell.swap(2, 3);
+        }
+        *cell = smallest_even(*cell);
+    }
+    let mut outward = BTreeMap::new();
+    for cell in complex.cells.of(Class::Interior) {
+        outward.extend(outward_facets(*cell).map(|facet| (sorted(facet), smallest_even(facet))));
+    }
+    let facets = std::mem::take(&mut complex.facets).into_iter();
+    let turned = facets.map(|(facet, class)| {
+        let key = sorted(facet);
+        let regular = class == Class::Regular;
+        (outward.get(&key).copied().filter(|_| regular).unwrap_or(key), class)
+    });
+    complex.facets = turned.collect();
+    complex.edges.rows_mut().iter_mut().for_each(|edge| *edge = sorted(*edge));
+}
+
+/// Coordinates that are not finite are the checker's to find.
+fn finite(places: &[[f64; 3]]) -> bool {
+    places.as_flattened().iter().all(|x| x.is_finite())
+}

@@ -1,0 +1,28 @@
+use std::io::{BufReader, Read, Write};
+
+use super::{ComplexFile, SchemaError};
+
+impl ComplexFile {
+    /// Reads JSON.
+    ///
+    /// # Errors
+    /// [`SchemaError::Json`] with line and column, [`SchemaError::Io`] if `reader` fails.
+    pub fn read_json(reader: impl Read) -> Result<Self, SchemaError> {
+        Ok(serde_json::from_reader(BufReader::new(reader))?)
+    }
+
+    /// Writes JSON, in one line.
+    ///
+    /// # Errors
+    /// [`SchemaError::Io`] if `writer` fails.
+    pub fn write_json(&self, writer: impl Write) -> Result<(), SchemaError> {
+        Ok(serde_json::to_writer(writer, self)?)
+    }
+}
+
+impl From<serde_json::Error> for SchemaError {
+    fn from(error: serde_json::Error) -> Self {
+        // What the system said stays what it is: a pipe may be broken.
+        if error.is_io() { Self::Io(error.into()) } else { Self::Json(Box::new(error)) }
+    }
+}

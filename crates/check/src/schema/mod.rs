@@ -1,0 +1,162 @@
+//! A small file format for complexes, so that any program's can be judged and compared.
+//!
+//! In JSON:
+//!
+//! ```json
+//! { "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+//!   "weights": [0, 0, 0, 0],
+//!   "alpha": 0.75,
+//!   "cells": [[0, 1, 2, 3]],
+//!   "facets": [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]],
+//!   "edges": [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]],
+//!   "vertices": [0, 1, 2, 3],
+//!   "classes": { "cells": ["interior"] },
+//!   "hidden": [],
+//!   "duplicates": [] }
+//! ```
+//!
+//! - `points` are needed, unless they come in a file of their own (`--points`); `alpha` is needed: a
+//!   squared length, a number or `"inf"` or `"-inf"`.
+//! - `weights` are power weights, 0 where missing. An unweighted complex whose radii are called
+//!   r has α = r².
+//! - Simplices are rows of point numbers from 0, in any order and winding. A dimension that is
+//!   missing is made of the faces of the one above it.
+//! - `classes` (`exterior`, `interior`, `regular`, `singular`) belong to the rows of a dimension.
+//!   Where they are missing, all listed simplices are taken to be in the shape, and have the
+//!   classes that follow from that: a facet between two cells is interior, beside one regular,
+//!   beside none singular, and so on down.
+//! - `hidden` lists points that are no vertices, `duplicates` pairs (went, stayed) of points at one
+//!   place; both may be missing.
+//! - `info` is free for whatever the writer wants to say.
+//!
+//! In NPZ the same names are arrays: `points` n×3, `weights` n, `alpha` a scalar, `cells` m×4,
+//! `facets` m×3, `edges` m×2, `vertices` m, `hidden` m, `duplicates` m×2, of any integer or
+//! floating type; classes are arrays `cell_classes`, `facet_classes`, `edge_classes` and
+//! `vertex_classes` of the numbers 0 exterior, 1 interior, 2 regular, 3 singular. Write it with
+//! `numpy.savez` or `numpy.savez_compressed`.
+
+mod build;
+mod error;
+#[cfg(feature = "json")]
+mod json;
+#[cfg(feature = "npz")]
+mod npz;
+#[cfg(feature = "npz")]
+mod numbers;
+mod open;
+mod placed;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Alpha, Claim, Class, Placed, Simplices};
+
+pub use error::SchemaError;
+pub use placed::PlacedComplex;
+
+/// A complex as a file holds it; see the [module](self) for the meaning of the fields.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct ComplexFile {
+    /// x, y, z of each point.
+    #[serde(default)]
+    pub points: Vec<[f64; 3]>,
+    /// Power weights, squared lengths; all 0 if missing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights: Option<Vec<f64>>,
+    /// α.
+    pub alpha: Alpha,
+    /// Tetrahedra.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cells: Option<Vec<[u32; 4]>>,
+    /// Triangles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub facets: Option<Vec<[u32; 3]>>,
+    /// Edges.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub edges: Option<Vec<[u32; 2]>>,
+    /// Vertices.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vertices: Option<Vec<u32>>,
+    /// Classes of the simplices listed.
+    #[serde(default, skip_serializing_if = "Classes::is_empty")]
+    pub classes: Classes,
+    /// Points that are no vertices.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hidden: Option<Vec<u32>>,
+    /// Pairs (went, stayed) of points at one place.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duplicates: Option<Vec<[u32; 2]>>,
+    /// Whatever the writer wants to say.
+    #[cfg(feature = "json")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub info: Option<serde_json::Value>,
+}
+
+/// Classes by dimension, as many as simplices where present.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Classes {
+    /// Of the cells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cells: Option<Vec<Class>>,
+    /// Of the facets.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub facets: Option<Vec<Class>>,
+    /// Of the edges.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub edges: Option<Vec<Class>>,
+    /// Of the vertices.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vertices: Option<Vec<Class>>,
+}
+
+impl Classes {
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl ComplexFile {
+    /// The file of a complex with its points, and what it claims of hidden points and duplicates.
+    pub fn new(claim: Claim) -> Self {
+        fn classes<const N: usize>(simplices: &Simplices<N>) -> Option<Vec<Class>> {
+            Some(simplices.classes().to_vec())
+        }
+        let Placed { positions, weights, alpha, complex } = claim.placed;
+        Self {
+            weights: Some(weights.to_vec()),
+            cells: Some(complex.cells.rows().to_vec()),
+            facets: Some(complex.facets.rows().to_vec()),
+            edges: Some(complex.edges.rows().to_vec()),
+            vertices: Some(complex.vertices.rows().as_flattened().to_vec()),
+            classes: Classes {
+                cells: classes(&complex.cells),
+                facets: classes(&complex.facets),
+                edges: classes(&complex.edges),
+                vertices: classes(&complex.vertices),
+            },
+            hidden: claim.hidden.map(<[_]>::to_vec),
+            duplicates: claim.duplicates.map(<[_]>::to_vec),
+            ..Self::of_points(positions.to_vec(), alpha)
+        }
+    }
+
+    /// A file of points and α without any simplices, which are yet to be put in.
+    pub fn of_points(points: Vec<[f64; 3]>, alpha: Alpha) -> Self {
+        Self {
+            points,
+            weights: None,
+            alpha,
+            cells: None,
+            facets: None,
+            edges: None,
+            vertices: None,
+            classes: Classes::default(),
+            hidden: None,
+            duplicates: None,
+            #[cfg(feature = "json")]
+            info: None,
+        }
+    }
+}

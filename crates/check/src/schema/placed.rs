@@ -1,0 +1,46 @@
+use crate::{Alpha, Claim, Complex, Placed};
+
+/// A complex with its points, in canonical order, ready to be judged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedComplex {
+    /// x, y, z of each point.
+    pub positions: Vec<[f64; 3]>,
+    /// Power weights.
+    pub weights: Vec<f64>,
+    /// α.
+    pub alpha: Alpha,
+    /// The complex.
+    pub complex: Complex,
+    /// Points listed as hidden, if they are listed.
+    pub hidden: Option<Vec<u32>>,
+    /// Duplicates, if they are listed.
+    pub duplicates: Option<Vec<[u32; 2]>>,
+}
+
+impl PlacedComplex {
+    /// Borrowed, to be compared.
+    pub fn placed(&self) -> Placed<'_> {
+        Placed::new(&self.positions, &self.weights, self.alpha, &self.complex)
+    }
+
+    /// What it claims, to be judged.
+    pub fn claim(&self) -> Claim<'_> {
+        Claim::new(self.placed())
+            .with_hidden(self.hidden.as_deref())
+            .with_duplicates(self.duplicates.as_deref())
+    }
+}
+
+impl From<Claim<'_>> for PlacedComplex {
+    fn from(claim: Claim<'_>) -> Self {
+        let Placed { positions, weights, alpha, complex } = claim.placed;
+        Self {
+            positions: positions.to_vec(),
+            weights: weights.to_vec(),
+            alpha,
+            complex: complex.clone(),
+            hidden: claim.hidden.map(<[_]>::to_vec),
+            duplicates: claim.duplicates.map(<[_]>::to_vec),
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! The command `walpha-check`.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const POINTS: &str = r#""points":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]],"alpha":0.75"#;
+
+/// A folder of its own for each test, below Cargo's for tests.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    for (name, rows) in
+        [("right.json", "[[0,1,2,3]]"), ("wrong.json", "[[0,1,2,3],[0,1,2,3]]"), ("odd.json", "7")]
+    {
+        std::fs::write(folder.join(name), format!("{{{POINTS},\"cells\":{rows}}}")).unwrap();
+    }
+    folder
+}
+
+/// Exit code, standard output and standard error.
+fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_walpha-check"));
+    let output = command.args(arguments).current_dir(folder).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn exit_codes_say_what_was_found() {
+    let folder = folder("exit_codes");
+    for (arguments, code) in [
+        (&["right.json"][..], 0),
+        (&["odd.json"], 1),
+        (&["none.json"], 1),
+        (&["right.csv"], 1),
+        (&[], 2),
+        (&["--no-such-option"], 2),
+        (&["wrong.json"], 3),
+        (&["wrong.json", "right.json"], 3),
+        (&["odd.json", "wrong.json"], 1),
+    ] {
+        let (got, stdout, stderr) = run(&folder, arguments);
+        assert_eq!(got, code, "{arguments:?}\n{stdout}{stderr}");
+    }
+}
+
+#[test]
+fn each_file_is_judged() {
+    let folder = folder("each_file");
+    let (_, stdout, stderr) = run(&folder, &["odd.json", "wrong.json", "right.json"]);
+    assert!(stderr.starts_with("error: \"odd.json\": the complex cannot be read as JSON"));
+    let lines: Vec<&str> = stdout.lines().filter(|line| !line.contains("not judged")).collect();
+    assert_eq!(lines.first(), Some(&"\"wrong.json\": 11 findings"), "{stdout}");
+    assert_eq!(lines[1], "  cell [0, 1, 2, 3] is listed twice");
+    assert_eq!(lines.last(), Some(&"\"right.json\": no findings"));
+}
