@@ -5,27 +5,24 @@
 //! weighted alpha shape of these points is computed exactly: tetrahedra, facets, edges, vertices.
 //! After "Volume Modeling of Scattered Data based on Weighted Alpha Shapes", which uses CGAL, too.
 //!
-//! Each stage is a function from one type to the next:
+//! [`Pipeline`] runs every stage, from a volume to the shape:
 //!
 //! ```
-//! use walpha::points::{difference, select, weigh};
-//! use walpha::shape::ShapeOptions;
-//! use walpha::{Alpha, Gray, HaarOptions, Selection, Units, Weighting, alpha_shape, haar, volume};
+//! use walpha::{Alpha, Class, Gray, Pipeline, Weighting, volume};
 //!
 //! let (volume, _) = volume::sample("sample:phantom@32")?.into_gray(Gray::Automatic)?;
-//! let (smoothed, truncation) = haar::smooth(&volume, &HaarOptions::default())?;
+//! let pipeline = Pipeline::new().weighting(Weighting::MinMax).alpha(Alpha::from_squared(10.0)?);
+//! let model = pipeline.run(&volume)?;
+//!
+//! let truncation = model.origin.truncation.expect("points of a volume have one");
 //! assert!(truncation.rms <= 1.0);
-//!
-//! let differences = difference(&smoothed);
-//! let points = select(&volume, &smoothed, &differences, &Selection::default(), Units::Voxel)?;
-//! let alpha = Alpha::from_squared(10.0)?;
-//! let weighted = weigh(&points, Weighting::MinMax, alpha.squared())?;
-//!
-//! let shape = alpha_shape(weighted, &ShapeOptions::new(alpha))?;
-//! assert!(shape.complex().facets.counts().regular > 0);
-//! assert_eq!(shape.betti().map(|betti| betti.b0), Some(1));
+//! assert!(model.shape.complex().facets.counts()[Class::Regular] > 0);
+//! assert_eq!(model.shape.betti().map(|betti| betti.b0), Some(1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! Each stage is also a function from one type to the next, usable alone: [`haar::smooth`],
+//! [`points::difference`], [`points::select`], [`points::weigh`], [`alpha_shape`].
 //!
 //! α and ω are squared lengths. Points are (x, y, z); volumes are stored `[z, y, x]`. Results are
 //! the same on any number of threads.
@@ -41,6 +38,7 @@ pub mod ladder;
 pub mod memory;
 pub mod near;
 mod number;
+pub mod pipeline;
 pub mod points;
 pub mod progress;
 #[cfg(feature = "render")]
@@ -57,6 +55,7 @@ pub use walpha_check as check;
 
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
 pub use interpolate::Interpolant;
+pub use pipeline::Pipeline;
 pub use points::{Points, PointsError, Selection, SelectionRule, Units, WeightedPoints, Weighting};
 pub use shape::{Alpha, AlphaShape, Balls, Class, Complex, Simplices, alpha_shape};
 pub use volume::{

@@ -7,6 +7,62 @@
 use std::cell::Cell;
 use std::sync::{Mutex, PoisonError};
 
+/// What a command or a [`Pipeline`](crate::Pipeline) does at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Stage {
+    /// Reads its input.
+    Read,
+    /// Transforms, truncates and transforms back.
+    Haar,
+    /// Selects points and gives them weights.
+    Points,
+    /// Finds α.
+    Alpha,
+    /// Computes the shape.
+    Shape,
+    /// Computes all shapes at once.
+    Filtration,
+    /// Counts what each critical α changes.
+    Curve,
+    /// Takes levels from a filtration.
+    Ladder,
+    /// Triangulates the whole volume.
+    Fill,
+    /// Samples the interpolant.
+    Interpolate,
+    /// Judges a complex.
+    Certify,
+    /// Builds a complex from its definition.
+    Enumerate,
+    /// Makes the interactive page.
+    Page,
+    /// Writes its result.
+    Write,
+}
+
+impl Stage {
+    /// A word for it, as reports have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Read => "read",
+            Self::Haar => "haar",
+            Self::Points => "points",
+            Self::Alpha => "alpha",
+            Self::Shape => "shape",
+            Self::Filtration => "filtration",
+            Self::Curve => "curve",
+            Self::Ladder => "ladder",
+            Self::Fill => "fill",
+            Self::Interpolate => "interpolate",
+            Self::Certify => "certify",
+            Self::Enumerate => "enumerate",
+            Self::Page => "page",
+            Self::Write => "write",
+        }
+    }
+}
+
 /// The target of these events.
 pub const TARGET: &str = "walpha::progress";
 

@@ -8,6 +8,7 @@ use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
 use walpha::export::Target;
 use walpha::interpolate::Adaptive;
+use walpha::pipeline::{AlphaRule, Choice, Parameter};
 use walpha::points::Columns;
 use walpha::shape::{Engine, ShapeOptions};
 use walpha::volume::{Dtype, Endian, Nan, RawLayout, ReadOptions, Region};
@@ -17,7 +18,6 @@ use walpha::{
 };
 
 use super::given::{Given, Usage, misused};
-use super::parameter::Parameter;
 
 /// What to read.
 #[derive(Args, Clone)]
@@ -335,13 +335,13 @@ impl SelectArgs {
         }
     }
 
-    /// The goal of adaptive selection, if that is asked for, among so many samples.
-    pub fn adaptive(&self, samples: usize) -> anyhow::Result<Option<Adaptive>> {
+    /// Which samples, of so many, become points.
+    pub fn choice(&self, range: &GrayRange, samples: usize) -> anyhow::Result<Choice> {
         if self.select != SelectArg::Adaptive {
             if self.target_rmse.is_some() {
                 misused!("--target-rmse belongs to --select adaptive: add it, or use --count");
             }
-            return Ok(None);
+            return Ok(Choice::Difference(self.selection(range)));
         }
         if self.threshold.is_some() || self.gray_min.or(self.value_min).is_some() {
             misused!(
@@ -358,29 +358,12 @@ impl SelectArgs {
             SelectionRule::Ratio(ratio) => (ratio * samples as f64).round() as u64,
             SelectionRule::Threshold(_) => unreachable!("refused above"),
         };
-        Ok(Some(Adaptive { count, rmse }))
+        Ok(Choice::Adaptive(Adaptive { count, rmse }))
     }
 
     /// In what coordinates the points are.
     pub fn place(&self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
         self.place.place(volume)
-    }
-}
-
-/// α as it is asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AlphaArg {
-    /// The smallest at which all points are in one solid component.
-    Auto,
-    /// This.
-    Given(Alpha),
-}
-
-impl FromStr for AlphaArg {
-    type Err = anyhow::Error;
-
-    fn from_str(text: &str) -> anyhow::Result<Self> {
-        if text.trim() == "auto" { Ok(Self::Auto) } else { Ok(Self::Given(alpha(text)?)) }
     }
 }
 
@@ -392,7 +375,7 @@ pub struct WeightArgs {
     /// `auto` the smallest α at which all points are in one solid component [default: auto for
     /// scattered points; for a volume 10·h², where h³ is the volume of a voxel].
     #[arg(long, value_name = "A", group = "parameter", allow_negative_numbers = true)]
-    alpha: Option<AlphaArg>,
+    alpha: Option<AlphaRule>,
     /// The parameter as a radius: α = R².
     #[arg(long, value_name = "R", value_parser = alpha_radius, group = "parameter",
           allow_negative_numbers = true)]
@@ -401,29 +384,20 @@ pub struct WeightArgs {
     /// barycentric-n (N times that) or column (from the input) [default: column where the input has
     /// weights, else common=0].
     #[arg(long, value_name = "KIND", allow_hyphen_values = true)]
-    weights: Option<Weighting>,
+    pub weights: Option<Weighting>,
 }
 
 impl WeightArgs {
-    /// α as it is asked for, if it is.
-    pub fn alpha(&self) -> Option<AlphaArg> {
-        self.alpha_radius.map(AlphaArg::Given).or(self.alpha)
+    /// α as it is asked for.
+    pub fn alpha(&self) -> AlphaRule {
+        self.alpha_radius.map(AlphaRule::Given).or(self.alpha).unwrap_or_default()
     }
 
     /// α for work on a volume that makes several sets of points.
     pub fn of_volume(&self, volume: &Volume, units: Units) -> anyhow::Result<Parameter> {
-        match self.alpha() {
-            None => Parameter::of_volume(volume, units),
-            asked => Parameter::given(asked, units.coordinates(volume).unit).ok_or_else(|| {
-                anyhow!("there are several sets of points, each with an `auto` of its own; give α as a number")
-            }),
-        }
-    }
-
-    /// The weights asked for; without a word, those of the input, or else none.
-    pub fn weighting(&self, input_has_weights: bool) -> Weighting {
-        let silent = if input_has_weights { Weighting::Column } else { Weighting::Common(0.0) };
-        self.weights.unwrap_or(silent)
+        self.alpha().of_volume(volume, units)?.ok_or_else(|| {
+            anyhow!("there are several sets of points, each with an `auto` of its own; give α as a number")
+        })
     }
 }
 
@@ -434,7 +408,7 @@ pub struct FrozenArgs {
     /// The α, a squared length, for which weights are computed; they stay the same at every level,
     /// so that levels are nested [default: as --alpha of `walpha shape`].
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
-    alpha_ref: Option<AlphaArg>,
+    alpha_ref: Option<AlphaRule>,
     /// Weights ω (squared lengths): common=C, min-max (eq. 4.1), barycentric (eq. 4.2),
     /// barycentric-n (N times that) or column (from the input) [default: column where the input has
     /// weights, else common=0].
@@ -511,13 +485,8 @@ enum BallsArg {
 }
 
 impl ShapeArgs {
-    /// Whether `--balls radius` is in force, under which α is no squared length.
-    pub fn radii(&self) -> bool {
-        self.balls == BallsArg::Radius
-    }
-
     /// Refuses options that have no use for each other, before the work.
-    pub fn check(&self, alpha: Option<AlphaArg>) -> anyhow::Result<()> {
+    pub fn check(&self, alpha: AlphaRule) -> anyhow::Result<()> {
         if self.engine == EngineArg::Reference && self.blocks.is_some_and(|blocks| blocks.get() > 1)
         {
             misused!(
@@ -525,16 +494,17 @@ impl ShapeArgs {
                  --engine native"
             );
         }
+        // What is found is finite.
         let alpha = match alpha {
-            Some(AlphaArg::Given(alpha)) => alpha,
-            // What is found is finite.
-            Some(AlphaArg::Auto) | None => Alpha::from_squared(0.0)?,
+            AlphaRule::Given(alpha) => alpha,
+            _ => Alpha::from_squared(0.0)?,
         };
-        Ok(self.options(alpha).check().map_err(|error| Usage(error.to_string()))?)
+        let options = ShapeOptions { alpha, ..self.options() };
+        Ok(options.check().map_err(|error| Usage(error.to_string()))?)
     }
 
-    /// The stage's options.
-    pub fn options(&self, alpha: Alpha) -> ShapeOptions {
+    /// The stage's options, at α = ∞.
+    pub fn options(&self) -> ShapeOptions {
         let balls = match self.balls {
             BallsArg::Power => Balls::Power,
             BallsArg::Radius => Balls::Radius,
@@ -545,7 +515,7 @@ impl ShapeArgs {
             EngineArg::Reference => Engine::Reference,
         };
         let Self { exterior, blocks, memory, .. } = *self;
-        ShapeOptions { alpha, balls, engine, exterior, blocks, memory }
+        ShapeOptions { alpha: Alpha::INFINITE, balls, engine, exterior, blocks, memory }
     }
 }
 

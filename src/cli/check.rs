@@ -6,9 +6,9 @@ use std::process::ExitCode;
 use anyhow::bail;
 use clap::{Args, Command};
 use serde::Serialize;
-use walpha::alpha_shape;
 use walpha::check::schema::PlacedComplex;
 use walpha::check::{Certificate, Comparison, Extent, Finding, compare, enumerate};
+use walpha::progress::Stage;
 use walpha::shown::shown;
 
 use super::args::{PipelineArgs, ShapeArgs};
@@ -78,10 +78,10 @@ impl Check {
         }
         let claim = judged.claim();
         let started = std::time::Instant::now();
-        let (mut findings, certificate) = progress.stage("certify", || claim.findings())?;
+        let (mut findings, certificate) = progress.stage(Stage::Certify, || claim.findings())?;
         let seconds = started.elapsed().as_secs_f64();
         let enumeration = if self.enumerate {
-            Some(progress.stage("enumerate", || by_definition(&judged))?)
+            Some(progress.stage(Stage::Enumerate, || by_definition(&judged))?)
         } else {
             None
         };
@@ -121,7 +121,8 @@ impl Check {
             let options = ours.get_arguments().filter(|arg| !arg.is_positional());
             let names: Vec<&str> = options.map(|arg| arg.get_id().as_str()).collect();
             given.refuse(&names, format!("{} is a complex, made already", shown(path)))?;
-            return progress.stage("read", || complex_file::read(path, self.points.as_deref()));
+            return progress
+                .stage(Stage::Read, || complex_file::read(path, self.points.as_deref()));
         }
         if self.points.is_some() {
             misused!(
@@ -129,14 +130,13 @@ impl Check {
                 shown(path)
             );
         }
-        let mut weighed = pipeline::weighted_points(&self.pipeline, progress)?;
-        let alpha = weighed.find_parameter(&self.shape, progress)?.alpha;
-        let mut options = self.shape.options(alpha);
+        let (weighed, _) = pipeline::weighted_points(&self.pipeline, progress)?;
+        let mut options = self.shape.options();
         // The whole triangulation can be judged wholly. Several blocks are judged as they are.
         options.exterior |=
             options.blocks.is_none_or(|blocks| blocks.get() == 1) && options.memory.is_none();
-        let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
-        Ok(PlacedComplex::from(shape.claim()))
+        let model = pipeline::shape(weighed, options, progress)?;
+        Ok(PlacedComplex::from(model.shape.claim()))
     }
 }
 

@@ -8,6 +8,7 @@ use anyhow::{anyhow, bail};
 use serde::Serialize;
 use walpha::export::{Content, NewFolder, Target, write_all};
 use walpha::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
+use walpha::progress::Stage;
 #[cfg(feature = "render")]
 use walpha::render::error_figure;
 use walpha::shown::shown;
@@ -43,7 +44,7 @@ pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Resu
         bail!("{} holds points, and --curve needs a volume", input.input);
     };
     let (volume, units) = select.place(volume)?;
-    let (smoothed, _) = progress.stage("haar", || haar::smooth(&volume, &haar.options()))?;
+    let (smoothed, _) = progress.stage(Stage::Haar, || haar::smooth(&volume, &haar.options()))?;
     let options = CurveOptions {
         counts: counts(&volume, select)?,
         weightings: vec![Weighting::Common(0.0), Weighting::MinMax, Weighting::Barycentric],

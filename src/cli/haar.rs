@@ -7,6 +7,7 @@ use clap::Args;
 use serde::Serialize;
 use walpha::export::{Target, VolumeFormat};
 use walpha::haar::smooth;
+use walpha::progress::Stage;
 
 use super::Global;
 use super::args::{HaarArgs, InputArgs};
@@ -57,10 +58,10 @@ impl Haar {
             bail!("{} holds points; name a volume", self.input.input);
         };
         let options = self.haar.options();
-        let (smoothed, truncation) = progress.stage("haar", || smooth(&volume, &options))?;
+        let (smoothed, truncation) = progress.stage(Stage::Haar, || smooth(&volume, &options))?;
         if let Some((format, target)) = target {
             let smoothed = smoothed.into_values(&written);
-            progress.stage("write", || target.write(|out| format.write(&smoothed, out)))?;
+            progress.stage(Stage::Write, || target.write(|out| format.write(&smoothed, out)))?;
         }
         progress.finish();
         let haar = HaarReport::new(&truncation, &range);

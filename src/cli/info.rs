@@ -5,6 +5,7 @@ use std::path::Path;
 use clap::Args;
 use serde::Serialize;
 use walpha::points::read_points;
+use walpha::progress::Stage;
 use walpha::shown::number;
 use walpha::volume::{self, Series};
 use walpha::{Coordinates, Frame, LengthUnit};
@@ -75,7 +76,7 @@ enum Content {
 impl Info {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let look = || pipeline::with_file(&self.input, |input| self.look(input));
-        let content = Progress::new(global).stage("read", look)?;
+        let content = Progress::new(global).stage(Stage::Read, look)?;
         tell(global, &Facts { schema_version: SCHEMA_VERSION, input: self.input.input, content })
     }
 

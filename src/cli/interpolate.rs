@@ -9,14 +9,16 @@ use clap::Args;
 use serde::Serialize;
 use walpha::export::{Content, Target, VolumeFormat, write_all};
 use walpha::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
-use walpha::{AlphaShape, GrayRange, Units, Volume, alpha_shape};
+use walpha::progress::Stage;
+use walpha::shape::number_or_null_or_name;
+use walpha::{AlphaShape, GrayRange, Units, Volume};
 
 use super::args::{PipelineArgs, ShapeArgs};
 use super::given::misused;
 use super::output::tell;
-use super::pipeline::{VolumeFacts, Weighed};
+use super::pipeline::{Source, Values, VolumeFacts};
 use super::progress::Progress;
-use super::report::{Report, number_or_null_or_name};
+use super::report::Report;
 use super::{Global, curve, pipeline};
 
 /// Interpolate the values of points on their shape, and measure the error.
@@ -126,10 +128,9 @@ struct Original<'a> {
 }
 
 impl<'a> Original<'a> {
-    fn of(volume: Option<&'a Volume>, weighed: &Weighed) -> Option<Self> {
-        let (volume, facts) = volume.zip(weighed.volume.as_ref())?;
+    fn of(Source { volume, facts }: &'a Source) -> Self {
         let VolumeFacts { units, range, written, .. } = *facts;
-        Some(Self { volume, units, range, written })
+        Self { volume, units, range, written }
     }
 }
 
@@ -152,26 +153,29 @@ impl Interpolate {
         };
         let mask = self.mask.as_deref().map(open).transpose()?;
         let mut progress = Progress::new(global);
-        let (mut weighed, volume) = pipeline::points_and_volume(&self.pipeline, &mut progress)?;
-        let alpha = weighed.find_parameter(&self.shape, &mut progress)?.alpha;
-        let original = Original::of(volume.as_ref(), &weighed);
-        let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
+        let (weighed, source) =
+            pipeline::points_and_volume(&self.pipeline, Values::Gray, &mut progress)?;
+        let original = source.as_ref().map(Original::of);
+        let facts = source.as_ref().map(|source| &source.facts);
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, facts);
         let grid = self.grid(original, &weighed.points.positions)?;
-        let options = self.shape.options(alpha);
-        let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
-        report.add_shape(&shape);
-        let sampled = progress.stage("interpolate", || sample(&shape, &grid, original))?;
+        let model = pipeline::shape(weighed, self.shape.options(), &mut progress)?;
+        report.add_model(&model);
+        let shape = model.shape;
+        let sampled = progress.stage(Stage::Interpolate, || sample(&shape, &grid, original))?;
         let on_shape = sampled.resampled.covered();
         let mask = mask.map(|open| anyhow::Ok((open, sampled.resampled.mask()?))).transpose()?;
         let (inside, filled, resampled) = if self.fill {
             let units = original.map_or(Units::Voxel, |original| original.units);
-            let whole = progress.stage("fill", || fill(&shape, volume.as_ref(), units))?;
-            let filled = progress.stage("interpolate", || sample(&whole, &grid, original))?;
+            let whole = progress.stage(Stage::Fill, || {
+                fill(&shape, original.map(|original| original.volume), units)
+            })?;
+            let filled = progress.stage(Stage::Interpolate, || sample(&whole, &grid, original))?;
             (sampled.error, filled.error, filled.resampled)
         } else {
             (sampled.error, None, sampled.resampled)
         };
-        progress.stage("write", || {
+        progress.stage(Stage::Write, || {
             let (mask, inside) = mask.unzip();
             let written = original.map_or(GrayRange::IDENTITY, |original| original.written);
             let values = resampled.into_volume().into_values(&written);

@@ -16,7 +16,6 @@ mod interpolate;
 mod ladder;
 mod man;
 mod output;
-mod parameter;
 #[cfg_attr(not(feature = "render"), path = "picture/absent.rs")]
 mod picture;
 mod pipeline;

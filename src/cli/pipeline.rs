@@ -3,20 +3,18 @@
 use std::fmt::{self, Display};
 use std::path::Path;
 
-use anyhow::{anyhow, bail};
+use anyhow::anyhow;
 use serde::Serialize;
 use walpha::export::{Scratch, Target};
-use walpha::interpolate::adaptive_voxels;
 use walpha::ladder::{Curve, Filtration};
-use walpha::points::{is_point_file, read_points, weigh};
-use walpha::{
-    Alpha, Coordinates, GrayRange, LengthUnit, Points, Selection, Truncation, Units, Volume,
-    WeightedPoints, Weighting, haar, points, volume,
-};
+use walpha::pipeline::{Model, PipelineError, Weighed};
+use walpha::points::{is_point_file, read_points};
+use walpha::progress::Stage;
+use walpha::shape::ShapeOptions;
+use walpha::{Alpha, GrayRange, LengthUnit, Pipeline, Points, Units, Volume, volume};
 
-use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, ShapeArgs, WeightArgs};
-use super::given::{Usage, misused};
-use super::parameter::Parameter;
+use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, WeightArgs};
+use super::given::Usage;
 use super::progress::Progress;
 
 /// What INPUT turned out to be.
@@ -38,7 +36,7 @@ pub struct Grays {
 
 /// Reads INPUT.
 pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> {
-    progress.stage("read", || {
+    progress.stage(Stage::Read, || {
         with_file(args, |input| {
             if is_points(args, input)? {
                 return Ok(Input::Points(read_points(Path::new(input), args.columns())?));
@@ -109,51 +107,15 @@ pub fn is_points(args: &InputArgs, input: &str) -> anyhow::Result<bool> {
     Ok(!volume && is_point_file(Path::new(input))?)
 }
 
-/// Weighted points and what is to be told about them.
-pub struct Weighed {
-    /// With gray levels as values, where they come from a volume.
-    pub points: WeightedPoints,
-    pub weighting: Weighting,
-    /// What the coordinates of the points mean.
-    pub coordinates: Coordinates,
-    pub volume: Option<VolumeFacts>,
-    /// α; none where it is to be looked for, and the weights do not need it.
-    pub parameter: Option<Parameter>,
-}
-
-impl Weighed {
-    /// α, looked for if it was not needed before.
-    pub fn find_parameter(
-        &mut self,
-        shape: &ShapeArgs,
-        progress: &mut Progress,
-    ) -> anyhow::Result<Parameter> {
-        let parameter = match self.parameter {
-            Some(parameter) => parameter,
-            None => Parameter::found(self.points.clone(), self.coordinates.unit, progress)?,
-        };
-        if shape.radii() && parameter.is_found() {
-            misused!(
-                "with --balls radius, α is a radius, and auto finds squared ones; give --alpha A, as \
-                 in --alpha {}",
-                parameter.alpha.squared().abs().sqrt()
-            );
-        }
-        self.parameter = Some(parameter);
-        Ok(parameter)
-    }
-
-    /// The points with the values that are written: those of the file, unless gray levels were asked
-    /// for.
-    pub fn in_values(mut self) -> Self {
-        if let (Some(volume), Some(values)) = (&self.volume, &mut self.points.values) {
-            values.iter_mut().for_each(|value| *value = volume.written.value(*value));
-        }
-        self
-    }
+/// The volume that points come from.
+pub struct Source {
+    /// Gray levels, in the space that the points are in.
+    pub volume: Volume,
+    pub facts: VolumeFacts,
 }
 
 /// What is to be told about a volume.
+#[derive(Clone, Copy)]
 pub struct VolumeFacts {
     pub dims: [usize; 3],
     /// What coordinates are measured in.
@@ -162,44 +124,36 @@ pub struct VolumeFacts {
     pub extent: f64,
     pub range: GrayRange,
     pub written: GrayRange,
-    pub truncation: Truncation,
-    /// Adaptive selection ended before it had as many points as asked for.
-    pub ended: Option<Ended>,
 }
 
-/// Why there are fewer points than asked for.
-#[derive(Clone, Copy, Serialize)]
-pub struct Ended {
-    asked: u64,
-    /// The RMSE that was good enough; 0 where only a perfect interpolant is.
-    rmse: f64,
-}
-
-impl Display for Ended {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { asked, rmse } = self;
-        write!(f, "fewer than {asked}: ")?;
-        match *rmse {
-            0.0 => write!(f, "no sample differs from the interpolant of these any more"),
-            rmse => write!(f, "these reach an RMSE of {rmse} gray levels"),
-        }
-    }
+/// What the values of points are.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Values {
+    /// Gray levels, where they come from a volume.
+    Gray,
+    /// Those that are written: of the file, unless gray levels were asked for.
+    Written,
 }
 
 /// Steps 1 to 7: reads INPUT and makes weighted points of it, with the values that are written.
-pub fn weighted_points(args: &PipelineArgs, progress: &mut Progress) -> anyhow::Result<Weighed> {
-    Ok(points_and_volume(args, progress)?.0.in_values())
-}
-
-/// The same with gray levels, and those of the volume they come from.
-pub fn points_and_volume(
+pub fn weighted_points(
     args: &PipelineArgs,
     progress: &mut Progress,
-) -> anyhow::Result<(Weighed, Option<Volume>)> {
+) -> anyhow::Result<(Weighed, Option<VolumeFacts>)> {
+    let (weighed, source) = points_and_volume(args, Values::Written, progress)?;
+    Ok((weighed, source.map(|source| source.facts)))
+}
+
+/// The same, and the volume they come from.
+pub fn points_and_volume(
+    args: &PipelineArgs,
+    values: Values,
+    progress: &mut Progress,
+) -> anyhow::Result<(Weighed, Option<Source>)> {
     let PipelineArgs { input, haar, select, weights } = args;
     let read = read(input, progress)?;
     read.accepts(input)?;
-    weigh_input(read, haar, select, weights, progress)
+    weigh_input(read, haar, select, weights, values, progress)
 }
 
 /// The same from what was read already.
@@ -208,75 +162,46 @@ pub fn weigh_input(
     haar: &HaarArgs,
     select: &SelectArgs,
     weights: &WeightArgs,
+    values: Values,
     progress: &mut Progress,
-) -> anyhow::Result<(Weighed, Option<Volume>)> {
-    let mut original = None;
-    let mut coordinates = Coordinates::default();
-    let mut parameter = Parameter::given(weights.alpha(), coordinates.unit);
-    let (mut points, volume) = match input {
-        Input::Points(points) => (points, None),
-        Input::Volume(Grays { volume, range, written }) => {
-            let (volume, units) = select.place(volume)?;
-            coordinates = units.coordinates(&volume);
-            parameter = match weights.alpha() {
-                None => Some(Parameter::of_volume(&volume, units)?),
-                asked => Parameter::given(asked, coordinates.unit),
-            };
-            let options = haar.options();
-            let (smoothed, truncation) =
-                progress.stage("haar", || haar::smooth(&volume, &options))?;
-            let (selected, ended) = progress.stage("points", || {
-                selected_points(&volume, &smoothed, &select.selection(&range), select, units)
-            })?;
-            let (dims, extent) = (volume.dims().xyz(), box_volume(&volume, units));
-            let facts = VolumeFacts { dims, units, extent, range, written, truncation, ended };
-            original = Some(volume);
-            (selected, Some(facts))
-        }
-    };
-    let weighting = weights.weighting(points.weights.is_some());
-    let points = progress.stage("points", || {
-        let scattered = points.differences.is_none() && points.values.is_some();
-        if scattered && weighting.needs_differences() {
-            points.differences = Some(points::scattered_difference(&points)?);
-        }
-        anyhow::Ok(points)
-    })?;
-    if parameter.is_none() && weighting.needs_differences() {
-        // What is wrong with the weights is told before the search.
-        weigh(&points, weighting, 0.0)?;
-        parameter = Some(Parameter::found_unweighted(&points, coordinates.unit, progress)?);
+) -> anyhow::Result<(Weighed, Option<Source>)> {
+    let mut pipeline = Pipeline::new().haar(haar.options()).alpha(weights.alpha());
+    if let Some(kind) = weights.weights {
+        pipeline = pipeline.weighting(kind);
     }
-    let alpha = parameter.map_or(0.0, |parameter| parameter.alpha.squared());
-    let points = progress.stage("points", || weigh(&points, weighting, alpha))?;
-    Ok((Weighed { points, weighting, coordinates, volume, parameter }, original))
+    let Grays { volume, range, written } = match input {
+        Input::Points(points) => {
+            let weighed = progress.watch(|hear| pipeline.weighed_points(points, hear))?;
+            return Ok((weighed, None));
+        }
+        Input::Volume(grays) => grays,
+    };
+    let (volume, units) = select.place(volume)?;
+    pipeline = pipeline.units(units).choice(select.choice(&range, volume.dims().samples())?);
+    if values == Values::Written {
+        pipeline = pipeline.values(written);
+    }
+    let weighed = progress.watch(|hear| pipeline.weighed(&volume, hear))?;
+    let (dims, extent) = (volume.dims().xyz(), box_volume(&volume, units));
+    let facts = VolumeFacts { dims, units, extent, range, written };
+    Ok((weighed, Some(Source { volume, facts })))
 }
 
-/// Points as asked for: by differences, or adaptively, where fewer may do.
-fn selected_points(
-    volume: &Volume,
-    smoothed: &Volume,
-    selection: &Selection,
-    select: &SelectArgs,
-    units: Units,
-) -> anyhow::Result<(Points, Option<Ended>)> {
-    let differences = points::difference(smoothed);
-    let Some(goal) = select.adaptive(volume.dims().samples())? else {
-        return Ok((points::select(volume, smoothed, &differences, selection, units)?, None));
-    };
-    if volume.has_missing() {
-        bail!(
-            "--select adaptive interpolates between all samples, and some are missing: give --nan a \
-             value, or omit adaptive"
-        );
-    }
-    let mut voxels = adaptive_voxels(volume, &goal, units)?;
-    voxels.sort_unstable();
-    // With a target alone as many as there are samples may be needed, and none is asked for.
-    let asked = goal.count < volume.dims().samples() as u64;
-    let fewer = asked && (voxels.len() as u64) < goal.count;
-    let ended = fewer.then_some(Ended { asked: goal.count, rmse: goal.rmse });
-    Ok((points::points_at(volume, &differences, &voxels, units), ended))
+/// The shape of weighted points.
+pub fn shape(
+    weighed: Weighed,
+    options: ShapeOptions,
+    progress: &mut Progress,
+) -> anyhow::Result<Model> {
+    let pipeline = Pipeline::new().shape(options);
+    progress.watch(|hear| pipeline.finish(weighed, hear)).map_err(|error| match error {
+        PipelineError::Radii { radius } => Usage(format!(
+            "with --balls radius, α is a radius, and auto finds squared ones; give --alpha A, as in \
+             --alpha {radius}"
+        ))
+        .into(),
+        error => error.into(),
+    })
 }
 
 /// The volume that coverage is a share of.
@@ -304,9 +229,9 @@ impl Display for Domain {
 }
 
 /// The domain of weighted points: that of the grid they come from, or their own box.
-pub fn domain(weighed: &Weighed) -> Domain {
-    let unit = weighed.coordinates.unit;
-    if let Some(volume) = &weighed.volume {
+pub fn domain(weighed: &Weighed, volume: Option<&VolumeFacts>) -> Domain {
+    let unit = weighed.origin.coordinates.unit;
+    if let Some(volume) = volume {
         return Domain { volume: volume.extent, unit, of: "the box of the samples" };
     }
     let extent = |k: usize| {
@@ -320,20 +245,7 @@ pub fn domain(weighed: &Weighed) -> Domain {
 /// The box between the outermost samples.
 fn box_volume(volume: &Volume, units: Units) -> f64 {
     let steps: f64 = volume.dims().xyz().map(|n| (n - 1) as f64).iter().product();
-    steps * cell(volume, units)
-}
-
-/// The volume of a voxel.
-fn cell(volume: &Volume, units: Units) -> f64 {
-    match units {
-        Units::Voxel => 1.0,
-        Units::World => volume.frame().cell(),
-    }
-}
-
-/// The side of a cube as large as a voxel.
-pub fn side(volume: &Volume, units: Units) -> f64 {
-    cell(volume, units).cbrt()
+    steps * units.voxel_volume(volume)
 }
 
 /// Readable critical values, those suggested, and the α that the weights are meant for.

@@ -6,6 +6,7 @@ use anyhow::bail;
 use clap::Args;
 use walpha::export::{Target, UnknownFormat};
 use walpha::points::{write_csv, write_npy};
+use walpha::progress::Stage;
 
 use super::args::PipelineArgs;
 use super::output::tell;
@@ -46,9 +47,9 @@ impl Points {
             }
         };
         let mut progress = Progress::new(global);
-        let weighed = pipeline::weighted_points(&self.pipeline, &mut progress)?;
+        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, &mut progress)?;
         if let Some((target, csv)) = target {
-            progress.stage("write", || {
+            progress.stage(Stage::Write, || {
                 target.write(|out| {
                     if csv {
                         write_csv(&weighed.points, out)
@@ -58,7 +59,7 @@ impl Points {
                 })
             })?;
         }
-        let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         tell(global, &report)

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use tracing::field::{Field, Visit};
 use tracing_subscriber::layer::Context;
+use walpha::progress::Stage;
 
 use super::Global;
 
@@ -24,6 +25,8 @@ const PART: &str = "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left,
 pub struct Progress {
     started: Instant,
     stages: Vec<(&'static str, f64)>,
+    /// What is at work, and since when.
+    running: Option<(Stage, Instant)>,
 }
 
 /// The stage that was announced last, or "".
@@ -43,25 +46,42 @@ impl Progress {
             BAR.set_draw_target(ProgressDrawTarget::stderr());
             BAR.enable_steady_tick(Duration::from_millis(100));
         }
-        Self { started: Instant::now(), stages: Vec::new() }
+        Self { started: Instant::now(), stages: Vec::new(), running: None }
     }
 
-    /// Runs a stage. Calls with the same name add up.
-    pub fn stage<T>(&mut self, name: &'static str, work: impl FnOnce() -> T) -> T {
+    /// Runs a stage. Calls with the same stage add up.
+    pub fn stage<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
+        self.watch(|hear| {
+            hear(stage);
+            work()
+        })
+    }
+
+    /// Runs work that says which stage begins.
+    pub fn watch<T>(&mut self, work: impl FnOnce(&mut dyn FnMut(Stage)) -> T) -> T {
+        let result = work(&mut |stage| self.begin(stage));
+        self.end();
+        result
+    }
+
+    fn begin(&mut self, stage: Stage) {
+        self.end();
         // In this order: each of them draws.
         BAR.set_style(style(STAGE));
-        self.show(name);
+        self.show(stage.name());
         BAR.unset_length();
         BAR.reset();
-        let started = Instant::now();
-        let result = work();
-        let seconds = started.elapsed().as_secs_f64();
+        self.running = Some((stage, Instant::now()));
+    }
+
+    fn end(&mut self) {
+        let Some((stage, started)) = self.running.take() else { return };
+        let (name, seconds) = (stage.name(), started.elapsed().as_secs_f64());
         tracing::debug!(stage = name, seconds);
         match self.stages.iter_mut().find(|stage| stage.0 == name) {
             Some(stage) => stage.1 += seconds,
             None => self.stages.push((name, seconds)),
         }
-        result
     }
 
     /// Shows what is at work, without timing it: a step of the stage before.

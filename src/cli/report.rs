@@ -3,15 +3,16 @@
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
+use walpha::interpolate::Adaptive;
+use walpha::pipeline::{Model, Parameter, Weighed};
 use walpha::points::WeightSummary;
-use walpha::shape::{Betti, ByClass, Component, Cuts, Engine, Void, number_or_name};
+use walpha::shape::{Betti, ByClass, Component, Cuts, Engine, Void};
 use walpha::shown::number;
 use walpha::{AlphaShape, Coordinates, GrayRange, LengthUnit, Truncation, memory};
 
 use super::output::name;
-use super::parameter::Parameter;
-use super::pipeline::{Ended, VolumeFacts, Weighed};
+use super::pipeline::VolumeFacts;
 
 /// Counted up when a field changes its meaning or goes; new fields may come at any time.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -75,6 +76,25 @@ struct PointsReport {
     ended_early: Option<Ended>,
 }
 
+/// Why there are fewer points than asked for.
+#[derive(Clone, Copy, Serialize)]
+struct Ended {
+    asked: u64,
+    /// The RMSE that was good enough; 0 where only a perfect interpolant is.
+    rmse: f64,
+}
+
+impl Display for Ended {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { asked, rmse } = self;
+        write!(f, "fewer than {asked}: ")?;
+        match *rmse {
+            0.0 => write!(f, "no sample differs from the interpolant of these any more"),
+            rmse => write!(f, "these reach an RMSE of {rmse} gray levels"),
+        }
+    }
+}
+
 /// What the weights are.
 #[derive(Serialize)]
 pub struct WeightsReport {
@@ -124,7 +144,8 @@ impl WeightsReport {
     /// The weights of some points.
     pub fn of(weighed: &Weighed) -> Self {
         let WeightSummary { min, mean, max } = weighed.points.summary();
-        let (kind, unit) = (weighed.weighting.to_string(), weighed.coordinates.unit);
+        let origin = weighed.origin;
+        let (kind, unit) = (origin.weighting.to_string(), origin.coordinates.unit);
         Self { kind, min, mean, max, unit }
     }
 }
@@ -160,8 +181,9 @@ impl Display for HaarReport {
 
 impl Report {
     /// What is known before there is a shape.
-    pub fn of_points(name: &str, weighed: &Weighed) -> Self {
-        let volume = weighed.volume.as_ref();
+    pub fn of_points(name: &str, weighed: &Weighed, volume: Option<&VolumeFacts>) -> Self {
+        let origin = weighed.origin;
+        let truncation = origin.truncation.as_ref().zip(volume);
         Self {
             schema_version: SCHEMA_VERSION,
             input: InputReport {
@@ -170,14 +192,16 @@ impl Report {
                 gray_range: volume
                     .map(|VolumeFacts { range: GrayRange { low, high }, .. }| [*low, *high]),
             },
-            coordinates: weighed.coordinates,
-            haar: volume.map(|v| HaarReport::new(&v.truncation, &v.range)),
+            coordinates: origin.coordinates,
+            haar: truncation.map(|(truncation, v)| HaarReport::new(truncation, &v.range)),
             points: PointsReport {
                 selected: weighed.points.len(),
                 duplicates: None,
                 hidden: None,
                 in_shape: None,
-                ended_early: volume.and_then(|v| v.ended),
+                ended_early: origin
+                    .ended
+                    .map(|Adaptive { count, rmse }| Ended { asked: count, rmse }),
             },
             alpha: weighed.parameter,
             weights: WeightsReport::of(weighed),
@@ -191,7 +215,9 @@ impl Report {
     }
 
     /// Adds what the shape is.
-    pub fn add_shape(&mut self, shape: &AlphaShape) {
+    pub fn add_model(&mut self, model: &Model) {
+        let shape = &model.shape;
+        self.alpha = Some(model.parameter);
         let complex = shape.complex();
         self.points.duplicates = Some(shape.duplicates().len());
         self.points.hidden = shape.hidden().map(<[u32]>::len);
@@ -320,16 +346,5 @@ impl Display for Report {
             }
         }
         writeln!(f)
-    }
-}
-
-/// The same where there may be none.
-pub fn number_or_null_or_name<S: Serializer>(
-    number: &Option<f64>,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    match number {
-        Some(number) => number_or_name(number, serializer),
-        None => serializer.serialize_none(),
     }
 }

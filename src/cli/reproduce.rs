@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::Args;
+use walpha::progress::Stage;
 use walpha::reproduce::{File, Report, Subject, page, reproduce};
 use walpha::shown::shown;
 use walpha::volume::{ReadOptions, open};
@@ -43,7 +44,7 @@ impl Reproduce {
         let mut progress = Progress::new(global);
         // Before the long work.
         let mut folder = Folder::open(&self.out, "--out", &["report.html", "report.json"])?;
-        let (name, volume) = progress.stage("read", || self.volume(global))?;
+        let (name, volume) = progress.stage(Stage::Read, || self.volume(global))?;
         let (volume, range) = volume.into_gray(Gray::Automatic)?;
         let date = today();
         let subject = Subject { volume: &volume, range, name: &name, date: &date };
@@ -55,7 +56,7 @@ impl Reproduce {
         });
         let json = serde_json::to_string_pretty(&made.report)? + "\n";
         files.push(File { name: "report.json".into(), bytes: json.clone().into_bytes() });
-        progress.stage("write", || -> anyhow::Result<()> {
+        progress.stage(Stage::Write, || -> anyhow::Result<()> {
             for file in &files {
                 folder.write(&file.name, |out| out.write_all(&file.bytes))?;
             }

@@ -4,8 +4,8 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use walpha::alpha_shape;
 use walpha::export::{Content, ExportOptions, Exporter, Format, Target, UnknownFormat, write_all};
+use walpha::progress::Stage;
 use walpha::shape::Surface;
 use walpha::shown::shown;
 
@@ -109,13 +109,11 @@ impl Shape {
         }
 
         let mut progress = Progress::new(global);
-        let mut weighed = pipeline::weighted_points(&self.pipeline, &mut progress)?;
-        let alpha = weighed.find_parameter(&self.shape, &mut progress)?.alpha;
-        let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
-        let options = self.shape.options(alpha);
-        let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
-        let shape = shape.meaning(weighed.coordinates);
-        report.add_shape(&shape);
+        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, &mut progress)?;
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
+        let model = pipeline::shape(weighed, self.shape.options(), &mut progress)?;
+        report.add_model(&model);
+        let shape = model.shape;
         if self.solid {
             report.add_solid(Surface::solid(&shape).1);
         }
@@ -123,7 +121,7 @@ impl Shape {
             Some(format!("{}: {}", shown(target.path()), exporter.remark(&shape)?))
         };
         let remarks: Vec<String> = targets.iter().filter_map(remark).collect();
-        progress.stage("write", || {
+        progress.stage(Stage::Write, || {
             write_all(targets.into_iter().map(|(target, exporter)| {
                 let shape = &shape;
                 let content = move |out: &mut dyn Write| exporter.write(shape, out);

@@ -10,18 +10,17 @@ use clap::Args;
 use serde::Serialize;
 use walpha::export::{Target, UnknownFormat};
 use walpha::ladder::Filtration;
+use walpha::pipeline::{AlphaRule, Parameter, Weighed};
+use walpha::progress::Stage;
 use walpha::render::{Original, Page, Subject};
 use walpha::shown::{number, shown};
 use walpha::{Alpha, GrayRange};
 
 use super::Global;
-use super::args::{
-    self, AlphaArg, Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs,
-};
+use super::args::{self, Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
 use super::given::misused;
 use super::output::{name, tell};
-use super::parameter::Parameter;
-use super::pipeline::{self, Input, Weighed};
+use super::pipeline::{self, Input, Source, Values, VolumeFacts};
 use super::progress::Progress;
 use super::report::{SCHEMA_VERSION, WeightsReport};
 
@@ -45,7 +44,7 @@ pub struct View {
     /// The α, a squared length, that the page opens at: a number, `inf`, or `auto`, the smallest at
     /// which all points are in one solid component [default: --alpha-ref].
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
-    alpha: Option<AlphaArg>,
+    alpha: Option<AlphaRule>,
     /// Levels of the slider: squared lengths, as in 1,2,5,inf; or auto, for critical values that
     /// each show something else, most where the shape gets its form.
     #[arg(long, value_name = "A,A,…", default_value = "auto", allow_hyphen_values = true)]
@@ -136,35 +135,36 @@ impl View {
         if self.isovalue.is_some() && matches!(read, Input::Points(_)) {
             misused!("--isovalue has no effect: points have no isosurface; omit it");
         }
-        let (weighed, volume) =
-            pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
-        let weighed = weighed.in_values();
-        let unit = weighed.coordinates.unit;
-        let domain = pipeline::domain(&weighed);
+        let (haar, select) = (&self.haar, &self.select);
+        let (weighed, source) =
+            pipeline::weigh_input(read, haar, select, &weights, Values::Written, &mut progress)?;
+        let unit = weighed.origin.coordinates.unit;
+        let facts = source.as_ref().map(|source| &source.facts);
+        let domain = pipeline::domain(&weighed, facts);
         let filtration =
-            progress.stage("filtration", || Filtration::new(weighed.points.clone()))?;
-        let reference = Parameter::of(weighed.parameter, unit, &filtration);
-        let told = self.told(&weighed, reference);
+            progress.stage(Stage::Filtration, || Filtration::new(weighed.points.clone()))?;
+        let found = || Parameter::of_filtration(&filtration, unit);
+        let reference = weighed.parameter.unwrap_or_else(found);
+        let told = self.told(&weighed, facts, reference);
         let opening = match self.alpha {
             None => reference.alpha,
-            asked => Parameter::of(Parameter::given(asked, unit), unit, &filtration).alpha,
+            Some(asked) => asked.given(unit).unwrap_or_else(found).alpha,
         };
-        let facts = weighed.volume.as_ref();
-        let original = volume.as_ref().zip(facts).map(|(volume, facts)| Original {
+        let original = source.as_ref().map(|Source { volume, facts }| Original {
             volume,
             isovalue: self.isovalue.unwrap_or_default().gray(&facts.range),
             units: facts.units,
         });
         let alphas = match &self.alphas {
             Alphas::Given(alphas) => [&alphas[..], self.alpha.map(|_| opening).as_slice()].concat(),
-            Alphas::Auto => progress.stage("curve", || stops(&filtration, opening)),
+            Alphas::Auto => progress.stage(Stage::Curve, || stops(&filtration, opening)),
         };
         let levels = filtration.levels(&alphas);
         if levels.len() > Page::MOST_LEVELS {
             let (levels, most) = (levels.len(), Page::MOST_LEVELS);
             misused!("{levels} levels are too many for a page; give --alphas at most {most}");
         }
-        let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
+        let ladder = progress.stage(Stage::Ladder, || levels.ladder(domain.volume));
         // That level, or the last below it.
         let first = levels.alphas().partition_point(|alpha| *alpha <= opening);
         let title = format!("Alpha shapes of {}", self.input.input);
@@ -184,7 +184,7 @@ impl View {
             first: first.saturating_sub(1),
             original,
         };
-        let page = progress.stage("page", || Page::new(&subject))?;
+        let page = progress.stage(Stage::Page, || Page::new(&subject))?;
         if !global.quiet {
             let size = page.html.len() as f64 / 1e6;
             eprintln!("walpha: {} takes {size:.1} MB", shown(&self.output));
@@ -192,7 +192,7 @@ impl View {
                 eprintln!("walpha: {told}");
             }
         }
-        progress.stage("write", || target.write(|out| out.write_all(page.html.as_bytes())))?;
+        progress.stage(Stage::Write, || target.write(|out| out.write_all(page.html.as_bytes())))?;
         let facts = Facts {
             schema_version: SCHEMA_VERSION,
             input: self.input.input,
@@ -207,16 +207,20 @@ impl View {
     }
 
     /// What the page tells besides the levels' numbers.
-    fn told(&self, weighed: &Weighed, reference: Parameter) -> Vec<(String, String)> {
+    fn told(
+        &self,
+        weighed: &Weighed,
+        volume: Option<&VolumeFacts>,
+        reference: Parameter,
+    ) -> Vec<(String, String)> {
         let mut told = vec![("input".to_owned(), self.input.input.clone())];
-        if let Some(volume) = &weighed.volume {
+        if let Some((volume, t)) = volume.zip(weighed.origin.truncation.as_ref()) {
             let [x, y, z] = volume.dims;
             let (low, high) = (number(volume.range.low), number(volume.range.high));
             told.push((
                 "volume".into(),
                 format!("{x}×{y}×{z} samples, values {low} to {high} are gray 0 to 255"),
             ));
-            let t = &volume.truncation;
             told.push((
                 "Haar".into(),
                 format!(
@@ -226,7 +230,7 @@ impl View {
             ));
         }
         told.push(("points".into(), weighed.points.len().to_string()));
-        told.push(("lengths in".into(), weighed.coordinates.to_string()));
+        told.push(("lengths in".into(), weighed.origin.coordinates.to_string()));
         told.push((
             "weights ω".into(),
             format!("{}, frozen at {reference}", WeightsReport::of(weighed)),

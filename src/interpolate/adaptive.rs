@@ -46,8 +46,8 @@ const FIRST_BATCH: usize = 32;
 /// of threads.
 ///
 /// # Errors
-/// A count below 8 or above the samples, a target that is negative or NaN, or a volume whose
-/// samples lie in one plane.
+/// A count below 8 or above the samples, a target that is negative or NaN, missing samples, or
+/// a volume whose samples lie in one plane.
 pub fn adaptive_voxels(
     volume: &Volume,
     goal: &Adaptive,
@@ -57,6 +57,9 @@ pub fn adaptive_voxels(
     let mut voxels = corners(volume);
     if goal.count < voxels.len().max(8) as u64 || goal.count > available {
         return Err(InterpolateError::Count { asked: goal.count, available });
+    }
+    if volume.has_missing() {
+        return Err(InterpolateError::Missing);
     }
     if goal.rmse.is_nan() || goal.rmse < 0.0 {
         return Err(InterpolateError::Target(goal.rmse));

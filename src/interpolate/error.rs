@@ -22,6 +22,12 @@ pub enum InterpolateError {
         /// Its value.
         value: f64,
     },
+    /// A volume some of whose samples are missing.
+    #[error(
+        "adaptive selection interpolates between all samples, and some are missing: give --nan a value, \
+         or select by difference"
+    )]
+    Missing,
     /// Adaptive selection cannot give this many points.
     #[error(
         "{asked} points cannot be selected adaptively: it starts from the 8 corners of the volume, \

@@ -73,6 +73,14 @@ impl Units {
         }
     }
 
+    /// The volume of a voxel in these units.
+    pub fn voxel_volume(self, volume: &Volume) -> f64 {
+        match self {
+            Self::Voxel => 1.0,
+            Self::World => volume.frame().cell(),
+        }
+    }
+
     /// Where a voxel of a volume, by its index x + X·(y + Y·z), stands in these units.
     pub fn position(self, volume: &Volume, voxel: u32) -> [f64; 3] {
         let [nx, ny, _] = volume.dims().xyz();

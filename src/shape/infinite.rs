@@ -13,6 +13,20 @@ pub fn number_or_name<S: Serializer>(number: &f64, serializer: S) -> Result<S::O
     }
 }
 
+/// The same where there may be no number.
+///
+/// # Errors
+/// Those of the serializer.
+pub fn number_or_null_or_name<S: Serializer>(
+    number: &Option<f64>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match number {
+        Some(number) => number_or_name(number, serializer),
+        None => serializer.serialize_none(),
+    }
+}
+
 /// The same for two numbers.
 pub(crate) fn each_number_or_name<S: Serializer>(
     numbers: &[f64; 2],

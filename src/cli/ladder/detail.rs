@@ -7,18 +7,19 @@ use std::io;
 use anyhow::bail;
 use serde::Serialize;
 use walpha::ladder::focus;
+use walpha::pipeline::Parameter;
 use walpha::points::{Points, Units, difference, select, weigh};
+use walpha::progress::Stage;
 use walpha::shape::{Betti, Measures, ShapeOptions};
 use walpha::{
     Coordinates, GrayRange, HaarOptions, Selection, SelectionRule, Tolerance, Truncation, Volume,
-    alpha_shape, haar,
+    Weighting, alpha_shape, haar,
 };
 
 use super::super::Global;
 use super::super::args::WeightArgs;
 use super::super::folder::Folder;
 use super::super::output::{name, tell};
-use super::super::parameter::Parameter;
 use super::super::pipeline::{Domain, Grays, Input, read};
 use super::super::progress::Progress;
 use super::super::report::SCHEMA_VERSION;
@@ -78,6 +79,7 @@ impl Ladder {
             bail!("levels of detail are made of a volume, and this is a point file; use --alphas");
         };
         let weights = WeightArgs::from(self.weights);
+        let weighting = weights.weights.unwrap_or(Weighting::Common(0.0));
         let (volume, units) = self.select.place(volume)?;
         let parameter = weights.of_volume(&volume, units)?;
         let alpha = parameter.alpha;
@@ -88,7 +90,8 @@ impl Ladder {
             None => None,
             Some(region) => {
                 let wanted = (self.haar.options(), self.select.selection(&range));
-                let points = progress.stage("points", || stages.points(&wanted.0, &wanted.1))?.0;
+                let points =
+                    progress.stage(Stage::Points, || stages.points(&wanted.0, &wanted.1))?.0;
                 if !points.positions.iter().any(|&p| region.contains(p)) {
                     bail!("no point lies in --focus: it is in the units of the points, x first");
                 }
@@ -98,7 +101,7 @@ impl Ladder {
         let mut rows = Vec::new();
         for wanted in self.wanted(&range) {
             let (coarse, truncation) =
-                progress.stage("points", || stages.points(&wanted.haar, &wanted.selection))?;
+                progress.stage(Stage::Points, || stages.points(&wanted.haar, &wanted.selection))?;
             let mut points = match &full {
                 Some((full, region)) => focus(full, &coarse, region),
                 None => coarse,
@@ -106,9 +109,9 @@ impl Ladder {
             if let Some(values) = &mut points.values {
                 values.iter_mut().for_each(|value| *value = written.value(*value));
             }
-            let weighted = weigh(&points, weights.weighting(false), alpha.squared())?;
+            let weighted = weigh(&points, weighting, alpha.squared())?;
             let options = ShapeOptions::new(alpha);
-            let shape = progress.stage("shape", || alpha_shape(weighted, &options))?;
+            let shape = progress.stage(Stage::Shape, || alpha_shape(weighted, &options))?;
             let shape = shape.meaning(coordinates);
             let mut row = Row {
                 points: points.len(),
@@ -123,7 +126,7 @@ impl Ladder {
                 bytes: 0,
                 files: Vec::new(),
             };
-            progress.stage("write", || -> anyhow::Result<()> {
+            progress.stage(Stage::Write, || -> anyhow::Result<()> {
                 for mesh in &meshes {
                     let name = format!("detail-{}.{}", wanted.name, mesh.extension);
                     row.bytes += folder.write(&name, |out| mesh.exporter.write(&shape, out))?;
@@ -141,7 +144,7 @@ impl Ladder {
             input: self.input.input.clone(),
             coordinates,
             alpha: parameter,
-            weights: weights.weighting(false).to_string(),
+            weights: weighting.to_string(),
             domain,
             points_in_region: full.as_ref().map(in_region),
             levels: rows,

@@ -7,11 +7,11 @@ use std::io;
 use serde::Serialize;
 use walpha::Coordinates;
 use walpha::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
+use walpha::pipeline::{Parameter, Weighed};
 use walpha::shape::{Betti, ByClass, Measures, Void, number_or_name};
 
 use super::super::output::name;
-use super::super::parameter::Parameter;
-use super::super::pipeline::{Domain, Weighed};
+use super::super::pipeline::Domain;
 use super::super::report::{SCHEMA_VERSION, WeightsReport};
 
 /// What `walpha ladder` did over α.
@@ -66,7 +66,7 @@ impl Facts {
             points: weighed.points.len(),
             hidden: 0,
             duplicates: 0,
-            coordinates: weighed.coordinates,
+            coordinates: weighed.origin.coordinates,
             alpha_ref,
             weights: WeightsReport::of(weighed),
             domain,

@@ -11,16 +11,18 @@ use anyhow::anyhow;
 use clap::Args;
 use walpha::export::{ExportOptions, Exporter, Format};
 use walpha::ladder::{Filtration, Ladder as Levels, Level, Region};
+use walpha::pipeline::Parameter;
+use walpha::progress::Stage;
 #[cfg(feature = "render")]
 use walpha::render::ladder_figure;
 
+use super::Global;
 use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
 use super::folder::Folder;
 use super::given::misused;
 use super::output::tell;
-use super::parameter::Parameter;
+use super::pipeline::{self, Values};
 use super::progress::Progress;
-use super::{Global, pipeline};
 use facts::{Facts, write_levels, write_voids};
 use regions::region;
 
@@ -122,32 +124,34 @@ impl Ladder {
         let weights = WeightArgs::from(self.weights);
         let read = pipeline::read(&self.input, &mut progress)?;
         read.accepts(&self.input)?;
-        let (weighed, _) =
-            pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
-        let weighed = weighed.in_values();
-        let domain = pipeline::domain(&weighed);
+        let (haar, select) = (&self.haar, &self.select);
+        let (weighed, source) =
+            pipeline::weigh_input(read, haar, select, &weights, Values::Written, &mut progress)?;
+        let volume = source.map(|source| source.facts);
+        let domain = pipeline::domain(&weighed, volume.as_ref());
         let filtration =
-            progress.stage("filtration", || Filtration::new(weighed.points.clone()))?;
-        let coordinates = weighed.coordinates;
-        let reference = Parameter::of(weighed.parameter, coordinates.unit, &filtration);
+            progress.stage(Stage::Filtration, || Filtration::new(weighed.points.clone()))?;
+        let coordinates = weighed.origin.coordinates;
+        let found = || Parameter::of_filtration(&filtration, coordinates.unit);
+        let reference = weighed.parameter.unwrap_or_else(found);
         let mut facts = Facts::new(&self.input.input, &weighed, reference, domain);
-        let curve = progress.stage("curve", || filtration.curve());
-        let suggested = progress.stage("curve", || filtration.suggest(&curve));
+        let curve = progress.stage(Stage::Curve, || filtration.curve());
+        let suggested = progress.stage(Stage::Curve, || filtration.suggest(&curve));
         let alphas = match &self.alphas {
             Alphas::Given(alphas) => alphas.clone(),
-            Alphas::Auto => progress.stage("curve", || {
+            Alphas::Auto => progress.stage(Stage::Curve, || {
                 pipeline::readable(&filtration, &curve, READABLE, reference.alpha)
             }),
         };
-        let levels = progress.stage("ladder", || filtration.levels(&alphas));
-        let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
+        let levels = progress.stage(Stage::Ladder, || filtration.levels(&alphas));
+        let ladder = progress.stage(Stage::Ladder, || levels.ladder(domain.volume));
 
         #[cfg(feature = "render")]
         let figure = {
             let title = format!("Ladder of {}, ω frozen", self.input.input);
             ladder_figure(&title, &ladder, &curve, &suggested, domain.volume)?
         };
-        progress.stage("write", || -> anyhow::Result<()> {
+        progress.stage(Stage::Write, || -> anyhow::Result<()> {
             folder.write("ladder.csv", |out| write_levels(&ladder, out))?;
             folder.write("voids.csv", |out| write_voids(&ladder, out))?;
             #[cfg(feature = "render")]

@@ -1,0 +1,33 @@
+use crate::haar::HaarError;
+use crate::interpolate::InterpolateError;
+use crate::points::PointsError;
+use crate::shape::{AlphaError, ShapeError};
+
+/// Why a pipeline gives no shape: what one of its stages refuses, or options that contradict each other.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PipelineError {
+    /// The wavelet stage.
+    #[error(transparent)]
+    Haar(#[from] HaarError),
+    /// Selection or weights.
+    #[error(transparent)]
+    Points(#[from] PointsError),
+    /// Adaptive selection.
+    #[error(transparent)]
+    Interpolate(#[from] InterpolateError),
+    /// The shape.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// A voxel so large that 10 h² is not finite.
+    #[error(transparent)]
+    Alpha(#[from] AlphaError),
+    /// With [`Balls::Radius`](crate::shape::Balls) α is a radius, and the α that was found is a squared one.
+    #[error(
+        "with balls of radius α + ω, α is a radius, and the one found is squared: give α, as in {radius}"
+    )]
+    Radii {
+        /// The radius of the α that was found.
+        radius: f64,
+    },
+}

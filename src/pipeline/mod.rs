@@ -1,0 +1,300 @@
+//! Floor 4: all stages in one call, from a volume or points to the shape. The crate's first page has an example.
+
+mod error;
+mod parameter;
+
+pub use error::PipelineError;
+pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
+
+use crate::haar::{HaarOptions, Truncation, smooth};
+use crate::interpolate::{Adaptive, adaptive_voxels};
+use crate::points::{
+    Points, Selection, Units, WeightedPoints, Weighting, difference, points_at,
+    scattered_difference, select, weigh,
+};
+use crate::progress::Stage;
+use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, alpha_shape};
+use crate::volume::{Coordinates, GrayRange, Volume};
+
+/// Which samples of a volume become points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Choice {
+    /// Those of the largest differences, as in the paper.
+    Difference(Selection),
+    /// Those where the interpolant of the ones before is worst.
+    Adaptive(Adaptive),
+}
+
+impl Default for Choice {
+    fn default() -> Self {
+        Self::Difference(Selection::default())
+    }
+}
+
+/// How a volume or points become a shape: the options of every stage. By default those of the paper, without weights.
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct Pipeline {
+    haar: HaarOptions,
+    choice: Choice,
+    units: Units,
+    values: Option<GrayRange>,
+    weighting: Option<Weighting>,
+    alpha: AlphaRule,
+    shape: ShapeOptions,
+}
+
+/// Weighted points, and how they came about.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Weighed {
+    /// Their values are gray levels, where they come from a volume, or what [`Pipeline::values`] makes of
+    /// these.
+    pub points: WeightedPoints,
+    /// How it all came about.
+    pub origin: Origin,
+    /// α; `None` where it is still to be found ([`Pipeline::find`]), because weights do not need it.
+    pub parameter: Option<Parameter>,
+}
+
+/// What is known of points besides themselves.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Origin {
+    /// What their coordinates mean.
+    pub coordinates: Coordinates,
+    /// Where their weights come from.
+    pub weighting: Weighting,
+    /// What was dropped of the volume they come from.
+    pub truncation: Option<Truncation>,
+    /// Adaptive selection ended before it had as many points as asked for.
+    pub ended: Option<Adaptive>,
+}
+
+/// A shape, and how it came about.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Model {
+    /// The shape; it knows what its coordinates mean.
+    pub shape: AlphaShape,
+    /// The α it is at.
+    pub parameter: Parameter,
+    /// How its points came about.
+    pub origin: Origin,
+}
+
+impl Default for Pipeline {
+    fn default() -> Self {
+        Self {
+            haar: HaarOptions::default(),
+            choice: Choice::default(),
+            units: Units::default(),
+            values: None,
+            weighting: None,
+            alpha: AlphaRule::default(),
+            // Its α is never looked at.
+            shape: ShapeOptions::new(Alpha::INFINITE),
+        }
+    }
+}
+
+impl Pipeline {
+    /// The paper's options.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// How the volume is transformed and truncated.
+    pub fn haar(self, haar: HaarOptions) -> Self {
+        Self { haar, ..self }
+    }
+
+    /// Which samples become points.
+    pub fn choice(self, choice: Choice) -> Self {
+        Self { choice, ..self }
+    }
+
+    /// The coordinates of points: sample indices, the default, or those of the world.
+    pub fn units(self, units: Units) -> Self {
+        Self { units, ..self }
+    }
+
+    /// Gives points the values of the file, of which gray levels 0 to 255 were this range.
+    pub fn values(self, values: GrayRange) -> Self {
+        Self { values: Some(values), ..self }
+    }
+
+    /// Where weights come from. By default a column of the input, or else they are 0.
+    pub fn weighting(self, weighting: Weighting) -> Self {
+        Self { weighting: Some(weighting), ..self }
+    }
+
+    /// α, or how to find it. By default 10 h² for a volume, h³ being the volume of a voxel, and
+    /// [`AlphaRule::Auto`] for scattered points.
+    pub fn alpha(self, alpha: impl Into<AlphaRule>) -> Self {
+        Self { alpha: alpha.into(), ..self }
+    }
+
+    /// How the shape is computed; its α is not used.
+    pub fn shape(self, shape: ShapeOptions) -> Self {
+        Self { shape, ..self }
+    }
+
+    /// The shape of a volume of gray levels.
+    ///
+    /// # Errors
+    /// Whatever a stage refuses.
+    pub fn run(&self, volume: &Volume) -> Result<Model, PipelineError> {
+        self.finish(self.weighed(volume, &mut ignore)?, &mut ignore)
+    }
+
+    /// The shape of scattered points.
+    ///
+    /// # Errors
+    /// Whatever a stage refuses.
+    pub fn run_points(&self, points: Points) -> Result<Model, PipelineError> {
+        self.finish(self.weighed_points(points, &mut ignore)?, &mut ignore)
+    }
+
+    /// The weighted points of a volume of gray levels. `hear` is told which stage begins.
+    ///
+    /// # Errors
+    /// Whatever a stage refuses.
+    pub fn weighed(
+        &self,
+        volume: &Volume,
+        hear: &mut dyn FnMut(Stage),
+    ) -> Result<Weighed, PipelineError> {
+        let parameter = self.alpha.of_volume(volume, self.units)?;
+        hear(Stage::Haar);
+        let (smoothed, truncation) = smooth(volume, &self.haar)?;
+        hear(Stage::Points);
+        let (points, ended) = self.points(volume, &smoothed)?;
+        let origin = Origin {
+            coordinates: self.units.coordinates(volume),
+            weighting: self.weighting_of(&points),
+            truncation: Some(truncation),
+            ended,
+        };
+        self.weigh(points, origin, parameter, hear)
+    }
+
+    /// Scattered points, weighted. `hear` is told which stage begins.
+    ///
+    /// # Errors
+    /// Whatever a stage refuses.
+    pub fn weighed_points(
+        &self,
+        points: Points,
+        hear: &mut dyn FnMut(Stage),
+    ) -> Result<Weighed, PipelineError> {
+        let origin = Origin {
+            coordinates: Coordinates::default(),
+            weighting: self.weighting_of(&points),
+            truncation: None,
+            ended: None,
+        };
+        let parameter = self.alpha.given(origin.coordinates.unit);
+        self.weigh(points, origin, parameter, hear)
+    }
+
+    /// The shape of weighted points. `hear` is told which stage begins.
+    ///
+    /// # Errors
+    /// Whatever the stage refuses, and [`PipelineError::Radii`].
+    pub fn finish(
+        &self,
+        mut weighed: Weighed,
+        hear: &mut dyn FnMut(Stage),
+    ) -> Result<Model, PipelineError> {
+        let parameter = weighed.find_parameter(hear)?;
+        if self.shape.balls == Balls::Radius && parameter.is_found() {
+            return Err(PipelineError::Radii { radius: parameter.alpha.squared().abs().sqrt() });
+        }
+        hear(Stage::Shape);
+        let options = ShapeOptions { alpha: parameter.alpha, ..self.shape };
+        let Weighed { points, origin, .. } = weighed;
+        let shape = alpha_shape(points, &options)?.meaning(origin.coordinates);
+        Ok(Model { shape, parameter, origin })
+    }
+
+    fn weighting_of(&self, points: &Points) -> Weighting {
+        let column = points.weights.is_some();
+        let silent = if column { Weighting::Column } else { Weighting::Common(0.0) };
+        self.weighting.unwrap_or(silent)
+    }
+
+    /// The samples chosen, and what they were asked for where fewer do.
+    fn points(
+        &self,
+        volume: &Volume,
+        smoothed: &Volume,
+    ) -> Result<(Points, Option<Adaptive>), PipelineError> {
+        let differences = difference(smoothed);
+        let goal = match self.choice {
+            Choice::Difference(selection) => {
+                let points = select(volume, smoothed, &differences, &selection, self.units)?;
+                return Ok((points, None));
+            }
+            Choice::Adaptive(goal) => goal,
+        };
+        let mut voxels = adaptive_voxels(volume, &goal, self.units)?;
+        voxels.sort_unstable();
+        // With a target alone as many as there are samples may be needed, and none is asked for.
+        let asked = goal.count < volume.dims().samples() as u64;
+        let fewer = asked && (voxels.len() as u64) < goal.count;
+        Ok((points_at(volume, &differences, &voxels, self.units), fewer.then_some(goal)))
+    }
+
+    /// Gives points their weights, and finds α first where these are in proportion to it.
+    fn weigh(
+        &self,
+        mut points: Points,
+        origin: Origin,
+        mut parameter: Option<Parameter>,
+        hear: &mut dyn FnMut(Stage),
+    ) -> Result<Weighed, PipelineError> {
+        hear(Stage::Points);
+        let Origin { weighting, coordinates, .. } = origin;
+        let scattered = points.differences.is_none() && points.values.is_some();
+        if scattered && weighting.needs_differences() {
+            points.differences = Some(scattered_difference(&points)?);
+        }
+        if parameter.is_none() && weighting.needs_differences() {
+            // What is wrong with the weights is told before the search.
+            weigh(&points, weighting, 0.0)?;
+            hear(Stage::Alpha);
+            parameter = Some(Parameter::find_unweighted(&points, coordinates.unit)?);
+            hear(Stage::Points);
+        }
+        let alpha = parameter.map_or(0.0, |parameter| parameter.alpha.squared());
+        let mut points = weigh(&points, weighting, alpha)?;
+        if let (Some(range), Some(values)) = (self.values, &mut points.values) {
+            values.iter_mut().for_each(|value| *value = range.value(*value));
+        }
+        Ok(Weighed { points, origin, parameter })
+    }
+}
+
+impl Weighed {
+    /// α, found now if weights did not need it.
+    ///
+    /// # Errors
+    /// What a [`Filtration`](crate::ladder::Filtration) refuses.
+    pub fn find_parameter(
+        &mut self,
+        hear: &mut dyn FnMut(Stage),
+    ) -> Result<Parameter, PipelineError> {
+        if let Some(parameter) = self.parameter {
+            return Ok(parameter);
+        }
+        hear(Stage::Alpha);
+        let found = Parameter::find(self.points.clone(), self.origin.coordinates.unit)?;
+        self.parameter = Some(found);
+        Ok(found)
+    }
+}
+
+/// Hears which stage begins, and does nothing.
+fn ignore(_: Stage) {}

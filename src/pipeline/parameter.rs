@@ -1,0 +1,163 @@
+use std::fmt::{self, Display};
+use std::str::FromStr;
+
+use serde::Serialize;
+
+use super::PipelineError;
+use crate::ladder::Filtration;
+use crate::points::{Points, Units, WeightedPoints, Weighting, weigh};
+use crate::shape::{Alpha, AlphaError, ShapeError, number_or_name, number_or_null_or_name};
+use crate::shown::{number, six_digits};
+use crate::volume::{LengthUnit, Volume};
+
+/// Which α a shape is made at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum AlphaRule {
+    /// For a volume 10 h², h³ being the volume of a voxel; [`AlphaRule::Auto`] for scattered points.
+    #[default]
+    Default,
+    /// The smallest at which all points are in one solid component ([`Filtration::one_region`]). Where
+    /// weights are in proportion to α, that of the points without weights.
+    Auto,
+    /// This.
+    Given(Alpha),
+}
+
+impl From<Alpha> for AlphaRule {
+    fn from(alpha: Alpha) -> Self {
+        Self::Given(alpha)
+    }
+}
+
+impl FromStr for AlphaRule {
+    type Err = AlphaError;
+
+    /// `auto`, or α as a number.
+    fn from_str(text: &str) -> Result<Self, AlphaError> {
+        if text.trim() == "auto" { Ok(Self::Auto) } else { Ok(Self::Given(text.trim().parse()?)) }
+    }
+}
+
+/// α, and where it comes from.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(into = "Facts")]
+#[non_exhaustive]
+pub struct Parameter {
+    /// A squared length.
+    pub alpha: Alpha,
+    /// Of lengths; α is in its square.
+    pub unit: LengthUnit,
+    /// Where it comes from.
+    pub origin: ParameterOrigin,
+}
+
+/// Where an α comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum ParameterOrigin {
+    /// Somebody gave it.
+    Given,
+    /// Ten squared voxels, as in the paper.
+    Default,
+    /// The smallest at which all points are in one solid component.
+    Auto,
+    /// The same without weights, which are in proportion to it.
+    AutoUnweighted,
+}
+
+/// α as a squared length and as a radius.
+#[derive(Serialize)]
+struct Facts {
+    #[serde(serialize_with = "number_or_name")]
+    squared: f64,
+    #[serde(serialize_with = "number_or_null_or_name")]
+    radius: Option<f64>,
+    unit: LengthUnit,
+    origin: ParameterOrigin,
+}
+
+/// The default α of a volume, in squared sides of a voxel.
+const SQUARED_VOXELS: f64 = 10.0;
+
+impl AlphaRule {
+    /// The α of a volume's points; `None` where it is to be found.
+    ///
+    /// # Errors
+    /// A voxel so large that 10 h² is not finite.
+    pub fn of_volume(
+        self,
+        volume: &Volume,
+        units: Units,
+    ) -> Result<Option<Parameter>, PipelineError> {
+        let unit = units.coordinates(volume).unit;
+        if self != Self::Default {
+            return Ok(self.given(unit));
+        }
+        let h = units.voxel_volume(volume).cbrt();
+        let alpha = Alpha::from_squared(SQUARED_VOXELS * h * h)?;
+        Ok(Some(Parameter { alpha, unit, origin: ParameterOrigin::Default }))
+    }
+
+    /// The α that somebody gave; `None` where it is to be found.
+    pub fn given(self, unit: LengthUnit) -> Option<Parameter> {
+        match self {
+            Self::Given(alpha) => Some(Parameter { alpha, unit, origin: ParameterOrigin::Given }),
+            Self::Auto | Self::Default => None,
+        }
+    }
+}
+
+impl Parameter {
+    /// The smallest α of a filtration at which all points are in one solid component.
+    pub fn of_filtration(filtration: &Filtration, unit: LengthUnit) -> Self {
+        Self { alpha: filtration.one_region(), unit, origin: ParameterOrigin::Auto }
+    }
+
+    /// The same of points that are triangulated for it.
+    pub(super) fn find(points: WeightedPoints, unit: LengthUnit) -> Result<Self, ShapeError> {
+        Ok(Self::of_filtration(&Filtration::new(points)?, unit))
+    }
+
+    /// The α that weights are to be in proportion to: that of the points alone.
+    pub(super) fn find_unweighted(
+        points: &Points,
+        unit: LengthUnit,
+    ) -> Result<Self, PipelineError> {
+        let found = Self::find(weigh(points, Weighting::Common(0.0), 0.0)?, unit)?;
+        Ok(Self { origin: ParameterOrigin::AutoUnweighted, ..found })
+    }
+
+    /// Whether nobody gave it, and it was found among the points.
+    pub fn is_found(&self) -> bool {
+        matches!(self.origin, ParameterOrigin::Auto | ParameterOrigin::AutoUnweighted)
+    }
+}
+
+impl From<Parameter> for Facts {
+    fn from(Parameter { alpha, unit, origin }: Parameter) -> Self {
+        Self { squared: alpha.squared(), radius: alpha.radius(), unit, origin }
+    }
+}
+
+impl Display for Parameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (squared, unit) = (number(self.alpha.squared()), self.unit.symbol());
+        write!(f, "α = {squared} {unit}² (squared length; ")?;
+        match self.alpha.radius() {
+            Some(radius) => write!(f, "√α = {} {unit})", number(six_digits(radius)))?,
+            None => f.write_str("negative, so no radius)")?,
+        }
+        f.write_str(match self.origin {
+            ParameterOrigin::Given => "",
+            ParameterOrigin::Default => ", the default",
+            ParameterOrigin::Auto => {
+                ", the smallest at which all points are in one solid component"
+            }
+            ParameterOrigin::AutoUnweighted => {
+                ", the smallest at which all points, without weights, are in one solid component"
+            }
+        })
+    }
+}
