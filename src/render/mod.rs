@@ -6,11 +6,11 @@
 //! IEEE 754 fixes to the bit, and text is set in fonts that come with the library.
 //!
 //! ```
-//! use walpha::check::enumerate;
+//! use walpha::check::{Alpha, enumerate};
 //! use walpha::render::{Background, Camera, Projection, Scene, ShapeStyle, Size, View};
 //!
 //! let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-//! let tetrahedron = enumerate(&positions, &[0.0; 4], 1.0)?.complex;
+//! let tetrahedron = enumerate(&positions, &[0.0; 4], Alpha::from_squared(1.0)?)?.complex;
 //! let scene = Scene::of_shape(&positions, &tetrahedron, &ShapeStyle::default())?;
 //! let size = Size::new(64, 48)?;
 //! let bounds = scene.bounds().expect("there is something to see");
