@@ -438,7 +438,7 @@ impl FromStr for Alphas {
         if text == "auto" {
             return Ok(Self::Auto);
         }
-        Ok(Self::Given(text.split(',').map(|item| alpha(item.trim())).collect::<Result<_, _>>()?))
+        Ok(Self::Given(text.split(',').map(|item| item.trim().parse()).collect::<Result<_, _>>()?))
     }
 }
 
@@ -617,10 +617,6 @@ pub fn not_negative(text: &str) -> anyhow::Result<f64> {
         bail!("a number from 0 up is needed; give it as in 1 or 2.5");
     }
     Ok(number)
-}
-
-fn alpha(text: &str) -> anyhow::Result<Alpha> {
-    Ok(Alpha::from_squared(number(text)?)?)
 }
 
 fn alpha_radius(text: &str) -> anyhow::Result<Alpha> {

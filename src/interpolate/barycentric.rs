@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::number::{Part, integer_offsets};
-use crate::number::{cross, dot};
+use crate::math::number::{cross, dot};
 
 /// The coordinates of a place in a simplex of one to four corners, or `None` where it lies outside;
 /// its boundary is inside. Four corners turn positively: det(b−a, c−a, d−a) > 0. Coordinates beyond
@@ -141,7 +141,7 @@ fn magnitudes(u: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::interpolate::number::Lattice;
+    use crate::math::Reach;
 
     const CELL: [[f64; 3]; 4] = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]];
 
@@ -150,7 +150,7 @@ mod tests {
         let mut inside = 0;
         for i in 0..6 * 6 * 6 {
             let place = [i % 6, i / 6 % 6, i / 36].map(|k| f64::from(k) - 0.5);
-            assert!(Lattice::of(&CELL).is_exact_with(place));
+            assert!(Reach::of(&CELL).is_exact_with(place));
             let quick = coordinates(&CELL, place, true);
             assert_eq!(quick, coordinates(&CELL, place, false), "{place:?}");
             let [x, y, z] = place;

@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::InterpolateError;
 use super::barycentric::coordinates;
-use super::number::Lattice;
 use super::tree::Tree;
+use crate::math::Reach;
 use crate::shape::{AlphaShape, Class, Simplices};
 
 /// Places located as one piece of work, at least.
@@ -29,7 +29,7 @@ pub struct Interpolant<'a> {
     positions: &'a [[f64; 3]],
     values: &'a [f64],
     parts: Vec<Part>,
-    lattice: Lattice,
+    reach: Reach,
     /// Made when a single place is asked for; grids do without.
     tree: OnceLock<Tree>,
 }
@@ -67,8 +67,8 @@ impl<'a> Interpolant<'a> {
         add(&mut parts, &complex.edges, Class::Singular);
         add(&mut parts, &complex.vertices, Class::Singular);
         let positions = &shape.points().positions;
-        let lattice = Lattice::of(positions);
-        Ok(Self { positions, values, parts, lattice, tree: OnceLock::new() })
+        let reach = Reach::of(positions);
+        Ok(Self { positions, values, parts, reach, tree: OnceLock::new() })
     }
 
     /// F at a place (x, y, z) in the units of the points; `None` outside the shape, and for what is
@@ -104,7 +104,7 @@ impl<'a> Interpolant<'a> {
     /// The coordinates of a place in a simplex, if it holds it.
     pub(super) fn coordinates(&self, part: u32, place: [f64; 3]) -> Option<[f64; 4]> {
         let (corners, count) = self.corners(part);
-        coordinates(&corners[..count], place, self.lattice.is_exact_with(place))
+        coordinates(&corners[..count], place, self.reach.is_exact_with(place))
     }
 
     /// F on a simplex.

@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 
 use dashu_int::IBig;
 
-use crate::number::{Number, decode, integer, lowest_bit};
+use crate::math::number::{Number, integer, lowest_bit};
 
-/// A number of which barycentric coordinates are made; doubles are exact only where [`Lattice`] says
+/// A number of which barycentric coordinates are made; doubles are exact only where a [`Reach`](crate::math::Reach) says
 /// that no operation rounds.
 pub(super) trait Part: Number + Clone {
     fn zero() -> Self;
@@ -53,44 +53,6 @@ pub(super) fn integer_offsets(corners: &[[f64; 3]], from: [f64; 3]) -> Vec<[IBig
     corners.iter().map(offset).collect()
 }
 
-/// What a set of coordinates has in common, so that one knows where doubles do not round.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lattice {
-    /// All coordinates are integers times two to this power…
-    unit: i32,
-    /// …and less than two to this power.
-    reach: i32,
-}
-
-impl Lattice {
-    /// Bits of a coordinate in units. A difference has one more; a triple product of such three
-    /// times that; sums of 24 of these five more: 3·16 + 5 = 53, what a double holds.
-    const BITS: i32 = 15;
-    /// Third powers of larger or smaller units leave the range of doubles.
-    const RANGE: i32 = 300;
-
-    /// The lattice of some places. O(n).
-    pub fn of(places: &[[f64; 3]]) -> Self {
-        let empty = Self { unit: i32::MAX, reach: i32::MIN };
-        places.as_flattened().iter().fold(empty, |lattice, &x| lattice.with(x))
-    }
-
-    fn with(self, x: f64) -> Self {
-        let (mantissa, bit) = decode(x);
-        if mantissa == 0 {
-            return self;
-        }
-        let bits = (mantissa.unsigned_abs().ilog2() + 1) as i32;
-        Self { unit: self.unit.min(bit), reach: self.reach.max(bit + bits) }
-    }
-
-    /// Whether formulas over these places and one more are exact in doubles.
-    pub fn is_exact_with(self, place: [f64; 3]) -> bool {
-        let Self { unit, reach } = place.into_iter().fold(self, Self::with);
-        reach <= unit.saturating_add(Self::BITS) && unit.abs() <= Self::RANGE || reach == i32::MIN
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -100,17 +62,5 @@ mod tests {
         let offsets = integer_offsets(&[[3.5, -1.0, 0.0], [0.25, 8.0, -0.0]], [0.5, 0.0, 1.0]);
         let expected = [[12, -4, -4], [-1, 32, -4]].map(|row| row.map(IBig::from));
         assert_eq!(offsets, expected);
-    }
-
-    #[test]
-    fn lattices_know_where_doubles_round() {
-        let lattice = Lattice::of(&[[0.0, 63.0, 12.0], [-5.0, 32767.0, 1.0]]);
-        assert!(lattice.is_exact_with([1.0, 2.0, 0.0]));
-        assert!(!lattice.is_exact_with([0.5, 2.0, 0.0]));
-        assert!(!lattice.is_exact_with([32768.0, 2.0, 0.0]));
-        let halves = Lattice::of(&[[0.5, 100.0, 511.5]]);
-        assert!(halves.is_exact_with([0.25; 3]) && !halves.is_exact_with([0.1; 3]));
-        assert!(!Lattice::of(&[[1e-200; 3]]).is_exact_with([0.0; 3]));
-        assert!(Lattice::of(&[[0.0; 3]]).is_exact_with([0.0; 3]));
     }
 }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use super::Filtration;
-use crate::number::lowest_bit;
+use crate::math::number::lowest_bit;
 use crate::points::WeightedPoints;
 use crate::triangulation::{Interval, Predicates};
 

@@ -32,7 +32,6 @@ mod primitives;
 mod renderer;
 mod scene;
 mod shape;
-mod vector;
 mod view;
 
 pub use charts::{error_figure, ladder_figure};

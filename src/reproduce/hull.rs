@@ -1,5 +1,6 @@
 //! Whether a surface is the convex hull, from its definition alone.
 
+use crate::math::vector::{cross, dot, sub};
 use crate::shape::{AlphaShape, Class};
 
 /// A closed surface and the points it should be the hull of.
@@ -30,18 +31,6 @@ impl Hull {
         let outside = positions.iter().filter(beyond).count();
         Self { facets: planes.len(), outside, volume: sixfold / 6.0 }
     }
-}
-
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

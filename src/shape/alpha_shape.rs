@@ -7,9 +7,10 @@ use super::blocks::{self, Limits, Plan, PlanError, Question};
 use super::canonical::canonical;
 use super::topology::sheet_betti;
 use super::{Alpha, Balls, Betti, Complex, Measures, Sheets, Simplices, direct_betti};
+use crate::math::Lattice;
 use crate::memory::NoMemory;
 use crate::points::WeightedPoints;
-use crate::triangulation::{Lattice, Maker, Sites, SitesError, TriangulationError};
+use crate::triangulation::{Maker, Sites, SitesError, TriangulationError};
 use crate::volume::Coordinates;
 
 /// Which program computes the shape; all give the same answer.

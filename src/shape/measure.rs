@@ -2,6 +2,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{Class, Complex};
+use crate::math::vector::{cross, dot, length, sub};
 
 /// Sizes of a shape in the units of its points, summed in double precision in a fixed order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -39,7 +40,7 @@ impl Measures {
 
 /// The area of a triangle.
 pub(crate) fn facet_area([a, b, c]: [[f64; 3]; 3]) -> f64 {
-    norm(cross(sub(b, a), sub(c, a))) / 2.0
+    length(cross(sub(b, a), sub(c, a))) / 2.0
 }
 
 /// Six times the volume of a positively oriented cell: a determinant, a whole number on a lattice.
@@ -62,20 +63,4 @@ fn fixed_order_sum<const N: usize>(
         })
         .collect();
     sums.iter().fold(0.0, |sum, part| sum + part)
-}
-
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
 }

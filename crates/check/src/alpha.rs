@@ -70,7 +70,7 @@ pub enum AlphaError {
     #[error("a radius must not be negative, and {0} is: give a length from 0 up, or α itself")]
     Radius(f64),
     /// Text that is not a number.
-    #[error("α must be a number, \"inf\" or \"-inf\", not {0:?}")]
+    #[error("{0:?} is not a number; give a squared length, as in 10, or `inf` for the convex hull")]
     Text(String),
 }
 

@@ -1,6 +1,6 @@
 use super::directions::across;
+use crate::math::vector::{V3, add, along, dot, length, scale, sub};
 use crate::render::scene::Scene;
-use crate::render::vector::{V3, add, along, dot, length, scale, sub};
 
 /// A place that asks for its light: raised a little along `normal` so that its own
 /// surface does not hide it, nor what is within `radius` of it.

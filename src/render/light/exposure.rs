@@ -8,10 +8,10 @@ use rayon::prelude::*;
 use super::depth_map::{DepthMap, Receiver, Space};
 use super::directions::{cone_directions, sphere_directions};
 use super::studio::Studio;
+use crate::math::vector::{V3, along, dot, scale, unit};
 use crate::progress;
 use crate::render::normals::vertex_normals;
 use crate::render::scene::{Mesh, Scene, Shading};
-use crate::render::vector::{V3, along, dot, scale, unit};
 
 /// The light that reaches one place.
 #[derive(Clone, Copy, Debug)]

@@ -1,5 +1,5 @@
+use crate::math::vector::{V3, add, dot, scale, sub, unit};
 use crate::render::scene::{Lens, Projection};
-use crate::render::vector::{V3, add, dot, scale, sub, unit};
 
 /// The lamps, fixed to the camera as in a photographer's studio, so that every panel of a figure
 /// is lit alike.

@@ -7,7 +7,7 @@ use ndarray::{ArrayView2, ArrayView3, s};
 use self::cases::{CASES, CORNERS, EDGES};
 use super::error::RenderError;
 use super::scene::Mesh;
-use super::vector::{cross, length, sub};
+use crate::math::vector::{cross, length, sub};
 
 /// The surface that parts the samples at or above a value from those below it.
 ///

@@ -1,8 +1,8 @@
 use super::sphere;
 use super::stage::Stage;
+use crate::math::vector::{self, V3, along, dot, scale, sub, unit};
 use crate::render::pixels::{Patch, PixelBox, SAMPLES, Size, sample_position};
 use crate::render::scene::{Lens, Tube};
-use crate::render::vector::{self, V3, along, dot, scale, sub, unit};
 
 /// A tube with round ends on the pixel grid.
 pub(crate) struct Capsule {

@@ -1,7 +1,7 @@
 use super::stage::Stage;
+use crate::math::vector::{V3, add, along, dot, scale, sub, unit};
 use crate::render::pixels::{Patch, PixelBox, SAMPLES, Size, sample_position};
 use crate::render::scene::{Ball, Lens, Projection};
-use crate::render::vector::{V3, add, along, dot, scale, sub, unit};
 
 /// A ball on the pixel grid: the exact outline and depth of a sphere, no facets.
 pub(crate) struct Sphere {

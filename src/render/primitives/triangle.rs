@@ -1,8 +1,8 @@
 use super::stage::Stage;
+use crate::math::vector::{V3, add, along, cross, dot, scale, sub, unit};
 use crate::render::light::Side;
 use crate::render::pixels::{Patch, PixelBox, SAMPLE, SAMPLES, STEPS, Size, sample_position};
 use crate::render::scene::{Colours, Lens, Mesh, Projection, Shading};
-use crate::render::vector::{V3, add, along, cross, dot, scale, sub, unit};
 
 /// A triangle, or a piece of one that reaches out of the picture, on the pixel grid.
 ///

@@ -1,6 +1,6 @@
+use crate::math::vector::{V3, add, cross, dot, length, scale, sub, unit};
 use crate::render::error::RenderError;
 use crate::render::pixels::Size;
-use crate::render::vector::{V3, add, cross, dot, length, scale, sub, unit};
 
 /// How depth changes size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

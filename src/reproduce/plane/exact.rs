@@ -4,6 +4,8 @@ use std::cmp::Ordering;
 
 use dashu_int::{IBig, ops::BitTest};
 
+use crate::math::number::{integer, lowest_bit};
+
 /// Points, and weights if there are any, as integers: a coordinate is its integer times 2^exponent
 /// and a weight its integer times 4^exponent. Nothing is rounded.
 pub(super) struct Exact {
@@ -11,7 +13,7 @@ pub(super) struct Exact {
     weights: Vec<IBig>,
     /// α of [`Exact::weighted`] in the unit of weights.
     alpha: IBig,
-    exponent: i64,
+    exponent: i32,
 }
 
 /// The square of a length as a fraction; the denominator is positive.
@@ -29,19 +31,19 @@ pub(super) struct Curve {
 
 impl Exact {
     pub(super) fn new(positions: &[[f64; 2]]) -> Self {
-        let exponent = positions.as_flattened().iter().filter_map(|&v| lowest(v)).min();
+        let exponent = positions.as_flattened().iter().filter_map(|&v| lowest_bit(v)).min();
         Self::scaled(positions, &[], 0.0, exponent.unwrap_or(0))
     }
 
     /// With power weights and an α of their unit.
     pub(super) fn weighted(positions: &[[f64; 2]], weights: &[f64], alpha: f64) -> Self {
-        let lengths = positions.as_flattened().iter().filter_map(|&v| lowest(v));
-        let squares = weights.iter().chain([&alpha]).filter_map(|&v| lowest(v));
+        let lengths = positions.as_flattened().iter().filter_map(|&v| lowest_bit(v));
+        let squares = weights.iter().chain([&alpha]).filter_map(|&v| lowest_bit(v));
         let exponent = lengths.chain(squares.map(|e| e.div_euclid(2))).min();
         Self::scaled(positions, weights, alpha, exponent.unwrap_or(0))
     }
 
-    fn scaled(positions: &[[f64; 2]], weights: &[f64], alpha: f64, exponent: i64) -> Self {
+    fn scaled(positions: &[[f64; 2]], weights: &[f64], alpha: f64, exponent: i32) -> Self {
         Self {
             positions: positions.iter().map(|p| p.map(|v| integer(v, exponent))).collect(),
             weights: weights.iter().map(|&w| integer(w, 2 * exponent)).collect(),
@@ -52,9 +54,9 @@ impl Exact {
 
     /// The curve of radius 1/|α|, for α ≠ 0.
     pub(super) fn curve(&self, alpha: f64) -> Curve {
-        let e = lowest(alpha).expect("α is not 0");
+        let e = lowest_bit(alpha).expect("α is not 0");
         let mantissa = integer(alpha, e);
-        Curve { square: &mantissa * &mantissa, shift: 2 * (e + self.exponent) }
+        Curve { square: &mantissa * &mantissa, shift: i64::from(2 * (e + self.exponent)) }
     }
 
     fn ray(&self, p: u32, q: u32) -> [IBig; 2] {
@@ -109,7 +111,7 @@ impl Exact {
         } else {
             numerator / (denominator << shift.unsigned_abs() as usize)
         };
-        let exponent = (self.exponent - shift / 2) as i32;
+        let exponent = (i64::from(self.exponent) - shift / 2) as i32;
         // In two steps, so that the factor itself is a double wherever the length is.
         let half = exponent / 2;
         quotient.to_f64().value().sqrt() * 2f64.powi(half) * 2f64.powi(exponent - half)
@@ -178,46 +180,9 @@ fn cross(a: &[IBig; 2], b: &[IBig; 2]) -> IBig {
     &a[0] * &b[1] - &a[1] * &b[0]
 }
 
-/// A finite double as (mantissa, exponent).
-fn parts(value: f64) -> (i64, i64) {
-    let bits = value.to_bits();
-    let field = (bits >> 52 & 0x7ff) as i64;
-    let fraction = (bits & ((1 << 52) - 1)) as i64;
-    // Subnormal numbers share the exponent of the smallest normal ones, without the leading bit.
-    let mantissa = if field == 0 { fraction } else { fraction | 1 << 52 };
-    (if value < 0.0 { -mantissa } else { mantissa }, field.max(1) - 1075)
-}
-
-/// The exponent of the lowest bit set; `None` for 0.
-fn lowest(value: f64) -> Option<i64> {
-    let (mantissa, exponent) = parts(value);
-    (mantissa != 0).then(|| exponent + i64::from(mantissa.trailing_zeros()))
-}
-
-/// value / 2^exponent, where that is an integer.
-fn integer(value: f64, exponent: i64) -> IBig {
-    let (mantissa, own) = parts(value);
-    match own - exponent {
-        up if up >= 0 => IBig::from(mantissa) << up as usize,
-        // Bits that go are zero, because `exponent` is no higher than the lowest one set.
-        down => IBig::from(mantissa) >> down.unsigned_abs() as usize,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn doubles_become_integers_without_rounding() {
-        for value in [0.0, -0.0, 1.0, -1.5, 0.1, 5e-324, -2.5e-310, f64::MAX, 1e-300] {
-            let Some(e) = lowest(value) else { continue };
-            let m = integer(value, e);
-            assert_eq!(m.trailing_zeros(), Some(0), "{value}: the lowest bit is set");
-            assert_eq!(integer(value, e - 7), m << 7);
-        }
-        assert_eq!(integer(-1.5, -1), (-3i32).into());
-    }
 
     #[test]
     fn radii_are_compared_exactly() {

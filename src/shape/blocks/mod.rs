@@ -22,8 +22,9 @@ mod plan;
 use rayon::prelude::*;
 
 use super::{Complex, ShapeError};
+use crate::math::Lattice;
 use crate::progress::Piece;
-use crate::triangulation::{Lattice, Maker, Sites, SitesError, Triangulation, TriangulationError};
+use crate::triangulation::{Maker, Sites, SitesError, Triangulation, TriangulationError};
 
 use classify::{Owned, Shelves, classify};
 use merge::merge;

@@ -8,7 +8,7 @@ use dashu_int::ops::{BitTest, DivEuclid, UnsignedAbs};
 
 use super::Site;
 use super::formulas::{Ray, determinant, power_determinant, quotient, side};
-use crate::number::{Integer, cross, dot, highest_bit, lowest_bit};
+use crate::math::number::{Integer, cross, dot, highest_bit, lowest_bit};
 
 /// Evaluates an expression over integers `$T` that hold so many bits.
 macro_rules! in_integers {

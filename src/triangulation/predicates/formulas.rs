@@ -6,7 +6,7 @@
 //! the others, the centre is p + c where 2c·a = t for each ray and c lies in the span of the rays;
 //! the squared radius is |c|² − ω(p). A point at the ray e is inside if its power < 2c·e.
 
-use crate::number::{Number, cross, dot};
+use crate::math::number::{Number, cross, dot};
 
 /// From the first vertex to another.
 #[derive(Clone, Copy)]

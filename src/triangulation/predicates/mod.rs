@@ -7,16 +7,16 @@
 
 mod exact;
 mod formulas;
-mod lattice;
 mod screen;
 mod size;
 
 use std::cmp::Ordering;
 
 use formulas::{determinant, power_determinant, quotient, side};
-pub(crate) use lattice::Lattice;
 pub(crate) use screen::Screen;
 use size::{Size, View, ray};
+
+use crate::math::Lattice;
 
 /// A weighted point.
 #[derive(Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use super::Site;
 use super::formulas::Ray;
-use crate::number::dot;
+use crate::math::number::dot;
 
 /// A simplex as rays from a point; from its own first vertex the first ray is 0.
 pub(super) struct View<const N: usize> {

@@ -1,6 +1,7 @@
 use std::path::Path;
 
 use super::slice::Slice;
+use crate::math::vector::{cross, dot};
 use crate::shown::shown;
 use crate::volume::read::format_error;
 use crate::volume::{Coordinates, Frame, VolumeError};
@@ -100,12 +101,4 @@ fn even(slices: &[Slice], normal: [f64; 3]) -> Result<Option<[f64; 3]>, String> 
     }
     let count = (slices.len() - 1) as f64;
     Ok(Some([0, 1, 2].map(|k| (last.position[k] - first.position[k]) / count)))
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -1,4 +1,4 @@
-use crate::number::lowest_bit;
+use super::number::{decode, lowest_bit};
 
 /// What the numbers of a set have in common.
 ///
@@ -37,6 +37,45 @@ impl Lattice {
     }
 }
 
+/// From the lowest to the highest bit of a set of coordinates: whether third powers of their differences
+/// are exact in doubles, with a place that comes later.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    /// All coordinates are integers times two to this power…
+    unit: i32,
+    /// …and less than two to this power.
+    reach: i32,
+}
+
+impl Reach {
+    /// Bits of a coordinate in units. A difference has one more; a triple product of such three
+    /// times that; sums of 24 of these five more: 3·16 + 5 = 53, what a double holds.
+    const BITS: i32 = 15;
+    /// Third powers of larger or smaller units leave the range of doubles.
+    const RANGE: i32 = 300;
+
+    /// The reach of some places. O(n).
+    pub fn of(places: &[[f64; 3]]) -> Self {
+        let empty = Self { unit: i32::MAX, reach: i32::MIN };
+        places.as_flattened().iter().fold(empty, |reach, &x| reach.with(x))
+    }
+
+    fn with(self, x: f64) -> Self {
+        let (mantissa, bit) = decode(x);
+        if mantissa == 0 {
+            return self;
+        }
+        let bits = (mantissa.unsigned_abs().ilog2() + 1) as i32;
+        Self { unit: self.unit.min(bit), reach: self.reach.max(bit + bits) }
+    }
+
+    /// Whether formulas over these places and one more are exact in doubles.
+    pub fn is_exact_with(self, place: [f64; 3]) -> bool {
+        let Self { unit, reach } = place.into_iter().fold(self, Self::with);
+        reach <= unit.saturating_add(Self::BITS) && unit.abs() <= Self::RANGE || reach == i32::MIN
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -49,5 +88,17 @@ mod tests {
         assert_eq!(of(3.0, 0.5), Lattice { step: 0.5, holds_weights: true });
         assert_eq!(of(3.0, 0.1), Lattice { step: 1.0, holds_weights: false });
         assert_eq!(of(1e-300, 0.0), Lattice { step: 0.0, holds_weights: false });
+    }
+
+    #[test]
+    fn reaches_know_where_doubles_round() {
+        let reach = Reach::of(&[[0.0, 63.0, 12.0], [-5.0, 32767.0, 1.0]]);
+        assert!(reach.is_exact_with([1.0, 2.0, 0.0]));
+        assert!(!reach.is_exact_with([0.5, 2.0, 0.0]));
+        assert!(!reach.is_exact_with([32768.0, 2.0, 0.0]));
+        let halves = Reach::of(&[[0.5, 100.0, 511.5]]);
+        assert!(halves.is_exact_with([0.25; 3]) && !halves.is_exact_with([0.1; 3]));
+        assert!(!Reach::of(&[[1e-200; 3]]).is_exact_with([0.0; 3]));
+        assert!(Reach::of(&[[0.0; 3]]).is_exact_with([0.0; 3]));
     }
 }

@@ -1,4 +1,6 @@
-//! Three-dimensional vectors, as few as the renderer needs.
+//! Three-dimensional vectors.
+
+use super::number;
 
 pub(crate) type V3 = [f64; 3];
 
@@ -20,11 +22,11 @@ pub(crate) fn along(a: V3, s: f64, b: V3) -> V3 {
 }
 
 pub(crate) fn dot(a: V3, b: V3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    number::dot(&a, &b)
 }
 
 pub(crate) fn cross(a: V3, b: V3) -> V3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    number::cross(&a, &b)
 }
 
 pub(crate) fn length(a: V3) -> f64 {
