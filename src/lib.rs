@@ -45,6 +45,7 @@ pub mod progress;
 pub mod render;
 #[cfg(feature = "paper")]
 pub mod reproduce;
+mod select;
 pub mod shape;
 pub mod shown;
 pub mod triangulation;

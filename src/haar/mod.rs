@@ -19,7 +19,6 @@
 //! ```
 
 mod coefficients;
-mod cut;
 mod nonstandard;
 mod standard;
 mod support;
@@ -27,7 +26,6 @@ mod truncate;
 mod unnormalised;
 
 pub use coefficients::{Coefficients, Decomposition, forward};
-pub(crate) use cut::{Budget, Cut};
 pub use truncate::{HaarError, Tolerance, Truncation};
 pub use unnormalised::Unnormalised;
 

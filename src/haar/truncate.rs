@@ -1,8 +1,9 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{Budget, Coefficients, Cut};
+use super::Coefficients;
 use crate::memory::NoMemory;
+use crate::select::{Budget, Cut};
 use crate::volume::VolumeError;
 
 /// Coefficients summed at a time. Fixed, so that sums are the same on any number of threads.

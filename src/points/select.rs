@@ -3,8 +3,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::PointsError;
-use crate::haar::{Budget, Cut};
 use crate::memory;
+use crate::select::{Budget, Cut};
 use crate::volume::{Coordinates, Volume};
 
 /// Voxels looked at as one piece of work.

@@ -1,3 +1,5 @@
+//! Floor 0: the largest of many values, as few or as many as a budget allows.
+
 use rayon::prelude::*;
 
 /// Values counted into one histogram. Fixed, so that sums are the same on any number of threads.
