@@ -328,5 +328,6 @@ fn cgal_s_point_sets_are_read() {
             }
         }
     }
-    assert_eq!((counts["xyz"], counts["pwn"], counts["off"]), (16, 3, 1), "{counts:?}");
+    // Later versions of CGAL have more of them.
+    assert!(counts["xyz"] >= 16 && counts["pwn"] >= 3 && counts["off"] >= 1, "{counts:?}");
 }
