@@ -27,7 +27,7 @@ class PlaneTriangulation {
   }
 };
 
-// `positions` holds x, y of each point in turn, `weights` one number per point; all finite, no two
+// `positions` holds x, y of each point, `weights` one number per point; all finite, no two
 // positions equal. Any number of points will do, and they may lie on one line: then there are no
 // triangles. The answer is a function of the set of points, ties included: they are inserted in
 // (x, y) order.

@@ -50,7 +50,7 @@ class Complex {
   }
 };
 
-// `positions` holds x, y, z of each point in turn, `weights` one number per point; all finite, no
+// `positions` holds x, y, z of each point, `weights` one number per point; all finite, no
 // two positions equal. `alpha` is a squared length, or ±infinity. Every simplex of the
 // triangulation is classified; exterior ones are returned too.
 std::unique_ptr<Complex> reference(rust::Slice<const double> positions,

@@ -28,7 +28,7 @@ class Regular {
   std::unique_ptr<Data> data_;
 };
 
-// `positions` holds x, y, z of each point in turn, `weights` one number per point; all finite, no two
+// `positions` holds x, y, z of each point, `weights` one number per point; all finite, no two
 // positions equal.
 std::unique_ptr<Regular> regular(rust::Slice<const double> positions,
                                  rust::Slice<const double> weights);

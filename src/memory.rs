@@ -1,12 +1,12 @@
 //! What the system says of this process's memory, and large pieces of it that may not be had.
 
-/// The most memory this process ever held, in bytes; `None` where the system does not tell (only
+/// The most memory this process ever held, in bytes; `None` where the system does not say (only
 /// Linux does).
 pub fn peak_bytes() -> Option<u64> {
     status("VmHWM:")
 }
 
-/// The memory this process holds now, in bytes; `None` where the system does not tell.
+/// The memory this process holds now, in bytes; `None` where the system does not say.
 pub fn resident_bytes() -> Option<u64> {
     status("VmRSS:")
 }

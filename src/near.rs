@@ -1,4 +1,4 @@
-//! Near misses: what somebody meant who mistyped one of a few names.
+//! Near misses: which of a few names a mistyped one was meant to be.
 
 /// The known name most like `given`, if a slip or two of the fingers explains the difference: a letter
 /// left out, put in, wrong, or exchanged with its neighbour, one for every three letters. Letter case is

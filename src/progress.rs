@@ -1,7 +1,7 @@
-//! How far long work is, for whoever shows it.
+//! Progress of long work, for programs that show it.
 //!
 //! Loops that may take long say now and then how much is done, as `tracing` events of the target
-//! [`TARGET`] with the fields `done` and `total` (both `u64`). Where nobody listens this costs a few
+//! [`TARGET`] with the fields `done` and `total` (both `u64`). Without a listener this costs a few
 //! nanoseconds. The command shows a bar with the rate and the remaining time.
 
 use std::cell::Cell;

@@ -50,7 +50,7 @@ pub(crate) fn regular_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, Tr
 /// The power of a place x to a point p of weight ω is |x−p|² − ω. With ω = 2|p|² it is
 /// |x|² − 2x·p − |p|² = 2|x|² − |x+p|², least where p is *farthest* from −x: so the cells of the
 /// power diagram are those of the farthest-point diagram reflected at the origin, and the regular
-/// triangulation, which tells only whose cells meet, is the farthest-point one. The weights are
+/// triangulation, which records only whose cells meet, is the farthest-point one. The weights are
 /// exact numbers, not doubles.
 ///
 /// Expected O(n log n).

@@ -22,7 +22,7 @@ pub struct Unnormalised {
 }
 
 impl Unnormalised {
-    /// Decomposes a row fully; `None` if its length is no power of two, 2 or more.
+    /// Decomposes a row fully; `None` unless its length is a power of two, 2 or more.
     pub fn of(row: &[f64]) -> Option<Self> {
         if row.len() < 2 || !row.len().is_power_of_two() {
             return None;

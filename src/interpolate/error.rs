@@ -4,7 +4,7 @@ use crate::points::PointsError;
 use crate::shape::ShapeError;
 use crate::volume::VolumeError;
 
-/// Why there is no interpolant, or no points for a good one.
+/// Why an interpolant, or points for one, cannot be had.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum InterpolateError {
@@ -14,7 +14,7 @@ pub enum InterpolateError {
          from a volume"
     )]
     NoValues,
-    /// A value that is no finite number.
+    /// A value that is not finite.
     #[error("the value of point {index} is {value}: it must be finite; correct the input")]
     Value {
         /// The point, counted from 0.

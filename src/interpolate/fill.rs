@@ -6,9 +6,9 @@ use crate::volume::Volume;
 /// The whole regular triangulation of a shape's points (α = ∞) and, given their volume, of its
 /// corner samples too, so that it covers every sample of the grid.
 ///
-/// Corners that are no points yet come with their gray level and the least weight there is among
+/// Corners that are not points yet come with their gray level and the least weight there is among
 /// the points. Being corners they are never hidden, and being light they hide little. Weights
-/// decide which points the triangulation has: a point hidden by heavier neighbours is no vertex,
+/// decide which points the triangulation has: a point hidden by heavier neighbours is not a vertex,
 /// and its value is not used. With [`Balls::Radius`] the weights are (α + ω)² for the α of the
 /// shape.
 ///

@@ -54,7 +54,7 @@ impl<'a> Interpolant<'a> {
     /// The interpolant of the values of a shape's points. O(n).
     ///
     /// # Errors
-    /// Points without values, or with one that is no finite number.
+    /// Points without values, or with one that is not finite.
     pub fn new(shape: &'a AlphaShape) -> Result<Self, InterpolateError> {
         let values = shape.points().values.as_deref().ok_or(InterpolateError::NoValues)?;
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {

@@ -19,7 +19,7 @@ const CHUNK: usize = 32;
 ///
 /// Simplices are drawn in parallel, and a sample keeps the least number written to it, which does
 /// not depend on who comes first. Exact tests are spent on the samples near a simplex only, as
-/// rounded planes tell.
+/// rounded planes decide.
 pub(super) fn owners(interpolant: &Interpolant<'_>, grid: &Grid) -> Result<Vec<u32>, NoMemory> {
     let [nx, ny, _] = grid.dims().xyz();
     let samples = grid.dims().samples();

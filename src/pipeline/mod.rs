@@ -157,7 +157,7 @@ impl Pipeline {
         self.finish(self.weighed_points(points, &mut ignore)?, &mut ignore)
     }
 
-    /// The weighted points of a volume of gray levels. `hear` is told which stage begins.
+    /// The weighted points of a volume of gray levels. `hear` is called with each stage as it begins.
     ///
     /// # Errors
     /// Whatever a stage refuses.
@@ -180,7 +180,7 @@ impl Pipeline {
         self.weigh(points, origin, parameter, hear)
     }
 
-    /// Scattered points, weighted. `hear` is told which stage begins.
+    /// Scattered points, weighted. `hear` is called with each stage as it begins.
     ///
     /// # Errors
     /// Whatever a stage refuses.
@@ -199,7 +199,7 @@ impl Pipeline {
         self.weigh(points, origin, parameter, hear)
     }
 
-    /// The shape of weighted points. `hear` is told which stage begins.
+    /// The shape of weighted points. `hear` is called with each stage as it begins.
     ///
     /// # Errors
     /// Whatever the stage refuses, and [`PipelineError::Radii`].
@@ -262,7 +262,7 @@ impl Pipeline {
             points.differences = Some(scattered_difference(&points)?);
         }
         if parameter.is_none() && weighting.needs_differences() {
-            // What is wrong with the weights is told before the search.
+            // Weights are checked before the search.
             weigh(&points, weighting, 0.0)?;
             hear(Stage::Alpha);
             parameter = Some(Parameter::find_unweighted(&points, coordinates.unit)?);

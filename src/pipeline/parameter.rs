@@ -57,7 +57,7 @@ pub struct Parameter {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ParameterOrigin {
-    /// Somebody gave it.
+    /// It was given.
     Given,
     /// Ten squared voxels, as in the paper.
     Default,
@@ -100,7 +100,7 @@ impl AlphaRule {
         Ok(Some(Parameter { alpha, unit, origin: ParameterOrigin::Default }))
     }
 
-    /// The α that somebody gave; `None` where it is to be found.
+    /// The α given; `None` where it is to be found.
     pub fn given(self, unit: LengthUnit) -> Option<Parameter> {
         match self {
             Self::Given(alpha) => Some(Parameter { alpha, unit, origin: ParameterOrigin::Given }),
@@ -129,7 +129,7 @@ impl Parameter {
         Ok(Self { origin: ParameterOrigin::AutoUnweighted, ..found })
     }
 
-    /// Whether nobody gave it, and it was found among the points.
+    /// Whether it was found rather than given.
     pub fn is_found(&self) -> bool {
         matches!(self.origin, ParameterOrigin::Auto | ParameterOrigin::AutoUnweighted)
     }

@@ -55,7 +55,7 @@ pub enum RenderError {
         /// How many vertices there are.
         vertices: usize,
     },
-    /// A coordinate that is no number, or a radius or an opacity out of its range.
+    /// A coordinate that is NaN, or a radius or an opacity out of its range.
     #[error(
         "{what} {index} of the scene is out of range: coordinates must be finite and below 1e100 \
          in size, radii not negative, opacities from 0 to 1"

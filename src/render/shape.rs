@@ -75,7 +75,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`RenderError::Values`] when the values to colour by are not one for each point,
-    /// [`RenderError::Point`] when the complex has a vertex that is no point.
+    /// [`RenderError::Point`] when the complex has a vertex that is not a point.
     pub fn of_shape(
         positions: &[[f64; 3]],
         complex: &Complex,

@@ -89,7 +89,7 @@ pub fn reproduce(
     Ok(Reproduction { report, files })
 }
 
-/// Times stages, and tells of them.
+/// Times stages, and logs them.
 pub(crate) struct Clock<'a> {
     announce: &'a mut dyn FnMut(&'static str),
     running: Option<(&'static str, Instant)>,

@@ -21,7 +21,7 @@ pub struct ShapeNumbers {
     pub points: usize,
     /// Points that went because another is at the same place.
     pub duplicates: usize,
-    /// Points that are no vertices of the regular triangulation.
+    /// Points that are not vertices of the regular triangulation.
     pub hidden: usize,
     /// Points that are vertices of the shape.
     pub points_in_shape: usize,

@@ -114,7 +114,7 @@ pub enum Verdict {
     /// It does not.
     #[serde(rename = "not reproduced")]
     NotReproduced,
-    /// The paper does not say enough to tell.
+    /// The paper does not say enough to decide.
     #[serde(rename = "cannot be decided")]
     Undecided,
 }

@@ -106,7 +106,7 @@ pub struct AlphaShape {
     measures: Measures,
 }
 
-/// Why there is no shape.
+/// Why a shape cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeError {
@@ -211,9 +211,9 @@ pub fn alpha_shape(
 /// What an engine found.
 struct Found {
     complex: Complex,
-    /// The number of components and the sheets of the boundary, where the engine tells them.
+    /// The number of components and the sheets of the boundary, where the engine knows them.
     boundary: Option<(u64, Sheets)>,
-    /// Sites that are no vertices, where the engine saw the whole triangulation.
+    /// Sites that are not vertices, where the engine saw the whole triangulation.
     hidden: Option<Vec<u32>>,
 }
 
@@ -262,14 +262,14 @@ fn squared_radii(weights: &[f64], alpha: Alpha) -> Result<Vec<f64>, ShapeError> 
     weights.iter().enumerate().map(radius).collect()
 }
 
-/// Sites that are no vertices. Both lists ascend.
+/// Sites that are not vertices. Both lists ascend.
 fn hidden(sites: &[u32], vertices: &Simplices<1>) -> Vec<u32> {
     let mut vertices = vertices.rows().iter().peekable();
     sites.iter().copied().filter(|&site| vertices.next_if(|v| v[0] == site).is_none()).collect()
 }
 
 impl AlphaShape {
-    /// The shape of the same points with the same power weights at another α, which somebody has
+    /// The shape of the same points with the same power weights at another α, which the caller has
     /// found within this one's triangulation.
     pub(crate) fn at(&self, alpha: Alpha, exterior: bool, complex: Complex, betti: Betti) -> Self {
         let measures = Measures::of(&complex, &self.points.positions);
@@ -292,7 +292,7 @@ impl AlphaShape {
         Self { coordinates, ..self }
     }
 
-    /// What the coordinates of the points mean, as far as anybody said it.
+    /// What the coordinates of the points mean, as far as it is known.
     pub fn coordinates(&self) -> Coordinates {
         self.coordinates
     }
@@ -335,7 +335,7 @@ impl AlphaShape {
         &self.duplicates
     }
 
-    /// Points that are no vertices of the regular triangulation, ascending; `None` when the engine
+    /// Points that are not vertices of the regular triangulation, ascending; `None` when the engine
     /// did not see the whole triangulation.
     pub fn hidden(&self) -> Option<&[u32]> {
         self.hidden.as_deref()
@@ -347,7 +347,7 @@ impl AlphaShape {
     }
 
     /// The sheets that boundary facets and singular edges are part of; `None` when the engine does
-    /// not tell them ([`Engine::Reference`]).
+    /// not know them ([`Engine::Reference`]).
     pub fn sheets(&self) -> Option<&Sheets> {
         self.sheets.as_ref()
     }

@@ -1,6 +1,6 @@
 use serde::{Serialize, Serializer};
 
-/// Writes a number that may be infinite, as α is, where there is no number for ∞ (JSON): as the string "inf"
+/// Writes a number that may be infinite, as α is, where the format has no ∞ (JSON): as the string "inf"
 /// or "-inf". For `#[serde(serialize_with)]`.
 ///
 /// # Errors

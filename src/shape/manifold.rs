@@ -1,7 +1,7 @@
 use super::Surface;
 use super::union_find::UnionFind;
 
-/// Where the boundary of a shape is no manifold: a solid in the sense of other programs has none of
+/// Where the boundary of a shape is not a manifold: a solid in the sense of other programs has none of
 /// these, an alpha shape often has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ManifoldDefects {

@@ -81,7 +81,7 @@ pub struct Component {
     pub low: [f64; 3],
     /// The largest coordinates of its box, (x, y, z).
     pub high: [f64; 3],
-    /// What its boundary shuts in, largest first; `None` where sheets are not known.
+    /// What its boundary encloses, largest first; `None` where sheets are not known.
     pub voids: Option<Vec<Enclosed>>,
 }
 
@@ -90,7 +90,7 @@ pub struct Component {
 pub struct Enclosed {
     /// The number of the sheet.
     pub sheet: u32,
-    /// What the sheet shuts in, in cubed units of the points.
+    /// What the sheet encloses, in cubed units of the points.
     pub volume: f64,
     /// The smallest coordinates of its box, (x, y, z).
     pub low: [f64; 3],
@@ -98,7 +98,7 @@ pub struct Enclosed {
     pub high: [f64; 3],
 }
 
-/// What [`AlphaShape::component_numbers`] says of points that are no vertices of the shape.
+/// What [`AlphaShape::component_numbers`] says of points that are not vertices of the shape.
 pub const NO_COMPONENT: u32 = u32::MAX;
 
 impl AlphaShape {
@@ -192,7 +192,7 @@ impl AlphaShape {
         }
         let mut found: Vec<(usize, Enclosed)> = found.into_iter().flatten().collect();
         found.iter_mut().for_each(|(_, void)| void.volume /= 6.0);
-        // The sheet around a component has what it shuts in on its back: least, and first.
+        // The sheet around a component has what it encloses behind it: least, and first.
         found.sort_by(|(a, first), (b, second)| {
             a.cmp(b).then(first.volume.total_cmp(&second.volume))
         });

@@ -25,7 +25,7 @@ type Corner = u32;
 impl Surface {
     /// The regular facets alone, as the boundary of a solid: each edge is on two facets, which go
     /// along it in opposite directions, and the facets around a vertex are one fan. Where the shape
-    /// is no manifold, its parts are cut apart: facets that bound the same cells stay together, and
+    /// is not a manifold, its parts are cut apart: facets that bound the same cells stay together, and
     /// vertices between others stand there once for each fan. Where that leaves an edge on four facets, as both
     /// of its ends are in one fan, two of them get a vertex in its middle. No place moves, but for the
     /// rounding of such middles. O(n log n).

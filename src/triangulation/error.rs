@@ -59,7 +59,7 @@ impl SitesError {
     }
 }
 
-/// Why there is no triangulation.
+/// Why points cannot be triangulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TriangulationError {

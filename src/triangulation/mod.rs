@@ -96,7 +96,7 @@ impl Triangulation {
         &self.beside
     }
 
-    /// The corner of infinite cells that is no point: the number of points.
+    /// The corner of infinite cells that is not a point: the number of points.
     pub fn ghost(&self) -> u32 {
         self.ghost
     }
@@ -106,7 +106,7 @@ impl Triangulation {
         (self.cells, self.beside, self.ghost)
     }
 
-    /// The points that are no vertices, ascending. O(cells).
+    /// The points that are not vertices, ascending. O(cells).
     pub fn hidden(&self) -> Vec<u32> {
         let mut seen = vec![false; self.ghost as usize + 1];
         for &v in self.cells.as_flattened() {

@@ -11,7 +11,7 @@ use crate::render::pixels::{Picture, Size};
 pub(super) const FAMILIES: &str =
     "Ubuntu, 'Noto Sans', 'DejaVu Sans', 'Helvetica Neue', Arial, sans-serif";
 
-/// A number as short as a thousandth of a pixel allows; 0 for what is no number.
+/// A number as short as a thousandth of a pixel allows; 0 for NaN.
 pub(super) fn num(value: f64) -> String {
     if !value.is_finite() {
         return "0".into();

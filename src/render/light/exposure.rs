@@ -59,7 +59,7 @@ pub(crate) struct Exposure {
 
 const SKY_DIRECTIONS: usize = 64;
 const KEY_DIRECTIONS: usize = 16;
-/// Depth maps made before any is used: bounds memory, and is no function of the thread count.
+/// Depth maps made before any is used: bounds memory, and does not depend on the thread count.
 const MAPS_AT_ONCE: usize = 8;
 
 impl Exposure {

@@ -88,7 +88,7 @@ fn half_a_pixel_is_half_covered() {
 
 #[test]
 fn neighbours_share_samples_without_gap_or_overlap() {
-    // A fan around a point that is no sample; at opacity ½ an overlap would be denser, a gap
+    // A fan around a point that is not a sample; at opacity ½ an overlap would be denser, a gap
     // lighter than the rest.
     let mut positions = vec![[0.013, -0.027, 0.0]];
     let rim =
@@ -188,7 +188,7 @@ fn empty_tiny_and_flat_scenes_are_pictures_too() {
     let flat = [line, point].map(|corners| triangle(corners, RED)).to_vec();
     assert!(white(&Scene { meshes: flat, ..Scene::default() }));
     assert!(white(&ball([0.0; 3], 0.0, RED)));
-    // Smaller than between two samples, and further away than doubles can tell.
+    // Smaller than between two samples, and further away than doubles resolve.
     draw(&ball([0.0; 3], 1e-300, RED), 5, Background::White);
     draw(&ball([1e90, 0.0, -1e90], 1e89, RED), 5, Background::White);
     let huge = triangle([[-1e99, -1e99, 0.0], [1e99, -1e99, 0.0], [0.0, 1e99, 0.0]], RED);

@@ -76,7 +76,7 @@ fn library() -> String {
     scripts[..end].to_owned() + "</script>"
 }
 
-/// What the page tells of a level, as pairs.
+/// What the page shows of a level, as pairs.
 fn level(level: &Level) -> serde_json::Value {
     let [b0, b1, b2] = level.betti.into();
     let by_class = |c: crate::shape::ByClass<usize>| {

@@ -27,11 +27,11 @@ impl Page {
     /// Makes the page. The same subject gives the same bytes.
     ///
     /// The boundary and what is singular are traces of their own, points are sized by weight, a
-    /// slider goes over the levels, and a click or touch tells index, F, ω and class of a point. The
+    /// slider goes over the levels, and a click or touch shows index, F, ω and class of a point. The
     /// library plotly.js, which draws it, is inside.
     ///
     /// # Errors
-    /// [`RenderError::Isosurface`] for an isovalue that is no finite
+    /// [`RenderError::Isosurface`] for an isovalue that is not a finite
     /// number.
     ///
     /// # Panics

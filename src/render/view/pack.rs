@@ -102,7 +102,7 @@ fn bytes<'a>(spans: impl Iterator<Item = &'a Span>) -> Vec<u8> {
 }
 
 /// Draws the points of each box of a grid as its first one, with boxes as small as they may be for
-/// so many facets; tells what was done.
+/// so many facets; returns what was done.
 fn simplify(
     positions: &[[f64; 3]],
     facets: &mut Vec<([u32; 3], Span)>,

@@ -82,7 +82,7 @@ fn rgb(index: usize) -> Rgb {
 }
 
 fn layout(unit: &str) -> Layout {
-    // Beside an axis is no room for a sentence.
+    // There is no room for a sentence beside an axis.
     let label = |name: &str| match unit.contains(' ') {
         true => name.to_owned(),
         false => format!("{name} ({unit})"),

@@ -7,7 +7,7 @@ use crate::volume::Volume;
 pub struct Subject<'a> {
     /// Its heading.
     pub title: &'a str,
-    /// What else is to be told, as pairs of a name and a value.
+    /// Further facts, as pairs of a name and a value.
     pub facts: &'a [(String, String)],
     /// What coordinates are measured in, as "voxels".
     pub unit: &'a str,

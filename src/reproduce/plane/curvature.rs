@@ -12,7 +12,7 @@ impl Curvature {
     /// Straight: half-planes, the convex hull.
     pub const ZERO: Self = Self(0.0);
     /// The least and the greatest magnitude but 0, 2^∓1000: beyond these, lengths near the radius
-    /// are no doubles.
+    /// are not doubles.
     pub const MAGNITUDE: [f64; 2] =
         [f64::from_bits((1023 - 1000) << 52), f64::from_bits((1023 + 1000) << 52)];
 
@@ -54,7 +54,7 @@ impl std::fmt::Display for Curvature {
     }
 }
 
-/// The number given as α is no curvature.
+/// The number given as α is not a curvature.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "α cannot be {given}: a generalised disc needs 0 or a finite reciprocal length of magnitude {least:e} to {greatest:e}",

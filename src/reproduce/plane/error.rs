@@ -1,6 +1,6 @@
 use crate::triangulation::{SitesError, TriangulationError};
 
-/// Why there is no shape in the plane.
+/// Why a shape in the plane cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlaneError {

@@ -55,7 +55,7 @@ pub(super) struct Answer {
     pub facet_sheets: Vec<u32>,
     /// The sheet of each singular edge, in their order.
     pub edge_sheets: Vec<u32>,
-    /// Input indices of sites that are no vertices, of one block only.
+    /// Input indices of sites that are not vertices; of one block only.
     pub hidden: Option<Vec<u32>>,
 }
 

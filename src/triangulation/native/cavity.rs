@@ -140,7 +140,7 @@ impl Native<'_> {
         Ok(())
     }
 
-    /// Writes the new cells, tells the cells outside of them, and notes in the table where they meet
+    /// Writes the new cells, links them to the cells outside, and notes in the table where they meet
     /// each other: each edge of the boundary is in two facets, which run along it in opposite
     /// directions.
     fn write(&mut self, v: u32) {

@@ -141,7 +141,7 @@ fn rounds(n: u32) -> impl Iterator<Item = u32> {
 /// The logarithm of how many times as many points there are after a round as before it.
 const ROUND: u32 = 2;
 
-/// A round for a point, the last being 0 and each the more probable by so many times: zeros that its
+/// A round for a point, the last being 0, each more probable than the one before by this factor: zeros that its
 /// scrambled number ends with.
 fn late(v: u32) -> u32 {
     let v = (v ^ v >> 16).wrapping_mul(0x45d9_f3b5);

@@ -73,7 +73,7 @@ impl Size {
         }
     }
 
-    /// The terms of the polynomial that tells inside from outside.
+    /// The terms of the polynomial that separates inside from outside.
     #[inline(always)]
     pub fn side_bound(self, vertices: usize) -> f64 {
         let square = self.length * self.length;

@@ -47,7 +47,7 @@ struct Limit {
 
 impl Limit {
     fn find() -> Result<Self, ReproduceError> {
-        // Discs this small contain no two of the points, so that the shape tells ρ.
+        // Discs this small contain no two of the points, so that the shape reveals ρ.
         let tiny = Rung::at(1e6)?;
         let enclosing = tiny.shape.no_disc().map_or(f64::NAN, |none| none.enclosing);
         Ok(Self { enclosing, around: [Rung::at(0.999 / enclosing)?, Rung::at(1.001 / enclosing)?] })

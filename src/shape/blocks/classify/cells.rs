@@ -22,7 +22,7 @@ impl State {
         self.0 & Self::INFINITE != 0
     }
 
-    /// Whether none of its corners is the block's own: nobody asks about it.
+    /// Whether none of its corners is the block's own, so that it does not matter.
     #[inline(always)]
     pub fn is_far(self) -> bool {
         self.0 & Self::FAR != 0

@@ -55,7 +55,7 @@ pub(in super::super) struct Shelf {
     pub cells: Rows<3>,
     pub facets: Rows<2>,
     pub edges: Rows<1>,
-    /// The class of each point, `None` for those that are no vertices.
+    /// The class of each point, `None` for those that are not vertices.
     pub vertices: Vec<Option<Class>>,
     /// Where the rows and sheets of each point begin, see [`Dimension`], and where the last ones end.
     pub starts: Vec<[u32; 5]>,
