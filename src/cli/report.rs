@@ -262,68 +262,28 @@ fn largest_components(shape: &AlphaShape) -> Vec<Component> {
 
 impl Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "input     {}", name(&self.input.name))?;
-        if let (Some([x, y, z]), Some([low, high])) = (self.input.dims, self.input.gray_range) {
-            let (low, high) = (number(low), number(high));
-            write!(f, "  {x}×{y}×{z} samples, values {low}..{high} are gray 0..255")?;
-        }
-        writeln!(f)?;
+        let unit = self.coordinates.unit.symbol();
+        writeln!(f, "input     {}", self.input)?;
         if let Some(haar) = &self.haar {
             writeln!(f, "haar      {haar}")?;
         }
-        write!(f, "points    {} selected", self.points.selected)?;
-        for (count, what) in [
-            (self.points.duplicates, "duplicates"),
-            (self.points.hidden, "hidden"),
-            (self.points.in_shape, "in the shape"),
-        ] {
-            if let Some(count) = count {
-                write!(f, ", {count} {what}")?;
-            }
-        }
+        write!(f, "points    {}", self.points)?;
         if self.shape.is_some() && self.points.hidden.is_none() {
             write!(f, " (--blocks 1 counts hidden points)")?;
         }
         if let Some(ended) = &self.points.ended_early {
             write!(f, "\n          {ended}")?;
         }
-        let unit = self.coordinates.unit.symbol();
         writeln!(f, "\nlengths   in {}", self.coordinates)?;
         writeln!(f, "weights   {} (squared lengths)", self.weights)?;
         if let Some(alpha) = &self.alpha {
             writeln!(f, "parameter {alpha}")?;
         }
         if let Some(shape) = &self.shape {
-            writeln!(f, "cells     {:>9} interior", shape.cells.interior)?;
-            writeln!(f, "facets    {}", Line(&shape.facets))?;
-            writeln!(f, "edges     {}", Line(&shape.edges))?;
-            writeln!(f, "vertices  {}", Line(&shape.vertices))?;
-            if let Some(Betti { b0, b1, b2 }) = shape.betti {
-                writeln!(f, "topology  {b0} components, {b1} tunnels, {b2} voids")?;
-            }
-            writeln!(f, "volume    {:.6} {unit}³", shape.volume)?;
-            let (area, singular) = (shape.area, shape.singular_area);
-            writeln!(f, "area      {area:.6} {unit}², singular facets {singular:.6} {unit}²")?;
-            if let [largest, _, ..] = &shape.components[..] {
-                let Component { vertices, volume, .. } = largest;
-                writeln!(
-                    f,
-                    "largest   component: {vertices} vertices, volume {volume:.6} {unit}³"
-                )?;
-            }
-            if let Some(voids) = &shape.voids
-                && let Some(largest) = voids.first()
-            {
-                let sum = voids.iter().fold(0.0, |sum, void| sum + void.volume);
-                writeln!(
-                    f,
-                    "voids     {sum:.6} {unit}³ in all, the largest {:.6} {unit}³, filled at α = {} {unit}²",
-                    largest.volume, largest.filling_alpha
-                )?;
-            }
-            if self.points.in_shape == Some(0) {
-                writeln!(f, "the shape is empty: every α + ω is negative; raise --alpha")?;
-            }
+            shape.print(f, unit)?;
+        }
+        if self.points.in_shape == Some(0) {
+            writeln!(f, "the shape is empty: every α + ω is negative; raise --alpha")?;
         }
         match self.solid {
             None => {}
@@ -332,19 +292,89 @@ impl Display for Report {
             }
             Some(Cuts { edges, vertices, midpoints }) => writeln!(
                 f,
-                "solid     the boundary is no manifold: cut apart at {edges} edges, with {vertices} vertices \
-                 more and {midpoints} in the middle of edges"
+                "solid     the boundary is not a manifold: cut apart at {edges} edges, with {vertices} more \
+                 vertices and {midpoints} midpoints of edges"
             )?,
         }
-        for file in &self.files {
-            writeln!(f, "wrote     {}", name(file))?;
+        ending(f, &self.files, &STAGES, &self.seconds)
+    }
+}
+
+impl Display for InputReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", name(&self.name))?;
+        if let (Some([x, y, z]), Some([low, high])) = (self.dims, self.gray_range) {
+            let (low, high) = (number(low), number(high));
+            write!(f, "  {x}×{y}×{z} samples, values {low}..{high} are gray 0..255")?;
         }
-        write!(f, "time     ")?;
-        for stage in STAGES {
-            if let Some(seconds) = self.seconds.get(stage) {
-                write!(f, " {stage} {seconds:.2} s")?;
+        Ok(())
+    }
+}
+
+impl Display for PointsReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} selected", self.selected)?;
+        let counts = [
+            (self.duplicates, "duplicates"),
+            (self.hidden, "hidden"),
+            (self.in_shape, "in the shape"),
+        ];
+        for (count, what) in counts {
+            if let Some(count) = count {
+                write!(f, ", {count} {what}")?;
             }
         }
-        writeln!(f)
+        Ok(())
     }
+}
+
+impl ShapeReport {
+    /// Prints what the shape is, lengths in `unit`.
+    fn print(&self, f: &mut fmt::Formatter<'_>, unit: &str) -> fmt::Result {
+        writeln!(f, "cells     {:>9} interior", self.cells.interior)?;
+        writeln!(f, "facets    {}", Line(&self.facets))?;
+        writeln!(f, "edges     {}", Line(&self.edges))?;
+        writeln!(f, "vertices  {}", Line(&self.vertices))?;
+        if let Some(Betti { b0, b1, b2 }) = self.betti {
+            writeln!(f, "topology  {b0} components, {b1} tunnels, {b2} voids")?;
+        }
+        writeln!(f, "volume    {:.6} {unit}³", self.volume)?;
+        let (area, singular) = (self.area, self.singular_area);
+        writeln!(f, "area      {area:.6} {unit}², singular facets {singular:.6} {unit}²")?;
+        if let [largest, _, ..] = &self.components[..] {
+            let Component { vertices, volume, .. } = largest;
+            writeln!(f, "largest   component: {vertices} vertices, volume {volume:.6} {unit}³")?;
+        }
+        if let Some(voids) = &self.voids
+            && let Some(largest) = voids.first()
+        {
+            let sum = voids.iter().fold(0.0, |sum, void| sum + void.volume);
+            let Void { volume, filling_alpha, .. } = largest;
+            writeln!(
+                f,
+                "voids     {sum:.6} {unit}³ in all, the largest {volume:.6} {unit}³, filled at α = \
+                 {filling_alpha} {unit}²"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// The last lines of a report: the files written, and how long each stage took.
+pub fn ending(
+    f: &mut fmt::Formatter<'_>,
+    files: &[String],
+    stages: &[&str],
+    seconds: &BTreeMap<&'static str, f64>,
+) -> fmt::Result {
+    for file in files {
+        writeln!(f, "wrote     {}", name(file))?;
+    }
+    write!(f, "time     ")?;
+    for stage in stages {
+        if let Some(seconds) = seconds.get(stage) {
+            write!(f, " {stage} {seconds:.2} s")?;
+        }
+    }
+    writeln!(f)
 }

@@ -2,7 +2,7 @@ use std::io::{self, Write};
 
 use super::vtu::{Appended, bytes};
 use super::{ExportOptions, Exporter, stated};
-use crate::shape::{AlphaShape, Class, Sheets};
+use crate::shape::{AlphaShape, Class, Sheets, Surface};
 
 /// VTP, VTK's polygons: the boundary, singular edges and singular vertices. Cell data are their
 /// `class` (2 regular, 3 singular), the `component` of the shape they belong to and, where known, the
@@ -43,31 +43,7 @@ impl Exporter for Vtp {
         }
         file.array("UInt32", "input_index", 1, bytes(vertices.iter().map(|v| v.to_le_bytes())))?;
         write!(file.xml, "</PointData>\n<CellData>\n")?;
-        // VTK counts cells in this order: vertices, lines, polygons.
-        let thin = surface.points.len() + surface.edges.len();
-        let mut classes = vec![Class::Singular as u8; thin];
-        classes.resize(thin + surface.regular.len(), Class::Regular as u8);
-        classes.resize(thin + facets, Class::Singular as u8);
-        file.array("UInt8", "class", 1, classes)?;
-        let firsts = (surface.points.iter().copied())
-            .chain(surface.edges.iter().map(|edge| edge[0]))
-            .chain(surface.facets().map(|facet| facet[0]));
-        let components = shape.component_numbers();
-        let component = |v: u32| components[vertices[v as usize] as usize].to_le_bytes();
-        file.array("UInt32", "component", 1, bytes(firsts.map(component)))?;
-        if let Some(sheets) = shape.sheets().filter(|_| !self.0.solid) {
-            let none = surface.points.iter().map(|_| [Sheets::NONE; 2]);
-            let edges = sheets.edges.iter().map(|&sheet| [sheet as i32, Sheets::NONE]);
-            let sides: Vec<_> = none.chain(edges).chain(sheets.sides()).collect();
-            for (k, name) in ["sheet", "sheet_behind"].into_iter().enumerate() {
-                file.array(
-                    "Int32",
-                    name,
-                    1,
-                    bytes(sides.iter().map(|side| side[k].to_le_bytes())),
-                )?;
-            }
-        }
+        cell_data(&mut file, shape, &surface, self.0.solid)?;
         write!(file.xml, "</CellData>\n<Points>\n")?;
         let positions = surface.positions(&points.positions).flatten();
         file.array("Float64", "Points", 3, bytes(positions.map(f64::to_le_bytes)))?;
@@ -81,6 +57,38 @@ impl Exporter for Vtp {
         out.write_all(&file.data)?;
         write!(out, "\n</AppendedData>\n</VTKFile>\n")
     }
+}
+
+/// Class, component and sheets of each cell.
+fn cell_data(
+    file: &mut Appended,
+    shape: &AlphaShape,
+    surface: &Surface,
+    solid: bool,
+) -> io::Result<()> {
+    let vertices: Vec<u32> = surface.indices().collect();
+    let facets = surface.regular.len() + surface.singular.len();
+    // VTK counts cells in this order: vertices, lines, polygons.
+    let thin = surface.points.len() + surface.edges.len();
+    let mut classes = vec![Class::Singular as u8; thin];
+    classes.resize(thin + surface.regular.len(), Class::Regular as u8);
+    classes.resize(thin + facets, Class::Singular as u8);
+    file.array("UInt8", "class", 1, classes)?;
+    let firsts = (surface.points.iter().copied())
+        .chain(surface.edges.iter().map(|edge| edge[0]))
+        .chain(surface.facets().map(|facet| facet[0]));
+    let components = shape.component_numbers();
+    let component = |v: u32| components[vertices[v as usize] as usize].to_le_bytes();
+    file.array("UInt32", "component", 1, bytes(firsts.map(component)))?;
+    if let Some(sheets) = shape.sheets().filter(|_| !solid) {
+        let none = surface.points.iter().map(|_| [Sheets::NONE; 2]);
+        let edges = sheets.edges.iter().map(|&sheet| [sheet as i32, Sheets::NONE]);
+        let sides: Vec<_> = none.chain(edges).chain(sheets.sides()).collect();
+        for (k, name) in ["sheet", "sheet_behind"].into_iter().enumerate() {
+            file.array("Int32", name, 1, bytes(sides.iter().map(|side| side[k].to_le_bytes())))?;
+        }
+    }
+    Ok(())
 }
 
 /// Cells of so many vertices each.

@@ -12,7 +12,7 @@ use walpha::shape::{Betti, ByClass, Measures, Void, number_or_name};
 
 use super::super::output::name;
 use super::super::pipeline::Domain;
-use super::super::report::{SCHEMA_VERSION, WeightsReport};
+use super::super::report::{SCHEMA_VERSION, WeightsReport, ending};
 
 /// What `walpha ladder` did over α.
 #[derive(Serialize)]
@@ -138,26 +138,38 @@ impl Display for Facts {
             "whole     {cells} cells, {facets} facets, {edges} edges, {vertices} vertices"
         )?;
         writeln!(f, "domain    {}", self.domain)?;
-        if let Some(s) = &self.suggested {
-            writeln!(f, "curve     {} critical values; α to try:", self.critical_values)?;
-            writeln!(f, "          {:<12} the first with every point in a cell", s.all_points)?;
+        if let Some(suggested) = &self.suggested {
+            self.print_suggested(f, suggested)?;
+        }
+        self.print_levels(f)?;
+        ending(f, &self.files, &STAGES, &self.seconds)
+    }
+}
+
+/// The stages whose times are printed.
+const STAGES: [&str; 8] =
+    ["read", "haar", "points", "filtration", "curve", "ladder", "write", "total"];
+
+impl Facts {
+    fn print_suggested(&self, f: &mut fmt::Formatter<'_>, s: &Suggestions) -> fmt::Result {
+        writeln!(f, "curve     {} critical values; α to try:", self.critical_values)?;
+        writeln!(f, "          {:<12} the first with every point in a cell", s.all_points)?;
+        writeln!(f, "          {:<12} the first with that and one solid component", s.one_region)?;
+        writeln!(f, "          {:<12} the first with that and no void", s.no_void)?;
+        let [low, high] = s.plateau;
+        if high == f64::INFINITY {
+            writeln!(f, "          {low:<12} to inf: b0, b1, b2 change no more")?;
+        } else {
+            let all = s.all_points;
             writeln!(
                 f,
-                "          {:<12} the first with that and one solid component",
-                s.one_region
+                "          {low:<12} to {high}: the longest stretch without a change of b0, b1, b2, from {all} on"
             )?;
-            writeln!(f, "          {:<12} the first with that and no void", s.no_void)?;
-            let [low, high] = s.plateau;
-            if high == f64::INFINITY {
-                writeln!(f, "          {low:<12} to inf: b0, b1, b2 change no more")?;
-            } else {
-                let all = s.all_points;
-                writeln!(
-                    f,
-                    "          {low:<12} to {high}: the longest stretch without a change of b0, b1, b2, from {all} on"
-                )?;
-            }
         }
+        Ok(())
+    }
+
+    fn print_levels(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
             "{:>12} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} {:>6} {:>12} {:>9} {:>12}",
@@ -190,16 +202,7 @@ impl Display for Facts {
                 level.void_volume,
             )?;
         }
-        for file in &self.files {
-            writeln!(f, "wrote     {}", name(file))?;
-        }
-        write!(f, "time     ")?;
-        for stage in ["read", "haar", "points", "filtration", "curve", "ladder", "write", "total"] {
-            if let Some(seconds) = self.seconds.get(stage) {
-                write!(f, " {stage} {seconds:.2} s")?;
-            }
-        }
-        writeln!(f)
+        Ok(())
     }
 }
 
