@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::{BufReader, ErrorKind};
 use std::path::Path;
 
-use anyhow::{Context, bail};
+use super::said::{Said, refused, said};
+use anyhow::Context;
 use walpha::check::schema::{ComplexFile, PlacedComplex};
 use walpha::points::read_points;
 use walpha::shown::shown;
@@ -19,11 +20,12 @@ pub fn is_complex(path: &Path) -> bool {
 /// given.
 pub fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<PlacedComplex> {
     if !is_complex(path) {
-        bail!("{}: a complex is read from .json or .npz; see docs/cross-checking.md", shown(path));
+        refused!("{}: a complex is read from .json or .npz", shown(path) => "see docs/cross-checking.md");
     }
     let named = |error: std::io::Error| {
-        let hint = if error.kind() == ErrorKind::NotFound { "; check the path" } else { "" };
-        anyhow::anyhow!("cannot read {}: {error}{hint}", shown(path))
+        let missing = error.kind() == ErrorKind::NotFound;
+        let next = missing.then(|| "check the path".to_owned());
+        Said { next, ..said!("cannot read {}: {error}", shown(path)) }
     };
     let file = BufReader::new(File::open(path).map_err(named)?);
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));

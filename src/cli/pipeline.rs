@@ -3,21 +3,22 @@
 use std::fmt::{self, Display};
 use std::path::Path;
 
-use anyhow::{anyhow, bail};
 use serde::Serialize;
 use walpha::export::{Scratch, Target};
 use walpha::interpolate::adaptive_voxels;
 use walpha::ladder::{Curve, Filtration};
 use walpha::points::{is_point_file, read_points, weigh};
+use walpha::volume::Reason;
 use walpha::{
     Alpha, Coordinates, GrayRange, LengthUnit, Points, Selection, Truncation, Units, Volume,
-    WeightedPoints, Weighting, haar, points, volume,
+    VolumeError, WeightedPoints, Weighting, haar, points, volume,
 };
 
 use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, ShapeArgs, WeightArgs};
-use super::given::{Usage, misused};
+use super::complaint::{is_usage, reasons};
 use super::parameter::Parameter;
 use super::progress::Progress;
+use super::said::{Said, misused, refused, said};
 
 /// What INPUT turned out to be.
 pub enum Input {
@@ -43,10 +44,21 @@ pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> 
             if is_points(args, input)? {
                 return Ok(Input::Points(read_points(Path::new(input), args.columns())?));
             }
-            let (volume, range) = volume::open(input, &args.options())?.into_gray(args.gray())?;
+            let volume = volume::open(input, &args.options()).map_err(with_points)?;
+            let (volume, range) = volume.into_gray(args.gray())?;
             Ok(Input::Volume(Grays { volume, range, written: args.written(range) }))
         })
     })
+}
+
+/// Adds the formats of points to the error for a file of no format known.
+pub fn with_points(error: VolumeError) -> anyhow::Error {
+    if !matches!(error, VolumeError::Format { reason: Reason::Unknown { .. }, .. }) {
+        return error.into();
+    }
+    let names: Vec<&str> = points::FORMATS.iter().map(|format| format.name).collect();
+    let said = Said::from(error);
+    Said { why: format!("{}, {} as points", said.why, names.join(", ")), ..said }.into()
 }
 
 /// Does something with INPUT as a file or the name of a sample. Standard input becomes a file for that
@@ -59,11 +71,15 @@ pub fn with_file<T>(
         return work(&args.input);
     }
     let file = Scratch::of(&mut std::io::stdin().lock(), &args.extension())
-        .map_err(|error| anyhow!("cannot read standard input: {error}; name a file instead"))?;
+        .map_err(|error| said!("cannot read standard input: {error}" => "name a file instead"))?;
     let path = file.path().to_string_lossy().into_owned();
     // Nobody knows the name of that file.
-    work(&path)
-        .map_err(|error| anyhow!("{}", format!("{error:#}").replace(&path, "standard input")))
+    work(&path).map_err(|error| {
+        let (why, next) = reasons(&error);
+        let named = |text: String| text.replace(&path, "standard input");
+        let usage = is_usage(&error);
+        Said { why: named(why), next: next.map(named), usage }.into()
+    })
 }
 
 /// Options that speak of a volume.
@@ -94,7 +110,7 @@ const OF_VOLUMES: [&str; 22] = [
 
 impl Input {
     /// Refuses options that have no effect on what INPUT is.
-    pub fn accepts(&self, args: &InputArgs) -> Result<(), Usage> {
+    pub fn accepts(&self, args: &InputArgs) -> Result<(), Said> {
         let holds = |what| format!("{} holds {what}", args.input);
         match self {
             Self::Volume(..) => args.given.refuse(&["columns"], holds("a volume")),
@@ -133,11 +149,7 @@ impl Weighed {
             None => Parameter::found(self.points.clone(), self.coordinates.unit, progress)?,
         };
         if shape.radii() && parameter.is_found() {
-            misused!(
-                "with --balls radius, α is a radius, and auto finds squared ones; give --alpha A, as \
-                 in --alpha {}",
-                parameter.alpha.squared().abs().sqrt()
-            );
+            misused!("with --balls radius, α is a radius, and auto finds squared ones" => "give --alpha A, as in --alpha {}", parameter.alpha.squared().abs().sqrt());
         }
         self.parameter = Some(parameter);
         Ok(parameter)
@@ -267,10 +279,7 @@ fn selected_points(
         return Ok((points::select(volume, smoothed, &differences, selection, units)?, None));
     };
     if volume.has_missing() {
-        bail!(
-            "--select adaptive interpolates between all samples, and some are missing: give --nan a \
-             value, or omit adaptive"
-        );
+        refused!("--select adaptive interpolates between all samples, and some are missing" => "give --nan a value, or omit adaptive");
     }
     let mut voxels = adaptive_voxels(volume, &goal, units)?;
     voxels.sort_unstable();

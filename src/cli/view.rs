@@ -7,22 +7,23 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
-use walpha::export::{Target, UnknownFormat};
+use walpha::export::Target;
 use walpha::ladder::Filtration;
 use walpha::render::{Original, Page, Subject};
 use walpha::shown::{number, shown};
+use walpha::volume::UnknownFormat;
 use walpha::{Alpha, GrayRange};
 
 use super::Global;
 use super::args::{
     AlphaArg, Alphas, FrozenArgs, HaarArgs, InputArgs, Level, SelectArgs, WeightArgs,
 };
-use super::given::misused;
 use super::output::{name, tell};
 use super::parameter::Parameter;
 use super::pipeline::{self, Input, Weighed};
 use super::progress::Progress;
 use super::report::{SCHEMA_VERSION, WeightsReport};
+use super::said::misused;
 
 /// Make a page that shows the shapes in a browser: self-contained, no network needed.
 ///
@@ -91,7 +92,7 @@ impl View {
         let read = pipeline::read(&self.input, &mut progress)?;
         read.accepts(&self.input)?;
         if self.isovalue.is_some() && matches!(read, Input::Points(_)) {
-            misused!("--isovalue has no effect: points have no isosurface; omit it");
+            misused!("--isovalue has no effect: points have no isosurface" => "omit it");
         }
         let (weighed, volume) =
             pipeline::weigh_input(read, &self.haar, &self.select, &weights, &mut progress)?;
@@ -119,7 +120,7 @@ impl View {
         let levels = filtration.levels(&alphas);
         if levels.len() > Page::MOST_LEVELS {
             let (levels, most) = (levels.len(), Page::MOST_LEVELS);
-            misused!("{levels} levels are too many for a page; give --alphas at most {most}");
+            misused!("{levels} levels are too many for a page" => "give --alphas at most {most}");
         }
         let ladder = progress.stage("ladder", || levels.ladder(domain.volume));
         // That level, or the last below it.

@@ -1,3 +1,4 @@
+use crate::advice::Advice;
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::shown::{number, six_digits};
@@ -59,15 +60,26 @@ impl std::fmt::Display for Alpha {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NotAnAlpha {
     /// NaN.
-    #[error("α cannot be NaN: give a number (a squared length), or `inf` for the convex hull")]
+    #[error("α cannot be NaN")]
     NaN,
     /// A negative radius.
-    #[error("a radius must not be negative, and {0} is: give a length from 0 up, or α itself")]
+    #[error("a radius must not be negative, and {0} is")]
     Radius(f64),
+}
+
+impl NotAnAlpha {
+    /// What to do about it.
+    pub fn advice(&self) -> Advice {
+        match self {
+            Self::NaN => "give a number (a squared length), or `inf` for the convex hull".into(),
+            Self::Radius(_) => "give a length from 0 up, or α itself".into(),
+        }
+    }
 }
 
 /// What a point with weight ω is at parameter α.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Balls {
     /// A ball of squared radius α + ω: the usual reading (Edelsbrunner 1992; CGAL), the default.

@@ -7,10 +7,10 @@ use ndarray::{Array3, ShapeBuilder};
 use super::frames::Frames;
 use super::payload::{Element, Length, Payload};
 use super::{io_error, payload_error_of};
-use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// The first bytes of each NPY file.
-pub(crate) const MAGIC: &[u8] = b"\x93NUMPY";
+const MAGIC: &[u8] = b"\x93NUMPY";
 /// NumPy itself refuses longer headers than this as unsafe.
 const MAX_HEADER: u64 = 10_000;
 
@@ -29,7 +29,7 @@ pub(crate) struct NpyFile<R = BufReader<File>> {
 
 /// Reads an array of three axes `[z, y, x]`, in C or Fortran order, or the one numbered `frame` of an
 /// array of four, in C order.
-pub(super) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
     let file = NpyFile::open(path)?;
     if let (&[count, z, y, x], false) = (file.shape.as_slice(), file.fortran) {
         let each =
@@ -53,9 +53,12 @@ pub(super) fn volume<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Volume, V
     let &[z, y, x] = file.shape.as_slice() else {
         return Err(VolumeError::Format {
             path: path.into(),
-            what: format!(
-                "holds an array of {} axes: a volume has three, [z, y, x]; save a.reshape(z, y, x)",
-                file.shape.len()
+            reason: Reason::unsupported(
+                format!(
+                    "holds an array of {} axes: a volume has three, [z, y, x]",
+                    file.shape.len()
+                ),
+                "save a.reshape(z, y, x)",
             ),
         });
     };
@@ -70,6 +73,11 @@ pub(super) fn volume<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Volume, V
 }
 
 impl NpyFile {
+    /// Whether a file begins as NPY does.
+    pub fn begins(start: &[u8]) -> bool {
+        start.starts_with(MAGIC)
+    }
+
     /// Reads and checks the header.
     pub fn open(path: &Path) -> Result<Self, VolumeError> {
         let file = File::open(path).map_err(io_error(path))?;
@@ -81,17 +89,17 @@ impl NpyFile {
 impl<R: Read> NpyFile<R> {
     /// Reads and checks the header of an array of so many bytes in a file.
     pub fn of(path: &Path, mut reader: R, length: u64) -> Result<Self, VolumeError> {
-        let said = |what: String| VolumeError::Format { path: path.into(), what };
+        let said = |reason: Reason| VolumeError::Format { path: path.into(), reason };
         let cut = |error: std::io::Error| match error.kind() {
             std::io::ErrorKind::UnexpectedEof => {
-                said("ends inside its NPY header: it is truncated; save it again".into())
+                said(Reason::truncated("ends inside its NPY header: it is truncated"))
             }
             _ => io_error(path)(error),
         };
         let mut preamble = [0; 8];
         reader.read_exact(&mut preamble).map_err(cut)?;
         if !preamble.starts_with(MAGIC) {
-            return Err(said("is no NPY file: it does not begin with \\x93NUMPY".into()));
+            return Err(said(Reason::other("is no NPY file: it does not begin with \\x93NUMPY")));
         }
         let (width, header) = match preamble[6] {
             1 => {
@@ -104,21 +112,28 @@ impl<R: Read> NpyFile<R> {
                 reader.read_exact(&mut bytes).map_err(cut)?;
                 (4, u64::from(u32::from_le_bytes(bytes)))
             }
-            other => return Err(said(format!("is NPY version {other}: 1, 2 and 3 are read"))),
+            other => {
+                return Err(said(Reason::unsupported(
+                    format!("is NPY version {other}: 1, 2 and 3 are read"),
+                    "convert it first",
+                )));
+            }
         };
         if header > MAX_HEADER {
-            return Err(said(format!("has an NPY header of {header} bytes: it is damaged")));
+            return Err(said(Reason::damaged(format!(
+                "has an NPY header of {header} bytes: it is damaged"
+            ))));
         }
         let mut text = vec![0; header as usize];
         reader.read_exact(&mut text).map_err(cut)?;
         let text = String::from_utf8_lossy(&text).into_owned();
-        let (descr, fortran, shape) = dictionary(&text)
-            .ok_or_else(|| said(format!("has an NPY header that is not understood: {text:?}")))?;
+        let (descr, fortran, shape) = dictionary(&text).ok_or_else(|| {
+            said(Reason::header(format!("has an NPY header that is not understood: {text:?}")))
+        })?;
         let (dtype, endian, boolean) = element(&descr).ok_or_else(|| {
-            said(format!(
+            said(Reason::unsupported(format!(
                 "holds elements of type {descr}: only bool, integers of 8 to 64 bits, f4 and f8 \
-                 are read; save a.astype('f4')"
-            ))
+                 are read"), "save a.astype('f4')"))
         })?;
         let length = Length::Exactly(length).minus(8 + width + header);
         let payload = Payload { reader, length };
