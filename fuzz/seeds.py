@@ -194,6 +194,14 @@ def xyz():
     return [b"0 0 0\n1 0 0\n", b"x y z value\n1 2 3 4\n", b"2\nwater\nH 0 0 0\nO 1 0 0\n", b"# a comment\n1 2 3 4\n"]
 
 
+def pwn():
+    return [b"0 0 0\n1 0 0\n", b"2\n0 0 0\n1 0 0\n0 0 1\n0 0 1\n"]
+
+
+def npy_points():
+    return [npy("<f8", (3, 4), F64), npy("<f8", (3, 4), F64, True)]
+
+
 def ply():
     head = "ply\nformat {} 1.0\ncomment made\nelement vertex 2\nproperty {t} x\nproperty {t} y\nproperty {t} z\nproperty uchar value\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
     files = [head.replace("{t}", "float").format("ascii").encode() + b"0 0 0 1\n1 2 3 4\n3 0 1 1\n"]
@@ -338,7 +346,7 @@ def zarr():
 TARGETS = {
     "inrimage": inrimage, "npy": npys, "npz": npz, "nrrd": nrrd, "metaimage": metaimage, "nifti": nifti,
     "nifti_gzip": lambda: [gzip.compress(file) for file in nifti()], "vtk_legacy": vtk_legacy, "vti": vti,
-    "tiff": tiffs, "table": table, "xyz": xyz, "ply": ply, "vtk_geometry": vtk_geometry,
+    "tiff": tiffs, "table": table, "xyz": xyz, "pwn": pwn, "npy_points": npy_points, "ply": ply, "vtk_geometry": vtk_geometry,
     "off": off, "obj": obj, "stl": stl,
     "pcd": pcd, "las": las, "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes, "check_json": check_json, "check_npz": check_npz,
 }

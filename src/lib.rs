@@ -29,6 +29,7 @@
 
 pub use ndarray;
 
+pub mod advice;
 #[cfg_attr(not(feature = "cgal"), path = "cgal/absent.rs")]
 mod cgal;
 pub mod export;

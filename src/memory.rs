@@ -1,5 +1,7 @@
 //! What the system says of this process's memory, and large pieces of it that may not be had.
 
+use crate::advice::Advice;
+
 /// The most memory this process ever held, in bytes; `None` where the system does not say (only
 /// Linux does).
 pub fn peak_bytes() -> Option<u64> {
@@ -27,10 +29,27 @@ fn status(field: &str) -> Option<u64> {
 
 /// Memory for something large cannot be had.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what} needs {bytes} bytes of memory, which cannot be had; make it smaller")]
+#[error("{what} needs {bytes} bytes of memory, which cannot be had")]
 pub struct NoMemory {
     what: String,
     bytes: u128,
+}
+
+impl NoMemory {
+    /// What to do about it.
+    pub fn advice(&self) -> Advice {
+        "make it smaller".into()
+    }
+
+    /// What was to be made.
+    pub fn what(&self) -> &str {
+        &self.what
+    }
+
+    /// The bytes that it needs.
+    pub fn bytes(&self) -> u128 {
+        self.bytes
+    }
 }
 
 /// Room for so many items, or an error that names what they are for. What is large, and grows with

@@ -1,9 +1,13 @@
 //! DICOM series, written here element by element as part 5 of the standard has them.
 #![cfg(feature = "dicom")]
 
+#[path = "common/told.rs"]
+mod told;
+
 use std::fs;
 use std::path::Path;
 
+use told::Told;
 use walpha::Volume;
 use walpha::volume::{ReadOptions, VolumeError, read};
 
@@ -180,7 +184,7 @@ fn one_file_stands_for_its_series() {
     fs::write(f.join("notes.txt"), "no slice").unwrap();
     assert_eq!(open(&f.join("a1")).unwrap().frame().origin, [-10.0, 5.5, 0.0]);
     assert_eq!(open(&f.join("b2.dcm")).unwrap().frame().origin, [0.0; 3]);
-    let text = open(f).unwrap_err().to_string();
+    let text = open(f).unwrap_err().told();
     assert!(text.contains("2 DICOM series") && text.contains("b0.dcm"), "{text}");
 }
 
@@ -199,13 +203,13 @@ fn series_in_nested_folders_are_listed_and_chosen() {
     let of = |series: Option<&str>| {
         read(f, &ReadOptions { series: series.map(str::to_owned), ..ReadOptions::default() })
     };
-    let text = of(None).unwrap_err().to_string();
-    assert!(text.contains("2 DICOM series") && text.contains("--series"), "{text}");
+    let text = of(None).unwrap_err().told();
+    assert!(text.contains("2 DICOM series") && text.contains("`series`"), "{text}");
     assert!(text.contains("3 slices of 3×1, 1.2.9, as "), "{text}");
     assert_eq!(of(Some("1")).unwrap().dims().xyz(), [3, 1, 3]);
     assert_eq!(of(Some(".9")).unwrap().dims().xyz(), [3, 1, 3]);
     assert_eq!(of(Some("2")).unwrap().dims().xyz(), [3, 2, 3]);
-    assert!(of(Some("3")).unwrap_err().to_string().contains("no series 3"));
+    assert!(of(Some("3")).unwrap_err().told().contains("no series 3"));
     let listed = walpha::volume::series(f).unwrap();
     assert_eq!(
         listed.iter().map(|one| (one.number, one.slices)).collect::<Vec<_>>(),
@@ -259,7 +263,7 @@ fn what_makes_no_volume_is_told() {
     let whole = at(0).bytes();
     for length in [132, 150, 200, 300, whole.len() - 40, whole.len() - 1] {
         fs::write(folder.path().join("a.dcm"), &whole[..length]).unwrap();
-        let text = open(&folder.path().join("a.dcm")).unwrap_err().to_string();
+        let text = open(&folder.path().join("a.dcm")).unwrap_err().told();
         assert!(text.contains("a.dcm"), "{length}: {text}");
     }
     // An element that claims more than there is: of the data, and of the file's own table.
@@ -268,7 +272,7 @@ fn what_makes_no_volume_is_told() {
         let place = bytes.windows(mark.len()).position(|part| part == mark).unwrap();
         bytes[place + length..place + length + claim.len()].copy_from_slice(claim);
         fs::write(folder.path().join("a.dcm"), bytes).unwrap();
-        open(&folder.path().join("a.dcm")).unwrap_err().to_string()
+        open(&folder.path().join("a.dcm")).unwrap_err().told()
     };
     let text = lies(b"\xe0\x7f\x10\x00OW", 8, &[0, 0, 0, 0x4e]);
     assert!(text.contains("claims an element of 1308622848 bytes"), "{text}");

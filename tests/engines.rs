@@ -3,9 +3,13 @@
 
 mod common;
 
+#[path = "common/told.rs"]
+mod told;
+
 use std::num::NonZeroUsize;
 
 use proptest::prelude::*;
+use told::Told;
 use walpha::shape::{Engine, ShapeError, ShapeOptions};
 use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
 
@@ -196,6 +200,6 @@ fn memory_is_planned_for() {
     let free = by(Engine::Native, &points, 1.0, None, false).unwrap();
     let bounded = with(4 << 30).unwrap();
     assert_eq!(free.complex(), bounded.complex());
-    let error = with(1 << 20).unwrap_err().to_string();
-    assert!(error.contains("--memory 1 MiB does not suffice"), "{error}");
+    let error = with(1 << 20).unwrap_err().told();
+    assert!(error.contains("1 MiB of memory do not suffice"), "{error}");
 }

@@ -1,6 +1,10 @@
 //! LAS and LAZ against the crate that writes them.
 #![cfg(feature = "las")]
 
+#[path = "common/told.rs"]
+mod told;
+
+use told::Told;
 use walpha::points::{is_point_file, read_points};
 
 /// Coordinates are whole numbers of thousandths, so that the format's scales keep them.
@@ -36,7 +40,7 @@ fn clouds_of_scanners_are_read() {
         }
         let bytes = std::fs::read(&path).unwrap();
         std::fs::write(&path, &bytes[..bytes.len() - 30]).unwrap();
-        let error = read_points(&path, None).unwrap_err().to_string();
+        let error = read_points(&path, None).unwrap_err().told();
         assert!(error.contains(name), "{error}");
     }
 }

@@ -1,9 +1,13 @@
 //! Differences, selection, weights and point files against brute force and by their laws.
 
+#[path = "common/told.rs"]
+mod told;
+
 use std::path::Path;
 
 use ndarray::Array3;
 use proptest::prelude::*;
+use told::Told;
 use walpha::haar::{HaarOptions, Tolerance, smooth};
 use walpha::points::*;
 use walpha::volume::{Frame, Gray, Volume, VolumeError, sample};
@@ -95,7 +99,7 @@ proptest! {
 fn the_skull_is_cut_where_it_should_be() {
     let skull = match sample("sample:skull") {
         Ok(skull) => skull,
-        Err(VolumeError::Sample(missing)) => {
+        Err(missing @ VolumeError::NoSkull { .. }) => {
             eprintln!("skipped: {missing}");
             return;
         }
@@ -136,17 +140,17 @@ fn impossible_selections_say_what_is_possible() {
     let v = volume(Array3::zeros((2, 3, 4)));
     let l = difference(&v);
     let refuse = |rule, gray_min| {
-        select(&v, &v, &l, &Selection { rule, gray_min }, Units::Voxel).unwrap_err().to_string()
+        select(&v, &v, &l, &Selection { rule, gray_min }, Units::Voxel).unwrap_err().told()
     };
     assert!(refuse(SelectionRule::Count(0), None).contains("1 to 24"));
     assert!(refuse(SelectionRule::Count(25), None).contains("1 to 24"));
     assert!(refuse(SelectionRule::Count(1), Some(1.0)).contains("no voxel reaches"));
     assert!(refuse(SelectionRule::Threshold(0.5), None).contains("none of 24 voxels"));
     for ratio in [0.0, -0.1, 1.1, f64::NAN] {
-        assert!(refuse(SelectionRule::Ratio(ratio), None).contains("--ratio"));
+        assert!(refuse(SelectionRule::Ratio(ratio), None).contains("ratio"));
     }
-    assert!(refuse(SelectionRule::Threshold(f64::NAN), None).contains("--threshold"));
-    assert!(refuse(SelectionRule::Count(1), Some(f64::NAN)).contains("--gray-min"));
+    assert!(refuse(SelectionRule::Threshold(f64::NAN), None).contains("threshold"));
+    assert!(refuse(SelectionRule::Count(1), Some(f64::NAN)).contains("gray level"));
 }
 
 #[test]
@@ -198,11 +202,11 @@ fn weights_that_cannot_be_are_refused() {
     let here = points(&[1.0, 2.0]);
     for weighting in [Weighting::MinMax, Weighting::Barycentric, Weighting::BarycentricN] {
         for alpha in [f64::INFINITY, f64::NAN] {
-            let text = weigh(&here, weighting, alpha).unwrap_err().to_string();
+            let text = weigh(&here, weighting, alpha).unwrap_err().told();
             assert!(text.contains("finite α"), "{text}");
         }
         let scattered = Points { differences: None, ..here.clone() };
-        let text = weigh(&scattered, weighting, 1.0).unwrap_err().to_string();
+        let text = weigh(&scattered, weighting, 1.0).unwrap_err().told();
         assert!(text.contains("column") && text.contains("common=C"), "{text}");
     }
     assert!(weigh(&here, Weighting::Common(1.0), f64::INFINITY).is_ok());
@@ -218,7 +222,7 @@ fn weightings_are_read_as_they_are_written() {
         assert_eq!(weighting.to_string().parse(), Ok(weighting));
     }
     for text in ["common", "common=", "common=nan", "common=inf", "minmax", ""] {
-        assert!(text.parse::<Weighting>().unwrap_err().to_string().contains("min-max"), "{text}");
+        assert!(text.parse::<Weighting>().unwrap_err().told().contains("min-max"), "{text}");
     }
 }
 
@@ -233,9 +237,9 @@ fn written_points_are_read_back() {
             values,
         };
         let (csv, npy) = (folder.path().join("p.csv"), folder.path().join("p.npy"));
-        write_csv(&points, std::fs::File::create(&csv).unwrap()).unwrap();
-        write_npy(&points, std::fs::File::create(&npy).unwrap()).unwrap();
         for path in [csv, npy] {
+            let mut file = std::fs::File::create(&path).unwrap();
+            PointWriter::of(&path).unwrap().write(&points, &mut file).unwrap();
             assert!(is_point_file(&path).unwrap());
             let back = read_points(&path, None).unwrap();
             assert_eq!(weigh(&back, Weighting::Column, 1.0).unwrap(), points, "{path:?}");
@@ -261,7 +265,7 @@ fn bad_point_files_say_where_they_are_bad() {
     let refuse = |name: &str, bytes: &[u8], parts: &[&str]| {
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).unwrap();
-        let text = read_points(&path, None).unwrap_err().to_string();
+        let text = read_points(&path, None).unwrap_err().told();
         for part in parts.iter().chain(&[name]) {
             assert!(text.contains(part), "{part:?} is missing in: {text}");
         }
@@ -284,7 +288,7 @@ fn bad_point_files_say_where_they_are_bad() {
     let infinite = ndarray::arr2(&[[1.0, 2.0, f64::INFINITY, 0.0]]);
     refuse("inf.npy", &npy(infinite), &["row 0", "z is inf"]);
     refuse("none.npy", &npy(ndarray::Array2::zeros((0, 4))), &["no point"]);
-    let text = read_points(Path::new("no/such.csv"), None).unwrap_err().to_string();
+    let text = read_points(Path::new("no/such.csv"), None).unwrap_err().told();
     assert!(text.contains("no/such.csv"), "{text}");
 }
 

@@ -1,11 +1,15 @@
 //! Volume files of each kind and damage, written here byte by byte.
 
+#[path = "common/told.rs"]
+mod told;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use flate2::{Compression, write::GzEncoder};
 use ndarray::{Array3, ShapeBuilder};
 use ndarray_npy::{WritableElement, WriteNpyExt};
+use told::Told;
 use walpha::volume::*;
 
 /// A folder that is gone after the test.
@@ -24,7 +28,7 @@ impl Folder {
 
     /// Reads bytes under this name; the message of the error must name the file and these parts.
     fn refuses(&self, name: &str, bytes: &[u8], options: &ReadOptions, parts: &[&str]) {
-        let text = read(&self.file(name, bytes), options).unwrap_err().to_string();
+        let text = read(&self.file(name, bytes), options).unwrap_err().told();
         for part in parts.iter().chain(&[name]) {
             assert!(text.contains(part), "{part:?} is missing in: {text}");
         }
@@ -130,12 +134,17 @@ fn raw_files_of_another_length_are_refused() {
         "s.raw",
         &long[..262_143],
         &options,
-        &["--dims 64,64,64 as u8 needs 262144 bytes", "has 262143"],
+        &["64×64×64 samples of type u8 needs 262144 bytes", "has 262143"],
     );
-    folder.refuses("s.raw", &long, &options, &["has 262147", "header of 3 bytes", "--offset"]);
+    folder.refuses("s.raw", &long, &options, &["has 262147", "header of 3 bytes", "`offset`"]);
     folder.refuses("s.raw", &[], &options, &["has 0", "empty"]);
     let offset = raw([64, 64, 64], Dtype::U8, Endian::Little, 5);
-    folder.refuses("s.raw", &long, &offset, &["--offset 5 needs 262149", "has 262147"]);
+    folder.refuses(
+        "s.raw",
+        &long,
+        &offset,
+        &["needs 262149 bytes, 5 of them before", "has 262147"],
+    );
     let huge = raw([1625, 1625, 1625], Dtype::F64, Endian::Little, u64::MAX);
     folder.refuses("s.raw", &long, &huge, &["has 262147"]);
 }
@@ -342,11 +351,11 @@ fn damaged_npy_files_are_refused() {
 #[test]
 fn unknown_and_missing_files_say_what_to_do() {
     let folder = Folder::new();
-    folder.refuses("v.raw", &[1, 2, 3], &known(), &["--dims", ".inr", ".npy"]);
+    folder.refuses("v.raw", &[1, 2, 3], &known(), &["`dims`", ".inr", ".npy"]);
     folder.refuses("v.dat", b"something", &known(), &["no format known"]);
-    let text = read(Path::new("no/such.raw"), &known()).unwrap_err().to_string();
+    let text = read(Path::new("no/such.raw"), &known()).unwrap_err().told();
     assert!(text.contains("no/such.raw") && text.contains("sample:phantom"), "{text}");
-    let text = read(folder.0.path(), &known()).unwrap_err().to_string();
+    let text = read(folder.0.path(), &known()).unwrap_err().told();
     assert!(text.contains("name a file in it"), "{text}");
 }
 

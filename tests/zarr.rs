@@ -1,6 +1,9 @@
 //! Zarr arrays and OME-Zarr pyramids, written with the zarrs crate or by hand.
 #![cfg(feature = "zarr")]
 
+#[path = "common/told.rs"]
+mod told;
+
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::fs;
 use std::path::Path;
@@ -8,6 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde_json::json;
+use told::Told;
 use walpha::Volume;
 use walpha::volume::{ReadOptions, VolumeError, read};
 use zarrs::array::{ArrayBuilder, DataType, FillValue};
@@ -110,12 +114,12 @@ fn levels_of_a_pyramid_are_chosen_and_placed() {
         let coarse = open(f, Some(1)).unwrap();
         assert_eq!((coarse.dims().xyz(), coarse.frame().spacing), ([3, 2, 2], [10.0, 4.0, 8.0]));
         assert_eq!(coarse.frame().origin, [2.5, 1.0, 2.0]);
-        let text = open(f, Some(2)).unwrap_err().to_string();
+        let text = open(f, Some(2)).unwrap_err().told();
         assert!(text.contains("no level 2, there are 2"), "{text}");
         // A level by its own name.
         assert_eq!(open(&f.join("1"), None).unwrap().dims().xyz(), [3, 2, 2]);
-        let text = open(&f.join("1"), Some(0)).unwrap_err().to_string();
-        assert!(text.contains("omit --level"), "{text}");
+        let text = open(&f.join("1"), Some(0)).unwrap_err().told();
+        assert!(text.contains("omit `level`"), "{text}");
     }
 }
 
@@ -128,7 +132,7 @@ fn levels_outside_the_store_are_refused() {
     fs::create_dir(&f).unwrap();
     for name in ["../secret", "0/../../secret", "/../secret"] {
         pyramid(&f, 2, json!([{"path": name}]));
-        let text = open(&f, None).unwrap_err().to_string();
+        let text = open(&f, None).unwrap_err().told();
         assert!(text.contains("outside the store") && text.contains("secret"), "{text}");
     }
     // What looks absolute is taken from the store's top.
@@ -141,7 +145,7 @@ fn what_is_no_volume_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     let refuses = |path: &Path, part: &str| {
-        let text = open(path, None).unwrap_err().to_string();
+        let text = open(path, None).unwrap_err().told();
         assert!(text.contains(part), "{part:?} is missing in {text}");
     };
     fs::write(f.join(".zgroup"), "{\"zarr_format\": 2}").unwrap();
@@ -161,7 +165,7 @@ fn what_is_no_volume_is_told() {
     array(f, "/flat", &[4, 5]);
     refuses(&f.join("flat"), "three axes");
     array(f, "/colours", &[3, 2, 2, 2]);
-    refuses(&f.join("colours"), "choose one with --frame");
+    refuses(&f.join("colours"), "choose one with `frame`");
     let turned = json!([{"path": "colours", "coordinateTransformations": [{"type": "affine"}]}]);
     array(f, "/colours", &[1, 2, 2, 2]);
     pyramid(f, 2, turned);
@@ -219,6 +223,6 @@ fn chunks_far_larger_than_their_array_are_refused() {
     let large = metadata.replace("\"chunks\":[2,3,2]", "\"chunks\":[2,3,1099511627776]");
     assert_ne!(large, metadata);
     fs::write(folder.path().join(".zarray"), large).unwrap();
-    let error = open(folder.path(), None).unwrap_err().to_string();
+    let error = open(folder.path(), None).unwrap_err().told();
     assert!(error.contains("has chunks of 6597069766656 samples"), "{error}");
 }

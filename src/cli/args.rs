@@ -4,7 +4,6 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
 use walpha::export::Target;
 use walpha::interpolate::Adaptive;
@@ -17,7 +16,9 @@ use walpha::{
     Selection, SelectionRule, Space, Tolerance, Units, Volume, Weighting,
 };
 
-use super::given::{Given, Usage, misused};
+use super::given::Given;
+use super::ranges;
+use super::said::{Said, misused, refused, said};
 
 /// What to read.
 #[derive(Args, Clone)]
@@ -77,7 +78,7 @@ impl InputArgs {
             _ if path.extension().is_some() => Ok(path.to_owned()),
             Some(_) => Ok(format!("output{}", self.extension()).into()),
             None if path == Path::new(Target::STDOUT) => {
-                misused!("standard output has no extension; name the format, as in --format nrrd")
+                misused!("standard output has no extension" => "name the format, as in --format nrrd")
             }
             None => Ok(path.to_owned()),
         }
@@ -90,7 +91,7 @@ impl InputArgs {
     ) -> anyhow::Result<()> {
         let used = self.input == Target::STDOUT || outputs.any(|path| path.extension().is_none());
         if self.format.is_some() && !used {
-            misused!("--format has no effect: the extension of each file says its format; omit it");
+            misused!("--format has no effect: the extension of each file says its format" => "omit it");
         }
         Ok(())
     }
@@ -134,7 +135,7 @@ struct PartArgs {
     nan: Option<Nan>,
     /// Take the samples from one index up to, and without, another along x, y and z; ends may be left
     /// away, as in 20:40,:,10:.
-    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = voxels)]
+    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = ranges::samples)]
     roi: Option<Region>,
     /// Take the means of N×N×N samples.
     #[arg(long, value_name = "N")]
@@ -148,8 +149,7 @@ pub struct RawArgs {
     /// Read bare samples, so many along x, y and z (x fastest in the file).
     #[arg(long, value_name = "X,Y,Z", value_parser = dims, requires = "dtype")]
     dims: Option<Dims>,
-    /// Type of a sample: u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64.
-    #[arg(long, value_name = "TYPE", requires = "dims")]
+    #[arg(long, value_name = "TYPE", requires = "dims", help = dtype_help())]
     dtype: Option<Dtype>,
     /// Byte order of a sample: little or big.
     #[arg(long, value_name = "ORDER", default_value = "little", requires = "dims")]
@@ -192,7 +192,7 @@ pub struct PipelineArgs {
 pub struct HaarArgs {
     /// Decomposition: all axes once per level, or each axis fully.
     #[arg(long, value_enum, default_value_t, value_name = "KIND")]
-    haar: Haar,
+    haar: Decomposition,
     /// Root mean square error allowed, in gray levels.
     #[arg(long, value_name = "E", group = "tolerance", value_parser = not_negative,
           default_value = "1")]
@@ -205,13 +205,6 @@ pub struct HaarArgs {
     coefficients: Option<u64>,
 }
 
-#[derive(Clone, Copy, Default, ValueEnum)]
-enum Haar {
-    #[default]
-    NonStandard,
-    Standard,
-}
-
 impl HaarArgs {
     /// The stage's options.
     pub fn options(&self) -> HaarOptions {
@@ -220,11 +213,7 @@ impl HaarArgs {
             (_, Some(count)) => Tolerance::Coefficients(count),
             _ => Tolerance::Rms(self.rms),
         };
-        let decomposition = match self.haar {
-            Haar::NonStandard => Decomposition::NonStandard,
-            Haar::Standard => Decomposition::Standard,
-        };
-        HaarOptions { decomposition, tolerance }
+        HaarOptions { decomposition: self.haar, tolerance }
     }
 }
 
@@ -267,17 +256,11 @@ pub struct PlaceArgs {
     /// Coordinates in voxels, or in the unit of the file; then α, weights and sizes are too
     /// [default: world where the file states spacing or a place, else voxel].
     #[arg(long, value_enum, value_name = "UNITS")]
-    units: Option<UnitsArg>,
+    units: Option<Units>,
     /// Which way world coordinates run, where the file says how they lie in a patient: x to the left
     /// and y to the back (lps), or to the right and the front (ras) [default: lps].
     #[arg(long, value_enum, value_name = "SPACE")]
-    space: Option<SpaceArg>,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum SpaceArg {
-    Lps,
-    Ras,
+    space: Option<Space>,
 }
 
 impl PlaceArgs {
@@ -285,21 +268,16 @@ impl PlaceArgs {
     /// they are in.
     pub fn place(&self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
         let Coordinates { space, unit } = volume.frame().coordinates;
-        let units = match self.units {
-            Some(UnitsArg::Voxel) => Units::Voxel,
-            Some(UnitsArg::World) => Units::World,
-            None if unit == LengthUnit::Voxel => Units::Voxel,
-            None => Units::World,
-        };
+        let silent = if unit == LengthUnit::Voxel { Units::Voxel } else { Units::World };
+        let units = self.units.unwrap_or(silent);
         let asked = match self.space {
             Some(_) if units == Units::Voxel => {
-                bail!("--space is for world coordinates, and these are voxels: omit it")
+                refused!("--space is for world coordinates, and these are voxels" => "omit it")
             }
-            Some(_) if !space.is_known() => bail!(
-                "the input does not say how its axes lie in a patient, and --space cannot know: omit it"
-            ),
-            Some(SpaceArg::Ras) => Space::Ras,
-            _ => Space::Lps,
+            Some(_) if !space.is_known() => {
+                refused!("the input does not say how its axes lie in a patient, and --space cannot know" => "omit it")
+            }
+            asked => asked.unwrap_or(Space::Lps),
         };
         let frame = volume.frame().to(Coordinates { space: asked, unit });
         Ok((volume.with_frame(frame), units))
@@ -311,12 +289,6 @@ enum SelectArg {
     #[default]
     Difference,
     Adaptive,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum UnitsArg {
-    Voxel,
-    World,
 }
 
 impl SelectArgs {
@@ -339,15 +311,12 @@ impl SelectArgs {
     pub fn choice(&self, range: &GrayRange, samples: usize) -> anyhow::Result<Choice> {
         if self.select != SelectArg::Adaptive {
             if self.target_rmse.is_some() {
-                misused!("--target-rmse belongs to --select adaptive: add it, or use --count");
+                misused!("--target-rmse belongs to --select adaptive" => "add it, or use --count");
             }
             return Ok(Choice::Difference(self.selection(range)));
         }
         if self.threshold.is_some() || self.gray_min.or(self.value_min).is_some() {
-            misused!(
-                "--threshold, --gray-min and --value-min choose by gray levels, which --select \
-                 adaptive does not: use --count, --ratio or --target-rmse"
-            );
+            misused!("--threshold, --gray-min and --value-min choose by gray levels, which --select adaptive does not" => "use --count, --ratio or --target-rmse");
         }
         let rmse = self.target_rmse.unwrap_or(0.0);
         let count = match self.rule() {
@@ -380,10 +349,7 @@ pub struct WeightArgs {
     #[arg(long, value_name = "R", value_parser = alpha_radius, group = "parameter",
           allow_negative_numbers = true)]
     alpha_radius: Option<Alpha>,
-    /// Weights ω (squared lengths): common=C, min-max (eq. 4.1), barycentric (eq. 4.2),
-    /// barycentric-n (N times that) or column (from the input) [default: column where the input has
-    /// weights, else common=0].
-    #[arg(long, value_name = "KIND", allow_hyphen_values = true)]
+    #[arg(long, value_name = "KIND", allow_hyphen_values = true, help = weights_help())]
     pub weights: Option<Weighting>,
 }
 
@@ -396,7 +362,11 @@ impl WeightArgs {
     /// α for work on a volume that makes several sets of points.
     pub fn of_volume(&self, volume: &Volume, units: Units) -> anyhow::Result<Parameter> {
         self.alpha().of_volume(volume, units)?.ok_or_else(|| {
-            anyhow!("there are several sets of points, each with an `auto` of its own; give α as a number")
+            said!(
+                "there are several sets of points, each with an `auto` of its own" => "give α as a \
+                 number"
+            )
+            .into()
         })
     }
 }
@@ -409,10 +379,7 @@ pub struct FrozenArgs {
     /// so that levels are nested [default: as --alpha of `walpha shape`].
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
     alpha_ref: Option<AlphaRule>,
-    /// Weights ω (squared lengths): common=C, min-max (eq. 4.1), barycentric (eq. 4.2),
-    /// barycentric-n (N times that) or column (from the input) [default: column where the input has
-    /// weights, else common=0].
-    #[arg(long, value_name = "KIND", allow_hyphen_values = true)]
+    #[arg(long, value_name = "KIND", allow_hyphen_values = true, help = weights_help())]
     weights: Option<Weighting>,
 }
 
@@ -432,9 +399,9 @@ pub enum Alphas {
 }
 
 impl FromStr for Alphas {
-    type Err = anyhow::Error;
+    type Err = Said;
 
-    fn from_str(text: &str) -> anyhow::Result<Self> {
+    fn from_str(text: &str) -> Result<Self, Said> {
         if text == "auto" {
             return Ok(Self::Auto);
         }
@@ -448,10 +415,10 @@ impl FromStr for Alphas {
 pub struct ShapeArgs {
     /// A point is a ball of squared radius α + ω (power), or of radius α + ω (radius).
     #[arg(long, value_enum, default_value_t, value_name = "READING")]
-    balls: BallsArg,
+    balls: Balls,
     /// Program that computes the shape; all give the same answer.
     #[arg(long, value_enum, default_value_t, value_name = "ENGINE")]
-    engine: EngineArg,
+    engine: Engine,
     /// Blocks to cut the points into [default: by threads and memory]; 1 is the whole
     /// triangulation, which alone knows hidden points.
     #[arg(long, value_name = "N")]
@@ -465,34 +432,11 @@ pub struct ShapeArgs {
     exterior: bool,
 }
 
-#[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
-enum EngineArg {
-    /// CGAL's triangulation in blocks.
-    #[cfg_attr(feature = "cgal", default)]
-    Cgal,
-    /// Our own triangulation in blocks: the fastest.
-    #[cfg_attr(not(feature = "cgal"), default)]
-    Native,
-    /// Plain CGAL, as in the paper.
-    Reference,
-}
-
-#[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
-enum BallsArg {
-    #[default]
-    Power,
-    Radius,
-}
-
 impl ShapeArgs {
     /// Refuses options that have no use for each other, before the work.
     pub fn check(&self, alpha: AlphaRule) -> anyhow::Result<()> {
-        if self.engine == EngineArg::Reference && self.blocks.is_some_and(|blocks| blocks.get() > 1)
-        {
-            misused!(
-                "--blocks has no effect: the reference engine knows no blocks; omit it, or take \
-                 --engine native"
-            );
+        if self.engine == Engine::Reference && self.blocks.is_some_and(|blocks| blocks.get() > 1) {
+            misused!("--blocks has no effect: the reference engine knows no blocks" => "omit it, or take --engine native");
         }
         // What is found is finite.
         let alpha = match alpha {
@@ -500,125 +444,108 @@ impl ShapeArgs {
             _ => Alpha::from_squared(0.0)?,
         };
         let options = ShapeOptions { alpha, ..self.options() };
-        Ok(options.check().map_err(|error| Usage(error.to_string()))?)
+        Ok(options.check().map_err(|error| Said::usage_of(&error))?)
     }
 
     /// The stage's options, at α = ∞.
     pub fn options(&self) -> ShapeOptions {
-        let balls = match self.balls {
-            BallsArg::Power => Balls::Power,
-            BallsArg::Radius => Balls::Radius,
-        };
-        let engine = match self.engine {
-            EngineArg::Cgal => Engine::Cgal,
-            EngineArg::Native => Engine::Native,
-            EngineArg::Reference => Engine::Reference,
-        };
-        let Self { exterior, blocks, memory, .. } = *self;
+        let Self { balls, engine, exterior, blocks, memory } = *self;
         ShapeOptions { alpha: Alpha::INFINITE, balls, engine, exterior, blocks, memory }
     }
 }
 
-fn dims(text: &str) -> anyhow::Result<Dims> {
+/// The help of `--weights`.
+fn weights_help() -> String {
+    format!(
+        "Weights ω (squared lengths): {} [default: column where the input has weights, else common=0]",
+        Weighting::known()
+    )
+}
+
+/// The help of `--dtype`.
+fn dtype_help() -> String {
+    format!("Type of a sample: {}", Dtype::ALL.map(Dtype::name).join(", "))
+}
+
+fn dims(text: &str) -> Result<Dims, Said> {
     let size = |size: &str| {
         let whole = size.trim().parse::<u64>();
-        whole.map_err(|_| anyhow!("{size:?} is no whole number; give sizes as in 64,64,64"))
+        whole.map_err(|_| said!("{size:?} is no whole number" => "give sizes as in 64,64,64"))
     };
     let sizes: Vec<u64> = text.split(',').map(size).collect::<Result<_, _>>()?;
     let [x, y, z] = sizes[..] else {
-        bail!("three sizes are needed; give those along x, y and z, as in 64,64,64");
+        refused!("three sizes are needed" => "give those along x, y and z, as in 64,64,64");
     };
     Ok(Dims::new(x, y, z)?)
 }
 
-fn nan(text: &str) -> anyhow::Result<Nan> {
+fn nan(text: &str) -> Result<Nan, Said> {
     if text == "mask" {
         return Ok(Nan::Mask);
     }
     let value = number(text)? as f32;
     if !value.is_finite() {
-        bail!("a finite number is needed; give it as in -1000, or give none");
+        refused!("a finite number is needed" => "give it as in -1000, or give none");
     }
     Ok(Nan::Value(value))
 }
 
-fn voxels(text: &str) -> anyhow::Result<Region> {
-    let ranges: Vec<&str> = text.split(',').collect();
-    if ranges.len() != 3 {
-        bail!("three ranges are needed, as in 20:40,20:40,10:30 for x, y and z");
-    }
-    let mut region = Region::default();
-    for (k, range) in ranges.into_iter().enumerate() {
-        let Some((first, end)) = range.split_once(':') else {
-            bail!("`{range}` is no range: two indices are needed, as in 20:40");
-        };
-        let index = |text: &str| match text.trim() {
-            "" => Ok(None),
-            text => text.parse().map(Some).map_err(|_| {
-                anyhow!("`{text}` is no index of a sample: whole numbers are needed, as in 20:40")
-            }),
-        };
-        (region.first[k], region.end[k]) = (index(first)?.unwrap_or(0), index(end)?);
-    }
-    Ok(region)
-}
-
-fn gray_range(text: &str) -> anyhow::Result<GrayRange> {
+fn gray_range(text: &str) -> Result<GrayRange, Said> {
     let Some((low, high)) = text.split_once("..") else {
-        bail!("two numbers are needed; give them as in -1000..2000");
+        refused!("two numbers are needed" => "give them as in -1000..2000");
     };
     let range = GrayRange { low: number(low)?, high: number(high)? };
     if !(range.low < range.high && range.low.is_finite() && range.high.is_finite()) {
-        bail!("LO must be less than HI, and both finite; give them as in -1000..2000");
+        refused!("LO must be less than HI, and both finite" => "give them as in -1000..2000");
     }
     Ok(range)
 }
 
-fn bytes(text: &str) -> anyhow::Result<u64> {
+fn bytes(text: &str) -> Result<u64, Said> {
     let units = [("K", 10), ("M", 20), ("G", 30), ("T", 40)];
     let unit = units.iter().find_map(|(name, bits)| Some((text.strip_suffix(name)?, bits)));
     let (number, bits) = unit.unwrap_or((text, &0));
     let Some(bytes) = number.parse().ok().and_then(|n: u64| n.checked_mul(1 << bits)) else {
-        bail!("a whole number of bytes is needed; give it as in 2G, 500M or 1073741824");
+        refused!("a whole number of bytes is needed" => "give it as in 2G, 500M or 1073741824");
     };
     Ok(bytes)
 }
 
-pub fn number(text: &str) -> anyhow::Result<f64> {
-    text.trim().parse().map_err(|_| anyhow!("{text:?} is no number; give one as in 10 or 2.5"))
+pub fn number(text: &str) -> Result<f64, Said> {
+    text.trim().parse().map_err(|_| said!("{text:?} is not a number" => "give one as in 10 or 2.5"))
 }
 
-fn count(text: &str) -> anyhow::Result<u64> {
+fn count(text: &str) -> Result<u64, Said> {
     match text.trim().parse() {
-        Ok(0) => bail!("a count from 1 up is needed; give it as in 15956"),
-        count => count.map_err(|_| anyhow!("{text:?} is no whole number; give one as in 15956")),
+        Ok(0) => refused!("a count from 1 up is needed" => "give it as in 15956"),
+        count => count.map_err(|_| said!("{text:?} is no whole number" => "give one as in 15956")),
     }
 }
 
-fn share(text: &str) -> anyhow::Result<f64> {
+fn share(text: &str) -> Result<f64, Said> {
     let share = number(text)?;
     if !(share > 0.0 && share <= 1.0) {
-        bail!("a share above 0 and up to 1 is needed; give it as in 0.0609 for 6.09 %");
+        refused!("a share above 0 and up to 1 is needed" => "give it as in 0.0609 for 6.09 %");
     }
     Ok(share)
 }
 
-fn not_nan(text: &str) -> anyhow::Result<f64> {
+fn not_nan(text: &str) -> Result<f64, Said> {
     let number = number(text)?;
     if number.is_nan() {
-        bail!("a gray level is needed; give it as in 50 or 12.5");
+        refused!("a gray level is needed" => "give it as in 50 or 12.5");
     }
     Ok(number)
 }
 
-pub fn not_negative(text: &str) -> anyhow::Result<f64> {
+pub fn not_negative(text: &str) -> Result<f64, Said> {
     let number = number(text)?;
     if number.is_nan() || number < 0.0 {
-        bail!("a number from 0 up is needed; give it as in 1 or 2.5");
+        refused!("a number from 0 up is needed" => "give it as in 1 or 2.5");
     }
     Ok(number)
 }
 
-fn alpha_radius(text: &str) -> anyhow::Result<Alpha> {
+fn alpha_radius(text: &str) -> Result<Alpha, Said> {
     Ok(Alpha::from_radius(number(text)?)?)
 }

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::bail;
 use clap::{Args, Command};
 use serde::Serialize;
 use walpha::check::schema::PlacedComplex;
@@ -12,10 +11,10 @@ use walpha::progress::Stage;
 use walpha::shown::shown;
 
 use super::args::{PipelineArgs, ShapeArgs};
-use super::given::misused;
 use super::output::{name, tell};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
+use super::said::{misused, refused};
 use super::{DIFFERENT, Global, complex_file, pipeline};
 
 /// Judge a complex exactly: that of an engine, or one another program wrote.
@@ -74,7 +73,7 @@ impl Check {
         let judged = self.complex(&mut progress)?;
         let n = judged.positions.len();
         if self.enumerate && n > MOST_ENUMERATED {
-            bail!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}; omit it");
+            refused!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}" => "omit it");
         }
         let claim = judged.claim();
         let started = std::time::Instant::now();
@@ -125,10 +124,7 @@ impl Check {
                 .stage(Stage::Read, || complex_file::read(path, self.points.as_deref()));
         }
         if self.points.is_some() {
-            misused!(
-                "--points belongs to a complex (.json, .npz), and {} is none; omit it",
-                shown(path)
-            );
+            misused!("--points belongs to a complex (.json, .npz), and {} is none", shown(path) => "omit it");
         }
         let (weighed, _) = pipeline::weighted_points(&self.pipeline, progress)?;
         let mut options = self.shape.options();

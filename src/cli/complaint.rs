@@ -1,13 +1,14 @@
 //! Errors in three lines: what could not be done, why, and what to do next.
 
+use std::error::Error;
 use std::io::IsTerminal;
 
 use clap::error::ErrorKind;
-use walpha::export::UnknownFormat;
 use walpha::shown::escaped;
+use walpha::volume::UnknownFormat;
 
-use super::given::Usage;
 use super::progress;
+use super::said::{Said, advice};
 
 /// Whether standard error takes colours: a terminal, and NO_COLOR is not set (<https://no-color.org>).
 pub fn coloured() -> bool {
@@ -41,7 +42,7 @@ pub fn tell(command: &str, error: &anyhow::Error) {
 
 /// Whether the command line makes no sense, whatever is in the files.
 pub fn is_usage(error: &anyhow::Error) -> bool {
-    error.is::<Usage>() || error.is::<UnknownFormat>()
+    error.is::<UnknownFormat>() || error.downcast_ref::<Said>().is_some_and(|said| said.usage)
 }
 
 /// Tells what is wrong with a command line; `configured` if some of it comes from a file.
@@ -75,7 +76,7 @@ pub fn tell_usage(command: &str, error: &clap::Error, configured: bool) {
     }
     let (why, next) = match rest.strip_prefix("[possible values: ") {
         Some(values) => (format!("it is one of {}", values.trim_end_matches(']')), None),
-        None => parted(&rest),
+        None => (rest, error.source().and_then(advice)),
     };
     let why = if !why.is_empty() {
         why
@@ -107,70 +108,41 @@ fn help(command: &str) -> String {
     format!("`{command} --help` tells what it takes")
 }
 
-/// The reason in an error and its causes, without what has been said already, and the last advice.
-fn reasons(error: &anyhow::Error) -> (String, Option<String>) {
-    let text = error.to_string().replace('\n', " ");
-    let (mut why, mut next) = parted(&text);
-    for cause in error.chain().skip(1).map(|cause| cause.to_string().replace('\n', " ")) {
-        if text.contains(&cause) {
-            continue;
+/// The reason in an error and its causes, each said once, and the advice of the last that has some.
+pub fn reasons(error: &anyhow::Error) -> (String, Option<String>) {
+    let (mut why, mut next) = (String::new(), None);
+    for cause in error.chain() {
+        let text = cause.to_string().replace('\n', " ");
+        if why.is_empty() {
+            why = text;
+        } else if !why.contains(&text) {
+            why = format!("{why}: {text}");
         }
-        let (reason, advice) = parted(&cause);
-        if !why.contains(&reason) {
-            why = format!("{why}: {reason}");
-        }
-        next = advice.or(next);
+        next = advice(cause).or(next);
     }
     (why, next)
-}
-
-/// How advice begins. What follows a colon and begins otherwise is a cause.
-const ADVICE: [&str; 40] = [
-    "add", "allow", "ask", "build", "check", "choose", "clean", "convert", "copy", "correct",
-    "crop", "did", "export", "for", "give", "is", "install", "leave", "lower", "make", "move",
-    "name", "omit", "open", "pack", "put", "raise", "read", "remove", "rename", "replace", "save",
-    "select", "set", "take", "try", "unpack", "use", "wait", "write",
-];
-
-/// The reason in a message, and its advice: what follows the last semicolon, or else the last colon if
-/// it begins as advice does.
-fn parted(text: &str) -> (String, Option<String>) {
-    let advice = |tail: &str| {
-        let first = tail.split(|c: char| !c.is_ascii_lowercase()).next().unwrap_or_default();
-        ADVICE.contains(&first)
-    };
-    let colon = || text.rsplit_once(": ").filter(|(_, tail)| advice(tail));
-    match text.rsplit_once("; ").or_else(colon) {
-        Some((why, next)) => (why.to_owned(), Some(next.to_owned())),
-        None => (text.to_owned(), None),
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn messages_part_at_their_advice() {
-        let cases = [
-            ("cannot read a.csv: not there; check the path", Some("check the path")),
-            ("gray range 1..0 is empty: give LO < HI", Some("give LO < HI")),
-            ("a.csv: holds no point", None),
-            ("a.npy ends early: its header claims 3 points", None),
-            ("cannot read a.csv: Permission denied (os error 13)", None),
-            ("it failed", None),
-        ];
-        for (text, advice) in cases {
-            assert_eq!(parted(text).1.as_deref(), advice, "{text}");
-        }
-    }
+    use crate::cli::said::said;
 
     #[test]
     fn causes_are_told_once_and_before_advice() {
         let error = anyhow::anyhow!("no room").context("cannot write a: no room").context("shape");
         assert_eq!(reasons(&error), ("shape: cannot write a: no room".into(), None));
-        let error = anyhow::anyhow!("it is a folder").context("cannot read a; check the path");
-        let told = ("cannot read a: it is a folder".into(), Some("check the path".into()));
+        let error = anyhow::anyhow!("it is a folder")
+            .context(said!("cannot read a; or b: c" => "check the path"));
+        let told = ("cannot read a; or b: c: it is a folder".into(), Some("check the path".into()));
         assert_eq!(reasons(&error), told);
+    }
+
+    #[test]
+    fn the_library_speaks_in_options() {
+        let error = walpha::shape::ShapeError::Exterior { blocks: 3 };
+        let (why, next) = reasons(&error.into());
+        assert!(why.contains("3 blocks") && !why.contains("--"), "{why}");
+        assert_eq!(next.as_deref(), Some("give --blocks 1, or omit --exterior"));
     }
 }

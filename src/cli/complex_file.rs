@@ -3,10 +3,12 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use anyhow::{Context, bail};
+use anyhow::Context;
 use walpha::check::schema::{ComplexFile, PlacedComplex, SchemaError};
 use walpha::points::read_points;
 use walpha::shown::shown;
+
+use super::said::{Said, refused, said};
 
 /// Whether a file is a complex by its name: `.json` or `.npz`.
 pub fn is_complex(path: &Path) -> bool {
@@ -19,14 +21,12 @@ pub fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<PlacedComplex>
     let mut file = match ComplexFile::open(path) {
         Ok(file) => file,
         Err(SchemaError::Extension) => {
-            bail!(
-                "{}: a complex is read from .json or .npz; see docs/cross-checking.md",
-                shown(path)
-            )
+            refused!("{}: a complex is read from .json or .npz", shown(path) => "see docs/cross-checking.md")
         }
         Err(SchemaError::Io(error)) => {
-            let hint = if error.kind() == ErrorKind::NotFound { "; check the path" } else { "" };
-            bail!("cannot read {}: {error}{hint}", shown(path))
+            let missing = error.kind() == ErrorKind::NotFound;
+            let next = missing.then(|| "check the path".to_owned());
+            return Err(Said { next, ..said!("cannot read {}: {error}", shown(path)) }.into());
         }
         Err(other) => return Err(other).with_context(|| shown(path)),
     };
@@ -36,9 +36,9 @@ pub fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<PlacedComplex>
         file.weights = points.weights.or(file.weights);
     }
     match file.into_complex() {
-        Err(SchemaError::NoPoints) => bail!(
-            "{}: the file lists no points: add `points`, or give them in a file of their own with --points",
-            shown(path)
+        Err(SchemaError::NoPoints) => refused!(
+            "{}: the file lists no points", shown(path) =>
+            "add `points`, or give them in a file of their own with --points"
         ),
         made => made.with_context(|| shown(path)),
     }

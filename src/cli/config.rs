@@ -7,7 +7,8 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use anyhow::{Context, anyhow, bail};
+use super::said::{Said, refused, said};
+use anyhow::Context;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 use toml::{Table, Value};
@@ -111,17 +112,13 @@ fn path(matches: &ArgMatches) -> Option<PathBuf> {
 /// The file's settings for this command.
 fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
     let text = std::fs::read_to_string(file).map_err(|error| {
-        anyhow!("cannot read {}: {error}; give --config the name of a TOML file", shown(file))
+        said!("cannot read {}: {error}", shown(file) => "give --config the name of a TOML file")
     })?;
     let table: Table = text.parse().map_err(|error: toml::de::Error| {
         let said = error.to_string();
         let lines = said.lines().map(str::trim).filter(|line| !line.is_empty());
         let said: Vec<&str> = lines.collect();
-        anyhow!(
-            "{} is no TOML file: {}; walpha {name} --print-config shows how one looks",
-            shown(file),
-            said.join(" ")
-        )
+        said!("{} is no TOML file: {}", shown(file), said.join(" ") => "walpha {name} --print-config shows how one looks")
     })?;
     let (mut settings, mut own) = (Table::new(), Table::new());
     for (key, value) in table {
@@ -129,12 +126,8 @@ fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
             (Value::Table(of_command), Some(subcommand)) => {
                 if let Some(key) = of_command.keys().find(|key| option(subcommand, key).is_none()) {
                     let known = options(subcommand).filter_map(Arg::get_long).collect();
-                    return Err(unknown(
-                        file,
-                        &format!("[{}] {key}", subcommand.get_name()),
-                        key,
-                        known,
-                    ));
+                    let name = format!("[{}] {key}", subcommand.get_name());
+                    return Err(unknown(file, &name, key, known).into());
                 }
                 if key == name {
                     own = of_command;
@@ -145,7 +138,7 @@ fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
                     let names = command.get_subcommands().map(Command::get_name);
                     let options = command.get_subcommands().flat_map(options);
                     let known = options.filter_map(Arg::get_long).chain(names).collect();
-                    return Err(unknown(file, &key, &key, known));
+                    return Err(unknown(file, &key, &key, known).into());
                 }
                 settings.insert(key, value);
             }
@@ -155,12 +148,12 @@ fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
     Ok(settings)
 }
 
-fn unknown(file: &Path, name: &str, key: &str, known: Vec<&str>) -> anyhow::Error {
+fn unknown(file: &Path, name: &str, key: &str, known: Vec<&str>) -> Said {
     let next = match nearest(key, known) {
         Some(near) => format!("did you mean {near}?"),
         None => "take it away, or see --print-config".to_owned(),
     };
-    anyhow!("{}: no option has the name {name}; {next}", shown(file))
+    said!("{}: no option has the name {name}", shown(file) => "{next}")
 }
 
 /// The options a file may set.
@@ -207,13 +200,13 @@ fn texts(arg: &Arg, value: &Value) -> anyhow::Result<Vec<String>> {
     let one = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
         Value::Integer(_) | Value::Float(_) => Ok(value.to_string()),
-        _ => bail!("a list or table is no value; give a text or a number"),
+        _ => refused!("a list or table is no value" => "give a text or a number"),
     };
     if !arg.get_action().takes_values() {
         return match value {
             Value::Boolean(true) => Ok(vec![format!("--{long}")]),
             Value::Boolean(false) => Ok(Vec::new()),
-            _ => bail!("{long} is a switch; give true or false"),
+            _ => refused!("{long} is a switch" => "give true or false"),
         };
     }
     let values = match value {

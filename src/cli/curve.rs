@@ -4,7 +4,6 @@ use std::fmt::{self, Display};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::{anyhow, bail};
 use serde::Serialize;
 use walpha::export::{Content, NewFolder, Target, write_all};
 use walpha::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
@@ -16,11 +15,11 @@ use walpha::{LengthUnit, SelectionRule, Volume, Weighting, haar};
 
 use super::Global;
 use super::args::{PipelineArgs, SelectArgs};
-use super::given::misused;
 use super::output::{name, tell};
 use super::pipeline::{Grays, Input, read};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
+use super::said::{misused, refused, said};
 
 #[derive(Serialize)]
 struct Facts {
@@ -41,7 +40,7 @@ pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Resu
     let targets = paths.iter().map(|path| Target::open(path)).collect::<Result<Vec<_>, _>>()?;
     let mut progress = Progress::new(global);
     let Input::Volume(Grays { volume, range, .. }) = read(input, &mut progress)? else {
-        bail!("{} holds points, and --curve needs a volume", input.input);
+        refused!("{} holds points, and --curve needs a volume", input.input);
     };
     let (volume, units) = select.place(volume)?;
     let (smoothed, _) = progress.stage(Stage::Haar, || haar::smooth(&volume, &haar.options()))?;
@@ -98,7 +97,7 @@ fn counts(volume: &Volume, select: &SelectArgs) -> anyhow::Result<Vec<u64>> {
         SelectionRule::Count(count) => count as f64,
         SelectionRule::Ratio(ratio) => ratio * volume.dims().samples() as f64,
         SelectionRule::Threshold(_) => {
-            misused!("--curve needs a number of points; give --count or --ratio")
+            misused!("--curve needs a number of points" => "give --count or --ratio")
         }
     };
     Ok([0.0625, 0.125, 0.25, 0.5, 1.0, 2.0].map(|f| (f * whole).round() as u64).into())
@@ -117,9 +116,9 @@ const EXTENSIONS: &[&str] = &[
 /// given.
 fn paths(base: &Path) -> anyhow::Result<(Option<NewFolder>, Vec<PathBuf>)> {
     let asked = base.to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
-    let new = if asked { NewFolder::make(base) } else { Ok(None) }.map_err(|error| {
-        anyhow!("cannot make the folder {}: {error}; choose another", shown(base))
-    })?;
+    let new = if asked { NewFolder::make(base) } else { Ok(None) }.map_err(
+        |error| said!("cannot make the folder {}: {error}", shown(base) => "choose another"),
+    )?;
     let stem = if base.is_dir() {
         base.join("curve")
     } else if EXTENSIONS.iter().any(|known| base.extension().is_some_and(|e| e == *known)) {

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::anyhow;
+use super::said::said;
 use walpha::export::{Filled, NewFolder, Target, put_all};
 use walpha::shown::shown;
 
@@ -23,7 +23,7 @@ impl Folder {
     pub fn open(path: &Path, option: &str, names: &[&str]) -> anyhow::Result<Self> {
         let new = NewFolder::make(path).map_err(|error| {
             let path = shown(path);
-            anyhow!("cannot make the folder {path}: {error}; choose another with {option}")
+            said!("cannot make the folder {path}: {error}" => "choose another with {option}")
         })?;
         let folder = Self { path: path.to_owned(), files: Vec::new(), written: Vec::new(), new };
         for name in names {

@@ -6,6 +6,7 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
 use super::config;
+use super::said::{Said, misused};
 
 /// The names of the options that the user gave on the command line; those of a file of `--config` are
 /// for all inputs, and need not fit this one.
@@ -16,16 +17,16 @@ pub struct Given(Vec<String>);
 
 impl Given {
     /// Refuses options that would have no effect; `why` follows their names.
-    pub fn refuse(&self, names: &[&str], why: impl fmt::Display) -> Result<(), Usage> {
+    pub fn refuse(&self, names: &[&str], why: impl fmt::Display) -> Result<(), Said> {
         let wanted = self.0.iter().filter(|name| names.contains(&name.as_str()));
         let options: Vec<String> =
             wanted.map(|name| format!("--{}", name.replace('_', "-"))).collect();
         match &options[..] {
             [] => Ok(()),
-            [one] => Err(Usage(format!("{one} has no effect: {why}; omit it"))),
+            [one] => misused!("{one} has no effect: {why}" => "omit it"),
             several => {
                 let names = several.join(", ");
-                Err(Usage(format!("{names} have no effect: {why}; omit them")))
+                misused!("{names} have no effect: {why}" => "omit them")
             }
         }
     }
@@ -55,16 +56,3 @@ impl Args for Given {
         command
     }
 }
-
-/// What makes no sense on a command line, whatever is in the files: exit code 2.
-#[derive(Clone, Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct Usage(pub String);
-
-/// Ends with a [`Usage`].
-macro_rules! misused {
-    ($($text:tt)*) => {
-        return Err($crate::cli::given::Usage(format!($($text)*)).into())
-    };
-}
-pub(crate) use misused;

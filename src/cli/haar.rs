@@ -2,19 +2,21 @@
 
 use std::path::PathBuf;
 
-use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
-use walpha::export::{Target, VolumeFormat};
+use walpha::export::Target;
 use walpha::haar::smooth;
 use walpha::progress::Stage;
+use walpha::volume::VolumeWriter;
 
 use super::Global;
 use super::args::{HaarArgs, InputArgs};
+use super::formats::volume_output;
 use super::output::tell;
 use super::pipeline::{Grays, Input, read};
 use super::progress::Progress;
 use super::report::{HaarReport, SCHEMA_VERSION};
+use super::said::refused;
 
 /// Transform a volume, drop small coefficients, and restore it.
 ///
@@ -25,9 +27,7 @@ use super::report::{HaarReport, SCHEMA_VERSION};
 /// walpha haar sample:skull --coefficients 20000 -o smooth.npy
 #[derive(Args)]
 pub struct Haar {
-    /// File to write the restored values to, as f32, replaced if it is there: .nrrd, .nii, .nii.gz,
-    /// .mha, .vti, .tif, .npy or .raw; or - (standard output, with --format).
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", help = volume_output("File to write the restored values to"))]
     output: Option<PathBuf>,
     #[command(flatten)]
     input: InputArgs,
@@ -47,7 +47,7 @@ impl Haar {
         self.input.check_format(self.output.iter())?;
         let target = match &self.output {
             None => None,
-            Some(path) => Some((VolumeFormat::of(&self.input.output(path)?)?, Target::open(path)?)),
+            Some(path) => Some((VolumeWriter::of(&self.input.output(path)?)?, Target::open(path)?)),
         };
         let mut progress = Progress::new(global);
         let read = read(&self.input, &mut progress)?;
@@ -55,7 +55,7 @@ impl Haar {
             read.accepts(&self.input)?;
         }
         let Input::Volume(Grays { volume, range, written }) = read else {
-            bail!("{} holds points; name a volume", self.input.input);
+            refused!("{} holds points", self.input.input => "name a volume");
         };
         let options = self.haar.options();
         let (smoothed, truncation) = progress.stage(Stage::Haar, || smooth(&volume, &options))?;

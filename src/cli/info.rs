@@ -43,7 +43,7 @@ struct Facts {
 #[serde(tag = "kind", rename_all = "lowercase")]
 enum Content {
     Volume {
-        format: &'static str,
+        format: String,
         /// How a sample is stored.
         samples: String,
         dims: [usize; 3],
@@ -101,10 +101,10 @@ impl Info {
                 return Ok(Content::Series { series });
             }
         }
-        let volume = volume::open(input, &options)?;
+        let volume = volume::open(input, &options).map_err(pipeline::with_points)?;
         let (min, max) = volume.value_range();
         let (format, data_files) = match input.starts_with("sample:") {
-            true => ("sample", Vec::new()),
+            true => ("sample".to_owned(), Vec::new()),
             false => {
                 let path = input.as_ref();
                 (volume::format_name(path, &options)?, volume::data_files(path, &options)?)

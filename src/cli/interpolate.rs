@@ -4,21 +4,22 @@ use std::fmt::{self, Display};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
-use walpha::export::{Content, Target, VolumeFormat, write_all};
+use walpha::export::{Content, Target, write_all};
 use walpha::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
 use walpha::progress::Stage;
 use walpha::shape::number_or_null_or_name;
+use walpha::volume::VolumeWriter;
 use walpha::{AlphaShape, GrayRange, Units, Volume};
 
 use super::args::{PipelineArgs, ShapeArgs};
-use super::given::misused;
+use super::formats::volume_output;
 use super::output::tell;
 use super::pipeline::{Source, Values, VolumeFacts};
 use super::progress::Progress;
 use super::report::Report;
+use super::said::{misused, refused};
 use super::{Global, curve, pipeline};
 
 /// Interpolate the values of points on their shape, and measure the error.
@@ -48,10 +49,7 @@ use super::{Global, curve, pipeline};
         .help_heading("Grid")
 }))]
 pub struct Interpolate {
-    /// Volume to write F to, as f32: .nrrd, .nii, .nii.gz, .mha, .vti, .tif, .npy or .raw; or - (standard
-    /// output, with --format). With --curve: a folder, or what names of files begin with. Files that are
-    /// there are replaced.
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", help = output_help())]
     output: Option<PathBuf>,
     /// Volume to write 1 to where a sample is on the shape, else 0; the same formats, and replaced.
     #[arg(long, value_name = "FILE")]
@@ -134,11 +132,16 @@ impl<'a> Original<'a> {
     }
 }
 
+fn output_help() -> String {
+    let files = volume_output("Volume to write F to");
+    format!("{files}. With --curve: a folder, or what names of files begin with")
+}
+
 impl Interpolate {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         if self.curve {
             if self.pipeline.input.raw.grid().is_some() {
-                misused!("--curve measures on the samples of INPUT: omit --dims");
+                misused!("--curve measures on the samples of INPUT" => "omit --dims");
             }
             let base = self.output.as_deref().expect("clap requires it");
             return curve::run(global, &self.pipeline, base);
@@ -148,7 +151,7 @@ impl Interpolate {
         let output = match &self.output {
             None => None,
             Some(path) => {
-                Some((VolumeFormat::of(&self.pipeline.input.output(path)?)?, Target::open(path)?))
+                Some((VolumeWriter::of(&self.pipeline.input.output(path)?)?, Target::open(path)?))
             }
         };
         let mask = self.mask.as_deref().map(open).transpose()?;
@@ -210,10 +213,9 @@ impl Interpolate {
                 };
                 Ok(Grid::spanning(end(f64::min), end(f64::max), dims))
             }
-            (None, None) => bail!(
-                "{} holds points, which have no grid of their own: give --dims X,Y,Z",
-                self.pipeline.input.input
-            ),
+            (None, None) => {
+                refused!("{} holds points, which have no grid of their own", self.pipeline.input.input => "give --dims X,Y,Z")
+            }
         }
     }
 }
@@ -241,8 +243,8 @@ fn sample(shape: &AlphaShape, grid: &Grid, original: Option<Original>) -> anyhow
     Ok(Sampled { resampled, error })
 }
 
-fn open(path: &Path) -> anyhow::Result<(VolumeFormat, Target)> {
-    Ok((VolumeFormat::of(path)?, Target::open(path)?))
+fn open(path: &Path) -> anyhow::Result<(&'static VolumeWriter, Target)> {
+    Ok((VolumeWriter::of(path)?, Target::open(path)?))
 }
 
 impl Display for Facts {

@@ -9,6 +9,7 @@ mod complex_file;
 mod config;
 mod curve;
 mod folder;
+mod formats;
 mod given;
 mod haar;
 mod info;
@@ -21,9 +22,11 @@ mod picture;
 mod pipeline;
 mod points;
 mod progress;
+mod ranges;
 mod report;
 #[cfg(feature = "paper")]
 mod reproduce;
+mod said;
 mod shape;
 mod signals;
 #[cfg(feature = "render")]
@@ -33,7 +36,6 @@ use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 
-use anyhow::anyhow;
 use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use tracing::Level;
 use tracing::level_filters::LevelFilter;
@@ -45,26 +47,11 @@ use walpha::export::Target;
 use walpha::progress::TARGET;
 
 use output::{is_broken_pipe, print};
+use said::said;
 
 /// Volume modelling of scattered data with wavelet-weighted alpha shapes.
-///
-/// A volume is Haar-transformed, small coefficients are dropped, the samples of largest gray
-/// difference become weighted points, and CGAL's regular triangulation and alpha shape turn these
-/// into cells, facets, edges and vertices.
-///
-/// INPUT is a volume (NRRD, NIfTI, MetaImage, VTK, VTI, TIFF, INRIMAGE, NPY, NPZ, a folder of PNG, JPEG
-/// or TIFF slices, raw with --dims), a point file (CSV, TSV, XYZ, PWN, PLY, OFF, OBJ, STL, PCD, LAS, VTU,
-/// VTP, NPY), or one of sample:skull, sample:phantom, sample:phantom@N. α and weights are squared lengths.
-///
-/// Examples:
-///
-/// walpha shape ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.ply
-///
-/// walpha view scan.xyz -o scan.html
-///
-/// walpha reproduce
 #[derive(Parser)]
-#[command(name = "walpha", version = VERSION, max_term_width = 100, arg_required_else_help = true)]
+#[command(name = "walpha", version = VERSION, long_about = formats::about(), max_term_width = 100, arg_required_else_help = true)]
 struct Cli {
     #[command(flatten)]
     global: Global,
@@ -221,8 +208,9 @@ fn start_threads(asked: Option<u16>) -> anyhow::Result<()> {
         );
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count.min(most));
-    pool.build_global()
-        .map_err(|error| anyhow!("threads cannot be started: {error}; give fewer with --threads"))
+    pool.build_global().map_err(|error| {
+        said!("threads cannot be started: {error}" => "give fewer with --threads").into()
+    })
 }
 
 fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {

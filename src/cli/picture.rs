@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::path::Path;
 
-use anyhow::bail;
+use super::said::refused;
 use clap::{Args, ValueEnum};
 use walpha::AlphaShape;
 use walpha::export::Exporter;
@@ -134,20 +134,18 @@ fn camera(text: &str) -> anyhow::Result<Camera> {
     let numbers: Vec<f64> =
         text.split(',').map(|number| number.trim().parse()).collect::<Result<_, _>>()?;
     let [ex, ey, ez, tx, ty, tz] = numbers[..] else {
-        bail!(
-            "six numbers are needed; give where the eye is and what it looks at, as in 99,0,9,0,0,0"
-        );
+        refused!("six numbers are needed" => "give where the eye is and what it looks at, as in 99,0,9,0,0,0");
     };
     let (eye, target) = ([ex, ey, ez], [tx, ty, tz]);
     if eye == target || !numbers.iter().all(|v| v.is_finite()) {
-        bail!("the eye and what it looks at must be two places, with finite coordinates");
+        refused!("the eye and what it looks at must be two places, with finite coordinates");
     }
     Ok(Camera::portrait(eye, target))
 }
 
 fn size(text: &str) -> anyhow::Result<Size> {
     let Some((width, height)) = text.split_once(['x', '×']) else {
-        bail!("two numbers are needed; give them as in 1600x1360");
+        refused!("two numbers are needed" => "give them as in 1600x1360");
     };
     Ok(Size::new(width.trim().parse()?, height.trim().parse()?)?)
 }

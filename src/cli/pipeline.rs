@@ -3,7 +3,6 @@
 use std::fmt::{self, Display};
 use std::path::Path;
 
-use anyhow::anyhow;
 use serde::Serialize;
 use walpha::export::{Scratch, Target};
 use walpha::ladder::{Curve, Filtration};
@@ -11,11 +10,13 @@ use walpha::pipeline::{Model, PipelineError, Weighed};
 use walpha::points::{is_point_file, read_points};
 use walpha::progress::Stage;
 use walpha::shape::ShapeOptions;
-use walpha::{Alpha, GrayRange, LengthUnit, Pipeline, Points, Units, Volume, volume};
+use walpha::volume::Reason;
+use walpha::{Alpha, GrayRange, LengthUnit, Pipeline, Points, Units, Volume, VolumeError, volume};
 
 use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, WeightArgs};
-use super::given::Usage;
+use super::complaint::{is_usage, reasons};
 use super::progress::Progress;
+use super::said::{Said, said};
 
 /// What INPUT turned out to be.
 pub enum Input {
@@ -41,10 +42,21 @@ pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> 
             if is_points(args, input)? {
                 return Ok(Input::Points(read_points(Path::new(input), args.columns())?));
             }
-            let (volume, range) = volume::open(input, &args.options())?.into_gray(args.gray())?;
+            let volume = volume::open(input, &args.options()).map_err(with_points)?;
+            let (volume, range) = volume.into_gray(args.gray())?;
             Ok(Input::Volume(Grays { volume, range, written: args.written(range) }))
         })
     })
+}
+
+/// Adds the formats of points to the error for a file of no format known.
+pub fn with_points(error: VolumeError) -> anyhow::Error {
+    if !matches!(error, VolumeError::Format { reason: Reason::Unknown { .. }, .. }) {
+        return error.into();
+    }
+    let names: Vec<&str> = walpha::points::FORMATS.iter().map(|format| format.name).collect();
+    let said = Said::from(error);
+    Said { why: format!("{}, {} as points", said.why, names.join(", ")), ..said }.into()
 }
 
 /// Does something with INPUT as a file or the name of a sample. Standard input becomes a file for that
@@ -57,11 +69,15 @@ pub fn with_file<T>(
         return work(&args.input);
     }
     let file = Scratch::of(&mut std::io::stdin().lock(), &args.extension())
-        .map_err(|error| anyhow!("cannot read standard input: {error}; name a file instead"))?;
+        .map_err(|error| said!("cannot read standard input: {error}" => "name a file instead"))?;
     let path = file.path().to_string_lossy().into_owned();
     // Nobody knows the name of that file.
-    work(&path)
-        .map_err(|error| anyhow!("{}", format!("{error:#}").replace(&path, "standard input")))
+    work(&path).map_err(|error| {
+        let (why, next) = reasons(&error);
+        let named = |text: String| text.replace(&path, "standard input");
+        let usage = is_usage(&error);
+        Said { why: named(why), next: next.map(named), usage }.into()
+    })
 }
 
 /// Options that speak of a volume.
@@ -92,7 +108,7 @@ const OF_VOLUMES: [&str; 22] = [
 
 impl Input {
     /// Refuses options that have no effect on what INPUT is.
-    pub fn accepts(&self, args: &InputArgs) -> Result<(), Usage> {
+    pub fn accepts(&self, args: &InputArgs) -> Result<(), Said> {
         let holds = |what| format!("{} holds {what}", args.input);
         match self {
             Self::Volume(..) => args.given.refuse(&["columns"], holds("a volume")),
@@ -194,13 +210,9 @@ pub fn shape(
     progress: &mut Progress,
 ) -> anyhow::Result<Model> {
     let pipeline = Pipeline::new().shape(options);
-    progress.watch(|hear| pipeline.finish(weighed, hear)).map_err(|error| match error {
-        PipelineError::Radii { radius } => Usage(format!(
-            "with --balls radius, α is a radius, and auto finds squared ones; give --alpha A, as in \
-             --alpha {radius}"
-        ))
-        .into(),
-        error => error.into(),
+    progress.watch(|hear| pipeline.finish(weighed, hear)).map_err(|error| match &error {
+        PipelineError::Radii { .. } => Said::usage_of(&error).into(),
+        _ => error.into(),
     })
 }
 

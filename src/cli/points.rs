@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use anyhow::bail;
 use clap::Args;
-use walpha::export::{Target, UnknownFormat};
-use walpha::points::{write_csv, write_npy};
+use walpha::export::Target;
+use walpha::points::PointWriter;
 use walpha::progress::Stage;
 
 use super::args::PipelineArgs;
+use super::formats::points_output;
 use super::output::tell;
 use super::progress::Progress;
 use super::report::Report;
@@ -23,9 +23,7 @@ use super::{Global, pipeline};
 /// walpha points sample:skull --count 15956 --weights min-max -o skull.csv
 #[derive(Args)]
 pub struct Points {
-    /// File to write, replaced if it is there: .csv (header x,y,z,weight,value) or .npy (the same
-    /// columns); or - (standard output, with --format).
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", help = points_output())]
     output: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineArgs,
@@ -38,26 +36,14 @@ impl Points {
             None => None,
             Some(path) => {
                 let name = self.pipeline.input.output(path)?;
-                let extension = name.extension().unwrap_or_default().to_ascii_lowercase();
-                let csv = extension == "csv";
-                if !csv && extension != "npy" {
-                    bail!(UnknownFormat::new(&name, "points", ["csv", "npy"]));
-                }
-                Some((Target::open(path)?, csv))
+                Some((Target::open(path)?, PointWriter::of(&name)?))
             }
         };
         let mut progress = Progress::new(global);
         let (weighed, volume) = pipeline::weighted_points(&self.pipeline, &mut progress)?;
-        if let Some((target, csv)) = target {
-            progress.stage(Stage::Write, || {
-                target.write(|out| {
-                    if csv {
-                        write_csv(&weighed.points, out)
-                    } else {
-                        write_npy(&weighed.points, out)
-                    }
-                })
-            })?;
+        if let Some((target, writer)) = target {
+            progress
+                .stage(Stage::Write, || target.write(|out| writer.write(&weighed.points, out)))?;
         }
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
         let files = self.output.iter().map(|path| path.display().to_string()).collect();

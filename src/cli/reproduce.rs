@@ -76,7 +76,7 @@ impl Reproduce {
             return Ok((name.clone(), open(name, &ReadOptions::default())?));
         }
         match open(SKULL, &ReadOptions::default()) {
-            Err(VolumeError::Sample(_)) => {
+            Err(VolumeError::NoSkull { .. }) => {
                 if !global.quiet {
                     eprintln!(
                         "walpha: {SKULL} is not installed (on Debian and Ubuntu, `apt-get install \

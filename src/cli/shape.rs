@@ -4,17 +4,19 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use walpha::export::{Content, ExportOptions, Exporter, Format, Target, UnknownFormat, write_all};
+use walpha::export::{Content, ExportOptions, Exporter, FORMATS, Format, Target, write_all};
 use walpha::progress::Stage;
 use walpha::shape::Surface;
 use walpha::shown::shown;
+use walpha::volume::UnknownFormat;
 
 use super::args::{PipelineArgs, ShapeArgs};
-use super::given::misused;
+use super::formats::shape_output;
 use super::output::tell;
 use super::picture::PictureArgs;
 use super::progress::Progress;
 use super::report::Report;
+use super::said::misused;
 use super::{Global, pipeline};
 
 /// Compute the weighted alpha shape of a volume or of points.
@@ -28,11 +30,7 @@ use super::{Global, pipeline};
 /// walpha shape scan.xyz --alpha auto --solid -o scan.stl
 #[derive(Args)]
 pub struct Shape {
-    /// Files to write: .ply, .off, .obj, .stl, .glb, .vtp (boundary), .vtu, .npz or .json (all
-    #[cfg_attr(feature = "render", doc = " simplices), .png (a picture); or -")]
-    #[cfg_attr(not(feature = "render"), doc = " simplices); or -")]
-    /// (standard output, with --format). Files that are there are replaced.
-    #[arg(short, long, value_name = "FILE", num_args = 1..)]
+    #[arg(short, long, value_name = "FILE", num_args = 1.., help = shape_output())]
     output: Vec<PathBuf>,
     /// Write text where a format has a binary form too (PLY).
     #[arg(long)]
@@ -56,7 +54,7 @@ pub struct Shape {
 /// Refuses a switch that has no effect.
 fn unused(name: &str, given: bool, why: &str) -> anyhow::Result<()> {
     if given {
-        misused!("{name} has no effect: {why}; omit it");
+        misused!("{name} has no effect: {why}" => "omit it");
     }
     Ok(())
 }
@@ -68,18 +66,30 @@ impl Shape {
         input.check_format(self.output.iter())?;
         let names: Vec<PathBuf> =
             self.output.iter().map(|path| input.output(path)).collect::<Result<_, _>>()?;
-        let written = |format| names.iter().any(|name| Format::of(name).is_ok_and(|f| f == format));
+        let written =
+            |has: fn(&Format) -> bool| names.iter().any(|name| Format::of(name).is_ok_and(has));
+        let known = |has: fn(&Format) -> bool| {
+            let names = FORMATS.iter().filter(|format| has(format)).map(|format| format.name);
+            let mut names: Vec<&str> = names.collect();
+            names.sort_unstable();
+            match &names[..] {
+                [all @ .., last] if !all.is_empty() => format!("{} and {last}", all.join(", ")),
+                _ => names.concat(),
+            }
+        };
         self.shape.check(self.pipeline.weights.alpha())?;
         if !names.iter().any(|name| PictureArgs::wanted(name)) {
             input.given.refuse(&PictureArgs::NAMES, "no picture (.png) is written")?;
         }
-        if !written(Format::Ply) {
-            unused("--ascii", self.ascii, "only PLY has a binary form and a text form")?;
+        if !written(|format| format.ascii) {
+            let why = format!("only {} has a binary form and a text form", known(|f| f.ascii));
+            unused("--ascii", self.ascii, &why)?;
         }
-        if ![Format::Obj, Format::Off, Format::Ply].into_iter().any(written) {
-            unused("--groups", self.groups, "only OBJ, OFF and PLY can tell facets apart")?;
+        if !written(|format| format.groups) {
+            let why = format!("only {} can tell facets apart", known(|f| f.groups));
+            unused("--groups", self.groups, &why)?;
         }
-        if !names.iter().any(|name| Format::of(name).is_ok_and(Format::is_boundary)) {
+        if !written(|format| format.boundary) {
             unused("--solid", self.solid, "no output holds a boundary alone")?;
         }
         Ok(())
@@ -100,7 +110,7 @@ impl Shape {
             let exporter: Box<dyn Exporter> = if PictureArgs::wanted(&name) {
                 self.picture.exporter()
             } else {
-                let known = Format::ALL.into_iter().map(|(_, extension)| extension);
+                let known = FORMATS.iter().map(|format| format.extension);
                 let unknown =
                     |_| UnknownFormat::new(path, "a shape", known.chain(PictureArgs::EXTENSIONS));
                 Format::of(&name).map_err(unknown)?.exporter(&export)

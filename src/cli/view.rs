@@ -8,21 +8,22 @@ use std::str::FromStr;
 use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
-use walpha::export::{Target, UnknownFormat};
+use walpha::export::Target;
 use walpha::ladder::Filtration;
 use walpha::pipeline::{AlphaRule, Parameter, Weighed};
 use walpha::progress::Stage;
 use walpha::render::{Original, Page, Subject};
 use walpha::shown::{number, shown};
+use walpha::volume::UnknownFormat;
 use walpha::{Alpha, GrayRange};
 
 use super::Global;
 use super::args::{self, Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
-use super::given::misused;
 use super::output::{name, tell};
 use super::pipeline::{self, Input, Source, Values, VolumeFacts};
 use super::progress::Progress;
 use super::report::{SCHEMA_VERSION, WeightsReport};
+use super::said::misused;
 
 /// Make a page that shows the shapes in a browser: self-contained, no network needed.
 ///
@@ -133,7 +134,7 @@ impl View {
         let read = pipeline::read(&self.input, &mut progress)?;
         read.accepts(&self.input)?;
         if self.isovalue.is_some() && matches!(read, Input::Points(_)) {
-            misused!("--isovalue has no effect: points have no isosurface; omit it");
+            misused!("--isovalue has no effect: points have no isosurface" => "omit it");
         }
         let (haar, select) = (&self.haar, &self.select);
         let (weighed, source) =
@@ -162,7 +163,7 @@ impl View {
         let levels = filtration.levels(&alphas);
         if levels.len() > Page::MOST_LEVELS {
             let (levels, most) = (levels.len(), Page::MOST_LEVELS);
-            misused!("{levels} levels are too many for a page; give --alphas at most {most}");
+            misused!("{levels} levels are too many for a page" => "give --alphas at most {most}");
         }
         let ladder = progress.stage(Stage::Ladder, || levels.ladder(domain.volume));
         // That level, or the last below it.

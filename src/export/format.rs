@@ -1,10 +1,10 @@
+use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 
 use super::{Glb, Json, Npz, Obj, Off, Ply, Stl, Vtp, Vtu};
-use crate::near::nearest;
 use crate::shape::{AlphaShape, Surface};
-use crate::shown::shown;
+use crate::volume::UnknownFormat;
 
 /// A way to write a shape down.
 pub trait Exporter {
@@ -42,126 +42,132 @@ impl ExportOptions {
     }
 }
 
-/// The formats shapes are written in, chosen by file name extension.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Polygon file format: boundary, singular edges and vertices.
-    Ply,
-    /// Object file format of Geomview: boundary facets.
-    Off,
-    /// Wavefront: boundary, singular edges and vertices in groups.
-    Obj,
-    /// Stereolithography: regular facets.
-    Stl,
-    /// glTF in one binary file: boundary, singular edges and vertices, coloured by F.
-    Glb,
-    /// VTK unstructured grid: simplices of all dimensions with their data.
-    Vtu,
-    /// VTK polygons: boundary, singular edges and vertices with their data.
-    Vtp,
-    /// NumPy arrays of indices and classes of simplices of all dimensions.
-    Npz,
-    /// The whole complex, for `walpha check` and other programs.
-    Json,
+/// A format that shapes are written in, chosen by file name extension.
+#[derive(Clone, Copy)]
+pub struct Format {
+    /// For people.
+    pub name: &'static str,
+    /// Its extension, without the dot.
+    pub extension: &'static str,
+    /// What it holds.
+    pub about: &'static str,
+    /// Whether it holds the boundary alone, and so may be that of a solid.
+    pub boundary: bool,
+    /// Whether it has a text form and a binary one.
+    pub ascii: bool,
+    /// Whether it can tell regular and singular facets apart where some programs do not expect it.
+    pub groups: bool,
+    exporter: fn(ExportOptions) -> Box<dyn Exporter>,
 }
 
-/// No writer has this extension.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{path}: no format has the extension `{extension}`, {thing} can be written as {known}; {}",
-    advice(near.as_deref())
-)]
-pub struct UnknownFormat {
-    path: String,
-    extension: String,
-    thing: &'static str,
-    known: String,
-    near: Option<String>,
-}
+/// A format of all simplices.
+const PLAIN: Format = Format {
+    name: "",
+    extension: "",
+    about: "",
+    boundary: false,
+    ascii: false,
+    groups: false,
+    exporter: |_| Box::new(Json),
+};
 
-fn advice(near: Option<&str>) -> String {
-    match near {
-        Some(near) => format!("did you mean .{near}?"),
-        None => "choose one of these".into(),
-    }
-}
+/// The formats there are.
+pub static FORMATS: [Format; 9] = [
+    Format {
+        name: "PLY",
+        extension: "ply",
+        about: "Polygon file format: boundary, singular edges and vertices.",
+        boundary: true,
+        ascii: true,
+        groups: true,
+        exporter: |options| Box::new(Ply(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "OFF",
+        extension: "off",
+        about: "Object file format of Geomview: boundary facets.",
+        boundary: true,
+        groups: true,
+        exporter: |options| Box::new(Off(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "OBJ",
+        extension: "obj",
+        about: "Wavefront: boundary, singular edges and vertices in groups.",
+        boundary: true,
+        groups: true,
+        exporter: |options| Box::new(Obj(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "STL",
+        extension: "stl",
+        about: "Stereolithography: regular facets.",
+        boundary: true,
+        exporter: |options| Box::new(Stl(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "GLB",
+        extension: "glb",
+        about: "glTF in one binary file: boundary, singular edges and vertices, coloured by F.",
+        boundary: true,
+        exporter: |options| Box::new(Glb(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "VTU",
+        extension: "vtu",
+        about: "VTK unstructured grid: simplices of all dimensions with their data.",
+        exporter: |options| Box::new(Vtu(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "VTP",
+        extension: "vtp",
+        about: "VTK polygons: boundary, singular edges and vertices with their data.",
+        boundary: true,
+        exporter: |options| Box::new(Vtp(options)),
+        ..PLAIN
+    },
+    Format {
+        name: "NPZ",
+        extension: "npz",
+        about: "NumPy arrays of indices and classes of simplices of all dimensions.",
+        exporter: |_| Box::new(Npz),
+        ..PLAIN
+    },
+    Format {
+        name: "JSON",
+        extension: "json",
+        about: "The whole complex, for `walpha check` and other programs.",
+        ..PLAIN
+    },
+];
 
 impl Format {
-    /// Every format with its extension.
-    pub const ALL: [(Self, &str); 9] = [
-        (Self::Ply, "ply"),
-        (Self::Off, "off"),
-        (Self::Obj, "obj"),
-        (Self::Stl, "stl"),
-        (Self::Glb, "glb"),
-        (Self::Vtu, "vtu"),
-        (Self::Vtp, "vtp"),
-        (Self::Npz, "npz"),
-        (Self::Json, "json"),
-    ];
-
     /// The format a path asks for.
     ///
     /// # Errors
     /// [`UnknownFormat`] names the ones there are.
-    pub fn of(path: &Path) -> Result<Self, UnknownFormat> {
-        UnknownFormat::find(path, "a shape", &Self::ALL)
-    }
-
-    /// Whether it holds the boundary alone, and so may be that of a solid.
-    pub fn is_boundary(self) -> bool {
-        !matches!(self, Self::Vtu | Self::Npz | Self::Json)
+    pub fn of(path: &Path) -> Result<&'static Self, UnknownFormat> {
+        UnknownFormat::find(
+            path,
+            "a shape",
+            FORMATS.iter().map(|format| (format.extension, format)),
+        )
     }
 
     /// Its writer.
-    pub fn exporter(self, options: &ExportOptions) -> Box<dyn Exporter> {
-        let options = options.clone();
-        match self {
-            Self::Ply => Box::new(Ply(options)),
-            Self::Off => Box::new(Off(options)),
-            Self::Obj => Box::new(Obj(options)),
-            Self::Stl => Box::new(Stl(options)),
-            Self::Glb => Box::new(Glb(options)),
-            Self::Vtu => Box::new(Vtu(options)),
-            Self::Vtp => Box::new(Vtp(options)),
-            Self::Npz => Box::new(Npz),
-            Self::Json => Box::new(Json),
-        }
+    pub fn exporter(&self, options: &ExportOptions) -> Box<dyn Exporter> {
+        (self.exporter)(options.clone())
     }
 }
 
-impl UnknownFormat {
-    /// The format whose extension ends a path.
-    pub(super) fn find<F: Copy>(
-        path: &Path,
-        thing: &'static str,
-        all: &[(F, &str)],
-    ) -> Result<F, Self> {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        let ends = |extension: &str| {
-            name.strip_suffix(extension).is_some_and(|stem| stem.len() > 1 && stem.ends_with('.'))
-        };
-        let found = all.iter().find(|(_, extension)| ends(extension));
-        found
-            .map(|&(format, _)| format)
-            .ok_or_else(|| Self::new(path, thing, all.iter().map(|&(_, extension)| extension)))
-    }
-
-    /// Says that `thing` cannot be written to `path`, only under the `known` extensions (without their
-    /// dots).
-    pub fn new<'a>(
-        path: &Path,
-        thing: &'static str,
-        known: impl IntoIterator<Item = &'a str> + Clone,
-    ) -> Self {
-        let extension = path.extension().unwrap_or_default().to_string_lossy().into_owned();
-        let dotted: Vec<String> = known.clone().into_iter().map(|e| format!(".{e}")).collect();
-        Self {
-            path: shown(path),
-            near: nearest(&extension, known).map(str::to_owned),
-            extension,
-            thing,
-            known: dotted.join(", "),
-        }
+impl fmt::Debug for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Format").field("name", &self.name).finish_non_exhaustive()
     }
 }

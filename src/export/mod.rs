@@ -35,15 +35,14 @@ mod part;
 mod place;
 mod ply;
 mod scratch;
-mod stated;
 mod stl;
 mod target;
 mod unfinished;
-mod volume;
 mod vtp;
 mod vtu;
 
-pub use format::{ExportOptions, Exporter, Format, UnknownFormat};
+pub use crate::volume::UnknownFormat;
+pub use format::{ExportOptions, Exporter, FORMATS, Format};
 pub use glb::Glb;
 pub use json::Json;
 pub use npz::Npz;
@@ -54,9 +53,5 @@ pub use scratch::Scratch;
 pub use stl::Stl;
 pub use target::{Content, Filled, Target, TargetError, put_all, write_all};
 pub use unfinished::{NewFolder, abandon, sweep};
-pub use volume::{
-    VolumeFormat, write_volume_metaimage, write_volume_nifti, write_volume_npy, write_volume_nrrd,
-    write_volume_raw, write_volume_tiff, write_volume_vti,
-};
 pub use vtp::Vtp;
 pub use vtu::Vtu;

@@ -1,7 +1,8 @@
 use std::io::{self, Write};
 
-use super::{ExportOptions, Exporter, stated};
+use super::{ExportOptions, Exporter};
 use crate::shape::AlphaShape;
+use crate::volume::stated;
 
 /// Wavefront OBJ: facets, regular ones first, singular edges and singular vertices; in one group, or
 /// if asked in the groups `regular`, `singular`, `edges` and `points`. Numbering starts at 1.

@@ -1,7 +1,8 @@
 use std::io::{self, Write};
 
-use super::{ExportOptions, Exporter, stated};
+use super::{ExportOptions, Exporter};
 use crate::shape::AlphaShape;
+use crate::volume::stated;
 
 /// OFF, the object file format of Geomview: boundary facets; where groups are asked for with a colour
 /// each, regular ones light, singular ones orange. It knows no edges or lone points, so singular ones are left out.

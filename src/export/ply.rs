@@ -1,7 +1,8 @@
 use std::io::{self, Write};
 
-use super::{ExportOptions, Exporter, colour, stated};
+use super::{ExportOptions, Exporter, colour};
 use crate::shape::{AlphaShape, Class, Surface};
+use crate::volume::stated;
 
 /// PLY: vertices of the boundary with weight, input index and, where known, value and the colour
 /// (red, green, blue) that it has between the least and the most; facets. Where groups are asked for,

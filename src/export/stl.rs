@@ -1,7 +1,8 @@
 use std::io::{self, Write};
 
-use super::{ExportOptions, Exporter, stated};
+use super::{ExportOptions, Exporter};
 use crate::shape::AlphaShape;
+use crate::volume::stated;
 
 /// Binary STL: the regular facets, counter-clockwise seen from outside, with their normals.
 /// Coordinates are rounded to `f32`. Singular facets, edges and vertices bound no solid and are left

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::part::{Part, Whole};
 use super::place::{Claim, Place};
 use super::unfinished::gate;
+use crate::advice::Advice;
 use crate::shown::shown;
 
 /// A file to be: opened before the long work, so that a bad place is known at once, and put under
@@ -34,7 +35,7 @@ enum Sink {
 
 /// A file cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write {}: {source}; {left}{}", shown(path), next_step(source))]
+#[error("cannot write {}: {source}", shown(path))]
 pub struct TargetError {
     path: PathBuf,
     source: io::Error,
@@ -43,6 +44,11 @@ pub struct TargetError {
 }
 
 impl TargetError {
+    /// What became of the outputs, and what to do.
+    pub fn advice(&self) -> Advice {
+        format!("{}{}", self.left, next_step(&self.source)).into()
+    }
+
     const NOTHING_LEFT: &str = "nothing was left behind, ";
 
     fn of(path: &Path, left: impl Into<String>) -> impl FnOnce(io::Error) -> Self {

@@ -1,8 +1,9 @@
 use std::io::{self, Write};
 
 use super::vtu::{Appended, bytes};
-use super::{ExportOptions, Exporter, stated};
+use super::{ExportOptions, Exporter};
 use crate::shape::{AlphaShape, Class, Sheets, Surface};
+use crate::volume::stated;
 
 /// VTP, VTK's polygons: the boundary, singular edges and singular vertices. Cell data are their
 /// `class` (2 regular, 3 singular), the `component` of the shape they belong to and, where known, the

@@ -1,7 +1,8 @@
 use std::io::{self, Write};
 
-use super::{ExportOptions, Exporter, stated};
+use super::{ExportOptions, Exporter};
 use crate::shape::{AlphaShape, Simplices};
+use crate::volume::stated;
 
 /// VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as
 /// cell data (1 interior, 2 regular, 3 singular); `weight`, `value` and `input_index` as point

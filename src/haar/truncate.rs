@@ -1,3 +1,4 @@
+use crate::advice::Advice;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -52,7 +53,7 @@ pub struct Truncation {
 #[non_exhaustive]
 pub enum HaarError {
     /// A negative or undefined tolerance.
-    #[error("a tolerance of {given} makes no sense: {what} must be a number from 0 up")]
+    #[error("a tolerance of {given} makes no sense for {what}")]
     Tolerance {
         /// The number given.
         given: f64,
@@ -65,6 +66,17 @@ pub enum HaarError {
     /// Memory for the coefficients cannot be had.
     #[error(transparent)]
     Memory(#[from] NoMemory),
+}
+
+impl HaarError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::Tolerance { .. } => Some("give a number from 0 up".into()),
+            Self::Volume(error) => error.advice(),
+            Self::Memory(lack) => Some(lack.advice()),
+        }
+    }
 }
 
 impl Tolerance {

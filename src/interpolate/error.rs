@@ -1,3 +1,4 @@
+use crate::advice::{Advice, Setting, advice};
 use crate::haar::HaarError;
 use crate::memory::NoMemory;
 use crate::points::PointsError;
@@ -9,13 +10,10 @@ use crate::volume::VolumeError;
 #[non_exhaustive]
 pub enum InterpolateError {
     /// The points of the shape have no values.
-    #[error(
-        "the points carry no values to interpolate: add a column `value` to the input, or start \
-         from a volume"
-    )]
+    #[error("the points carry no values to interpolate")]
     NoValues,
     /// A value that is not finite.
-    #[error("the value of point {index} is {value}: it must be finite; correct the input")]
+    #[error("the value of point {index} is {value}: it must be finite")]
     Value {
         /// The point, counted from 0.
         index: usize,
@@ -23,15 +21,11 @@ pub enum InterpolateError {
         value: f64,
     },
     /// A volume some of whose samples are missing.
-    #[error(
-        "adaptive selection interpolates between all samples, and some are missing: give --nan a value, \
-         or select by difference"
-    )]
+    #[error("adaptive selection interpolates between all samples, and some are missing")]
     Missing,
     /// Adaptive selection cannot give this many points.
     #[error(
-        "{asked} points cannot be selected adaptively: it starts from the 8 corners of the volume, \
-         so give a count from 8 to {available}, its samples"
+        "{asked} points cannot be selected adaptively: it starts from the 8 corners of the volume"
     )]
     Count {
         /// Points asked for.
@@ -40,7 +34,7 @@ pub enum InterpolateError {
         available: u64,
     },
     /// A target that no error can reach.
-    #[error("an RMSE of {0} gray levels makes no sense as a target: give a number from 0 up")]
+    #[error("an RMSE of {0} gray levels makes no sense as a target")]
     Target(f64),
     /// The points make no shape.
     #[error(transparent)]
@@ -57,4 +51,24 @@ pub enum InterpolateError {
     /// The values make no volume: they pass the range of `f32`.
     #[error("after interpolation: {0}")]
     Volume(#[from] VolumeError),
+}
+
+impl InterpolateError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        Some(match self {
+            Self::NoValues => "add a column `value` to the input, or start from a volume".into(),
+            Self::Missing => advice!["give ", Setting::Nan, " a value, or select by difference"],
+            Self::Value { .. } => "correct the input".into(),
+            Self::Count { available, .. } => {
+                format!("give a count from 8 to {available}, its samples").into()
+            }
+            Self::Target(_) => "give a number from 0 up".into(),
+            Self::Shape(error) => return error.advice(),
+            Self::Points(error) => return error.advice(),
+            Self::Haar(error) => return error.advice(),
+            Self::Memory(lack) => lack.advice(),
+            Self::Volume(error) => return error.advice(),
+        })
+    }
 }

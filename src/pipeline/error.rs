@@ -1,3 +1,4 @@
+use crate::advice::{Advice, Setting, advice};
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
 use crate::points::PointsError;
@@ -23,11 +24,26 @@ pub enum PipelineError {
     #[error(transparent)]
     Alpha(#[from] AlphaError),
     /// With [`Balls::Radius`](crate::shape::Balls) α is a radius, and the α that was found is a squared one.
-    #[error(
-        "with balls of radius α + ω, α is a radius, and the one found is squared: give α, as in {radius}"
-    )]
+    #[error("with balls of radius α + ω, α is a radius, and the one found is a squared one")]
     Radii {
         /// The radius of the α that was found.
         radius: f64,
     },
+}
+
+impl PipelineError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::Haar(error) => error.advice(),
+            Self::Points(error) => error.advice(),
+            Self::Interpolate(error) => error.advice(),
+            Self::Shape(error) => error.advice(),
+            Self::Alpha(error) => Some(error.advice().into()),
+            Self::Radii { radius } => {
+                let alpha = Setting::Alpha;
+                Some(advice!["give ", alpha, ", as in ", alpha, format!(" {radius}")])
+            }
+        }
+    }
 }

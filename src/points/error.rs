@@ -1,19 +1,20 @@
 use std::path::PathBuf;
 
 use super::Weighting;
+use crate::advice::{Advice, Setting, advice};
 use crate::memory::NoMemory;
 use crate::shown::shown;
 use crate::triangulation::TriangulationError;
-use crate::volume::VolumeError;
+use crate::volume::{Reason, VolumeError};
 
 /// Why there are no points, or no weights for them.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PointsError {
     /// A number of the selection is out of its range.
-    #[error("{what} {given} makes no sense: it must be {need}")]
+    #[error("{what} {given} makes no sense")]
     Number {
-        /// The option.
+        /// Which one.
         what: &'static str,
         /// What was given.
         given: f64,
@@ -21,10 +22,7 @@ pub enum PointsError {
         need: &'static str,
     },
     /// More voxels asked for than there are, or none.
-    #[error(
-        "{asked} points cannot be selected: give a count from 1 to {available}, the voxels that \
-         take part"
-    )]
+    #[error("{asked} points cannot be selected")]
     Count {
         /// Points asked for.
         asked: u64,
@@ -33,7 +31,7 @@ pub enum PointsError {
     },
     /// The mask leaves no voxel.
     #[error(
-        "no voxel reaches --gray-min {least}: after truncation gray levels end at {highest}; give less"
+        "no voxel reaches the gray level {least}: after truncation gray levels end at {highest}"
     )]
     Masked {
         /// The least gray level asked for.
@@ -42,18 +40,13 @@ pub enum PointsError {
         highest: f64,
     },
     /// The threshold or the mask leaves no voxel.
-    #[error(
-        "none of {voxels} voxels is selected: lower --threshold or --gray-min, or give --ratio"
-    )]
+    #[error("none of {voxels} voxels is selected")]
     Empty {
         /// Voxels of the volume.
         voxels: u64,
     },
     /// Weights in proportion to an infinite α.
-    #[error(
-        "{weighting} weights are proportional to α, which is {alpha}: give a finite α, or the one \
-         to freeze weights at (--alpha-ref)"
-    )]
+    #[error("{weighting} weights are proportional to α, which is {alpha}")]
     UnboundedAlpha {
         /// The weights asked for.
         weighting: Weighting,
@@ -63,23 +56,23 @@ pub enum PointsError {
     /// Points without differences.
     #[error(
         "{weighting} weights need the differences of a volume's voxels, or of the values of scattered \
-         points, which these come without: add a column `value`, or use column or common=C"
+         points, which these come without"
     )]
     NoDifferences {
         /// The weights asked for.
         weighting: Weighting,
     },
     /// Scattered points without values have no differences.
-    #[error("differences of scattered points need a column `value` in the input: add it")]
+    #[error("differences of scattered points need a column `value` in the input")]
     NoValues,
     /// Scattered points whose neighbours cannot be found.
     #[error("the neighbours of the points cannot be found: {0}")]
     Neighbours(#[from] TriangulationError),
     /// The input has no weights.
-    #[error("column weights need a column `weight` in the input: add it, or use common=C")]
+    #[error("column weights need a column `weight` in the input")]
     NoColumn,
     /// A weight that is no finite number.
-    #[error("the weight of point {index} is {weight}: it must be finite; correct the input")]
+    #[error("the weight of point {index} is {weight}: it must be finite")]
     Weight {
         /// The point, counted from 0.
         index: usize,
@@ -87,12 +80,12 @@ pub enum PointsError {
         weight: f64,
     },
     /// A point file is not what it should be.
-    #[error("{}: {what}", shown(path))]
+    #[error("{}: {reason}", shown(path))]
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and what to do next.
-        what: String,
+        /// What is wrong.
+        reason: Reason,
     },
     /// Memory for the samples cannot be had.
     #[error(transparent)]
@@ -100,4 +93,42 @@ pub enum PointsError {
     /// The file cannot be read.
     #[error(transparent)]
     File(#[from] VolumeError),
+}
+
+impl PointsError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        Some(match self {
+            Self::Number { need, .. } => format!("give {need}").into(),
+            Self::Count { available, .. } => {
+                format!("give a count from 1 to {available}, the voxels that take part").into()
+            }
+            Self::Masked { .. } => advice!["give less for ", Setting::GrayMin],
+            Self::Empty { .. } => advice![
+                "lower ",
+                Setting::Threshold,
+                " or ",
+                Setting::GrayMin,
+                ", or give ",
+                Setting::Ratio
+            ],
+            Self::UnboundedAlpha { .. } => {
+                advice![
+                    "give a finite α, or the one to freeze weights at (",
+                    Setting::AlphaRef,
+                    ")"
+                ]
+            }
+            Self::NoDifferences { .. } => {
+                "add a column `value`, or use column or common=C as weights".into()
+            }
+            Self::NoValues => "add it".into(),
+            Self::NoColumn => "add it, or use common=C".into(),
+            Self::Weight { .. } => "correct the input".into(),
+            Self::Neighbours(error) => return error.advice(),
+            Self::Format { reason, .. } => reason.advice(),
+            Self::Memory(lack) => lack.advice(),
+            Self::File(error) => return error.advice(),
+        })
+    }
 }

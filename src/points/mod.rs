@@ -19,6 +19,7 @@
 
 mod difference;
 mod error;
+mod formats;
 mod read;
 mod scattered;
 mod select;
@@ -27,8 +28,8 @@ mod write;
 
 pub use difference::{difference, difference_row};
 pub use error::PointsError;
+pub use formats::{FORMATS, PointFormat, PointWriter};
 pub use read::{Columns, UnknownColumns, is_point_file, read_points};
 pub use scattered::scattered_difference;
 pub use select::{Points, Selection, SelectionRule, Units, points_at, select};
 pub use weigh::{UnknownWeighting, WeightSummary, WeightedPoints, Weighting, weigh};
-pub use write::{write_csv, write_npy};

@@ -42,6 +42,7 @@ impl Default for SelectionRule {
 
 /// What the coordinates of points are measured in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Units {
     /// Indices of samples, as in the paper.
@@ -132,7 +133,11 @@ pub fn select(
     let voxels = match selection.gray_min {
         None if !volume.has_missing() => chosen(flat, n as u64, &selection.rule)?,
         Some(least) if least.is_nan() => {
-            return Err(PointsError::Number { what: "--gray-min", given: least, need: "a number" });
+            return Err(PointsError::Number {
+                what: "a least gray level of",
+                given: least,
+                need: "a number",
+            });
         }
         least => {
             let least = least.unwrap_or(f64::NEG_INFINITY);
@@ -200,11 +205,11 @@ fn chosen(
         }
         SelectionRule::Ratio(ratio) => {
             let need = "a share above 0 and up to 1, as in 0.0609 for 6.09 %";
-            Err(PointsError::Number { what: "--ratio", given: ratio, need })
+            Err(PointsError::Number { what: "a ratio of", given: ratio, need })
         }
         SelectionRule::Threshold(least) if least.is_nan() => {
             let need = "a number of gray levels";
-            Err(PointsError::Number { what: "--threshold", given: least, need })
+            Err(PointsError::Number { what: "a threshold of", given: least, need })
         }
         SelectionRule::Threshold(least) => {
             let chosen = collect(differences, |l, _| l >= least);

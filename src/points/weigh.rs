@@ -1,9 +1,11 @@
 use std::fmt;
+use std::mem::discriminant;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
 use super::{Points, PointsError};
+use crate::advice::Advice;
 
 /// Where the weights ω of points come from. Weights are **squared** lengths, as α is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,7 +49,7 @@ pub struct WeightSummary {
 impl Weighting {
     /// Whether weights come from the differences L.
     pub fn needs_differences(self) -> bool {
-        matches!(self, Self::MinMax | Self::Barycentric | Self::BarycentricN)
+        matches!(self.kind().rule, Rule::Proportional(_))
     }
 }
 
@@ -85,24 +87,15 @@ pub fn weigh(
     weighting: Weighting,
     alpha_squared: f64,
 ) -> Result<WeightedPoints, PointsError> {
-    let differences = || {
-        if !alpha_squared.is_finite() {
-            return Err(PointsError::UnboundedAlpha { weighting, alpha: alpha_squared });
-        }
-        points.differences.as_deref().ok_or(PointsError::NoDifferences { weighting })
-    };
-    let weights = match weighting {
-        Weighting::Common(weight) => vec![weight; points.len()],
-        Weighting::Column => points.weights.clone().ok_or(PointsError::NoColumn)?,
-        Weighting::MinMax => {
-            let differences = differences()?;
-            let (min, max) = range(differences);
-            shares(differences, alpha_squared, min, max - min)
-        }
-        Weighting::Barycentric | Weighting::BarycentricN => {
-            let differences = differences()?;
-            let n = if weighting == Weighting::BarycentricN { points.len() as f64 } else { 1.0 };
-            shares(differences, alpha_squared * n, 0.0, differences.iter().sum())
+    let weights = match (&weighting.kind().rule, weighting) {
+        (Rule::Common, Weighting::Common(weight)) => vec![weight; points.len()],
+        (Rule::Common | Rule::Column, _) => points.weights.clone().ok_or(PointsError::NoColumn)?,
+        (Rule::Proportional(rule), _) => {
+            if !alpha_squared.is_finite() {
+                return Err(PointsError::UnboundedAlpha { weighting, alpha: alpha_squared });
+            }
+            let differences = points.differences.as_deref();
+            rule(differences.ok_or(PointsError::NoDifferences { weighting })?, alpha_squared)
         }
     };
     if let Some(index) = weights.iter().position(|weight| !weight.is_finite()) {
@@ -126,41 +119,134 @@ fn range(numbers: &[f64]) -> (f64, f64) {
     numbers.iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends)
 }
 
+/// How weights of a kind are made.
+enum Rule {
+    /// One for all.
+    Common,
+    /// As the input has them.
+    Column,
+    /// Of the differences L and α.
+    Proportional(fn(&[f64], f64) -> Vec<f64>),
+}
+
+/// A kind of weights: all that is known of it.
+struct WeightKind {
+    weighting: Weighting,
+    /// What users call it.
+    name: &'static str,
+    /// What follows the name and a `=`.
+    parameter: Option<&'static str>,
+    /// Where it comes from, in few words.
+    about: &'static str,
+    rule: Rule,
+}
+
+/// The kinds there are.
+const KINDS: [WeightKind; 5] = [
+    WeightKind {
+        weighting: Weighting::Common(0.0),
+        name: "common",
+        parameter: Some("C"),
+        about: "",
+        rule: Rule::Common,
+    },
+    WeightKind {
+        weighting: Weighting::MinMax,
+        name: "min-max",
+        parameter: None,
+        about: "eq. 4.1",
+        rule: Rule::Proportional(|differences, alpha| {
+            let (min, max) = range(differences);
+            shares(differences, alpha, min, max - min)
+        }),
+    },
+    WeightKind {
+        weighting: Weighting::Barycentric,
+        name: "barycentric",
+        parameter: None,
+        about: "eq. 4.2",
+        rule: Rule::Proportional(barycentric),
+    },
+    WeightKind {
+        weighting: Weighting::BarycentricN,
+        name: "barycentric-n",
+        parameter: None,
+        about: "N times that",
+        rule: Rule::Proportional(|differences, alpha| {
+            barycentric(differences, alpha * differences.len() as f64)
+        }),
+    },
+    WeightKind {
+        weighting: Weighting::Column,
+        name: "column",
+        parameter: None,
+        about: "from the input",
+        rule: Rule::Column,
+    },
+];
+
+fn barycentric(differences: &[f64], factor: f64) -> Vec<f64> {
+    shares(differences, factor, 0.0, differences.iter().sum())
+}
+
+impl Weighting {
+    fn kind(&self) -> &'static WeightKind {
+        let own = |kind: &&WeightKind| discriminant(&kind.weighting) == discriminant(self);
+        KINDS.iter().find(own).expect("each kind is in the table")
+    }
+
+    /// The kinds as a user writes them, each with what it is: `common=C, min-max (eq. 4.1), … or column
+    /// (from the input)`.
+    pub fn known() -> String {
+        let told = KINDS.map(|WeightKind { name, parameter, about, .. }| {
+            let parameter = parameter.map(|p| format!("={p}")).unwrap_or_default();
+            let about = if about.is_empty() { String::new() } else { format!(" ({about})") };
+            format!("{name}{parameter}{about}")
+        });
+        let [all @ .., last] = &told;
+        format!("{} or {last}", all.join(", "))
+    }
+}
+
 impl fmt::Display for Weighting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.kind().name)?;
         match self {
-            Self::Common(weight) => write!(f, "common={weight}"),
-            Self::MinMax => f.write_str("min-max"),
-            Self::Barycentric => f.write_str("barycentric"),
-            Self::BarycentricN => f.write_str("barycentric-n"),
-            Self::Column => f.write_str("column"),
+            Self::Common(weight) => write!(f, "={weight}"),
+            _ => Ok(()),
         }
     }
 }
 
 /// A text that names no weighting.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{0:?} names no weights: give common=C (C a squared length), min-max, barycentric, \
-     barycentric-n or column"
-)]
+#[error("{0:?} names no weights")]
 pub struct UnknownWeighting(String);
+
+impl UnknownWeighting {
+    /// What to do about it.
+    pub fn advice(&self) -> Advice {
+        format!("give {}; C is a squared length", Weighting::known()).into()
+    }
+}
 
 impl FromStr for Weighting {
     type Err = UnknownWeighting;
 
     fn from_str(text: &str) -> Result<Self, UnknownWeighting> {
         let unknown = || UnknownWeighting(text.into());
-        match text {
-            "min-max" => Ok(Self::MinMax),
-            "barycentric" => Ok(Self::Barycentric),
-            "barycentric-n" => Ok(Self::BarycentricN),
-            "column" => Ok(Self::Column),
-            _ => {
-                let weight = text.strip_prefix("common=").ok_or_else(unknown)?;
-                let weight: f64 = weight.parse().map_err(|_| unknown())?;
-                if weight.is_finite() { Ok(Self::Common(weight)) } else { Err(unknown()) }
-            }
+        let (name, parameter) = match text.split_once('=') {
+            Some((name, parameter)) => (name, Some(parameter)),
+            None => (text, None),
+        };
+        let kind = KINDS.iter().find(|kind| kind.name == name).ok_or_else(unknown)?;
+        match (kind.weighting, parameter) {
+            (Self::Common(_), Some(weight)) => match weight.parse() {
+                Ok(weight) if f64::is_finite(weight) => Ok(Self::Common(weight)),
+                _ => Err(unknown()),
+            },
+            (weighting, None) if kind.parameter.is_none() => Ok(weighting),
+            _ => Err(unknown()),
         }
     }
 }

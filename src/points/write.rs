@@ -10,7 +10,7 @@ use super::WeightedPoints;
 ///
 /// # Errors
 /// What the writer says.
-pub fn write_csv(points: &WeightedPoints, mut writer: impl Write) -> io::Result<()> {
+pub(super) fn csv(points: &WeightedPoints, writer: &mut dyn Write) -> io::Result<()> {
     let value = if points.values.is_some() { ",value" } else { "" };
     writeln!(writer, "x,y,z,weight{value}")?;
     for (i, ([x, y, z], weight)) in points.positions.iter().zip(&points.weights).enumerate() {
@@ -27,7 +27,7 @@ pub fn write_csv(points: &WeightedPoints, mut writer: impl Write) -> io::Result<
 ///
 /// # Errors
 /// What the writer says.
-pub fn write_npy(points: &WeightedPoints, mut writer: impl Write) -> io::Result<()> {
+pub(super) fn npy(points: &WeightedPoints, mut writer: &mut dyn Write) -> io::Result<()> {
     let columns = if points.values.is_some() { 5 } else { 4 };
     let rows = Array2::from_shape_fn((points.len(), columns), |(i, column)| match column {
         3 => points.weights[i],

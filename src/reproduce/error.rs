@@ -1,5 +1,6 @@
 use super::OffError;
 use super::plane::{NotACurvature, PlaneError};
+use crate::advice::Advice;
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
 use crate::points::PointsError;
@@ -32,9 +33,24 @@ pub enum ReproduceError {
     #[error(transparent)]
     Render(#[from] RenderError),
     /// A file just written does not read back.
-    #[error("an OFF file does not read back: {0}; this is a fault of walpha, please report it")]
+    #[error("an OFF file does not read back: {0}")]
     Off(#[from] OffError),
     /// Memory for a file cannot be had.
     #[error("cannot write a file into memory: {0}")]
     Io(#[from] std::io::Error),
+}
+
+impl ReproduceError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::Haar(error) => error.advice(),
+            Self::Points(error) => error.advice(),
+            Self::Shape(error) => error.advice(),
+            Self::Plane(PlaneError::Triangulation(error)) => error.advice(),
+            Self::Interpolate(error) => error.advice(),
+            Self::Off(_) => Some("this is a fault of walpha, please report it".into()),
+            Self::Plane(_) | Self::Curvature(_) | Self::Render(_) | Self::Io(_) => None,
+        }
+    }
 }

@@ -7,6 +7,7 @@ use super::blocks::{self, Limits, Plan, PlanError, Question};
 use super::canonical::canonical;
 use super::topology::sheet_betti;
 use super::{Alpha, Balls, Betti, Complex, Measures, Sheets, Simplices, direct_betti};
+use crate::advice::{Advice, Setting, advice};
 use crate::math::Lattice;
 use crate::memory::NoMemory;
 use crate::points::WeightedPoints;
@@ -15,6 +16,7 @@ use crate::volume::Coordinates;
 
 /// Which program computes the shape; all give the same answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Engine {
     /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper.
@@ -72,18 +74,12 @@ impl ShapeOptions {
         {
             return Err(ShapeError::Exterior { blocks });
         }
-        let unbounded = |when, instead| Err(ShapeError::Unbounded { when, instead });
+        let unbounded = |by| Err(ShapeError::Unbounded { by });
         match self.memory {
             None => Ok(()),
-            Some(_) if self.engine == Engine::Reference => {
-                unbounded("by the reference engine", "use --engine native or --engine cgal")
-            }
-            Some(_) if self.exterior => {
-                unbounded("with the simplices outside the shape", "omit --exterior")
-            }
-            Some(_) if power_alpha(self) == Alpha::INFINITE => {
-                unbounded("at α = inf, the convex hull", "give a finite --alpha")
-            }
+            Some(_) if self.engine == Engine::Reference => unbounded(Whole::Reference),
+            Some(_) if self.exterior => unbounded(Whole::Exterior),
+            Some(_) if power_alpha(self) == Alpha::INFINITE => unbounded(Whole::Hull),
             Some(_) => Ok(()),
         }
     }
@@ -115,8 +111,8 @@ pub enum ShapeError {
     Triangulation(#[from] TriangulationError),
     /// The `radius` reading asks for a ball of negative or infinite radius.
     #[error(
-        "point {index} would be a ball of radius α + ω = {radius}: with `--balls radius` it must be \
-         finite and not negative; raise α, or use `--balls power`"
+        "point {index} would be a ball of radius α + ω = {radius}: where α + ω is a radius it must \
+         be finite and not negative"
     )]
     Radius {
         /// Input index of the point.
@@ -132,24 +128,69 @@ pub enum ShapeError {
     Memory(#[from] NoMemory),
     /// Memory is bounded by cutting the points into blocks, which this shape is not made in.
     #[error(
-        "--memory cannot be kept {when}: that takes the whole triangulation at once; omit \
-         --memory, or {instead}"
+        "a bound on memory cannot be kept {}: that takes the whole triangulation at once",
+        by.when()
     )]
     Unbounded {
         /// What asks for the whole triangulation.
-        when: &'static str,
-        /// What can be had in blocks.
-        instead: &'static str,
+        by: Whole,
     },
     /// Exterior simplices are known to the whole triangulation only.
     #[error(
         "simplices outside the shape are not local: they need the whole triangulation, and \
-         {blocks} blocks were asked for; give --blocks 1, or omit --exterior"
+         {blocks} blocks were asked for"
     )]
     Exterior {
         /// The blocks asked for.
         blocks: usize,
     },
+}
+
+/// What takes the whole triangulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Whole {
+    /// The reference engine.
+    Reference,
+    /// The simplices outside the shape.
+    Exterior,
+    /// α = ∞.
+    Hull,
+}
+
+impl Whole {
+    fn when(self) -> &'static str {
+        match self {
+            Self::Reference => "by the reference engine",
+            Self::Exterior => "with the simplices outside the shape",
+            Self::Hull => "at α = inf, the convex hull",
+        }
+    }
+}
+
+impl ShapeError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        Some(match self {
+            Self::Triangulation(error) => return error.advice(),
+            Self::Radius { .. } => advice!["raise α, or use ", Setting::Balls, " power"],
+            Self::Plan(error) => error.advice(),
+            Self::Memory(lack) => lack.advice(),
+            Self::Unbounded { by: Whole::Exterior } => {
+                advice!["omit ", Setting::Memory, ", or omit ", Setting::Exterior]
+            }
+            Self::Unbounded { by: Whole::Hull } => {
+                advice!["omit ", Setting::Memory, ", or give a finite ", Setting::Alpha]
+            }
+            Self::Unbounded { by: Whole::Reference } => {
+                let (memory, engine) = (Setting::Memory, Setting::Engine);
+                advice!["omit ", memory, ", or use ", engine, " native or ", engine, " cgal"]
+            }
+            Self::Exterior { .. } => {
+                advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Exterior]
+            }
+        })
+    }
 }
 
 impl From<SitesError> for ShapeError {

@@ -2,6 +2,7 @@ use serde::{Deserialize, Serialize};
 
 /// What a point with weight ω is at parameter α.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Balls {
     /// A ball of squared radius α + ω: the usual reading (Edelsbrunner 1992; CGAL), the default.

@@ -1,4 +1,5 @@
 use super::Triangulation;
+use crate::advice::Advice;
 
 /// Why points make no sites.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -13,11 +14,11 @@ pub enum SitesError {
         weights: usize,
     },
     /// More points than 32-bit indices.
-    #[error("{0} points are too many: at most {max} fit a 32-bit index; select fewer", max = u32::MAX)]
+    #[error("{0} points are too many: at most {max} fit a 32-bit index", max = u32::MAX)]
     TooMany(usize),
     /// NaN, infinity or an absurd magnitude.
     #[error(
-        "point {index} has {what} {value}: it must be a finite number of magnitude at most {limit:e}; clean or rescale the input"
+        "point {index} has {what} {value}: it must be a finite number of magnitude at most {limit:e}"
     )]
     Value {
         /// Input index of the point.
@@ -30,20 +31,16 @@ pub enum SitesError {
         limit: f64,
     },
     /// No point at all, where one would do.
-    #[error("there is no point: at least 1 is needed; select some")]
+    #[error("there is no point: at least 1 is needed")]
     Empty,
     /// Fewer than four different places.
-    #[error(
-        "{distinct} distinct points cannot span a tetrahedron: at least 4 are needed; select more points"
-    )]
+    #[error("{distinct} distinct points cannot span a tetrahedron: at least 4 are needed")]
     TooFew {
         /// Different places among the input.
         distinct: usize,
     },
     /// All points in one plane or on one line.
-    #[error(
-        "all {points} points lie {on}: a 3D triangulation needs points that span a volume; select more points, or perturb them knowingly"
-    )]
+    #[error("all {points} points lie {on}: a 3D triangulation needs points that span a volume")]
     Flat {
         /// Different places among the input.
         points: usize,
@@ -68,13 +65,12 @@ pub enum TriangulationError {
     Sites(#[from] SitesError),
     /// More cells than the arrays can name.
     #[error(
-        "the triangulation has more than {} cells: that is more than its arrays can name; use more \
-         blocks, or select fewer points",
+        "the triangulation has more than {} cells: that is more than its arrays can name",
         Triangulation::MOST_CELLS
     )]
     TooManyCells,
     /// The system gives no more memory.
-    #[error("no memory for the {stage}: {needed}; allow more, use more blocks, or select fewer points",
+    #[error("no memory for the {stage}: {needed}",
         needed = needed.map_or("C++ ran out of it".to_owned(), |bytes| format!("{} MiB are needed at once", bytes >> 20)))]
     Memory {
         /// What was made.
@@ -83,7 +79,7 @@ pub enum TriangulationError {
         needed: Option<usize>,
     },
     /// CGAL threw. This is a fault of walpha or CGAL, not of the input.
-    #[error("CGAL failed in the {stage} stage: {text}; please report this with the input")]
+    #[error("CGAL failed in the {stage} stage: {text}")]
     Thrown {
         /// The stage that asked.
         stage: &'static str,
@@ -93,7 +89,34 @@ pub enum TriangulationError {
     /// This program was built without CGAL.
     #[error(
         "this walpha was built without CGAL: there is no reference engine, no cgal engine and no \
-         triangulation of the plane; use the native engine, or build with the feature `cgal`"
+         triangulation of the plane"
     )]
     WithoutCgal,
+}
+
+impl SitesError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        Some(match self {
+            Self::Lengths { .. } => return None,
+            Self::TooMany(_) => "select fewer".into(),
+            Self::Value { .. } => "clean or rescale the input".into(),
+            Self::Empty => "select some".into(),
+            Self::TooFew { .. } => "select more points".into(),
+            Self::Flat { .. } => "select more points, or perturb them knowingly".into(),
+        })
+    }
+}
+
+impl TriangulationError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        Some(match self {
+            Self::Sites(error) => return error.advice(),
+            Self::TooManyCells => "use more blocks, or select fewer points".into(),
+            Self::Memory { .. } => "allow more, use more blocks, or select fewer points".into(),
+            Self::Thrown { .. } => "please report this with the input".into(),
+            Self::WithoutCgal => "use the native engine, or build with the feature `cgal`".into(),
+        })
+    }
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Which way the axes of world coordinates run in a patient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Space {
     /// x to the left, y to the back, z to the head: DICOM, ITK, MetaImage.
     #[serde(rename = "LPS")]
@@ -13,10 +14,12 @@ pub enum Space {
     Ras,
     /// x to the left, y to the front, z to the head: some NRRD files.
     #[serde(rename = "LAS")]
+    #[cfg_attr(feature = "cli", value(skip))]
     Las,
     /// Nobody says.
     #[default]
     #[serde(rename = "unknown")]
+    #[cfg_attr(feature = "cli", value(skip))]
     Unknown,
 }
 

@@ -1,6 +1,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::advice::Advice;
+
 /// How a file stores one sample.
 ///
 /// Samples become `f32`. 8-bit and 16-bit integers and `f32` keep their exact value; `u32`, `i32`,
@@ -33,11 +35,18 @@ pub enum Endian {
 
 /// A name that is no sample type or byte order.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{given:?} is no {kind}: give one of {known}")]
+#[error("{given:?} is no {kind}")]
 pub struct UnknownName {
     given: String,
     kind: &'static str,
     known: String,
+}
+
+impl UnknownName {
+    /// What to do about it.
+    pub fn advice(&self) -> Advice {
+        format!("give one of {}", self.known).into()
+    }
 }
 
 impl Dtype {
@@ -154,8 +163,9 @@ mod tests {
         for endian in [Endian::Little, Endian::Big] {
             assert_eq!(endian.to_string().parse(), Ok(endian));
         }
-        let text = "f16".parse::<Dtype>().unwrap_err().to_string();
-        assert!(text.contains("f16") && text.contains("u8, i8"), "{text}");
+        let error = "f16".parse::<Dtype>().unwrap_err();
+        assert!(error.to_string().contains("f16"), "{error}");
+        assert!(error.advice().to_string().contains("u8, i8"));
         assert!("middle".parse::<Endian>().is_err());
     }
 }

@@ -1,7 +1,8 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::{Dims, SAMPLES};
+use super::{Dims, Reason, SAMPLES};
+use crate::advice::{Advice, Setting, advice};
 use crate::memory::NoMemory;
 use crate::shown::shown;
 
@@ -20,10 +21,7 @@ pub enum VolumeError {
         z: u64,
     },
     /// More samples than indices.
-    #[error(
-        "{x}×{y}×{z} samples are too many: at most {} fit a 32-bit index; crop or downsample first",
-        Dims::MAX_SAMPLES
-    )]
+    #[error("{x}×{y}×{z} samples are too many: at most {} fit a 32-bit index", Dims::MAX_SAMPLES)]
     TooManySamples {
         /// Samples along x.
         x: u64,
@@ -33,9 +31,7 @@ pub enum VolumeError {
         z: u64,
     },
     /// A NaN or an infinity among the samples.
-    #[error(
-        "sample (x, y, z) = {at:?} is {value}: every sample must be a finite number; give --nan VALUE to replace NaN, or --nan alone to leave it out"
-    )]
+    #[error("sample (x, y, z) = {at:?} is {value}: every sample must be a finite number")]
     NotFinite {
         /// The offending value.
         value: f32,
@@ -43,9 +39,7 @@ pub enum VolumeError {
         at: [usize; 3],
     },
     /// An empty gray range, or one whose ends are so close or so far that gray levels overflow.
-    #[error(
-        "gray range {low}..{high} cannot be mapped to 0..255: give LO..HI with LO < HI, both finite, of about the samples' size"
-    )]
+    #[error("gray range {low}..{high} cannot be mapped to 0..255")]
     GrayRange {
         /// The value meant to become 0.
         low: f64,
@@ -54,8 +48,7 @@ pub enum VolumeError {
     },
     /// A region without samples, or beyond the volume.
     #[error(
-        "the region {}:{},{}:{},{}:{} is no part of a volume of {dims} samples: give indices from 0 on, \
-         each first one below its end, as in --roi 20:40,20:40,10:30",
+        "the region {}:{},{}:{},{}:{} is no part of a volume of {dims} samples",
         first[0], end[0], first[1], end[1], first[2], end[2]
     )]
     Region {
@@ -67,7 +60,7 @@ pub enum VolumeError {
         dims: Dims,
     },
     /// The operating system refused.
-    #[error("cannot read {}: {source}{}", shown(path), next_step(path, source.kind()))]
+    #[error("cannot read {}: {source}", shown(path))]
     Io {
         /// The file.
         path: PathBuf,
@@ -75,12 +68,12 @@ pub enum VolumeError {
         source: std::io::Error,
     },
     /// The file is not what its name or header says.
-    #[error("{}: {what}", shown(path))]
+    #[error("{}: {reason}", shown(path))]
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and what to do next.
-        what: String,
+        /// What is wrong.
+        reason: Reason,
     },
     /// A file whose header or samples make no volume.
     #[error("{}: {source}", shown(path))]
@@ -93,21 +86,70 @@ pub enum VolumeError {
     /// Memory for the samples cannot be had.
     #[error(transparent)]
     Memory(#[from] NoMemory),
-    /// The sample is not installed, or no sample has this name.
-    #[error("{0}")]
-    Sample(String),
+    /// No sample has this name.
+    #[error("{name:?} is no sample; there are {}", SAMPLES.join(", "))]
+    UnknownSample {
+        /// What was asked for.
+        name: String,
+        /// What to do about it.
+        advice: Advice,
+    },
+    /// The skull is not installed.
+    #[error("sample:skull is not installed: it was sought {sought}")]
+    NoSkull {
+        /// Where it would be.
+        sought: String,
+    },
+}
+
+impl VolumeError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        Some(match self {
+            Self::EmptyAxis { .. } => return None,
+            Self::TooManySamples { .. } => "crop or downsample first".into(),
+            Self::NotFinite { .. } => {
+                advice![
+                    "give ",
+                    Setting::Nan,
+                    " VALUE to replace NaN, or ",
+                    Setting::Nan,
+                    " alone to leave it out"
+                ]
+            }
+            Self::GrayRange { .. } => {
+                "give LO..HI with LO < HI, both finite, of about the samples' size".into()
+            }
+            Self::Region { .. } => advice![
+                "give indices from 0 on, each first one below its end, as in ",
+                Setting::Region,
+                " 20:40,20:40,10:30"
+            ],
+            Self::Io { path, source } => return next_step(path, source.kind()),
+            Self::Format { reason, .. } => reason.advice(),
+            Self::InFile { source, .. } => return source.advice(),
+            Self::Memory(lack) => lack.advice(),
+            Self::UnknownSample { advice, .. } => advice.clone(),
+            Self::NoSkull { .. } => {
+                "on Debian and Ubuntu `sudo apt-get install libcgal-demo` brings \
+                                     it, elsewhere set CGAL_DATA_DIR to CGAL's data folder; \
+                                     sample:phantom needs nothing"
+                    .into()
+            }
+        })
+    }
 }
 
 /// What to do about an error of the system.
-fn next_step(path: &Path, kind: ErrorKind) -> String {
+fn next_step(path: &Path, kind: ErrorKind) -> Option<Advice> {
     let sample = format!("sample:{}", path.display());
-    match kind {
+    Some(match kind {
         ErrorKind::NotFound if SAMPLES.contains(&sample.as_str()) => {
-            format!("; did you mean {sample}?")
+            format!("did you mean {sample}?").into()
         }
-        ErrorKind::NotFound => "; check the path, or try sample:phantom".into(),
-        ErrorKind::PermissionDenied => "; make it readable first".into(),
-        ErrorKind::IsADirectory => "; name a file in it".into(),
-        _ => String::new(),
-    }
+        ErrorKind::NotFound => "check the path, or try sample:phantom".into(),
+        ErrorKind::PermissionDenied => "make it readable first".into(),
+        ErrorKind::IsADirectory => "name a file in it".into(),
+        _ => return None,
+    })
 }

@@ -15,21 +15,32 @@
 mod coordinates;
 mod dtype;
 mod error;
+mod formats;
 mod gray;
 mod grid;
 mod part;
 mod read;
+mod reason;
 mod sample;
+pub(crate) mod stated;
 #[expect(clippy::module_inception, reason = "the type gives the floor its name")]
 mod volume;
+mod write;
 
 pub use coordinates::{Conversion, Coordinates, LengthUnit, Space};
 pub use dtype::{Dtype, Endian, UnknownName};
 pub use error::VolumeError;
+pub use formats::{
+    FORMATS, Keeps, UnknownFormat, VolumeFormat, VolumeWriter, data_files, format_name, read,
+};
+pub(crate) use formats::{is_vtk_xml, start_of};
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
 pub use part::{Region, downsample};
-pub(crate) use read::{Element, Lines, NpyFile, VtkXml, io_error};
-pub use read::{RawLayout, ReadOptions, Series, data_files, format_name, read, series};
+pub(crate) use read::{Element, NpyFile, io_error};
+#[cfg(feature = "formats")]
+pub(crate) use read::{Lines, VtkXml};
+pub use read::{RawLayout, ReadOptions, Series, series};
+pub use reason::Reason;
 pub use sample::{SAMPLES, open, phantom, sample};
 pub use volume::{Nan, Volume};

@@ -18,7 +18,7 @@ fn damaged_volumes_say_what_is_wrong() {
     refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 3 2 -2"), &["no numbers"]);
     refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 3000000 2000000 2"), &["too many"]);
     refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 1600 1600 1600"), &["but 24 follow"]);
-    refuses("v.nrrd", n("3\nsizes: 3 2 2", "4\nsizes: 3 2 2 2"), &["2 volumes", "--frame"]);
+    refuses("v.nrrd", n("3\nsizes: 3 2 2", "4\nsizes: 3 2 2 2"), &["2 volumes", "`frame`"]);
     refuses("v.nrrd", n("key:=value", "kinds: RGB-color space space"), &["only scalar"]);
     refuses("v.nrrd", n("key:=value", "spacings: 1 0 1"), &["spacing must not be 0"]);
     refuses("v.nrrd", n("key:=value", "space origin: (1,2"), &["no vector"]);
@@ -106,7 +106,7 @@ fn damaged_volumes_say_what_is_wrong() {
     refuses("v.nii", with(70, &32i16.to_le_bytes()), &["complex"]);
     refuses("v.nii", with(40, &9i16.to_le_bytes()), &["dim[0] = 9"]);
     refuses("v.nii", with(42, &(-3i16).to_le_bytes()), &["damaged"]);
-    refuses("v.nii", with(40, &[4, 0, 3, 0, 2, 0, 2, 0, 2, 0]), &["2 volumes", "--frame"]);
+    refuses("v.nii", with(40, &[4, 0, 3, 0, 2, 0, 2, 0, 2, 0]), &["2 volumes", "`frame`"]);
     refuses("v.nii", with(108, &1e9f32.to_le_bytes()), &["ends before its samples"]);
     refuses("v.nii.gz", gzip(&nifti[..300]), &["truncated"]);
 
@@ -127,5 +127,5 @@ fn damaged_volumes_say_what_is_wrong() {
     refuses("v.png", b"\x89PNG\r\n\x1a\n rest", &["folder of all slices"]);
     refuses("v.gz", gzip(b"something else"), &["holds no format known"]);
     refuses("v.nrrd.gz", gzip(&nrrd(|h| h, &shorts())), &["unpack it first"]);
-    refuses("v.bin", "hello", &["no format known", "--dims"]);
+    refuses("v.bin", "hello", &["no format known", "`dims`"]);
 }

@@ -4,10 +4,10 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use crate::told::Told;
 use flate2::Compression;
 use flate2::write::{GzEncoder, ZlibEncoder};
 use ndarray::Array3;
-use walpha::export::VolumeFormat;
 use walpha::volume::*;
 
 /// Samples 0, 2, 4, … of a 3×2×2 grid, in the byte order of most files.
@@ -60,10 +60,18 @@ pub fn open(path: &Path) -> Result<Volume, VolumeError> {
 /// Reads bytes under a name; the error must name the file and these parts.
 pub fn refuses(name: &str, bytes: impl AsRef<[u8]>, parts: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
-    let text = open(&save(folder.path(), name, bytes)).unwrap_err().to_string();
+    let text = open(&save(folder.path(), name, bytes)).unwrap_err().told();
     for part in parts.iter().chain(&[name]) {
         assert!(text.contains(part), "{part:?} is missing in: {text}");
     }
+}
+
+/// A volume as a file of this extension.
+pub fn written(extension: &str, volume: &Volume) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let writer = VolumeWriter::of(Path::new(&format!("v.{extension}"))).unwrap();
+    writer.write(volume, &mut bytes).unwrap();
+    bytes
 }
 
 /// A turn about z and a flip, so that a transposed matrix is found out.
@@ -130,12 +138,7 @@ pub fn npz(arrays: &[(&str, &Array3<f32>)]) -> Vec<u8> {
 pub fn examples() -> Vec<(&'static str, Vec<u8>)> {
     let text = numbers().iter().map(f32::to_string).collect::<Vec<_>>().join(" ");
     let volume = Array3::from_shape_vec((2, 2, 3), numbers()).unwrap();
-    let written = |format: VolumeFormat| {
-        let mut bytes = Vec::new();
-        let volume = Volume::new(volume.clone(), turned()).unwrap();
-        format.write(&volume, &mut bytes).unwrap();
-        bytes
-    };
+    let own = |extension: &str| written(extension, &Volume::new(volume.clone(), turned()).unwrap());
     let size = |bytes: &[u8]| (bytes.len() as u32).to_le_bytes();
     let packed = zlib(&shorts());
     let blocks = [1u32, 24, 0, packed.len() as u32].map(u32::to_le_bytes).concat();
@@ -183,9 +186,9 @@ pub fn examples() -> Vec<(&'static str, Vec<u8>)> {
         ("zlib.vti", vti(zlib_xml, &format!("format=\"binary\">{pieces}"), b"")),
         ("raw.vti", vti("", "format=\"appended\" offset=\"0\">", &raw)),
         ("appended.vti", vti(zlib_xml, "format=\"appended\" offset=\"0\">", appended.as_bytes())),
-        ("one.nii", written(VolumeFormat::Nifti)),
-        ("one.nii.gz", written(VolumeFormat::NiftiGzip)),
-        ("ours.nrrd", written(VolumeFormat::Nrrd)),
+        ("one.nii", own("nii")),
+        ("one.nii.gz", own("nii.gz")),
+        ("ours.nrrd", own("nrrd")),
         ("pages.tif", tiff(2, None)),
         ("arrays.npz", npz(&[("a", &volume)])),
     ]

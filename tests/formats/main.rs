@@ -9,5 +9,8 @@ mod parts;
 mod places;
 mod points;
 mod shapes;
+mod tables;
+#[path = "../common/told.rs"]
+mod told;
 mod values;
 mod volumes;

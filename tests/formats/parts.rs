@@ -9,6 +9,7 @@ use walpha::volume::{Nan, ReadOptions, read};
 
 use crate::common::{json, ok, run};
 use crate::files::*;
+use crate::told::Told;
 
 /// Two volumes of 3×2×2 shorts, the second the ten-fold of the first.
 fn two() -> Vec<u8> {
@@ -51,13 +52,13 @@ fn one_of_several_volumes_is_read() {
         assert_eq!(frame(Some(0)).unwrap().as_slice(), expected(1.0), "{name}");
         assert_eq!(frame(Some(1)).unwrap().as_slice(), expected(10.0), "{name}");
         for wrong in [None, Some(2)] {
-            let error = frame(wrong).unwrap_err().to_string();
-            assert!(error.contains(name) && error.contains("--frame, from 0 to 1"), "{error}");
+            let error = frame(wrong).unwrap_err().told();
+            assert!(error.contains(name) && error.contains("`frame`, from 0 to 1"), "{error}");
         }
     }
     let one = save(folder.path(), "tiff.tif", tiff(2, None));
     let options = ReadOptions { frame: Some(0), ..ReadOptions::default() };
-    assert!(read(&one, &options).unwrap_err().to_string().contains("omit --frame"));
+    assert!(read(&one, &options).unwrap_err().told().contains("omit `frame`"));
 }
 
 #[test]
@@ -114,7 +115,7 @@ fn arrays_are_read_by_name_and_points_come_before_cells() {
         assert_eq!(max(&["--array", "q"]), 33.0, "{name}");
         assert_eq!(max(&["--array", "c"]), 7.0, "{name}");
         let (code, _, said) = run(f, &["info", name]);
-        assert!(code == 0 && said.contains("c (of cells)") && said.contains("--array"), "{said}");
+        assert!(code == 0 && said.contains("c (of cells)") && said.contains("`array`"), "{said}");
         let (code, _, said) = run(f, &["info", name, "--array", "x"]);
         assert!(code == 1 && said.contains("no array \"x\""), "{said}");
     }
@@ -154,7 +155,7 @@ fn samples_that_are_nan_are_replaced_or_left_out() {
     let mut bytes = Vec::new();
     ndarray_npy::WriteNpyExt::write_npy(&samples, &mut bytes).unwrap();
     let path = save(f, "n.npy", bytes);
-    assert!(open(&path).unwrap_err().to_string().contains("--nan VALUE"));
+    assert!(open(&path).unwrap_err().told().contains("`nan` VALUE"));
     let with =
         |nan| read(&path, &ReadOptions { nan: Some(nan), ..ReadOptions::default() }).unwrap();
     let replaced = with(Nan::Value(-5.0));

@@ -2,31 +2,18 @@
 
 use ndarray::Array3;
 use proptest::prelude::*;
-use walpha::export::VolumeFormat;
 use walpha::volume::{Coordinates, Frame, LengthUnit, Space, Volume};
 
 use crate::common::{json, ok};
 use crate::files::*;
 
 /// The formats that place a grid.
-const PLACED: [VolumeFormat; 5] = [
-    VolumeFormat::Nrrd,
-    VolumeFormat::Nifti,
-    VolumeFormat::NiftiGzip,
-    VolumeFormat::MetaImage,
-    VolumeFormat::Vti,
-];
-
-fn extension(format: VolumeFormat) -> &'static str {
-    VolumeFormat::ALL.iter().find(|(f, _)| *f == format).unwrap().1
-}
+const PLACED: [&str; 5] = ["nrrd", "nii", "nii.gz", "mha", "vti"];
 
 /// Written and read again.
-fn through(format: VolumeFormat, volume: &Volume) -> Volume {
+fn through(extension: &str, volume: &Volume) -> Volume {
     let folder = tempfile::tempdir().unwrap();
-    let mut bytes = Vec::new();
-    format.write(volume, &mut bytes).unwrap();
-    open(&save(folder.path(), &format!("v.{}", extension(format)), bytes)).unwrap()
+    open(&save(folder.path(), &format!("v.{extension}"), written(extension, volume))).unwrap()
 }
 
 /// Where a sample is in a patient, in millimetres.
@@ -93,7 +80,7 @@ proptest! {
 #[test]
 fn a_volume_in_voxels_gets_no_place() {
     let volume = Volume::new(Array3::zeros((3, 4, 5)), Frame::VOXEL).unwrap();
-    for format in PLACED.into_iter().filter(|format| *format != VolumeFormat::Vti) {
+    for format in PLACED.into_iter().filter(|format| *format != "vti") {
         assert_eq!(*through(format, &volume).frame(), Frame::VOXEL, "{format:?}");
     }
 }
@@ -104,39 +91,34 @@ fn headers_say_the_space_and_the_unit() {
     let frame = Frame { origin: [-86.9, 39.2, -678.7], spacing: [0.5, 0.5, 2.0], ..Frame::VOXEL };
     let frame = frame.meaning(Coordinates::PATIENT);
     let volume = Volume::new(Array3::zeros((1, 1, 1)), frame).unwrap();
-    let written = |format: VolumeFormat, volume: &Volume| {
-        let mut bytes = Vec::new();
-        format.write(volume, &mut bytes).unwrap();
-        bytes
-    };
     let text =
         |format, volume: &Volume| String::from_utf8_lossy(&written(format, volume)).into_owned();
-    let nrrd = text(VolumeFormat::Nrrd, &volume);
+    let nrrd = text("nrrd", &volume);
     assert!(nrrd.contains("space: left-posterior-superior\nspace units: \"mm\""), "{nrrd}");
     assert!(nrrd.contains("space origin: (-86.9,39.2,-678.7)"), "{nrrd}");
-    let mha = text(VolumeFormat::MetaImage, &volume);
+    let mha = text("mha", &volume);
     assert!(mha.contains("Offset = -86.9 39.2 -678.7\nDistanceUnits = mm\n"), "{mha}");
-    let nifti = written(VolumeFormat::Nifti, &volume);
+    let nifti = written("nii", &volume);
     let float = |at: usize| f32::from_le_bytes(nifti[at..at + 4].try_into().unwrap());
     assert_eq!([float(292), float(308), float(324)], [86.9, -39.2, -678.7]);
     assert_eq!((nifti[123], nifti[254]), (2, 1), "millimetres, scanner");
-    let vti = text(VolumeFormat::Vti, &volume);
+    let vti = text("vti", &volume);
     assert!(
         vti.contains("Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\">76 80 83 0<"),
         "{vti}"
     );
 
     let ras = frame.to(Coordinates { space: Space::Ras, ..Coordinates::PATIENT });
-    let nrrd = text(VolumeFormat::Nrrd, &volume.clone().with_frame(ras));
+    let nrrd = text("nrrd", &volume.clone().with_frame(ras));
     assert!(nrrd.contains("space: right-anterior-superior\n"), "{nrrd}");
     assert!(nrrd.contains("space origin: (86.9,-39.2,-678.7)"), "{nrrd}");
 
     // Micrometres of no patient stay what they are.
     let small = Coordinates { unit: LengthUnit::Micrometre, ..Coordinates::default() };
     let small = volume.with_frame(frame.meaning(small));
-    assert!(text(VolumeFormat::Nrrd, &small).contains("space dimension: 3\nspace units: \"um\""));
-    assert_eq!(written(VolumeFormat::Nifti, &small)[123], 3);
-    assert!(text(VolumeFormat::MetaImage, &small).contains("ElementSpacing = 0.0005 0.0005 0.002"));
+    assert!(text("nrrd", &small).contains("space dimension: 3\nspace units: \"um\""));
+    assert_eq!(written("nii", &small)[123], 3);
+    assert!(text("mha", &small).contains("ElementSpacing = 0.0005 0.0005 0.002"));
 }
 
 /// World units where the file states them, LPS unless asked otherwise, and told beside each length.
@@ -149,9 +131,7 @@ fn lengths_are_in_the_unit_of_the_file() {
     let samples: Array3<f32> = ndarray_npy::read_npy(f.join("plain.npy")).unwrap();
     let frame = Frame { origin: [10.0, 20.0, 30.0], spacing: [0.5, 0.5, 2.0], ..Frame::VOXEL };
     let volume = Volume::new(samples, frame.meaning(Coordinates::PATIENT)).unwrap();
-    let mut bytes = Vec::new();
-    VolumeFormat::Nifti.write(&volume, &mut bytes).unwrap();
-    save(f, "v.nii", bytes);
+    save(f, "v.nii", written("nii", &volume));
 
     let shape =
         |options: &[&str]| json(f, &[&["shape", "v.nii", "--count", "300"], options].concat());

@@ -3,6 +3,7 @@ use walpha::points::{Columns, PointsError, read_points, scattered_difference};
 
 use crate::common;
 use crate::files::*;
+use crate::told::Told;
 
 #[test]
 fn points_of_every_format_are_read() {
@@ -29,7 +30,7 @@ fn points_of_every_format_are_read() {
 fn damaged_points_say_what_is_wrong() {
     let folder = tempfile::tempdir().unwrap();
     let refuses = |name: &str, text: &str, part: &str| {
-        let error = read_points(&save(folder.path(), name, text), None).unwrap_err().to_string();
+        let error = read_points(&save(folder.path(), name, text), None).unwrap_err().told();
         assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
     };
     let rows = "2 0 1\n1 2 3 0 7\n4 5 6 0 8\n";
@@ -92,7 +93,7 @@ fn scattered_values_differ_from_their_delaunay_neighbours() {
     assert!(matches!(scattered_difference(&without), Err(PointsError::NoValues)));
     let mut flat = scattered();
     flat.positions.iter_mut().for_each(|p| p[2] = 0.0);
-    assert!(scattered_difference(&flat).unwrap_err().to_string().contains("in one plane"));
+    assert!(scattered_difference(&flat).unwrap_err().told().contains("in one plane"));
 }
 
 #[test]
@@ -181,7 +182,7 @@ fn point_clouds_are_read() {
     }
     let [text, binary, packed, _] = pcd_examples();
     let refuses = |name: &str, bytes: &[u8], part: &str| {
-        let error = read_points(&save(folder.path(), name, bytes), None).unwrap_err().to_string();
+        let error = read_points(&save(folder.path(), name, bytes), None).unwrap_err().told();
         assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
     };
     let cut = |bytes: &[u8]| bytes[..bytes.len() - 5].to_vec();
@@ -241,7 +242,7 @@ fn vertices_of_meshes_are_points() {
         assert_eq!((points.weights, points.values), (None, None), "{name}");
     }
     let refuses = |name: &str, bytes: &[u8], part: &str| {
-        let error = read_points(&save(folder.path(), name, bytes), None).unwrap_err().to_string();
+        let error = read_points(&save(folder.path(), name, bytes), None).unwrap_err().told();
         assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
     };
     refuses("a.off", format!("OFF\n4 9 0\n{}{faces}", lines("", "")).as_bytes(), "truncated");
@@ -281,16 +282,16 @@ fn tables_need_no_header() {
     }
     let refuses = |name: &str, text: &str, names: Option<&str>, part: &str| {
         let path = save(folder.path(), name, text);
-        let error = read_points(&path, names.map(columns).as_ref()).unwrap_err().to_string();
+        let error = read_points(&path, names.map(columns).as_ref()).unwrap_err().told();
         assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
     };
-    refuses("six.xyz", "1 2 3 4 5 0.6\n", None, "--columns x,y,z,nx,ny,nz");
-    refuses("five.xyz", "1 2 3 4 5\n", None, "--columns x,y,z,weight,value");
-    refuses("nine.xyz", "1 2 3 4 5 6 7 8 9\n", None, "--columns x,y,z,-,-,-,-,-,-");
+    refuses("six.xyz", "1 2 3 4 5 0.6\n", None, "`columns` x,y,z,nx,ny,nz");
+    refuses("five.xyz", "1 2 3 4 5\n", None, "`columns` x,y,z,weight,value");
+    refuses("nine.xyz", "1 2 3 4 5 6 7 8 9\n", None, "`columns` x,y,z,-,-,-,-,-,-");
     refuses("a.xyz", "1 2 3 4\n", Some("x,y,z"), "line 1 has 4 columns");
-    refuses("a.ply", PLY, Some("x,y,z"), "omit --columns");
+    refuses("a.ply", PLY, Some("x,y,z"), "omit `columns`");
     for (names, part) in [("x,y", "do not name z"), ("x,y,z,X", "name x twice")] {
-        assert!(names.parse::<Columns>().unwrap_err().to_string().contains(part), "{names}");
+        assert!(names.parse::<Columns>().unwrap_err().told().contains(part), "{names}");
     }
 }
 

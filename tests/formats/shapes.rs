@@ -16,9 +16,13 @@ fn shape() -> walpha::AlphaShape {
     alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(f64::INFINITY).unwrap())).unwrap()
 }
 
-fn exported(format: Format, shape: &walpha::AlphaShape) -> Vec<u8> {
+fn format(extension: &str) -> &'static Format {
+    Format::of(Path::new(&format!("s.{extension}"))).unwrap()
+}
+
+fn exported(extension: &str, shape: &walpha::AlphaShape) -> Vec<u8> {
     let mut bytes = Vec::new();
-    format.exporter(&ExportOptions::default()).write(shape, &mut bytes).unwrap();
+    format(extension).exporter(&ExportOptions::default()).write(shape, &mut bytes).unwrap();
     bytes
 }
 
@@ -27,17 +31,15 @@ fn exported(format: Format, shape: &walpha::AlphaShape) -> Vec<u8> {
 fn written_shapes_are_read_back() {
     let folder = tempfile::tempdir().unwrap();
     let shape = shape();
-    for (format, extension, corners) in
-        [(Format::Ply, "ply", 4), (Format::Vtp, "vtp", 4), (Format::Vtu, "vtu", 5)]
-    {
-        let path = save(folder.path(), &format!("s.{extension}"), exported(format, &shape));
+    for (extension, corners) in [("ply", 4), ("vtp", 4), ("vtu", 5)] {
+        let path = save(folder.path(), &format!("s.{extension}"), exported(extension, &shape));
         let back = read_points(&path, None).unwrap();
         assert_eq!(back.positions, shape.points().positions[..corners], "{extension}");
         assert_eq!(back.values.unwrap(), [1.0, 2.0, 3.0, 5.0, 10.0][..corners], "{extension}");
         assert_eq!(back.weights, Some(vec![0.0; corners]), "{extension}");
     }
 
-    let stl = exported(Format::Stl, &shape);
+    let stl = exported("stl", &shape);
     assert_eq!(stl.len(), 84 + 4 * 50);
     assert_eq!(stl[80..84], 4u32.to_le_bytes());
     let number = |place: usize| f32::from_le_bytes(stl[place..place + 4].try_into().unwrap());
@@ -51,7 +53,7 @@ fn written_shapes_are_read_back() {
     }
     assert!((volume - 64.0 / 6.0).abs() < 1e-5, "outward: {volume}");
 
-    let glb = exported(Format::Glb, &shape);
+    let glb = exported("glb", &shape);
     let length =
         |place: usize| u32::from_le_bytes(glb[place..place + 4].try_into().unwrap()) as usize;
     assert_eq!((&glb[..4], length(4), length(8)), (&b"glTF"[..], 2, glb.len()));
@@ -59,7 +61,7 @@ fn written_shapes_are_read_back() {
     assert_eq!(document["accessors"][0]["max"], serde_json::json!([4.0, 4.0, 4.0]));
     assert_eq!(document["accessors"][2]["count"], 12);
 
-    let path = save(folder.path(), "s.npz", exported(Format::Npz, &shape));
+    let path = save(folder.path(), "s.npz", exported("npz", &shape));
     let mut archive = payloads(&path);
     let cells = archive("cells");
     assert_eq!(cells.len(), shape.complex().cells.len() * 16);
@@ -81,7 +83,7 @@ fn payloads(path: &Path) -> impl FnMut(&str) -> Vec<u8> {
 
 #[test]
 fn stl_says_when_the_boundary_is_no_manifold() {
-    assert_eq!(Format::Stl.exporter(&ExportOptions::default()).remark(&shape()), None);
+    assert_eq!(format("stl").exporter(&ExportOptions::default()).remark(&shape()), None);
     // Two tetrahedra that touch at a vertex.
     let folder = tempfile::tempdir().unwrap();
     let text = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n-1 -1 0\n-1 0 -1\n0 -1 -1\n";
@@ -96,9 +98,9 @@ fn stl_says_when_the_boundary_is_no_manifold() {
     assert_eq!(said, "");
 }
 
-fn text(format: Format, options: &ExportOptions, shape: &walpha::AlphaShape) -> String {
+fn text(extension: &str, options: &ExportOptions, shape: &walpha::AlphaShape) -> String {
     let mut bytes = Vec::new();
-    format.exporter(options).write(shape, &mut bytes).unwrap();
+    format(extension).exporter(options).write(shape, &mut bytes).unwrap();
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
@@ -106,7 +108,7 @@ fn text(format: Format, options: &ExportOptions, shape: &walpha::AlphaShape) -> 
 fn vertices_are_coloured_by_their_values() {
     let shape = shape();
     let options = ExportOptions { ascii: true, ..ExportOptions::default() };
-    let ply = text(Format::Ply, &options, &shape);
+    let ply = text("ply", &options, &shape);
     let (head, body) = ply.split_once("end_header\n").unwrap();
     assert!(
         head.contains("property uchar red\nproperty uchar green\nproperty uchar blue\n"),
@@ -114,7 +116,7 @@ fn vertices_are_coloured_by_their_values() {
     );
     assert!(!head.contains("element edge"), "which meshio, trimesh and others refuse: {head}");
     assert!(head.ends_with("vertex_indices\n"), "meshio reads no numbers of facets: {head}");
-    let groups = text(Format::Ply, &ExportOptions { groups: true, ..options.clone() }, &shape);
+    let groups = text("ply", &ExportOptions { groups: true, ..options.clone() }, &shape);
     assert!(groups.contains("property uchar class\nproperty uint component\nproperty int sheet"));
     // Of the values 1, 2, 3 and 5 on the hull the least is dark, the most light.
     let rows: Vec<&str> = body.lines().take(4).collect();
@@ -127,16 +129,16 @@ fn groups_are_made_where_they_are_asked_for() {
     let shape = shape();
     let plain = ExportOptions::default();
     let groups = ExportOptions { groups: true, ..ExportOptions::default() };
-    assert!(!text(Format::Obj, &plain, &shape).contains("\ng "));
-    assert!(text(Format::Obj, &groups, &shape).contains("\ng regular\nf "));
+    assert!(!text("obj", &plain, &shape).contains("\ng "));
+    assert!(text("obj", &groups, &shape).contains("\ng regular\nf "));
     let facets = |off: String| {
         off.lines()
             .filter(|line| line.starts_with("3 "))
             .map(|l| l.split(' ').count())
             .collect::<Vec<_>>()
     };
-    assert_eq!(facets(text(Format::Off, &plain, &shape)), [4; 4]);
-    assert_eq!(facets(text(Format::Off, &groups, &shape)), [7; 4]);
+    assert_eq!(facets(text("off", &plain, &shape)), [4; 4]);
+    assert_eq!(facets(text("off", &groups, &shape)), [7; 4]);
 }
 
 #[test]
@@ -144,18 +146,18 @@ fn files_say_how_they_were_made() {
     let shape = shape();
     let options =
         ExportOptions { input: Some("a <file> & \"more\".csv".into()), ..ExportOptions::default() };
-    let vtp = text(Format::Vtp, &options, &shape);
+    let vtp = text("vtp", &options, &shape);
     for word in ["walpha ", "a <file> & \"more\".csv\0", "2 regular, 3 singular\0"] {
         assert!(vtp.contains(word), "{word}");
     }
     for name in ["alpha", "alpha_radius", "made_by", "class_legend", "input"] {
         let named = format!("Name=\"{name}\" NumberOfTuples=");
         assert!(vtp.contains(&named), "{name}");
-        assert!(text(Format::Vtu, &options, &shape).contains(&named), "{name}");
+        assert!(text("vtu", &options, &shape).contains(&named), "{name}");
     }
-    let vtu = text(Format::Vtu, &options, &shape);
+    let vtu = text("vtu", &options, &shape);
     assert!(!vtu.contains("String"), "which meshio refuses");
-    let glb = exported(Format::Glb, &shape);
+    let glb = exported("glb", &shape);
     let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
     let document: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
     // A quarter turn: (x, y, z) becomes (x, z, -y).

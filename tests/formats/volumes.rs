@@ -2,56 +2,51 @@ use std::fs;
 use std::path::Path;
 
 use ndarray::Array3;
-use walpha::export::VolumeFormat;
-use walpha::volume::{Coordinates, Dtype, Endian, Frame, RawLayout, ReadOptions, Volume, read};
+use walpha::volume::{
+    Coordinates, Dtype, Endian, FORMATS, Frame, RawLayout, ReadOptions, Volume, VolumeWriter, read,
+};
 
 use crate::common::{json, ok};
 use crate::files::*;
+use crate::told::Told;
 
 #[test]
 fn written_volumes_are_read_back() {
     let folder = tempfile::tempdir().unwrap();
     let samples = Array3::from_shape_fn((3, 4, 5), |(z, y, x)| (100 * z + 10 * y + x) as f32 / 3.0);
     let volume = Volume::new(samples, turned()).unwrap();
-    for (format, extension) in VolumeFormat::ALL {
+    for (format, writer) in FORMATS.iter().flat_map(|f| f.writers.iter().map(move |w| (f, w))) {
+        let extension = writer.extension;
         let path = folder.path().join(format!("v.{extension}"));
-        assert_eq!(VolumeFormat::of(&path), Ok(format));
+        assert_eq!(VolumeWriter::of(&path).unwrap().extension, extension);
         let mut bytes = Vec::new();
-        format.write(&volume, &mut bytes).unwrap();
+        writer.write(&volume, &mut bytes).unwrap();
         fs::write(&path, bytes).unwrap();
-        let options = match format {
-            VolumeFormat::Raw => {
-                let (dims, dtype, endian) = (volume.dims(), Dtype::F32, Endian::Little);
-                ReadOptions {
-                    raw: Some(RawLayout { dims, dtype, endian, offset: 0 }),
-                    ..ReadOptions::default()
-                }
-            }
-            _ => ReadOptions::default(),
-        };
+        let (dims, dtype, endian) = (volume.dims(), Dtype::F32, Endian::Little);
+        let layout = RawLayout { dims, dtype, endian, offset: 0 };
+        let raw = (!format.keeps.dtype).then_some(layout);
+        let options = ReadOptions { raw, ..ReadOptions::default() };
         let back = read(&path, &options).unwrap();
         assert_eq!(back.as_slice(), volume.as_slice(), "{extension}");
-        let frame = match format {
-            VolumeFormat::Npy | VolumeFormat::Raw => Frame::VOXEL,
-            // Spacing alone.
-            VolumeFormat::Tiff => Frame { spacing: turned().spacing, ..Frame::VOXEL },
-            _ => turned(),
+        let frame = match (format.keeps.spacing, format.keeps.directions) {
+            (false, _) => Frame::VOXEL,
+            (true, false) => Frame { spacing: turned().spacing, ..Frame::VOXEL },
+            (true, true) => turned(),
         };
         assert!(close(back.frame(), &frame), "{extension}: {:?}", back.frame());
         // By content too.
-        if format != VolumeFormat::Raw {
+        if format.keeps.dtype {
             let renamed = folder.path().join("unnamed");
             fs::copy(&path, &renamed).unwrap();
             assert_eq!(open(&renamed).unwrap().as_slice(), volume.as_slice(), "{extension}");
         }
     }
     let long = Volume::new(Array3::ones((1, 1, 40_000)), turned()).unwrap();
-    let mut bytes = Vec::new();
-    VolumeFormat::Nifti.write(&long, &mut bytes).unwrap();
+    let bytes = written("nii", &long);
     assert_eq!(bytes[0..4], 540u32.to_le_bytes(), "version 2");
     let back = open(&save(folder.path(), "long.nii", bytes)).unwrap();
     assert_eq!(back.dims().x(), 40_000);
-    let text = VolumeFormat::of(Path::new("a.mhb")).unwrap_err().to_string();
+    let text = VolumeWriter::of(Path::new("a.mhb")).unwrap_err().told();
     assert!(text.contains("a volume") && text.contains(".nii.gz"), "{text}");
 }
 
@@ -100,7 +95,7 @@ fn detached_samples_are_found() {
         assert_eq!(volume.as_slice(), numbers(), "{tail}");
     }
     let missing = open(&save(f, "v.nhdr", [NRRD, "data file: no.raw\n"].concat()));
-    assert!(missing.unwrap_err().to_string().contains("no.raw"));
+    assert!(missing.unwrap_err().told().contains("no.raw"));
     let short = open(&save(f, "v.nhdr", [NRRD, "data file: s1.raw\n"].concat())).unwrap_err();
     assert!(short.to_string().contains("24 bytes, but 12 follow"), "{short}");
 }
@@ -127,10 +122,10 @@ fn the_files_of_samples_are_named() {
         let facts = json(f, &["info", name]);
         assert_eq!(facts["data_files"], serde_json::json!([data]));
         fs::write(&all, &shorts()[..10]).unwrap();
-        let text = open(&path).unwrap_err().to_string();
+        let text = open(&path).unwrap_err().told();
         assert!(text.contains(name) && text.contains(data) && text.contains("but 10"), "{text}");
         fs::remove_file(&all).unwrap();
-        let text = open(&path).unwrap_err().to_string();
+        let text = open(&path).unwrap_err().told();
         assert!(text.contains(data), "{text}");
     }
     save(f, "1.raw", &shorts()[..12]);
@@ -141,7 +136,7 @@ fn the_files_of_samples_are_named() {
     let text = NRRD.replace("type: short", "type: float").replace("raw", "text");
     let path = save(f, "v.nhdr", text + "data file: numbers.txt\n");
     save(f, "numbers.txt", "1e99 ".repeat(12));
-    let said = open(&path).unwrap_err().to_string();
+    let said = open(&path).unwrap_err().told();
     assert!(said.contains("v.nhdr") && said.contains("numbers.txt"), "{said}");
 }
 
@@ -200,13 +195,13 @@ fn folders_of_slices_are_read_in_natural_order() {
     assert_eq!(along, [1.0, 2.0, 9.0, 10.0, 11.0]);
     assert!(volume.has_gray_levels());
     image::GrayImage::new(2, 2).save(f.join("s12.png")).unwrap();
-    assert!(open(f).unwrap_err().to_string().contains("must be alike"));
+    assert!(open(f).unwrap_err().told().contains("must be alike"));
     image::RgbImage::new(3, 2).save(f.join("s12.png")).unwrap();
-    assert!(open(f).unwrap_err().to_string().contains("only gray"));
+    assert!(open(f).unwrap_err().told().contains("only gray"));
     save(f, "s12.png", "no image");
-    assert!(open(f).unwrap_err().to_string().contains("s12.png"));
+    assert!(open(f).unwrap_err().told().contains("s12.png"));
     save(f, "s12.jpg", "");
-    assert!(open(f).unwrap_err().to_string().contains("several kinds"));
+    assert!(open(f).unwrap_err().told().contains("several kinds"));
     // A small file whose header has been changed to claim a huge picture.
     let huge = tempfile::tempdir().unwrap();
     let path = huge.path().join("s.jpg");
@@ -215,7 +210,7 @@ fn folders_of_slices_are_read_in_natural_order() {
     let frame = bytes.windows(2).position(|mark| mark == [0xff, 0xc0]).unwrap();
     bytes[frame + 5..frame + 9].fill(0x7f);
     fs::write(&path, bytes).unwrap();
-    assert!(open(huge.path()).unwrap_err().to_string().contains("claims 32639×32639 pixels"));
+    assert!(open(huge.path()).unwrap_err().told().contains("claims 32639×32639 pixels"));
     let empty = tempfile::tempdir().unwrap();
-    assert!(open(empty.path()).unwrap_err().to_string().contains("holds no PNG"));
+    assert!(open(empty.path()).unwrap_err().told().contains("holds no PNG"));
 }

@@ -64,14 +64,25 @@ impl Alpha {
 #[non_exhaustive]
 pub enum AlphaError {
     /// NaN.
-    #[error("α cannot be NaN: give a number (a squared length), or `inf` for the convex hull")]
+    #[error("α cannot be NaN")]
     NaN,
     /// A negative radius.
-    #[error("a radius must not be negative, and {0} is: give a length from 0 up, or α itself")]
+    #[error("a radius must not be negative, and {0} is")]
     Radius(f64),
     /// Text that is not a number.
-    #[error("{0:?} is not a number; give a squared length, as in 10, or `inf` for the convex hull")]
+    #[error("{0:?} is not a number")]
     Text(String),
+}
+
+impl AlphaError {
+    /// What to do about it.
+    pub fn advice(&self) -> &'static str {
+        match self {
+            Self::NaN => "give a number (a squared length), or `inf` for the convex hull",
+            Self::Radius(_) => "give a length from 0 up, or α itself",
+            Self::Text(_) => "give a squared length, as in 10, or `inf` for the convex hull",
+        }
+    }
 }
 
 /// The number alone, as `f64` prints it; reading it back gives the same α.

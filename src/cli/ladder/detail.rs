@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::io;
 
-use anyhow::bail;
 use serde::Serialize;
 use walpha::ladder::focus;
 use walpha::pipeline::Parameter;
@@ -24,6 +23,7 @@ use super::super::pipeline::{Domain, Grays, Input, read};
 use super::super::progress::Progress;
 use super::super::report::SCHEMA_VERSION;
 use super::{Ladder, Mesh, short};
+use crate::cli::said::refused;
 
 /// What `walpha ladder` did over detail.
 #[derive(Serialize)]
@@ -76,7 +76,7 @@ impl Ladder {
         let mut progress = Progress::new(global);
         let Input::Volume(Grays { volume, range, written }) = read(&self.input, &mut progress)?
         else {
-            bail!("levels of detail are made of a volume, and this is a point file; use --alphas");
+            refused!("levels of detail are made of a volume, and this is a point file" => "use --alphas");
         };
         let weights = WeightArgs::from(self.weights);
         let weighting = weights.weights.unwrap_or(Weighting::Common(0.0));
@@ -93,7 +93,7 @@ impl Ladder {
                 let points =
                     progress.stage(Stage::Points, || stages.points(&wanted.0, &wanted.1))?.0;
                 if !points.positions.iter().any(|&p| region.contains(p)) {
-                    bail!("no point lies in --focus: it is in the units of the points, x first");
+                    refused!("no point lies in --focus: it is in the units of the points, x first");
                 }
                 Some((points, region))
             }

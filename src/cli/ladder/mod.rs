@@ -2,12 +2,10 @@
 
 mod detail;
 mod facts;
-mod regions;
 
 use std::fmt::{Display, LowerExp};
 use std::path::{Path, PathBuf};
 
-use anyhow::anyhow;
 use clap::Args;
 use walpha::export::{ExportOptions, Exporter, Format};
 use walpha::ladder::{Filtration, Ladder as Levels, Level, Region};
@@ -19,12 +17,12 @@ use walpha::render::ladder_figure;
 use super::Global;
 use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
 use super::folder::Folder;
-use super::given::misused;
 use super::output::tell;
 use super::pipeline::{self, Values};
 use super::progress::Progress;
+use crate::cli::ranges;
+use crate::cli::said::{Said, misused};
 use facts::{Facts, write_levels, write_voids};
-use regions::region;
 
 /// Shapes at many α from one triangulation, or at several levels of detail.
 ///
@@ -66,7 +64,7 @@ pub struct Ladder {
     epsilons: Vec<f64>,
     /// A region that keeps full detail (the points of --count, --ratio or --threshold, besides those
     /// of the level) at every level of detail; borders belong to it. In the units of the points.
-    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = region,
+    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = ranges::places,
           allow_hyphen_values = true)]
     focus: Option<Region>,
     /// Meshes to write for each level, by extension, as in ply,vtu [default: none for α, ply for
@@ -90,7 +88,7 @@ impl Ladder {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
         let detail = !(self.counts.is_empty() && self.epsilons.is_empty());
         if self.focus.is_some() && !detail {
-            misused!("--focus belongs to levels of detail: give --counts or --epsilons too");
+            misused!("--focus belongs to levels of detail" => "give --counts or --epsilons too");
         }
         once("--counts", &self.counts)?;
         once("--epsilons", &self.epsilons)?;
@@ -200,7 +198,7 @@ fn short(number: impl Display + LowerExp) -> String {
 fn once<T: PartialEq + Display>(option: &str, values: &[T]) -> anyhow::Result<()> {
     match values.iter().enumerate().find(|(k, value)| values[..*k].contains(value)) {
         Some((_, value)) => {
-            misused!("{option} names {value} twice; each level has a file of its own")
+            misused!("{option} names {value} twice" => "each level has a file of its own")
         }
         None => Ok(()),
     }
@@ -221,8 +219,10 @@ fn meshes(asked: &[String], silent: &[&str]) -> anyhow::Result<Vec<Mesh>> {
     }
     let mesh = |extension: String| {
         let name = format!("level.{extension}");
-        let format =
-            Format::of(Path::new(&name)).map_err(|unknown| anyhow!("--mesh: {unknown}"))?;
+        let format = Format::of(Path::new(&name)).map_err(|unknown| {
+            let unknown = Said::usage_of(&unknown);
+            Said { why: format!("--mesh: {}", unknown.why), ..unknown }
+        })?;
         Ok(Mesh { exporter: format.exporter(&ExportOptions::default()), extension })
     };
     extensions.into_iter().map(mesh).collect()

@@ -3,17 +3,17 @@
 use std::path::Path;
 
 use super::{Points, PointsError, format};
+use crate::volume::Reason;
 
 /// Points read at once.
-#[cfg(feature = "las")]
 const BATCH: u64 = 1 << 16;
 
 /// Reads the places of the points, and their intensity as values. Numbers are those that the file's
 /// scales and offsets make, in doubles.
-#[cfg(feature = "las")]
-pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
-    let said =
-        |error: las::Error| format(path, format!("is no LAS file that can be read: {error}"));
+pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
+    let said = |error: las::Error| {
+        format(path, Reason::other(format!("is no LAS file that can be read: {error}")))
+    };
     let mut reader = las::Reader::from_path(path).map_err(said)?;
     let mut points = Points { values: Some(Vec::new()), ..Points::default() };
     // In batches, as a header may claim more points than there are.
@@ -25,16 +25,11 @@ pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
     }
     let claimed = reader.header().number_of_points();
     if points.len() as u64 != claimed {
-        let what = format!("claims {claimed} points, but has {}: it is truncated", points.len());
-        return Err(format(path, what));
+        let reason = Reason::truncated(format!(
+            "claims {claimed} points, but has {}: it is truncated",
+            points.len()
+        ));
+        return Err(format(path, reason));
     }
     Ok(points)
-}
-
-/// Says that the feature is missing.
-#[cfg(not(feature = "las"))]
-pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
-    let what = "is a LAS or LAZ file, which this walpha was built without; build it with `cargo install \
-                --path . --features las`, or convert the points to PLY";
-    Err(format(path, what.into()))
 }

@@ -1,18 +1,18 @@
 use std::path::Path;
 
 use super::{Points, PointsError, format};
-use crate::volume::NpyFile;
+use crate::volume::{NpyFile, Reason};
 
 /// Reads an array n×4 (x, y, z, weight) or n×5 (…, value).
-pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
+pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let file = NpyFile::open(path)?;
     let columns = match file.shape.as_slice() {
         &[_, columns @ (4 | 5)] => columns as usize,
         other => {
-            let what = format!(
+            let reason = Reason::header(format!(
                 "is an array of shape {other:?}: points are n×4 (x, y, z, weight) or n×5 (…, value)"
-            );
-            return Err(format(path, what));
+            ));
+            return Err(format(path, reason));
         }
     };
     let (fortran, rows) = (file.fortran, file.shape[0] as usize);

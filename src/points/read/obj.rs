@@ -6,7 +6,7 @@ use super::{Points, PointsError};
 use crate::volume::{Lines, io_error};
 
 /// Reads the vertices (`v x y z …`) of a Wavefront OBJ file; everything else is passed over.
-pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
+pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let file = std::fs::File::open(path).map_err(io_error(path))?;
     let mut lines = Lines::new(BufReader::new(file));
     let mut points = Points::default();

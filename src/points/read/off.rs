@@ -2,12 +2,12 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use super::{COLUMNS, Points, PointsError, format};
-use crate::volume::{Lines, io_error};
+use crate::volume::{Lines, Reason, io_error};
 
 /// Reads the vertices of an OFF file in text, with normals, colours or texture coordinates (NOFF, COFF,
 /// STOFF) or without: the first three numbers of each line. Its faces must be there as it claims.
-pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
-    let said = |what: String| format(path, what);
+pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
+    let said = |reason: Reason| format(path, reason);
     let file = std::fs::File::open(path).map_err(io_error(path))?;
     let mut rows = Tokens { lines: Lines::new(BufReader::new(file)), number: 0 };
     let head = rows.next(path)?.unwrap_or_default();
@@ -15,11 +15,14 @@ pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
     if let Some(kind) = words.next_if(|word| word.ends_with("OFF")) {
         let prefix = kind.trim_end_matches("OFF").replace("ST", "").replace(['C', 'N'], "");
         if !prefix.is_empty() {
-            return Err(said(format!("is {kind}: only points of three coordinates are read")));
+            return Err(said(Reason::unsupported(
+                format!("is {kind}: only points of three coordinates are read"),
+                "convert it first",
+            )));
         }
     }
     if words.peek() == Some(&"BINARY") {
-        return Err(said("is binary: OFF is read as text; convert it".into()));
+        return Err(said(Reason::unsupported("is binary: OFF is read as text", "convert it")));
     }
     let mut counts: Vec<u64> = words.map_while(|word| word.parse().ok()).collect();
     if counts.is_empty() {
@@ -27,10 +30,15 @@ pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
         counts = line.split_whitespace().map_while(|word| word.parse().ok()).collect();
     }
     let [vertices, faces, ..] = counts[..] else {
-        return Err(said("does not say how many vertices and faces it has: it is damaged".into()));
+        return Err(said(Reason::damaged(
+            "does not say how many vertices and faces it has: it is damaged",
+        )));
     };
-    let cut =
-        || said(format!("ends before its {vertices} vertices and {faces} faces: it is truncated"));
+    let cut = || {
+        said(Reason::truncated(format!(
+            "ends before its {vertices} vertices and {faces} faces: it is truncated"
+        )))
+    };
     let mut points = Points::default();
     for _ in 0..vertices {
         let line = rows.next(path)?.ok_or_else(cut)?;
@@ -53,7 +61,10 @@ pub(super) fn position<'a>(
         let word = words.next().unwrap_or_default();
         let read = word.parse().ok().filter(|number: &f64| number.is_finite());
         *number = read.ok_or_else(|| {
-            format(path, format!("line {line}: {name} is {word:?}, no finite number"))
+            format(
+                path,
+                Reason::value(format!("line {line}: {name} is {word:?}, no finite number")),
+            )
         })?;
     }
     Ok(position)

@@ -2,21 +2,22 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use super::{Points, PointsError, format};
-use crate::volume::{Lines, io_error};
+use crate::volume::{Lines, Reason, io_error};
 
 /// Reads PCD, the Point Cloud Library's format: text, binary or compressed, with the fields x, y and z,
 /// perhaps weight, and value or else intensity. Points without a place (NaN, as scanners mark them) are
 /// left out.
-pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
-    let said = |what: String| format(path, what);
+pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
+    let said = |reason: Reason| format(path, reason);
     let file = std::fs::File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut lines = Lines::new(BufReader::new(file));
     let mut header = Header::default();
     let data = loop {
         let line = lines.next().map_err(io_error(path))?;
-        let line =
-            line.ok_or_else(|| said("ends inside its PCD header: it is truncated".into()))?;
+        let line = line.ok_or_else(|| {
+            said(Reason::truncated("ends inside its PCD header: it is truncated"))
+        })?;
         if let Some(data) = line.strip_prefix("DATA ") {
             break data.trim().to_owned();
         }
@@ -29,7 +30,10 @@ pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
         "ascii" => header.text(&String::from_utf8_lossy(&bytes)),
         "binary" => header.binary(&bytes, false),
         "binary_compressed" => unpacked(&bytes).and_then(|bytes| header.binary(&bytes, true)),
-        other => Err(format!("has DATA {other}: ascii, binary and binary_compressed are read")),
+        other => Err(Reason::unsupported(
+            format!("has DATA {other}: ascii, binary and binary_compressed are read"),
+            "convert it first",
+        )),
     };
     header.points(rows.map_err(said)?).map_err(said)
 }
@@ -51,8 +55,9 @@ struct Field {
 }
 
 impl Header {
-    fn take(&mut self, line: &str) -> Result<(), String> {
-        let damaged = || format!("has a header line {line:?}, which is not understood");
+    fn take(&mut self, line: &str) -> Result<(), Reason> {
+        let damaged =
+            || Reason::header(format!("has a header line {line:?}, which is not understood"));
         let mut words = line.split_whitespace();
         let key = words.next().unwrap_or("#");
         let numbers = || words.clone().map(str::parse).collect::<Result<Vec<usize>, _>>();
@@ -70,23 +75,27 @@ impl Header {
     }
 
     /// Refuses lists of different lengths, and more points than the file can hold.
-    fn check(&mut self, length: u64) -> Result<(), String> {
+    fn check(&mut self, length: u64) -> Result<(), Reason> {
         let fields = self.names.len();
         if self.counts.is_empty() {
             self.counts = vec![1; fields];
         }
         if [self.sizes.len(), self.types.len(), self.counts.len()] != [fields; 3] || fields == 0 {
-            return Err(
-                "has FIELDS, SIZE, TYPE and COUNT of different lengths: it is damaged".into()
-            );
+            return Err(Reason::damaged(
+                "has FIELDS, SIZE, TYPE and COUNT of different lengths: it is damaged",
+            ));
         }
         if self.sizes.iter().chain(&self.counts).any(|&n| n > 1 << 16) {
-            return Err("has fields of more than 65536 bytes or numbers: it is damaged".into());
+            return Err(Reason::damaged(
+                "has fields of more than 65536 bytes or numbers: it is damaged",
+            ));
         }
         // Compressed to a hundredth, which is more than LZF can.
         if self.points as u64 > length.saturating_mul(256) {
             let points = self.points;
-            return Err(format!("claims {points} points, which {length} bytes cannot hold"));
+            return Err(Reason::header(format!(
+                "claims {points} points, which {length} bytes cannot hold"
+            )));
         }
         Ok(())
     }
@@ -99,7 +108,7 @@ impl Header {
     }
 
     /// x, y, z, weight and value of each point.
-    fn fields(&self, bytes: bool) -> Result<[Option<Field>; 5], String> {
+    fn fields(&self, bytes: bool) -> Result<[Option<Field>; 5], Reason> {
         let field = |name| self.field(name, bytes);
         let fields = [
             field("x"),
@@ -110,32 +119,41 @@ impl Header {
         ];
         match fields[..3].iter().all(Option::is_some) {
             true => Ok(fields),
-            false => Err(format!("has the fields {}, without x, y or z", self.names.join(", "))),
+            false => Err(Reason::header(format!(
+                "has the fields {}, without x, y or z",
+                self.names.join(", ")
+            ))),
         }
     }
 
-    fn text(&self, text: &str) -> Result<Vec<[Option<f64>; 5]>, String> {
+    fn text(&self, text: &str) -> Result<Vec<[Option<f64>; 5]>, Reason> {
         let fields = self.fields(false)?;
         let width: usize = self.counts.iter().sum();
         let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
         if lines.len() != self.points {
-            return Err(format!("claims {} points, but has {} lines", self.points, lines.len()));
+            return Err(Reason::header(format!(
+                "claims {} points, but has {} lines",
+                self.points,
+                lines.len()
+            )));
         }
         let mut rows = Vec::new();
         for line in lines {
             let words: Vec<&str> = line.split_whitespace().collect();
             if words.len() != width {
-                return Err(format!(
+                return Err(Reason::header(format!(
                     "has {} numbers in the line {line:?}, not {width}",
                     words.len()
-                ));
+                )));
             }
             let mut row = [None; 5];
             for (slot, field) in row.iter_mut().zip(&fields) {
                 let Some(field) = field else { continue };
                 let word = words[field.offset];
-                *slot =
-                    Some(word.parse().map_err(|_| format!("has {word:?}, which is no number"))?);
+                *slot = Some(
+                    word.parse()
+                        .map_err(|_| Reason::value(format!("has {word:?}, which is no number")))?,
+                );
             }
             rows.push(row);
         }
@@ -143,16 +161,16 @@ impl Header {
     }
 
     /// Numbers of a point side by side, or all of a field.
-    fn binary(&self, bytes: &[u8], by_field: bool) -> Result<Vec<[Option<f64>; 5]>, String> {
+    fn binary(&self, bytes: &[u8], by_field: bool) -> Result<Vec<[Option<f64>; 5]>, Reason> {
         let fields = self.fields(true)?;
         let width: usize =
             self.sizes.iter().zip(&self.counts).map(|(size, count)| size * count).sum();
         if bytes.len() < width.saturating_mul(self.points) {
             let points = self.points;
-            return Err(format!(
+            return Err(Reason::header(format!(
                 "claims {points} points of {width} bytes, and has {}",
                 bytes.len()
-            ));
+            )));
         }
         let at = |row: usize, field: &Field| {
             let own = self.sizes[field.index] * self.counts[field.index];
@@ -173,7 +191,7 @@ impl Header {
         (0..self.points).map(row).collect()
     }
 
-    fn points(&self, rows: Vec<[Option<f64>; 5]>) -> Result<Points, String> {
+    fn points(&self, rows: Vec<[Option<f64>; 5]>) -> Result<Points, Reason> {
         let placed =
             |row: &[Option<f64>; 5]| row[..3].iter().all(|c| c.is_some_and(|c| !c.is_nan()));
         let kept: Vec<_> = rows.into_iter().filter(placed).collect();
@@ -198,7 +216,7 @@ impl Header {
 }
 
 /// A little-endian number.
-fn number(kind: &str, bytes: &[u8]) -> Result<f64, String> {
+fn number(kind: &str, bytes: &[u8]) -> Result<f64, Reason> {
     Ok(match (kind, bytes) {
         ("F", &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
         ("F", &[a, b, c, d, e, f, g, h]) => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
@@ -208,13 +226,18 @@ fn number(kind: &str, bytes: &[u8]) -> Result<f64, String> {
         ("I", &[a]) => f64::from(i8::from_le_bytes([a])),
         ("I", &[a, b]) => f64::from(i16::from_le_bytes([a, b])),
         ("I", &[a, b, c, d]) => f64::from(i32::from_le_bytes([a, b, c, d])),
-        _ => return Err(format!("has a field of type {kind} and {} bytes", bytes.len())),
+        _ => {
+            return Err(Reason::header(format!(
+                "has a field of type {kind} and {} bytes",
+                bytes.len()
+            )));
+        }
     })
 }
 
 /// Unpacks LZF: two sizes, then pieces that are literal or stand further ahead in the output.
-fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, String> {
-    let damaged = || "has compressed data that are damaged or truncated: copy it again".to_owned();
+fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, Reason> {
+    let damaged = || Reason::damaged("has compressed data that are damaged or truncated");
     let sizes = bytes.first_chunk::<8>().ok_or_else(damaged)?;
     let size = |k: usize| u32::from_le_bytes([sizes[k], sizes[k + 1], sizes[k + 2], sizes[k + 3]]);
     let (packed, whole) = (size(0) as usize, size(4) as usize);

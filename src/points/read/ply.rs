@@ -2,12 +2,12 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use super::{COLUMNS, Points, PointsError, format};
-use crate::volume::{Dtype, Element as _, Endian, Lines, io_error};
+use crate::volume::{Dtype, Element as _, Endian, Lines, Reason, io_error};
 
 /// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z,
 /// perhaps weight and value. All other elements must be there as the header claims.
-pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
-    let said = |what: String| format(path, what);
+pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
+    let said = |reason: Reason| format(path, reason);
     let file = std::fs::File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut lines = Lines::new(BufReader::new(file));
@@ -32,13 +32,20 @@ pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
         }
     }
     if !numbers.at_end() {
-        return Err(said("goes on behind its last element: it is too long or mislabelled".into()));
+        return Err(said(Reason::header(
+            "goes on behind its last element: it is too long or mislabelled",
+        )));
     }
-    points.ok_or_else(|| said("has no element vertex: there are no points in it".into()))
+    points.ok_or_else(|| {
+        said(Reason::content(
+            "has no element vertex: there are no points in it",
+            "name another file",
+        ))
+    })
 }
 
 fn vertices(path: &Path, element: &Element, numbers: &mut Numbers) -> Result<Points, PointsError> {
-    let said = |what: String| format(path, what);
+    let said = |reason: Reason| format(path, reason);
     let column = |property: &Property| match property {
         Property::Scalar(name, _) => {
             COLUMNS.iter().position(|column| column.eq_ignore_ascii_case(name))
@@ -49,7 +56,9 @@ fn vertices(path: &Path, element: &Element, numbers: &mut Numbers) -> Result<Poi
     for (place, name) in COLUMNS.iter().enumerate() {
         let count = columns.iter().filter(|&&column| column == Some(place)).count();
         if count > 1 || (count == 0 && place < 3) {
-            return Err(said(format!("has {count} vertex properties {name}, and needs one")));
+            return Err(said(Reason::header(format!(
+                "has {count} vertex properties {name}, and needs one"
+            ))));
         }
     }
     let mut points = Points::default();
@@ -92,20 +101,22 @@ enum Property {
 
 impl Header {
     fn read(path: &Path, lines: &mut Lines<BufReader<std::fs::File>>) -> Result<Self, PointsError> {
-        let said = |what: String| format(path, what);
+        let said = |reason: Reason| format(path, reason);
         let mut line = || lines.next().map_err(io_error(path));
         if line()?.as_deref() != Some("ply") {
-            return Err(said("is no PLY file: it does not begin with a line ply".into()));
+            return Err(said(Reason::other("is no PLY file: it does not begin with a line ply")));
         }
         let mut endian = None;
         let mut elements: Vec<Element> = Vec::new();
         while let Some(line) = line()? {
             let words: Vec<&str> = line.split_whitespace().collect();
-            let damaged = || said(format!("has a header line {line:?}, which is not understood"));
+            let damaged = || {
+                said(Reason::header(format!("has a header line {line:?}, which is not understood")))
+            };
             match words[..] {
                 ["end_header"] => {
-                    let endian =
-                        endian.ok_or_else(|| said("has no format in its header".into()))?;
+                    let endian = endian
+                        .ok_or_else(|| said(Reason::header("has no format in its header")))?;
                     return Ok(Self { endian, elements });
                 }
                 ["comment" | "obj_info", ..] | [] => {}
@@ -133,13 +144,13 @@ impl Header {
                 _ => return Err(damaged()),
             }
         }
-        Err(said("ends inside its PLY header: it is truncated; copy it again".into()))
+        Err(said(Reason::truncated("ends inside its PLY header: it is truncated")))
     }
 }
 
 impl Element {
     /// Refuses more of this element than the bytes behind the header can hold.
-    fn fits(&self, binary: bool, left: u64) -> Result<(), String> {
+    fn fits(&self, binary: bool, left: u64) -> Result<(), Reason> {
         let least = |property: &Property| match (binary, property) {
             (true, Property::Scalar(_, dtype) | Property::List(dtype, _)) => dtype.size() as u64,
             (false, _) => 1,
@@ -147,15 +158,15 @@ impl Element {
         let row: u64 = self.properties.iter().map(least).sum();
         if self.count.saturating_mul(row) > left {
             let Self { name, count, .. } = self;
-            return Err(format!(
-                "claims {count} elements {name}, which {left} bytes cannot hold: it is truncated or \
-                 mislabelled"
-            ));
+            return Err(Reason::truncated(format!(
+                "claims {count} elements {name}, which {left} bytes cannot hold: it is \
+                     truncated or mislabelled"
+            )));
         }
         Ok(())
     }
 
-    fn skip(&self, numbers: &mut Numbers) -> Result<(), String> {
+    fn skip(&self, numbers: &mut Numbers) -> Result<(), Reason> {
         // Without properties there is nothing to pass over, however many there are.
         let rows = if self.properties.is_empty() { 0 } else { self.count };
         for _ in 0..rows {
@@ -169,13 +180,15 @@ impl Element {
 
 impl Property {
     /// Reads a number, or passes over a list.
-    fn read(&self, numbers: &mut Numbers) -> Result<f64, String> {
+    fn read(&self, numbers: &mut Numbers) -> Result<f64, Reason> {
         match *self {
             Self::Scalar(_, dtype) => numbers.next(dtype),
             Self::List(count, item) => {
                 let count = numbers.next(count)?;
                 if !(count >= 0.0 && count.fract() == 0.0) {
-                    return Err(format!("has a list of {count} items: it is damaged"));
+                    return Err(Reason::damaged(format!(
+                        "has a list of {count} items: it is damaged"
+                    )));
                 }
                 (0..count as u64).try_for_each(|_| numbers.next(item).map(drop))?;
                 Ok(count)
@@ -191,22 +204,22 @@ enum Numbers {
 }
 
 impl Numbers {
-    fn next(&mut self, dtype: Dtype) -> Result<f64, String> {
-        const CUT: &str = "ends before all its elements: it is truncated; copy it again";
+    fn next(&mut self, dtype: Dtype) -> Result<f64, Reason> {
+        let cut = || Reason::truncated("ends before all its elements: it is truncated");
         match self {
             Self::Text { text, at } => {
                 let rest = text[*at..].trim_start();
-                let word = rest.split_whitespace().next().ok_or(CUT)?;
+                let word = rest.split_whitespace().next().ok_or_else(cut)?;
                 *at = text.len() - rest.len() + word.len();
                 let number = word.parse::<f64>().ok().filter(|&number| dtype.holds(number));
-                number.ok_or_else(|| format!("has {word:?}, which is no {dtype}"))
+                number.ok_or_else(|| Reason::value(format!("has {word:?}, which is no {dtype}")))
             }
             Self::Binary(reader, endian) => {
                 let mut bytes = [0; 8];
                 let bytes = &mut bytes[..dtype.size()];
                 reader.read_exact(bytes).map_err(|error| match error.kind() {
-                    std::io::ErrorKind::UnexpectedEof => CUT.to_owned(),
-                    _ => format!("cannot be read: {error}"),
+                    std::io::ErrorKind::UnexpectedEof => cut(),
+                    _ => Reason::damaged(format!("cannot be read: {error}")),
                 })?;
                 let mut number = [0.0];
                 f64::decode(bytes, dtype, *endian, &mut number);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::off::position;
 use super::{Points, PointsError, format};
-use crate::volume::{Lines, io_error};
+use crate::volume::{Lines, Reason, io_error};
 
 /// Bytes before the facets of a binary STL file: a head, and how many there are.
 const HEAD: u64 = 84;
@@ -12,7 +12,7 @@ const HEAD: u64 = 84;
 const FACET: u64 = 50;
 
 /// Reads the vertices of an STL file, binary or text: the corners of its facets, each place once.
-pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
+pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let file = std::fs::File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut reader = BufReader::new(file);
@@ -24,9 +24,10 @@ pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
         return text(path);
     }
     if (head.len() as u64) < HEAD || length < HEAD + FACET * count {
-        let what =
-            format!("claims {count} facets, which {length} bytes cannot hold: it is truncated");
-        return Err(format(path, what));
+        let reason = Reason::truncated(format!(
+            "claims {count} facets, which {length} bytes cannot hold: it is truncated"
+        ));
+        return Err(format(path, reason));
     }
     let mut corners = Corners::default();
     let mut facet = [0; FACET as usize];
@@ -57,7 +58,7 @@ fn text(path: &Path) -> Result<Points, PointsError> {
     if ended {
         Ok(corners.points)
     } else {
-        Err(format(path, "ends without endsolid: it is truncated; copy it again".into()))
+        Err(format(path, Reason::truncated("ends without endsolid: it is truncated")))
     }
 }
 

@@ -1,14 +1,15 @@
 use std::io::BufReader;
 use std::path::Path;
 
-use super::columns::{Columns, Rows};
-use super::{Points, PointsError, format};
-use crate::volume::{Lines, io_error};
+use super::rows::Rows;
+use super::{Columns, Points, PointsError, format};
+use crate::volume::{Lines, Reason, io_error};
 
 /// Reads CSV, or tables whose fields are separated by tabs or semicolons; then 0,5 is a half. The first
 /// line may name the columns.
-pub(super) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
-    let said = |error: csv::Error| format(path, format!("is no table of points: {error}"));
+pub(crate) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
+    let said =
+        |error: csv::Error| format(path, Reason::header(format!("is no table of points: {error}")));
     let delimiter = delimiter(path)?;
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(delimiter)
@@ -33,13 +34,13 @@ pub(super) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, Poi
             (_, Some(_)) => {}
             (Ok(named), None) => rows.are(named),
             (Err(unknown), None) => {
-                let what = format!("{FIRST_LINE}: {unknown}");
-                return Err(format(path, what));
+                let reason = Reason::header(format!("{FIRST_LINE}: {unknown}"));
+                return Err(format(path, reason));
             }
         }
     }
     if first {
-        return Err(format(path, format!("is empty: {FIRST_LINE}")));
+        return Err(format(path, Reason::header(format!("is empty: {FIRST_LINE}"))));
     }
     rows.finish()
 }

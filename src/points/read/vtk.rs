@@ -1,32 +1,43 @@
 use std::path::Path;
 
 use super::{Points, PointsError, format};
-use crate::volume::VtkXml;
+use crate::volume::{Reason, VtkXml};
 
 /// Whether a file holds points and not a volume.
-pub(super) fn is_geometry(file: &VtkXml) -> bool {
+pub(crate) fn holds_points(path: &Path) -> Result<bool, PointsError> {
+    Ok(is_geometry(&VtkXml::open(path)?))
+}
+
+fn is_geometry(file: &VtkXml) -> bool {
     matches!(file.kind(), "UnstructuredGrid" | "PolyData")
 }
 
 /// Reads the points of VTU or VTP, VTK's unstructured grids and polygons in XML, in one piece, with
 /// the point data `weight` and `value`, in any case; where none is named value, the active scalars.
-pub(super) fn read(path: &Path) -> Result<Points, PointsError> {
+pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let file = VtkXml::open(path)?;
     if !is_geometry(&file) {
-        let what = format!("holds {}: points are read from .vtu and .vtp", file.kind());
-        return Err(format(path, what));
+        let reason = Reason::unsupported(
+            format!("holds {}: points are read from .vtu and .vtp", file.kind()),
+            "convert it first",
+        );
+        return Err(format(path, reason));
     }
     let (_, piece) = file.piece()?;
     let count = file.attribute(piece, "NumberOfPoints").and_then(|text| text.parse::<u64>().ok());
-    let count = count.ok_or_else(|| format(path, "has no NumberOfPoints: it is damaged".into()))?;
+    let count = count
+        .ok_or_else(|| format(path, Reason::damaged("has no NumberOfPoints: it is damaged")))?;
     let places = file.children(piece, "Points").next();
     let places = places.and_then(|points| file.children(points, "DataArray").next());
     let Some(places) = places else {
-        return Err(format(path, "has no array of points: it is damaged".into()));
+        return Err(format(path, Reason::damaged("has no array of points: it is damaged")));
     };
     if file.components(places) != "3" {
         let components = file.components(places);
-        return Err(format(path, format!("has points of {components} coordinates, not 3")));
+        return Err(format(
+            path,
+            Reason::header(format!("has points of {components} coordinates, not 3")),
+        ));
     }
     let coordinates: Vec<f64> = file.values(places, count.saturating_mul(3))?;
 

@@ -1,13 +1,13 @@
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use super::columns::{Columns, Rows};
-use super::{COLUMNS, Points, PointsError, format};
-use crate::volume::{Lines, io_error};
+use super::rows::Rows;
+use super::{COLUMNS, Columns, Points, PointsError, format};
+use crate::volume::{Lines, Reason, io_error};
 
 /// What a first line with nothing but a count means.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Counted {
+pub(crate) enum Counted {
     /// Chemistry's XYZ: a line of words, then an element and the coordinates of each atom, and
     /// whatever follows these.
     Atoms,
@@ -17,7 +17,7 @@ pub(super) enum Counted {
 
 /// Reads lines of numbers between white space (or commas). A first line of names, perhaps behind `#` or
 /// `//`, says what they are; other lines that begin so are remarks.
-pub(super) fn read(
+pub(crate) fn read(
     path: &Path,
     columns: Option<&Columns>,
     counted: Counted,
@@ -62,7 +62,10 @@ fn words(line: &str) -> Vec<&str> {
 
 fn finite(path: &Path, line: u64, name: &str, word: &str) -> Result<f64, PointsError> {
     word.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-        format(path, format!("line {line}, column {name}: {word:?} is no finite number"))
+        format(
+            path,
+            Reason::value(format!("line {line}, column {name}: {word:?} is no finite number")),
+        )
     })
 }
 
@@ -77,16 +80,18 @@ fn atoms(path: &Path, mut lines: Lines<impl BufRead>, count: u64) -> Result<Poin
             continue;
         }
         let [_, x, y, z, ..] = words[..] else {
-            let what = format!("line {number} is no element with x, y and z");
-            return Err(format(path, what));
+            let reason = Reason::value(format!("line {number} is no element with x, y and z"));
+            return Err(format(path, reason));
         };
         let axis = |axis: usize, word| finite(path, number, COLUMNS[axis], word);
         points.positions.push([axis(0, x)?, axis(1, y)?, axis(2, z)?]);
     }
     if points.len() as u64 != count {
         let found = points.len();
-        let what = format!("claims {count} atoms, but has {found}: it is truncated or mislabelled");
-        return Err(format(path, what));
+        let reason = Reason::truncated(format!(
+            "claims {count} atoms, but has {found}: it is truncated or mislabelled"
+        ));
+        return Err(format(path, reason));
     }
     Ok(points)
 }
@@ -106,7 +111,10 @@ fn points_then_normals(
             continue;
         }
         let [x, y, z] = words[..] else {
-            return Err(format(path, format!("line {number} has {} columns, not 3", words.len())));
+            return Err(format(
+                path,
+                Reason::value(format!("line {number} has {} columns, not 3", words.len())),
+            ));
         };
         let axis = |axis: usize, word| finite(path, number, COLUMNS[axis], word);
         let vector = [axis(0, x)?, axis(1, y)?, axis(2, z)?];
@@ -116,11 +124,11 @@ fn points_then_normals(
         found += 1;
     }
     if found != count && Some(found) != count.checked_mul(2) {
-        let what = format!(
-            "claims {count} points and as many normals, but has {found} lines: it is truncated or \
-             mislabelled"
-        );
-        return Err(format(path, what));
+        let reason = Reason::truncated(format!(
+            "claims {count} points and as many normals, but has {found} lines: it is \
+                 truncated or mislabelled"
+        ));
+        return Err(format(path, reason));
     }
     Ok(points)
 }

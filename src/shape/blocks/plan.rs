@@ -1,6 +1,7 @@
 //! Into how many blocks a set is cut.
 
 use super::Partition;
+use crate::advice::Advice;
 use crate::memory;
 use crate::triangulation::{Maker, Sites};
 
@@ -31,8 +32,7 @@ pub(crate) struct Limits {
 /// The memory allowed does not suffice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "--memory {} does not suffice: with {blocks} blocks, one at a time, about {} are needed; \
-     allow more, or select fewer points",
+    "{} of memory do not suffice: with {blocks} blocks, one at a time, about {} are needed",
     memory::readable(*asked),
     memory::readable(*needed)
 )]
@@ -43,6 +43,13 @@ pub struct PlanError {
     pub needed: u64,
     /// Its number of blocks.
     pub blocks: usize,
+}
+
+impl PlanError {
+    /// What to do about it.
+    pub fn advice(&self) -> Advice {
+        "allow more, or select fewer points".into()
+    }
 }
 
 /// Bytes for each point of blocks that are done: the rows and classes of about 5 cells, 11 facets and 7

@@ -8,7 +8,7 @@ use ndarray::Array3;
 use super::frames::Frames;
 use super::payload::{Length, Payload};
 use super::{format_error, payload_error, text};
-use crate::volume::{Coordinates, Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// A volume as the header of a file describes it, x fastest.
 #[derive(Clone, Debug)]
@@ -65,7 +65,7 @@ impl Described {
                 let count = self.dims.samples();
                 let all = (count as u64).saturating_mul(self.frames.count);
                 let mut samples = text::numbers(compressed, bytes, self.dtype, all)
-                    .map_err(|what| format_error(path, what))?;
+                    .map_err(|reason| format_error(path, reason))?;
                 samples.drain(..count * self.frames.index as usize);
                 samples.truncate(count);
                 self.volume(samples)
@@ -99,11 +99,11 @@ pub(super) fn frame(
 ) -> Result<Frame, VolumeError> {
     let frame = Frame::from_axes(origin, axes).map(|frame| frame.meaning(coordinates));
     frame.ok_or_else(|| {
-        let what = format!(
-            "places its grid at {origin:?} with steps {axes:?} along its axes: spacing must not be \
-             0, and all numbers finite; correct its header"
-        );
-        format_error(path, what)
+        let reason = Reason::header(format!(
+            "places its grid at {origin:?} with steps {axes:?} along its axes: spacing must not \
+             be 0, and all numbers finite"
+        ));
+        format_error(path, reason)
     })
 }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::described::Described;
 use super::{format_error, io_error};
 use crate::shown::shown;
-use crate::volume::{Volume, VolumeError};
+use crate::volume::{Reason, Volume, VolumeError};
 
 /// The files that a header names, relative to its folder; they may stand anywhere.
 pub(super) fn beside(header: &Path, names: &[String]) -> Vec<PathBuf> {
@@ -37,12 +37,17 @@ pub(super) fn naming<'a>(
         [.., last] if files.len() > 1 => format!("{first} to {}", shown(last)),
         _ => first,
     };
-    move |error| match error {
-        VolumeError::Format { what, .. } => {
-            format_error(header, format!("(samples in {place}) {what}"))
-        }
-        VolumeError::Io { .. } | VolumeError::InFile { .. } => error,
-        other => format_error(header, format!("(samples in {place}) {other}")),
+    move |error| {
+        let reason = match error {
+            VolumeError::Format { reason, .. } => reason,
+            VolumeError::Io { .. } | VolumeError::InFile { .. } => return error,
+            other => Reason::content(
+                other.to_string(),
+                other.advice().unwrap_or_else(|| "correct the header".into()),
+            ),
+        };
+        let (part, reason) = (format!("(samples in {place})"), Box::new(reason));
+        format_error(header, Reason::Within { part, reason })
     }
 }
 

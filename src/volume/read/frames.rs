@@ -3,7 +3,8 @@ use std::path::Path;
 
 use super::payload::Length;
 use super::{format_error, io_error};
-use crate::volume::VolumeError;
+use crate::advice::{Setting, advice};
+use crate::volume::{Reason, VolumeError};
 
 /// Which of the volumes of a file is read: those of a fourth axis, and perhaps more, one behind the
 /// other.
@@ -24,12 +25,17 @@ impl Frames {
         match asked {
             Some(index) if index < count => Ok(Self { index, count }),
             None if count == 1 => Ok(Self::ONE),
-            None if count == 0 => Err(format_error(path, "has an axis without samples")),
+            None if count == 0 => {
+                Err(format_error(path, Reason::header("has an axis without samples")))
+            }
             _ => {
                 let last = count.saturating_sub(1);
-                let what =
-                    format!("holds {count} volumes: choose one with --frame, from 0 to {last}");
-                Err(format_error(path, what))
+                let reason = Reason::choice(
+                    Setting::Frame,
+                    format!("holds {count} volumes"),
+                    advice!["choose one with ", Setting::Frame, format!(", from 0 to {last}")],
+                );
+                Err(format_error(path, reason))
             }
         }
     }
@@ -45,12 +51,12 @@ impl Frames {
         let (skip, all) = (self.index.saturating_mul(each), self.count.saturating_mul(each));
         let left = match length {
             Length::Exactly(bytes) if self.count > 1 && bytes != all => {
-                let what = format!(
-                    "its header claims {} volumes, {all} bytes, but {bytes} follow it: the file is \
-                     truncated or mislabelled",
+                let reason = Reason::truncated(format!(
+                    "its header claims {} volumes, {all} bytes, but {bytes} follow it: the \
+                         file is truncated or mislabelled",
                     self.count
-                );
-                return Err(format_error(path, what));
+                ));
+                return Err(format_error(path, reason));
             }
             Length::Exactly(_) if self.count > 1 => Length::Exactly(each),
             other => other.minus(skip),

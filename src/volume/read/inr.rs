@@ -4,15 +4,21 @@ use std::path::Path;
 use ndarray::Array3;
 
 use super::payload::{Length, Payload};
-use super::{io_error, payload_error};
-use crate::volume::{Coordinates, Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use super::{io_error, payload_error, unpacked};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// The first bytes of each INRIMAGE-4 file.
-pub(super) const MAGIC: &[u8] = b"#INRIMAGE-4#{";
+const MAGIC: &[u8] = b"#INRIMAGE-4#{";
 /// The line that ends a header.
 const END: &[u8] = b"\n##}\n";
 /// Longer headers than these 16 kB are taken for damage.
 const MAX_HEADER: usize = 1 << 14;
+
+/// Reads a file of it, perhaps compressed with gzip.
+pub(crate) fn open(path: &Path) -> Result<Volume, VolumeError> {
+    let (reader, length) = unpacked(path)?;
+    read(path, reader, length)
+}
 
 /// Reads an INRIMAGE-4 image, INRIA's format in which CGAL ships its sample volumes: lines
 /// `KEY=VALUE` up to a line `##}`, then the samples, x fastest. Headers should be padded to a multiple
@@ -44,14 +50,14 @@ struct Header {
 }
 
 enum HeaderError {
-    Said(String),
+    Said(Reason),
     Volume(VolumeError),
 }
 
 impl HeaderError {
     fn located(self, path: &Path) -> VolumeError {
         match self {
-            Self::Said(what) => VolumeError::Format { path: path.into(), what },
+            Self::Said(reason) => VolumeError::Format { path: path.into(), reason },
             Self::Volume(error) => error,
         }
     }
@@ -59,20 +65,24 @@ impl HeaderError {
 
 /// Reads up to the line that closes the header.
 fn header(path: &Path, reader: &mut impl Read) -> Result<Vec<u8>, VolumeError> {
-    let format = |what: &str| VolumeError::Format { path: path.into(), what: what.into() };
+    let format = |reason: Reason| VolumeError::Format { path: path.into(), reason };
     let mut text = Vec::new();
     reader.take(MAGIC.len() as u64).read_to_end(&mut text).map_err(io_error(path))?;
     if text != MAGIC {
-        return Err(format("is no INRIMAGE-4 file: it does not begin with #INRIMAGE-4#{"));
+        return Err(format(Reason::other(
+            "is no INRIMAGE-4 file: it does not begin with #INRIMAGE-4#{",
+        )));
     }
     while !text.ends_with(END) {
         if text.len() == MAX_HEADER {
-            return Err(format("has no end of header (a line ##}) in 16 kB: it is damaged"));
+            return Err(format(Reason::damaged(
+                "has no end of header (a line ##}) in 16 kB: it is damaged",
+            )));
         }
         let mut byte = [0];
         reader.read_exact(&mut byte).map_err(|error| match error.kind() {
             ErrorKind::UnexpectedEof => {
-                format("ends inside its INRIMAGE header: it is truncated; copy it again")
+                format(Reason::truncated("ends inside its INRIMAGE header: it is truncated"))
             }
             _ => io_error(path)(error),
         })?;
@@ -82,7 +92,7 @@ fn header(path: &Path, reader: &mut impl Read) -> Result<Vec<u8>, VolumeError> {
 }
 
 fn parse(text: &[u8]) -> Result<Header, HeaderError> {
-    let said = |what: String| HeaderError::Said(what);
+    let said = HeaderError::Said;
     let text = String::from_utf8_lossy(text);
     let value = |key: &str| {
         let of_key = |line: &str| {
@@ -93,17 +103,22 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
         text.lines().filter(|line| !line.starts_with('#')).find_map(of_key)
     };
     let needed = |key: &str| {
-        value(key).ok_or_else(|| said(format!("its INRIMAGE header has no {key}: it is damaged")))
+        value(key).ok_or_else(|| {
+            said(Reason::damaged(format!("its INRIMAGE header has no {key}: it is damaged")))
+        })
     };
     let size = |key: &str, text: String| {
-        text.parse::<u64>()
-            .map_err(|_| said(format!("{key}={text} in its header is no number of samples")))
+        text.parse::<u64>().map_err(|_| {
+            said(Reason::header(format!("{key}={text} in its header is no number of samples")))
+        })
     };
     let number = |key: &str, default: f64| match value(key) {
         None => Ok(default),
         Some(text) => match text.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(said(format!("{key}={text} in its header is no finite number"))),
+            _ => {
+                Err(said(Reason::value(format!("{key}={text} in its header is no finite number"))))
+            }
         },
     };
 
@@ -111,13 +126,14 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
     let dims = Dims::new(x?, y?, z?).map_err(HeaderError::Volume)?;
     let values = size("VDIM", value("VDIM").unwrap_or_else(|| "1".into()))?;
     if values != 1 {
-        return Err(said(format!(
-            "has {values} values a voxel (VDIM): only scalar volumes are read; extract one first"
-        )));
+        return Err(said(Reason::not_scalar(format!("{values} values a voxel (VDIM)"))));
     }
     for key in ["RX", "RY", "RZ"] {
         if number(key, 0.0)? != 0.0 {
-            return Err(said(format!("has rotated axes ({key}), which are not read: resample it")));
+            return Err(said(Reason::unsupported(
+                format!("has rotated axes ({key}), which are not read"),
+                "resample it",
+            )));
         }
     }
 
@@ -134,10 +150,10 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
         ("signed fixed", "32") => Dtype::I32,
         ("signed fixed", "64") => Dtype::I64,
         _ => {
-            return Err(said(format!(
+            return Err(said(Reason::header(format!(
                 "TYPE={kind} of PIXSIZE={bits} is no INRIMAGE sample type: float is 32 or 64 \
-                 bits, signed fixed and unsigned fixed are 8, 16, 32 or 64"
-            )));
+                     bits, signed fixed and unsigned fixed are 8, 16, 32 or 64"
+            ))));
         }
     };
     let endian = match (value("CPU").as_deref(), dtype.size()) {
@@ -145,9 +161,10 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
         (Some("sun" | "sgi"), _) => Endian::Big,
         (cpu, _) => {
             let cpu = cpu.unwrap_or("(missing)");
-            return Err(said(format!(
-                "CPU={cpu} names no byte order: decm, alpha and pc are little endian, sun and sgi big"
-            )));
+            return Err(said(Reason::header(format!(
+                "CPU={cpu} names no byte order: decm, alpha and pc are little endian, sun \
+                     and sgi big"
+            ))));
         }
     };
 
@@ -156,7 +173,9 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
         frame.spacing[axis] = number(spacing, 1.0)?;
         frame.origin[axis] = number(origin, 0.0)?;
         if frame.spacing[axis] <= 0.0 {
-            return Err(said(format!("{spacing} in its header must be a positive length")));
+            return Err(said(Reason::header(format!(
+                "{spacing} in its header must be a positive length"
+            ))));
         }
         if value(spacing).or(value(origin)).is_some() {
             frame.coordinates = Coordinates::default();

@@ -8,29 +8,19 @@ use super::frames::Frames;
 use super::lines::Lines;
 use super::nrrd::numbered;
 use super::{format_error, io_error};
-use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Volume, VolumeError};
-
-/// Keys one of which stands in the first line of a MetaImage header.
-const FIRST_KEYS: [&str; 4] = ["ObjectType", "NDims", "Comment", "ObjectSubType"];
+use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Reason, Volume, VolumeError};
 
 /// Keys of the grid's place, each by its names.
 const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
 const ORIGIN: [&str; 3] = ["Offset", "Origin", "Position"];
 const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
 
-/// Whether a file begins as a MetaImage header does.
-pub(super) fn is_header(start: &[u8]) -> bool {
-    let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();
-    let line = String::from_utf8_lossy(line);
-    line.split_once('=').is_some_and(|(key, _)| FIRST_KEYS.contains(&key.trim()))
-}
-
 /// Reads MetaImage, the format of ITK's MetaIO, with its samples behind the header (`.mha`) or in
 /// other files (`.mhd`: one, a `LIST`, or a numbered row), raw, zlib-compressed or text.
 ///
 /// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame.
 /// A fourth axis counts volumes, of which `frame` is read; several channels are refused.
-pub(super) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut lines = Lines::new(BufReader::new(file));
@@ -47,7 +37,7 @@ pub(super) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
 }
 
 /// The files that hold the samples, where the header does not.
-pub(super) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
+pub(crate) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
     let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
     let names = Header::read(path, &mut lines)?.names(path, &mut lines)?;
     Ok(names.map_or_else(Vec::new, |names| beside(path, &names)))
@@ -68,8 +58,9 @@ impl Header {
             }
             let Some((key, value)) = line.split_once('=') else {
                 let line: String = line.chars().take(40).collect();
-                let what = format!("is no MetaImage file: its header has a line {line:?}");
-                return Err(format_error(path, what));
+                let reason =
+                    Reason::other(format!("is no MetaImage file: its header has a line {line:?}"));
+                return Err(format_error(path, reason));
             };
             let (key, value) = (key.trim().to_owned(), value.trim().to_owned());
             if key == "ElementDataFile" {
@@ -77,8 +68,9 @@ impl Header {
             }
             fields.push((key, value));
         }
-        let what = "ends before ElementDataFile: it is truncated, or no MetaImage file";
-        Err(format_error(path, what))
+        let reason =
+            Reason::truncated("ends before ElementDataFile: it is truncated, or no MetaImage file");
+        Err(format_error(path, reason))
     }
 
     /// The data files as they are named; `None` where the samples follow the header.
@@ -101,12 +93,15 @@ impl Header {
             names
         } else {
             match numbered(&words) {
-                Some(names) => names.map_err(|what| format_error(path, what))?,
+                Some(names) => names.map_err(|reason| format_error(path, reason))?,
                 None => vec![self.data.clone()],
             }
         };
         if names.iter().all(String::is_empty) {
-            return Err(format_error(path, "names no data file: its header is damaged"));
+            return Err(format_error(
+                path,
+                Reason::damaged("names no data file: its header is damaged"),
+            ));
         }
         Ok(Some(names))
     }
@@ -133,25 +128,36 @@ impl Header {
         let numbers: Option<Vec<f64>> =
             text.split_whitespace().map(|number| number.parse().ok()).collect();
         numbers.filter(|numbers| numbers.len() == count).ok_or_else(|| {
-            let what = format!("{} = {text} in its header is not {count} numbers", keys[0]);
-            format_error(path, what)
+            let reason = Reason::header(format!(
+                "{} = {text} in its header is not {count} numbers",
+                keys[0]
+            ));
+            format_error(path, reason)
         })
     }
 
     fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
-        let said = |what: String| format_error(path, what);
+        let said = |reason: Reason| format_error(path, reason);
         let needed = |key: &str| {
-            self.field(&[key])
-                .ok_or_else(|| said(format!("its MetaImage header has no {key}: it is damaged")))
+            self.field(&[key]).ok_or_else(|| {
+                said(Reason::damaged(format!("its MetaImage header has no {key}: it is damaged")))
+            })
         };
         if let Some(kind) = self.field(&["ObjectType"]).filter(|kind| *kind != "Image") {
-            return Err(said(format!("holds an object of type {kind}: only Image is read")));
+            return Err(said(Reason::unsupported(
+                format!("holds an object of type {kind}: only Image is read"),
+                "convert it first",
+            )));
         }
         let count = match needed("NDims")? {
             "2" => 2,
             "3" => 3,
             "4" => 4,
-            other => return Err(said(format!("has NDims = {other}: a volume has 3 axes"))),
+            other => {
+                return Err(said(Reason::header(format!(
+                    "has NDims = {other}: a volume has 3 axes"
+                ))));
+            }
         };
         let sizes = needed("DimSize")?;
         let size: Option<Vec<u64>> = sizes.split_whitespace().map(|n| n.parse().ok()).collect();
@@ -159,19 +165,25 @@ impl Header {
             Some(&[x, y]) if count == 2 => (Dims::new(x, y, 1)?, 1),
             Some(&[x, y, z]) if count == 3 => (Dims::new(x, y, z)?, 1),
             Some(&[x, y, z, t]) if count == 4 => (Dims::new(x, y, z)?, t),
-            _ => return Err(said(format!("DimSize = {sizes} is not {count} sizes"))),
+            _ => {
+                return Err(said(Reason::header(format!(
+                    "DimSize = {sizes} is not {count} sizes"
+                ))));
+            }
         };
         let frames = Frames::choose(path, &[volumes], frame)?;
         let channels = self.field(&["ElementNumberOfChannels"]).unwrap_or("1");
         if channels != "1" {
-            return Err(said(format!(
-                "has {channels} values a voxel (ElementNumberOfChannels): only scalar volumes are \
-                 read; extract one first"
-            )));
+            return Err(said(Reason::not_scalar(format!(
+                "{channels} values a voxel (ElementNumberOfChannels)"
+            ))));
         }
         let name = needed("ElementType")?;
         let dtype = scalar_type(name).ok_or_else(|| {
-            said(format!("holds samples of type {name}, which is not read: save it as MET_FLOAT"))
+            said(Reason::unsupported(
+                format!("holds samples of type {name}, which is not read"),
+                "save it as MET_FLOAT",
+            ))
         })?;
         let big = self.flag(&["BinaryDataByteOrderMSB", "ElementByteOrderMSB"]);
         let encoding = if self.field(&["BinaryData"]).is_some() && !self.flag(&["BinaryData"]) {
@@ -222,7 +234,10 @@ impl Header {
         match text.parse::<i64>() {
             Ok(-1) => Ok(None),
             Ok(skip) if skip >= 0 => Ok(Some(skip as u64)),
-            _ => Err(format_error(path, format!("HeaderSize = {text} is no number of bytes"))),
+            _ => Err(format_error(
+                path,
+                Reason::header(format!("HeaderSize = {text} is no number of bytes")),
+            )),
         }
     }
 }

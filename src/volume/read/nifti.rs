@@ -6,49 +6,40 @@ use super::described::{Described, Encoding, diagonal, frame};
 use super::detached::naming;
 use super::frames::Frames;
 use super::payload::{Length, Payload};
-use super::{format_error, io_error, payload_error};
+use super::{format_error, io_error, payload_error, unpacked};
+use crate::volume::formats::{NIFTI_HEADERS, nifti_version, start_of};
 use crate::volume::{
-    Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Space, Volume, VolumeError,
+    Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Space, Volume, VolumeError,
 };
-
-/// Length of the header of version 1, which its first number repeats.
-const HEADER_1: usize = 348;
-/// Length of the header of version 2.
-const HEADER_2: usize = 540;
-
-/// Whether a file begins as a NIfTI (or Analyze) header does, of either version and byte order.
-pub(super) fn is_header(start: &[u8]) -> bool {
-    start.len() >= HEADER_1 && version(start).is_some()
-}
 
 /// Reads NIfTI-1 and NIfTI-2 (nifti.nimh.nih.gov): `.nii`, `.nii.gz`, or a pair `.hdr` and `.img`.
 ///
 /// `scl_slope` and `scl_inter` are applied. The frame is that of `sform`, else of `qform`, else of
 /// `pixdim` alone, which says nothing of the space; the other two are RAS. Axes beyond
 /// the third count volumes, of which `frame` is read; colours and complex numbers are refused.
-pub(super) fn read(
-    path: &Path,
-    reader: impl Read,
-    length: Length,
-    frame: Option<u64>,
-) -> Result<Volume, VolumeError> {
-    let mut reader = reader;
+pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+    let (mut reader, length) = unpacked(path)?;
     let mut header = Vec::new();
     let mut fill = |size: usize, header: &mut Vec<u8>| -> Result<(), VolumeError> {
         let left = (size - header.len()) as u64;
         (&mut reader).take(left).read_to_end(header).map_err(io_error(path))?;
         if header.len() < size {
-            return Err(format_error(path, "ends inside its NIfTI header: it is truncated"));
+            return Err(format_error(
+                path,
+                Reason::truncated("ends inside its NIfTI header: it is truncated"),
+            ));
         }
         Ok(())
     };
-    fill(HEADER_1, &mut header)?;
-    let Some((version, endian)) = version(&header) else {
-        let what = "is no NIfTI file: it begins with neither 348 nor 540, the length of its header";
-        return Err(format_error(path, what));
+    fill(NIFTI_HEADERS[0], &mut header)?;
+    let Some((version, endian)) = nifti_version(&header) else {
+        let reason = Reason::other(
+            "is no NIfTI file: it begins with neither 348 nor 540, the length of its header",
+        );
+        return Err(format_error(path, reason));
     };
     if version == 2 {
-        fill(HEADER_2, &mut header)?;
+        fill(NIFTI_HEADERS[1], &mut header)?;
     }
     let header = Header { bytes: header, version, endian };
     let described = header.described(path, frame)?;
@@ -67,15 +58,19 @@ pub(super) fn read(
     let skip = offset - header.bytes.len() as u64;
     let skipped = std::io::copy(&mut (&mut reader).take(skip), &mut std::io::sink());
     if skipped.map_err(io_error(path))? < skip {
-        return Err(format_error(path, format!("ends before its samples at byte {offset}")));
+        return Err(format_error(
+            path,
+            Reason::truncated(format!("ends before its samples at byte {offset}")),
+        ));
     }
     samples(path, described, slope, inter, reader, length.minus(offset))
 }
 
 /// The file that holds the samples, where the header has one of its own.
-pub(super) fn data_files(path: &Path, start: &[u8]) -> Result<Vec<PathBuf>, VolumeError> {
-    let Some((version, endian)) = version(start) else { return Ok(Vec::new()) };
-    let header = Header { bytes: start.to_owned(), version, endian };
+pub(crate) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
+    let start = start_of(path)?;
+    let Some((version, endian)) = nifti_version(&start) else { return Ok(Vec::new()) };
+    let header = Header { bytes: start, version, endian };
     Ok(if header.is_pair(path)? { vec![path.with_extension("img")] } else { Vec::new() })
 }
 
@@ -108,20 +103,6 @@ fn samples(
     };
     // Scaled bytes are no gray levels.
     Ok(described.volume(scaled)?.with_dtype(Dtype::F32))
-}
-
-/// Version and byte order, by the first number.
-fn version(start: &[u8]) -> Option<(u8, Endian)> {
-    let first: [u8; 4] = start.get(..4)?.try_into().ok()?;
-    for (size, version) in [(HEADER_1, 1), (HEADER_2, 2)] {
-        if u32::from_le_bytes(first) == size as u32 {
-            return Some((version, Endian::Little));
-        }
-        if u32::from_be_bytes(first) == size as u32 {
-            return Some((version, Endian::Big));
-        }
-    }
-    None
 }
 
 /// The bytes of a header; places are those of version 1 and version 2.
@@ -177,12 +158,17 @@ impl Header {
             b"ni1\0" | b"ni2\0" => Ok(true),
             [0, ..] if self.version == 1 => Err(format_error(
                 path,
-                "is an Analyze 7.5 header, which says nothing of orientation and is not read: \
-                 convert it to NIfTI",
+                Reason::unsupported(
+                    "is an Analyze 7.5 header, which says nothing of orientation and is not read",
+                    "convert it to NIfTI",
+                ),
             )),
             magic => Err(format_error(
                 path,
-                format!("is no NIfTI file: {:?} stands for n+1", String::from_utf8_lossy(magic)),
+                Reason::other(format!(
+                    "is no NIfTI file: {:?} stands for n+1",
+                    String::from_utf8_lossy(magic)
+                )),
             )),
         }
     }
@@ -204,19 +190,26 @@ impl Header {
         if offset == 0.0 {
             return Ok(self.bytes.len() as u64 + 4);
         }
-        Err(format_error(path, format!("has samples at byte {offset} (vox_offset), in its header")))
+        Err(format_error(
+            path,
+            Reason::header(format!("has samples at byte {offset} (vox_offset), in its header")),
+        ))
     }
 
     fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
-        let said = |what: String| format_error(path, what);
+        let said = |reason: Reason| format_error(path, reason);
         let axes = self.dim(0);
         if !(1..=7).contains(&axes) {
-            return Err(said(format!("has dim[0] = {axes}: 1 to 7 axes are possible")));
+            return Err(said(Reason::header(format!(
+                "has dim[0] = {axes}: 1 to 7 axes are possible"
+            ))));
         }
         let size = |axis: usize| if axis as i64 <= axes { self.dim(axis) } else { 1 };
         let sizes = [1, 2, 3, 4, 5, 6, 7].map(size);
         if sizes.iter().any(|&size| size < 0) {
-            return Err(said(format!("has axes of {sizes:?} samples: its header is damaged")));
+            return Err(said(Reason::damaged(format!(
+                "has axes of {sizes:?} samples: its header is damaged"
+            ))));
         }
         let sizes = sizes.map(|size| size as u64);
         let frames = Frames::choose(path, &sizes[3..], frame)?;
@@ -241,9 +234,12 @@ impl Header {
                     1536 => "128-bit floats",
                     _ => "an unknown type",
                 };
-                return Err(said(format!(
-                    "holds {name} (datatype {code}): integers of 8 to 64 bits, float32 and float64 \
-                     are read; convert it"
+                return Err(said(Reason::unsupported(
+                    format!(
+                        "holds {name} (datatype {code}): integers of 8 to 64 bits, float32 \
+                             and float64 are read"
+                    ),
+                    "convert it",
                 )));
             }
         };

@@ -3,12 +3,12 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use ndarray::{Array3, ShapeBuilder};
-use walpha_check::npy::{Header, NpyError};
+use walpha_check::npy::{Header, MAGIC, NpyError};
 
 use super::frames::Frames;
 use super::payload::{Element, Length, Payload};
 use super::{io_error, payload_error_of};
-use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// An array as NPY describes it (format versions 1 to 3, numpy.lib.format).
 pub(crate) struct NpyFile<R = BufReader<File>> {
@@ -25,7 +25,7 @@ pub(crate) struct NpyFile<R = BufReader<File>> {
 
 /// Reads an array of three axes `[z, y, x]`, in C or Fortran order, or the one numbered `frame` of an
 /// array of four, in C order.
-pub(super) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
     let file = NpyFile::open(path)?;
     if let (&[count, z, y, x], false) = (file.shape.as_slice(), file.fortran) {
         let each =
@@ -49,9 +49,12 @@ pub(super) fn volume<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Volume, V
     let &[z, y, x] = file.shape.as_slice() else {
         return Err(VolumeError::Format {
             path: path.into(),
-            what: format!(
-                "holds an array of {} axes: a volume has three, [z, y, x]; save a.reshape(z, y, x)",
-                file.shape.len()
+            reason: Reason::unsupported(
+                format!(
+                    "holds an array of {} axes: a volume has three, [z, y, x]",
+                    file.shape.len()
+                ),
+                "save a.reshape(z, y, x)",
             ),
         });
     };
@@ -66,6 +69,11 @@ pub(super) fn volume<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Volume, V
 }
 
 impl NpyFile {
+    /// Whether a file begins as NPY does.
+    pub fn begins(start: &[u8]) -> bool {
+        start.starts_with(MAGIC)
+    }
+
     /// Reads and checks the header.
     pub fn open(path: &Path) -> Result<Self, VolumeError> {
         let file = File::open(path).map_err(io_error(path))?;
@@ -77,17 +85,24 @@ impl NpyFile {
 impl<R: Read> NpyFile<R> {
     /// Reads and checks the header of an array of so many bytes in a file.
     pub fn of(path: &Path, mut reader: R, length: u64) -> Result<Self, VolumeError> {
-        let said = |what: String| VolumeError::Format { path: path.into(), what };
+        let said = |reason: Reason| VolumeError::Format { path: path.into(), reason };
         let header = Header::read(&mut reader).map_err(|error| match error {
             NpyError::Io(error) => io_error(path)(error),
-            other => said(other.to_string()),
+            NpyError::Truncated => {
+                said(Reason::truncated("ends inside its NPY header: it is truncated"))
+            }
+            error @ NpyError::Version(_) => {
+                said(Reason::unsupported(error.to_string(), "convert it first"))
+            }
+            error @ NpyError::Length(_) => said(Reason::damaged(error.to_string())),
+            error @ NpyError::Dictionary(_) => said(Reason::header(error.to_string())),
+            error => said(Reason::other(error.to_string())),
         })?;
         let Header { descr, fortran, shape, .. } = header;
         let (dtype, endian, boolean) = element(&descr).ok_or_else(|| {
-            said(format!(
+            said(Reason::unsupported(format!(
                 "holds elements of type {descr}: only bool, integers of 8 to 64 bits, f4 and f8 \
-                 are read; save a.astype('f4')"
-            ))
+                 are read"), "save a.astype('f4')"))
         })?;
         let length = Length::Exactly(length).minus(header.length);
         let payload = Payload { reader, length };

@@ -8,11 +8,12 @@ use zip::result::ZipError;
 use super::npy::{self, NpyFile};
 use super::payload::MOST_EXPANSION;
 use super::{format_error, io_error};
-use crate::volume::{Volume, VolumeError};
+use crate::advice::{Setting, advice};
+use crate::volume::{Reason, Volume, VolumeError};
 
 /// Reads NPZ, NumPy's archive of arrays (`savez`, `savez_compressed`): its only array of three axes, or
 /// the one of this name.
-pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut archive = ZipArchive::new(BufReader::new(file)).map_err(damaged(path))?;
@@ -29,17 +30,25 @@ pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeEr
         [] => Err(format_error(
             path,
             match wanted {
-                Some(name) => format!("holds no array {name:?} of three axes; see --array"),
-                None => "holds no array of three axes: there is no volume in it".into(),
+                Some(name) => Reason::choice(
+                    Setting::Array,
+                    format!("holds no array {name:?} of three axes"),
+                    advice!["name another with ", Setting::Array],
+                ),
+                None => Reason::content(
+                    "holds no array of three axes: there is no volume in it",
+                    "name another file",
+                ),
             },
         )),
         several => {
             let names: Vec<&str> = several.iter().map(|(_, name)| name.as_str()).collect();
             Err(format_error(
                 path,
-                format!(
-                    "holds several arrays of three axes, {}: choose one with --array",
-                    names.join(", ")
+                Reason::choice(
+                    Setting::Array,
+                    format!("holds several arrays of three axes, {}", names.join(", ")),
+                    advice!["choose one with ", Setting::Array],
                 ),
             ))
         }
@@ -57,11 +66,12 @@ fn member<'a>(
     let name = member.name().to_owned();
     let most = member.compressed_size().min(length).saturating_mul(MOST_EXPANSION);
     if member.size() > most.saturating_add(MOST_EXPANSION) {
-        let what = format!(
-            "claims {} bytes for its array {name}, more than {length} bytes can hold: it is damaged",
+        let reason = Reason::damaged(format!(
+            "claims {} bytes for its array {name}, more than {length} bytes can hold: it is \
+                 damaged",
             member.size()
-        );
-        return Err(format_error(path, what));
+        ));
+        return Err(format_error(path, reason));
     }
     let size = member.size();
     Ok((name, NpyFile::of(path, member, size)?))
@@ -70,6 +80,9 @@ fn member<'a>(
 fn damaged(path: &Path) -> impl Fn(ZipError) -> VolumeError {
     move |error| match error {
         ZipError::Io(error) => io_error(path)(error),
-        other => format_error(path, format!("is no NPZ archive that can be read: {other}")),
+        other => format_error(
+            path,
+            Reason::other(format!("is no NPZ archive that can be read: {other}")),
+        ),
     }
 }

@@ -6,7 +6,8 @@ use ndarray::Array3;
 
 use super::payload::{Length, Payload, PayloadError};
 use super::{io_error, payload_error};
-use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use crate::advice::{Setting, advice};
+use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// What a file of bare samples does not say of itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +23,7 @@ pub struct RawLayout {
 }
 
 /// Reads a file that holds `offset` bytes and then exactly the samples of the layout.
-pub(super) fn read(path: &Path, layout: &RawLayout) -> Result<Volume, VolumeError> {
+pub(crate) fn read(path: &Path, layout: &RawLayout) -> Result<Volume, VolumeError> {
     let RawLayout { dims, dtype, endian, offset } = *layout;
     let mut reader = File::open(path).map_err(io_error(path))?;
     let length = reader.metadata().map_err(io_error(path))?.len();
@@ -32,7 +33,7 @@ pub(super) fn read(path: &Path, layout: &RawLayout) -> Result<Volume, VolumeErro
         payload.samples(dtype, endian, dims.samples() as u64).map_err(|error| match error {
             PayloadError::Length { needed, .. } => VolumeError::Format {
                 path: path.into(),
-                what: wrong_length(layout, needed, length),
+                reason: wrong_length(layout, needed, length),
             },
             other => payload_error(path, &dims, dtype)(other),
         })?;
@@ -40,23 +41,26 @@ pub(super) fn read(path: &Path, layout: &RawLayout) -> Result<Volume, VolumeErro
     Ok(Volume::of_file(samples, Frame::VOXEL)?.with_dtype(dtype))
 }
 
-fn wrong_length(layout: &RawLayout, needed: u64, length: u64) -> String {
+fn wrong_length(layout: &RawLayout, needed: u64, length: u64) -> Reason {
     let RawLayout { dims, dtype, offset, .. } = *layout;
-    let [x, y, z] = dims.xyz();
-    let claim = if offset == 0 {
-        format!("--dims {x},{y},{z} as {dtype} needs {needed} bytes")
-    } else {
-        let all = offset.saturating_add(needed);
-        format!("--dims {x},{y},{z} as {dtype} after --offset {offset} needs {all} bytes")
-    };
-    let advice = if length == 0 {
-        "it is empty".to_owned()
+    let behind =
+        if offset == 0 { String::new() } else { format!(", {offset} of them before the samples") };
+    let all = offset.saturating_add(needed);
+    let what = format!(
+        "a volume of {dims} samples of type {dtype} needs {all} bytes{behind}, the file has \
+             {length}"
+    );
+    let (setting, advice) = if length == 0 {
+        (Setting::Dims, advice!["it is empty, write it again"])
     } else if length > needed && offset == 0 {
-        format!("is a header of {} bytes to be skipped with --offset?", length - needed)
+        let header = format!("is a header of {} bytes to be skipped with ", length - needed);
+        (Setting::Offset, advice![header, Setting::Offset, "?"])
     } else if offset > 0 {
-        "check --dims, --dtype and --offset".to_owned()
+        let all = [Setting::Dims, Setting::Dtype, Setting::Offset];
+        (all[0], advice!["check ", all[0], ", ", all[1], " and ", all[2]])
     } else {
-        "is it cut off, or are --dims or --dtype others?".to_owned()
+        let (dims, dtype) = (Setting::Dims, Setting::Dtype);
+        (dims, advice!["is it cut off, or are ", dims, " or ", dtype, " others?"])
     };
-    format!("{claim}, the file has {length}: {advice}")
+    Reason::choice(setting, what, advice)
 }

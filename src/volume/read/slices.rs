@@ -8,14 +8,14 @@ use super::frames::Frames;
 use super::payload::MOST_EXPANSION;
 use super::tiff::{self, Page};
 use super::{format_error, io_error};
-use crate::volume::{Dims, Dtype, Endian, Frame, Volume, VolumeError};
+use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// What slices are called.
 const EXTENSIONS: [[&str; 2]; 3] = [["png", "png"], ["jpg", "jpeg"], ["tif", "tiff"]];
 
 /// Reads a folder of gray PNG, JPEG or TIFF slices, all of one kind and size, in the natural order
 /// of their names: `slice9` before `slice10`. Other files and hidden ones are passed over.
-pub(super) fn read(folder: &Path) -> Result<Volume, VolumeError> {
+pub(crate) fn read(folder: &Path) -> Result<Volume, VolumeError> {
     let paths = slices(folder)?;
     let mut stack = Vec::new();
     let mut first: Option<([u64; 2], Dtype)> = None;
@@ -24,18 +24,21 @@ pub(super) fn read(folder: &Path) -> Result<Volume, VolumeError> {
         let expected = *first.get_or_insert((size, dtype));
         if (size, dtype) != expected {
             let (sizes, other) = expected;
-            let what = format!(
-                "has {size:?} samples of {dtype}, but the first slice {sizes:?} of {other}: slices \
-                 must be alike"
-            );
-            return Err(format_error(path, what));
+            let reason = Reason::header(format!(
+                "has {size:?} samples of {dtype}, but the first slice {sizes:?} of {other}: \
+                     slices must be alike"
+            ));
+            return Err(format_error(path, reason));
         }
         Dims::new(size[0], size[1], paths.len() as u64)?;
         stack.extend(samples);
     }
     let Some((size, dtype)) = first else {
-        let what = "holds no PNG, JPEG or TIFF slices: name a file in it, or a folder of slices";
-        return Err(format_error(folder, what));
+        let reason = Reason::content(
+            "holds no PNG, JPEG or TIFF slices",
+            "name a file in it, or a folder of slices",
+        );
+        return Err(format_error(folder, reason));
     };
     let dims = Dims::new(size[0], size[1], paths.len() as u64)?;
     let (endian, frame, encoding) = (Endian::Little, Frame::VOXEL, Encoding::Raw);
@@ -55,8 +58,9 @@ fn slices(folder: &Path) -> Result<Vec<PathBuf>, VolumeError> {
         }
     }
     if found.iter().filter(|paths| !paths.is_empty()).count() > 1 {
-        let what = "holds images of several kinds: leave only the slices in it";
-        return Err(format_error(folder, what));
+        let reason =
+            Reason::content("holds images of several kinds", "leave only the slices in it");
+        return Err(format_error(folder, reason));
     }
     let mut paths = found.concat();
     paths.sort_by(|a, b| natural(&a.to_string_lossy(), &b.to_string_lossy()).then(a.cmp(b)));
@@ -72,7 +76,9 @@ fn page(path: &Path) -> Result<Page, VolumeError> {
         ImageError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
             io_error(path)(error)
         }
-        other => format_error(path, format!("is no image that can be read: {other}")),
+        other => {
+            format_error(path, Reason::header(format!("is no image that can be read: {other}")))
+        }
     };
     let length = std::fs::metadata(path).map_err(io_error(path))?.len();
     let decoder = ImageReader::open(path)
@@ -85,11 +91,11 @@ fn page(path: &Path) -> Result<Page, VolumeError> {
     // PNG may have eight samples in a byte; JPEG has 64 in two bits at best.
     let most = length.saturating_mul(8 * MOST_EXPANSION);
     if size[0] * size[1] > most {
-        let what = format!(
-            "claims {width}×{height} pixels, which {length} bytes cannot hold: it is truncated or \
-             damaged"
-        );
-        return Err(format_error(path, what));
+        let reason = Reason::truncated(format!(
+            "claims {width}×{height} pixels, which {length} bytes cannot hold: it is \
+                 truncated or damaged"
+        ));
+        return Err(format_error(path, reason));
     }
     let image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
     match image {
@@ -102,8 +108,11 @@ fn page(path: &Path) -> Result<Page, VolumeError> {
             Ok(Page { size, dtype: Dtype::U16, samples })
         }
         other => {
-            let what = format!("has pixels of {:?}: only gray is read; convert it", other.color());
-            Err(format_error(path, what))
+            let reason = Reason::unsupported(
+                format!("has pixels of {:?}: only gray is read", other.color()),
+                "convert it",
+            );
+            Err(format_error(path, reason))
         }
     }
 }

@@ -10,7 +10,7 @@ use tiff::{ColorType, TiffError};
 use super::described::{Described, Encoding, diagonal, frame};
 use super::frames::Frames;
 use super::{format_error, io_error};
-use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Reason, Volume, VolumeError};
 
 /// The most a compression that TIFF knows expands by: LZW writes up to 4096 bytes for a code of 12
 /// bits.
@@ -23,7 +23,7 @@ const IMAGE_DEPTH: Tag = Tag::Unknown(32997);
 ///
 /// ImageJ writes large stacks behind one page; they are read too. Colours, palettes, samples of
 /// fewer than 8 bits, and stacks of several channels or times are refused.
-pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
+pub(crate) fn read(path: &Path) -> Result<Volume, VolumeError> {
     let mut pages = Pages::open(path)?;
     let about = About::of(path, &mut pages.decoder)?;
     let first = pages.page()?;
@@ -36,14 +36,17 @@ pub(super) fn read(path: &Path) -> Result<Volume, VolumeError> {
         if (page.size, page.dtype) != (first.size, first.dtype) {
             return Err(format_error(
                 path,
-                format!(
-                    "has {:?} samples of {} in page {}, but {:?} of {} in the first: slices must \
-                     be alike; save them as one stack",
-                    page.size,
-                    page.dtype,
-                    slices + 1,
-                    first.size,
-                    first.dtype
+                Reason::content(
+                    format!(
+                        "has {:?} samples of {} in page {}, but {:?} of {} in the first: \
+                             slices must be alike",
+                        page.size,
+                        page.dtype,
+                        slices + 1,
+                        first.size,
+                        first.dtype
+                    ),
+                    "save them as one stack",
                 ),
             ));
         }
@@ -63,8 +66,10 @@ pub(super) fn read_page(path: &Path) -> Result<Page, VolumeError> {
     let mut pages = Pages::open(path)?;
     let page = pages.page()?;
     if pages.decoder.more_images() {
-        let what = "holds several pages: it is a stack of its own, and no slice of the folder";
-        return Err(format_error(path, what));
+        let reason = Reason::header(
+            "holds several pages: it is a stack of its own, and no slice of the folder",
+        );
+        return Err(format_error(path, reason));
     }
     Ok(page)
 }
@@ -103,32 +108,38 @@ impl<'a> Pages<'a> {
         let (x, y) = self.decoder.dimensions().map_err(damaged(self.path))?;
         let samples = u64::from(x) * u64::from(y) + samples as u64;
         if samples > Dims::MAX_SAMPLES || samples.saturating_mul(dtype.size() as u64) > self.most {
-            let what = format!("claims more than {samples} samples, which it cannot hold");
-            return Err(format_error(self.path, what));
+            let reason =
+                Reason::header(format!("claims more than {samples} samples, which it cannot hold"));
+            return Err(format_error(self.path, reason));
         }
         Ok(())
     }
 
     fn page(&mut self) -> Result<Page, VolumeError> {
         let path = self.path;
-        let said = |what: String| format_error(path, what);
+        let said = |reason: Reason| format_error(path, reason);
         let (x, y) = self.decoder.dimensions().map_err(damaged(path))?;
         match self.decoder.colortype().map_err(damaged(path))? {
             ColorType::Gray(8 | 16 | 32 | 64) => {}
             ColorType::Gray(bits) => {
-                return Err(said(format!("has samples of {bits} bits: convert it to 8 or 16")));
+                return Err(said(Reason::unsupported(
+                    format!("has samples of {bits} bits"),
+                    "convert it to 8 or 16",
+                )));
             }
             other => {
-                return Err(said(format!(
-                    "has colours ({other:?}): only gray is read; convert it"
+                return Err(said(Reason::unsupported(
+                    format!("has colours ({other:?}): only gray is read"),
+                    "convert it",
                 )));
             }
         }
         let depth = self.decoder.find_tag_unsigned::<u64>(IMAGE_DEPTH).map_err(damaged(path))?;
         if depth.is_some_and(|depth| depth > 1) {
-            return Err(said(
-                "is a volume in one page (ImageDepth): save its slices as pages".into(),
-            ));
+            return Err(said(Reason::content(
+                "is a volume in one page (ImageDepth)",
+                "save its slices as pages",
+            )));
         }
         self.reserve(0, Dtype::U8)?;
         let (samples, dtype) = match self.decoder.read_image().map_err(damaged(path))? {
@@ -143,14 +154,19 @@ impl<'a> Pages<'a> {
             DecodingResult::F32(v) => (v, Dtype::F32),
             DecodingResult::F64(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::F64),
             DecodingResult::F16(_) => {
-                return Err(said("has floats of 16 bits, which are not read: save 32".into()));
+                return Err(said(Reason::unsupported(
+                    "has floats of 16 bits, which are not read",
+                    "save 32",
+                )));
             }
         };
         let samples: Vec<f32> = samples;
         let size = [x.into(), y.into()];
         if samples.len() as u64 != size[0] * size[1] {
             let found = samples.len();
-            return Err(said(format!("has {found} samples in a page of {size:?}: it is damaged")));
+            return Err(said(Reason::damaged(format!(
+                "has {found} samples in a page of {size:?}: it is damaged"
+            ))));
         }
         Ok(Page { size, dtype, samples })
     }
@@ -171,7 +187,10 @@ fn behind_one_page(
         pages.decoder.find_tag_unsigned_vec(Tag::StripOffsets).map_err(damaged(path))?;
     let (None | Some(1), Some(&offset)) = (compression, offsets.as_ref().and_then(|o| o.first()))
     else {
-        return Err(format_error(path, format!("claims {slices} images, but has one page")));
+        return Err(format_error(
+            path,
+            Reason::header(format!("claims {slices} images, but has one page")),
+        ));
     };
     let endian = match pages.decoder.byte_order() {
         ByteOrder::LittleEndian => Endian::Little,
@@ -234,7 +253,7 @@ impl About {
 
     fn of_ome(path: &Path, text: &str) -> Result<Self, VolumeError> {
         let damaged = |what: &dyn std::fmt::Display| {
-            format_error(path, format!("has OME-XML that cannot be read: {what}"))
+            format_error(path, Reason::damaged(format!("has OME-XML that cannot be read: {what}")))
         };
         let mut reader = quick_xml::Reader::from_str(text);
         loop {
@@ -299,16 +318,22 @@ fn one_axis(path: &Path, sizes: [u64; 3]) -> Result<(), VolumeError> {
         return Ok(());
     }
     let [z, c, t] = sizes;
-    let what = format!("has {z} slices, {c} channels and {t} times: save one volume of them alone");
-    Err(format_error(path, what))
+    let reason = Reason::content(
+        format!("has {z} slices, {c} channels and {t} times"),
+        "save one volume of them alone",
+    );
+    Err(format_error(path, reason))
 }
 
 fn damaged(path: &Path) -> impl Fn(TiffError) -> VolumeError {
     move |error| match error {
         TiffError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
-            format_error(path, "ends inside its TIFF pages: it is truncated; copy it again")
+            format_error(path, Reason::truncated("ends inside its TIFF pages: it is truncated"))
         }
         TiffError::IoError(error) => io_error(path)(error),
-        other => format_error(path, format!("is a TIFF file that cannot be read: {other}")),
+        other => format_error(
+            path,
+            Reason::damaged(format!("is a TIFF file that cannot be read: {other}")),
+        ),
     }
 }

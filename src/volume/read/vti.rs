@@ -5,16 +5,18 @@ use super::format_error;
 use super::frames::Frames;
 use super::vtk::{choice, to_centres};
 use super::vtk_xml::VtkXml;
-use crate::volume::{Coordinates, Dims, Endian, LengthUnit, Space, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Endian, LengthUnit, Reason, Space, Volume, VolumeError};
 
 /// Reads VTI, VTK's image data in XML, in one piece: the array of this name; or else the active scalars of
 /// its points, its first array of points, or that of cells, whose samples stand at the cells' centres.
-pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
-    let said = |what: String| format_error(path, what);
+pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
+    let said = |reason: Reason| format_error(path, reason);
     let file = VtkXml::open(path)?;
     if file.kind() != "ImageData" {
         let kind = file.kind();
-        return Err(said(format!("holds {kind}: a volume is ImageData (.vti) in one file")));
+        return Err(said(Reason::header(format!(
+            "holds {kind}: a volume is ImageData (.vti) in one file"
+        ))));
     }
     let (image, piece) = file.piece()?;
     let origin = file.numbers(image, "Origin", Some([0.0; 3]))?;
@@ -25,7 +27,7 @@ pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeEr
     let extent: [f64; 6] = file.numbers(piece, "Extent", None)?;
     let whole = file.numbers(image, "WholeExtent", Some(extent))?;
     if whole != extent {
-        return Err(said("is a piece of a larger image: write it whole".into()));
+        return Err(said(Reason::unsupported("is a piece of a larger image", "write it whole")));
     }
 
     let mut dims = [0; 3];
@@ -33,7 +35,9 @@ pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeEr
     for axis in 0..3 {
         let (first, last) = (extent[2 * axis], extent[2 * axis + 1]);
         if first.fract() != 0.0 || last.fract() != 0.0 || last < first || last - first > 4e9 {
-            return Err(said(format!("has Extent {extent:?}: it is no grid of samples")));
+            return Err(said(Reason::header(format!(
+                "has Extent {extent:?}: it is no grid of samples"
+            ))));
         }
         dims[axis] = (last - first) as u64 + 1;
         for (component, step) in corner.iter_mut().zip(axes[axis]) {
@@ -47,9 +51,7 @@ pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeEr
     }
     let components = file.components(array);
     if components != "1" {
-        return Err(said(format!(
-            "has {components} values a voxel: only scalar volumes are read; extract one first"
-        )));
+        return Err(said(Reason::not_scalar(format!("{components} values a voxel"))));
     }
     let dims = Dims::new(dims[0], dims[1], dims[2])?;
     let (frame, dtype) =
@@ -61,7 +63,7 @@ pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeEr
 
 /// The array to read, and whether it is one of cells. Those of points come first; which one was taken is
 /// said where there are others.
-fn choose(file: &VtkXml, piece: usize, wanted: Option<&str>) -> Result<(usize, bool), String> {
+fn choose(file: &VtkXml, piece: usize, wanted: Option<&str>) -> Result<(usize, bool), Reason> {
     let name = |array: usize| file.attribute(array, "Name").unwrap_or_default();
     let mut arrays = Vec::new();
     for (data, cells) in [("PointData", false), ("CellData", true)] {

@@ -11,12 +11,13 @@ use zarrs::filesystem::FilesystemStore;
 use zarrs::group::Group;
 
 use super::described::{Described, Encoding, diagonal, frame};
-use super::folder::is_zarr;
 use super::format_error;
 use super::frames::Frames;
+use super::series::is_zarr;
+use crate::advice::{Setting, advice};
 use crate::progress;
 use crate::shown::shown;
-use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Volume, VolumeError};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Reason, Volume, VolumeError};
 
 /// Reads a Zarr array of version 2 or 3 in a folder, or a level of an OME-Zarr pyramid (0, the finest,
 /// unless `level` says otherwise).
@@ -24,19 +25,22 @@ use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Volume, Volume
 /// The last three axes are z, y and x; those before them count volumes, of which
 /// the one numbered `frame_index` is read. Scale and translation
 /// of a pyramid give the frame. Memory for the samples and some rows of chunks at a time.
-pub(super) fn read(
+pub(crate) fn read(
     path: &Path,
     level: Option<u32>,
     frame_index: Option<u64>,
 ) -> Result<Volume, VolumeError> {
-    let said = |what: String| format_error(path, what);
+    let said = |reason: Reason| format_error(path, reason);
     let damaged = |error: &dyn std::fmt::Display| {
-        said(format!("is a Zarr store that cannot be read ({error}): copy it again"))
+        said(Reason::damaged(format!("is a Zarr store that cannot be read ({error})")))
     };
     let store = Arc::new(FilesystemStore::new(path).map_err(|error| damaged(&error))?);
     if is_array(path) {
         if let Some(level) = level {
-            return Err(said(format!("is one array and has no level {level}; omit --level")));
+            return Err(said(Reason::needless(
+                Setting::Level,
+                format!("is one array and has no level {level}"),
+            )));
         }
         let array = Array::open(store, "/").map_err(|error| damaged(&error))?;
         return volume(path, &array, &[], Coordinates::VOXEL, frame_index);
@@ -45,29 +49,36 @@ pub(super) fn read(
     let attributes = Value::Object(group.attributes().clone());
     let pyramid = ["/ome/multiscales/0", "/multiscales/0"];
     let Some(pyramid) = pyramid.iter().find_map(|at| attributes.pointer(at)) else {
-        return Err(said(format!(
-            "is a Zarr group without the levels of OME-Zarr, of {}; name one of these",
-            children(path)
+        return Err(said(Reason::unsupported(
+            format!("is a Zarr group without the levels of OME-Zarr, of {}", children(path)),
+            "name one of these",
         )));
     };
     let levels = pyramid["datasets"].as_array().map_or(&[][..], Vec::as_slice);
     let wanted = level.unwrap_or(0);
     let Some(dataset) = levels.get(wanted as usize) else {
         let count = levels.len();
-        return Err(said(format!(
-            "has no level {wanted}, there are {count}; give --level 0 (the finest) to {}",
-            count.saturating_sub(1)
+        return Err(said(Reason::choice(
+            Setting::Level,
+            format!("has no level {wanted}, there are {count}"),
+            advice![
+                "give ",
+                Setting::Level,
+                format!(" 0 (the finest) to {}", count.saturating_sub(1))
+            ],
         )));
     };
     let Some(name) = dataset["path"].as_str() else {
-        return Err(said(format!("names no array for level {wanted}: its metadata are damaged")));
+        return Err(said(Reason::damaged(format!(
+            "names no array for level {wanted}: its metadata are damaged"
+        ))));
     };
     // An upward step would lead to files that nobody named.
     if Path::new(name).components().any(|part| part == Component::ParentDir) {
-        let what = format!(
+        let reason = Reason::damaged(format!(
             "names {name:?} for level {wanted}, outside the store: its metadata are damaged"
-        );
-        return Err(said(what));
+        ));
+        return Err(said(reason));
     }
     let array = Array::open(store, &format!("/{}", name.trim_matches('/')))
         .map_err(|error| damaged(&error))?;
@@ -80,16 +91,17 @@ pub(super) fn read(
 }
 
 /// The unit of the axes of space, which must have one in common.
-fn unit(axes: &Value) -> Result<LengthUnit, String> {
+fn unit(axes: &Value) -> Result<LengthUnit, Reason> {
     let of_space = |axis: &&Value| axis["type"] == "space";
     let axes = axes.as_array().into_iter().flatten().filter(of_space);
     let mut units = axes.map(|axis| axis["unit"].as_str().unwrap_or_default());
     let first = units.next().unwrap_or_default();
     match units.find(|&unit| unit != first) {
         None => Ok(LengthUnit::named(first)),
-        Some(other) => {
-            Err(format!("has axes in {first:?} and {other:?}: give them one unit in its metadata"))
-        }
+        Some(other) => Err(Reason::unsupported(
+            format!("has axes in {first:?} and {other:?}"),
+            "give them one unit in its metadata",
+        )),
     }
 }
 
@@ -120,10 +132,12 @@ fn volume(
     coordinates: Coordinates,
     frame_index: Option<u64>,
 ) -> Result<Volume, VolumeError> {
-    let said = |what: String| format_error(path, what);
+    let said = |reason: Reason| format_error(path, reason);
     let shape = array.shape().to_vec();
     let [before @ .., z, y, x] = &shape[..] else {
-        return Err(said(format!("has the shape {shape:?}: a volume has three axes, z, y and x")));
+        return Err(said(Reason::header(format!(
+            "has the shape {shape:?}: a volume has three axes, z, y and x"
+        ))));
     };
     let mut left = Frames::choose(path, before, frame_index)?.index;
     let mut leading = vec![0; before.len()];
@@ -147,9 +161,12 @@ fn volume(
             ("translation", _, Some(by)) => (0..3).for_each(|k| origin[k] += by[k]),
             ("identity", ..) => {}
             _ => {
-                return Err(said(format!(
-                    "is placed by {transform}, which is not read: only scale and translation of as \
-                     many numbers as axes are"
+                return Err(said(Reason::unsupported(
+                    format!(
+                        "is placed by {transform}, which is not read: only scale and \
+                             translation of as many numbers as axes are"
+                    ),
+                    "convert it first",
                 )));
             }
         }
@@ -179,10 +196,14 @@ fn samples(
         DataType::Float32 => (Dtype::F32, read.all(|v: f32| v)?),
         DataType::Float64 => (Dtype::F64, read.all(|v: f64| v as f32)?),
         other => {
-            let what = format!(
-                "holds samples of type {other}: integers of 8 to 64 bits, float32 and float64 are read"
+            let reason = Reason::unsupported(
+                format!(
+                    "holds samples of type {other}: integers of 8 to 64 bits, float32 and \
+                         float64 are read"
+                ),
+                "convert it first",
             );
-            return Err(format_error(path, what));
+            return Err(format_error(path, reason));
         }
     })
 }
@@ -207,25 +228,27 @@ impl Read<'_> {
         convert: impl Fn(T) -> f32 + Send + Sync,
     ) -> Result<Vec<f32>, VolumeError> {
         let Self { path, array, dims, leading } = self;
-        let said = |what: String| format_error(path, what);
+        let said = |reason: Reason| format_error(path, reason);
         let axes = array.dimensionality();
         let damaged = |error: &dyn std::fmt::Display| {
-            said(format!("is a Zarr array that cannot be read ({error}): copy it again"))
+            said(Reason::damaged(format!("is a Zarr array that cannot be read ({error})")))
         };
         let chunk = array.chunk_shape(&vec![0; axes]).map_err(|error| damaged(&error))?;
         let in_chunk = chunk.iter().fold(1u64, |product, size| product.saturating_mul(size.get()));
         if in_chunk > MOST_IN_CHUNK.max(8 * dims.samples() as u64) {
-            return Err(said(format!(
-                "has chunks of {in_chunk} samples, far more than the array: it is damaged, or \
-                 store it in smaller chunks"
-            )));
+            return Err(said(Reason::damaged(format!(
+                "has chunks of {in_chunk} samples, far more than the array: it is damaged, \
+                     or store it in smaller chunks"
+            ))));
         }
         let [thick, high] = [3, 2].map(|axis| chunk[axes - axis].get());
         let mut samples = Vec::new();
         samples.try_reserve_exact(dims.samples()).map_err(|_| {
             let bytes = dims.samples() * size_of::<f32>();
-            said(format!(
-                "needs {bytes} bytes of memory, which cannot be had: choose a coarser --level"
+            said(Reason::choice(
+                Setting::Level,
+                format!("needs {bytes} bytes of memory, which cannot be had"),
+                advice!["choose a coarser ", Setting::Level],
             ))
         })?;
         let [x, y, z] = dims.xyz().map(|size| size as u64);

@@ -8,6 +8,7 @@ use std::path::Path;
 pub use phantom::phantom;
 
 use super::{Frame, ReadOptions, Volume, VolumeError, read};
+use crate::advice::Advice;
 use crate::near::nearest;
 
 /// The samples there are, as a user writes them.
@@ -41,18 +42,21 @@ pub fn sample(name: &str) -> Result<Volume, VolumeError> {
         Some("phantom") => phantom(PHANTOM_SIZE),
         Some(other) if other.starts_with("phantom@") => match other["phantom@".len()..].parse() {
             Ok(size) => phantom(size),
-            Err(_) => Err(unknown(name, "N is a number of samples along each axis, as in @128")),
+            Err(_) => {
+                let advice = "give N as a number of samples along each axis, as in @128";
+                Err(unknown(name, advice.into()))
+            }
         },
         _ => {
             let meant = nearest(name, SAMPLES).map(|near| format!("did you mean {near}?"));
-            Err(unknown(name, &meant.unwrap_or_else(|| "name one of these, or a file".into())))
+            let advice = meant.map_or("name one of these, or a file".into(), Advice::from);
+            Err(unknown(name, advice))
         }
     }
 }
 
-fn unknown(name: &str, hint: &str) -> VolumeError {
-    let known = SAMPLES.join(", ");
-    VolumeError::Sample(format!("{name:?} is no sample; there are {known}; {hint}"))
+fn unknown(name: &str, advice: Advice) -> VolumeError {
+    VolumeError::UnknownSample { name: name.into(), advice }
 }
 
 #[cfg(test)]
@@ -65,8 +69,8 @@ mod tests {
             let text = sample(name).unwrap_err().to_string();
             assert!(text.contains(name) && text.contains("sample:phantom@N"), "{text}");
         }
-        let text = sample("sample:skul").unwrap_err().to_string();
-        assert!(text.ends_with("did you mean sample:skull?"), "{text}");
+        let advice = sample("sample:skul").unwrap_err().advice().unwrap().to_string();
+        assert_eq!(advice, "did you mean sample:skull?");
         assert!(matches!(sample("sample:phantom@0"), Err(VolumeError::EmptyAxis { .. })));
         assert!(matches!(sample("sample:phantom@99999"), Err(VolumeError::TooManySamples { .. })));
     }
@@ -75,7 +79,8 @@ mod tests {
     fn inputs_are_samples_or_files() {
         let volume = open("sample:phantom@5", &ReadOptions::default()).unwrap();
         assert_eq!(volume.dims().xyz(), [5, 5, 5]);
-        let text = open("no/such.inr", &ReadOptions::default()).unwrap_err().to_string();
-        assert!(text.contains("no/such.inr") && text.contains("sample:phantom"), "{text}");
+        let error = open("no/such.inr", &ReadOptions::default()).unwrap_err();
+        assert!(error.to_string().contains("no/such.inr"), "{error}");
+        assert!(error.advice().unwrap().to_string().contains("sample:phantom"));
     }
 }

@@ -6,7 +6,7 @@ use flate2::read::GzDecoder;
 
 use crate::shown::shown;
 use crate::volume::read::{Length, io_error, read_inr};
-use crate::volume::{ReadOptions, Volume, VolumeError, read};
+use crate::volume::{ReadOptions, Reason, Volume, VolumeError, read};
 
 /// Where Debian and Ubuntu put CGAL's data, in the package `libcgal-demo`.
 const ARCHIVE: &str = "/usr/share/doc/libcgal-dev/data.tar.gz";
@@ -26,13 +26,12 @@ fn find(directory: Option<&Path>, archive: &Path) -> Result<Volume, VolumeError>
     } else if archive.exists() {
         from_archive(archive)
     } else {
-        Err(VolumeError::Sample(format!(
-            "sample:skull is not installed: {FILE} was sought below CGAL_DATA_DIR ({}) and in {}; \
-             on Debian and Ubuntu `sudo apt-get install libcgal-demo` brings it, elsewhere set \
-             CGAL_DATA_DIR to CGAL's data folder; sample:phantom needs nothing",
+        let sought = format!(
+            "below CGAL_DATA_DIR ({}) as {FILE}, and in {}",
             directory.map_or("not set".into(), shown),
             shown(archive),
-        )))
+        );
+        Err(VolumeError::NoSkull { sought })
     }
 }
 
@@ -48,7 +47,10 @@ fn from_archive(path: &Path) -> Result<Volume, VolumeError> {
     }
     Err(VolumeError::Format {
         path: path.into(),
-        what: format!("has no {MEMBER}: install libcgal-demo again, or use sample:phantom"),
+        reason: Reason::content(
+            format!("has no {MEMBER}"),
+            "install libcgal-demo again, or use sample:phantom",
+        ),
     })
 }
 

@@ -15,9 +15,9 @@ use dicom_parser::dataset::DataToken;
 use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
 
 use super::slice::damaged;
-use crate::volume::VolumeError;
 use crate::volume::read::payload::MOST_EXPANSION;
 use crate::volume::read::{format_error, io_error};
+use crate::volume::{Reason, VolumeError};
 
 /// Bytes before the mark `DICM`.
 const PREAMBLE: u64 = 128;
@@ -83,8 +83,8 @@ fn believe(path: &Path, claimed: u32, length: u64) -> Result<(), VolumeError> {
     if u64::from(claimed) <= length {
         return Ok(());
     }
-    let what = format!(
+    let reason = Reason::truncated(format!(
         "claims an element of {claimed} bytes and has {length} in all: it is truncated or damaged"
-    );
-    Err(format_error(path, what))
+    ));
+    Err(format_error(path, reason))
 }

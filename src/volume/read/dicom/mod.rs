@@ -9,19 +9,30 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::described::{Described, Encoding};
-use super::folder::dicom_files;
 use super::frames::Frames;
-use super::{Series, format_error};
+use super::series::{self, Series};
+use super::{ReadOptions, format_error};
+use crate::advice::{Setting, advice};
 use crate::progress;
-use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+use crate::volume::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
 use slice::{Found, Slice};
 use stack::stacked;
 
+/// Reads the series that a file belongs to, or one in a folder.
+pub(crate) fn read(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
+    let wanted = options.series.as_deref();
+    if path.is_dir() { read_folder(path, wanted) } else { read_series_of(path, wanted) }
+}
+
 /// Reads the series that a file belongs to: all slices of it in the same folder.
-pub(super) fn read_series_of(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
+fn read_series_of(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
     if wanted.is_some() {
-        let what = "is one file, and its series is read: omit --series, or name the folder";
-        return Err(format_error(path, what));
+        let reason = Reason::choice(
+            Setting::Series,
+            "is one file, and its series is read",
+            advice!["omit ", Setting::Series, ", or name the folder"],
+        );
+        return Err(format_error(path, reason));
     }
     let one = Found::open(path)?;
     let folder = match path.parent() {
@@ -29,30 +40,27 @@ pub(super) fn read_series_of(path: &Path, wanted: Option<&str>) -> Result<Volume
         _ => Path::new("."),
     };
     one.slice?;
-    let mut found = found(&dicom_files(folder, false)?)?;
+    let mut found = found(&series::files(folder, false)?)?;
     found.retain(|other| other.series == one.series);
     assemble(path, slices(found)?)
 }
 
 /// Reads the one series in a folder, or the one wanted.
-pub(super) fn read_folder(
-    folder: &Path,
-    files: &[PathBuf],
-    wanted: Option<&str>,
-) -> Result<Volume, VolumeError> {
-    let mut found = found(files)?;
-    let series = listed(&found);
-    let list = || series.iter().map(Series::to_string).collect::<Vec<_>>().join("; ");
-    let chosen = match (wanted, &series[..]) {
+fn read_folder(folder: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
+    let mut found = found(&series::files(folder, true)?)?;
+    let listed = listed(&found);
+    let list = || listed.iter().map(Series::to_string).collect::<Vec<_>>().join("; ");
+    let chosen = match (wanted, &listed[..]) {
         (None, []) => return assemble(folder, slices(found)?),
         (None, [one]) => one,
         (None, several) => {
             let count = several.len();
-            let what = format!(
-                "holds {count} DICOM series: {}; choose one with --series, or name a file of it",
-                list()
+            let reason = Reason::choice(
+                Setting::Series,
+                format!("holds {count} DICOM series: {}", list()),
+                advice!["choose one with ", Setting::Series, ", or name a file of it"],
             );
-            return Err(format_error(folder, what));
+            return Err(format_error(folder, reason));
         }
         (Some(wanted), _) => {
             // Digits alone may end a UID, too, and are a number first of all.
@@ -60,8 +68,11 @@ pub(super) fn read_folder(
                 Ok(number) => one.number == number,
                 Err(_) => one.uid.ends_with(wanted),
             };
-            series.iter().find(is_it).ok_or_else(|| {
-                format_error(folder, format!("has no series {wanted}: there are {}", list()))
+            listed.iter().find(is_it).ok_or_else(|| {
+                format_error(
+                    folder,
+                    Reason::header(format!("has no series {wanted}: there are {}", list())),
+                )
             })?
         }
     };
@@ -116,8 +127,11 @@ fn assemble(path: &Path, slices: Vec<Slice>) -> Result<Volume, VolumeError> {
     let mut samples = Vec::new();
     samples.try_reserve_exact(dims.samples()).map_err(|_| {
         let bytes = dims.samples() * size_of::<f32>();
-        let what = format!("needs {bytes} bytes of memory, which cannot be had: crop it first");
-        format_error(path, what)
+        let reason = Reason::unsupported(
+            format!("needs {bytes} bytes of memory, which cannot be had"),
+            "crop it first",
+        );
+        format_error(path, reason)
     })?;
     // So many at once: pixels decoded ahead take memory.
     for (done, batch) in slices.chunks(16).enumerate() {

@@ -6,7 +6,7 @@ use dicom_pixeldata::PixelDecoder;
 use super::claims;
 use crate::volume::read::format_error;
 use crate::volume::read::payload::MOST_EXPANSION;
-use crate::volume::{Dtype, VolumeError};
+use crate::volume::{Dtype, Reason, VolumeError};
 
 // By their names in part 6 of the standard.
 const SLICE_THICKNESS: Tag = Tag(0x0018, 0x0050);
@@ -88,21 +88,27 @@ impl Found {
 impl Slice {
     /// Of what stands before the pixels.
     fn of(path: &Path, object: &DefaultDicomObject) -> Result<Self, VolumeError> {
-        let said = |what: String| format_error(path, what);
+        let said = |reason: Reason| format_error(path, reason);
         let header = Header { path, object };
         let frames = header.number(NUMBER_OF_FRAMES)?.unwrap_or(1.0);
         if frames > 1.0 {
-            return Err(said(format!(
-                "holds {frames} frames, and series of single slices are read: convert it to NRRD or \
-                 NIfTI"
+            return Err(said(Reason::content(
+                format!("holds {frames} frames, and series of single slices are read"),
+                "convert it to NRRD or NIfTI",
             )));
         }
         if header.number(SAMPLES_PER_PIXEL)?.unwrap_or(1.0) != 1.0 {
-            return Err(said("has pixels of colours, and only gray is read: convert it".into()));
+            return Err(said(Reason::unsupported(
+                "has pixels of colours, and only gray is read",
+                "convert it",
+            )));
         }
         let [column, row] = [COLUMNS, ROWS].map(|tag| header.number(tag));
         let (Some(columns), Some(rows)) = (column?, row?) else {
-            return Err(said("holds no image: move what is no slice out of the folder".into()));
+            return Err(said(Reason::content(
+                "holds no image",
+                "move what is no slice out of the folder",
+            )));
         };
         let placed = "which a slice of a volume needs: move localisers and reports away";
         let position = header.vector::<3>(IMAGE_POSITION, "Image Position (Patient)", placed)?;
@@ -119,10 +125,10 @@ impl Slice {
         let claimed = columns.saturating_mul(rows).saturating_mul((bits as u64).div_ceil(8));
         let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
         if claimed > length.saturating_mul(MOST_EXPANSION) {
-            return Err(said(format!(
-                "claims {columns}×{rows} pixels, which {length} bytes cannot hold: it is truncated or \
-                 damaged"
-            )));
+            return Err(said(Reason::truncated(format!(
+                "claims {columns}×{rows} pixels, which {length} bytes cannot hold: it is \
+                     truncated or damaged"
+            ))));
         }
         let unsigned = header.number(PIXEL_REPRESENTATION)?.unwrap_or(0.0) == 0.0;
         let slope = header.number(RESCALE_SLOPE)?.unwrap_or(1.0);
@@ -148,10 +154,10 @@ impl Slice {
         let (found, claimed) = (pixels.len() as u64, self.columns * self.rows);
         if found != claimed {
             let (columns, rows) = (self.columns, self.rows);
-            let what = format!(
+            let reason = Reason::truncated(format!(
                 "claims {columns}×{rows} pixels and holds {found}: it is truncated or damaged"
-            );
-            return Err(format_error(path, what));
+            ));
+            return Err(format_error(path, reason));
         }
         Ok(pixels)
     }
@@ -176,10 +182,11 @@ pub(super) fn damaged(path: &Path, error: &dyn std::error::Error) -> VolumeError
         what = format!("{what}, {inner}");
         cause = inner.source();
     }
-    let what = format!(
-        "is a DICOM file that cannot be read ({what}); copy it again, or convert the series to NRRD"
+    let reason = Reason::content(
+        format!("is a DICOM file that cannot be read ({what})"),
+        "copy it again, or convert the series to NRRD",
     );
-    format_error(path, what)
+    format_error(path, reason)
 }
 
 struct Header<'a> {
@@ -195,7 +202,10 @@ impl Header<'_> {
         }
         let number = element.to_float64().ok().filter(|number| number.is_finite());
         number.map(Some).ok_or_else(|| {
-            format_error(self.path, format!("has no number at {tag}: it is damaged"))
+            format_error(
+                self.path,
+                Reason::damaged(format!("has no number at {tag}: it is damaged")),
+            )
         })
     }
 
@@ -208,7 +218,10 @@ impl Header<'_> {
         let numbers = self.object.get(tag).and_then(|element| element.to_multi_float64().ok());
         let numbers = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
         numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite())).ok_or_else(|| {
-            format_error(self.path, format!("has no {name} {tag} of {N} numbers, {why}"))
+            format_error(
+                self.path,
+                Reason::header(format!("has no {name} {tag} of {N} numbers, {why}")),
+            )
         })
     }
 }

@@ -4,7 +4,7 @@ use super::slice::Slice;
 use crate::math::vector::{cross, dot};
 use crate::shown::shown;
 use crate::volume::read::format_error;
-use crate::volume::{Coordinates, Frame, VolumeError};
+use crate::volume::{Coordinates, Frame, Reason, VolumeError};
 
 /// Unit vectors this alike are one; headers have six digits or more.
 const SAME_DIRECTION: f64 = 1e-3;
@@ -22,32 +22,36 @@ pub(super) fn stacked(
     path: &Path,
     mut slices: Vec<Slice>,
 ) -> Result<(Vec<Slice>, Frame), VolumeError> {
-    let said = |what: String| format_error(path, what);
+    let said = |reason: Reason| format_error(path, reason);
     let Some(first) = slices.first().cloned() else {
-        return Err(said("holds no DICOM slices: name a folder of them".into()));
+        return Err(said(Reason::content("holds no DICOM slices", "name a folder of them")));
     };
     for slice in &slices {
         let (name, other) = (shown(&slice.path), shown(&first.path));
         if (slice.columns, slice.rows) != (first.columns, first.rows) {
-            return Err(said(format!(
-                "has a slice of {}×{} pixels in {name}, and of {}×{} in {other}: move those that do not \
-                 belong away",
-                slice.columns, slice.rows, first.columns, first.rows
+            return Err(said(Reason::content(
+                format!(
+                    "has a slice of {}×{} pixels in {name}, and of {}×{} in {other}",
+                    slice.columns, slice.rows, first.columns, first.rows
+                ),
+                "move those that do not belong away",
             )));
         }
         let turned = slice.orientation.as_flattened().iter().zip(first.orientation.as_flattened());
         if turned.into_iter().any(|(a, b)| (a - b).abs() > SAME_DIRECTION) {
-            return Err(said(format!(
-                "has slices of different orientations, as {name} and {other}: move localisers and other \
-                 views away"
+            return Err(said(Reason::content(
+                format!("has slices of different orientations, as {name} and {other}"),
+                "move localisers and other views away",
             )));
         }
         let spaced = slice.spacing.iter().zip(&first.spacing);
         if spaced.into_iter().any(|(a, b)| (a - b).abs() > SAME_DIRECTION * b.abs()) {
-            return Err(said(format!(
-                "has pixels {:?} mm apart in {name}, and {:?} in {other}: move those that do not belong \
-                 away",
-                slice.spacing, first.spacing
+            return Err(said(Reason::content(
+                format!(
+                    "has pixels {:?} mm apart in {name}, and {:?} in {other}",
+                    slice.spacing, first.spacing
+                ),
+                "move those that do not belong away",
             )));
         }
     }
@@ -79,18 +83,20 @@ fn even(slices: &[Slice], normal: [f64; 3]) -> Result<Option<[f64; 3]>, String> 
     // usual, so that a gap among few stands out.
     let [greater, usual] = [gaps[gaps.len() / 2], gaps[(gaps.len() - 1) / 2]];
     if let Some((two, _)) = pairs.iter().find(|(_, gap)| *gap <= UNEVEN * greater) {
-        return Err(format!(
-            "has two slices at one place, {}: it has several times or echoes; move those of one into a \
-             folder of their own",
-            names(two)
+        return Err(Reason::content(
+            format!("has two slices at one place, {}: it has several times or echoes", names(two)),
+            "move those of one into a folder of their own",
         ));
     }
     if let Some((two, gap)) = pairs.iter().find(|(_, gap)| *gap >= MISSING * usual) {
-        return Err(format!(
-            "has a gap of {gap:.3} mm between {}, where {usual:.3} mm are usual (slices missing: {}): \
-             copy the whole series again",
-            names(two),
-            (gap / usual).round() - 1.0
+        return Err(Reason::content(
+            format!(
+                "has a gap of {gap:.3} mm between {}, where {usual:.3} mm are usual (slices \
+                     missing: {})",
+                names(two),
+                (gap / usual).round() - 1.0
+            ),
+            "copy the whole series again",
         ));
     }
     let (least, most) = (gaps[0], gaps[gaps.len() - 1]);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::super::lines::Lines;
 use super::super::{format_error, io_error};
-use crate::volume::VolumeError;
+use crate::volume::{Reason, VolumeError};
 
 /// The names a `data file` field gives: one, a `LIST` of the lines that follow, or a numbered row
 /// `pattern min max step`, where the pattern has one `%d`, perhaps `%03d`.
@@ -24,13 +24,13 @@ pub(super) fn named(
     }
     let words: Vec<&str> = value.split_whitespace().collect();
     match numbered(&words) {
-        Some(names) => names.map_err(|what| format_error(path, what)),
+        Some(names) => names.map_err(|reason| format_error(path, reason)),
         None => Ok(vec![value.to_owned()]),
     }
 }
 
 /// The files of a numbered row; `None` where the words are no such row.
-pub fn numbered(words: &[&str]) -> Option<Result<Vec<String>, String>> {
+pub fn numbered(words: &[&str]) -> Option<Result<Vec<String>, Reason>> {
     /// A row has a file a slice, at most.
     const MAX_FILES: i64 = 1 << 20;
     let &[pattern, first, last, step, ..] = words else { return None };
@@ -41,7 +41,10 @@ pub fn numbered(words: &[&str]) -> Option<Result<Vec<String>, String>> {
     let [first, last, step] = [first, last, step].map(|number| number.parse::<i32>().ok());
     let (first, last, step) = (i64::from(first?), i64::from(last?), i64::from(step?));
     if step == 0 || (last - first) / step < 0 || (last - first) / step >= MAX_FILES || width > 20 {
-        return Some(Err(format!("numbers its data files {}, which is no row", words.join(" "))));
+        return Some(Err(Reason::header(format!(
+            "numbers its data files {}, which is no row",
+            words.join(" ")
+        ))));
     }
     let name = |i: i64| {
         let number = first + i * step;

@@ -11,7 +11,7 @@ use super::detached::{self, beside};
 use super::frames::Frames;
 use super::lines::Lines;
 use super::{format_error, io_error};
-use crate::volume::{Dims, Dtype, Endian, Volume, VolumeError};
+use crate::volume::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
 use files::named;
 pub(super) use files::numbered;
 
@@ -24,8 +24,8 @@ pub(super) const MAGIC: &[u8] = b"NRRD000";
 /// Encodings raw, gzip, bzip2 and text; every scalar type. `space directions` and `space origin`, or
 /// `spacings` and `axis mins`, give the frame, in the space the file names. Axes beyond the third count
 /// volumes, of which `frame` is read; axes of colours or vectors, `hex` and `line skip` are refused.
-pub(super) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
-    let said = |what: String| format_error(path, what);
+pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+    let said = |reason: Reason| format_error(path, reason);
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut lines = Lines::new(BufReader::new(file));
@@ -44,7 +44,7 @@ pub(super) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
         }
         Some(names) => {
             if names.is_empty() {
-                return Err(said("names no data file: its header is damaged".into()));
+                return Err(said(Reason::damaged("names no data file: its header is damaged")));
             }
             let each = described.bytes() / names.len() as u64;
             let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
@@ -54,7 +54,7 @@ pub(super) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
 }
 
 /// The files that hold the samples, where the header does not.
-pub(super) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
+pub(crate) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
     let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
     let header = Header::read(path, &mut lines)?;
     Ok(header.files.map_or_else(Vec::new, |names| beside(path, &names)))
@@ -69,10 +69,10 @@ struct Header {
 
 impl Header {
     fn read(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Self, VolumeError> {
-        let said = |what: String| format_error(path, what);
+        let said = |reason: Reason| format_error(path, reason);
         let first = lines.next().map_err(io_error(path))?.unwrap_or_default();
         if !first.as_bytes().starts_with(MAGIC) {
-            return Err(said("is no NRRD file: it does not begin with NRRD000".into()));
+            return Err(said(Reason::other("is no NRRD file: it does not begin with NRRD000")));
         }
         let mut header = Self { fields: HashMap::new(), files: None };
         // A header alone may end with its file; samples need the blank line.
@@ -84,7 +84,9 @@ impl Header {
                 continue;
             }
             let Some((name, value)) = line.split_once(':') else {
-                return Err(said(format!("has a header line {line:?}, which is no field")));
+                return Err(said(Reason::header(format!(
+                    "has a header line {line:?}, which is no field"
+                ))));
             };
             let (name, value) = (name.trim().to_lowercase(), value.trim());
             if name == "data file" || name == "datafile" {
@@ -93,13 +95,13 @@ impl Header {
                     return Ok(header);
                 }
             } else if header.fields.insert(name.clone(), value.into()).is_some() {
-                return Err(said(format!("gives {name:?} twice in its header")));
+                return Err(said(Reason::header(format!("gives {name:?} twice in its header"))));
             }
         }
         if header.files.is_some() {
             return Ok(header);
         }
-        Err(said("ends inside its NRRD header: it is truncated; copy it again".into()))
+        Err(said(Reason::truncated("ends inside its NRRD header: it is truncated")))
     }
 
     fn field(&self, name: &str) -> Option<&str> {
@@ -107,17 +109,24 @@ impl Header {
     }
 
     fn needed(&self, path: &Path, name: &str) -> Result<&str, VolumeError> {
-        let missing =
-            || format_error(path, format!("its NRRD header has no {name}: it is damaged"));
+        let missing = || {
+            format_error(
+                path,
+                Reason::damaged(format!("its NRRD header has no {name}: it is damaged")),
+            )
+        };
         self.field(name).ok_or_else(missing)
     }
 
     fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
-        let said = |what: String| format_error(path, what);
+        let said = |reason: Reason| format_error(path, reason);
         let sizes = self.needed(path, "sizes")?;
         let mut axes: Vec<(usize, u64)> = sizes
             .split_whitespace()
-            .map(|size| size.parse().map_err(|_| said(format!("sizes: {sizes} are no numbers"))))
+            .map(|size| {
+                size.parse()
+                    .map_err(|_| said(Reason::header(format!("sizes: {sizes} are no numbers"))))
+            })
             .collect::<Result<Vec<u64>, _>>()?
             .into_iter()
             .enumerate()
@@ -125,7 +134,9 @@ impl Header {
         let dimension = self.needed(path, "dimension")?;
         if dimension.parse() != Ok(axes.len()) {
             let count = axes.len();
-            return Err(said(format!("has dimension: {dimension}, but {count} sizes")));
+            return Err(said(Reason::header(format!(
+                "has dimension: {dimension}, but {count} sizes"
+            ))));
         }
         let all = axes.len();
         let kinds: Vec<&str> =
@@ -134,10 +145,9 @@ impl Header {
             let kind = kinds.get(axis).copied().unwrap_or("none");
             let scalar = ["domain", "space", "time", "none", "???", "scalar", "stub"];
             if size > 1 && !scalar.contains(&kind.to_lowercase().as_str()) {
-                return Err(said(format!(
-                    "has {size} values a voxel (axis {axis} is of kind {kind}): only scalar \
-                     volumes are read; extract one first"
-                )));
+                return Err(said(Reason::not_scalar(format!(
+                    "{size} values a voxel (axis {axis} is of kind {kind})"
+                ))));
             }
         }
         while axes.len() > 3 {
@@ -152,8 +162,12 @@ impl Header {
 
         let name = self.needed(path, "type")?;
         let dtype = scalar_type(name).ok_or_else(|| {
-            said(format!(
-                "holds samples of type {name}: integers of 8 to 64 bits, float and double are read"
+            said(Reason::unsupported(
+                format!(
+                    "holds samples of type {name}: integers of 8 to 64 bits, float and double are \
+                 read"
+                ),
+                "convert it first",
             ))
         })?;
         let encoding = match self.needed(path, "encoding")?.to_lowercase().as_str() {
@@ -162,8 +176,9 @@ impl Header {
             "bzip2" | "bz2" => Encoding::Bzip2,
             "text" | "txt" | "ascii" => Encoding::Text,
             other => {
-                return Err(said(format!(
-                    "is encoded as {other}, which is not read: save it as raw or gzip"
+                return Err(said(Reason::unsupported(
+                    format!("is encoded as {other}, which is not read"),
+                    "save it as raw or gzip",
                 )));
             }
         };
@@ -173,7 +188,10 @@ impl Header {
             None if dtype.size() == 1 || encoding == Encoding::Text => Endian::Little,
             other => {
                 let given = other.unwrap_or("(missing)");
-                return Err(said(format!("endian: {given} is no byte order: give little or big")));
+                return Err(said(Reason::unsupported(
+                    format!("endian: {given} is no byte order"),
+                    "give little or big",
+                )));
             }
         };
         let frames = Frames::choose(path, &beyond, frame)?;
@@ -183,20 +201,26 @@ impl Header {
 
     /// Bytes before the samples; `None` where they stand at the end of the file.
     fn skip(&self, path: &Path, described: &Described) -> Result<Option<u64>, VolumeError> {
-        let said = |what: String| format_error(path, what);
+        let said = |reason: Reason| format_error(path, reason);
         let lines = self.field("line skip").or(self.field("lineskip")).unwrap_or("0");
         if lines != "0" {
-            return Err(said(format!("line skip: {lines} is not read: give byte skip instead")));
+            return Err(said(Reason::unsupported(
+                format!("line skip: {lines} is not read"),
+                "give byte skip instead",
+            )));
         }
         let bytes = self.field("byte skip").or(self.field("byteskip")).unwrap_or("0");
         match bytes.parse::<u64>() {
             Ok(0) => Ok(Some(0)),
-            _ if described.encoding != Encoding::Raw => {
-                Err(said(format!("byte skip: {bytes} is read only where the encoding is raw")))
-            }
+            _ if described.encoding != Encoding::Raw => Err(said(Reason::unsupported(
+                format!("byte skip: {bytes} is read only where the encoding is raw"),
+                "convert it first",
+            ))),
             Ok(skip) => Ok(Some(skip)),
             Err(_) if bytes == "-1" => Ok(None),
-            Err(_) => Err(said(format!("byte skip: {bytes} is no number of bytes"))),
+            Err(_) => {
+                Err(said(Reason::header(format!("byte skip: {bytes} is no number of bytes"))))
+            }
         }
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::Header;
 use crate::volume::read::described::{diagonal, frame};
 use crate::volume::read::format_error;
-use crate::volume::{Coordinates, Frame, LengthUnit, Space, VolumeError};
+use crate::volume::{Coordinates, Frame, LengthUnit, Reason, Space, VolumeError};
 
 impl Header {
     /// Where the grid lies; `kept` are the axes that are read, of `all`, and `dims` their sizes.
@@ -20,12 +20,14 @@ impl Header {
         kept: &[usize],
         dims: [usize; 3],
     ) -> Result<Frame, VolumeError> {
-        let said = |what: String| format_error(path, what);
+        let said = |reason: Reason| format_error(path, reason);
         let mut steps = diagonal([1.0; 3]);
         let mut origin = [0.0; 3];
         if let Some(text) = self.field("space directions") {
             let directions = vectors(text).filter(|rows| rows.len() == all).ok_or_else(|| {
-                said(format!("space directions: {text} are not {all} vectors of numbers"))
+                said(Reason::header(format!(
+                    "space directions: {text} are not {all} vectors of numbers"
+                )))
             })?;
             for (step, &axis) in steps.iter_mut().zip(kept) {
                 if let Some(direction) = directions[axis] {
@@ -56,7 +58,11 @@ impl Header {
         if let Some(text) = self.field("space origin") {
             origin = match vectors(text).as_deref() {
                 Some([Some(origin)]) => *origin,
-                _ => return Err(said(format!("space origin: {text} is no vector of numbers"))),
+                _ => {
+                    return Err(said(Reason::header(format!(
+                        "space origin: {text} is no vector of numbers"
+                    ))));
+                }
             };
         }
         frame(path, origin, steps, self.coordinates(kept))
@@ -99,7 +105,10 @@ impl Header {
         };
         let numbers: Option<Vec<f64>> = text.split_whitespace().map(|n| n.parse().ok()).collect();
         let numbers = numbers.filter(|numbers| numbers.len() == all).ok_or_else(|| {
-            format_error(path, format!("{}: {text} are not {all} numbers", names[0]))
+            format_error(
+                path,
+                Reason::header(format!("{}: {text} are not {all} numbers", names[0])),
+            )
         })?;
         Ok(numbers.into_iter().map(|number| (!number.is_nan()).then_some(number)).collect())
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::super::lines::Lines;
 use super::super::{format_error, io_error};
-use crate::volume::{Dtype, VolumeError};
+use crate::volume::{Dtype, Reason, VolumeError};
 
 /// Words that begin a section behind the grid.
 pub(super) const KEYWORDS: [&str; 14] = [
@@ -68,8 +68,9 @@ pub(super) fn find(
         };
     }
     if search.found.is_empty() {
-        let what = "ends before any SCALARS: it is truncated, or holds no samples";
-        return Err(format_error(path, what));
+        let reason =
+            Reason::truncated("ends before any SCALARS: it is truncated, or holds no samples");
+        return Err(format_error(path, reason));
     }
     Ok(search.found)
 }
@@ -100,8 +101,9 @@ impl<R: BufRead> Search<'_, R> {
                 let components = words.get(3).map_or(Some(1), |n| n.parse().ok()).unwrap_or(0);
                 let table = self.lines.next().map_err(io_error(self.path))?.unwrap_or_default();
                 if !table.starts_with("LOOKUP_TABLE") {
-                    let what = "has no LOOKUP_TABLE line below SCALARS: it is damaged";
-                    return Err(format_error(self.path, what));
+                    let reason =
+                        Reason::damaged("has no LOOKUP_TABLE line below SCALARS: it is damaged");
+                    return Err(format_error(self.path, reason));
                 }
                 self.array(word(1), word(2), components, self.count, true)?;
             }
@@ -145,8 +147,9 @@ impl<R: BufRead> Search<'_, R> {
             }
             let words: Vec<&str> = line.split_whitespace().collect();
             let &[name, components, count, kind] = words.as_slice() else {
-                let what = format!("has a FIELD with a line {line:?}: it is damaged");
-                return Err(format_error(self.path, what));
+                let reason =
+                    Reason::damaged(format!("has a FIELD with a line {line:?}: it is damaged"));
+                return Err(format_error(self.path, reason));
             };
             let [components, count] = [components, count].map(|n| n.parse().unwrap_or(0));
             left -= 1;
@@ -198,12 +201,7 @@ impl<R: BufRead> Search<'_, R> {
 /// The type of one number, by its name.
 pub(super) fn scalar(path: &Path, name: &str, components: u64) -> Result<Dtype, VolumeError> {
     if components != 1 {
-        return Err(format_error(
-            path,
-            format!(
-                "has {components} values a voxel: only scalar volumes are read; extract one first"
-            ),
-        ));
+        return Err(format_error(path, Reason::not_scalar(format!("{components} values a voxel"))));
     }
     Ok(match name {
         "unsigned_char" => Dtype::U8,
@@ -220,7 +218,10 @@ pub(super) fn scalar(path: &Path, name: &str, components: u64) -> Result<Dtype, 
         _ => {
             return Err(format_error(
                 path,
-                format!("holds samples of type {name}, which is not read"),
+                Reason::unsupported(
+                    format!("holds samples of type {name}, which is not read"),
+                    "convert it first",
+                ),
             ));
         }
     })

@@ -10,7 +10,8 @@ use super::described::{Described, Encoding, frame};
 use super::frames::Frames;
 use super::lines::Lines;
 use super::{format_error, io_error, text};
-use crate::volume::{Coordinates, Dims, Dtype, Endian, Volume, VolumeError};
+use crate::advice::{Setting, advice};
+use crate::volume::{Coordinates, Dims, Dtype, Endian, Reason, Volume, VolumeError};
 
 use arrays::Array;
 
@@ -20,8 +21,8 @@ pub(super) const MAGIC: &[u8] = b"# vtk DataFile";
 /// Reads the legacy VTK format (VTK User's Guide, "VTK File Formats"), text or binary (big endian):
 /// the scalars of this name of a `STRUCTURED_POINTS` dataset; or else the first ones of its points, or of
 /// its cells, which stand at the cells' centres.
-pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
-    let said = |what: String| format_error(path, what);
+pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
+    let said = |reason: Reason| format_error(path, reason);
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut lines = Lines::new(BufReader::new(file));
@@ -37,9 +38,9 @@ pub(super) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeEr
     let described = grid.described(path, &array)?;
     if array.values != described.dims.samples() as u64 {
         let (values, dims) = (array.values, described.dims);
-        return Err(said(format!(
+        return Err(said(Reason::truncated(format!(
             "has {values} values for {dims} samples: it is truncated or mislabelled"
-        )));
+        ))));
     }
     let mut reader = lines.into_inner();
     reader.seek(SeekFrom::Start(array.start)).map_err(io_error(path))?;
@@ -64,7 +65,7 @@ fn read_text(
     }
     let count = described.dims.samples() as u64;
     let mut shares: Vec<f32> = text::numbers(&text[..end], end as u64, Dtype::F32, count)
-        .map_err(|what| format_error(path, what))?;
+        .map_err(|reason| format_error(path, reason))?;
     shares.iter_mut().for_each(|share| *share = (*share * 255.0).round());
     described.volume(shares)
 }
@@ -82,18 +83,18 @@ fn read_binary(
     }
     let volume = described.read(path, (&mut reader).take(bytes), bytes)?;
     if array.last && !at_keyword(&mut reader).map_err(io_error(path))? {
-        let what = format!(
+        let reason = Reason::header(format!(
             "has {} bytes behind the {bytes} of its samples: it is too long or mislabelled",
             left - bytes
-        );
-        return Err(format_error(path, what));
+        ));
+        return Err(format_error(path, reason));
     }
     Ok(volume)
 }
 
 /// Which of some arrays, each with its name and whether it is one of cells: that of the name wanted, or
 /// else the first, which is said where there are others.
-pub(super) fn choice(arrays: &[(&str, bool)], wanted: Option<&str>) -> Result<usize, String> {
+pub(super) fn choice(arrays: &[(&str, bool)], wanted: Option<&str>) -> Result<usize, Reason> {
     let told = |&(name, cells): &(&str, bool)| match cells {
         true => format!("{name} (of cells)"),
         false => name.to_owned(),
@@ -101,14 +102,21 @@ pub(super) fn choice(arrays: &[(&str, bool)], wanted: Option<&str>) -> Result<us
     let all = || arrays.iter().map(told).collect::<Vec<_>>().join(", ");
     if let Some(wanted) = wanted {
         return arrays.iter().position(|(name, _)| *name == wanted).ok_or_else(|| {
-            format!("has no array {wanted:?}, but {}: give one of these to --array", all())
+            Reason::choice(
+                Setting::Array,
+                format!("has no array {wanted:?}, but {}", all()),
+                advice!["give one of these to ", Setting::Array],
+            )
         });
     }
     match arrays {
-        [] => Err("has no array of one value a voxel: there is no volume in it".into()),
+        [] => Err(Reason::content(
+            "has no array of one value a voxel: there is no volume in it",
+            "name another file",
+        )),
         [_] => Ok(0),
         _ => {
-            tracing::warn!("of the arrays {} the first is read; --array names another", all());
+            tracing::warn!("of the arrays {} the first is read; `array` names another", all());
             Ok(0)
         }
     }
@@ -119,10 +127,12 @@ fn header(
     path: &Path,
     lines: &mut Lines<BufReader<File>>,
 ) -> Result<(Grid, Vec<Array>), VolumeError> {
-    let said = |what: String| format_error(path, what);
+    let said = |reason: Reason| format_error(path, reason);
     let first = lines.next().map_err(io_error(path))?.unwrap_or_default();
     if !first.as_bytes().starts_with(MAGIC) {
-        return Err(said("is no legacy VTK file: it does not begin with # vtk DataFile".into()));
+        return Err(said(Reason::other(
+            "is no legacy VTK file: it does not begin with # vtk DataFile",
+        )));
     }
     lines.next().map_err(io_error(path))?;
     let mut grid = Grid::default();
@@ -134,9 +144,12 @@ fn header(
             "BINARY" => grid.text = Some(false),
             "DATASET" if words.get(1) == Some(&"STRUCTURED_POINTS") => grid.named = true,
             "DATASET" => {
-                return Err(said(format!(
-                    "holds a dataset {}: of legacy VTK files only STRUCTURED_POINTS are read",
-                    words.get(1).unwrap_or(&"without a name")
+                return Err(said(Reason::unsupported(
+                    format!(
+                        "holds a dataset {}: of legacy VTK files only STRUCTURED_POINTS are read",
+                        words.get(1).unwrap_or(&"without a name")
+                    ),
+                    "convert it first",
                 )));
             }
             "DIMENSIONS" => grid.dims = Some(numbers(path, &words)?),
@@ -151,19 +164,19 @@ fn header(
                 while lines.next().map_err(io_error(path))?.is_some_and(|line| !line.is_empty()) {}
             }
             "POINT_DATA" | "CELL_DATA" => {
-                let text = grid
-                    .text
-                    .ok_or_else(|| said("has no ASCII or BINARY line before its samples".into()))?;
+                let text = grid.text.ok_or_else(|| {
+                    said(Reason::header("has no ASCII or BINARY line before its samples"))
+                })?;
                 return Ok((grid, arrays::find(path, lines, &line, text)?));
             }
             other => {
-                return Err(said(format!(
+                return Err(said(Reason::damaged(format!(
                     "has {other:?} where POINT_DATA or CELL_DATA are expected: it is damaged"
-                )));
+                ))));
             }
         }
     }
-    Err(said("ends before any SCALARS: it is truncated, or holds no samples".into()))
+    Err(said(Reason::truncated("ends before any SCALARS: it is truncated, or holds no samples")))
 }
 
 struct Grid {
@@ -190,15 +203,19 @@ impl Default for Grid {
 
 impl Grid {
     fn described(&self, path: &Path, array: &Array) -> Result<Described, VolumeError> {
-        let damaged =
-            |what: &str| format_error(path, format!("has no {what} line before its samples"));
+        let damaged = |what: &str| {
+            format_error(path, Reason::header(format!("has no {what} line before its samples")))
+        };
         let text = self.text.ok_or_else(|| damaged("ASCII or BINARY"))?;
         if !self.named {
             return Err(damaged("DATASET"));
         }
         let dims = self.dims.ok_or_else(|| damaged("DIMENSIONS"))?;
         if dims.iter().any(|&size| size < 0.0 || size.fract() != 0.0) {
-            return Err(format_error(path, format!("has DIMENSIONS {dims:?}: they are no sizes")));
+            return Err(format_error(
+                path,
+                Reason::header(format!("has DIMENSIONS {dims:?}: they are no sizes")),
+            ));
         }
         let mut dims = dims.map(|size| size as u64);
         let axes = [0, 1, 2].map(|c| [0, 1, 2].map(|r| self.direction[r][c] * self.spacing[c]));
@@ -230,7 +247,10 @@ pub(super) fn to_centres(dims: &mut [u64; 3], origin: &mut [f64; 3], axes: [[f64
 fn numbers<const N: usize>(path: &Path, words: &[&str]) -> Result<[f64; N], VolumeError> {
     let numbers: Option<Vec<f64>> = words[1..].iter().map(|word| word.parse().ok()).collect();
     numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| {
-        format_error(path, format!("has {:?}, which is not {N} numbers", words.join(" ")))
+        format_error(
+            path,
+            Reason::header(format!("has {:?}, which is not {N} numbers", words.join(" "))),
+        )
     })
 }
 

@@ -9,7 +9,7 @@ use super::{Appended, Compressor, VtkXml, XmlElement};
 use crate::volume::read::base64::Base64;
 use crate::volume::read::payload::{Element, Length, MOST_EXPANSION, Payload};
 use crate::volume::read::{payload_error_of, text};
-use crate::volume::{Endian, VolumeError};
+use crate::volume::{Endian, Reason, VolumeError};
 
 impl VtkXml {
     /// Reads an array, which must have exactly `count` numbers.
@@ -21,7 +21,10 @@ impl VtkXml {
         let dtype = self.dtype(array)?;
         let XmlElement { text: start, text_end, .. } = self.elements[array];
         let end = text_end.unwrap_or(start);
-        let of_array = |what: String| self.said(format!("its array {} {what}", self.name(array)));
+        let of_array = |reason: Reason| {
+            let part = format!("its array {}", self.name(array));
+            self.said(Reason::Within { part, reason: Box::new(reason) })
+        };
         match self.attribute(array, "format") {
             Some("ascii") => {
                 text::numbers(self.part(start, end)?, end - start, dtype, count).map_err(of_array)
@@ -32,11 +35,13 @@ impl VtkXml {
             }
             Some("appended") => {
                 let Some(Appended { start, base64 }) = self.appended else {
-                    return Err(of_array("is appended, but there are no appended data".into()));
+                    return Err(of_array(Reason::header(
+                        "is appended, but there are no appended data",
+                    )));
                 };
                 let offset = self.attribute(array, "offset").and_then(|text| text.parse().ok());
                 let Some(from) = offset.and_then(|offset: u64| start.checked_add(offset)) else {
-                    return Err(of_array("has no offset in the appended data".into()));
+                    return Err(of_array(Reason::header("has no offset in the appended data")));
                 };
                 let left = self.length.saturating_sub(from);
                 let data = self.part(from, self.length)?;
@@ -48,7 +53,9 @@ impl VtkXml {
             }
             other => {
                 let given = other.unwrap_or("(missing)");
-                Err(of_array(format!("has format {given}, not ascii, binary or appended")))
+                Err(of_array(Reason::header(format!(
+                    "has format {given}, not ascii, binary or appended"
+                ))))
             }
         }
     }
@@ -68,7 +75,9 @@ impl VtkXml {
         let end = text_end.unwrap_or(start).min(start + LONGEST);
         let mut text = String::new();
         let read = self.part(start, end)?.read_to_string(&mut text);
-        read.map_err(|error| self.said(format!("has damaged field data {name}: {error}")))?;
+        read.map_err(|error| {
+            self.said(Reason::damaged(format!("has damaged field data {name}: {error}")))
+        })?;
         let bytes: Vec<u8> = text.split_whitespace().map_while(|byte| byte.parse().ok()).collect();
         let first = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
         Ok(Some(String::from_utf8_lossy(first).into_owned()))
@@ -87,19 +96,23 @@ impl VtkXml {
         let claim = format!("an array {} of {count} numbers of type {dtype}", self.name(array));
         let located = |error| payload_error_of(&self.path, &claim, error);
         let cut = |error: io::Error| match error.kind() {
-            io::ErrorKind::UnexpectedEof => {
-                self.said(format!("ends before its array {}: it is truncated", self.name(array)))
-            }
-            _ => self.said(format!("has a damaged array {}: {error}", self.name(array))),
+            io::ErrorKind::UnexpectedEof => self.said(Reason::truncated(format!(
+                "ends before its array {}: it is truncated",
+                self.name(array)
+            ))),
+            _ => self.said(Reason::damaged(format!(
+                "has a damaged array {}: {error}",
+                self.name(array)
+            ))),
         };
         let first = self.word(&mut data).map_err(cut)?;
         let Some(compressor) = self.compressor else {
             if first > most {
-                return Err(self.said(format!(
+                return Err(self.said(Reason::truncated(format!(
                     "claims {first} bytes for its array {}, but at most {most} follow: it is \
                      truncated",
                     self.name(array)
-                )));
+                ))));
             }
             let payload = Payload { reader: data.take(first), length: Length::Exactly(first) };
             return payload.samples(dtype, self.endian, count).map_err(located);
@@ -107,20 +120,20 @@ impl VtkXml {
         let [block, last] =
             [self.word(&mut data).map_err(cut)?, self.word(&mut data).map_err(cut)?];
         if first > most / self.word as u64 {
-            return Err(self.said(format!(
+            return Err(self.said(Reason::header(format!(
                 "claims {first} compressed blocks for its array {}, which it cannot hold",
                 self.name(array)
-            )));
+            ))));
         }
         let whole = if last > 0 { first.saturating_sub(1) } else { first };
         let bytes = whole.checked_mul(block).and_then(|bytes| bytes.checked_add(last));
         let bytes = bytes.filter(|&bytes| bytes <= most.saturating_mul(MOST_EXPANSION));
         let Some(bytes) = bytes else {
-            return Err(self.said(format!(
-                "claims {first} compressed blocks of {block} bytes for its array {}, more than it \
-                 can hold",
+            return Err(self.said(Reason::header(format!(
+                "claims {first} compressed blocks of {block} bytes for its array {}, more than \
+                 it can hold",
                 self.name(array)
-            )));
+            ))));
         };
         let sizes = (0..first).map(|_| self.word(&mut data)).collect::<io::Result<Vec<u64>>>();
         let sizes = sizes.map_err(cut)?.into_iter();

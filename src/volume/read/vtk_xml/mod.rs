@@ -10,7 +10,7 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
 use super::{format_error, io_error};
-use crate::volume::{Endian, VolumeError};
+use crate::volume::{Endian, Reason, VolumeError};
 
 /// A file of VTK's XML formats (VTK User's Guide, "VTK File Formats"): its elements, and the arrays
 /// they hold, which are read on demand. Arrays may be text, base64, or appended raw or in base64, and
@@ -52,20 +52,16 @@ struct Appended {
 }
 
 impl VtkXml {
-    /// Whether a file begins as VTK's XML files do.
-    pub fn is_header(start: &[u8]) -> bool {
-        let holds = |part: &[u8]| start.windows(part.len()).any(|window| window == part);
-        begins_as_xml(start) && holds(b"<VTKFile")
-    }
-
     /// Reads all but the arrays. The root must be `VTKFile`.
     pub fn open(path: &Path) -> Result<Self, VolumeError> {
         let file = File::open(path).map_err(io_error(path))?;
         let metadata = file.metadata().map_err(io_error(path))?;
         if !metadata.is_file() {
-            let what =
-                "is no ordinary file, and VTK's XML is read in several passes: copy it into one";
-            return Err(format_error(path, what));
+            let reason = Reason::unsupported(
+                "is no ordinary file, and VTK's XML is read in several passes",
+                "copy it into one",
+            );
+            return Err(format_error(path, reason));
         }
         let length = metadata.len();
         let mut this = Self {
@@ -80,15 +76,17 @@ impl VtkXml {
         let mut file = BufReader::new(file);
         // Before a search for the first element, which may go through all of a huge file.
         if !begins_as_xml(file.fill_buf().map_err(io_error(path))?) {
-            return Err(this.said("is no VTK file: it does not begin with an element"));
+            return Err(
+                this.said(Reason::other("is no VTK file: it does not begin with an element"))
+            );
         }
         this.scan(file)?;
         this.root()?;
         Ok(this)
     }
 
-    fn said(&self, what: impl Into<String>) -> VolumeError {
-        format_error(&self.path, what)
+    fn said(&self, reason: Reason) -> VolumeError {
+        format_error(&self.path, reason)
     }
 
     fn scan(&mut self, file: BufReader<File>) -> Result<(), VolumeError> {
@@ -102,7 +100,9 @@ impl VtkXml {
                 quick_xml::Error::Io(error) => {
                     io_error(&self.path)(io::Error::new(error.kind(), error.to_string()))
                 }
-                other => self.said(format!("is no well-formed XML at byte {before}: {other}")),
+                other => self.said(Reason::header(format!(
+                    "is no well-formed XML at byte {before}: {other}"
+                ))),
             })?;
             match event {
                 Event::Start(start) => {
@@ -123,7 +123,9 @@ impl VtkXml {
                     self.elements.push(element);
                 }
                 Event::End(_) => {
-                    let closed = open.pop().ok_or_else(|| self.said("closes an element twice"))?;
+                    let closed = open
+                        .pop()
+                        .ok_or_else(|| self.said(Reason::header("closes an element twice")))?;
                     self.end_text(Some(&closed), before);
                 }
                 Event::Eof => break,
@@ -134,7 +136,9 @@ impl VtkXml {
             None => Ok(()),
             Some(&inner) => {
                 let name = &self.elements[inner].name;
-                Err(self.said(format!("ends inside its element {name}: it is truncated")))
+                Err(self.said(Reason::truncated(format!(
+                    "ends inside its element {name}: it is truncated"
+                ))))
             }
         }
     }
@@ -155,7 +159,9 @@ impl VtkXml {
         let mut attributes = HashMap::new();
         for attribute in start.attributes() {
             let damaged = |error: &dyn std::fmt::Display| {
-                self.said(format!("has a damaged attribute before byte {position}: {error}"))
+                self.said(Reason::damaged(format!(
+                    "has a damaged attribute before byte {position}: {error}"
+                )))
             };
             let attribute = attribute.map_err(|error| damaged(&error))?;
             let name = attribute.key.as_ref().to_owned();
@@ -173,16 +179,18 @@ impl VtkXml {
             Some("base64") => true,
             other => {
                 let given = other.unwrap_or("(missing)");
-                return Err(
-                    self.said(format!("has appended data in encoding {given}, not raw or base64"))
-                );
+                return Err(self.said(Reason::header(format!(
+                    "has appended data in encoding {given}, not raw or base64"
+                ))));
             }
         };
         let mut before = Vec::new();
         let mut reader = self.part(element.text, self.length)?;
         (&mut reader).take(4096).read_until(b'_', &mut before).map_err(io_error(&self.path))?;
         if before.pop() != Some(b'_') || !before.trim_ascii().is_empty() {
-            return Err(self.said("has no underscore before its appended data: it is damaged"));
+            return Err(self.said(Reason::damaged(
+                "has no underscore before its appended data: it is damaged",
+            )));
         }
         Ok(Appended { start: element.text + before.len() as u64 + 1, base64 })
     }
@@ -190,21 +198,27 @@ impl VtkXml {
     /// Checks the root, and reads what it says of all arrays.
     fn root(&mut self) -> Result<(), VolumeError> {
         let Some(root) = self.elements.first().filter(|root| root.name == "VTKFile") else {
-            return Err(self.said("is no VTK file: its first element is not VTKFile"));
+            return Err(
+                self.said(Reason::other("is no VTK file: its first element is not VTKFile"))
+            );
         };
         let attribute = |name: &str| root.attributes.get(name).map(String::as_str);
         self.endian = match attribute("byte_order") {
             Some("LittleEndian") | None => Endian::Little,
             Some("BigEndian") => Endian::Big,
             Some(other) => {
-                return Err(self.said(format!("has byte_order {other:?}, which is none")));
+                return Err(
+                    self.said(Reason::header(format!("has byte_order {other:?}, which is none")))
+                );
             }
         };
         self.word = match attribute("header_type") {
             Some("UInt32") | None => 4,
             Some("UInt64") => 8,
             Some(other) => {
-                return Err(self.said(format!("has header_type {other:?}, not UInt32 or UInt64")));
+                return Err(self.said(Reason::header(format!(
+                    "has header_type {other:?}, not UInt32 or UInt64"
+                ))));
             }
         };
         self.compressor = match attribute("compressor") {
@@ -212,9 +226,9 @@ impl VtkXml {
             Some("vtkZLibDataCompressor") => Some(Compressor::Zlib),
             Some("vtkLZ4DataCompressor") => Some(Compressor::Lz4),
             Some(other) => {
-                return Err(self.said(format!(
-                    "is compressed by {other}, which is not read: choose LZ4, ZLib or none where it is \
-                     written"
+                return Err(self.said(Reason::unsupported(
+                    format!("is compressed by {other}, which is not read"),
+                    "choose LZ4, ZLib or none where it is written",
                 )));
             }
         };

@@ -1,7 +1,7 @@
 //! What a file says of its elements.
 
 use super::VtkXml;
-use crate::volume::{Dtype, VolumeError};
+use crate::volume::{Dtype, Reason, VolumeError};
 
 impl VtkXml {
     /// What the file holds, such as `ImageData`.
@@ -23,12 +23,16 @@ impl VtkXml {
     ) -> Result<[f64; N], VolumeError> {
         let place = &self.elements[element].name;
         let Some(text) = self.attribute(element, name) else {
-            return default.ok_or_else(|| self.said(format!("its element {place} has no {name}")));
+            return default.ok_or_else(|| {
+                self.said(Reason::header(format!("its element {place} has no {name}")))
+            });
         };
         let numbers: Option<Vec<f64>> =
             text.split_whitespace().map(|number| number.parse().ok()).collect();
         numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| {
-            self.said(format!("its element {place} has {name}={text:?}, which is not {N} numbers"))
+            self.said(Reason::header(format!(
+                "its element {place} has {name}={text:?}, which is not {N} numbers"
+            )))
         })
     }
 
@@ -43,16 +47,15 @@ impl VtkXml {
     /// The element `Piece` of the dataset, of which there must be one.
     pub fn piece(&self) -> Result<(usize, usize), VolumeError> {
         let kind = self.kind();
-        let dataset = self
-            .children(0, kind)
-            .next()
-            .ok_or_else(|| self.said(format!("has no element {kind}: it is damaged")))?;
+        let dataset = self.children(0, kind).next().ok_or_else(|| {
+            self.said(Reason::damaged(format!("has no element {kind}: it is damaged")))
+        })?;
         let pieces: Vec<usize> = self.children(dataset, "Piece").collect();
         match pieces[..] {
             [piece] => Ok((dataset, piece)),
-            _ => Err(self.said(format!(
-                "holds {} pieces: only one is read; write it in one piece",
-                pieces.len()
+            _ => Err(self.said(Reason::unsupported(
+                format!("holds {} pieces: only one is read", pieces.len()),
+                "write it in one piece",
             ))),
         }
     }
@@ -72,7 +75,10 @@ impl VtkXml {
             Some("Float64") => Dtype::F64,
             other => {
                 let name = other.unwrap_or("(missing)");
-                return Err(self.said(format!("has an array of type {name}, which is not read")));
+                return Err(self.said(Reason::unsupported(
+                    format!("has an array of type {name}, which is not read"),
+                    "convert it first",
+                )));
             }
         })
     }

@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::write_volume_raw;
+use super::raw;
 use crate::volume::{Coordinates, Frame, Volume};
 
 /// Writes a volume as MetaImage (`.mha`), ITK's own format, with its samples raw behind the header. A
@@ -8,7 +8,7 @@ use crate::volume::{Coordinates, Frame, Volume};
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub fn write_volume_metaimage(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+pub fn metaimage(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let [x, y, z] = volume.dims().xyz();
     write!(
         out,
@@ -17,7 +17,7 @@ pub fn write_volume_metaimage(volume: &Volume, out: &mut dyn Write) -> io::Resul
          ElementDataFile = LOCAL\n",
         place(volume.frame())
     )?;
-    write_volume_raw(volume, out)
+    raw(volume, out)
 }
 
 fn place(frame: &Frame) -> String {

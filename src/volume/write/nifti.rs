@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::write_volume_raw;
+use super::raw;
 use crate::volume::{Coordinates, Frame, LengthUnit, Space, Volume};
 
 /// Writes a volume as NIfTI-1, or NIfTI-2 where an axis is longer than version 1 can say. A known space
@@ -9,14 +9,24 @@ use crate::volume::{Coordinates, Frame, LengthUnit, Space, Volume};
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub fn write_volume_nifti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+pub fn nifti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let long = volume.dims().xyz().iter().any(|&size| size > i16::MAX as usize);
     let frame = volume.frame().to(convention(volume.frame().coordinates));
     let header = if long { version_2(volume, &frame) } else { version_1(volume, &frame) };
     out.write_all(&header)?;
     // No extension follows.
     out.write_all(&[0; 4])?;
-    write_volume_raw(volume, out)
+    raw(volume, out)
+}
+
+/// The same, compressed with gzip.
+///
+/// # Errors
+/// Whatever `out` returns.
+pub fn nifti_gzip(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+    let mut packed = flate2::write::GzEncoder::new(out, flate2::Compression::default());
+    nifti(volume, &mut packed)?;
+    packed.finish().map(drop)
 }
 
 /// NIfTI's number for `float32`, and its bits.

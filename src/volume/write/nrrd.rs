@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::write_volume_raw;
+use super::raw;
 use crate::volume::{Coordinates, Frame, Space, Volume};
 
 /// Writes a volume as NRRD with its samples raw behind the header. The grid stands in the volume's own
@@ -9,7 +9,7 @@ use crate::volume::{Coordinates, Frame, Space, Volume};
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub fn write_volume_nrrd(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+pub fn nrrd(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let [x, y, z] = volume.dims().xyz();
     write!(
         out,
@@ -20,7 +20,7 @@ pub fn write_volume_nrrd(volume: &Volume, out: &mut dyn Write) -> io::Result<()>
         space(volume.frame()),
         place(volume.frame()),
     )?;
-    write_volume_raw(volume, out)
+    raw(volume, out)
 }
 
 /// The frame as it is written.

@@ -5,7 +5,7 @@ use crate::shown::{number, six_digits};
 use crate::volume::{Coordinates, LengthUnit};
 
 /// For a comment: α as a squared length, and as a radius where it is one.
-pub(super) fn alpha(alpha: Alpha) -> String {
+pub(crate) fn alpha(alpha: Alpha) -> String {
     let squared = number(alpha.squared());
     match alpha.radius().map(six_digits).map(number) {
         Some(radius) => format!("α = {squared} (squared length; √α = {radius})"),
@@ -15,13 +15,13 @@ pub(super) fn alpha(alpha: Alpha) -> String {
 
 /// For the comments of a file, behind what stands there: ` SPACE=LPS UNIT=mm`, as 3D Slicer looks for
 /// it; `UNIT` alone where the space is not known, and nothing where nothing is.
-pub(super) fn comment(coordinates: Coordinates) -> String {
+pub(crate) fn comment(coordinates: Coordinates) -> String {
     pairs(coordinates).into_iter().map(|(name, value)| format!(" {name}={value}")).collect()
 }
 
 /// The same as a line of its own, behind the word or sign that begins a comment; none where nothing is
 /// known.
-pub(super) fn line(sign: &str, coordinates: Coordinates) -> String {
+pub(crate) fn line(sign: &str, coordinates: Coordinates) -> String {
     match comment(coordinates) {
         comment if comment.is_empty() => comment,
         comment => format!("{sign}{comment}\n"),
@@ -29,7 +29,7 @@ pub(super) fn line(sign: &str, coordinates: Coordinates) -> String {
 }
 
 /// The same as VTK's field data in XML: arrays of one string each, in the numbers of its characters.
-pub(super) fn field_data(coordinates: Coordinates) -> String {
+pub(crate) fn field_data(coordinates: Coordinates) -> String {
     let told = pairs(coordinates);
     if told.is_empty() {
         return String::new();
@@ -37,7 +37,8 @@ pub(super) fn field_data(coordinates: Coordinates) -> String {
     let array = |(name, value): &(&str, &str)| {
         let bytes: Vec<String> = value.bytes().map(|byte| byte.to_string()).collect();
         format!(
-            "<Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">{} 0</Array>\n",
+            "<Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">{} \
+                 0</Array>\n",
             bytes.join(" ")
         )
     };
@@ -45,7 +46,7 @@ pub(super) fn field_data(coordinates: Coordinates) -> String {
 }
 
 /// The names and texts of what is known.
-pub(super) fn pairs(Coordinates { space, unit }: Coordinates) -> Vec<(&'static str, &'static str)> {
+pub(crate) fn pairs(Coordinates { space, unit }: Coordinates) -> Vec<(&'static str, &'static str)> {
     let space = space.is_known().then(|| ("SPACE", space.name()));
     let unit = (unit != LengthUnit::Unstated).then(|| ("UNIT", unit.ascii()));
     space.into_iter().chain(unit).collect()

@@ -1,7 +1,7 @@
 use std::io::{self, Write};
 
-use super::super::stated::field_data;
-use super::write_volume_raw;
+use super::raw;
+use crate::volume::stated::field_data;
 use crate::volume::{Coordinates, Space, Volume};
 
 /// Writes a volume as VTI, VTK's image data: point data `value`, appended raw. A known space is LPS; the
@@ -9,7 +9,7 @@ use crate::volume::{Coordinates, Space, Volume};
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub fn write_volume_vti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+pub fn vti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let [x, y, z] = volume.dims().xyz().map(|size| size - 1);
     let extent = format!("0 {x} 0 {y} 0 {z}");
     let lps = Coordinates { space: Space::Lps, unit: volume.frame().coordinates.unit };
@@ -30,6 +30,6 @@ pub fn write_volume_vti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> 
         field_data(frame.coordinates),
     )?;
     out.write_all(&(volume.dims().samples() as u64 * 4).to_le_bytes())?;
-    write_volume_raw(volume, out)?;
+    raw(volume, out)?;
     write!(out, "\n</AppendedData>\n</VTKFile>\n")
 }

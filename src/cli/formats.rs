@@ -1,0 +1,70 @@
+//! What help says of formats, from the library's tables.
+
+use walpha::{export, points, volume};
+
+/// What INPUT may be.
+fn inputs() -> String {
+    let volumes: Vec<&str> = volume::FORMATS.iter().map(|format| format.name).collect();
+    let points: Vec<&str> = points::FORMATS.iter().map(|format| format.name).collect();
+    format!(
+        "INPUT is a volume ({} with --dims), a point file ({}), or one of {}. α and weights are squared \
+         lengths.",
+        volumes.join(", "),
+        points.join(", "),
+        volume::SAMPLES.join(", ")
+    )
+}
+
+/// The long help of the command.
+pub fn about() -> String {
+    format!(
+        "Volume modelling of scattered data with wavelet-weighted alpha shapes.\n\n\
+         A volume is Haar-transformed, small coefficients are dropped, the samples of largest gray \
+         difference become weighted points, and CGAL's regular triangulation and alpha shape turn these \
+         into cells, facets, edges and vertices.\n\n{}\n\n\
+         Examples:\n\n\
+         walpha shape ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.ply\n\n\
+         walpha view scan.xyz -o scan.html\n\n\
+         walpha reproduce",
+        inputs()
+    )
+}
+
+fn dotted<'a>(extensions: impl IntoIterator<Item = &'a str>) -> String {
+    let dotted: Vec<String> = extensions.into_iter().map(|e| format!(".{e}")).collect();
+    match &dotted[..] {
+        [all @ .., last] if !all.is_empty() => format!("{} or {last}", all.join(", ")),
+        _ => dotted.concat(),
+    }
+}
+
+/// The help of an output of a volume of `what`.
+pub fn volume_output(what: &str) -> String {
+    format!(
+        "{what}, as f32, replaced if it is there: {}; or - (standard output, with --format)",
+        dotted(volume::VolumeWriter::all().map(|writer| writer.extension))
+    )
+}
+
+/// The help of the outputs of a shape.
+pub fn shape_output() -> String {
+    let of = |boundary: bool| {
+        let formats = export::FORMATS.iter().filter(move |format| format.boundary == boundary);
+        dotted(formats.map(|format| format.extension))
+    };
+    format!(
+        "Files to write: {} (boundary), {} (all simplices), .png (a picture); or - (standard output, \
+         with --format). Files that are there are replaced",
+        of(true),
+        of(false)
+    )
+}
+
+/// The help of an output of points.
+pub fn points_output() -> String {
+    format!(
+        "File to write, replaced if it is there: {} (columns x, y, z, weight and value); or - (standard \
+         output, with --format)",
+        dotted(points::PointWriter::all().map(|writer| writer.extension))
+    )
+}

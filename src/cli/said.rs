@@ -1,0 +1,125 @@
+//! Errors of the command itself, and the advice of all errors in the words of its options.
+
+use std::error::Error;
+
+use walpha::advice::{Advice, Setting};
+use walpha::export::TargetError;
+use walpha::haar::HaarError;
+use walpha::interpolate::InterpolateError;
+use walpha::memory::NoMemory;
+use walpha::pipeline::PipelineError;
+use walpha::points::{UnknownColumns, UnknownWeighting};
+use walpha::reproduce::ReproduceError;
+use walpha::shape::{AlphaError, PlanError, ShapeError};
+use walpha::triangulation::{SitesError, TriangulationError};
+use walpha::volume::{UnknownFormat, UnknownName};
+use walpha::{PointsError, VolumeError};
+
+/// Why a command cannot do something, and what to do next.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{why}")]
+pub struct Said {
+    pub why: String,
+    pub next: Option<String>,
+    /// Whether the command line makes no sense, whatever is in the files: exit code 2.
+    pub usage: bool,
+}
+
+impl Said {
+    /// An error of the library that the command line is to blame for.
+    pub fn usage_of(error: &(impl Error + 'static)) -> Self {
+        Self { why: error.to_string(), next: advice(error), usage: true }
+    }
+}
+
+/// A [`Said`] of a text, and perhaps of what to do next behind a `=>`.
+macro_rules! said {
+    ($why:literal $(, $of_why:expr)* $(=> $next:literal $(, $of_next:expr)*)?) => {
+        $crate::cli::said::Said {
+            why: format!($why $(, $of_why)*),
+            next: [$(format!($next $(, $of_next)*))?].into_iter().next(),
+            usage: false,
+        }
+    };
+}
+
+/// Ends with a [`Said`].
+macro_rules! refused {
+    ($($text:tt)*) => {
+        return Err($crate::cli::said::said!($($text)*).into())
+    };
+}
+
+/// The same for what makes no sense on a command line.
+macro_rules! misused {
+    ($($text:tt)*) => {
+        return Err($crate::cli::said::Said {
+            usage: true,
+            ..$crate::cli::said::said!($($text)*)
+        }
+        .into())
+    };
+}
+pub(crate) use {misused, refused, said};
+
+/// Lists the library's errors that know what to do.
+macro_rules! advising {
+    ($($error:ty),* $(,)?) => {
+        /// What an error of the library knows about what to do.
+        fn of_library(error: &(dyn Error + 'static)) -> Option<Advice> {
+            $(if let Some(error) = error.downcast_ref::<$error>() {
+                return error.advice().into();
+            })*
+            None
+        }
+
+        $(impl From<$error> for Said {
+            fn from(error: $error) -> Self {
+                Self { usage: false, ..Self::usage_of(&error) }
+            }
+        })*
+    };
+}
+advising![
+    HaarError,
+    InterpolateError,
+    NoMemory,
+    PipelineError,
+    PlanError,
+    PointsError,
+    ReproduceError,
+    ShapeError,
+    SitesError,
+    TargetError,
+    TriangulationError,
+    UnknownColumns,
+    UnknownFormat,
+    UnknownName,
+    UnknownWeighting,
+    VolumeError,
+];
+
+impl From<AlphaError> for Said {
+    fn from(error: AlphaError) -> Self {
+        Self { why: error.to_string(), next: Some(error.advice().into()), usage: false }
+    }
+}
+
+/// What an error knows about what to do, in the words of the command.
+pub fn advice(error: &(dyn Error + 'static)) -> Option<String> {
+    match error.downcast_ref::<Said>() {
+        Some(said) => said.next.clone(),
+        None => match error.downcast_ref::<AlphaError>() {
+            Some(error) => Some(error.advice().into()),
+            None => of_library(error).map(|advice| advice.told(option)),
+        },
+    }
+}
+
+/// What the command calls a setting.
+fn option(setting: Setting) -> String {
+    match setting {
+        Setting::Region => "--roi".into(),
+        other => format!("--{}", other.name().replace('_', "-")),
+    }
+}
