@@ -322,7 +322,7 @@ fn damaged_npy_files_are_refused() {
     let refuses = |bytes: &[u8], parts: &[&str]| folder.refuses("v.npy", bytes, &known(), parts);
     let good = npy(&Array3::<f32>::zeros((2, 2, 2)));
     refuses(b"", &["is empty"]);
-    refuses(b"hello world", &["no NPY file"]);
+    refuses(b"hello world", &["not an NPY file"]);
     refuses(&good[..40], &["truncated"]);
     refuses(&good[..good.len() - 1], &["32 bytes", "31", "truncated"]);
     refuses(&[&good[..], b"x"].concat(), &["32 bytes", "33", "too long"]);

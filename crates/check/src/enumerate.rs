@@ -9,17 +9,18 @@ use crate::{Alpha, Class, Complex};
 
 /// What the definition makes of a set of weighted points.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Enumeration {
     /// The whole triangulation with its classes, in canonical order.
     pub complex: Complex,
-    /// Points that are no vertex though nothing else is at their place, ascending.
+    /// Points that are not vertices though no other point stays at their place, ascending.
     pub hidden: Vec<u32>,
     /// Pairs (went, stayed) of points at one place, ascending: the heaviest stays, of equal
     /// weights the first.
     pub duplicates: Vec<[u32; 2]>,
 }
 
-/// Why points have no regular triangulation.
+/// Why there is no regular triangulation of some points.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnumerateError {
@@ -50,13 +51,13 @@ pub enum EnumerateError {
 /// doi:10.1016/j.comgeo.2010.09.010): each lifted height |p|² − ω is raised by an infinitesimal, by
 /// infinitely more for the later of two points in (x, y, z) order. A simplex of the triangulation
 /// is in the α-complex when its smallest orthogonal sphere has squared radius ≤ α and no point
-/// strictly inside, hidden ones too, or when it is a face of one that is.
+/// strictly inside, not even a hidden one, or when it is a face of one that is.
 ///
 /// O(n⁴) quadruples with an early exit each: 60 points
 /// take seconds, 200 minutes.
 ///
 /// # Errors
-/// [`EnumerateError`]: points that are no numbers, or that span no volume.
+/// [`EnumerateError`]: coordinates or weights that are not finite, points that do not span a volume.
 pub fn enumerate(
     positions: &[[f64; 3]],
     weights: &[f64],
@@ -230,7 +231,7 @@ impl Definition<'_> {
         radius(simplex.map(|i| &self.points[i as usize]), self.alpha).is_le()
     }
 
-    /// Whether no point at all, hidden ones too, is strictly inside the smallest orthogonal
+    /// Whether no point at all, not even a hidden one, is strictly inside the smallest orthogonal
     /// sphere. Duplicates are lighter than what stayed in their place, so they cannot be alone in
     /// it.
     fn is_empty<const N: usize>(&self, simplex: [u32; N]) -> bool {

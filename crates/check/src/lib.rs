@@ -45,3 +45,8 @@ pub use complex::{ByClass, Class, Complex, Simplices, SimplicesError};
 pub use enumerate::{EnumerateError, Enumeration, enumerate};
 pub use exact::Exact;
 pub use placed::Placed;
+
+/// The example in the README runs.
+#[cfg(all(doctest, feature = "json"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

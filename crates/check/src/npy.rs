@@ -44,7 +44,7 @@ pub enum NpyError {
     #[error("ends inside its NPY header: it is truncated; save it again")]
     Truncated,
     /// The first bytes are others.
-    #[error("is no NPY file: it does not begin with \\x93NUMPY")]
+    #[error("is not an NPY file: it does not begin with \\x93NUMPY")]
     Magic,
     /// A version of the format that NumPy does not write.
     #[error("is NPY version {0}: 1, 2 and 3 are read")]

@@ -2,8 +2,9 @@
 
 mod common;
 
-use std::io::{Cursor, Write};
+use std::io::Cursor;
 
+use common::archive::{archive, npy};
 use common::{Random, definition, grid};
 use walpha_check::schema::{ComplexFile, SchemaError};
 use walpha_check::{Extent, Finding};
@@ -29,8 +30,8 @@ fn corners_in_one_place_are_a_finding() {
         assert_ne!(judge(format!("{{{points},{rows}}}").as_bytes()).unwrap(), [], "{rows}");
     }
     let findings = judge(format!(r#"{{{points},"edges":[[0,1]]}}"#).as_bytes()).unwrap();
-    let told: Vec<String> = findings.iter().map(Finding::to_string).collect();
-    assert!(told.iter().any(|told| told.contains("corners are in one place")), "{told:?}");
+    let lines: Vec<String> = findings.iter().map(Finding::to_string).collect();
+    assert!(lines.iter().any(|line| line.contains("corners are in one place")), "{lines:?}");
 }
 
 /// Random rows over points that coincide, lie on lines and in planes, with random classes.
@@ -128,22 +129,6 @@ fn files() -> [Vec<u8>; 2] {
     let npz = archive(&arrays, CompressionMethod::Stored);
     assert!(judge(&json).is_ok() && judge(&npz).is_ok());
     [json, npz]
-}
-
-fn npy(descr: &str, shape: &str, data: &[u8]) -> Vec<u8> {
-    let header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}\n");
-    let length = (header.len() as u16).to_le_bytes();
-    [b"\x93NUMPY\x01\x00", &length[..], header.as_bytes(), data].concat()
-}
-
-fn archive(arrays: &[(&str, Vec<u8>)], method: CompressionMethod) -> Vec<u8> {
-    let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
-    let options = zip::write::SimpleFileOptions::default().compression_method(method);
-    for (name, bytes) in arrays {
-        archive.start_file(format!("{name}.npy"), options).unwrap();
-        archive.write_all(bytes).unwrap();
-    }
-    archive.finish().unwrap().into_inner()
 }
 
 /// Bytes changed anywhere, and files cut anywhere.

@@ -5,6 +5,7 @@ use crate::exact::Exact;
 
 /// What was judged, and what could not be.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Certificate {
     /// How many findings there were before the visitor stopped.
     pub findings: usize,
@@ -25,10 +26,10 @@ pub enum NotJudged {
     /// Whether a singular facet or edge whose sphere carries further points is the one that the
     /// perturbation chooses: this needs the whole triangulation.
     TiedSingular,
-    /// Whether points that are no vertices are hidden, and the hull: these need the whole
+    /// Whether points that are not vertices are hidden, and the hull: these need the whole
     /// triangulation.
     HiddenAndHull,
-    /// Whether the listed duplicates are right: none are listed.
+    /// Whether the duplicates are right: no list is given.
     Duplicates,
     /// Rules that rest on others which were broken, or the visitor stopped.
     AfterFindings,

@@ -155,7 +155,7 @@ impl Judge<'_> {
         side(self.points.at(row).each_ref(), &self.points.get(q)) == Side::Inside
     }
 
-    /// Whether the corners are affinely dependent, so that there is no sphere of theirs.
+    /// Whether the corners are affinely dependent, so that they have no orthogonal sphere.
     pub(super) fn flat<const N: usize>(&self, row: [u32; N]) -> bool {
         match self.points.places(row)[..] {
             [a, b] => a == b,

@@ -37,7 +37,7 @@ impl fmt::Display for Simplex {
 #[serde(tag = "rule", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Finding {
-    /// A vertex is no input point.
+    /// A row names a point that does not exist.
     Index {
         /// The row.
         simplex: Simplex,
@@ -150,7 +150,7 @@ pub enum Finding {
         /// The vertex of the shape's cell beside it, which must lie behind the facet.
         behind: u32,
     },
-    /// A point that is no vertex is not hidden: it refutes the cell it lies in.
+    /// A point that is not a vertex is not hidden: it refutes the cell it lies in.
     NotHidden {
         /// The point.
         point: u32,
@@ -159,7 +159,7 @@ pub enum Finding {
         /// |point − centre|² − R² − ω of the point; zero when the perturbation decides.
         power: Exact,
     },
-    /// A point that is no vertex lies outside the hull.
+    /// A point that is not a vertex lies outside the hull.
     OutsideHull {
         /// The point.
         point: u32,

@@ -1,12 +1,13 @@
-//! Findings in words.
+//! Findings in words, one line each.
 
-use std::fmt;
+use std::fmt::{self, Formatter};
 
-use super::Finding;
+use super::{Finding, Simplex};
+use crate::Class;
 use crate::exact::Exact;
 
 impl fmt::Display for Finding {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
             Self::Index { simplex, points } => {
                 write!(f, "{simplex} names a point that does not exist: there are {points}")
@@ -14,92 +15,44 @@ impl fmt::Display for Finding {
             Self::RepeatedVertex { simplex } => write!(f, "{simplex} names a point twice"),
             Self::RepeatedSimplex { simplex } => write!(f, "{simplex} is listed twice"),
             Self::MissingFace { face, of } => write!(f, "{face} is missing: {of} has it as a face"),
-            Self::Stray { simplex } => {
-                write!(f, "{simplex} is the face of no higher simplex of the triangulation")
-            }
-            Self::NoCells => write!(f, "there are no cells, so this is no triangulation"),
-            Self::Orientation { cell, six_volumes } => write!(
-                f,
-                "{cell} must be positively oriented, but six times its volume is {six_volumes}"
-            ),
-            Self::Crowded { facet, cells } => {
-                write!(f, "{facet} is shared by {} cells, not by at most two:", cells.len())?;
-                cells.iter().try_for_each(|cell| write!(f, " {:?}", cell.vertices()))
-            }
+            Self::Stray { simplex } => write!(f, "{simplex} is not a face of any higher simplex"),
+            Self::NoCells => write!(f, "a triangulation needs cells, and there are none"),
+            Self::Orientation { cell, six_volumes } => orientation(f, cell, six_volumes),
+            Self::Crowded { facet, cells } => crowded(f, facet, cells),
             Self::Overlap { facet, cells: [a, b] } => {
                 write!(f, "{a} and {b} overlap: both are on the same side of {facet}")
             }
-            Self::NotRegular { cell, point, power } => {
-                write!(f, "{cell} is not regular: point {point} is inside its orthogonal sphere")?;
-                write_power(f, power)
-            }
+            Self::NotRegular { cell, point, power } => not_regular(f, cell, *point, power),
             Self::HullEdge { edge, facets } => {
                 write!(f, "{edge} of the hull lies between {facets} facets with one cell, not two")
             }
-            Self::HullBends { facet, point, six_volumes } => write!(
-                f,
-                "the hull is not convex: point {point} is outside {facet} (six volumes {six_volumes})"
-            ),
-            Self::HullWraps { first, facet } => write!(
-                f,
-                "the hull does not go around the first cell once: {facet} does not face away from it, or lies behind {first}"
-            ),
-            Self::Volume { cells, hull } => write!(
-                f,
-                "the cells do not fill the hull: six times their volume is {cells}, six times the hull's {hull}"
-            ),
+            Self::HullBends { facet, point, six_volumes } => {
+                write!(f, "the hull is not convex: point {point} lies")?;
+                beyond(f, facet, six_volumes)
+            }
+            Self::HullWraps { first, facet } => wraps(f, first, facet),
+            Self::Volume { cells, hull } => volume(f, cells, hull),
             Self::Class { simplex, given, expected, radius_squared, refuted_by } => {
                 write!(f, "{simplex} is {expected}, not {given}")?;
-                match radius_squared {
-                    Some(radius) => write!(f, " (squared radius {radius})")?,
-                    None => write!(f, " (its corners are in one place or on one line or plane)")?,
-                }
-                match refuted_by {
-                    Some((point, power)) => {
-                        write!(f, "; point {point} is inside its sphere (power {power})")
-                    }
-                    None => Ok(()),
-                }
+                reason(f, radius_squared.as_ref(), refuted_by.as_ref())
             }
-            Self::Winding { facet, behind } => write!(
-                f,
-                "{facet} must turn counter-clockwise seen from outside, but point {behind} of the shape is before it"
-            ),
-            Self::NotHidden { point, cell, power } => {
-                write!(
-                    f,
-                    "point {point} is not hidden: it is inside the orthogonal sphere of {cell}, in which it lies"
-                )?;
-                write_power(f, power)
+            Self::Winding { facet, behind } => winding(f, facet, *behind),
+            Self::NotHidden { point, cell, power } => not_hidden(f, *point, cell, power),
+            Self::OutsideHull { point, facet, six_volumes } => {
+                write!(f, "point {point} lies outside the hull,")?;
+                beyond(f, facet, six_volumes)
             }
-            Self::OutsideHull { point, facet, six_volumes } => write!(
-                f,
-                "point {point} lies outside the hull, beyond {facet} (six volumes {six_volumes})"
-            ),
-            Self::MissingCell { cell, class, radius_squared } => write!(
-                f,
-                "{cell} is missing: all its faces are listed, and it is {class} (squared radius {radius_squared})"
-            ),
-            Self::MissingVertex { point, radius_squared } => write!(
-                f,
-                "point {point} is missing: it is a vertex of the shape (squared radius {radius_squared}, and no other point inside)"
-            ),
+            Self::MissingCell { cell, class, radius_squared } => {
+                missing_cell(f, cell, *class, radius_squared)
+            }
+            Self::MissingVertex { point, radius_squared } => {
+                missing_vertex(f, *point, radius_squared)
+            }
             Self::Unaccounted { point } => {
-                write!(f, "point {point} is neither vertex nor hidden nor a duplicate")
+                write!(f, "point {point} is neither a vertex, nor hidden, nor a duplicate")
             }
-            Self::NotOnlyHidden { point } => {
-                write!(
-                    f,
-                    "point {point} is listed as hidden, but it is a vertex, a duplicate, listed before or no point"
-                )
-            }
-            Self::Duplicate { point, given, expected } => {
-                let stays = |who: &Option<u32>| match who {
-                    Some(other) => format!("gives way to point {other}"),
-                    None => "stays".into(),
-                };
-                write!(f, "point {point} {}, but as listed it {}", stays(expected), stays(given))
-            }
+            Self::NotOnlyHidden { point } => not_only_hidden(f, *point),
+            Self::Duplicate { point, given, expected } => duplicate(f, *point, *given, *expected),
             Self::DuplicateVertex { point, stays } => {
                 write!(f, "point {point} is a vertex, but gives way to point {stays} at its place")
             }
@@ -107,7 +60,112 @@ impl fmt::Display for Finding {
     }
 }
 
-fn write_power(f: &mut fmt::Formatter<'_>, power: &Exact) -> fmt::Result {
+fn orientation(f: &mut Formatter<'_>, cell: &Simplex, six_volumes: &Exact) -> fmt::Result {
+    write!(f, "{cell} must be positively oriented, but six times its volume is {six_volumes}")
+}
+
+fn crowded(f: &mut Formatter<'_>, facet: &Simplex, cells: &[Simplex]) -> fmt::Result {
+    write!(f, "{facet} is shared by {} cells, not by at most two:", cells.len())?;
+    cells.iter().try_for_each(|cell| write!(f, " {:?}", cell.vertices()))
+}
+
+fn not_regular(f: &mut Formatter<'_>, cell: &Simplex, point: u32, power: &Exact) -> fmt::Result {
+    write!(f, "{cell} is not regular: point {point} is inside its orthogonal sphere")?;
+    by_power(f, power)
+}
+
+fn beyond(f: &mut Formatter<'_>, facet: &Simplex, six_volumes: &Exact) -> fmt::Result {
+    write!(f, " beyond {facet} (six times the volume between them is {six_volumes})")
+}
+
+fn wraps(f: &mut Formatter<'_>, first: &Simplex, facet: &Simplex) -> fmt::Result {
+    write!(
+        f,
+        "the hull does not go around the first cell once: {facet} does not face away from it, or lies behind {first}"
+    )
+}
+
+fn volume(f: &mut Formatter<'_>, cells: &Exact, hull: &Exact) -> fmt::Result {
+    write!(
+        f,
+        "the cells do not fill the hull: six times their volume is {cells}, six times the hull's {hull}"
+    )
+}
+
+/// Why a class is another than the given one.
+fn reason(
+    f: &mut Formatter<'_>,
+    radius_squared: Option<&Exact>,
+    refuted_by: Option<&(u32, Exact)>,
+) -> fmt::Result {
+    match radius_squared {
+        Some(radius) => write!(f, " (squared radius {radius})")?,
+        None => write!(f, " (its corners are in one place or on one line or plane)")?,
+    }
+    match refuted_by {
+        Some((point, power)) => {
+            write!(f, "; point {point} is inside its sphere (power {power})")
+        }
+        None => Ok(()),
+    }
+}
+
+fn winding(f: &mut Formatter<'_>, facet: &Simplex, behind: u32) -> fmt::Result {
+    write!(
+        f,
+        "{facet} must turn counter-clockwise seen from outside, but point {behind} of the shape is in front of it"
+    )
+}
+
+fn not_hidden(f: &mut Formatter<'_>, point: u32, cell: &Simplex, power: &Exact) -> fmt::Result {
+    write!(
+        f,
+        "point {point} is not hidden: it is inside the orthogonal sphere of {cell}, in which it lies"
+    )?;
+    by_power(f, power)
+}
+
+fn missing_cell(
+    f: &mut Formatter<'_>,
+    cell: &Simplex,
+    class: Class,
+    radius_squared: &Exact,
+) -> fmt::Result {
+    write!(
+        f,
+        "{cell} is missing: all its faces are listed, and it is {class} (squared radius {radius_squared})"
+    )
+}
+
+fn missing_vertex(f: &mut Formatter<'_>, point: u32, radius_squared: &Exact) -> fmt::Result {
+    write!(
+        f,
+        "point {point} is missing: it is a vertex of the shape (squared radius {radius_squared}, and no other point inside)"
+    )
+}
+
+fn not_only_hidden(f: &mut Formatter<'_>, point: u32) -> fmt::Result {
+    write!(
+        f,
+        "point {point} is listed as hidden, but it is a vertex or a duplicate, is listed twice, or does not exist"
+    )
+}
+
+fn duplicate(
+    f: &mut Formatter<'_>,
+    point: u32,
+    given: Option<u32>,
+    expected: Option<u32>,
+) -> fmt::Result {
+    let stays = |who: Option<u32>| match who {
+        Some(other) => format!("gives way to point {other}"),
+        None => "stays".into(),
+    };
+    write!(f, "point {point} {}, but the list says that it {}", stays(expected), stays(given))
+}
+
+/// How deep a point is inside a sphere.
+fn by_power(f: &mut Formatter<'_>, power: &Exact) -> fmt::Result {
     if power.is_zero() {
         write!(f, " (on it, and inside by the perturbation)")
     } else {

@@ -1,4 +1,4 @@
-//! Rules on points that are no vertices: duplicates and hidden points.
+//! Rules on points that are not vertices: duplicates and hidden points.
 
 use rayon::prelude::*;
 
@@ -28,7 +28,7 @@ pub(super) fn staying(points: Points) -> Vec<u32> {
     stays
 }
 
-/// Duplicates are no vertices, and where they are listed, they are listed rightly.
+/// Duplicates are not vertices, and the list of them, if there is one, is right.
 pub(super) fn duplicates(
     structure: &Structure,
     stays: &[u32],
@@ -85,8 +85,8 @@ pub(super) fn hidden(
     (hidden, findings)
 }
 
-/// In a shape alone: points listed as hidden are no vertices, and points that are in the shape by
-/// themselves are vertices.
+/// In a shape alone: points listed as hidden are not vertices, and points that are in the shape by
+/// themselves are.
 ///
 /// A point whose sphere of squared radius −ω has all others strictly outside is below them all
 /// once it is lifted, so it is a vertex of the regular triangulation; a tie may hide it.

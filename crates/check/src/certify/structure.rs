@@ -7,7 +7,7 @@ use super::{Finding, Points};
 use crate::Complex;
 use crate::canonical::outward_facets;
 
-/// How the listed simplices hang together.
+/// The listed simplices, linked: cells to facets and back, and each found by its vertices.
 pub(super) struct Structure<'a> {
     pub complex: &'a Complex,
     pub cells: Index<4>,
@@ -15,7 +15,7 @@ pub(super) struct Structure<'a> {
     pub edges: Index<2>,
     pub vertices: Index<1>,
     /// For each facet, the sides that cells have on it: 4 · cell + the number of the opposite
-    /// vertex, ascending; [`NONE`] where there is none. Of a crowded facet the first two.
+    /// vertex, ascending; [`NONE`] for a missing one. Of a crowded facet the first two.
     pub sides: Vec<[u32; 2]>,
     /// The rows of each cell's facets, opposite to its vertices.
     pub cell_facets: Vec<[u32; 4]>,
@@ -30,7 +30,7 @@ pub(super) struct Half {
 }
 
 impl<'a> Structure<'a> {
-    /// What that of a complex takes, besides the complex.
+    /// Bytes that linking a complex takes, besides the complex itself.
     pub(super) fn bytes(complex: &Complex) -> usize {
         let cell = size_of::<([u32; 4], u32)>() + size_of::<[u32; 4]>();
         let facet = size_of::<([u32; 3], u32)>() + size_of::<[u32; 2]>();

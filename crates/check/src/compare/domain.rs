@@ -12,6 +12,7 @@ use crate::{Class, Placed};
 /// What the cells of two shapes cover.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Domain {
     /// The same cells.
     SameCells,
@@ -19,9 +20,9 @@ pub enum Domain {
     SameRegion {
         /// Six times the volume of the region.
         six_volumes: Exact,
-        /// Whether the other cells of each orthogonal sphere cover the same, too. Then this is no
-        /// error of either program: where more than four points lie on one empty sphere, each may
-        /// cut their polytope as it likes. If not, one of the two is no regular triangulation.
+        /// Whether the cells that differ also cover the same on each orthogonal sphere. If so,
+        /// neither program is wrong: where more than four points lie on one empty sphere, their
+        /// polytope may be cut in any way. If not, one of the two is not a regular triangulation.
         tied: bool,
     },
     /// Different regions.

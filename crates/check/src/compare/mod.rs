@@ -14,6 +14,7 @@ pub use domain::Domain;
 
 /// What two complexes A and B have in common, and what not.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Comparison {
     /// α of A and of B.
     pub alpha: [Alpha; 2],
@@ -34,6 +35,7 @@ pub struct Comparison {
 
 /// Differences among the simplices of one dimension.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Differences {
     /// How many simplices are in both with the same class.
     pub equal: usize,
@@ -47,6 +49,7 @@ pub struct Differences {
 
 /// A simplex whose class differs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct ClassDifference {
     /// The simplex, by A's indices.
     pub simplex: Simplex,
@@ -58,6 +61,7 @@ pub struct ClassDifference {
 
 /// A place where the weights differ.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct WeightDifference {
     /// The first point there, by A's indices.
     pub point: u32,
@@ -91,7 +95,7 @@ pub enum CompareError {
         /// The point.
         point: usize,
     },
-    /// A vertex is no point.
+    /// A row names a point that does not exist.
     #[error("{simplex} of complex {which} names a point that does not exist")]
     Index {
         /// `A` or `B`.
@@ -172,7 +176,7 @@ impl Places {
     }
 }
 
-/// At each place the largest weight of the points there; −∞ where there is none.
+/// The largest weight at each place; −∞ at places without a point.
 fn weights_by_place(weights: &[f64], place: &[u32]) -> Vec<f64> {
     let count = place.iter().max().map_or(0, |&last| last as usize + 1);
     let mut largest = vec![f64::NEG_INFINITY; count];

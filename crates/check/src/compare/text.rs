@@ -45,12 +45,16 @@ impl Display for Comparison {
             }
         }
         writeln!(f, "{}", self.domain)?;
-        let exterior = if self.exterior { "" } else { "exterior simplices (not both list them), " };
+        let exterior = if self.exterior {
+            ""
+        } else {
+            "exterior simplices (only one or neither lists them), "
+        };
         write!(f, "not compared: {exterior}windings, lists of hidden points and duplicates")
     }
 }
 
-/// Some things by name, the rest by number; nothing where there is none.
+/// How many there are, and the first of them; nothing if there are none.
 fn rows<T: Display>(
     f: &mut fmt::Formatter<'_>,
     what: &str,

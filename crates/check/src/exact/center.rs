@@ -4,7 +4,7 @@ use super::frame::{approx, dot};
 use super::number::{Approx, Number};
 
 /// The smallest orthogonal sphere of a simplex in doubles, with a bound on the error: good for
-/// telling quickly that a point is outside.
+/// deciding quickly that a point is outside.
 pub(crate) struct RoundedSphere {
     /// Near the centre.
     pub center: [f64; 3],
@@ -15,7 +15,7 @@ pub(crate) struct RoundedSphere {
 }
 
 impl RoundedSphere {
-    /// The sphere of 1 to 4 affinely independent points; none if doubles cannot tell.
+    /// The sphere of 1 to 4 affinely independent points; `None` if doubles cannot decide.
     ///
     /// # Panics
     /// If there are no points or more than 4.

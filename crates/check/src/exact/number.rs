@@ -35,7 +35,7 @@ impl Number for IBig {
 }
 
 /// A bound on an integer: its magnitude is below 2^`0`. Running a formula on bounds bounds every
-/// intermediate result too, because each is below the final one or feeds it.
+/// intermediate result as well, because each is below the final one or feeds it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bits(pub u32);
 

@@ -6,7 +6,7 @@ use super::{WeightedPoint, orientation};
 
 /// The order of the perturbation: points by x, then y, then z. The largest is raised most.
 fn rank(a: &WeightedPoint, b: &WeightedPoint) -> Ordering {
-    a.position.partial_cmp(&b.position).expect("coordinates are no NaN")
+    a.position.partial_cmp(&b.position).expect("coordinates are not NaN")
 }
 
 /// Whether `q` refutes a positively oriented cell: whether it is strictly inside the cell's
@@ -49,6 +49,6 @@ fn perturbed(cell: [&WeightedPoint; 4], q: &WeightedPoint) -> bool {
             sign => return sign.is_gt(),
         }
     }
-    // Only a flat cell gets here, which is no cell.
+    // Only a flat cell gets here, which has no sphere to be inside of.
     false
 }

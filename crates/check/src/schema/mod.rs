@@ -1,4 +1,4 @@
-//! A small file format for complexes, so that any program's can be judged and compared.
+//! A small file format for complexes, so that those of any program can be judged and compared.
 //!
 //! In JSON:
 //!
@@ -15,25 +15,23 @@
 //!   "duplicates": [] }
 //! ```
 //!
-//! - `points` are needed, unless they come in a file of their own (`--points`); `alpha` is needed: a
-//!   squared length, a number or `"inf"` or `"-inf"`.
-//! - `weights` are power weights, 0 where missing. An unweighted complex whose radii are called
-//!   r has α = r².
-//! - Simplices are rows of point numbers from 0, in any order and winding. A dimension that is
-//!   missing is made of the faces of the one above it.
-//! - `classes` (`exterior`, `interior`, `regular`, `singular`) belong to the rows of a dimension.
-//!   Where they are missing, all listed simplices are taken to be in the shape, and have the
-//!   classes that follow from that: a facet between two cells is interior, beside one regular,
-//!   beside none singular, and so on down.
-//! - `hidden` lists points that are no vertices, `duplicates` pairs (went, stayed) of points at one
-//!   place; both may be missing.
-//! - `info` is free for whatever the writer wants to say.
+//! - `points` and `alpha` are required. `alpha` is a **squared** length: a number, `"inf"` or
+//!   `"-inf"`. A program that works with radii r has α = r².
+//! - `weights` are power weights, squared lengths; without them all are 0.
+//! - Simplices are rows of point numbers from 0, in any order and winding. If a dimension is
+//!   missing, it consists of the faces of the dimension above.
+//! - `classes` (`exterior`, `interior`, `regular`, `singular`) give the class of each row of a
+//!   dimension. Without them, all listed simplices count as in the shape, and their classes follow:
+//!   a facet with two cells is interior, with one regular, with none singular, and so on down.
+//! - `hidden` lists the points that are not vertices, `duplicates` pairs (went, stayed) of points
+//!   at one place. Both are optional.
+//! - `info` is for whatever the writer wants to add.
 //!
-//! In NPZ the same names are arrays: `points` n×3, `weights` n, `alpha` a scalar, `cells` m×4,
-//! `facets` m×3, `edges` m×2, `vertices` m, `hidden` m, `duplicates` m×2, of any integer or
-//! floating type; classes are arrays `cell_classes`, `facet_classes`, `edge_classes` and
-//! `vertex_classes` of the numbers 0 exterior, 1 interior, 2 regular, 3 singular. Write it with
-//! `numpy.savez` or `numpy.savez_compressed`.
+//! In NPZ (`numpy.savez`, `numpy.savez_compressed`) the same names are arrays of any integer or
+//! floating-point type: `points` n×3, `weights` n, `alpha` a scalar, `cells` m×4, `facets` m×3,
+//! `edges` m×2, `vertices` m, `hidden` m, `duplicates` m×2. Classes are arrays `cell_classes`,
+//! `facet_classes`, `edge_classes` and `vertex_classes`, with 0 exterior, 1 interior, 2 regular,
+//! 3 singular.
 
 mod build;
 mod error;
@@ -81,13 +79,13 @@ pub struct ComplexFile {
     /// Classes of the simplices listed.
     #[serde(default, skip_serializing_if = "Classes::is_empty")]
     pub classes: Classes,
-    /// Points that are no vertices.
+    /// Points that are not vertices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hidden: Option<Vec<u32>>,
     /// Pairs (went, stayed) of points at one place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duplicates: Option<Vec<[u32; 2]>>,
-    /// Whatever the writer wants to say.
+    /// Whatever the writer wants to add.
     #[cfg(feature = "json")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub info: Option<serde_json::Value>,
@@ -96,6 +94,7 @@ pub struct ComplexFile {
 /// Classes by dimension, as many as simplices where present.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Classes {
     /// Of the cells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -142,7 +141,7 @@ impl ComplexFile {
         }
     }
 
-    /// A file of points and α without any simplices, which are yet to be put in.
+    /// A file of points and α, to which simplices are yet to be added.
     pub fn of_points(points: Vec<[f64; 3]>, alpha: Alpha) -> Self {
         Self {
             points,

@@ -17,11 +17,11 @@ const MOST_REPETITION: u64 = 256;
 const SMALL: u64 = 16 << 20;
 
 impl ComplexFile {
-    /// Reads NPZ. What the headers claim is compared with the file, and with each other, before
-    /// any array is read.
+    /// Reads NPZ. Before any array is read, what the headers claim is compared with the size of
+    /// the file and with each other.
     ///
     /// # Errors
-    /// Missing, ill-shaped or unreadable arrays; numbers that are no indices or classes.
+    /// Missing, ill-shaped or unreadable arrays; numbers that cannot be indices or classes.
     pub fn read_npz(reader: impl Read + Seek) -> Result<Self, SchemaError> {
         let mut file = Npz::new(reader)?;
         file.check()?;
@@ -80,7 +80,7 @@ const ARRAYS: [(&str, Kind); 13] = [
 /// The arrays of a file, read as doubles: they hold every index and class exactly.
 struct Npz<R> {
     archive: ZipArchive<R>,
-    /// Bytes of the file.
+    /// Size of the file in bytes.
     length: u64,
 }
 
@@ -92,7 +92,7 @@ impl<R: Read + Seek> Npz<R> {
         Ok(Self { archive, length })
     }
 
-    /// Looks at all headers: shapes, lengths that must be equal, and bytes that cannot be there.
+    /// Checks all headers: shapes, lengths that must be equal, sizes that the file cannot hold.
     fn check(&mut self) -> Result<(), SchemaError> {
         let mut counts = Vec::new();
         for (name, kind) in ARRAYS {

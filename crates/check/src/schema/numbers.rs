@@ -5,7 +5,7 @@ use std::io::Read;
 use super::SchemaError;
 use crate::npy::Header;
 
-/// Decoded at a time, so that an array never stands in memory beside its numbers.
+/// Bytes decoded at a time, so that an array and its numbers are not in memory together.
 const CHUNK_BYTES: usize = 8 << 20;
 
 /// All elements of an array in the order of the file. The reader stands behind the header, and

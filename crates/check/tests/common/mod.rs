@@ -1,6 +1,9 @@
 //! Point sets, and what the definition makes of them.
 #![allow(dead_code, unreachable_pub, reason = "each test file uses its part")]
 
+pub mod archive;
+pub mod base;
+
 use std::collections::BTreeSet;
 
 use walpha_check::{

@@ -1,0 +1,67 @@
+//! α, simplices and counts.
+
+use walpha_check::{Alpha, AlphaError, ByClass, Class, Complex, Simplices, SimplicesError};
+
+#[test]
+fn alpha_is_read_as_it_is_printed() {
+    for text in ["0.75", "-3", "1e-300", "0", "inf", "-inf"] {
+        let alpha: Alpha = text.parse().unwrap();
+        assert_eq!(alpha.to_string().parse(), Ok(alpha));
+        let json = serde_json::to_string(&alpha).unwrap();
+        assert_eq!(serde_json::from_str::<Alpha>(&json).unwrap(), alpha, "{json}");
+    }
+    assert_eq!(serde_json::to_string(&Alpha::INFINITE).unwrap(), "\"inf\"");
+    assert_eq!(serde_json::from_str::<Alpha>("3").unwrap().squared(), 3.0);
+}
+
+#[test]
+fn what_is_not_an_alpha_is_refused() {
+    assert_eq!("nan".parse::<Alpha>(), Err(AlphaError::NaN));
+    assert_eq!("big".parse::<Alpha>(), Err(AlphaError::Text("big".into())));
+    assert_eq!(Alpha::from_radius(-1.0), Err(AlphaError::Radius(-1.0)));
+    assert_eq!(Alpha::from_radius(3.0).unwrap().squared(), 9.0);
+    for json in ["\"big\"", "\"nan\"", "null", "[1]"] {
+        let error = serde_json::from_str::<Alpha>(json).unwrap_err().to_string();
+        assert!(error.contains("\"inf\" or \"-inf\""), "{json}: {error}");
+    }
+}
+
+#[test]
+fn simplices_have_a_class_each() {
+    let error = Simplices::new(vec![[0, 1], [1, 2]], vec![Class::Regular]).unwrap_err();
+    assert_eq!(error.to_string(), "2 simplices but 1 classes: each needs one");
+    let SimplicesError { rows, classes, .. } = error;
+    assert_eq!((rows, classes), (2, 1));
+}
+
+#[test]
+fn the_shape_is_what_is_not_exterior() {
+    let edges = [([0, 1], Class::Exterior), ([0, 2], Class::Singular), ([1, 2], Class::Regular)];
+    let vertices = [0, 1, 2].map(|v| ([v], Class::Regular));
+    let mut complex = Complex {
+        edges: edges.into_iter().collect(),
+        vertices: vertices.into_iter().collect(),
+        ..Complex::default()
+    };
+    assert_eq!(complex.euler_characteristic(), 1);
+    complex.retain_shape();
+    assert_eq!(complex.edges.rows(), [[0, 2], [1, 2]]);
+    assert_eq!(complex.edges.classes(), [Class::Singular, Class::Regular]);
+    assert_eq!(complex.euler_characteristic(), 1);
+}
+
+#[test]
+fn counts_by_class() {
+    let classes = [Class::Exterior, Class::Interior, Class::Exterior, Class::Singular];
+    let counts = classes.map(|class| ([7], class)).into_iter().collect::<Simplices<1>>().counts();
+    assert_eq!(counts, ByClass { interior: 1, regular: 0, singular: 1, exterior: 2 });
+    assert_eq!(counts.in_shape(), 2);
+    let order: Vec<String> = counts.iter().map(|(class, n)| format!("{class} {n}")).collect();
+    assert_eq!(order, ["interior 1", "regular 0", "singular 1", "exterior 2"]);
+    assert!(counts.iter().all(|(class, n)| counts[class] == *n));
+    let json = |value: serde_json::Value| value.to_string();
+    let whole = json(serde_json::to_value(counts).unwrap());
+    assert_eq!(whole, r#"{"exterior":2,"interior":1,"regular":0,"singular":1}"#);
+    let shape = json(counts.serialize_shape(serde_json::value::Serializer).unwrap());
+    assert_eq!(shape, r#"{"interior":1,"regular":0,"singular":1}"#);
+}
