@@ -221,7 +221,7 @@ fn no_option_is_without_effect() {
         ("shape sample:phantom@8 --engine reference --blocks 2", "--blocks has no effect"),
         ("check cube.json --alpha 1", "--alpha has no effect: cube.json is a complex"),
         ("check cube.json --engine native", "--engine has no effect"),
-        ("shape cube.csv --balls radius", "give --alpha A, as in --alpha 0.8"),
+        ("shape cube.csv --balls radius", "give a number, as in --alpha 0.8"),
     ];
     for (args, words) in cases {
         fails(f, 2, args, &[words]);

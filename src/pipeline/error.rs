@@ -41,8 +41,7 @@ impl PipelineError {
             Self::Shape(error) => error.advice(),
             Self::Alpha(error) => Some(error.advice().into()),
             Self::Radii { radius } => {
-                let alpha = Setting::Alpha;
-                Some(advice!["give ", alpha, ", as in ", alpha, format!(" {radius}")])
+                Some(advice!["give a number, as in ", Setting::Alpha, format!(" {radius}")])
             }
         }
     }

@@ -20,7 +20,7 @@ impl ManifoldDefects {
 }
 
 impl Surface {
-    /// Where the regular facets make no manifold. Singular simplices, which bound nothing, are not
+    /// Where the regular facets do not make a manifold. Singular simplices, which bound nothing, are not
     /// looked at. O(n log n).
     pub fn manifold_defects(&self) -> ManifoldDefects {
         let sides = self.sides();

@@ -173,7 +173,7 @@ fn the_report_says_where_a_solid_was_cut() {
     save(folder.path(), "two.xyz", text);
     let args = ["shape", "two.xyz", "--alpha", "0.75", "--solid", "-o", "two.stl", "two.ply"];
     let said = common::ok(folder.path(), &args);
-    assert!(said.contains("cut apart at 0 edges, with 1 vertices more"), "{said}");
+    assert!(said.contains("cut apart at 0 edges, with 1 more vertices"), "{said}");
     let made = common::json(folder.path(), &args);
     assert_eq!(made["solid"], serde_json::json!({ "edges": 0, "vertices": 1, "midpoints": 0 }));
     assert_eq!(read_points(&folder.path().join("two.ply"), None).unwrap().len(), 8);
