@@ -48,7 +48,8 @@ fn selection(bencher: Bencher) {
 #[divan::bench(args = WEIGHTINGS)]
 fn weights(bencher: Bencher, weighting: &str) {
     let (points, weighting) = (selected(128), parsed(weighting));
-    bencher.bench_local(|| weigh(&points, weighting, 10.0));
+    let alpha = Alpha::from_squared(10.0).expect("a number");
+    bencher.bench_local(|| weigh(&points, weighting, alpha));
 }
 
 #[divan::bench(args = WEIGHTINGS)]
@@ -63,7 +64,7 @@ fn native(bencher: Bencher, weighting: &str) {
 
 fn engine(bencher: Bencher, engine: Engine, weighting: &str) {
     let alpha = Alpha::from_squared(10.0).expect("an alpha");
-    let points = weigh(&selected(64), parsed(weighting), alpha.squared()).expect("weights");
+    let points = weigh(&selected(64), parsed(weighting), alpha).expect("weights");
     let options = ShapeOptions { engine, ..ShapeOptions::new(alpha) };
     bencher
         .with_inputs(|| points.clone())

@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let alpha = Alpha::from_squared(0.75)?;
 
     let points = Points { positions: positions.clone(), ..Points::default() };
-    let weighted = weigh(&points, Weighting::Common(0.0), alpha.squared())?;
+    let weighted = weigh(&points, Weighting::Common(0.0), alpha)?;
     let shape = alpha_shape(weighted, &ShapeOptions::new(alpha))?;
 
     let given = serde_json::json!({ "points": positions, "alpha": alpha });

@@ -281,7 +281,7 @@ fn weighted(set: &str, weighting: &str, alpha: f64) -> Result<WeightedPoints> {
         Some((_, count)) => random(count.parse()?),
         None => return Err("no such set".into()),
     };
-    Ok(weigh(&points, weighting, alpha)?)
+    Ok(weigh(&points, weighting, Alpha::from_squared(alpha)?)?)
 }
 
 fn skull(size: usize) -> Result<Points> {

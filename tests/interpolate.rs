@@ -304,7 +304,7 @@ fn what_has_no_values_has_no_interpolant() {
 fn phantom_points(volume: &Volume, count: u64) -> WeightedPoints {
     let selection = Selection { rule: SelectionRule::Count(count), gray_min: None };
     let points = select(volume, volume, &difference(volume), &selection, Units::Voxel).unwrap();
-    weigh(&points, Weighting::Common(0.0), 1.0).unwrap()
+    weigh(&points, Weighting::Common(0.0), Alpha::from_squared(1.0).unwrap()).unwrap()
 }
 
 #[test]
@@ -314,7 +314,8 @@ fn filling_covers_the_grid_and_keeps_the_points() {
     let selection = Selection { rule: SelectionRule::Count(300), gray_min: None };
     let selected = select(&volume, &volume, &differences, &selection, Units::Voxel).unwrap();
     for weighting in [Weighting::Common(0.0), Weighting::MinMax, Weighting::BarycentricN] {
-        let shape = shape(weigh(&selected, weighting, 10.0).unwrap(), 10.0);
+        let shape =
+            shape(weigh(&selected, weighting, Alpha::from_squared(10.0).unwrap()).unwrap(), 10.0);
         let whole = fill(&shape, Some(&volume), Units::Voxel).unwrap();
         assert_eq!(whole.points().len(), 308);
         let grid = Grid::of(&volume, Units::Voxel);
@@ -335,7 +336,10 @@ fn filling_covers_the_grid_and_keeps_the_points() {
 
 fn rmse_of(volume: &Volume, voxels: &[u32]) -> f64 {
     let points = points_at(volume, &difference(volume), voxels, Units::Voxel);
-    let shape = shape(weigh(&points, Weighting::Common(0.0), 1.0).unwrap(), f64::INFINITY);
+    let shape = shape(
+        weigh(&points, Weighting::Common(0.0), Alpha::from_squared(1.0).unwrap()).unwrap(),
+        f64::INFINITY,
+    );
     let whole = fill(&shape, Some(volume), Units::Voxel).unwrap();
     let grid = Grid::of(volume, Units::Voxel);
     let resampled = Interpolant::new(&whole).unwrap().resample(&grid).unwrap();

@@ -132,7 +132,10 @@ fn any_shape_of_a_volume_is_a_solid() {
     let mut seen = Cuts::default();
     for weighting in [Weighting::Common(0.0), Weighting::MinMax] {
         for alpha in [0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0] {
-            let cuts = is_solid(&shape(weigh(&points, weighting, alpha).unwrap(), alpha));
+            let cuts = is_solid(&shape(
+                weigh(&points, weighting, Alpha::from_squared(alpha).unwrap()).unwrap(),
+                alpha,
+            ));
             seen.edges += cuts.edges;
             seen.vertices += cuts.vertices;
             seen.midpoints += cuts.midpoints;

@@ -198,7 +198,7 @@ impl Bench<'_> {
         points: &Points,
     ) -> Result<Option<CurvePoint>, InterpolateError> {
         let Self { volume, options: &CurveOptions { alpha, units, .. }, .. } = *self;
-        let weighted = weigh(points, weighting, alpha.squared())?;
+        let weighted = weigh(points, weighting, alpha)?;
         let shape = match alpha_shape(weighted, &ShapeOptions::new(alpha)) {
             Err(ShapeError::Triangulation(TriangulationError::Sites(_))) => return Ok(None),
             other => other?,

@@ -263,12 +263,13 @@ impl Pipeline {
         }
         if parameter.is_none() && weighting.needs_differences() {
             // Weights are checked before the search.
-            weigh(&points, weighting, 0.0)?;
+            weigh(&points, weighting, Alpha::from_squared(0.0)?)?;
             hear(Stage::Alpha);
             parameter = Some(Parameter::find_unweighted(&points, coordinates.unit)?);
             hear(Stage::Points);
         }
-        let alpha = parameter.map_or(0.0, |parameter| parameter.alpha.squared());
+        // Weights that do not depend on α are the same at ∞.
+        let alpha = parameter.map_or(Alpha::INFINITE, |parameter| parameter.alpha);
         let mut points = weigh(&points, weighting, alpha)?;
         if let (Some(range), Some(values)) = (self.values, &mut points.values) {
             values.iter_mut().for_each(|value| *value = range.value(*value));

@@ -125,7 +125,7 @@ impl Parameter {
         points: &Points,
         unit: LengthUnit,
     ) -> Result<Self, PipelineError> {
-        let found = Self::find(weigh(points, Weighting::Common(0.0), 0.0)?, unit)?;
+        let found = Self::find(weigh(points, Weighting::Common(0.0), Alpha::INFINITE)?, unit)?;
         Ok(Self { origin: ParameterOrigin::AutoUnweighted, ..found })
     }
 

@@ -1,5 +1,7 @@
 use std::path::PathBuf;
 
+use walpha_check::Alpha;
+
 use super::Weighting;
 use crate::advice::{Advice, Setting, advice};
 use crate::memory::NoMemory;
@@ -51,7 +53,7 @@ pub enum PointsError {
         /// The weights asked for.
         weighting: Weighting,
         /// The α given.
-        alpha: f64,
+        alpha: Alpha,
     },
     /// Points without differences.
     #[error(

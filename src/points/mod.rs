@@ -4,6 +4,7 @@
 //! of the largest, and their weights (equations 4.1 and 4.2).
 //!
 //! ```
+//! use walpha::Alpha;
 //! use walpha::haar::{HaarOptions, smooth};
 //! use walpha::points::{Selection, Units, Weighting, difference, select, weigh};
 //! use walpha::volume::sample;
@@ -12,7 +13,7 @@
 //! let (smoothed, _) = smooth(&volume, &HaarOptions::default())?;
 //! let points = select(&volume, &smoothed, &difference(&smoothed), &Selection::default(), Units::Voxel)?;
 //! assert_eq!(points.len(), 1996); // 6.09 % of 32³
-//! let weighted = weigh(&points, Weighting::MinMax, 10.0)?;
+//! let weighted = weigh(&points, Weighting::MinMax, Alpha::from_squared(10.0)?)?;
 //! assert_eq!((weighted.summary().min, weighted.summary().max), (0.0, 10.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -5,6 +5,8 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use super::{Points, PointsError};
+use walpha_check::Alpha;
+
 use crate::advice::Advice;
 
 /// Where the weights ω of points come from. Weights are **squared** lengths, as α is.
@@ -75,8 +77,8 @@ impl WeightedPoints {
     }
 }
 
-/// Gives points their weights. `alpha_squared` is the α of the shape, or the α at which weights
-/// are frozen, a squared length; common and column weights do not depend on it. O(n).
+/// Gives points their weights. `alpha` is that of the shape, or the one at which weights are
+/// frozen; common and column weights do not depend on it. O(n).
 ///
 /// # Errors
 /// α is infinite or NaN where weights are proportional to it; points without differences
@@ -85,17 +87,18 @@ impl WeightedPoints {
 pub fn weigh(
     points: &Points,
     weighting: Weighting,
-    alpha_squared: f64,
+    alpha: Alpha,
 ) -> Result<WeightedPoints, PointsError> {
     let weights = match (&weighting.kind().rule, weighting) {
         (Rule::Common, Weighting::Common(weight)) => vec![weight; points.len()],
         (Rule::Common | Rule::Column, _) => points.weights.clone().ok_or(PointsError::NoColumn)?,
         (Rule::Proportional(rule), _) => {
-            if !alpha_squared.is_finite() {
-                return Err(PointsError::UnboundedAlpha { weighting, alpha: alpha_squared });
+            let squared = alpha.squared();
+            if !squared.is_finite() {
+                return Err(PointsError::UnboundedAlpha { weighting, alpha });
             }
             let differences = points.differences.as_deref();
-            rule(differences.ok_or(PointsError::NoDifferences { weighting })?, alpha_squared)
+            rule(differences.ok_or(PointsError::NoDifferences { weighting })?, squared)
         }
     };
     if let Some(index) = weights.iter().position(|weight| !weight.is_finite()) {

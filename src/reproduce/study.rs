@@ -74,8 +74,8 @@ impl<'a> Study<'a> {
     /// The shape with these weights at this α, in its whole triangulation.
     pub fn shape(&self, recipe: Recipe) -> Result<Shaped, ReproduceError> {
         let Recipe { weighting, alpha, balls } = recipe;
-        let weighted = weigh(&self.points, weighting, alpha)?;
         let alpha = Alpha::from_squared(alpha).expect("a recipe's α is a number");
+        let weighted = weigh(&self.points, weighting, alpha)?;
         // CGAL as the paper used it.
         let engine = Engine::Reference;
         let options = ShapeOptions { balls, engine, exterior: true, ..ShapeOptions::new(alpha) };
