@@ -1,6 +1,7 @@
 use std::io::{self, Write};
 
 use super::{ExportOptions, Exporter, colour};
+use crate::advice::Advice;
 use crate::shape::{AlphaShape, Class, Surface};
 use crate::volume::stated;
 
@@ -60,13 +61,14 @@ impl Exporter for Ply {
         Ok(())
     }
 
-    fn remark(&self, shape: &AlphaShape) -> Option<String> {
+    fn remark(&self, shape: &AlphaShape) -> Option<Advice> {
         let edges = self.0.surface(shape).edges.len();
         (edges > 0).then(|| {
             format!(
                 "{edges} singular edges are left out, as most programs refuse a PLY file with edges; OBJ, \
                  GLB and VTP have them"
             )
+            .into()
         })
     }
 }
