@@ -117,7 +117,7 @@ pub fn advice(error: &(dyn Error + 'static)) -> Option<String> {
 }
 
 /// What the command calls a setting.
-fn option(setting: Setting) -> String {
+pub fn option(setting: Setting) -> String {
     match setting {
         Setting::Region => "--roi".into(),
         other => format!("--{}", other.name().replace('_', "-")),

@@ -16,7 +16,7 @@ use super::output::tell;
 use super::picture::PictureArgs;
 use super::progress::Progress;
 use super::report::Report;
-use super::said::misused;
+use super::said::{misused, option};
 use super::{Global, pipeline};
 
 /// Compute the weighted alpha shape of a volume or of points.
@@ -128,7 +128,8 @@ impl Shape {
             report.add_solid(Surface::solid(&shape).1);
         }
         let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
-            Some(format!("{}: {}", shown(target.path()), exporter.remark(&shape)?))
+            let remark = exporter.remark(&shape)?.told(option);
+            Some(format!("{}: {remark}", shown(target.path())))
         };
         let remarks: Vec<String> = targets.iter().filter_map(remark).collect();
         progress.stage(Stage::Write, || {

@@ -3,6 +3,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::{Glb, Json, Npz, Obj, Off, Ply, Stl, Vtp, Vtu};
+use crate::advice::Advice;
 use crate::shape::{AlphaShape, Surface};
 use crate::volume::UnknownFormat;
 
@@ -15,7 +16,7 @@ pub trait Exporter {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()>;
 
     /// What whoever reads the file should know of this shape, if anything.
-    fn remark(&self, _shape: &AlphaShape) -> Option<String> {
+    fn remark(&self, _shape: &AlphaShape) -> Option<Advice> {
         None
     }
 }

@@ -6,7 +6,7 @@ use crate::shape::AlphaShape;
 
 /// JSON: the complex with its points, power weights and α, in the [`schema`](crate::check::schema)
 /// that `walpha check` and `walpha compare` read. α and the weights are those that simplices were
-/// judged by: for `--balls radius` the weights are (α + ω)², and α is 0.
+/// judged by: for [`Balls::Radius`](crate::shape::Balls) the weights are (α + ω)², and α is 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Json;
 

@@ -1,6 +1,7 @@
 use std::io::{self, Write};
 
 use super::{ExportOptions, Exporter, colour};
+use crate::advice::Advice;
 use crate::shape::{AlphaShape, Class, Surface};
 use crate::volume::stated;
 
@@ -60,7 +61,7 @@ impl Exporter for Ply {
         Ok(())
     }
 
-    fn remark(&self, shape: &AlphaShape) -> Option<String> {
+    fn remark(&self, shape: &AlphaShape) -> Option<Advice> {
         // A solid has none.
         let edges = shape.complex().edges.of(Class::Singular).count();
         (edges > 0 && !self.0.solid).then(|| {
@@ -68,6 +69,7 @@ impl Exporter for Ply {
                 "{edges} singular edges are left out, as most programs refuse a PLY file with edges; OBJ, \
                  GLB and VTP have them"
             )
+            .into()
         })
     }
 }

@@ -1,6 +1,7 @@
 use std::io::{self, Write};
 
 use super::{ExportOptions, Exporter};
+use crate::advice::{Advice, Setting, advice};
 use crate::shape::AlphaShape;
 use crate::volume::stated;
 
@@ -35,15 +36,15 @@ impl Exporter for Stl {
         Ok(())
     }
 
-    fn remark(&self, shape: &AlphaShape) -> Option<String> {
+    fn remark(&self, shape: &AlphaShape) -> Option<Advice> {
         let defects = self.0.surface(shape).manifold_defects();
         (!defects.is_empty()).then(|| {
-            format!(
+            let what = format!(
                 "the boundary is not manifold: {} edges lie on more than two facets, and parts touch \
-                 at {} other vertices; programs that want a solid may refuse it: --solid cuts it apart \
-                 there",
+                 at {} other vertices; programs that want a solid may refuse it: ",
                 defects.edges, defects.vertices
-            )
+            );
+            advice![what, Setting::Solid, " cuts it apart there"]
         })
     }
 }

@@ -75,6 +75,7 @@ impl Dtype {
     }
 
     /// Whether a number read from text is one of this type.
+    #[cfg(feature = "formats")]
     pub(crate) fn holds(self, value: f64) -> bool {
         let (low, high) = match self {
             Self::U8 => (0.0, f64::from(u8::MAX)),
@@ -91,7 +92,7 @@ impl Dtype {
         (low..=high).contains(&value) && value.fract() == 0.0
     }
 
-    /// The short name, as in `--dtype`.
+    /// The short name, as in `u8`.
     pub fn name(self) -> &'static str {
         match self {
             Self::U8 => "u8",

@@ -16,7 +16,7 @@ pub enum Gray {
     /// Unsigned 8-bit samples as they are, anything else from its minimum to its maximum.
     #[default]
     Automatic,
-    /// A range given by the user (`--gray LO..HI`).
+    /// A range given by the user.
     Range(GrayRange),
 }
 

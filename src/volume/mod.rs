@@ -32,15 +32,16 @@ pub use dtype::{Dtype, Endian, UnknownName};
 pub use error::VolumeError;
 pub use formats::{
     FORMATS, Keeps, UnknownFormat, VolumeFormat, VolumeWriter, data_files, format_name, read,
+    series,
 };
 pub(crate) use formats::{is_vtk_xml, start_of};
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
 pub use part::{Region, downsample};
-pub(crate) use read::{Element, NpyFile, io_error};
 #[cfg(feature = "formats")]
-pub(crate) use read::{Lines, VtkXml};
-pub use read::{RawLayout, ReadOptions, Series, series};
+pub(crate) use read::{Element, Lines, VtkXml, io_error};
+pub(crate) use read::NpyFile;
+pub use read::{RawLayout, ReadOptions, Series};
 pub use reason::Reason;
 pub use sample::{SAMPLES, open, phantom, sample};
 pub use volume::{Nan, Volume};

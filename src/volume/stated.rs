@@ -29,6 +29,7 @@ pub(crate) fn line(sign: &str, coordinates: Coordinates) -> String {
 }
 
 /// The same as VTK's field data in XML: arrays of one string each, in the numbers of its characters.
+#[cfg(feature = "formats")]
 pub(crate) fn field_data(coordinates: Coordinates) -> String {
     let told = pairs(coordinates);
     if told.is_empty() {

@@ -34,13 +34,16 @@ pub(crate) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, Poi
             (_, Some(_)) => {}
             (Ok(named), None) => rows.are(named),
             (Err(unknown), None) => {
-                let reason = Reason::header(format!("{FIRST_LINE}: {unknown}"));
+                let reason = Reason::content(format!("{FIRST_LINE}: {unknown}"), unknown.advice());
                 return Err(format(path, reason));
             }
         }
     }
     if first {
-        return Err(format(path, Reason::header(format!("is empty: {FIRST_LINE}"))));
+        return Err(format(
+            path,
+            Reason::content(format!("is empty: {FIRST_LINE}"), "write it again"),
+        ));
     }
     rows.finish()
 }

@@ -10,7 +10,7 @@ use super::{FORMATS, VolumeFormat};
 use crate::advice::Setting;
 use crate::near::nearest;
 use crate::volume::read::{format_error, io_error, raw};
-use crate::volume::{ReadOptions, Reason, Volume, VolumeError};
+use crate::volume::{ReadOptions, Reason, Series, Volume, VolumeError};
 
 /// Bytes looked at.
 const BYTES: u64 = 1024;
@@ -84,6 +84,20 @@ pub fn data_files(path: &Path, options: &ReadOptions) -> Result<Vec<PathBuf>, Vo
             data_files(path)
         }
         _ => Ok(Vec::new()),
+    }
+}
+
+/// The series in a folder; none where it holds no DICOM files.
+///
+/// # Errors
+/// The folder or a file in it cannot be read.
+pub fn series(folder: &Path) -> Result<Vec<Series>, VolumeError> {
+    #[cfg(feature = "dicom")]
+    return crate::volume::read::dicom::series(folder);
+    #[cfg(not(feature = "dicom"))]
+    {
+        let _ = folder;
+        Ok(Vec::new())
     }
 }
 

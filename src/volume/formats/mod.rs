@@ -10,7 +10,7 @@ use std::fmt;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-pub use detect::{data_files, format_name, read};
+pub use detect::{data_files, format_name, read, series};
 pub use table::FORMATS;
 pub use unknown::UnknownFormat;
 

@@ -53,7 +53,7 @@ pub(crate) use npy::NpyFile;
 use payload::PayloadError;
 pub(crate) use payload::{Element, Length};
 pub use raw::RawLayout;
-pub use series::{Series, series};
+pub use series::Series;
 #[cfg(feature = "formats")]
 pub(crate) use vtk_xml::VtkXml;
 

@@ -42,20 +42,6 @@ impl fmt::Display for Series {
     }
 }
 
-/// The series in a folder; none where it holds no DICOM files.
-///
-/// # Errors
-/// The folder or a file in it cannot be read.
-pub fn series(folder: &Path) -> Result<Vec<Series>, VolumeError> {
-    #[cfg(feature = "dicom")]
-    return super::dicom::series(&files(folder, true)?);
-    #[cfg(not(feature = "dicom"))]
-    {
-        let _ = folder;
-        Ok(Vec::new())
-    }
-}
-
 /// Whether a folder is a Zarr array or group.
 pub(crate) fn is_zarr(folder: &Path) -> bool {
     [".zarray", ".zgroup", "zarr.json"].iter().any(|name| folder.join(name).is_file())

@@ -24,10 +24,13 @@ pub(crate) fn read(folder: &Path) -> Result<Volume, VolumeError> {
         let expected = *first.get_or_insert((size, dtype));
         if (size, dtype) != expected {
             let (sizes, other) = expected;
-            let reason = Reason::header(format!(
-                "has {size:?} samples of {dtype}, but the first slice {sizes:?} of {other}: \
+            let reason = Reason::content(
+                format!(
+                    "has {size:?} samples of {dtype}, but the first slice {sizes:?} of {other}: \
                      slices must be alike"
-            ));
+                ),
+                "leave only the slices in the folder",
+            );
             return Err(format_error(path, reason));
         }
         Dims::new(size[0], size[1], paths.len() as u64)?;
@@ -77,7 +80,7 @@ fn page(path: &Path) -> Result<Page, VolumeError> {
             io_error(path)(error)
         }
         other => {
-            format_error(path, Reason::header(format!("is no image that can be read: {other}")))
+            format_error(path, Reason::damaged(format!("is no image that can be read: {other}")))
         }
     };
     let length = std::fs::metadata(path).map_err(io_error(path))?.len();

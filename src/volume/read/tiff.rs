@@ -66,8 +66,9 @@ pub(super) fn read_page(path: &Path) -> Result<Page, VolumeError> {
     let mut pages = Pages::open(path)?;
     let page = pages.page()?;
     if pages.decoder.more_images() {
-        let reason = Reason::header(
+        let reason = Reason::content(
             "holds several pages: it is a stack of its own, and no slice of the folder",
+            "name the file itself",
         );
         return Err(format_error(path, reason));
     }

@@ -71,7 +71,11 @@ fn read_folder(folder: &Path, wanted: Option<&str>) -> Result<Volume, VolumeErro
             listed.iter().find(is_it).ok_or_else(|| {
                 format_error(
                     folder,
-                    Reason::header(format!("has no series {wanted}: there are {}", list())),
+                    Reason::choice(
+                        Setting::Series,
+                        format!("has no series {wanted}: there are {}", list()),
+                        advice!["choose one of these with ", Setting::Series],
+                    ),
                 )
             })?
         }
@@ -81,8 +85,8 @@ fn read_folder(folder: &Path, wanted: Option<&str>) -> Result<Volume, VolumeErro
 }
 
 /// The series in a folder that have images, in the order of the names of their files.
-pub(super) fn series(files: &[PathBuf]) -> Result<Vec<Series>, VolumeError> {
-    Ok(listed(&found(files)?))
+pub(crate) fn series(folder: &Path) -> Result<Vec<Series>, VolumeError> {
+    Ok(listed(&found(&series::files(folder, true)?)?))
 }
 
 /// What these files are; indices of media (DICOMDIR) are passed over.
