@@ -8,6 +8,7 @@ mod completions;
 mod complex_file;
 mod config;
 mod curve;
+mod filtration;
 mod folder;
 mod given;
 mod haar;
@@ -108,6 +109,7 @@ enum Command {
     Check(check::Check),
     Compare(compare::Compare),
     Ladder(ladder::Ladder),
+    Filtration(filtration::Filtration),
     View(view::View),
     Completions(completions::Completions),
     Man(man::Man),
@@ -250,6 +252,7 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
         Command::Check(check) => return check.run(global),
         Command::Compare(compare) => return compare.run(global),
         Command::Ladder(ladder) => ladder.run(global)?,
+        Command::Filtration(filtration) => filtration.run(global)?,
         Command::View(view) => view.run(global)?,
     }
     Ok(ExitCode::SUCCESS)

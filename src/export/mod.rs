@@ -25,6 +25,7 @@
 //! ```
 
 mod colour;
+mod filtration;
 mod format;
 mod glb;
 mod json;
@@ -43,6 +44,7 @@ mod volume;
 mod vtp;
 mod vtu;
 
+pub use filtration::FiltrationFormat;
 pub use format::{ExportOptions, Exporter, Format, UnknownFormat};
 pub use glb::Glb;
 pub use json::Json;

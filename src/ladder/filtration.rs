@@ -80,6 +80,13 @@ impl Filtration {
         &self.whole
     }
 
+    /// The shape at α, as [`alpha_shape`] makes it. O(n log n).
+    pub fn shape(&self, alpha: Alpha) -> AlphaShape {
+        let levels = self.levels(&[alpha]);
+        let [betti] = levels.betti()[..] else { unreachable!("one level") };
+        levels.shape(0, false, betti)
+    }
+
     pub(super) fn spheres(&self) -> Predicates<'_> {
         Predicates::new(&self.points().positions, &self.points().weights)
     }

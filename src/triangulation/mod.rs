@@ -23,7 +23,7 @@ mod predicates;
 mod sites;
 
 pub use error::{SitesError, TriangulationError};
-pub(crate) use predicates::{Interval, Lattice, Predicates};
+pub(crate) use predicates::{Interval, Lattice, Predicates, Ratio, SmallRadius};
 pub use sites::{MAX_COORDINATE, MAX_WEIGHT, Sites};
 
 /// A regular triangulation: its cells, and which lie beside each other.

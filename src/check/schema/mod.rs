@@ -36,6 +36,7 @@
 //! `numpy.savez` or `numpy.savez_compressed`.
 
 mod build;
+mod filtration;
 mod npz;
 mod number;
 
@@ -44,6 +45,8 @@ use std::io::{Read, Write};
 use serde::{Deserialize, Serialize};
 
 use crate::shape::{Class, Complex, Simplices};
+
+pub use filtration::{Below, Extended, FiltrationFile, PairsFile, Values};
 
 /// A complex as a file holds it; see the [module](self) for the meaning of the fields.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,0 +1,160 @@
+//! The file of a filtration.
+
+use std::io::{Read, Write};
+
+use serde::{Deserialize, Serialize};
+
+use super::{SchemaError, number};
+
+/// A filtration as a file holds it: every simplex of a regular triangulation, and when it comes.
+///
+/// In JSON:
+///
+/// ```json
+/// { "points": [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]],
+///   "weights": [0, 0, 0, 0],
+///   "vertices": [0, 1, 2, 3],
+///   "edges": [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]],
+///   "facets": [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]],
+///   "cells": [[0, 1, 2, 3]],
+///   "values": { "vertices": [0, 0, 0, 0], "edges": [1, 1, 1, 2, 2, 2],
+///               "facets": [2, 2, 2, 2.6666666666666665], "cells": [3] },
+///   "order": [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14] }
+/// ```
+///
+/// - `points` and `weights` are as in a [complex](super), values squared lengths as α is.
+/// - Simplices are numbered: vertices first, then edges, facets and cells, each as they are listed.
+///   `order` has these numbers in the order in which simplices come: by value, equal values by
+///   dimension, then by vertices (ascending in each simplex, compared one by one).
+/// - `values` are the doubles nearest to the exact values; the order is by these, not by doubles.
+/// - `gabriel` says of vertices, edges and facets whether their smallest orthogonal sphere is empty.
+/// - `regular` and `interior` say of these from which α on they are a face of another simplex of the
+///   shape, and off its boundary; `"inf"` where they never are. All three may be missing.
+/// - `pairs` are persistence pairs by these numbers whose simplices have different values:
+///   `components` (a vertex and the edge that ends it), `lasting` (vertices whose components never
+///   end), `voids` (a facet and the cell that fills what it has shut in).
+/// - `hidden`, `duplicates` and `info` are as in a complex.
+///
+/// In NPZ the same names are arrays, and of those with dimensions `vertex_values`, `edge_values`,
+/// `facet_values`, `cell_values`, `vertex_gabriel` and so on, `component_pairs`, `lasting_components`
+/// and `void_pairs`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FiltrationFile {
+    /// x, y, z of each point.
+    #[serde(default)]
+    pub points: Vec<[f64; 3]>,
+    /// Power weights, squared lengths; all 0 if missing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights: Option<Vec<f64>>,
+    /// The vertices of the triangulation.
+    pub vertices: Vec<u32>,
+    /// Its edges.
+    pub edges: Vec<[u32; 2]>,
+    /// Its triangles.
+    pub facets: Vec<[u32; 3]>,
+    /// Its tetrahedra.
+    pub cells: Vec<[u32; 4]>,
+    /// From which α on each is in the shape.
+    pub values: Values,
+    /// Whether the sphere of each is empty.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gabriel: Option<Below<bool>>,
+    /// From which α on each is a face of another simplex of the shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub regular: Option<Below<Extended>>,
+    /// From which α on each is off the boundary.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interior: Option<Below<Extended>>,
+    /// All numbers of simplices, in order.
+    pub order: Vec<u32>,
+    /// Persistence pairs of dimensions 0 and 2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pairs: Option<PairsFile>,
+    /// Points that are no vertices.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hidden: Option<Vec<u32>>,
+    /// Pairs (went, stayed) of points at one place.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duplicates: Option<Vec<[u32; 2]>>,
+    /// Whatever the writer wants to say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub info: Option<serde_json::Value>,
+}
+
+/// A number, or in JSON `"inf"` or `"-inf"`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Extended(#[serde(with = "number")] pub f64);
+
+impl From<f64> for Extended {
+    fn from(number: f64) -> Self {
+        Self(number)
+    }
+}
+
+/// A value for each simplex, by dimension.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Values {
+    /// Of the vertices.
+    pub vertices: Vec<Extended>,
+    /// Of the edges.
+    pub edges: Vec<Extended>,
+    /// Of the facets.
+    pub facets: Vec<Extended>,
+    /// Of the cells.
+    pub cells: Vec<Extended>,
+}
+
+/// Something of each simplex that is no cell, by dimension.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Below<T> {
+    /// Of the vertices.
+    pub vertices: Vec<T>,
+    /// Of the edges.
+    pub edges: Vec<T>,
+    /// Of the facets.
+    pub facets: Vec<T>,
+}
+
+/// Persistence pairs by numbers of simplices.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PairsFile {
+    /// A vertex, and the edge that unites its component with an older one.
+    pub components: Vec<[u32; 2]>,
+    /// Vertices whose components last for ever.
+    pub lasting: Vec<u32>,
+    /// A facet, and the cell that fills the void that it has shut in.
+    pub voids: Vec<[u32; 2]>,
+}
+
+impl FiltrationFile {
+    /// Whether JSON holds a filtration: an object with a field `order`.
+    pub fn is_json(reader: impl Read) -> bool {
+        #[derive(Deserialize)]
+        struct Ordered {
+            #[serde(rename = "order")]
+            _order: serde::de::IgnoredAny,
+        }
+        serde_json::from_reader::<_, Ordered>(std::io::BufReader::new(reader)).is_ok()
+    }
+
+    /// Reads JSON.
+    ///
+    /// # Errors
+    /// [`SchemaError::Json`], with line and column.
+    pub fn read_json(reader: impl Read) -> Result<Self, SchemaError> {
+        Ok(serde_json::from_reader(std::io::BufReader::new(reader))?)
+    }
+
+    /// Writes JSON, in one line.
+    ///
+    /// # Errors
+    /// [`SchemaError::Json`] if `writer` fails.
+    pub fn write_json(&self, writer: impl Write) -> Result<(), SchemaError> {
+        Ok(serde_json::to_writer(writer, self)?)
+    }
+}

@@ -1,0 +1,281 @@
+//! The filtration simplex by simplex: against shapes made one by one, and its pairs against a plain
+//! reduction of matrices.
+
+mod common;
+
+use std::collections::{BTreeMap, HashMap};
+
+use walpha::ladder::{Entry, Filtration, Ordered};
+use walpha::shape::{Engine, ShapeOptions};
+use walpha::{Alpha, AlphaShape, Class, WeightedPoints, alpha_shape};
+
+/// SplitMix64.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) % n
+    }
+
+    fn unit(&mut self) -> f64 {
+        self.below(1 << 53) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A whole number from `low` to `high`.
+    fn whole(&mut self, low: i64, high: i64) -> f64 {
+        (low + self.below((high - low + 1) as u64) as i64) as f64
+    }
+}
+
+/// What a set is made of, by its number.
+const FAMILIES: [fn(&mut Random) -> ([f64; 3], f64); 6] = [
+    |r| ([0; 3].map(|_| r.whole(0, 3)), 0.0),
+    |r| ([0; 3].map(|_| r.whole(0, 3)), r.whole(-2, 4) / 2.0),
+    |r| ([0; 3].map(|_| r.whole(0, 4)), if r.below(3) == 0 { r.unit() } else { 0.1 }),
+    |r| ([0; 3].map(|_| r.unit()), 0.0),
+    |r| ([0; 3].map(|_| r.unit()), r.unit() / 8.0),
+    |r| {
+        // Lattice points moved by one place of their last digit, or not.
+        let near = |r: &mut Random| {
+            let x = 1.0 + r.whole(0, 2);
+            [x, x, x.next_up(), x.next_down()][r.below(4) as usize]
+        };
+        ([0; 3].map(|_| near(r)), r.whole(0, 1))
+    },
+];
+
+/// Sets of up to so many points that span a volume.
+fn sets(count: usize, most: u64) -> impl Iterator<Item = WeightedPoints> {
+    let mut random = Random(17);
+    let sets = (0..).map(move |k| {
+        let family = FAMILIES[k % FAMILIES.len()];
+        let size = 4 + random.below(most - 3);
+        let (positions, weights) = (0..size).map(|_| family(&mut random)).unzip();
+        WeightedPoints { positions, weights, values: None }
+    });
+    sets.filter(|points| common::spans_a_volume(&points.positions)).take(count)
+}
+
+fn alpha(squared: f64) -> Alpha {
+    Alpha::from_squared(squared).unwrap()
+}
+
+fn shape(points: &WeightedPoints, squared: f64) -> AlphaShape {
+    let options = ShapeOptions {
+        engine: Engine::Native,
+        exterior: true,
+        ..ShapeOptions::new(alpha(squared))
+    };
+    alpha_shape(points.clone(), &options).unwrap()
+}
+
+/// The class at an α, which must not be the double of a value.
+fn class(simplex: &Entry<'_>, squared: f64) -> Class {
+    if squared < simplex.value {
+        Class::Exterior
+    } else if squared < simplex.regular.min(simplex.interior) {
+        Class::Singular
+    } else if squared < simplex.interior {
+        Class::Regular
+    } else {
+        Class::Interior
+    }
+}
+
+fn classes(shape: &AlphaShape) -> HashMap<Vec<u32>, Class> {
+    fn sorted(row: &[u32]) -> Vec<u32> {
+        let mut row = row.to_vec();
+        row.sort_unstable();
+        row
+    }
+    let complex = shape.complex();
+    let cells = complex.cells.iter().map(|(row, class)| (sorted(row), class));
+    let facets = complex.facets.iter().map(|(row, class)| (sorted(row), class));
+    let edges = complex.edges.iter().map(|(row, class)| (sorted(row), class));
+    let vertices = complex.vertices.iter().map(|(row, class)| (sorted(row), class));
+    cells.chain(facets).chain(edges).chain(vertices).collect()
+}
+
+/// Doubles between the values, and on both sides of all.
+fn between(ordered: &Ordered<'_>) -> Vec<f64> {
+    let mut values: Vec<f64> = ordered.values().iter().map(|value| value.squared()).collect();
+    values.dedup();
+    let middles = values.windows(2).map(|pair| pair[0] + (pair[1] - pair[0]) / 2.0);
+    let inside: Vec<f64> = middles
+        .filter(|middle| values.binary_search_by(|v| v.total_cmp(middle)).is_err())
+        .collect();
+    let beyond = |value: f64, sign: f64| value + sign * (value.abs() + 1.0);
+    let ends = [beyond(values[0], -1.0), beyond(values[values.len() - 1], 1.0)];
+    inside.into_iter().chain(ends).collect()
+}
+
+#[test]
+fn classes_are_those_of_shapes_made_one_by_one() {
+    let mut compared = 0;
+    for points in sets(60, 24) {
+        let filtration = Filtration::new(points.clone()).unwrap();
+        let ordered = filtration.simplices().unwrap();
+        let all = between(&ordered);
+        for squared in all.iter().copied().step_by(1 + all.len() / 12) {
+            let shape = shape(&points, squared);
+            let expected = classes(&shape);
+            assert_eq!(expected.len(), ordered.len());
+            for simplex in ordered.iter() {
+                let wanted = expected[simplex.vertices];
+                assert_eq!(
+                    class(&simplex, squared),
+                    wanted,
+                    "{simplex:?} at {squared}\n{points:?}"
+                );
+                compared += 1;
+            }
+            assert_eq!(filtration.shape(alpha(squared)).betti(), shape.betti());
+        }
+    }
+    assert!(compared > 50_000);
+}
+
+#[test]
+fn the_order_is_by_value_dimension_and_vertices() {
+    for points in sets(120, 30) {
+        let filtration = Filtration::new(points).unwrap();
+        let ordered = filtration.simplices().unwrap();
+        let mut seen = BTreeMap::new();
+        let mut last = None;
+        for simplex in ordered.iter() {
+            let key = (simplex.rank, simplex.vertices.len(), simplex.vertices.to_vec());
+            assert!(last.is_none_or(|last| last < key));
+            assert_eq!(ordered.values()[simplex.rank as usize].squared(), simplex.value);
+            let n = simplex.vertices.len();
+            for gone in (0..n).filter(|_| n > 1) {
+                let mut face = simplex.vertices.to_vec();
+                face.remove(gone);
+                assert!(seen[&face] <= simplex.rank);
+            }
+            seen.insert(simplex.vertices.to_vec(), simplex.rank);
+            last = Some(key);
+        }
+        assert_eq!(seen.len(), ordered.len());
+        assert!(ordered.values().is_sorted());
+    }
+}
+
+/// Where doubles cannot tell two values apart the order still does: a point off the middle of an edge
+/// by less than its square can show.
+#[test]
+fn values_with_one_double_are_told_apart() {
+    let tiny = 2f64.powi(-40);
+    let positions =
+        vec![[0.0; 3], [2.0, 0.0, 0.0], [9.0, 9.0, 9.0], [9.0, 11.0, 9.0 + tiny], [0.0, 40.0, 7.0]];
+    let points = WeightedPoints { weights: vec![0.0; 5], positions, values: None };
+    let filtration = Filtration::new(points).unwrap();
+    let ordered = filtration.simplices().unwrap();
+    let edge = |row: [u32; 2]| ordered.iter().find(|simplex| simplex.vertices == row).unwrap();
+    let (exact, longer) = (edge([0, 1]), edge([2, 3]));
+    assert_eq!((exact.value, longer.value), (1.0, 1.0));
+    assert!(exact.rank < longer.rank);
+}
+
+#[test]
+fn the_curve_is_the_same_as_that_of_levels() {
+    for points in sets(40, 30) {
+        let filtration = Filtration::new(points).unwrap();
+        let ordered = filtration.simplices().unwrap();
+        let curve = filtration.curve();
+        let betti = ordered.betti_curve();
+        let values = ordered.values();
+        for (k, above) in curve.alphas().enumerate() {
+            // The last value that is not above that double; several may be between two doubles.
+            let rank = values.partition_point(|value| value.squared() <= above);
+            let nearest_below = (rank > 0).then(|| betti[rank - 1]);
+            let unsure = rank > 0 && values[rank - 1].squared() == above;
+            assert!(unsure || nearest_below == Some(curve.betti[k]));
+        }
+        assert_eq!(betti.last(), curve.betti.last());
+    }
+}
+
+#[test]
+fn fewer_components_take_a_larger_alpha() {
+    let two = std::num::NonZeroU64::new(2).unwrap();
+    // Two tetrahedra far apart.
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let far = corners.map(|[x, y, z]| [x + 9.0, y, z]);
+    let positions = [corners, far].concat();
+    let points = WeightedPoints { weights: vec![0.0; 8], positions, values: None };
+    let filtration = Filtration::new(points).unwrap();
+    assert_eq!(filtration.optimal_alpha(two).squared(), 0.75);
+    assert!(filtration.optimal_alpha(std::num::NonZeroU64::MIN) == filtration.one_region());
+    assert!(filtration.one_region().squared() > 16.0);
+}
+
+/// Pairs of all dimensions by numbers of simplices, and the simplices without one: columns of the
+/// boundary matrix over Z/2, reduced from the left.
+fn reduced(ordered: &Ordered<'_>) -> (Vec<Vec<[u32; 2]>>, Vec<u32>) {
+    let place: HashMap<Vec<u32>, usize> =
+        ordered.iter().enumerate().map(|(at, simplex)| (simplex.vertices.to_vec(), at)).collect();
+    let mut with_low: HashMap<usize, Vec<usize>> = HashMap::new();
+    let mut pairs = vec![Vec::new(); 3];
+    let mut alone: Vec<bool> = vec![true; ordered.len()];
+    for (at, simplex) in ordered.iter().enumerate() {
+        let n = simplex.vertices.len();
+        let mut column: Vec<usize> = (0..n)
+            .filter(|_| n > 1)
+            .map(|gone| {
+                let mut face = simplex.vertices.to_vec();
+                face.remove(gone);
+                place[&face]
+            })
+            .collect();
+        column.sort_unstable();
+        while let Some(other) = column.last().and_then(|low| with_low.get(low)) {
+            let mut sum: BTreeMap<usize, bool> = BTreeMap::new();
+            column.iter().chain(other).for_each(|&row| *sum.entry(row).or_default() ^= true);
+            column = sum.into_iter().filter(|(_, odd)| *odd).map(|(row, _)| row).collect();
+        }
+        if let Some(&low) = column.last() {
+            pairs[n - 2].push([ordered.order()[low], ordered.order()[at]]);
+            (alone[low], alone[at]) = (false, false);
+            with_low.insert(low, column);
+        }
+    }
+    let alone = (0..ordered.len()).filter(|&at| alone[at]).map(|at| ordered.order()[at]).collect();
+    (pairs, alone)
+}
+
+#[test]
+fn pairs_are_those_of_a_matrix() {
+    let mut lasting = [0; 3];
+    for points in sets(240, 40) {
+        let filtration = Filtration::new(points).unwrap();
+        let ordered = filtration.simplices().unwrap();
+        let pairs = ordered.pairs();
+        let (mut expected, alone) = reduced(&ordered);
+        let sorted = |pairs: &[[u32; 2]]| {
+            let mut pairs = pairs.to_vec();
+            pairs.sort_unstable();
+            pairs
+        };
+        expected.iter_mut().for_each(|pairs| pairs.sort_unstable());
+        assert_eq!(sorted(&pairs.components), expected[0]);
+        assert_eq!(sorted(&pairs.voids), expected[2]);
+        assert_eq!(pairs.lasting, alone);
+        // What is in no pair of these is in one of dimension 1: edges that begin, facets that end.
+        let used: std::collections::HashSet<u32> =
+            pairs.components.iter().chain(&pairs.voids).flatten().copied().collect();
+        let free = |number: &u32| {
+            let dimension = ordered.simplex(*number).vertices.len() - 1;
+            (1..=2).contains(&dimension) && !used.contains(number)
+        };
+        let mut of_loops: Vec<u32> = expected[1].iter().flatten().copied().collect();
+        of_loops.sort_unstable();
+        assert_eq!((0..ordered.len() as u32).filter(free).collect::<Vec<_>>(), of_loops);
+        for (count, pairs) in lasting.iter_mut().zip(&expected) {
+            *count += pairs.iter().filter(|&&pair| ordered.lasts(pair)).count();
+        }
+    }
+    assert!(lasting.iter().all(|&count| count > 100), "{lasting:?}");
+}
