@@ -1,10 +1,14 @@
-//! The filtration simplex by simplex: against shapes made one by one, and its pairs against a plain
-//! reduction of matrices.
+//! The filtration simplex by simplex: against shapes made one by one and the exact checker, and its
+//! pairs against a plain reduction of matrices.
 
 mod common;
 
 use std::collections::{BTreeMap, HashMap};
+use std::io::Cursor;
 
+use walpha::check::schema::FiltrationFile;
+use walpha::check::{Bound, FiltrationFinding, certify_filtration, compare_filtrations};
+use walpha::export::FiltrationFormat;
 use walpha::ladder::{Entry, Filtration, Ordered};
 use walpha::shape::{Engine, ShapeOptions};
 use walpha::{Alpha, AlphaShape, Class, WeightedPoints, alpha_shape};
@@ -278,4 +282,167 @@ fn pairs_are_those_of_a_matrix() {
         }
     }
     assert!(lasting.iter().all(|&count| count > 100), "{lasting:?}");
+}
+
+fn written(ordered: &Ordered<'_>, format: FiltrationFormat) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    format.write(ordered, &mut bytes).unwrap();
+    bytes
+}
+
+fn file(ordered: &Ordered<'_>) -> FiltrationFile {
+    let json = FiltrationFile::read_json(&written(ordered, FiltrationFormat::Json)[..]).unwrap();
+    let npz = Cursor::new(written(ordered, FiltrationFormat::Npz));
+    let mut npz = FiltrationFile::read_npz(npz).unwrap();
+    npz.info = json.info.clone();
+    assert_eq!(npz, json);
+    json
+}
+
+fn findings(file: &FiltrationFile) -> Vec<FiltrationFinding> {
+    certify_filtration(file).unwrap().0
+}
+
+/// The checker computes all values by itself.
+#[test]
+fn the_checker_finds_nothing() {
+    for points in sets(180, 40) {
+        let filtration = Filtration::new(points.clone()).unwrap();
+        let ordered = filtration.simplices().unwrap();
+        let file = file(&ordered);
+        let (findings, certificate) = certify_filtration(&file).unwrap();
+        assert_eq!(findings, [], "{points:?}");
+        assert_eq!(certificate.values, ordered.values().len());
+        assert!(compare_filtrations(&file, &file).unwrap().is_equal());
+    }
+}
+
+#[test]
+fn text_has_a_line_for_each_simplex() {
+    let points = sets(1, 12).next().unwrap();
+    let filtration = Filtration::new(points).unwrap();
+    let ordered = filtration.simplices().unwrap();
+    let text = String::from_utf8(written(&ordered, FiltrationFormat::Text)).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("# value gabriel regular interior vertices"));
+    for (line, simplex) in lines.by_ref().zip(ordered.iter()) {
+        let numbers: Vec<f64> = line.split(' ').map(|word| word.parse().unwrap()).collect();
+        let gabriel = f64::from(u8::from(simplex.gabriel));
+        assert_eq!(numbers[..4], [simplex.value, gabriel, simplex.regular, simplex.interior]);
+        assert!(numbers[4..].iter().map(|&v| v as u32).eq(simplex.vertices.iter().copied()));
+    }
+    assert_eq!(text.lines().count(), 1 + ordered.len());
+}
+
+/// What is wrong is found, and named.
+#[test]
+fn the_checker_finds_what_is_wrong() {
+    let mut random = Random(5);
+    for points in sets(24, 30) {
+        let filtration = Filtration::new(points).unwrap();
+        let ordered = filtration.simplices().unwrap();
+        let right = file(&ordered);
+        let is_when = |wanted: Bound| move |found: &FiltrationFinding| matches!(found, FiltrationFinding::When { bound, .. } if *bound == wanted);
+        let one = |damaged: &FiltrationFile, rule: &dyn Fn(&FiltrationFinding) -> bool| {
+            let found = findings(damaged);
+            assert!(found.len() == 1 && rule(&found[0]), "{found:?}");
+            assert!(!compare_filtrations(&right, damaged).unwrap().is_equal());
+        };
+        let mut damage = right.clone();
+        let at = random.below(damage.values.edges.len() as u64) as usize;
+        damage.values.edges[at].0 = damage.values.edges[at].0.next_up();
+        one(&damage, &is_when(Bound::Value));
+        let mut damage = right.clone();
+        let at = random.below(damage.values.cells.len() as u64) as usize;
+        damage.values.cells[at].0 = damage.values.cells[at].0.next_down();
+        one(&damage, &is_when(Bound::Value));
+        let mut damage = right.clone();
+        let facets = &mut damage.gabriel.as_mut().unwrap().facets;
+        let at = random.below(facets.len() as u64) as usize;
+        facets[at] = !facets[at];
+        one(&damage, &|found| matches!(found, FiltrationFinding::Gabriel { .. }));
+        let mut damage = right.clone();
+        let edges = &mut damage.regular.as_mut().unwrap().edges;
+        let at = random.below(edges.len() as u64) as usize;
+        edges[at].0 = edges[at].0.next_down();
+        one(&damage, &is_when(Bound::Regular));
+        let mut damage = right.clone();
+        let vertices = &mut damage.interior.as_mut().unwrap().vertices;
+        let at = random.below(vertices.len() as u64) as usize;
+        vertices[at].0 = if vertices[at].0 == f64::INFINITY { 1.0 } else { f64::INFINITY };
+        one(&damage, &is_when(Bound::Interior));
+        let mut damage = right.clone();
+        let at = random.below(damage.order.len() as u64 - 1) as usize;
+        damage.order.swap(at, at + 1);
+        let found = findings(&damage);
+        assert!(!found.is_empty());
+        assert!(found.iter().all(|found| matches!(found, FiltrationFinding::Order { .. })));
+        let mut damage = right.clone();
+        damage.order[0] = damage.order[1];
+        let found = findings(&damage);
+        assert!(matches!(
+            found[..],
+            [FiltrationFinding::Number { .. }, FiltrationFinding::Absent { .. }]
+        ));
+        let mut damage = right.clone();
+        damage.edges.pop();
+        damage.values.edges.pop();
+        for bounds in [&mut damage.regular, &mut damage.interior] {
+            bounds.as_mut().unwrap().edges.pop();
+        }
+        damage.gabriel.as_mut().unwrap().edges.pop();
+        let found = findings(&damage);
+        assert!(matches!(found[0], FiltrationFinding::Triangulation(_)), "{found:?}");
+        let mut damage = right.clone();
+        damage.values.facets.pop();
+        assert!(certify_filtration(&damage).is_err());
+    }
+}
+
+#[test]
+fn the_command_writes_checks_and_compares() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let make = ["filtration", "sample:phantom@12", "--weights", "min-max", "-o"];
+    let told = common::json(f, &[&make[..], &["a.json", "a.npz", "a.txt"]].concat());
+    assert_eq!(told["files"].as_array().unwrap().len(), 3);
+    assert!(told["persistence"]["components"].as_array().is_some());
+    let checked = common::ok(f, &["check", "a.npz"]);
+    assert!(checked.contains("certified: no finding"), "{checked}");
+    common::ok(f, &["compare", "a.json", "a.npz"]);
+    let text = std::fs::read_to_string(f.join("a.json")).unwrap();
+    let wrong =
+        text.replacen("\"gabriel\":{\"vertices\":[true", "\"gabriel\":{\"vertices\":[false", 1);
+    let wrong = if wrong == text {
+        text.replacen("\"gabriel\":{\"vertices\":[false", "\"gabriel\":{\"vertices\":[true", 1)
+    } else {
+        wrong
+    };
+    std::fs::write(f.join("b.json"), wrong).unwrap();
+    let (code, said, _) = common::run(f, &["check", "b.json"]);
+    assert_eq!(code, 3, "{said}");
+    assert!(said.contains("Gabriel"), "{said}");
+    assert_eq!(common::run(f, &["compare", "a.json", "b.json"]).0, 3);
+    let (code, _, said) = common::run(f, &["check", "a.npz", "--alpha", "3"]);
+    assert_eq!(code, 2, "{said}");
+    common::ok(f, &["shape", "sample:phantom@12", "-o", "shape.json"]);
+    assert_eq!(common::run(f, &["compare", "shape.json", "a.json"]).0, 1);
+}
+
+/// The example of the documentation is a filtration, and the one we make.
+#[test]
+fn the_documented_file_is_right() {
+    let text = include_str!("../docs/cross-checking.md");
+    let at = text.find("## Filtrations").unwrap();
+    let json = text[at..].split("```").nth(1).unwrap().trim_start_matches("json");
+    let documented = FiltrationFile::read_json(json.as_bytes()).unwrap();
+    assert_eq!(findings(&documented), []);
+    let points = WeightedPoints {
+        positions: documented.points.clone(),
+        weights: vec![0.0; 4],
+        values: None,
+    };
+    let filtration = Filtration::new(points).unwrap();
+    let made = file(&filtration.simplices().unwrap());
+    assert_eq!((made.values, made.order), (documented.values, documented.order));
 }

@@ -42,10 +42,13 @@ mod enumerate;
 mod exact;
 pub mod schema;
 
-pub use certify::{Certificate, Claim, Extent, Finding, NotCertifiable, NotJudged, Simplex};
+pub use certify::{
+    Bound, Certificate, Claim, Extent, FiltrationCertificate, FiltrationFinding, Finding,
+    NotAFiltration, NotCertifiable, NotJudged, Simplex, Unjudged, certify_filtration,
+};
 pub use compare::{
-    ClassDifference, Comparison, Differences, Domain, NotComparable, Placed, WeightDifference,
-    compare,
+    ClassDifference, Comparison, Differences, Domain, FiltrationComparison, NotComparable, Placed,
+    ValueDifference, WeightDifference, compare, compare_filtrations,
 };
 pub use enumerate::{Enumeration, NotEnumerable, enumerate};
 pub use exact::Exact;

@@ -9,7 +9,7 @@ use clap::Args;
 use serde::Serialize;
 use walpha::Coordinates;
 use walpha::export::{Content, FiltrationFormat, Target, write_all};
-use walpha::ladder::{self, Ordered, Pairs};
+use walpha::ladder::{self, Ordered};
 
 use super::args::{FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
 use super::output::{name, tell};
@@ -25,7 +25,7 @@ use super::{Global, pipeline};
 /// number; whether its own smallest sphere is empty (Gabriel; otherwise it comes with a simplex that
 /// it is a face of); and from where on it is regular and interior. The order is by the exact values,
 /// then by dimension and vertices, so that faces come before what they are faces of. Persistence
-/// pairs of components and voids are in .npz and .json. Weights are frozen.
+/// pairs of components and voids are in .npz, .json and what --json prints. Weights are frozen.
 ///
 /// Examples:
 ///
@@ -68,13 +68,13 @@ struct Facts {
     vertices: Count,
     /// Values that are different numbers.
     values: usize,
-    persistence: Persistence,
+    persistence: Option<Persistence>,
     files: Vec<String>,
     seconds: BTreeMap<&'static str, f64>,
 }
 
 /// Simplices of a dimension.
-#[derive(Clone, Copy, Default, Serialize)]
+#[derive(Clone, Copy, Serialize)]
 struct Count {
     gabriel: usize,
     attached: usize,
@@ -106,15 +106,17 @@ impl Filtration {
         let filtration =
             progress.stage("filtration", || ladder::Filtration::new(weighed.points.clone()))?;
         let ordered = progress.stage("order", || filtration.simplices())?;
-        let pairs = progress.stage("pairs", || ordered.pairs());
         progress.stage("write", || {
             write_all(targets.into_iter().map(|(target, format)| {
-                let (ordered, pairs) = (&ordered, &pairs);
-                let content = move |out: &mut dyn Write| format.write(ordered, pairs, out);
+                let ordered = &ordered;
+                let content = move |out: &mut dyn Write| format.write(ordered, out);
                 (target, Box::new(content) as Content<'_>)
             }))
         })?;
-        let mut facts = Facts::new(&self.input.input, &weighed, &ordered, &pairs);
+        let mut facts = Facts::new(&self.input.input, &weighed, &ordered);
+        if global.json {
+            facts.persistence = Some(progress.stage("pairs", || Persistence::of(&ordered)));
+        }
         facts.files = self.output.iter().map(|path| path.display().to_string()).collect();
         facts.seconds = progress.finish().into_iter().collect();
         tell(global, &facts)
@@ -122,15 +124,12 @@ impl Filtration {
 }
 
 impl Facts {
-    fn new(input: &str, weighed: &Weighed, ordered: &Ordered<'_>, pairs: &Pairs) -> Self {
+    fn new(input: &str, weighed: &Weighed, ordered: &Ordered<'_>) -> Self {
         let whole = ordered.filtration().whole();
-        let mut counts = [Count::default(); 4];
-        for simplex in ordered.iter() {
-            let count = &mut counts[simplex.vertices.len() - 1];
-            let which = if simplex.gabriel { &mut count.gabriel } else { &mut count.attached };
-            *which += 1;
-        }
-        let [vertices, edges, facets, cells] = counts;
+        let [vertices, edges, facets, cells] = [0, 1, 2, 3].map(|dimension| {
+            let gabriel = ordered.gabriel(dimension);
+            Count { gabriel, attached: ordered.count(dimension) - gabriel }
+        });
         Self {
             schema_version: SCHEMA_VERSION,
             input: input.to_owned(),
@@ -145,7 +144,7 @@ impl Facts {
             edges,
             vertices,
             values: ordered.values().len(),
-            persistence: Persistence::of(ordered, pairs),
+            persistence: None,
             files: Vec::new(),
             seconds: BTreeMap::new(),
         }
@@ -153,7 +152,8 @@ impl Facts {
 }
 
 impl Persistence {
-    fn of(ordered: &Ordered<'_>, pairs: &Pairs) -> Self {
+    fn of(ordered: &Ordered<'_>) -> Self {
+        let pairs = ordered.pairs();
         let value = |number: u32| ordered.simplex(number).value;
         let lasting = |pairs: &[[u32; 2]]| {
             let lasting = pairs.iter().filter(|&&pair| ordered.lasts(pair));
@@ -188,20 +188,12 @@ impl Display for Facts {
         writeln!(f, "edges     {}", self.edges)?;
         writeln!(f, "vertices  {}", self.vertices)?;
         writeln!(f, "values    {} different numbers", self.values)?;
-        let Persistence { components, lasting_components, voids } = &self.persistence;
-        writeln!(
-            f,
-            "pairs     {} components and {} voids that last; {} components never end",
-            components.len(),
-            voids.len(),
-            lasting_components.len()
-        )?;
         for file in &self.files {
             writeln!(f, "wrote     {}", name(file))?;
         }
         let seconds = |stage: &str| self.seconds.get(stage).copied().unwrap_or_default();
         write!(f, "time      ")?;
-        for stage in ["read", "points", "filtration", "order", "pairs", "write"] {
+        for stage in ["read", "points", "filtration", "order", "write"] {
             write!(f, "{stage} {:.2} s, ", seconds(stage))?;
         }
         writeln!(f, "total {:.2} s", seconds("total"))

@@ -2,7 +2,9 @@
 
 mod args;
 mod check;
+mod check_filtration;
 mod compare;
+mod compare_filtrations;
 mod complaint;
 mod completions;
 mod complex_file;

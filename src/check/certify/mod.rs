@@ -3,6 +3,7 @@
 mod certificate;
 mod classes;
 mod emptiness;
+mod filtration;
 mod finding;
 mod gaps;
 mod geometry;
@@ -26,6 +27,9 @@ use points::Points;
 use structure::Structure;
 
 pub use certificate::{Certificate, NotCertifiable, NotJudged};
+pub use filtration::{
+    Bound, FiltrationCertificate, FiltrationFinding, NotAFiltration, Unjudged, certify_filtration,
+};
 pub use finding::{Finding, Simplex};
 
 /// How much a complex claims to hold.

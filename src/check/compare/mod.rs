@@ -1,6 +1,7 @@
 //! Comparison of two complexes over the same points.
 
 mod domain;
+mod filtration;
 mod text;
 
 use std::collections::BTreeMap;
@@ -12,6 +13,7 @@ use super::canonical::sorted;
 use crate::shape::{Class, Complex, Simplices, each_number_or_name};
 
 pub use domain::Domain;
+pub use filtration::{FiltrationComparison, ValueDifference, compare_filtrations};
 
 /// A complex with its points and its parameter.
 #[derive(Clone, Copy, Debug)]

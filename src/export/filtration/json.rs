@@ -2,22 +2,23 @@ use std::io::{self, Write};
 
 use super::lasting;
 use crate::check::schema::{Below, FiltrationFile, PairsFile, SchemaError, Values};
-use crate::ladder::{Entry, Ordered, Pairs};
+use crate::ladder::{Entry, Ordered};
 use crate::memory;
 
-pub fn write(ordered: &Ordered<'_>, pairs: &Pairs, out: &mut dyn Write) -> io::Result<()> {
+pub fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
     // Rows, four numbers each, and a place in the order.
     let bytes = ordered.len() * (size_of::<[u32; 4]>() + size_of::<[f64; 3]>() + size_of::<u32>());
     memory::afford(bytes, || format!("the JSON of {} simplices", ordered.len()))
         .map_err(io::Error::other)?;
-    file(ordered, pairs).write_json(out).map_err(|error| match error {
+    file(ordered).write_json(out).map_err(|error| match error {
         // What the system said stays what it is: a pipe may be broken.
         SchemaError::Json(error) if error.is_io() => error.into(),
         other => io::Error::other(other),
     })
 }
 
-fn file(ordered: &Ordered<'_>, pairs: &Pairs) -> FiltrationFile {
+fn file(ordered: &Ordered<'_>) -> FiltrationFile {
+    let pairs = ordered.pairs();
     let whole = ordered.filtration().whole();
     let mut first = [0; 4];
     for dimension in 1..4 {

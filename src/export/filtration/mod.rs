@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::UnknownFormat;
-use crate::ladder::{Ordered, Pairs};
+use crate::ladder::Ordered;
 
 /// The formats filtrations are written in, chosen by file name extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,15 +41,10 @@ impl FiltrationFormat {
     ///
     /// # Errors
     /// Whatever `out` returns; no memory.
-    pub fn write(
-        self,
-        ordered: &Ordered<'_>,
-        pairs: &Pairs,
-        out: &mut dyn Write,
-    ) -> io::Result<()> {
+    pub fn write(self, ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
         match self {
-            Self::Npz => npz::write(ordered, pairs, out),
-            Self::Json => json::write(ordered, pairs, out),
+            Self::Npz => npz::write(ordered, out),
+            Self::Json => json::write(ordered, out),
             Self::Text => text::write(ordered, out),
         }
     }

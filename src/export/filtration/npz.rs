@@ -4,13 +4,14 @@ use zip::ZipWriter;
 
 use super::lasting;
 use crate::export::npz::Archive;
-use crate::ladder::{Entry, Ordered, Pairs};
+use crate::ladder::{Entry, Ordered};
 use crate::progress;
 
 /// Arrays of each dimension, by their names.
 const DIMENSIONS: [&str; 4] = ["vertex", "edge", "facet", "cell"];
 
-pub fn write(ordered: &Ordered<'_>, pairs: &Pairs, out: &mut dyn Write) -> io::Result<()> {
+pub fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
+    let pairs = ordered.pairs();
     let mut archive = Archive::compressed(ZipWriter::new_stream(out));
     let whole = ordered.filtration().whole();
     archive.rows("points", &whole.points().positions)?;

@@ -4,6 +4,8 @@ mod numbers;
 mod pairs;
 mod rank;
 
+use std::sync::OnceLock;
+
 use rayon::prelude::*;
 
 use super::levels::Own;
@@ -11,7 +13,7 @@ use super::{Filtration, Levels};
 use crate::memory;
 use crate::progress;
 use crate::shape::{Alpha, Betti, ShapeError};
-use crate::triangulation::TriangulationError;
+use crate::triangulation::{Interval, TriangulationError};
 pub(super) use numbers::Numbers;
 pub use pairs::Pairs;
 use rank::{NONE, Ranks};
@@ -37,6 +39,7 @@ pub struct Ordered<'a> {
     /// The row of each of them in the triangulation.
     cell_rows: Vec<u32>,
     order: Vec<u32>,
+    pairs: OnceLock<Pairs>,
 }
 
 /// A simplex and when it comes.
@@ -76,7 +79,14 @@ impl Filtration {
         drop(of);
         done(3);
         let (cells, cell_rows) = sorted_cells(&complex.cells.vertices);
-        let mut ordered = Ordered { levels, numbers, cells, cell_rows, order: Vec::new() };
+        let mut ordered = Ordered {
+            levels,
+            numbers,
+            cells,
+            cell_rows,
+            order: Vec::new(),
+            pairs: OnceLock::new(),
+        };
         ordered.order = ordered.by_rank();
         done(4);
         Ok(ordered)
@@ -124,18 +134,24 @@ impl Ordered<'_> {
     /// The numbers of all simplices, by rank, then as they are.
     fn by_rank(&self) -> Vec<u32> {
         let mut next = vec![0; self.levels.len() + 1];
-        let ranks = || (0..self.numbers.all() as u32).map(|simplex| self.rank(simplex));
-        ranks().for_each(|rank| next[rank as usize + 1] += 1);
+        self.ranks().for_each(|rank| next[rank as usize + 1] += 1);
         for rank in 1..next.len() {
             next[rank] += next[rank - 1];
         }
         let mut order = vec![0; self.numbers.all()];
-        for (simplex, rank) in ranks().enumerate() {
+        self.ranks().zip(0..).for_each(|(rank, simplex)| {
             let place: &mut u32 = &mut next[rank as usize];
-            order[*place as usize] = simplex as u32;
+            order[*place as usize] = simplex;
             *place += 1;
-        }
+        });
         order
+    }
+
+    /// The ranks of all simplices, by their numbers.
+    fn ranks(&self) -> impl Iterator<Item = u32> + '_ {
+        let Levels { vertices, edges, facets, cells, .. } = &self.levels;
+        let below = vertices.iter().chain(edges).chain(facets).map(|span| span.first);
+        below.chain(self.cell_rows.iter().map(|&row| cells[row as usize]))
     }
 
     /// The filtration.
@@ -159,6 +175,21 @@ impl Ordered<'_> {
     /// When it is above 3.
     pub fn count(&self, dimension: usize) -> usize {
         self.numbers.count(dimension)
+    }
+
+    /// How many of a dimension are Gabriel.
+    ///
+    /// # Panics
+    /// When it is above 3.
+    pub fn gabriel(&self, dimension: usize) -> usize {
+        let Filtration { vertices, edges, facets, .. } = self.filtration();
+        let own = |known: &[Option<Interval>]| known.iter().flatten().count();
+        match dimension {
+            0 => own(vertices),
+            1 => own(edges),
+            2 => own(facets),
+            _ => self.numbers.count(dimension),
+        }
     }
 
     /// The vertices, a row each.

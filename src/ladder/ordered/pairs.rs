@@ -24,10 +24,13 @@ pub struct Pairs {
 
 impl Ordered<'_> {
     /// Persistence pairs of dimensions 0 and 2. O(n α(n)). Those of dimension 1, between the edges and
-    /// facets that are in none of these, take a reduction of matrices.
-    pub fn pairs(&self) -> Pairs {
-        let (components, lasting) = self.component_pairs();
-        Pairs { components, lasting, voids: self.void_pairs() }
+    /// facets that are in none of these, take a reduction of matrices. Computed once.
+    pub fn pairs(&self) -> &Pairs {
+        self.pairs.get_or_init(|| {
+            let ((components, lasting), voids) =
+                rayon::join(|| self.component_pairs(), || self.void_pairs());
+            Pairs { components, lasting, voids }
+        })
     }
 
     /// Whether the two simplices of a pair have different values.

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::Numbers;
 use crate::ladder::Filtration;
+use crate::ladder::values::{Key, is_small_lattice, key};
 use crate::memory::{self, NoMemory};
 use crate::triangulation::{Predicates, Ratio, SmallRadius};
 
@@ -39,7 +40,8 @@ impl Ranks {
             memory::room(numbers.all(), || format!("the order of {} simplices", numbers.all()))?;
         collect(filtration, numbers, &spheres, &mut radii);
         radii.par_sort_unstable();
-        let exact = Exactly { filtration, numbers, spheres };
+        let lattice = is_small_lattice(filtration.points());
+        let exact = Exactly { filtration, numbers, spheres, lattice };
         let several: Vec<_> =
             radii.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > 1).collect();
         // Where a simplex's value differs from the one before it, though their doubles are equal.
@@ -52,7 +54,7 @@ impl Ranks {
         let mut last = None;
         for &(key, simplex) in &radii {
             if last != Some(key) || steps.binary_search(&simplex).is_ok() {
-                values.push(from_key(key));
+                values.push(from_bits(key));
                 last = Some(key);
             }
             of[simplex as usize] = values.len() as u32 - 1;
@@ -70,7 +72,7 @@ fn collect(
 ) {
     let Filtration { whole, incidence, facets, edges, vertices, .. } = filtration;
     let complex = whole.complex();
-    let of = |from: u32| move |row: usize, radius: f64| (key(radius), from + row as u32);
+    let of = |from: u32| move |row: usize, radius: f64| (to_bits(radius), from + row as u32);
     let [of_vertices, of_edges, of_facets, of_cells] = numbers.first.map(of);
     radii.par_extend(vertices.par_iter().enumerate().filter_map(|(row, known)| {
         known.map(|_| of_vertices(row, spheres.nearest_radius(complex.vertices.vertices[row])))
@@ -86,12 +88,12 @@ fn collect(
 }
 
 /// Integers in the order of doubles that are no −0.
-fn key(value: f64) -> u64 {
+fn to_bits(value: f64) -> u64 {
     let bits = value.to_bits();
     if value < 0.0 { !bits } else { bits | 1 << 63 }
 }
 
-fn from_key(key: u64) -> f64 {
+fn from_bits(key: u64) -> f64 {
     f64::from_bits(if key >> 63 == 1 { key & !(1 << 63) } else { !key })
 }
 
@@ -100,6 +102,8 @@ struct Exactly<'a> {
     filtration: &'a Filtration,
     numbers: Numbers,
     spheres: Predicates<'a>,
+    /// Whether squared distances are exact in doubles.
+    lattice: bool,
 }
 
 impl Exactly<'_> {
@@ -108,6 +112,9 @@ impl Exactly<'_> {
         if let Some(first) = self.small(run[0].1)
             && run.par_iter().all(|&(_, s)| self.small(s).is_some_and(|small| small.equals(first)))
         {
+            return Vec::new();
+        }
+        if self.lattice && run.iter().all(|radius| self.key(radius.1) == self.key(run[0].1)) {
             return Vec::new();
         }
         let mut values = BTreeMap::<Ratio, Vec<u32>>::new();
@@ -130,6 +137,16 @@ impl Exactly<'_> {
         }
     }
 
+    fn key(&self, simplex: u32) -> Key {
+        let (complex, points) = (self.filtration.whole.complex(), self.filtration.points());
+        match self.numbers.row(simplex) {
+            (0, row) => key(points, complex.vertices.vertices[row]),
+            (1, row) => key(points, complex.edges.vertices[row]),
+            (2, row) => key(points, self.filtration.incidence.facets[row]),
+            (_, row) => key(points, complex.cells.vertices[row]),
+        }
+    }
+
     fn ratio(&self, simplex: u32) -> Ratio {
         let complex = self.filtration.whole.complex();
         match self.numbers.row(simplex) {
@@ -148,8 +165,8 @@ mod tests {
     #[test]
     fn keys_are_in_the_order_of_doubles() {
         let values = [f64::NEG_INFINITY, -1.5, -1.0, -5e-324, 0.0, 5e-324, 1.0, 2.0, f64::INFINITY];
-        let keys = values.map(key);
+        let keys = values.map(to_bits);
         assert!(keys.is_sorted() && keys.windows(2).all(|pair| pair[0] < pair[1]));
-        assert_eq!(keys.map(from_key), values);
+        assert_eq!(keys.map(from_bits), values);
     }
 }

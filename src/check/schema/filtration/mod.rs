@@ -1,9 +1,12 @@
 //! The file of a filtration.
 
+mod npz;
+
 use std::io::{Read, Write};
 
 use serde::{Deserialize, Serialize};
 
+use super::build::{in_range, paired};
 use super::{SchemaError, number};
 
 /// A filtration as a file holds it: every simplex of a regular triangulation, and when it comes.
@@ -18,7 +21,7 @@ use super::{SchemaError, number};
 ///   "facets": [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]],
 ///   "cells": [[0, 1, 2, 3]],
 ///   "values": { "vertices": [0, 0, 0, 0], "edges": [1, 1, 1, 2, 2, 2],
-///               "facets": [2, 2, 2, 2.6666666666666665], "cells": [3] },
+///               "facets": [2, 2, 2, 3], "cells": [3] },
 ///   "order": [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14] }
 /// ```
 ///
@@ -156,5 +159,49 @@ impl FiltrationFile {
     /// [`SchemaError::Json`] if `writer` fails.
     pub fn write_json(&self, writer: impl Write) -> Result<(), SchemaError> {
         Ok(serde_json::to_writer(writer, self)?)
+    }
+
+    /// Whether fields fit together: as many values as simplices, and points that exist.
+    ///
+    /// # Errors
+    /// Fields that do not pair up, point numbers out of range, no points at all.
+    pub fn check(&self) -> Result<(), SchemaError> {
+        let n = self.points.len();
+        if n == 0 {
+            return Err(SchemaError::NoPoints);
+        }
+        paired("weights", self.weights.as_ref().map_or(n, Vec::len), "points", n)?;
+        in_range("vertices", self.vertices.iter(), n)?;
+        in_range("edges", self.edges.iter().flatten(), n)?;
+        in_range("facets", self.facets.iter().flatten(), n)?;
+        in_range("cells", self.cells.iter().flatten(), n)?;
+        let (values, cells) = (&self.values, self.cells.len());
+        let of_values = [&values.vertices, &values.edges, &values.facets].map(Vec::len);
+        self.paired(["values.vertices", "values.edges", "values.facets"], of_values)?;
+        paired("values.cells", values.cells.len(), "cells", cells)?;
+        if let Some(gabriel) = &self.gabriel {
+            self.paired(["gabriel.vertices", "gabriel.edges", "gabriel.facets"], gabriel.counts())?;
+        }
+        if let Some(regular) = &self.regular {
+            self.paired(["regular.vertices", "regular.edges", "regular.facets"], regular.counts())?;
+        }
+        if let Some(interior) = &self.interior {
+            let names = ["interior.vertices", "interior.edges", "interior.facets"];
+            self.paired(names, interior.counts())?;
+        }
+        Ok(())
+    }
+
+    /// Whether there are as many of something as simplices below cells.
+    fn paired(&self, names: [&'static str; 3], counts: [usize; 3]) -> Result<(), SchemaError> {
+        paired(names[0], counts[0], "vertices", self.vertices.len())?;
+        paired(names[1], counts[1], "edges", self.edges.len())?;
+        paired(names[2], counts[2], "facets", self.facets.len())
+    }
+}
+
+impl<T> Below<T> {
+    fn counts(&self) -> [usize; 3] {
+        [self.vertices.len(), self.edges.len(), self.facets.len()]
     }
 }
