@@ -40,6 +40,7 @@ mod certify;
 mod compare;
 mod enumerate;
 mod exact;
+mod flat;
 pub mod schema;
 
 pub use certify::{

@@ -587,7 +587,7 @@ impl ShapeArgs {
             EngineArg::Reference => Engine::Reference,
         };
         let Self { exterior, blocks, memory, .. } = *self;
-        ShapeOptions { alpha, balls, engine, exterior, blocks, memory }
+        ShapeOptions { alpha, balls, engine, exterior, blocks, memory, refuse_flat: true }
     }
 }
 

@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 use serde::Serialize;
 use walpha::ladder::Filtration;
 use walpha::points::{Units, weigh};
-use walpha::shape::number_or_name;
+use walpha::shape::{flat_region, number_or_name};
 use walpha::shown::{number, six_digits};
 use walpha::{Alpha, LengthUnit, Points, Volume, WeightedPoints, Weighting};
 
@@ -70,7 +70,12 @@ impl Parameter {
         unit: LengthUnit,
         progress: &mut Progress,
     ) -> anyhow::Result<Self> {
-        let found = || Filtration::new(points).map(|filtration| Self::of(None, unit, &filtration));
+        let found = || match Filtration::new(points.clone()) {
+            Err(error) if error.is_flat() => {
+                Ok(Self { alpha: flat_region(&points)?, unit, origin: Origin::Auto })
+            }
+            made => made.map(|filtration| Self::of(None, unit, &filtration)),
+        };
         Ok(progress.stage("alpha", found)?)
     }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use walpha::alpha_shape;
 use walpha::export::{Content, ExportOptions, Exporter, Format, Target, UnknownFormat, write_all};
-use walpha::shape::Surface;
+use walpha::shape::{ShapeOptions, Surface};
 use walpha::shown::shown;
 
 use super::args::{PipelineArgs, ShapeArgs};
@@ -43,6 +43,10 @@ pub struct Shape {
     /// colours (OFF) or numbers (PLY, with components and sheets).
     #[arg(long)]
     groups: bool,
+    /// Refuse points that span no volume; without it those in one plane or on one line get the shape
+    /// that they have there: triangles or edges, and no cells.
+    #[arg(long, value_name = "3", value_parser = clap::value_parser!(u8).range(3..=3))]
+    dimension: Option<u8>,
     #[command(flatten)]
     pipeline: PipelineArgs,
     #[command(flatten)]
@@ -109,7 +113,8 @@ impl Shape {
         let mut weighed = pipeline::weighted_points(&self.pipeline, &mut progress)?;
         let alpha = weighed.find_parameter(&self.shape, &mut progress)?.alpha;
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed);
-        let options = self.shape.options(alpha);
+        let refuse_flat = self.dimension.is_some();
+        let options = ShapeOptions { refuse_flat, ..self.shape.options(alpha) };
         let shape = progress.stage("shape", || alpha_shape(weighed.points, &options))?;
         let shape = shape.meaning(weighed.coordinates);
         report.add_shape(&shape);

@@ -62,9 +62,10 @@ pub fn adaptive_voxels(
         return Err(InterpolateError::Target(goal.rmse));
     }
     let grid = Grid::of(volume, units);
+    let solid = ShapeOptions { refuse_flat: true, ..ShapeOptions::new(Alpha::INFINITE) };
     loop {
         let points = points(volume, &voxels, units);
-        let shape = alpha_shape(points, &ShapeOptions::new(Alpha::INFINITE))?;
+        let shape = alpha_shape(points, &solid)?;
         let interpolant = Interpolant::new(&shape)?;
         let resampled = interpolant.resample(&grid)?;
         let Deviation { rmse: Some(rmse), max: Some(max), .. } = Deviation::of(volume, &resampled)

@@ -35,10 +35,15 @@ impl Filtration {
     /// whole triangulation and half of one more; expected O(n log n).
     ///
     /// # Errors
-    /// As [`alpha_shape`].
+    /// As [`alpha_shape`] with [`ShapeOptions::refuse_flat`].
     pub fn new(points: WeightedPoints) -> Result<Self, ShapeError> {
         let engine = Engine::Native;
-        let options = ShapeOptions { engine, exterior: true, ..ShapeOptions::new(Alpha::INFINITE) };
+        let options = ShapeOptions {
+            engine,
+            exterior: true,
+            refuse_flat: true,
+            ..ShapeOptions::new(Alpha::INFINITE)
+        };
         let whole = alpha_shape(points, &options)?;
         let complex = whole.complex();
         memory::afford(Self::bytes(complex), || {

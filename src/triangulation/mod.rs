@@ -18,11 +18,13 @@
 
 mod curve;
 mod error;
+mod flat;
 mod native;
 mod predicates;
 mod sites;
 
 pub use error::{SitesError, TriangulationError};
+pub(crate) use flat::{Flat, is_flat, triangulate_flat};
 pub(crate) use predicates::{Interval, Lattice, Predicates, Ratio, SmallRadius};
 pub use sites::{MAX_COORDINATE, MAX_WEIGHT, Sites};
 

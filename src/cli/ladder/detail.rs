@@ -107,7 +107,7 @@ impl Ladder {
                 values.iter_mut().for_each(|value| *value = written.value(*value));
             }
             let weighted = weigh(&points, weights.weighting(false), alpha.squared())?;
-            let options = ShapeOptions::new(alpha);
+            let options = ShapeOptions { refuse_flat: true, ..ShapeOptions::new(alpha) };
             let shape = progress.stage("shape", || alpha_shape(weighted, &options))?;
             let shape = shape.meaning(coordinates);
             let mut row = Row {
