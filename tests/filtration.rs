@@ -34,8 +34,11 @@ impl Random {
     }
 }
 
+/// Makes a place and a weight.
+type Family = fn(&mut Random) -> ([f64; 3], f64);
+
 /// What a set is made of, by its number.
-const FAMILIES: [fn(&mut Random) -> ([f64; 3], f64); 6] = [
+const FAMILIES: [Family; 6] = [
     |r| ([0; 3].map(|_| r.whole(0, 3)), 0.0),
     |r| ([0; 3].map(|_| r.whole(0, 3)), r.whole(-2, 4) / 2.0),
     |r| ([0; 3].map(|_| r.whole(0, 4)), if r.below(3) == 0 { r.unit() } else { 0.1 }),

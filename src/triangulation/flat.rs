@@ -43,10 +43,11 @@ pub(crate) fn triangulate_flat(
         let mut rest: Vec<u32> =
             cell.iter().filter(|&&v| v >= extra).map(|&v| along[(v - extra) as usize]).collect();
         rest.sort_unstable();
-        match (rest[..].len() + extra as usize, &rest[..]) {
-            (4, &[a, b, c]) => flat.triangles.push([a, b, c]),
-            (4, &[a, b]) => flat.edges.push([a, b]),
-            (4, &[a]) => flat.vertices.push([a]),
+        match (extra, &rest[..]) {
+            (1, &[a, b, c]) => flat.triangles.push([a, b, c]),
+            (2, &[a, b]) => flat.edges.push([a, b]),
+            (3, &[a]) => flat.vertices.push([a]),
+            // Not all of the points added are among its corners.
             _ => {}
         }
     }

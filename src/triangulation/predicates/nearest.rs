@@ -55,7 +55,7 @@ impl Predicates<'_> {
         let (above, below) =
             (bounds.numerator * Twofold::ROUNDING, bounds.denominator * Twofold::ROUNDING);
         let d = denominator.high;
-        if !(d > 4.0 * below) {
+        if d <= 4.0 * below {
             return by_integers();
         }
         let fourth = numerator.over(denominator);

@@ -4,7 +4,7 @@ use super::{Below, Extended, FiltrationFile, PairsFile, Values};
 use crate::check::schema::SchemaError;
 use crate::check::schema::npz::{Kind, Npz, index};
 
-const ARRAYS: [(&str, Kind); 24] = [
+const ARRAYS: [(&str, Kind); 25] = [
     ("points", Kind::Rows(3)),
     ("weights", Kind::Column("points")),
     ("vertices", Kind::Rows(1)),
@@ -26,6 +26,7 @@ const ARRAYS: [(&str, Kind); 24] = [
     ("facet_interior", Kind::Column("facets")),
     ("order", Kind::Rows(1)),
     ("component_pairs", Kind::Rows(2)),
+    ("lasting_components", Kind::Rows(1)),
     ("void_pairs", Kind::Rows(2)),
     ("hidden", Kind::Rows(1)),
     ("duplicates", Kind::Rows(2)),
