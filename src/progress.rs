@@ -25,6 +25,10 @@ pub enum Stage {
     Filtration,
     /// Counts what each critical α changes.
     Curve,
+    /// Puts all simplices in order.
+    Order,
+    /// Pairs the simplices that begin and end components and voids.
+    Pairs,
     /// Takes levels from a filtration.
     Ladder,
     /// Triangulates the whole volume.
@@ -52,6 +56,8 @@ impl Stage {
             Self::Shape => "shape",
             Self::Filtration => "filtration",
             Self::Curve => "curve",
+            Self::Order => "order",
+            Self::Pairs => "pairs",
             Self::Ladder => "ladder",
             Self::Fill => "fill",
             Self::Interpolate => "interpolate",

@@ -339,7 +339,7 @@ fn bad_points_exit_with_1() {
         if let Some(text) = text {
             fs::write(f.join(name), text).unwrap();
         }
-        fails(f, 1, &format!("shape {name} --alpha 1 -o out.ply"), &[word]);
+        fails(f, 1, &format!("shape {name} --dimension 3 --alpha 1 -o out.ply"), &[word]);
     }
 }
 
@@ -381,7 +381,8 @@ fn a_constant_volume_is_no_accident() {
     let f = folder.path();
     fs::write(f.join("flat.raw"), [7; 64]).unwrap();
     let raw = ["flat.raw", "--dims", "4,4,4", "--dtype", "u8"];
-    fails(f, 1, "shape flat.raw --dims 4,4,4 --dtype u8 --count 10", &["in one plane"]);
+    let flat = "shape flat.raw --dims 4,4,4 --dtype u8 --count 10 --dimension 3";
+    fails(f, 1, flat, &["in one plane"]);
     let args = [&["shape"], &raw[..], &["--ratio", "1", "--weights", "min-max"]].concat();
     let report = json(f, &args);
     assert_eq!(report["weights"]["max"], 0.0);
@@ -397,7 +398,8 @@ fn bad_outputs_exit_with_1() {
     fails(f, 1, "shape sample:phantom@8 -o folder.ply", &["folder.ply"]);
     // A failure after the target was opened leaves what stood there.
     fs::write(f.join("old.ply"), "precious").unwrap();
-    fails(f, 1, "shape sample:phantom@8 --count 3 -o old.ply", &["3 distinct points"]);
+    let few = "shape sample:phantom@8 --count 3 --dimension 3 -o old.ply";
+    fails(f, 1, few, &["3 distinct points"]);
     assert_eq!(fs::read_to_string(f.join("old.ply")).unwrap(), "precious");
 }
 

@@ -25,7 +25,8 @@ fn by(
 ) -> Result<AlphaShape, ShapeError> {
     let alpha = Alpha::from_squared(alpha).unwrap();
     let blocks = blocks.and_then(NonZeroUsize::new);
-    let options = ShapeOptions { engine, blocks, exterior, ..ShapeOptions::new(alpha) };
+    let options =
+        ShapeOptions { engine, blocks, exterior, refuse_flat: true, ..ShapeOptions::new(alpha) };
     alpha_shape(points.clone(), &options)
 }
 

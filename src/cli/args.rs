@@ -450,7 +450,15 @@ impl ShapeArgs {
     /// The stage's options, at α = ∞.
     pub fn options(&self) -> ShapeOptions {
         let Self { balls, engine, exterior, blocks, memory } = *self;
-        ShapeOptions { alpha: Alpha::INFINITE, balls, engine, exterior, blocks, memory }
+        ShapeOptions {
+            alpha: Alpha::INFINITE,
+            balls,
+            engine,
+            exterior,
+            blocks,
+            memory,
+            refuse_flat: true,
+        }
     }
 }
 

@@ -14,13 +14,13 @@ use super::args::{PipelineArgs, ShapeArgs};
 use super::output::{name, tell};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
-use super::said::{misused, refused};
-use super::{DIFFERENT, Global, complex_file, pipeline};
+use super::said::{Said, misused, refused};
+use super::{DIFFERENT, Global, check_filtration, complex_file, pipeline};
 
 /// Judge a complex exactly: that of an engine, or one another program wrote.
 ///
-/// INPUT is a volume or points, which an engine makes a shape of, or a complex (.json, .npz). The
-/// checker shares no code with the engines and CGAL. Exit code 3 when something is found.
+/// INPUT is a volume or points, which an engine makes a shape of, or a complex or filtration (.json,
+/// .npz). The checker shares no code with the engines and CGAL. Exit code 3 when something is found.
 ///
 /// Examples:
 ///
@@ -31,7 +31,7 @@ use super::{DIFFERENT, Global, complex_file, pipeline};
 /// walpha check theirs.json --points skull.csv
 #[derive(Args)]
 pub struct Check {
-    /// Points of the complex, where its file lists none: .csv or .npy.
+    /// Points of the complex or filtration, where its file lists none: .csv or .npy.
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
     /// Build the answer from the definition too, and compare (at most 200 points).
@@ -46,8 +46,8 @@ pub struct Check {
 /// Points that `--enumerate` takes: more would take hours.
 const MOST_ENUMERATED: usize = 200;
 /// Findings that are printed as text, and as JSON; all are counted.
-const MOST_PRINTED: usize = 20;
-const MOST_LISTED: usize = 1000;
+pub const MOST_PRINTED: usize = 20;
+pub const MOST_LISTED: usize = 1000;
 
 #[derive(Serialize)]
 struct Facts {
@@ -68,6 +68,10 @@ struct Facts {
 
 impl Check {
     pub fn run(self, global: Global) -> anyhow::Result<ExitCode> {
+        let path = Path::new(&self.pipeline.input.input);
+        if complex_file::is_complex(path) && complex_file::is_filtration(path) {
+            return self.filtration(global, path);
+        }
         self.shape.check(self.pipeline.weights.alpha())?;
         let mut progress = Progress::new(global);
         let judged = self.complex(&mut progress)?;
@@ -111,15 +115,28 @@ impl Check {
         Ok(if facts.valid { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
     }
 
+    /// Judges a filtration.
+    fn filtration(&self, global: Global, path: &Path) -> anyhow::Result<ExitCode> {
+        self.refuse_ours(format!("{} is a filtration, made already", shown(path)))?;
+        if self.enumerate {
+            misused!("--enumerate belongs to a complex, and {} is a filtration", shown(path) => "omit it");
+        }
+        check_filtration::run(global, path, self.points.as_deref())
+    }
+
+    /// Refuses options of how a complex is made.
+    fn refuse_ours(&self, why: String) -> Result<(), Said> {
+        let ours = ShapeArgs::augment_args(PipelineArgs::augment_args(Command::new("check")));
+        let options = ours.get_arguments().filter(|arg| !arg.is_positional());
+        let names: Vec<&str> = options.map(|arg| arg.get_id().as_str()).collect();
+        self.pipeline.input.given.refuse(&names, why)
+    }
+
     /// The complex to judge.
     fn complex(&self, progress: &mut Progress) -> anyhow::Result<PlacedComplex> {
         let path = Path::new(&self.pipeline.input.input);
-        let given = &self.pipeline.input.given;
         if complex_file::is_complex(path) {
-            let ours = ShapeArgs::augment_args(PipelineArgs::augment_args(Command::new("check")));
-            let options = ours.get_arguments().filter(|arg| !arg.is_positional());
-            let names: Vec<&str> = options.map(|arg| arg.get_id().as_str()).collect();
-            given.refuse(&names, format!("{} is a complex, made already", shown(path)))?;
+            self.refuse_ours(format!("{} is a complex, made already", shown(path)))?;
             return progress
                 .stage(Stage::Read, || complex_file::read(path, self.points.as_deref()));
         }

@@ -10,9 +10,11 @@ use walpha::check::{Comparison, compare};
 
 use super::output::{name, tell};
 use super::report::SCHEMA_VERSION;
-use super::{DIFFERENT, Global, complex_file};
+use super::said::refused;
+use super::{DIFFERENT, Global, compare_filtrations, complex_file};
 
-/// Compare two complexes by points, weights, α and simplices with their classes.
+/// Compare two complexes by points, weights, α and simplices with their classes, or two filtrations
+/// by points, weights, simplices with their values, and order.
 ///
 /// Points are matched by their places, so the two may number them differently. Exterior simplices
 /// are compared where both complexes list some; windings and lists of hidden points and duplicates
@@ -26,7 +28,7 @@ use super::{DIFFERENT, Global, complex_file};
 /// walpha compare skull.json theirs.json --json
 #[derive(Args)]
 pub struct Compare {
-    /// A complex: .json or .npz, as docs/cross-checking.md describes.
+    /// A complex or a filtration: .json or .npz, as docs/cross-checking.md describes.
     #[arg(value_name = "A")]
     a: PathBuf,
     /// Another.
@@ -46,6 +48,13 @@ struct Facts {
 
 impl Compare {
     pub fn run(self, global: Global) -> anyhow::Result<ExitCode> {
+        match [&self.a, &self.b].map(|path| complex_file::is_filtration(path)) {
+            [true, true] => return compare_filtrations::run(global, &self.a, &self.b),
+            [false, false] => {}
+            _ => {
+                refused!("one file is a filtration, the other a complex" => "compare two of a kind")
+            }
+        }
         let read = |path: &Path| complex_file::read(path, None);
         let (a, b) = (read(&self.a)?, read(&self.b)?);
         let comparison = compare(a.placed(), b.placed())?;

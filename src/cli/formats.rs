@@ -60,6 +60,14 @@ pub fn shape_output() -> String {
     )
 }
 
+/// The help of the outputs of a filtration.
+pub fn filtration_output() -> String {
+    format!(
+        "Files to write: {}; or - (standard output, with --format). Files that are there are replaced",
+        dotted(export::FILTRATION_FORMATS.iter().map(|format| format.extension))
+    )
+}
+
 /// The help of an output of points.
 pub fn points_output() -> String {
     format!(

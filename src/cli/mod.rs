@@ -2,12 +2,15 @@
 
 mod args;
 mod check;
+mod check_filtration;
 mod compare;
+mod compare_filtrations;
 mod complaint;
 mod completions;
 mod complex_file;
 mod config;
 mod curve;
+mod filtration;
 mod folder;
 mod formats;
 mod given;
@@ -98,6 +101,7 @@ enum Command {
     Check(check::Check),
     Compare(compare::Compare),
     Ladder(ladder::Ladder),
+    Filtration(filtration::Filtration),
     #[cfg(feature = "render")]
     View(view::View),
     Completions(completions::Completions),
@@ -238,6 +242,7 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
         Command::Check(check) => return check.run(global),
         Command::Compare(compare) => return compare.run(global),
         Command::Ladder(ladder) => ladder.run(global)?,
+        Command::Filtration(filtration) => filtration.run(global)?,
         #[cfg(feature = "render")]
         Command::View(view) => view.run(global)?,
     }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use walpha::export::{Content, ExportOptions, Exporter, FORMATS, Format, Target, write_all};
 use walpha::progress::Stage;
-use walpha::shape::Surface;
+use walpha::shape::{ShapeOptions, Surface};
 use walpha::shown::shown;
 use walpha::volume::UnknownFormat;
 
@@ -43,6 +43,10 @@ pub struct Shape {
     /// colours (OFF) or numbers (PLY, with components and sheets).
     #[arg(long)]
     groups: bool,
+    /// Refuse points that span no volume; without it those in one plane or on one line get the shape
+    /// that they have there: triangles or edges, and no cells.
+    #[arg(long, value_name = "3", value_parser = clap::value_parser!(u8).range(3..=3))]
+    dimension: Option<u8>,
     #[command(flatten)]
     pipeline: PipelineArgs,
     #[command(flatten)]
@@ -121,7 +125,9 @@ impl Shape {
         let mut progress = Progress::new(global);
         let (weighed, volume) = pipeline::weighted_points(&self.pipeline, &mut progress)?;
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
-        let model = pipeline::shape(weighed, self.shape.options(), &mut progress)?;
+        let refuse_flat = self.dimension.is_some();
+        let options = ShapeOptions { refuse_flat, ..self.shape.options() };
+        let model = pipeline::shape(weighed, options, &mut progress)?;
         report.add_model(&model);
         let shape = model.shape;
         if self.solid {

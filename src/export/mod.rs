@@ -25,6 +25,7 @@
 //! ```
 
 mod colour;
+mod filtration;
 mod format;
 mod glb;
 mod json;
@@ -42,6 +43,7 @@ mod vtp;
 mod vtu;
 
 pub use crate::volume::UnknownFormat;
+pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
 pub use format::{ExportOptions, Exporter, FORMATS, Format};
 pub use glb::Glb;
 pub use json::Json;

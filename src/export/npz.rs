@@ -1,4 +1,4 @@
-use std::io::{self, Cursor, Write};
+use std::io::{self, Cursor, Seek, Write};
 
 use ndarray::{ArrayView1, ArrayView2, arr0};
 use ndarray_npy::{WritableElement, WriteNpyExt};
@@ -20,7 +20,7 @@ pub struct Npz;
 impl Exporter for Npz {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let (points, complex) = (shape.points(), shape.complex());
-        let mut archive = Archive(ZipWriter::new(Cursor::new(Vec::new())));
+        let mut archive = Archive::new(ZipWriter::new(Cursor::new(Vec::new())));
         archive.rows("points", &points.positions)?;
         archive.list("weights", shape.power_weights())?;
         archive.array("alpha", arr0(shape.power_alpha().squared()))?;
@@ -45,29 +45,48 @@ impl Exporter for Npz {
         if let Some(sheets) = shape.sheets() {
             archive.rows("boundary_sheets", &sheets.sides().collect::<Vec<_>>())?;
         }
-        let bytes = archive.0.finish().map_err(io::Error::other)?.into_inner();
-        out.write_all(&bytes)
+        out.write_all(&archive.finish()?.into_inner())
     }
 }
 
-struct Archive(ZipWriter<Cursor<Vec<u8>>>);
+/// An archive of arrays that grows.
+pub(super) struct Archive<W: Write + Seek> {
+    zip: ZipWriter<W>,
+    options: SimpleFileOptions,
+}
 
-impl Archive {
-    fn array(&mut self, name: &str, array: impl WriteNpyExt) -> io::Result<()> {
+impl<W: Write + Seek> Archive<W> {
+    pub fn new(zip: ZipWriter<W>) -> Self {
         // Without the time of writing, so that the same shape gives the same bytes.
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Stored)
             .large_file(true)
             .last_modified_time(DateTime::default());
-        self.0.start_file(format!("{name}.npy"), options).map_err(io::Error::other)?;
-        array.write_npy(&mut self.0).map_err(io::Error::other)
+        Self { zip, options }
     }
 
-    fn list<T: WritableElement>(&mut self, name: &str, list: &[T]) -> io::Result<()> {
+    /// With arrays that are compressed, quickly rather than well.
+    pub fn compressed(zip: ZipWriter<W>) -> Self {
+        let Self { zip, options } = Self::new(zip);
+        let options =
+            options.compression_method(CompressionMethod::Deflated).compression_level(Some(1));
+        Self { zip, options }
+    }
+
+    pub fn finish(self) -> io::Result<W> {
+        self.zip.finish().map_err(io::Error::other)
+    }
+
+    fn array(&mut self, name: &str, array: impl WriteNpyExt) -> io::Result<()> {
+        self.zip.start_file(format!("{name}.npy"), self.options).map_err(io::Error::other)?;
+        array.write_npy(&mut self.zip).map_err(io::Error::other)
+    }
+
+    pub fn list<T: WritableElement>(&mut self, name: &str, list: &[T]) -> io::Result<()> {
         self.array(name, ArrayView1::from(list))
     }
 
-    fn rows<T: WritableElement, const N: usize>(
+    pub fn rows<T: WritableElement, const N: usize>(
         &mut self,
         name: &str,
         rows: &[[T; N]],

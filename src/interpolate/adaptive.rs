@@ -65,10 +65,10 @@ pub fn adaptive_voxels(
         return Err(InterpolateError::Target(goal.rmse));
     }
     let grid = Grid::of(volume, units);
+    let solid = ShapeOptions { refuse_flat: true, ..ShapeOptions::new(Alpha::INFINITE) };
     loop {
         let points = points(volume, &voxels, units);
-        let options = ShapeOptions::new(Alpha::INFINITE);
-        let shape = within(Share::NONE, || alpha_shape(points, &options))?;
+        let shape = within(Share::NONE, || alpha_shape(points, &solid))?;
         let interpolant = Interpolant::new(&shape)?;
         let resampled = interpolant.resample(&grid)?;
         let Deviation { rmse: Some(rmse), max: Some(max), .. } = Deviation::of(volume, &resampled)

@@ -35,10 +35,15 @@ impl Filtration {
     /// whole triangulation and half of one more; expected O(n log n).
     ///
     /// # Errors
-    /// As [`alpha_shape`].
+    /// As [`alpha_shape`] with [`ShapeOptions::refuse_flat`].
     pub fn new(points: WeightedPoints) -> Result<Self, ShapeError> {
         let engine = Engine::Native;
-        let options = ShapeOptions { engine, exterior: true, ..ShapeOptions::new(Alpha::INFINITE) };
+        let options = ShapeOptions {
+            engine,
+            exterior: true,
+            refuse_flat: true,
+            ..ShapeOptions::new(Alpha::INFINITE)
+        };
         let share = |from, to| Share { from, to, of: 8 };
         let whole = within(share(0, 4), || alpha_shape(points, &options))?;
         let complex = whole.complex();
@@ -78,6 +83,13 @@ impl Filtration {
     /// The shape at α = ∞: all simplices of the triangulation.
     pub fn whole(&self) -> &AlphaShape {
         &self.whole
+    }
+
+    /// The shape at α, as [`alpha_shape`] makes it. O(n log n).
+    pub fn shape(&self, alpha: Alpha) -> AlphaShape {
+        let levels = self.levels(&[alpha]);
+        let [betti] = levels.betti()[..] else { unreachable!("one level") };
+        levels.shape(0, false, betti)
     }
 
     pub(super) fn spheres(&self) -> Predicates<'_> {

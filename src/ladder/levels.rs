@@ -74,44 +74,73 @@ impl Filtration {
         let spheres = self.spheres();
         let complex = self.whole.complex();
         let never = alphas.len() as u32;
-        let incidence = &self.incidence;
-
         let cells: Vec<u32> = (complex.cells.rows().par_iter().zip(&self.cells))
             .map(|(&cell, &radius)| level(&spheres, cell, radius, &alphas))
             .collect();
-        let facets: Vec<Span> = (incidence.facets.par_iter().enumerate())
-            .map(|(row, &facet)| {
-                let mut span = Span::until(never);
-                for &cell in &incidence.facet_cells[row] {
-                    // Beyond the hull nothing ever comes.
-                    let first =
-                        if cell == Incidence::OUTSIDE { never } else { cells[cell as usize] };
-                    span.beside(Span { first, regular: first, interior: first });
-                }
-                span.own(self.facets[row].map(|radius| level(&spheres, facet, radius, &alphas)));
-                span
-            })
-            .collect();
+        let own = Own {
+            facets: |row: usize| {
+                let facet = self.incidence.facets[row];
+                self.facets[row].map(|radius| level(&spheres, facet, radius, &alphas))
+            },
+            edges: |row: usize| {
+                let edge = complex.edges.rows()[row];
+                self.edges[row].map(|radius| level(&spheres, edge, radius, &alphas))
+            },
+            vertices: |row: usize| {
+                let vertex = complex.vertices.rows()[row];
+                self.vertices[row].map(|radius| level(&spheres, vertex, radius, &alphas))
+            },
+        };
+        let (facets, edges, vertices) = self.spans(never, &cells, own);
+        Levels { filtration: self, alphas, cells, facets, edges, vertices }
+    }
+
+    /// What is below cells, from the levels of these and those of empty spheres of its own.
+    pub(super) fn spans<F, E, V>(
+        &self,
+        never: u32,
+        cells: &[u32],
+        own: Own<F, E, V>,
+    ) -> (Vec<Span>, Vec<Span>, Vec<Span>)
+    where
+        F: Fn(usize) -> Option<u32> + Sync,
+        E: Fn(usize) -> Option<u32> + Sync,
+        V: Fn(usize) -> Option<u32> + Sync,
+    {
+        let (complex, incidence) = (self.whole.complex(), &self.incidence);
+        let of_facet = |(row, sides): (usize, &[u32; 2])| {
+            let mut span = Span::until(never);
+            for &cell in sides {
+                // Beyond the hull nothing ever comes.
+                let first = if cell == Incidence::OUTSIDE { never } else { cells[cell as usize] };
+                span.beside(Span { first, regular: first, interior: first });
+            }
+            span.own((own.facets)(row));
+            span
+        };
+        let facets: Vec<Span> =
+            incidence.facet_cells.par_iter().enumerate().map(of_facet).collect();
         let mut edges = vec![Span::until(never); complex.edges.len()];
         for (&facet, on) in facets.iter().zip(&incidence.facet_edges) {
             on.iter().for_each(|&edge| edges[edge as usize].beside(facet));
         }
-        edges.par_iter_mut().enumerate().for_each(|(row, span)| {
-            let edge = complex.edges.rows()[row];
-            span.own(self.edges[row].map(|radius| level(&spheres, edge, radius, &alphas)));
-        });
+        edges.par_iter_mut().enumerate().for_each(|(row, span)| span.own((own.edges)(row)));
         let mut vertices = vec![Span::until(never); complex.vertices.len()];
         for (&edge, ends) in edges.iter().zip(complex.edges.rows()) {
             for &v in ends {
                 vertices[incidence.vertex_rows[v as usize] as usize].beside(edge);
             }
         }
-        vertices.par_iter_mut().enumerate().for_each(|(row, span)| {
-            let vertex = complex.vertices.rows()[row];
-            span.own(self.vertices[row].map(|radius| level(&spheres, vertex, radius, &alphas)));
-        });
-        Levels { filtration: self, alphas, cells, facets, edges, vertices }
+        vertices.par_iter_mut().enumerate().for_each(|(row, span)| span.own((own.vertices)(row)));
+        (facets, edges, vertices)
     }
+}
+
+/// By row, the level at which a simplex comes by its own sphere, if that is empty.
+pub(super) struct Own<F, E, V> {
+    pub facets: F,
+    pub edges: E,
+    pub vertices: V,
 }
 
 impl Levels<'_> {

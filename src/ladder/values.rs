@@ -92,7 +92,7 @@ impl Filtration {
 }
 
 /// Weights and squared distances of the corners, which determine the radius.
-type Key = [u64; 10];
+pub(super) type Key = [u64; 10];
 
 struct Firsts<'a> {
     filtration: &'a Filtration,
@@ -121,25 +121,28 @@ impl Firsts<'_> {
         if !self.exact || N == 1 {
             return exactly();
         }
-        *known.entry(self.key(simplex)).or_insert_with(exactly)
+        *known.entry(key(self.filtration.points(), simplex)).or_insert_with(exactly)
     }
+}
 
-    fn key<const N: usize>(&self, simplex: [u32; N]) -> Key {
-        let WeightedPoints { positions, weights, .. } = self.filtration.points();
-        let corners = simplex.map(|v| positions[v as usize]);
-        let pairs = (0..N).flat_map(|i| (0..i).map(move |j| (i, j)));
-        let distances = pairs
-            .map(|(i, j)| (0..3).map(|k| (corners[i][k] - corners[j][k]).powi(2)).sum::<f64>());
-        let mut key = [u64::MAX; 10];
-        let numbers = simplex.iter().map(|&v| weights[v as usize]).chain(distances);
-        key.iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number.to_bits());
-        key
-    }
+/// What the squared radius of a simplex is a function of. Exact on a small lattice only.
+pub(super) fn key<const N: usize>(points: &WeightedPoints, mut simplex: [u32; N]) -> Key {
+    let WeightedPoints { positions, weights, .. } = points;
+    // By weight: congruent simplices may have their vertices in another order.
+    simplex.sort_unstable_by(|&a, &b| weights[a as usize].total_cmp(&weights[b as usize]));
+    let corners = simplex.map(|v| positions[v as usize]);
+    let pairs = (0..N).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let distances =
+        pairs.map(|(i, j)| (0..3).map(|k| (corners[i][k] - corners[j][k]).powi(2)).sum::<f64>());
+    let mut key = [u64::MAX; 10];
+    let numbers = simplex.iter().map(|&v| weights[v as usize]).chain(distances);
+    key.iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number.to_bits());
+    key
 }
 
 /// Whether coordinates are multiples of a power of two below 2²⁵, so that squared distances are
 /// integers below 2⁵³ in its square.
-fn is_small_lattice(points: &WeightedPoints) -> bool {
+pub(super) fn is_small_lattice(points: &WeightedPoints) -> bool {
     let coordinates = || points.positions.as_flattened().par_iter().copied();
     let lowest = coordinates().filter_map(lowest_bit).min().unwrap_or(0);
     let largest = coordinates().map(f64::abs).reduce(|| 0.0, f64::max);

@@ -291,7 +291,7 @@ impl Weighed {
             return Ok(parameter);
         }
         hear(Stage::Alpha);
-        let found = Parameter::find(self.points.clone(), self.origin.coordinates.unit)?;
+        let found = Parameter::find(&self.points, self.origin.coordinates.unit)?;
         self.parameter = Some(found);
         Ok(found)
     }

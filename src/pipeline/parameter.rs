@@ -6,7 +6,9 @@ use serde::Serialize;
 use super::PipelineError;
 use crate::ladder::Filtration;
 use crate::points::{Points, Units, WeightedPoints, Weighting, weigh};
-use crate::shape::{Alpha, AlphaError, ShapeError, number_or_name, number_or_null_or_name};
+use crate::shape::{
+    Alpha, AlphaError, ShapeError, flat_region, number_or_name, number_or_null_or_name,
+};
 use crate::shown::{number, six_digits};
 use crate::volume::{LengthUnit, Volume};
 
@@ -115,9 +117,15 @@ impl Parameter {
         Self { alpha: filtration.one_region(), unit, origin: ParameterOrigin::Auto }
     }
 
-    /// The same of points that are triangulated for it.
-    pub(super) fn find(points: WeightedPoints, unit: LengthUnit) -> Result<Self, ShapeError> {
-        Ok(Self::of_filtration(&Filtration::new(points)?, unit))
+    /// The same of points that are triangulated for it; where they lie in one plane or on one line,
+    /// [`flat_region`].
+    pub(super) fn find(points: &WeightedPoints, unit: LengthUnit) -> Result<Self, ShapeError> {
+        match Filtration::new(points.clone()) {
+            Err(error) if error.is_flat() => {
+                Ok(Self { alpha: flat_region(points)?, unit, origin: ParameterOrigin::Auto })
+            }
+            made => Ok(Self::of_filtration(&made?, unit)),
+        }
     }
 
     /// The α that weights are to be in proportion to: that of the points alone.
@@ -125,7 +133,7 @@ impl Parameter {
         points: &Points,
         unit: LengthUnit,
     ) -> Result<Self, PipelineError> {
-        let found = Self::find(weigh(points, Weighting::Common(0.0), Alpha::INFINITE)?, unit)?;
+        let found = Self::find(&weigh(points, Weighting::Common(0.0), Alpha::INFINITE)?, unit)?;
         Ok(Self { origin: ParameterOrigin::AutoUnweighted, ..found })
     }
 

@@ -78,7 +78,13 @@ impl<'a> Study<'a> {
         let weighted = weigh(&self.points, weighting, alpha)?;
         // CGAL as the paper used it.
         let engine = Engine::Reference;
-        let options = ShapeOptions { balls, engine, exterior: true, ..ShapeOptions::new(alpha) };
+        let options = ShapeOptions {
+            balls,
+            engine,
+            exterior: true,
+            refuse_flat: true,
+            ..ShapeOptions::new(alpha)
+        };
         let shape = alpha_shape(weighted, &options)?;
         let mut command = self.command("shape");
         command += &format!(" --weights {weighting} --alpha {}", alpha.squared());

@@ -5,13 +5,14 @@ use walpha_check::{Claim, Placed};
 
 use super::blocks::{self, Limits, Plan, PlanError, Question};
 use super::canonical::canonical;
+use super::flat::{self, flat};
 use super::topology::sheet_betti;
 use super::{Alpha, Balls, Betti, Complex, Measures, Sheets, Simplices, direct_betti};
 use crate::advice::{Advice, Setting, advice};
 use crate::math::Lattice;
 use crate::memory::NoMemory;
 use crate::points::WeightedPoints;
-use crate::triangulation::{Maker, Sites, SitesError, TriangulationError};
+use crate::triangulation::{Maker, Sites, SitesError, TriangulationError, is_flat};
 use crate::volume::Coordinates;
 
 /// Which program computes the shape; all give the same answer.
@@ -47,6 +48,9 @@ pub struct ShapeOptions {
     pub blocks: Option<NonZeroUsize>,
     /// Bytes of memory that the plan for the blocks keeps to.
     pub memory: Option<u64>,
+    /// Whether points in one plane, on one line, or fewer than four are an error. Otherwise their shape
+    /// is the one in their plane or on their line, without cells.
+    pub refuse_flat: bool,
 }
 
 impl ShapeOptions {
@@ -59,6 +63,7 @@ impl ShapeOptions {
             exterior: false,
             blocks: None,
             memory: None,
+            refuse_flat: false,
         }
     }
 
@@ -191,6 +196,11 @@ impl ShapeError {
             }
         })
     }
+
+    /// Whether it says that points span no volume, though there is one at least.
+    pub fn is_flat(&self) -> bool {
+        matches!(self, Self::Triangulation(error) if is_flat(error))
+    }
 }
 
 impl From<SitesError> for ShapeError {
@@ -204,10 +214,15 @@ impl From<SitesError> for ShapeError {
 /// Of several points at one place the heaviest stays ([`AlphaShape::duplicates`]). An empty shape
 /// is a result, not an error. At α = ∞ the shape is the convex hull.
 ///
+/// Points in one plane or on one line, which is decided exactly, have their shape there: there are no
+/// cells, what is in the shape and a face of nothing else there is singular, its faces are regular,
+/// and nothing is interior. Ties are broken as in space. It is made in one piece, whatever blocks were
+/// asked for.
+///
 /// # Errors
-/// NaN or absurd numbers, fewer than four different places, points in one plane or on one line:
-/// see [`SitesError`]; a negative radius: [`ShapeError::Radius`]; options that do not go together:
-/// [`ShapeOptions::check`].
+/// NaN or absurd numbers, no points, and with [`ShapeOptions::refuse_flat`] fewer than four different
+/// places and points in one plane or on one line: see [`SitesError`]; a negative radius:
+/// [`ShapeError::Radius`]; options that do not go together: [`ShapeOptions::check`].
 pub fn alpha_shape(
     points: WeightedPoints,
     options: &ShapeOptions,
@@ -217,15 +232,14 @@ pub fn alpha_shape(
         Balls::Power => None,
         Balls::Radius => Some(squared_radii(&points.weights, options.alpha)?),
     };
-    let sites = Sites::new(&points.positions, squared.as_deref().unwrap_or(&points.weights))?;
-    let found = match options.engine {
-        Engine::Reference => by_reference(&sites, power_alpha(options).squared())?,
-        Engine::Cgal => by_blocks(&sites, Maker::Cgal, options)?,
-        Engine::Native => by_blocks(&sites, Maker::Native, options)?,
+    let weights = squared.as_deref().unwrap_or(&points.weights);
+    let found = match in_space(&points.positions, weights, options) {
+        Err(error) if !options.refuse_flat && error.is_flat() => {
+            in_plane(&points.positions, weights, options)?
+        }
+        found => found?,
     };
-    let Found { mut complex, boundary, hidden } = found;
-    // Counted over what is outside, too.
-    let direct = boundary.is_none().then(|| direct_betti(&complex));
+    let Found { mut complex, boundary, hidden, duplicates, direct } = found;
     if boundary.is_none() && !options.exterior {
         complex.retain_shape();
     }
@@ -233,8 +247,6 @@ pub fn alpha_shape(
         || boundary.as_ref().map(|(b0, sheets)| sheet_betti(&complex, *b0, sheets)),
         || Measures::of(&complex, &points.positions),
     );
-    let duplicates = sites.duplicates().to_vec();
-    drop(sites);
     Ok(AlphaShape {
         points,
         coordinates: Coordinates::default(),
@@ -256,13 +268,46 @@ struct Found {
     boundary: Option<(u64, Sheets)>,
     /// Sites that are not vertices, where the engine saw the whole triangulation.
     hidden: Option<Vec<u32>>,
+    duplicates: Vec<[u32; 2]>,
+    /// Betti numbers, where they are not counted by sheets.
+    direct: Option<Betti>,
+}
+
+fn in_space(
+    positions: &[[f64; 3]],
+    weights: &[f64],
+    options: &ShapeOptions,
+) -> Result<Found, ShapeError> {
+    let sites = Sites::new(positions, weights)?;
+    match options.engine {
+        Engine::Reference => by_reference(&sites, power_alpha(options).squared()),
+        Engine::Cgal => by_blocks(&sites, Maker::Cgal, options),
+        Engine::Native => by_blocks(&sites, Maker::Native, options),
+    }
+}
+
+/// The shape of points that span no volume.
+fn in_plane(
+    positions: &[[f64; 3]],
+    weights: &[f64],
+    options: &ShapeOptions,
+) -> Result<Found, ShapeError> {
+    let sites = Sites::any(positions, weights)?;
+    let maker = if options.engine == Engine::Native { Maker::Native } else { Maker::Cgal };
+    let flat::Found { complex, betti } = flat(&sites, power_alpha(options).squared(), maker)?;
+    let hidden = Some(hidden(sites.input(), &complex.vertices));
+    let duplicates = sites.duplicates().to_vec();
+    Ok(Found { complex, boundary: None, hidden, duplicates, direct: Some(betti) })
 }
 
 fn by_reference(sites: &Sites<'_>, alpha: f64) -> Result<Found, ShapeError> {
     let raw = crate::cgal::reference(sites, alpha)?;
     let complex = canonical(&raw, sites.input());
     let hidden = Some(hidden(sites.input(), &complex.vertices));
-    Ok(Found { complex, boundary: None, hidden })
+    // Counted over what is outside, too.
+    let direct = Some(direct_betti(&complex));
+    let duplicates = sites.duplicates().to_vec();
+    Ok(Found { complex, boundary: None, hidden, duplicates, direct })
 }
 
 fn by_blocks(sites: &Sites<'_>, maker: Maker, options: &ShapeOptions) -> Result<Found, ShapeError> {
@@ -279,7 +324,8 @@ fn by_blocks(sites: &Sites<'_>, maker: Maker, options: &ShapeOptions) -> Result<
     let question = Question { alpha, lattice, exterior: options.exterior, maker };
     let answer = blocks::run(sites, &plan, &question)?;
     let boundary = Some((answer.b0, Sheets::of(&answer)));
-    Ok(Found { complex: answer.complex, boundary, hidden: answer.hidden })
+    let duplicates = sites.duplicates().to_vec();
+    Ok(Found { complex: answer.complex, boundary, hidden: answer.hidden, duplicates, direct: None })
 }
 
 /// The parameter at which the power weights are judged.

@@ -101,7 +101,9 @@ impl AlphaShape {
     ///
     /// Volumes are rounded sums in a fixed order. O(n log n).
     pub fn voids(&self) -> Option<Vec<Void>> {
-        self.options().exterior.then(|| voids(self))
+        // A flat shape shuts nothing in.
+        let flat = self.complex().cells.is_empty();
+        self.options().exterior.then(|| if flat { Vec::new() } else { voids(self) })
     }
 }
 

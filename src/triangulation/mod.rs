@@ -18,12 +18,14 @@
 
 mod curve;
 mod error;
+mod flat;
 mod native;
 mod predicates;
 mod sites;
 
 pub use error::{SitesError, TriangulationError};
-pub(crate) use predicates::{Interval, Predicates};
+pub(crate) use flat::{Flat, is_flat, triangulate_flat};
+pub(crate) use predicates::{Interval, Predicates, Ratio, SmallRadius};
 pub use sites::{MAX_COORDINATE, MAX_WEIGHT, Sites};
 
 /// A regular triangulation: its cells, and which lie beside each other.

@@ -39,6 +39,15 @@ impl<'a> Sites<'a> {
         Ok(sites)
     }
 
+    /// The same for points that may span no volume: one will do.
+    ///
+    /// # Errors
+    /// No point, and what [`SitesError`] says of numbers.
+    pub(crate) fn any(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Result<Self, SitesError> {
+        let sites = Self::distinct(positions, weights)?;
+        if sites.input.is_empty() { Err(SitesError::Empty) } else { Ok(sites) }
+    }
+
     /// The sites along a Hilbert curve.
     pub(crate) fn curve(&self) -> &[u32] {
         &self.curve

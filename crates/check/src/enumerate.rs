@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::canonical::{outward_facets, smallest_even, sort, sorted};
 use crate::exact::{Side, WeightedPoint, in_conflict, orientation, radius, side};
+use crate::flat::{Flat, flat_simplices};
 use crate::{Alpha, Class, Complex};
 
 /// What the definition makes of a set of weighted points.
@@ -35,12 +36,9 @@ pub enum EnumerateError {
     /// A coordinate or weight is NaN or infinite.
     #[error("point {0} has a coordinate or weight that is not finite; clean the input")]
     NotFinite(usize),
-    /// No four points span a volume.
-    #[error("the {distinct} distinct points span no volume: no four of them make a tetrahedron")]
-    Flat {
-        /// Different places among the points.
-        distinct: usize,
-    },
+    /// No points.
+    #[error("there are no points: give at least one")]
+    Empty,
 }
 
 /// The regular triangulation of weighted points, its hidden points and the α-complex in it,
@@ -51,13 +49,13 @@ pub enum EnumerateError {
 /// doi:10.1016/j.comgeo.2010.09.010): each lifted height |p|² − ω is raised by an infinitesimal, by
 /// infinitely more for the later of two points in (x, y, z) order. A simplex of the triangulation
 /// is in the α-complex when its smallest orthogonal sphere has squared radius ≤ α and no point
-/// strictly inside, not even a hidden one, or when it is a face of one that is.
+/// strictly inside, not even a hidden one, or when it is a face of one that is. Points in one plane
+/// or on one line have the triangulation that they have there, without cells.
 ///
-/// O(n⁴) quadruples with an early exit each: 60 points
-/// take seconds, 200 minutes.
+/// O(n⁴) quadruples with an early exit each: 60 points take seconds, 200 minutes.
 ///
 /// # Errors
-/// [`EnumerateError`]: coordinates or weights that are not finite, points that do not span a volume.
+/// [`EnumerateError`]: coordinates or weights that are not finite, no points at all.
 pub fn enumerate(
     positions: &[[f64; 3]],
     weights: &[f64],
@@ -76,11 +74,12 @@ pub fn enumerate(
         .map(|(&position, &weight)| WeightedPoint { position, weight })
         .collect();
     let (sites, duplicates) = heaviest_of_each_place(&points);
-    let cells = regular_cells(&points, &sites);
-    if cells.is_empty() {
-        return Err(EnumerateError::Flat { distinct: sites.len() });
+    if sites.is_empty() {
+        return Err(EnumerateError::Empty);
     }
-    let complex = Definition { points: &points, sites: &sites, alpha }.classify(&cells);
+    let cells = regular_cells(&points, &sites);
+    let flat = if cells.is_empty() { flat_simplices(&points, &sites) } else { Flat::default() };
+    let complex = Definition { points: &points, sites: &sites, alpha }.classify(&cells, flat);
     let is_vertex = |i: &u32| complex.vertices.rows().binary_search(&[*i]).is_ok();
     let hidden = sites.iter().copied().filter(|i| !is_vertex(i)).collect();
     Ok(Enumeration { complex, hidden, duplicates })
@@ -158,7 +157,7 @@ impl Star {
 }
 
 impl Definition<'_> {
-    fn classify(&self, cells: &[[u32; 4]]) -> Complex {
+    fn classify(&self, cells: &[[u32; 4]], flat: Flat) -> Complex {
         let inside = |&cell: &[u32; 4]| self.radius_at_most_alpha(cell);
         let cells: Vec<([u32; 4], bool)> =
             cells.par_iter().map(|cell| (*cell, inside(cell))).collect();
@@ -168,6 +167,7 @@ impl Definition<'_> {
                 on_facet.entry(sorted(facet)).or_default().push((facet, inside));
             }
         }
+        on_facet.extend(flat.facets.into_iter().map(|facet| (facet, Vec::new())));
         let mut facets = BTreeMap::<_, Star>::new();
         let mut edges = BTreeMap::<_, Star>::new();
         let mut vertices = BTreeMap::<_, Star>::new();
@@ -182,6 +182,11 @@ impl Definition<'_> {
             facet.iter().for_each(|&v| vertices.entry([v]).or_default().join(&star));
             facets.insert(facet, star);
         }
+        for edge in flat.edges {
+            edge.iter().for_each(|&v| _ = vertices.entry([v]).or_default());
+            edges.entry(edge).or_default();
+        }
+        flat.vertices.into_iter().for_each(|vertex| _ = vertices.entry(vertex).or_default());
         let mut complex = Complex::default();
         for &(cell, inside) in &cells {
             let class = if inside { Class::Interior } else { Class::Exterior };

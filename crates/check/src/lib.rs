@@ -2,6 +2,7 @@
 //!
 //! [`enumerate`] makes the answer of few points from the definition; [`Claim`] judges any answer,
 //! of any size, by rules that are linear in it; [`compare()`] says how two answers differ;
+//! [`certify_filtration`] and [`compare_filtrations`] do the same with all values of α at once;
 //! [`schema`] reads and writes the answers of other programs. Every decision is exact, from the
 //! input doubles on.
 //!
@@ -32,14 +33,19 @@ mod compare;
 mod complex;
 mod enumerate;
 mod exact;
+mod flat;
 pub mod npy;
 mod placed;
 pub mod schema;
 
 pub use alpha::{Alpha, AlphaError};
-pub use certify::{Certificate, CertifyError, Claim, Extent, Finding, NotJudged, Simplex};
+pub use certify::{
+    Bound, Certificate, CertifyError, CertifyFiltrationError, Claim, Extent, FiltrationCertificate,
+    FiltrationFinding, Finding, NotJudged, Simplex, Unjudged, certify_filtration,
+};
 pub use compare::{
-    ClassDifference, CompareError, Comparison, Differences, Domain, WeightDifference, compare,
+    ClassDifference, CompareError, Comparison, Differences, Domain, FiltrationComparison,
+    ValueDifference, WeightDifference, compare, compare_filtrations,
 };
 pub use complex::{ByClass, Class, Complex, Simplices, SimplicesError};
 pub use enumerate::{EnumerateError, Enumeration, enumerate};

@@ -110,7 +110,7 @@ impl Ladder {
                 values.iter_mut().for_each(|value| *value = written.value(*value));
             }
             let weighted = weigh(&points, weighting, alpha)?;
-            let options = ShapeOptions::new(alpha);
+            let options = ShapeOptions { refuse_flat: true, ..ShapeOptions::new(alpha) };
             let shape = progress.stage(Stage::Shape, || alpha_shape(weighted, &options))?;
             let shape = shape.meaning(coordinates);
             let mut row = Row {

@@ -4,7 +4,8 @@ use super::COLUMNS;
 use crate::advice::Advice;
 
 /// What the columns of a table of points hold, in their order: of the names `x`, `y`, `z`, `weight` and
-/// `value` each at most once, in any case; columns of other names are passed over.
+/// `value` each at most once, in any case; columns of other names are passed over. Where all names are
+/// among these, and there is no `z`, the points lie in the plane z = 0.
 ///
 /// ```
 /// use walpha::points::Columns;
@@ -12,6 +13,7 @@ use crate::advice::Advice;
 /// let columns: Columns = "x,y,z,nx,ny,nz".parse()?;
 /// assert_eq!(columns.len(), 6);
 /// assert!("x,y,nx,ny,nz".parse::<Columns>().is_err(), "z is missing");
+/// assert!("x,y,value".parse::<Columns>().is_ok(), "points of a plane");
 /// # Ok::<(), walpha::points::UnknownColumns>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,7 +36,7 @@ impl UnknownColumns {
     }
 }
 
-#[expect(clippy::len_without_is_empty, reason = "there are three at least")]
+#[expect(clippy::len_without_is_empty, reason = "there are two at least")]
 impl Columns {
     /// The number of columns.
     pub fn len(&self) -> usize {
@@ -44,13 +46,16 @@ impl Columns {
     /// By their names.
     ///
     /// # Errors
-    /// x, y or z is missing, or one of the names that are read stands twice.
+    /// x or y is missing, or z among names that say more than these; or one of the names that are read
+    /// stands twice.
     pub fn named(names: &[&str]) -> Result<Self, UnknownColumns> {
         let known = |name: &&str| COLUMNS.iter().position(|c| c.eq_ignore_ascii_case(name.trim()));
         let columns: Vec<Option<usize>> = names.iter().map(known).collect();
+        let of_plane = columns.iter().all(Option::is_some);
         for (place, name) in COLUMNS.iter().enumerate() {
             let count = columns.iter().filter(|&&column| column == Some(place)).count();
             let what = match count {
+                0 if place == 2 && of_plane => continue,
                 0 if place < 3 => format!("do not name {name}"),
                 0 | 1 => continue,
                 _ => format!("name {name} twice"),

@@ -4,10 +4,9 @@
 use std::cmp::Ordering;
 
 use dashu_int::IBig;
-use dashu_int::ops::{BitTest, DivEuclid, UnsignedAbs};
 
-use super::Site;
 use super::formulas::{Ray, determinant, power_determinant, quotient, side};
+use super::{Ratio, Site};
 use crate::math::number::{Integer, cross, dot, highest_bit, lowest_bit};
 
 /// Evaluates an expression over integers `$T` that hold so many bits.
@@ -64,37 +63,18 @@ pub(super) fn fits<const N: usize>(sites: [Site; N], alpha: f64) -> bool {
     })
 }
 
-/// The squared radius of the smallest orthogonal sphere, rounded up to a double; ∞ beyond them.
-pub(super) fn squared_radius<const N: usize>(sites: [Site; N]) -> f64 {
+/// The squared radius of the smallest orthogonal sphere.
+pub(super) fn squared_radius<const N: usize>(sites: [Site; N]) -> Ratio {
     let units = Units::of(&sites, 0.0);
     let rays = sites.map(|q| units.ray::<IBig>(sites[0], q));
+    let height = units.height::<IBig>(sites[0].weight);
+    if N == 1 {
+        return Ratio::new(-height, IBig::ONE, units.square());
+    }
     let (four_d_c2, d) = quotient(&rays[1..]);
     let denominator = d << (units.finer + 2);
-    let numerator = four_d_c2 - units.height::<IBig>(sites[0].weight) * &denominator;
-    rounded_up(numerator, denominator, units.square())
-}
-
-/// The smallest double that is not below numerator/denominator · 2^exponent; the denominator is
-/// positive.
-fn rounded_up(numerator: IBig, denominator: IBig, exponent: i32) -> f64 {
-    let bits = |number: &IBig| number.unsigned_abs().bit_len() as i32;
-    // So many more digits that the quotient has 55 or 56, but none below the last of a double.
-    let more = (56 - bits(&numerator) + bits(&denominator)).min(exponent + 1074);
-    let (numerator, denominator) = if more >= 0 {
-        (numerator << more as usize, denominator)
-    } else {
-        (numerator, denominator << more.unsigned_abs() as usize)
-    };
-    let ceiling = -((-numerator).div_euclid(denominator));
-    // Rounding up twice is rounding up once.
-    let spare = (bits(&ceiling) - 53).max(0);
-    let unit = IBig::ONE << spare as usize;
-    let digits = -((-ceiling).div_euclid(unit));
-    let digits = i64::try_from(digits).expect("at most 2⁵³") as f64;
-    let power = exponent - more + spare;
-    // In two steps, as a power alone may be out of range; each product is exact.
-    let value = digits * 2f64.powi(power / 2) * 2f64.powi(power - power / 2);
-    if value == f64::NEG_INFINITY { f64::MIN } else { value }
+    let numerator = four_d_c2 - height * &denominator;
+    Ratio::new(numerator, denominator, units.square())
 }
 
 /// Whether `x` lies strictly inside the smallest orthogonal sphere of a vertex, an edge or a facet.

@@ -7,12 +7,17 @@
 
 mod exact;
 mod formulas;
+mod nearest;
+mod ratio;
 mod screen;
 mod size;
+mod twofold;
 
 use std::cmp::Ordering;
 
 use formulas::{determinant, power_determinant, quotient, side};
+pub(crate) use nearest::Small as SmallRadius;
+pub(crate) use ratio::Ratio;
 pub(crate) use screen::Screen;
 use size::{Size, View, ray};
 
@@ -118,7 +123,7 @@ impl<'a> Predicates<'a> {
     /// division of integers; some microseconds.
     pub fn first_alpha<const N: usize>(&self, simplex: [u32; N]) -> f64 {
         let sites = self.sites(simplex);
-        if N == 1 { -sites[0].weight } else { exact::squared_radius(sites) }
+        if N == 1 { -sites[0].weight } else { exact::squared_radius(sites).rounded_up() }
     }
 
     /// Whether a point lies strictly inside the smallest orthogonal sphere of a vertex, an edge or

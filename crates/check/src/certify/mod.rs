@@ -5,6 +5,7 @@ mod claim;
 mod classes;
 mod emptiness;
 mod faces;
+mod filtration;
 mod finding;
 mod gaps;
 mod geometry;
@@ -21,4 +22,8 @@ use points::Points;
 
 pub use certificate::{Certificate, CertifyError, NotJudged};
 pub use claim::{Claim, Extent};
+pub use filtration::{
+    Bound, CertifyFiltrationError, FiltrationCertificate, FiltrationFinding, Unjudged,
+    certify_filtration,
+};
 pub use finding::{Finding, Simplex};

@@ -1,6 +1,7 @@
 //! Comparison of two complexes over the same points.
 
 mod domain;
+mod filtration;
 mod text;
 
 use std::collections::BTreeMap;
@@ -11,6 +12,7 @@ use crate::canonical::sorted;
 use crate::{Alpha, Class, Placed, Simplex, Simplices};
 
 pub use domain::Domain;
+pub use filtration::{FiltrationComparison, ValueDifference, compare_filtrations};
 
 /// What two complexes A and B have in common, and what not.
 #[derive(Clone, Debug, PartialEq, Serialize)]

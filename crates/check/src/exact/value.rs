@@ -1,3 +1,5 @@
+mod nearest;
+
 use std::fmt;
 
 use dashu_int::IBig;

@@ -81,7 +81,7 @@ fn rows<const N: usize>(
     Ok(Listed { rows, classes })
 }
 
-fn paired(
+pub(super) fn paired(
     name: &'static str,
     got: usize,
     of: &'static str,
@@ -90,7 +90,7 @@ fn paired(
     if got == expected { Ok(()) } else { Err(SchemaError::Lengths { name, got, expected, of }) }
 }
 
-fn in_range<'a>(
+pub(super) fn in_range<'a>(
     name: &'static str,
     mut indices: impl Iterator<Item = &'a u32>,
     points: usize,

@@ -32,9 +32,12 @@
 //! `edges` m×2, `vertices` m, `hidden` m, `duplicates` m×2. Classes are arrays `cell_classes`,
 //! `facet_classes`, `edge_classes` and `vertex_classes`, with 0 exterior, 1 interior, 2 regular,
 //! 3 singular.
+//!
+//! A [`FiltrationFile`] is a complex at all values of α.
 
 mod build;
 mod error;
+mod filtration;
 #[cfg(feature = "json")]
 mod json;
 #[cfg(feature = "npz")]
@@ -49,6 +52,7 @@ use serde::{Deserialize, Serialize};
 use crate::{Alpha, Claim, Class, Placed, Simplices};
 
 pub use error::SchemaError;
+pub use filtration::{Below, FiltrationFile, PairsFile, Values};
 pub use placed::PlacedComplex;
 
 /// A complex as a file holds it; see the [module](self) for the meaning of the fields.

@@ -24,13 +24,9 @@ impl ComplexFile {
     /// Missing, ill-shaped or unreadable arrays; numbers that cannot be indices or classes.
     pub fn read_npz(reader: impl Read + Seek) -> Result<Self, SchemaError> {
         let mut file = Npz::new(reader)?;
-        file.check()?;
+        file.check(&ARRAYS)?;
         let alpha = file.numbers("alpha")?.ok_or(SchemaError::Missing("alpha"))?[0];
-        let alpha = Alpha::from_squared(alpha).map_err(|_| SchemaError::Value {
-            name: "alpha",
-            value: alpha.to_string(),
-            expected: "a squared length",
-        })?;
+        let alpha = self::alpha("alpha", alpha)?;
         let classes = Classes {
             cells: file.list("cell_classes", class)?,
             facets: file.list("facet_classes", class)?,
@@ -53,7 +49,7 @@ impl ComplexFile {
 
 /// What an array of a name is.
 #[derive(Clone, Copy)]
-enum Kind {
+pub(super) enum Kind {
     Scalar,
     /// One number for each row of another array.
     Column(&'static str),
@@ -78,14 +74,14 @@ const ARRAYS: [(&str, Kind); 13] = [
 ];
 
 /// The arrays of a file, read as doubles: they hold every index and class exactly.
-struct Npz<R> {
+pub(super) struct Npz<R> {
     archive: ZipArchive<R>,
     /// Size of the file in bytes.
     length: u64,
 }
 
 impl<R: Read + Seek> Npz<R> {
-    fn new(mut reader: R) -> Result<Self, SchemaError> {
+    pub(super) fn new(mut reader: R) -> Result<Self, SchemaError> {
         let damaged = |error: &dyn std::fmt::Display| SchemaError::Zip(error.to_string());
         let length = reader.seek(SeekFrom::End(0)).map_err(|error| damaged(&error))?;
         let archive = ZipArchive::new(reader).map_err(|error| damaged(&error))?;
@@ -93,9 +89,9 @@ impl<R: Read + Seek> Npz<R> {
     }
 
     /// Checks all headers: shapes, lengths that must be equal, sizes that the file cannot hold.
-    fn check(&mut self) -> Result<(), SchemaError> {
+    pub(super) fn check(&mut self, arrays: &[(&'static str, Kind)]) -> Result<(), SchemaError> {
         let mut counts = Vec::new();
-        for (name, kind) in ARRAYS {
+        for &(name, kind) in arrays {
             let Some(rows) = self.check_one(name, kind)? else { continue };
             if let Kind::Column(of) = kind {
                 let expected = counts.iter().find(|(other, _)| *other == of);
@@ -146,7 +142,8 @@ impl<R: Read + Seek> Npz<R> {
         Ok(Some(rows))
     }
 
-    fn member(&mut self, name: &str) -> Result<Option<ZipFile<'_, R>>, SchemaError> {
+    /// The array of a name.
+    pub(super) fn member(&mut self, name: &str) -> Result<Option<ZipFile<'_, R>>, SchemaError> {
         let is_it = |entry: &str| entry.strip_suffix(".npy").unwrap_or(entry) == name;
         let at = self.archive.file_names().position(is_it);
         let found = at.map(|at| self.archive.by_index(at)).transpose();
@@ -154,7 +151,7 @@ impl<R: Read + Seek> Npz<R> {
     }
 
     /// All numbers of an array, row by row.
-    fn numbers(&mut self, name: &'static str) -> Result<Option<Vec<f64>>, SchemaError> {
+    pub(super) fn numbers(&mut self, name: &'static str) -> Result<Option<Vec<f64>>, SchemaError> {
         let Some(member) = self.member(name)? else { return Ok(None) };
         let Array { header, mut member } = Array::open(name, member)?;
         let columns = match header.shape[..] {
@@ -174,7 +171,7 @@ impl<R: Read + Seek> Npz<R> {
         }))
     }
 
-    fn list<T>(
+    pub(super) fn list<T>(
         &mut self,
         name: &'static str,
         convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
@@ -183,7 +180,7 @@ impl<R: Read + Seek> Npz<R> {
         numbers.into_iter().map(|x| convert(name, x)).collect::<Result<_, _>>().map(Some)
     }
 
-    fn rows<T: Copy + Default, const N: usize>(
+    pub(super) fn rows<T: Copy + Default, const N: usize>(
         &mut self,
         name: &'static str,
         convert: impl Fn(&'static str, f64) -> Result<T, SchemaError>,
@@ -215,13 +212,21 @@ impl<'a, R: Read> Array<'a, R> {
     }
 }
 
-fn index(name: &'static str, value: f64) -> Result<u32, SchemaError> {
+pub(super) fn index(name: &'static str, value: f64) -> Result<u32, SchemaError> {
     if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
         Ok(value as u32)
     } else {
         let value = value.to_string();
         Err(SchemaError::Value { name, value, expected: "a point number" })
     }
+}
+
+pub(super) fn alpha(name: &'static str, value: f64) -> Result<Alpha, SchemaError> {
+    Alpha::from_squared(value).map_err(|_| SchemaError::Value {
+        name,
+        value: value.to_string(),
+        expected: "a squared length",
+    })
 }
 
 fn class(name: &'static str, value: f64) -> Result<Class, SchemaError> {

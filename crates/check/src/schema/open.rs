@@ -3,7 +3,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-use super::{ComplexFile, SchemaError};
+use super::{ComplexFile, FiltrationFile, SchemaError};
 
 impl ComplexFile {
     /// Reads a file, as JSON or NPZ by its extension.
@@ -14,13 +14,11 @@ impl ComplexFile {
     /// [`read_npz`](Self::read_npz) return.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SchemaError> {
         let path = path.as_ref();
-        let format = Format::of(path).ok_or(SchemaError::Extension)?;
-        let file = BufReader::new(File::open(path).map_err(SchemaError::Io)?);
-        match format {
+        match Format::named(path)? {
             #[cfg(feature = "json")]
-            Format::Json => Self::read_json(file),
+            Format::Json => Self::read_json(open(path)?),
             #[cfg(feature = "npz")]
-            Format::Npz => Self::read_npz(file),
+            Format::Npz => Self::read_npz(open(path)?),
         }
     }
 
@@ -28,6 +26,40 @@ impl ComplexFile {
     pub fn is_named(path: impl AsRef<Path>) -> bool {
         Format::of(path.as_ref()).is_some()
     }
+}
+
+impl FiltrationFile {
+    /// Reads a file, as JSON or NPZ by its extension.
+    ///
+    /// # Errors
+    /// As [`ComplexFile::open`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, SchemaError> {
+        let path = path.as_ref();
+        match Format::named(path)? {
+            #[cfg(feature = "json")]
+            Format::Json => Self::read_json(open(path)?),
+            #[cfg(feature = "npz")]
+            Format::Npz => Self::read_npz(open(path)?),
+        }
+    }
+
+    /// Whether a file holds a filtration, which has a field `order`, and not a complex, which has
+    /// none. Reads all of a JSON file, and the list of arrays of an NPZ file. A file that cannot be
+    /// read holds neither.
+    pub fn is_in(path: impl AsRef<Path>) -> bool {
+        let path = path.as_ref();
+        match Format::of(path) {
+            None => false,
+            #[cfg(feature = "json")]
+            Some(Format::Json) => open(path).is_ok_and(Self::is_json),
+            #[cfg(feature = "npz")]
+            Some(Format::Npz) => open(path).is_ok_and(Self::is_npz),
+        }
+    }
+}
+
+fn open(path: &Path) -> Result<BufReader<File>, SchemaError> {
+    Ok(BufReader::new(File::open(path).map_err(SchemaError::Io)?))
 }
 
 /// The formats that are read.
@@ -39,6 +71,10 @@ enum Format {
 }
 
 impl Format {
+    fn named(path: &Path) -> Result<Self, SchemaError> {
+        Self::of(path).ok_or(SchemaError::Extension)
+    }
+
     fn of(path: &Path) -> Option<Self> {
         match path.extension().map(OsStr::to_ascii_lowercase)?.to_str()? {
             #[cfg(feature = "json")]

@@ -1,0 +1,144 @@
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::Alpha;
+use crate::certify::{Finding, Simplex};
+use crate::exact::Exact;
+
+/// What is wrong with a filtration: the rule that is broken, the simplex that breaks it, and the exact
+/// number that shows it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "rule", rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum FiltrationFinding {
+    /// A simplex does not come, turn regular or turn interior when the file says.
+    When {
+        /// The simplex.
+        simplex: Simplex,
+        /// Which of these.
+        bound: Bound,
+        /// As given.
+        given: Alpha,
+        /// The double nearest to the exact number; ∞ for never.
+        expected: Alpha,
+        /// The exact number; none for never.
+        exact: Option<Exact>,
+    },
+    /// A simplex is Gabriel, or attached, and the file says otherwise.
+    Gabriel {
+        /// The simplex.
+        simplex: Simplex,
+        /// What it is.
+        expected: bool,
+    },
+    /// The order names a simplex a second time, or one that does not exist.
+    Number {
+        /// The number.
+        number: u32,
+        /// How many simplices there are.
+        simplices: usize,
+    },
+    /// The order leaves a simplex out.
+    Absent {
+        /// Its number.
+        number: u32,
+    },
+    /// A simplex comes before another that it must come after: by value, then dimension, then
+    /// vertices.
+    Order {
+        /// The one that comes first in the file.
+        before: Simplex,
+        /// The one right after it.
+        after: Simplex,
+        /// Their values.
+        values: [Exact; 2],
+    },
+    /// The simplices are not the regular triangulation.
+    #[serde(untagged)]
+    Triangulation(Finding),
+}
+
+/// An α at which a simplex becomes something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bound {
+    /// In the shape.
+    Value,
+    /// A face of another simplex of the shape.
+    Regular,
+    /// Off the boundary.
+    Interior,
+}
+
+impl fmt::Display for FiltrationFinding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Triangulation(finding) => finding.fmt(f),
+            Self::When { simplex, bound, given, expected, exact } => {
+                let what = match bound {
+                    Bound::Value => "comes",
+                    Bound::Regular => "becomes regular",
+                    Bound::Interior => "becomes interior",
+                };
+                let [expected, given] = [expected, given].map(|alpha| alpha.squared());
+                write!(f, "{simplex} {what} at {expected:?}, not {given:?}")?;
+                match exact {
+                    Some(exact) => write!(f, " (exactly {exact})"),
+                    None => write!(f, " (never)"),
+                }
+            }
+            Self::Gabriel { simplex, expected: true } => {
+                write!(f, "{simplex} is Gabriel: no point is inside its sphere")
+            }
+            Self::Gabriel { simplex, expected: false } => {
+                write!(f, "{simplex} is not Gabriel: a point is inside its sphere")
+            }
+            Self::Number { number, simplices } => write!(
+                f,
+                "the order names {number} a second time, or there is no such simplex: there are {simplices}"
+            ),
+            Self::Absent { number } => write!(f, "the order leaves simplex {number} out"),
+            Self::Order { before, after, values: [a, b] } => write!(
+                f,
+                "{before} must come after {after}: by value ({a}, {b}), then dimension, then vertices"
+            ),
+        }
+    }
+}
+
+/// Where given doubles are not those expected: for the i-th simplex the double, and the exact number.
+pub(super) fn differences<'a, const N: usize>(
+    bound: Bound,
+    rows: &[[u32; N]],
+    given: &[Alpha],
+    expected: impl Fn(usize) -> (Alpha, Option<&'a Exact>),
+) -> Vec<FiltrationFinding> {
+    let judge = |(i, (row, &given)): (usize, (&[u32; N], &Alpha))| {
+        let (expected, exact) = expected(i);
+        (expected != given).then(|| FiltrationFinding::When {
+            simplex: (*row).into(),
+            bound,
+            given,
+            expected,
+            exact: exact.cloned(),
+        })
+    };
+    rows.iter().zip(given).enumerate().filter_map(judge).collect()
+}
+
+/// Where a simplex is Gabriel, or not, and the file says otherwise.
+pub(super) fn gabriel<const N: usize>(
+    rows: &[[u32; N]],
+    given: &[bool],
+    expected: impl Fn(usize) -> bool,
+) -> Vec<FiltrationFinding> {
+    let wrong =
+        rows.iter().zip(given).enumerate().filter(|(i, (_, given))| **given != expected(*i));
+    wrong
+        .map(|(i, (row, _))| FiltrationFinding::Gabriel {
+            simplex: (*row).into(),
+            expected: expected(i),
+        })
+        .collect()
+}

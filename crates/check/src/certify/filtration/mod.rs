@@ -1,0 +1,189 @@
+//! Certification of a filtration: is each simplex there, and does it come when the file says?
+
+mod finding;
+mod order;
+mod spans;
+mod values;
+
+use super::structure::Structure;
+use super::{Certificate, CertifyError, Points};
+use crate::Alpha;
+use crate::schema::{Below, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
+
+use finding::differences;
+pub use finding::{Bound, FiltrationFinding};
+use serde::Serialize;
+use spans::Spans;
+use values::Ranks;
+
+/// What was judged of a filtration, and what not.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct FiltrationCertificate {
+    /// That of the triangulation, which is the complex at α = ∞.
+    pub triangulation: Certificate,
+    /// Values that are different numbers.
+    pub values: usize,
+    /// What was not judged.
+    pub not_judged: Vec<Unjudged>,
+}
+
+/// Parts of a filtration that are not judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Unjudged {
+    /// Values, classes and order: the triangulation is wrong.
+    AfterFindings,
+    /// Which simplices are Gabriel: the file does not say.
+    Gabriel,
+    /// From when on simplices are regular and interior: the file does not say.
+    Intervals,
+    /// Persistence pairs.
+    Pairs,
+}
+
+impl std::fmt::Display for Unjudged {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::AfterFindings => "values, classes and order (they rest on the triangulation)",
+            Self::Gabriel => "which simplices are Gabriel (the file does not say)",
+            Self::Intervals => {
+                "from when on simplices are regular and interior (the file does not say)"
+            }
+            Self::Pairs => "persistence pairs",
+        })
+    }
+}
+
+/// Why a file cannot be judged as a filtration.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CertifyFiltrationError {
+    /// Fields do not fit together.
+    #[error(transparent)]
+    Schema(#[from] SchemaError),
+    /// The triangulation cannot be judged.
+    #[error(transparent)]
+    Triangulation(#[from] CertifyError),
+}
+
+/// Judges a filtration: that its simplices are the whole regular triangulation (the rules of
+/// [`Claim::visit`](crate::Claim::visit) at α = ∞), the value of each, whether it is Gabriel, from which α on it is regular
+/// and interior, and the order. All by exact numbers; what a file has as doubles must be the nearest.
+///
+/// With the intervals every class at every α is judged: below its value a simplex is exterior, then
+/// singular, regular and interior. Faces come before their cofaces where the order is right: no value
+/// is smaller than that of a face, and the order of equal ones is by dimension.
+///
+/// Linear up to sorting, some microseconds for each simplex.
+///
+/// # Errors
+/// [`CertifyFiltrationError`]: fields that do not pair up, numbers out of range.
+pub fn certify_filtration(
+    file: &FiltrationFile,
+) -> Result<(Vec<FiltrationFinding>, FiltrationCertificate), CertifyFiltrationError> {
+    file.check()?;
+    let placed = whole(file)?;
+    let (found, triangulation) = placed.claim().findings()?;
+    let mut findings: Vec<_> = found.into_iter().map(FiltrationFinding::Triangulation).collect();
+    let mut not_judged = Vec::new();
+    let mut values = 0;
+    if findings.is_empty() {
+        let points = Points { positions: &placed.positions, weights: &placed.weights };
+        let (structure, _) = Structure::new(&placed.complex, points);
+        let ranks = Ranks::of(&structure, points);
+        let spans = Spans::of(&structure, &ranks);
+        values = ranks.values.len();
+        findings.extend(judge(file, &structure, &ranks, &spans));
+    } else {
+        not_judged.push(Unjudged::AfterFindings);
+    }
+    let absent = [
+        (file.gabriel.is_none(), Unjudged::Gabriel),
+        (file.regular.is_none() || file.interior.is_none(), Unjudged::Intervals),
+        (file.pairs.is_some(), Unjudged::Pairs),
+    ];
+    not_judged.extend(absent.into_iter().filter(|absent| absent.0).map(|absent| absent.1));
+    Ok((findings, FiltrationCertificate { triangulation, values, not_judged }))
+}
+
+/// The complex at α = ∞.
+fn whole(file: &FiltrationFile) -> Result<PlacedComplex, SchemaError> {
+    let complex = ComplexFile {
+        weights: file.weights.clone(),
+        cells: Some(file.cells.clone()),
+        facets: Some(file.facets.clone()),
+        edges: Some(file.edges.clone()),
+        vertices: Some(file.vertices.clone()),
+        hidden: file.hidden.clone(),
+        duplicates: file.duplicates.clone(),
+        ..ComplexFile::of_points(file.points.clone(), Alpha::INFINITE)
+    };
+    complex.into_complex()
+}
+
+/// What the file says of the simplices, which are those of the triangulation, against what is so.
+fn judge(
+    file: &FiltrationFile,
+    structure: &Structure,
+    ranks: &Ranks,
+    spans: &Spans,
+) -> Vec<FiltrationFinding> {
+    let vertices: Vec<[u32; 1]> = file.vertices.iter().map(|&v| [v]).collect();
+    let rows = Rows {
+        vertices: vertices.iter().map(|&row| structure.vertices.row(row) as usize).collect(),
+        edges: file.edges.iter().map(|&row| structure.edges.row(row) as usize).collect(),
+        facets: file.facets.iter().map(|&row| structure.facets.row(row) as usize).collect(),
+        cells: file.cells.iter().map(|&row| structure.cells.row(row) as usize).collect(),
+    };
+    let at = |rank: u32| ranks.alpha(rank);
+    let mut findings = Vec::new();
+    let values = &file.values;
+    let mut compare = |bound, given: [&[Alpha]; 3], of: fn(&spans::Span) -> u32| {
+        let expected = |spans: &'_ [spans::Span], row: usize| of(&spans[row]);
+        let known = |rank| (at(rank), ranks.exact(rank));
+        findings.extend(differences(bound, &vertices, given[0], |i| {
+            known(expected(&spans.vertices, rows.vertices[i]))
+        }));
+        findings.extend(differences(bound, &file.edges, given[1], |i| {
+            known(expected(&spans.edges, rows.edges[i]))
+        }));
+        findings.extend(differences(bound, &file.facets, given[2], |i| {
+            known(expected(&spans.facets, rows.facets[i]))
+        }));
+    };
+    compare(Bound::Value, [&values.vertices, &values.edges, &values.facets], |span| span.first);
+    if let Some(Below { vertices, edges, facets }) = &file.regular {
+        compare(Bound::Regular, [vertices, edges, facets], |span| span.regular);
+    }
+    if let Some(Below { vertices, edges, facets }) = &file.interior {
+        compare(Bound::Interior, [vertices, edges, facets], |span| span.interior);
+    }
+    findings.extend(differences(Bound::Value, &file.cells, &values.cells, |i| {
+        let rank = spans.cells[rows.cells[i]];
+        (at(rank), ranks.exact(rank))
+    }));
+    if let Some(gabriel) = &file.gabriel {
+        let own = |known: &[u32], row: usize| known[row] != values::ATTACHED;
+        findings.extend(finding::gabriel(&vertices, &gabriel.vertices, |i| {
+            own(&ranks.vertices, rows.vertices[i])
+        }));
+        findings.extend(finding::gabriel(&file.edges, &gabriel.edges, |i| {
+            own(&ranks.edges, rows.edges[i])
+        }));
+        findings.extend(finding::gabriel(&file.facets, &gabriel.facets, |i| {
+            own(&ranks.facets, rows.facets[i])
+        }));
+    }
+    findings.extend(order::judge(file, &rows, ranks, spans));
+    findings
+}
+
+/// The row in the triangulation of each simplex of the file.
+struct Rows {
+    vertices: Vec<usize>,
+    edges: Vec<usize>,
+    facets: Vec<usize>,
+    cells: Vec<usize>,
+}

@@ -1,0 +1,125 @@
+//! The squared radius of each empty smallest orthogonal sphere, exactly, and their order.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+
+use super::super::Points;
+use super::super::structure::Structure;
+use crate::Alpha;
+use crate::exact::{Exact, Side, radius_value, side};
+
+/// No empty sphere of its own.
+pub(super) const ATTACHED: u32 = u32::MAX;
+/// Beyond all values.
+pub(super) const NEVER: u32 = u32::MAX;
+
+/// By row, the place of each simplex's own squared radius among all different ones, or
+/// [`ATTACHED`].
+pub(super) struct Ranks {
+    pub values: Vec<(f64, Exact)>,
+    pub vertices: Vec<u32>,
+    pub edges: Vec<u32>,
+    pub facets: Vec<u32>,
+    pub cells: Vec<u32>,
+}
+
+impl Ranks {
+    /// Of a whole triangulation, found regular: there a sphere that is not empty holds a neighbour.
+    pub(super) fn of(structure: &Structure, points: Points) -> Self {
+        let complex = structure.complex;
+        let spheres = [
+            radii(complex.vertices.rows(), &held_vertices(structure, points), points),
+            radii(complex.edges.rows(), &held_edges(structure, points), points),
+            radii(complex.facets.rows(), &held_facets(structure, points), points),
+            radii(complex.cells.rows(), &flags(complex.cells.len()), points),
+        ];
+        let counts = spheres.each_ref().map(Vec::len);
+        let mut own: Vec<_> = (0..)
+            .zip(spheres)
+            .flat_map(|(dimension, spheres)| {
+                let known = (0..).zip(spheres);
+                known.filter_map(move |(row, known): (u32, _)| Some((known?, dimension, row)))
+            })
+            .collect();
+        own.par_sort_unstable_by(|(a, ..): &((f64, Exact), usize, u32), (b, ..)| {
+            a.0.total_cmp(&b.0).then_with(|| a.1.compare(&b.1))
+        });
+        let mut ranks = counts.map(|count| vec![ATTACHED; count]);
+        let mut values: Vec<(f64, Exact)> = Vec::new();
+        for (value, dimension, row) in own {
+            // In lowest terms: equal numbers are equal field by field.
+            if values.last() != Some(&value) {
+                values.push(value);
+            }
+            ranks[dimension][row as usize] = values.len() as u32 - 1;
+        }
+        let [vertices, edges, facets, cells] = ranks;
+        Self { values, vertices, edges, facets, cells }
+    }
+
+    /// The double nearest to a value; ∞ for never.
+    pub(super) fn alpha(&self, rank: u32) -> Alpha {
+        let nearest = |value: &(f64, Exact)| Alpha::from_squared(value.0).expect("never NaN");
+        self.values.get(rank as usize).map_or(Alpha::INFINITE, nearest)
+    }
+
+    /// The value itself.
+    pub(super) fn exact(&self, rank: u32) -> Option<&Exact> {
+        self.values.get(rank as usize).map(|value| &value.1)
+    }
+}
+
+fn radii<const N: usize>(
+    rows: &[[u32; N]],
+    held: &[AtomicBool],
+    points: Points,
+) -> Vec<Option<(f64, Exact)>> {
+    let radius = |(&row, held): (&[u32; N], &AtomicBool)| {
+        (!held.load(Ordering::Relaxed)).then(|| {
+            let exact = radius_value(points.at(row).each_ref());
+            (exact.nearest(), exact)
+        })
+    };
+    rows.par_iter().zip(held).map(radius).collect()
+}
+
+fn flags(count: usize) -> Vec<AtomicBool> {
+    (0..count).map(|_| AtomicBool::new(false)).collect()
+}
+
+fn inside<const N: usize>(points: Points, row: [u32; N], q: u32) -> bool {
+    side(points.at(row).each_ref(), &points.get(q)) == Side::Inside
+}
+
+fn held_facets(structure: &Structure, points: Points) -> Vec<AtomicBool> {
+    let rows = structure.complex.facets.rows().par_iter().enumerate();
+    let held = |(i, &facet): (usize, &[u32; 3])| {
+        structure.halves(i).any(|half| inside(points, facet, structure.apex(half)))
+    };
+    rows.map(|row| AtomicBool::new(held(row))).collect()
+}
+
+fn held_edges(structure: &Structure, points: Points) -> Vec<AtomicBool> {
+    let held = flags(structure.complex.edges.len());
+    structure.complex.facets.rows().par_iter().for_each(|&[a, b, c]| {
+        for (edge, q) in [([b, c], a), ([a, c], b), ([a, b], c)] {
+            if inside(points, edge, q) {
+                held[structure.edges.row(edge) as usize].store(true, Ordering::Relaxed);
+            }
+        }
+    });
+    held
+}
+
+fn held_vertices(structure: &Structure, points: Points) -> Vec<AtomicBool> {
+    let held = flags(structure.complex.vertices.len());
+    structure.complex.edges.rows().par_iter().for_each(|&[a, b]| {
+        for (v, q) in [(a, b), (b, a)] {
+            if inside(points, [v], q) {
+                held[structure.vertices.row([v]) as usize].store(true, Ordering::Relaxed);
+            }
+        }
+    });
+    held
+}

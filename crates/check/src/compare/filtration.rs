@@ -1,0 +1,273 @@
+//! Comparison of two filtrations over the same points.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+
+use serde::Serialize;
+
+use super::{Places, WeightDifference, weights_by_place};
+use crate::canonical::sorted;
+use crate::schema::{Below, FiltrationFile, SchemaError};
+use crate::{Alpha, Simplex};
+
+/// What two filtrations A and B have in common, and what not.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct FiltrationComparison {
+    /// Points at places that both have, whose weights differ; of several at one place the heaviest
+    /// counts.
+    pub weights: Vec<WeightDifference>,
+    /// Points of A at places where B has none, by A's indices.
+    pub points_only_a: Vec<u32>,
+    /// Points of B at places where A has none, by B's indices.
+    pub points_only_b: Vec<u32>,
+    /// How many simplices both have, with equal values.
+    pub equal: usize,
+    /// Simplices that only A has, by A's indices.
+    pub only_a: Vec<Simplex>,
+    /// Simplices that only B has, by B's indices.
+    pub only_b: Vec<Simplex>,
+    /// Simplices of both with different values.
+    pub values: Vec<ValueDifference>,
+    /// The largest difference of values, as a share of the larger.
+    pub largest_share: f64,
+    /// Simplices that one says to be Gabriel and the other not; none if not both say.
+    pub gabriel: Vec<Simplex>,
+    /// Simplices that become regular or interior at different α; none if not both say.
+    pub intervals: Vec<Simplex>,
+    /// The first simplex, by A's indices, that comes at another place in the order; none if there is
+    /// none, if the simplices are not the same, or if points are numbered differently.
+    pub order: Option<Simplex>,
+    /// Whether the order was compared.
+    pub order_compared: bool,
+}
+
+/// A simplex whose value differs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct ValueDifference {
+    /// The simplex, by A's indices.
+    pub simplex: Simplex,
+    /// Its value in A and in B.
+    pub values: [Alpha; 2],
+}
+
+/// What a file says of a simplex.
+#[derive(Clone, Copy)]
+struct Said {
+    value: Alpha,
+    gabriel: Option<bool>,
+    interval: Option<[Alpha; 2]>,
+    number: u32,
+}
+
+/// Compares two filtrations, matching points by their places, so that the two may number them
+/// differently. Values are compared as doubles. Cost O(n log n).
+///
+/// # Errors
+/// Fields that do not pair up, point numbers out of range.
+pub fn compare_filtrations(
+    a: &FiltrationFile,
+    b: &FiltrationFile,
+) -> Result<FiltrationComparison, SchemaError> {
+    a.check()?;
+    b.check()?;
+    finite(a)?;
+    finite(b)?;
+    let places = Places::new(&a.points, &b.points);
+    let of_a = simplices(a, &places.a);
+    let mut of_b = simplices(b, &places.b);
+    let mut found = FiltrationComparison {
+        weights: weights(a, b, &places),
+        points_only_a: only(&places.a, &places.b),
+        points_only_b: only(&places.b, &places.a),
+        equal: 0,
+        only_a: Vec::new(),
+        only_b: Vec::new(),
+        values: Vec::new(),
+        largest_share: 0.0,
+        gabriel: Vec::new(),
+        intervals: Vec::new(),
+        order: None,
+        order_compared: false,
+    };
+    let mut same = BTreeMap::new();
+    for (key, (simplex, here)) in of_a {
+        let Some((_, there)) = of_b.remove(&key) else {
+            found.only_a.push(simplex);
+            continue;
+        };
+        found.compare(&simplex, here, there);
+        same.insert(here.number, (there.number, simplex));
+    }
+    found.only_b = of_b.into_values().map(|(simplex, _)| simplex).collect();
+    found.order_compared =
+        places.a == places.b && found.only_a.is_empty() && found.only_b.is_empty();
+    if found.order_compared {
+        let differs = |(x, y): &(&u32, &u32)| same.get(x).is_none_or(|(number, _)| number != *y);
+        let first = a.order.iter().zip(&b.order).find(differs);
+        found.order = first.and_then(|(x, _)| Some(same.get(x)?.1.clone()));
+    }
+    Ok(found)
+}
+
+impl FiltrationComparison {
+    fn compare(&mut self, simplex: &Simplex, a: Said, b: Said) {
+        if a.value == b.value {
+            self.equal += 1;
+        } else {
+            let [x, y] = [a.value, b.value].map(Alpha::squared);
+            // The difference may be beyond all doubles; the share is not.
+            let share = (x - y).abs() / x.abs().max(y.abs());
+            self.largest_share = self.largest_share.max(share).min(2.0);
+            let values = [a.value, b.value];
+            self.values.push(ValueDifference { simplex: simplex.clone(), values });
+        }
+        if a.gabriel.zip(b.gabriel).is_some_and(|(a, b)| a != b) {
+            self.gabriel.push(simplex.clone());
+        }
+        if a.interval.zip(b.interval).is_some_and(|(a, b)| a != b) {
+            self.intervals.push(simplex.clone());
+        }
+    }
+
+    /// Whether nothing that was compared differs.
+    pub fn is_equal(&self) -> bool {
+        let lists = [&self.only_a, &self.only_b, &self.gabriel, &self.intervals];
+        lists.iter().all(|list| list.is_empty())
+            && self.weights.is_empty()
+            && self.points_only_a.is_empty()
+            && self.points_only_b.is_empty()
+            && self.values.is_empty()
+            && self.order.is_none()
+    }
+}
+
+fn finite(file: &FiltrationFile) -> Result<(), SchemaError> {
+    let numbers = file.points.as_flattened().iter().chain(file.weights.iter().flatten());
+    match numbers.copied().find(|number| !number.is_finite()) {
+        Some(number) => Err(SchemaError::Value {
+            name: "points",
+            value: number.to_string(),
+            expected: "finite number",
+        }),
+        None => Ok(()),
+    }
+}
+
+fn only(own: &[u32], other: &[u32]) -> Vec<u32> {
+    let other: std::collections::BTreeSet<_> = other.iter().collect();
+    (0..).zip(own).filter(|(_, place)| !other.contains(place)).map(|(i, _)| i).collect()
+}
+
+fn weights(a: &FiltrationFile, b: &FiltrationFile, places: &Places) -> Vec<WeightDifference> {
+    let of = |file: &FiltrationFile| {
+        file.weights.clone().unwrap_or_else(|| vec![0.0; file.points.len()])
+    };
+    let mut in_a = weights_by_place(&of(a), &places.a);
+    let in_b = weights_by_place(&of(b), &places.b);
+    let difference = |(point, &place): (u32, &u32)| {
+        // Each place once: what is taken is gone.
+        let a = std::mem::replace(&mut in_a[place as usize], f64::NEG_INFINITY);
+        let b = in_b.get(place as usize).copied().filter(|b| *b != f64::NEG_INFINITY)?;
+        (a != b && a != f64::NEG_INFINITY).then_some(WeightDifference { point, a, b })
+    };
+    (0..).zip(&places.a).filter_map(difference).collect()
+}
+
+/// All simplices by their places.
+fn simplices(file: &FiltrationFile, places: &[u32]) -> BTreeMap<Vec<u32>, (Simplex, Said)> {
+    let mut found = BTreeMap::new();
+    let mut number = 0;
+    let vertices: Vec<[u32; 1]> = file.vertices.iter().map(|&v| [v]).collect();
+    let values = &file.values;
+    fn add<const N: usize>(
+        found: &mut BTreeMap<Vec<u32>, (Simplex, Said)>,
+        places: &[u32],
+        rows: &[[u32; N]],
+        number: &mut u32,
+        said: impl Fn(usize) -> (Alpha, Option<bool>, Option<[Alpha; 2]>),
+    ) {
+        for (i, row) in rows.iter().enumerate() {
+            let key = sorted(row.map(|v| places[v as usize])).to_vec();
+            let (value, gabriel, interval) = said(i);
+            found.insert(key, ((*row).into(), Said { value, gabriel, interval, number: *number }));
+            *number += 1;
+        }
+    }
+    let below = |dimension: usize, i: usize| {
+        let gabriel = file.gabriel.as_ref().map(|gabriel| of(gabriel, dimension)[i]);
+        let bounds = file.regular.as_ref().zip(file.interior.as_ref());
+        let interval = bounds
+            .map(|(regular, interior)| [regular, interior].map(|bound| of(bound, dimension)[i]));
+        (gabriel, interval)
+    };
+    add(&mut found, places, &vertices, &mut number, |i| {
+        let (gabriel, interval) = below(0, i);
+        (values.vertices[i], gabriel, interval)
+    });
+    add(&mut found, places, &file.edges, &mut number, |i| {
+        let (gabriel, interval) = below(1, i);
+        (values.edges[i], gabriel, interval)
+    });
+    add(&mut found, places, &file.facets, &mut number, |i| {
+        let (gabriel, interval) = below(2, i);
+        (values.facets[i], gabriel, interval)
+    });
+    add(&mut found, places, &file.cells, &mut number, |i| (values.cells[i], None, None));
+    found
+}
+
+fn of<T>(below: &Below<T>, dimension: usize) -> &[T] {
+    match dimension {
+        0 => &below.vertices,
+        1 => &below.edges,
+        _ => &below.facets,
+    }
+}
+
+/// How many differences of a kind are printed one by one.
+const PRINTED: usize = 10;
+
+impl Display for FiltrationComparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (only_a, only_b) = (&self.points_only_a, &self.points_only_b);
+        writeln!(f, "points: {} only in A, {} only in B", only_a.len(), only_b.len())?;
+        writeln!(f, "weights: {} differ", self.weights.len())?;
+        writeln!(
+            f,
+            "simplices: {} with equal values, {} with others, {} only in A, {} only in B",
+            self.equal,
+            self.values.len(),
+            self.only_a.len(),
+            self.only_b.len()
+        )?;
+        for ValueDifference { simplex, values: [a, b] } in self.values.iter().take(PRINTED) {
+            let [a, b] = [a, b].map(|alpha| alpha.squared());
+            writeln!(f, "  {simplex}: {a:?} in A, {b:?} in B")?;
+        }
+        if !self.values.is_empty() {
+            writeln!(f, "  the largest difference is {:e} of the value", self.largest_share)?;
+        }
+        let kinds = [
+            ("only in A", &self.only_a),
+            ("only in B", &self.only_b),
+            ("Gabriel in one", &self.gabriel),
+            ("regular or interior from another α on", &self.intervals),
+        ];
+        for (what, simplices) in kinds.into_iter().filter(|(_, simplices)| !simplices.is_empty()) {
+            writeln!(f, "{what}: {}", simplices.len())?;
+            for simplex in simplices.iter().take(PRINTED) {
+                writeln!(f, "  {simplex}")?;
+            }
+        }
+        match (&self.order, self.order_compared) {
+            (Some(simplex), _) => write!(f, "order: another from {simplex} on"),
+            (None, true) => write!(f, "order: the same"),
+            (None, false) => write!(
+                f,
+                "not compared: the order (points or simplices are not the same, or numbered differently)"
+            ),
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! The file of a filtration.
+
+#[cfg(feature = "json")]
+mod json;
+#[cfg(feature = "npz")]
+mod npz;
+
+use serde::{Deserialize, Serialize};
+
+use super::SchemaError;
+use super::build::{in_range, paired};
+use crate::Alpha;
+
+/// A filtration as a file holds it: every simplex of a regular triangulation, and when it comes.
+///
+/// In JSON:
+///
+/// ```json
+/// { "points": [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]],
+///   "weights": [0, 0, 0, 0],
+///   "vertices": [0, 1, 2, 3],
+///   "edges": [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]],
+///   "facets": [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]],
+///   "cells": [[0, 1, 2, 3]],
+///   "values": { "vertices": [0, 0, 0, 0], "edges": [1, 1, 1, 2, 2, 2],
+///               "facets": [2, 2, 2, 3], "cells": [3] },
+///   "order": [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14] }
+/// ```
+///
+/// - `points` and `weights` are as in a [complex](super), values squared lengths as α is.
+/// - Simplices are numbered: vertices first, then edges, facets and cells, each as they are listed.
+///   `order` has these numbers in the order in which simplices come: by value, equal values by
+///   dimension, then by vertices (ascending in each simplex, compared one by one).
+/// - `values` are the doubles nearest to the exact values; the order is by these, not by doubles.
+/// - `gabriel` says of vertices, edges and facets whether their smallest orthogonal sphere is empty.
+/// - `regular` and `interior` say of these from which α on they are a face of another simplex of the
+///   shape, and off its boundary; `"inf"` where they never are. All three may be missing.
+/// - `pairs` are persistence pairs by these numbers whose simplices have different values:
+///   `components` (a vertex and the edge that ends it), `lasting` (vertices whose components never
+///   end), `voids` (a facet and the cell that fills what it has shut in).
+/// - `hidden`, `duplicates` and `info` are as in a complex.
+///
+/// In NPZ the same names are arrays, and of those with dimensions `vertex_values`, `edge_values`,
+/// `facet_values`, `cell_values`, `vertex_gabriel` and so on, `component_pairs`, `lasting_components`
+/// and `void_pairs`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FiltrationFile {
+    /// x, y, z of each point.
+    #[serde(default)]
+    pub points: Vec<[f64; 3]>,
+    /// Power weights, squared lengths; all 0 if missing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights: Option<Vec<f64>>,
+    /// The vertices of the triangulation.
+    pub vertices: Vec<u32>,
+    /// Its edges.
+    pub edges: Vec<[u32; 2]>,
+    /// Its triangles.
+    pub facets: Vec<[u32; 3]>,
+    /// Its tetrahedra.
+    pub cells: Vec<[u32; 4]>,
+    /// From which α on each is in the shape.
+    pub values: Values,
+    /// Whether the sphere of each is empty.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gabriel: Option<Below<bool>>,
+    /// From which α on each is a face of another simplex of the shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub regular: Option<Below<Alpha>>,
+    /// From which α on each is off the boundary.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interior: Option<Below<Alpha>>,
+    /// All numbers of simplices, in order.
+    pub order: Vec<u32>,
+    /// Persistence pairs of dimensions 0 and 2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pairs: Option<PairsFile>,
+    /// Points that are not vertices.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hidden: Option<Vec<u32>>,
+    /// Pairs (went, stayed) of points at one place.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duplicates: Option<Vec<[u32; 2]>>,
+    /// Whatever the writer wants to add.
+    #[cfg(feature = "json")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub info: Option<serde_json::Value>,
+}
+
+/// A value for each simplex, by dimension.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Values {
+    /// Of the vertices.
+    pub vertices: Vec<Alpha>,
+    /// Of the edges.
+    pub edges: Vec<Alpha>,
+    /// Of the facets.
+    pub facets: Vec<Alpha>,
+    /// Of the cells.
+    pub cells: Vec<Alpha>,
+}
+
+/// Something of each simplex that is no cell, by dimension.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Below<T> {
+    /// Of the vertices.
+    pub vertices: Vec<T>,
+    /// Of the edges.
+    pub edges: Vec<T>,
+    /// Of the facets.
+    pub facets: Vec<T>,
+}
+
+/// Persistence pairs by numbers of simplices.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PairsFile {
+    /// A vertex, and the edge that unites its component with an older one.
+    pub components: Vec<[u32; 2]>,
+    /// Vertices whose components last for ever.
+    pub lasting: Vec<u32>,
+    /// A facet, and the cell that fills the void that it has shut in.
+    pub voids: Vec<[u32; 2]>,
+}
+
+impl FiltrationFile {
+    /// Whether fields fit together: as many values as simplices, and points that exist.
+    ///
+    /// # Errors
+    /// Fields that do not pair up, point numbers out of range, no points at all.
+    pub fn check(&self) -> Result<(), SchemaError> {
+        let n = self.points.len();
+        if n == 0 {
+            return Err(SchemaError::NoPoints);
+        }
+        paired("weights", self.weights.as_ref().map_or(n, Vec::len), "points", n)?;
+        in_range("vertices", self.vertices.iter(), n)?;
+        in_range("edges", self.edges.iter().flatten(), n)?;
+        in_range("facets", self.facets.iter().flatten(), n)?;
+        in_range("cells", self.cells.iter().flatten(), n)?;
+        let (values, cells) = (&self.values, self.cells.len());
+        let of_values = [&values.vertices, &values.edges, &values.facets].map(Vec::len);
+        self.paired(["values.vertices", "values.edges", "values.facets"], of_values)?;
+        paired("values.cells", values.cells.len(), "cells", cells)?;
+        if let Some(gabriel) = &self.gabriel {
+            self.paired(["gabriel.vertices", "gabriel.edges", "gabriel.facets"], gabriel.counts())?;
+        }
+        if let Some(regular) = &self.regular {
+            self.paired(["regular.vertices", "regular.edges", "regular.facets"], regular.counts())?;
+        }
+        if let Some(interior) = &self.interior {
+            let names = ["interior.vertices", "interior.edges", "interior.facets"];
+            self.paired(names, interior.counts())?;
+        }
+        Ok(())
+    }
+
+    /// Whether there are as many of something as simplices below cells.
+    fn paired(&self, names: [&'static str; 3], counts: [usize; 3]) -> Result<(), SchemaError> {
+        paired(names[0], counts[0], "vertices", self.vertices.len())?;
+        paired(names[1], counts[1], "edges", self.edges.len())?;
+        paired(names[2], counts[2], "facets", self.facets.len())
+    }
+}
+
+impl<T> Below<T> {
+    fn counts(&self) -> [usize; 3] {
+        [self.vertices.len(), self.edges.len(), self.facets.len()]
+    }
+}

@@ -1,0 +1,202 @@
+//! `walpha filtration`: every simplex, and when it comes.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+use walpha::Coordinates;
+use walpha::export::{Content, FiltrationFormat, Target, write_all};
+use walpha::ladder::{self, Ordered};
+use walpha::pipeline::{Parameter, Weighed};
+use walpha::progress::Stage;
+
+use super::args::{FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::formats::filtration_output;
+use super::output::{name, tell};
+use super::pipeline::Values;
+use super::progress::Progress;
+use super::report::{SCHEMA_VERSION, WeightsReport};
+use super::{Global, pipeline};
+
+/// Every simplex of the regular triangulation, and the α at which it comes.
+///
+/// For each simplex: its value, the α from which on it is in the shape, the double nearest to the exact
+/// number; whether its own smallest sphere is empty (Gabriel; otherwise it comes with a simplex that
+/// it is a face of); and from where on it is regular and interior. The order is by the exact values,
+/// then by dimension and vertices, so that faces come before what they are faces of. Persistence
+/// pairs of components and voids are in .npz, .json and what --json prints. Weights are frozen.
+///
+/// Examples:
+///
+/// walpha filtration scan.xyz -o scan.npz
+///
+/// walpha filtration sample:skull --weights min-max -o skull.json skull.txt
+///
+/// walpha check skull.json
+#[derive(Args)]
+pub struct Filtration {
+    #[arg(short, long, value_name = "FILE", num_args = 1.., help = filtration_output())]
+    output: Vec<PathBuf>,
+    #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
+    haar: HaarArgs,
+    #[command(flatten)]
+    select: SelectArgs,
+    #[command(flatten)]
+    weights: FrozenArgs,
+}
+
+#[derive(Serialize)]
+struct Facts {
+    schema_version: u32,
+    input: String,
+    points: usize,
+    hidden: usize,
+    duplicates: usize,
+    /// Of points and all lengths; values are in the square.
+    coordinates: Coordinates,
+    /// The α that weights are in proportion to; null where they need none.
+    alpha_ref: Option<Parameter>,
+    weights: WeightsReport,
+    cells: Count,
+    facets: Count,
+    edges: Count,
+    vertices: Count,
+    /// Values that are different numbers.
+    values: usize,
+    persistence: Option<Persistence>,
+    files: Vec<String>,
+    seconds: BTreeMap<&'static str, f64>,
+}
+
+/// Simplices of a dimension.
+#[derive(Clone, Copy, Serialize)]
+struct Count {
+    gabriel: usize,
+    attached: usize,
+}
+
+/// From which value to which components and voids last, where these differ.
+#[derive(Serialize)]
+struct Persistence {
+    components: Vec<[f64; 2]>,
+    /// Components that never end, from these values on.
+    lasting_components: Vec<f64>,
+    voids: Vec<[f64; 2]>,
+}
+
+impl Filtration {
+    pub fn run(self, global: Global) -> anyhow::Result<()> {
+        self.input.check_format(self.output.iter())?;
+        let mut targets = Vec::new();
+        for path in &self.output {
+            let format = FiltrationFormat::of(&self.input.output(path)?)?;
+            targets.push((Target::open(path)?, format));
+        }
+        let mut progress = Progress::new(global);
+        let weights = WeightArgs::from(self.weights);
+        let read = pipeline::read(&self.input, &mut progress)?;
+        read.accepts(&self.input)?;
+        let (haar, select) = (&self.haar, &self.select);
+        let (weighed, _) =
+            pipeline::weigh_input(read, haar, select, &weights, Values::Written, &mut progress)?;
+        let filtration = progress
+            .stage(Stage::Filtration, || ladder::Filtration::new(weighed.points.clone()))?;
+        let ordered = progress.stage(Stage::Order, || filtration.simplices())?;
+        progress.stage(Stage::Write, || {
+            write_all(targets.into_iter().map(|(target, format)| {
+                let ordered = &ordered;
+                let content = move |out: &mut dyn Write| format.write(ordered, out);
+                (target, Box::new(content) as Content<'_>)
+            }))
+        })?;
+        let mut facts = Facts::new(&self.input.input, &weighed, &ordered);
+        if global.json {
+            facts.persistence = Some(progress.stage(Stage::Pairs, || Persistence::of(&ordered)));
+        }
+        facts.files = self.output.iter().map(|path| path.display().to_string()).collect();
+        facts.seconds = progress.finish().into_iter().collect();
+        tell(global, &facts)
+    }
+}
+
+impl Facts {
+    fn new(input: &str, weighed: &Weighed, ordered: &Ordered<'_>) -> Self {
+        let whole = ordered.filtration().whole();
+        let [vertices, edges, facets, cells] = [0, 1, 2, 3].map(|dimension| {
+            let gabriel = ordered.gabriel(dimension);
+            Count { gabriel, attached: ordered.count(dimension) - gabriel }
+        });
+        Self {
+            schema_version: SCHEMA_VERSION,
+            input: input.to_owned(),
+            points: whole.points().len(),
+            hidden: whole.hidden().map_or(0, <[u32]>::len),
+            duplicates: whole.duplicates().len(),
+            coordinates: weighed.origin.coordinates,
+            alpha_ref: weighed.parameter,
+            weights: WeightsReport::of(weighed),
+            cells,
+            facets,
+            edges,
+            vertices,
+            values: ordered.values().len(),
+            persistence: None,
+            files: Vec::new(),
+            seconds: BTreeMap::new(),
+        }
+    }
+}
+
+impl Persistence {
+    fn of(ordered: &Ordered<'_>) -> Self {
+        let pairs = ordered.pairs();
+        let value = |number: u32| ordered.simplex(number).value;
+        let lasting = |pairs: &[[u32; 2]]| {
+            let lasting = pairs.iter().filter(|&&pair| ordered.lasts(pair));
+            lasting.map(|pair| pair.map(value)).collect()
+        };
+        Self {
+            components: lasting(&pairs.components),
+            lasting_components: pairs.lasting.iter().map(|&number| value(number)).collect(),
+            voids: lasting(&pairs.voids),
+        }
+    }
+}
+
+impl Display for Count {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:>9} Gabriel {:>9} attached", self.gabriel, self.attached)
+    }
+}
+
+impl Display for Facts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "input     {}", name(&self.input))?;
+        let Self { points, duplicates, hidden, .. } = self;
+        writeln!(f, "points    {points}, {duplicates} duplicates, {hidden} hidden")?;
+        writeln!(f, "lengths   in {}", self.coordinates)?;
+        writeln!(f, "weights   {} (squared lengths), frozen", self.weights)?;
+        if let Some(alpha_ref) = &self.alpha_ref {
+            writeln!(f, "          for {alpha_ref}")?;
+        }
+        writeln!(f, "cells     {}", self.cells)?;
+        writeln!(f, "facets    {}", self.facets)?;
+        writeln!(f, "edges     {}", self.edges)?;
+        writeln!(f, "vertices  {}", self.vertices)?;
+        writeln!(f, "values    {} different numbers", self.values)?;
+        for file in &self.files {
+            writeln!(f, "wrote     {}", name(file))?;
+        }
+        let seconds = |stage: &str| self.seconds.get(stage).copied().unwrap_or_default();
+        write!(f, "time      ")?;
+        for stage in ["read", "points", "filtration", "order", "write"] {
+            write!(f, "{stage} {:.2} s, ", seconds(stage))?;
+        }
+        writeln!(f, "total {:.2} s", seconds("total"))
+    }
+}

@@ -1,0 +1,22 @@
+use std::io::{self, Write};
+
+use crate::ladder::Ordered;
+use crate::progress;
+
+/// Lines between two words on how far it is.
+const STEP: usize = 1 << 16;
+
+pub fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "# value gabriel regular interior vertices")?;
+    for (at, simplex) in ordered.iter().enumerate() {
+        if at % STEP == 0 {
+            progress::report(at as u64, ordered.len() as u64);
+        }
+        // With an exponent where a number would be hundreds of digits long.
+        let (value, gabriel) = (simplex.value, u8::from(simplex.gabriel));
+        write!(out, "{value:?} {gabriel} {:?} {:?}", simplex.regular, simplex.interior)?;
+        simplex.vertices.iter().try_for_each(|v| write!(out, " {v}"))?;
+        writeln!(out)?;
+    }
+    Ok(())
+}

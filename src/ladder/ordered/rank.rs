@@ -1,0 +1,172 @@
+//! The values of a filtration told apart exactly, and put in order.
+//!
+//! Rounding keeps order: where the nearest doubles of two squared radii differ, so do these. So only
+//! simplices with one nearest double are compared as exact numbers; on a lattice nearly all of them
+//! are equal as ratios of small integers.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::Numbers;
+use crate::ladder::Filtration;
+use crate::ladder::values::{Key, is_small_lattice, key};
+use crate::memory::{self, NoMemory};
+use crate::triangulation::{Predicates, Ratio, SmallRadius};
+
+/// No sphere of its own.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Squared radii of empty smallest orthogonal spheres by their place among all, from 0.
+pub(super) struct Ranks {
+    /// The nearest double of each, ascending; several may have the same.
+    pub values: Vec<f64>,
+    /// By number of the simplex; [`NONE`] where the sphere is not empty.
+    pub of: Vec<u32>,
+}
+
+/// A squared radius, in the order of doubles, and whose it is.
+type Radius = (u64, u32);
+
+impl Ranks {
+    /// Bytes that are needed at once, for so many simplices.
+    pub fn bytes(simplices: usize) -> usize {
+        simplices * (size_of::<Radius>() + size_of::<u32>() + size_of::<f64>())
+    }
+
+    pub fn of(filtration: &Filtration, numbers: Numbers) -> Result<Self, NoMemory> {
+        let spheres = filtration.spheres();
+        let mut radii =
+            memory::room(numbers.all(), || format!("the order of {} simplices", numbers.all()))?;
+        collect(filtration, numbers, &spheres, &mut radii);
+        radii.par_sort_unstable();
+        let lattice = is_small_lattice(filtration.points());
+        let exact = Exactly { filtration, numbers, spheres, lattice };
+        let several: Vec<_> =
+            radii.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > 1).collect();
+        // Where a simplex's value differs from the one before it, though their doubles are equal.
+        let mut steps: Vec<u32> =
+            several.into_par_iter().flat_map_iter(|run| exact.part(run)).collect();
+        steps.par_sort_unstable();
+        let mut of = memory::room(numbers.all(), || "ranks".into())?;
+        of.resize(numbers.all(), NONE);
+        let mut values: Vec<f64> = Vec::new();
+        let mut last = None;
+        for &(key, simplex) in &radii {
+            if last != Some(key) || steps.binary_search(&simplex).is_ok() {
+                values.push(from_bits(key));
+                last = Some(key);
+            }
+            of[simplex as usize] = values.len() as u32 - 1;
+        }
+        Ok(Self { values, of })
+    }
+}
+
+/// The nearest doubles of all radii, by number of the simplex.
+fn collect(
+    filtration: &Filtration,
+    numbers: Numbers,
+    spheres: &Predicates<'_>,
+    radii: &mut Vec<Radius>,
+) {
+    let Filtration { whole, incidence, facets, edges, vertices, .. } = filtration;
+    let complex = whole.complex();
+    let of = |from: u32| move |row: usize, radius: f64| (to_bits(radius), from + row as u32);
+    let [of_vertices, of_edges, of_facets, of_cells] = numbers.first.map(of);
+    radii.par_extend(vertices.par_iter().enumerate().filter_map(|(row, known)| {
+        known.map(|_| of_vertices(row, spheres.nearest_radius(complex.vertices.rows()[row])))
+    }));
+    radii.par_extend(edges.par_iter().enumerate().filter_map(|(row, known)| {
+        known.map(|_| of_edges(row, spheres.nearest_radius(complex.edges.rows()[row])))
+    }));
+    radii.par_extend(facets.par_iter().enumerate().filter_map(|(row, known)| {
+        known.map(|_| of_facets(row, spheres.nearest_radius(incidence.facets[row])))
+    }));
+    let cells = complex.cells.rows().par_iter().enumerate();
+    radii.par_extend(cells.map(|(row, &cell)| of_cells(row, spheres.nearest_radius(cell))));
+}
+
+/// Integers in the order of doubles that are no −0.
+fn to_bits(value: f64) -> u64 {
+    let bits = value.to_bits();
+    if value < 0.0 { !bits } else { bits | 1 << 63 }
+}
+
+fn from_bits(key: u64) -> f64 {
+    f64::from_bits(if key >> 63 == 1 { key & !(1 << 63) } else { !key })
+}
+
+/// Tells radii apart that have one nearest double.
+struct Exactly<'a> {
+    filtration: &'a Filtration,
+    numbers: Numbers,
+    spheres: Predicates<'a>,
+    /// Whether squared distances are exact in doubles.
+    lattice: bool,
+}
+
+impl Exactly<'_> {
+    /// Puts a run in order, and gives the first simplex of each value but the smallest.
+    fn part(&self, run: &mut [Radius]) -> Vec<u32> {
+        if let Some(first) = self.small(run[0].1)
+            && run.par_iter().all(|&(_, s)| self.small(s).is_some_and(|small| small.equals(first)))
+        {
+            return Vec::new();
+        }
+        if self.lattice && run.iter().all(|radius| self.key(radius.1) == self.key(run[0].1)) {
+            return Vec::new();
+        }
+        let mut values = BTreeMap::<Ratio, Vec<u32>>::new();
+        for &(_, simplex) in &*run {
+            values.entry(self.ratio(simplex)).or_default().push(simplex);
+        }
+        let firsts = values.values().skip(1).map(|simplices| simplices[0]).collect();
+        let simplices = values.into_values().flatten();
+        run.iter_mut().zip(simplices).for_each(|(radius, simplex)| radius.1 = simplex);
+        firsts
+    }
+
+    fn small(&self, simplex: u32) -> Option<SmallRadius> {
+        let complex = self.filtration.whole.complex();
+        match self.numbers.row(simplex) {
+            (0, row) => self.spheres.small_radius(complex.vertices.rows()[row]),
+            (1, row) => self.spheres.small_radius(complex.edges.rows()[row]),
+            (2, row) => self.spheres.small_radius(self.filtration.incidence.facets[row]),
+            (_, row) => self.spheres.small_radius(complex.cells.rows()[row]),
+        }
+    }
+
+    fn key(&self, simplex: u32) -> Key {
+        let (complex, points) = (self.filtration.whole.complex(), self.filtration.points());
+        match self.numbers.row(simplex) {
+            (0, row) => key(points, complex.vertices.rows()[row]),
+            (1, row) => key(points, complex.edges.rows()[row]),
+            (2, row) => key(points, self.filtration.incidence.facets[row]),
+            (_, row) => key(points, complex.cells.rows()[row]),
+        }
+    }
+
+    fn ratio(&self, simplex: u32) -> Ratio {
+        let complex = self.filtration.whole.complex();
+        match self.numbers.row(simplex) {
+            (0, row) => self.spheres.exact_radius(complex.vertices.rows()[row]),
+            (1, row) => self.spheres.exact_radius(complex.edges.rows()[row]),
+            (2, row) => self.spheres.exact_radius(self.filtration.incidence.facets[row]),
+            (_, row) => self.spheres.exact_radius(complex.cells.rows()[row]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_in_the_order_of_doubles() {
+        let values = [f64::NEG_INFINITY, -1.5, -1.0, -5e-324, 0.0, 5e-324, 1.0, 2.0, f64::INFINITY];
+        let keys = values.map(to_bits);
+        assert!(keys.is_sorted() && keys.windows(2).all(|pair| pair[0] < pair[1]));
+        assert_eq!(keys.map(from_bits), values);
+    }
+}

@@ -1,0 +1,146 @@
+//! Shapes of points that span no volume: in their plane, on their line, at their point.
+//!
+//! There are no cells. Classes are those of space: what is in the shape and a face of nothing there is
+//! singular, the faces of it are regular, and nothing is interior, as space is on both sides.
+
+use std::collections::HashMap;
+
+use super::topology::flat_betti;
+use super::{Alpha, Betti, Class, Complex, ShapeError, Simplices, UnionFind};
+use crate::points::WeightedPoints;
+use crate::triangulation::{Flat, Maker, Predicates, Sites, triangulate_flat};
+
+/// What a flat shape is.
+pub(super) struct Found {
+    /// The whole triangulation, by input index.
+    pub complex: Complex,
+    pub betti: Betti,
+}
+
+/// The α-complex of sites that span no volume, and the simplices that are not in it.
+pub(super) fn flat(sites: &Sites<'_>, alpha: f64, maker: Maker) -> Result<Found, ShapeError> {
+    let tops = triangulate_flat(sites, maker)?;
+    let plane = Plane { spheres: Predicates::new(sites.positions(), sites.weights()), alpha };
+    // The sphere of a largest simplex is always empty.
+    let facets = plane.classified(lone(&tops.triangles));
+    let mut edges = lone(&tops.edges);
+    for (&[a, b, c], class) in facets.iter() {
+        let seen = class != Class::Exterior;
+        edges.extend([([b, c], a), ([a, c], b), ([a, b], c)].map(|(e, v)| (e, Some((v, seen)))));
+    }
+    let edges = plane.classified(edges);
+    let mut vertices = lone(&tops.vertices);
+    for (&[a, b], class) in edges.iter() {
+        let seen = class != Class::Exterior;
+        vertices.extend([([a], Some((b, seen))), ([b], Some((a, seen)))]);
+    }
+    let vertices = plane.classified(vertices);
+    let input = sites.input();
+    let complex = Complex {
+        cells: Simplices::default(),
+        facets: by_input(facets, input),
+        edges: by_input(edges, input),
+        vertices: by_input(vertices, input),
+    };
+    let betti = flat_betti(&complex);
+    Ok(Found { complex, betti })
+}
+
+/// A simplex, and a coface: its other vertex, and whether it is in the shape.
+type Coface<const N: usize> = ([u32; N], Option<(u32, bool)>);
+
+/// Simplices that have no cofaces.
+fn lone<const N: usize>(rows: &[[u32; N]]) -> Vec<Coface<N>> {
+    rows.iter().map(|&row| (row, None)).collect()
+}
+
+struct Plane<'a> {
+    spheres: Predicates<'a>,
+    alpha: f64,
+}
+
+impl Plane<'_> {
+    /// Simplices with their classes, by what is known of their cofaces.
+    fn classified<const N: usize>(&self, mut known: Vec<Coface<N>>) -> Simplices<N> {
+        known.sort_unstable();
+        let mut simplices = Simplices::default();
+        for group in known.chunk_by(|a, b| a.0 == b.0) {
+            let row = group[0].0;
+            let mut cofaces = group.iter().filter_map(|(_, coface)| *coface);
+            let class = if cofaces.clone().any(|(_, seen)| seen) {
+                Class::Regular
+            } else if self.fits(row) && !cofaces.any(|(v, _)| self.spheres.inside(row, v)) {
+                Class::Singular
+            } else {
+                Class::Exterior
+            };
+            simplices.push(row, class);
+        }
+        simplices
+    }
+
+    fn fits<const N: usize>(&self, row: [u32; N]) -> bool {
+        match self.alpha {
+            f64::INFINITY => true,
+            f64::NEG_INFINITY => false,
+            alpha => self.spheres.fits(row, alpha),
+        }
+    }
+}
+
+/// Rows by input index, which ascends with that of sites.
+fn by_input<const N: usize>(mut simplices: Simplices<N>, input: &[u32]) -> Simplices<N> {
+    for v in simplices.rows_mut().as_flattened_mut() {
+        *v = input[*v as usize];
+    }
+    simplices
+}
+
+/// The smallest α at which all points that span no volume are in one piece of their shape's largest
+/// simplices: triangles joined through edges, or edges joined through vertices. What
+/// [`Filtration::one_region`](crate::ladder::Filtration::one_region) is in space. The first double that
+/// is not below it. O(n log n).
+///
+/// # Errors
+/// As [`alpha_shape`](super::alpha_shape).
+pub fn flat_region(points: &WeightedPoints) -> Result<Alpha, ShapeError> {
+    let sites = Sites::any(&points.positions, &points.weights)?;
+    let Flat { triangles, edges, vertices } = triangulate_flat(&sites, Maker::Native)?;
+    let spheres = Predicates::new(sites.positions(), sites.weights());
+    let alpha = match (&triangles[..], &edges[..]) {
+        ([], []) => spheres.first_alpha(vertices[0]),
+        ([], edges) => one_piece(edges, &spheres, |&[a, b]| vec![[a, a], [b, b]]),
+        (triangles, _) => one_piece(triangles, &spheres, |&[a, b, c]| vec![[a, b], [a, c], [b, c]]),
+    };
+    Ok(Alpha::from_squared(alpha).expect("radii are numbers"))
+}
+
+/// The first α at which every vertex is in one of the simplices, and these are one piece.
+fn one_piece<const N: usize>(
+    rows: &[[u32; N]],
+    spheres: &Predicates<'_>,
+    ridges: impl Fn(&[u32; N]) -> Vec<[u32; 2]>,
+) -> f64 {
+    let mut order: Vec<(f64, usize)> =
+        rows.iter().enumerate().map(|(i, &row)| (spheres.first_alpha(row), i)).collect();
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let mut loose: std::collections::HashSet<u32> = rows.as_flattened().iter().copied().collect();
+    let mut sets = UnionFind::new(rows.len());
+    let mut at_ridge: HashMap<[u32; 2], u32> = HashMap::new();
+    let mut pieces = 0usize;
+    for group in order.chunk_by(|a, b| a.0 == b.0) {
+        for &(_, i) in group {
+            pieces += 1;
+            rows[i].iter().for_each(|v| _ = loose.remove(v));
+            for ridge in ridges(&rows[i]) {
+                if let Some(other) = at_ridge.insert(ridge, i as u32) {
+                    pieces -= usize::from(sets.unite(other, i as u32));
+                }
+            }
+        }
+        if loose.is_empty() && pieces == 1 {
+            return group[0].0;
+        }
+    }
+    unreachable!("all of them are one piece")
+}

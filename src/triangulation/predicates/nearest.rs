@@ -1,0 +1,118 @@
+//! Squared radii as numbers: the nearest double, and the exact number where that does not tell two
+//! apart.
+
+use super::formulas::{Ray, quotient};
+use super::size::View;
+use super::twofold::Twofold;
+use super::{Predicates, Ratio, Site, exact};
+use crate::math::number::{Number, dot};
+
+/// A squared radius on a lattice: numerator / 4 denominator, in squares of its step, less a weight.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Small {
+    numerator: i64,
+    denominator: i64,
+    weight: f64,
+}
+
+impl Small {
+    /// Whether two are surely the same number. Two that are the same may say no where they have
+    /// different weights.
+    pub fn equals(self, other: Self) -> bool {
+        let product = |a: i64, b: i64| i128::from(a) * i128::from(b);
+        self.weight == other.weight
+            && product(self.numerator, other.denominator)
+                == product(other.numerator, self.denominator)
+    }
+}
+
+impl Predicates<'_> {
+    /// The double nearest to the squared radius of the smallest orthogonal sphere, of two the one
+    /// whose last digit is even. Never −0.
+    ///
+    /// By one division where a lattice makes numerator and denominator exact, else by
+    /// twice the digits of doubles; what lies too near to the middle of two doubles for that, by
+    /// integers.
+    pub fn nearest_radius<const N: usize>(&self, simplex: [u32; N]) -> f64 {
+        let sites = self.sites(simplex);
+        if N == 1 {
+            return 0.0 - sites[0].weight;
+        }
+        let View { rays, size } = View::<N>::of(sites[0], sites);
+        let bounds = size.bounds(N);
+        let weight = sites[0].weight;
+        let terms = bounds.numerator + 4.0 * weight.abs() * bounds.denominator;
+        if self.lattice.holds_weights && self.holds(terms, 2 * N) {
+            let (numerator, denominator) = quotient(&rays[1..]);
+            // A face of a lattice's triangulation is not flat: its denominator is not 0.
+            return (numerator - 4.0 * weight * denominator) / (4.0 * denominator) + 0.0;
+        }
+        let by_integers = || self.exact_radius(simplex).nearest();
+        if !(size.is_sane() && weight.abs() < 1e60) {
+            return by_integers();
+        }
+        let (numerator, denominator) = quotient(&twofold_rays(sites)[1..]);
+        let (above, below) =
+            (bounds.numerator * Twofold::ROUNDING, bounds.denominator * Twofold::ROUNDING);
+        let d = denominator.high;
+        if d <= 4.0 * below {
+            return by_integers();
+        }
+        let fourth = numerator.over(denominator);
+        let quotient = Twofold { high: fourth.high / 4.0, low: fourth.low / 4.0 };
+        let radius = Twofold::sum(quotient.high, -weight);
+        let radius = Twofold::sum(radius.high, radius.low + quotient.low);
+        // |n/d − ñ/d̃| ≤ (e_n + (ñ/d̃) e_d) / (d̃ − e_d); then the division and the difference.
+        let error = (above + 4.0 * quotient.high.abs() * below) / (4.0 * (d - 2.0 * below))
+            + Twofold::ROUNDING * (quotient.high.abs() + weight.abs());
+        radius.nearest(error).map_or_else(by_integers, |radius| radius + 0.0)
+    }
+
+    /// The squared radius of the smallest orthogonal sphere, exactly. By integers of any length.
+    pub fn exact_radius<const N: usize>(&self, simplex: [u32; N]) -> Ratio {
+        exact::squared_radius(self.sites(simplex))
+    }
+
+    /// The same in small integers, where a lattice has them.
+    pub fn small_radius<const N: usize>(&self, simplex: [u32; N]) -> Option<Small> {
+        let sites = self.sites(simplex);
+        let weight = sites[0].weight;
+        if N == 1 {
+            return Some(Small { numerator: 0, denominator: 1, weight });
+        }
+        let alike = sites.iter().all(|site| site.weight == weight);
+        if !(alike || self.lattice.holds_weights) {
+            return None;
+        }
+        let View { rays, size } = View::<N>::of(sites[0], sites);
+        let bounds = size.bounds(N);
+        if !(self.holds(bounds.numerator, 2 * N) && self.holds(bounds.denominator, 2 * N - 2)) {
+            return None;
+        }
+        let (numerator, denominator) = quotient(&rays[1..]);
+        let steps = |value: f64, degree: usize| {
+            // A power of two: nothing is rounded.
+            (value / self.lattice.step.powi(degree as i32)) as i64
+        };
+        let terms = bounds.numerator + 4.0 * weight.abs() * bounds.denominator;
+        let folded = self.lattice.holds_weights && self.holds(terms, 2 * N);
+        let (numerator, weight) = match folded {
+            true => (numerator - 4.0 * weight * denominator, 0.0),
+            false => (numerator, weight),
+        };
+        Some(Small {
+            numerator: steps(numerator, 2 * N),
+            denominator: steps(denominator, 2 * N - 2),
+            weight,
+        })
+    }
+}
+
+fn twofold_rays<const N: usize>(sites: [Site; N]) -> [Ray<Twofold>; N] {
+    let p = sites[0];
+    sites.map(|q| {
+        let vector = [0, 1, 2].map(|k| Twofold::sum(q.position[k], -p.position[k]));
+        let heavier = Twofold::sum(p.weight, -q.weight);
+        Ray { power: dot(&vector, &vector).plus(&heavier), vector }
+    })
+}
