@@ -38,9 +38,9 @@ pub(crate) use formats::{is_vtk_xml, start_of};
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
 pub use part::{Region, downsample};
+pub(crate) use read::NpyFile;
 #[cfg(feature = "formats")]
 pub(crate) use read::{Element, Lines, VtkXml, io_error};
-pub(crate) use read::NpyFile;
 pub use read::{RawLayout, ReadOptions, Series};
 pub use reason::Reason;
 pub use sample::{SAMPLES, open, phantom, sample};
