@@ -30,20 +30,20 @@ pub struct InputArgs {
     /// Volume or point file, - (standard input), sample:skull, sample:phantom or sample:phantom@N.
     #[arg(value_name = "INPUT", help_heading = None::<&str>)]
     pub input: String,
-    /// Format where no name tells it, as of standard input and output (-): --format nrrd.
+    /// Format of standard input or output (-), as in --format nrrd.
     #[arg(long, value_name = "EXTENSION")]
     format: Option<String>,
     #[command(flatten)]
     part: PartArgs,
-    /// Values that become gray 0 and 255 [default: as they are for unsigned 8 bits, else min..max].
+    /// Values mapped to gray 0 and 255 [default: unchanged for unsigned 8-bit samples, otherwise min..max].
     #[arg(long, value_name = "LO..HI", value_parser = gray_range, allow_hyphen_values = true)]
     gray: Option<GrayRange>,
-    /// Write gray levels 0..255, and not the values of INPUT that they stand for.
+    /// Write gray levels 0..255 instead of the values of INPUT.
     #[arg(long)]
     gray_out: bool,
-    /// What the columns of a table of points are (CSV, XYZ): x, y and z, perhaps weight and value, and
-    /// others by any name, as in x,y,z,nx,ny,nz [default: what its first line says, or else its
-    /// numbers].
+    /// Columns of a table of points (CSV, XYZ): x, y, z, optionally weight and value, others under any
+    /// name, as in x,y,z,nx,ny,nz; without z and others, points lie in the plane z = 0 [default: from
+    /// its header, otherwise from its numbers].
     #[arg(long, value_name = "NAME,NAME,…")]
     columns: Option<Columns>,
     #[command(flatten)]
@@ -72,7 +72,7 @@ impl InputArgs {
         self.format.as_ref().map(dotted).unwrap_or_default()
     }
 
-    /// A path of an output whose extension tells the format: the path itself, if it has one.
+    /// A path for an output whose extension names the format: its own path, if it has one.
     pub fn output(&self, path: &Path) -> anyhow::Result<PathBuf> {
         match &self.format {
             _ if path.extension().is_some() => Ok(path.to_owned()),
@@ -116,28 +116,28 @@ impl InputArgs {
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Parts of a volume")]
 struct PartArgs {
-    /// Level of a pyramid (OME-Zarr) to read; 0 is the finest [default: 0].
+    /// Level of a pyramid (OME-Zarr); 0 is the finest [default: 0].
     #[arg(long, value_name = "N", conflicts_with = "dims")]
     level: Option<u32>,
-    /// Array to read, by its name, of a file of several (VTK, NPZ) [default: of VTK, the first of points].
+    /// Array to read from a file with several (VTK, NPZ) [default for VTK: the first point array].
     #[arg(long, value_name = "NAME", conflicts_with = "dims")]
     array: Option<String>,
-    /// Volume to read of a file of several (a fourth axis), from 0.
+    /// Volume to read from a file with several (a fourth axis), counted from 0.
     #[arg(long, value_name = "K", conflicts_with = "dims")]
     frame: Option<u64>,
-    /// Series to read of a folder of several (DICOM): its number as `walpha info` lists it, or the end
-    /// of its UID.
+    /// Series to read from a folder with several (DICOM): its number in `walpha info`, or the end of its
+    /// UID.
     #[arg(long, value_name = "N", conflicts_with = "dims")]
     series: Option<String>,
-    /// Value for samples that are NaN; without one they are left out: no points, no errors.
+    /// Value that replaces NaN samples; without a value they are masked: no points, no errors.
     #[arg(long, value_name = "VALUE", num_args = 0..=1, default_missing_value = "mask",
           value_parser = nan, allow_negative_numbers = true)]
     nan: Option<Nan>,
-    /// Take the samples from one index up to, and without, another along x, y and z; ends may be left
-    /// away, as in 20:40,:,10:.
+    /// Crop to a range of indices along x, y and z, each end exclusive; ends may be omitted, as in
+    /// 20:40,:,10:.
     #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = ranges::samples)]
     roi: Option<Region>,
-    /// Take the means of N×N×N samples.
+    /// Average blocks of N×N×N samples.
     #[arg(long, value_name = "N")]
     downsample: Option<NonZeroUsize>,
 }
@@ -146,7 +146,7 @@ struct PartArgs {
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Raw volumes")]
 pub struct RawArgs {
-    /// Read bare samples, so many along x, y and z (x fastest in the file).
+    /// Sizes of a raw file along x, y and z (x fastest).
     #[arg(long, value_name = "X,Y,Z", value_parser = dims, requires = "dtype")]
     dims: Option<Dims>,
     #[arg(long, value_name = "TYPE", requires = "dims", help = dtype_help())]
@@ -221,12 +221,12 @@ impl HaarArgs {
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Points")]
 pub struct SelectArgs {
-    /// Which samples: those of largest gray difference; or adaptive: from the corners of the volume
-    /// on, those where the interpolant of the ones before is worst.
+    /// Select the samples of largest gray difference, or adaptively: starting from the corners of the
+    /// volume, those where the interpolant of the previous ones is worst.
     #[arg(long, value_enum, default_value_t, value_name = "HOW")]
     select: SelectArg,
     /// Adaptive: stop when the RMSE of the interpolant over all samples is at most E gray levels
-    /// (--rms is that of the wavelet stage). With --count or --ratio: at what comes first.
+    /// (--rms belongs to the wavelet stage). With --count or --ratio: at whichever comes first.
     #[arg(long, value_name = "E", value_parser = not_negative)]
     target_rmse: Option<f64>,
     /// Keep N samples.
@@ -239,10 +239,10 @@ pub struct SelectArgs {
     #[arg(long, value_name = "T", group = "rule", value_parser = not_nan,
           allow_negative_numbers = true)]
     threshold: Option<f64>,
-    /// Leave out samples below this gray level after truncation.
+    /// Drop samples below this gray level after truncation.
     #[arg(long, value_name = "G", value_parser = not_nan, allow_negative_numbers = true)]
     gray_min: Option<f64>,
-    /// Leave out samples below this value of INPUT, as in --value-min 300 for Hounsfield units.
+    /// Drop samples below this value of INPUT, as in --value-min 300 for Hounsfield units.
     #[arg(long, value_name = "V", allow_negative_numbers = true, conflicts_with = "gray_min")]
     value_min: Option<f64>,
     #[command(flatten)]
@@ -253,11 +253,11 @@ pub struct SelectArgs {
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Coordinates")]
 pub struct PlaceArgs {
-    /// Coordinates in voxels, or in the unit of the file; then α, weights and sizes are too
-    /// [default: world where the file states spacing or a place, else voxel].
+    /// Coordinates, α, weights and sizes in voxels, or in the unit of the file [default: world where the
+    /// file states a spacing or an origin, otherwise voxel].
     #[arg(long, value_enum, value_name = "UNITS")]
     units: Option<Units>,
-    /// Which way world coordinates run, where the file says how they lie in a patient: x to the left
+    /// Direction of world coordinates, where the file states the patient's orientation: x to the left
     /// and y to the back (lps), or to the right and the front (ras) [default: lps].
     #[arg(long, value_enum, value_name = "SPACE")]
     space: Option<Space>,
@@ -340,9 +340,9 @@ impl SelectArgs {
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Weights and α")]
 pub struct WeightArgs {
-    /// The parameter α, a squared length in the units of the points; `inf` gives the convex hull, and
-    /// `auto` the smallest α at which all points are in one solid component [default: auto for
-    /// scattered points; for a volume 10·h², where h³ is the volume of a voxel].
+    /// The parameter α, a squared length in the units of the points; `inf` gives the convex hull,
+    /// `auto` the smallest α at which all points lie in one solid component [default: auto for
+    /// scattered points; 10·h² for a volume, where h³ is the volume of a voxel].
     #[arg(long, value_name = "A", group = "parameter", allow_negative_numbers = true)]
     alpha: Option<AlphaRule>,
     /// The parameter as a radius: α = R².
@@ -375,8 +375,8 @@ impl WeightArgs {
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Weights, frozen")]
 pub struct FrozenArgs {
-    /// The α, a squared length, for which weights are computed; they stay the same at every level,
-    /// so that levels are nested [default: as --alpha of `walpha shape`].
+    /// The α, a squared length, for which weights are computed; they are the same at every level, so
+    /// that levels are nested [default: as --alpha of `walpha shape`].
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
     alpha_ref: Option<AlphaRule>,
     #[arg(long, value_name = "KIND", allow_hyphen_values = true, help = weights_help())]
@@ -413,21 +413,21 @@ impl FromStr for Alphas {
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Shape")]
 pub struct ShapeArgs {
-    /// A point is a ball of squared radius α + ω (power), or of radius α + ω (radius).
+    /// A point is a ball of squared radius α + ω (power) or of radius α + ω (radius).
     #[arg(long, value_enum, default_value_t, value_name = "READING")]
     balls: Balls,
-    /// Program that computes the shape; all give the same answer.
+    /// Engine that computes the shape; all give the same answer.
     #[arg(long, value_enum, default_value_t, value_name = "ENGINE")]
     engine: Engine,
-    /// Blocks to cut the points into [default: by threads and memory]; 1 is the whole
-    /// triangulation, which alone knows hidden points.
+    /// Number of blocks [default: from threads and memory]; only a single block, the whole
+    /// triangulation, knows hidden points.
     #[arg(long, value_name = "N")]
     blocks: Option<NonZeroUsize>,
-    /// Memory to plan blocks for, as in 2G or 500M; not for what takes the whole triangulation (α = inf,
-    /// --exterior, --engine reference).
+    /// Memory limit to size blocks for, as in 2G or 500M; not with what needs the whole triangulation
+    /// (α = inf, --exterior, --engine reference).
     #[arg(long, value_name = "SIZE", value_parser = bytes, conflicts_with = "blocks")]
     memory: Option<u64>,
-    /// Keep the simplices outside the shape too: the whole triangulation.
+    /// Keep the simplices outside the shape, too: the whole triangulation.
     #[arg(long)]
     exterior: bool,
 }

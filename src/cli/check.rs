@@ -17,10 +17,11 @@ use super::report::SCHEMA_VERSION;
 use super::said::{Said, misused, refused};
 use super::{DIFFERENT, Global, check_filtration, complex_file, pipeline};
 
-/// Judge a complex exactly: that of an engine, or one another program wrote.
+/// Check a complex exactly: one of an engine, or one that another program wrote.
 ///
-/// INPUT is a volume or points, which an engine makes a shape of, or a complex or filtration (.json,
-/// .npz). The checker shares no code with the engines and CGAL. Exit code 3 when something is found.
+/// INPUT is a volume or points, from which an engine computes a shape, or a complex or filtration
+/// (.json, .npz). The checker shares no code with the engines or CGAL. Exit code 3 if there are
+/// findings.
 ///
 /// Examples:
 ///
@@ -34,7 +35,7 @@ pub struct Check {
     /// Points of the complex or filtration, where its file lists none: .csv or .npy.
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
-    /// Build the answer from the definition too, and compare (at most 200 points).
+    /// Also build the answer from the definition, and compare (at most 200 points).
     #[arg(long)]
     enumerate: bool,
     #[command(flatten)]

@@ -18,7 +18,7 @@ use super::{DIFFERENT, Global, compare_filtrations, complex_file};
 ///
 /// Points are matched by their places, so the two may number them differently. Exterior simplices
 /// are compared where both complexes list some; windings and lists of hidden points and duplicates
-/// are not. Exit code 3 when anything compared differs.
+/// are not. Exit code 3 if anything compared differs.
 ///
 /// Examples, of files that `walpha shape sample:skull --weights min-max -o skull.json` and the same
 /// with --engine reference -o reference.npz make:

@@ -132,9 +132,9 @@ mod tests {
     fn causes_are_told_once_and_before_advice() {
         let error = anyhow::anyhow!("no room").context("cannot write a: no room").context("shape");
         assert_eq!(reasons(&error), ("shape: cannot write a: no room".into(), None));
-        let error = anyhow::anyhow!("it is a folder")
-            .context(said!("cannot read a; or b: c" => "check the path"));
-        let told = ("cannot read a; or b: c: it is a folder".into(), Some("check the path".into()));
+        let error = anyhow::Error::from(said!("b; or c: it is a folder" => "check the path"));
+        let error = error.context("cannot read a");
+        let told = ("cannot read a: b; or c: it is a folder".into(), Some("check the path".into()));
         assert_eq!(reasons(&error), told);
     }
 

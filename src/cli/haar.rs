@@ -18,7 +18,7 @@ use super::progress::Progress;
 use super::report::{HaarReport, SCHEMA_VERSION};
 use super::said::refused;
 
-/// Transform a volume, drop small coefficients, and restore it.
+/// Transform a volume, drop small coefficients, and transform it back.
 ///
 /// Examples:
 ///

@@ -16,7 +16,7 @@ use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 use super::{Global, pipeline};
 
-/// Say what a file holds, without computing anything.
+/// Describe a file, without computing anything.
 ///
 /// Examples:
 ///

@@ -24,11 +24,11 @@ use super::{Global, curve, pipeline};
 
 /// Interpolate the values of points on their shape, and measure the error.
 ///
-/// F is linear on each cell of the shape (and on facets, edges and vertices that are faces of
-/// none). It is sampled on the grid of the volume, or with --dims on another over the same extent,
-/// from the first sample to the last; samples outside the shape are gray 0, which is the lowest value.
-/// Error is measured on the samples of INPUT that the shape covers; the peak of PSNR is gray 255. Hidden points
-/// carry no value. For points without a volume, --dims is needed and spans their box.
+/// F is linear on each cell of the shape, and on facets, edges and vertices that are not faces of one. It
+/// is sampled on the grid of the volume or, with --dims, on another grid over the same extent; samples
+/// outside the shape are gray 0, the lowest value. The error is measured on the samples of INPUT that the
+/// shape covers; PSNR is relative to gray 255. Hidden points carry no value. Points without a volume need
+/// --dims, a grid over their box.
 ///
 /// With --curve: error and coverage over the number of points instead, from a sixteenth to twice
 /// those selected, for each way to select them and the weights common=0, min-max and barycentric, as
@@ -51,11 +51,11 @@ use super::{Global, curve, pipeline};
 pub struct Interpolate {
     #[arg(short, long, value_name = "FILE", help = output_help())]
     output: Option<PathBuf>,
-    /// Volume to write 1 to where a sample is on the shape, else 0; the same formats, and replaced.
+    /// Mask to write: 1 where a sample is on the shape, otherwise 0; formats as for the output.
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
-    /// Interpolate everywhere: on the whole triangulation of the points (α = inf) and the 8 corners
-    /// of the volume, which come with their values and the least weight of the points.
+    /// Interpolate everywhere: on the whole triangulation (α = inf) of the points and the 8 corners of the
+    /// volume, which get their own values and the least weight of the points.
     #[arg(long, conflicts_with = "memory")]
     fill: bool,
     /// Measure error against the number of points.

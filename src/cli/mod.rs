@@ -77,11 +77,11 @@ struct Global {
     /// Print nothing but errors (and JSON, if asked for).
     #[arg(short, long, global = true)]
     quiet: bool,
-    /// Say on standard error what is being done, and how the work is cut.
+    /// Log to standard error what is being done.
     #[arg(short, long, global = true, conflicts_with = "quiet")]
     verbose: bool,
-    /// Threads to compute with, at most four for each processor; the result is the same for any
-    /// number [default: all].
+    /// Number of threads, at most four per processor; results do not depend on it [default: one per
+    /// processor].
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Whether a file goes to standard output.

@@ -17,18 +17,18 @@ use walpha::render::{
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Pictures (.png)")]
 pub struct PictureArgs {
-    /// From where a subject is seen whose face is turned to −y and whose crown to +z
-    /// [default: three-quarter].
+    /// Viewpoint, for a subject whose face is turned to −y and whose crown to +z [default:
+    /// three-quarter].
     #[arg(long, value_enum, value_name = "VIEW", group = "eye")]
     view: Option<ViewArg>,
-    /// The eye and what it looks at, in the units of the points, with a field of view of 30°.
+    /// Eye and target in the units of the points; the field of view is 30°.
     #[arg(long, value_name = "EX,EY,EZ,TX,TY,TZ", value_parser = camera, group = "eye",
           allow_hyphen_values = true)]
     camera: Option<Camera>,
-    /// What colours mean: nothing, the values F, or the classes of simplices.
+    /// What colours show: nothing, the values F, or the classes of simplices.
     #[arg(long, value_enum, default_value_t, value_name = "MEANING")]
     colour: ColourArg,
-    /// Pixels.
+    /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1600x1360")]
     size: Size,
 }

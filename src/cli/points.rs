@@ -14,7 +14,7 @@ use super::progress::Progress;
 use super::report::Report;
 use super::{Global, pipeline};
 
-/// Select points from a volume and weigh them.
+/// Select points from a volume and weight them.
 ///
 /// Examples:
 ///

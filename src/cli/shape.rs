@@ -32,14 +32,14 @@ use super::{Global, pipeline};
 pub struct Shape {
     #[arg(short, long, value_name = "FILE", num_args = 1.., help = shape_output())]
     output: Vec<PathBuf>,
-    /// Write text where a format has a binary form too (PLY).
+    /// Write PLY as text instead of binary.
     #[arg(long)]
     ascii: bool,
-    /// Write boundaries as those of solids, for programs that print or compute with them: regular
-    /// facets alone, closed, oriented, and cut apart where parts touch along edges or at vertices.
+    /// Write boundaries as solids, for 3D printing or meshing: only regular facets, closed, oriented, and
+    /// cut apart where parts touch along edges or at vertices.
     #[arg(long)]
     solid: bool,
-    /// Tell regular and singular facets apart, where some programs do not expect it: by groups (OBJ),
+    /// Distinguish regular and singular facets, which some programs do not expect: by groups (OBJ),
     /// colours (OFF) or numbers (PLY, with components and sheets).
     #[arg(long)]
     groups: bool,

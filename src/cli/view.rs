@@ -25,10 +25,10 @@ use super::progress::Progress;
 use super::report::{SCHEMA_VERSION, WeightsReport};
 use super::said::misused;
 
-/// Make a page that shows the shapes in a browser: self-contained, no network needed.
+/// Write an interactive page for the browser: self-contained, no network needed.
 ///
-/// A slider goes over α with the weights frozen; the boundary is coloured by F or by class, singular
-/// facets and edges, points sized by weight and an isosurface of the volume can be shown and hidden.
+/// A slider moves through α with the weights frozen. The boundary is coloured by F or by class; singular
+/// facets and edges, points sized by weight and an isosurface of the volume can be shown or hidden.
 ///
 /// Examples:
 ///
@@ -39,19 +39,19 @@ use super::said::misused;
 /// walpha view scan.xyz -o scan.html
 #[derive(Args)]
 pub struct View {
-    /// Page to write (.html), replaced if it is there.
+    /// Page to write (.html); an existing file is replaced.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// The α, a squared length, that the page opens at: a number, `inf`, or `auto`, the smallest at
     /// which all points are in one solid component [default: --alpha-ref].
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
     alpha: Option<AlphaRule>,
-    /// Levels of the slider: squared lengths, as in 1,2,5,inf; or auto, for critical values that
-    /// each show something else, most where the shape gets its form.
+    /// Stops of the slider: squared lengths, as in 1,2,5,inf; or auto, critical values that each change
+    /// the picture.
     #[arg(long, value_name = "A,A,…", default_value = "auto", allow_hyphen_values = true)]
     alphas: Alphas,
-    /// Where the isosurface to compare is, for volumes: a gray level, as in 50, or a value of INPUT, as
-    /// in 300v [default: 50].
+    /// Level of the isosurface, for volumes: a gray level, as in 50, or a value of INPUT, as in 300v
+    /// [default: 50].
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     isovalue: Option<Level>,
     #[command(flatten)]
@@ -207,7 +207,7 @@ impl View {
         tell(global, &facts)
     }
 
-    /// What the page tells besides the levels' numbers.
+    /// What the page shows besides the levels' numbers.
     fn told(
         &self,
         weighed: &Weighed,

@@ -82,7 +82,6 @@ pub static FORMATS: [Format; 9] = [
         ascii: true,
         groups: true,
         exporter: |options| Box::new(Ply(options)),
-        ..PLAIN
     },
     Format {
         name: "OFF",

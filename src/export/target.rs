@@ -219,7 +219,7 @@ mod tests {
         let path = folder.path().join("shape.ply");
         let target = Target::open(&path).unwrap();
         let error = target.write(|_| Err(ErrorKind::StorageFull.into())).unwrap_err();
-        let text = error.to_string();
+        let text = format!("{error}; {}", error.advice());
         assert!(text.contains("shape.ply") && !text.contains(".part"), "{text}");
         assert!(text.contains("nothing was left behind, choose a place with room"), "{text}");
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
@@ -242,7 +242,10 @@ mod tests {
     #[test]
     fn a_place_that_cannot_be_is_known_at_once() {
         let folder = tempfile::tempdir().unwrap();
-        let said = |name: &str| Target::open(&folder.path().join(name)).unwrap_err().to_string();
+        let said = |name: &str| {
+            let error = Target::open(&folder.path().join(name)).unwrap_err();
+            format!("{error}; {}", error.advice())
+        };
         let text = said("no/a.ply");
         assert!(
             text.contains("no/a.ply: there is no folder") && text.contains("make it"),

@@ -12,6 +12,9 @@ use super::write;
 use super::{Columns, Points, PointsError, WeightedPoints};
 use crate::volume::{NpyFile, Reason, UnknownFormat, is_vtk_xml, start_of};
 
+/// Reads a file whose columns may be named.
+type Read = fn(&Path, Option<&Columns>) -> Result<Points, PointsError>;
+
 /// A format of points.
 pub struct PointFormat {
     /// For people.
@@ -30,7 +33,7 @@ pub struct PointFormat {
     /// Whether a file of it holds points, where it may hold others.
     holds_points: fn(&Path) -> Result<bool, PointsError>,
     /// Reads a file; `None` where it was left out of the build.
-    read: Option<fn(&Path, Option<&Columns>) -> Result<Points, PointsError>>,
+    read: Option<Read>,
 }
 
 /// How points are written under an extension.

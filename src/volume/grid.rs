@@ -7,10 +7,27 @@ use super::{Conversion, Coordinates, VolumeError};
 ///
 /// Written (x, y, z), as points are; the array behind it is `[z, y, x]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked")]
 pub struct Dims {
     x: usize,
     y: usize,
     z: usize,
+}
+
+/// Sizes as they are read.
+#[derive(Deserialize)]
+struct Unchecked {
+    x: u64,
+    y: u64,
+    z: u64,
+}
+
+impl TryFrom<Unchecked> for Dims {
+    type Error = VolumeError;
+
+    fn try_from(Unchecked { x, y, z }: Unchecked) -> Result<Self, VolumeError> {
+        Self::new(x, y, z)
+    }
 }
 
 impl Dims {

@@ -24,7 +24,7 @@ use crate::cli::ranges;
 use crate::cli::said::{Said, misused};
 use facts::{Facts, write_levels, write_voids};
 
-/// Shapes at many α from one triangulation, or at several levels of detail.
+/// Compute shapes at many α from one triangulation, or at several levels of detail.
 ///
 /// Over α, weights are frozen, so that the shapes are nested: ladder.csv and ladder.json have counts,
 /// Betti numbers, volume and area of each level, voids.csv has every void with the α that fills
@@ -32,7 +32,7 @@ use facts::{Facts, write_levels, write_voids};
 #[cfg_attr(not(feature = "render"), doc = " it.")]
 /// The α to try are suggested. Over points (--counts) or the
 /// error of the wavelet stage (--epsilons) there is a mesh for each level of detail, at α = --alpha-ref,
-/// and detail.csv and detail.json tell error and size.
+/// and detail.csv and detail.json list error and size.
 ///
 /// Examples:
 ///
@@ -43,7 +43,7 @@ use facts::{Facts, write_levels, write_voids};
 /// walpha ladder sample:skull --counts 1000,4000,16000 --focus 20:40,20:40,20:40 -o detail
 #[derive(Args)]
 pub struct Ladder {
-    /// Folder to write to, made if it is not there; files in it are replaced, all at the end.
+    /// Folder to write to, created if needed; existing files in it are replaced, all at the end.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Squared lengths, as in 1,2,5,inf; or auto, for critical values of the topology.
@@ -55,10 +55,10 @@ pub struct Ladder {
         allow_hyphen_values = true
     )]
     alphas: Alphas,
-    /// Levels of detail: so many points each, of largest gray difference.
+    /// Levels of detail: numbers of points, those of largest gray difference.
     #[arg(long, value_name = "N,N,…", value_delimiter = ',', group = "levels")]
     counts: Vec<u64>,
-    /// Levels of detail: the L² norm of the error allowed to the wavelet stage, in gray levels.
+    /// Levels of detail: L² norms of the error allowed in the wavelet stage, in gray levels.
     #[arg(long, value_name = "E,E,…", value_delimiter = ',', group = "levels",
           value_parser = super::args::not_negative)]
     epsilons: Vec<f64>,

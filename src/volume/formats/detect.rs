@@ -197,7 +197,7 @@ fn by_extension(path: &Path) -> Option<&'static VolumeFormat> {
     let name = name(path);
     let ends =
         |extension: &&str| name.strip_suffix(*extension).is_some_and(|stem| stem.ends_with('.'));
-    FORMATS.iter().find(|format| format.extensions.iter().any(|extension| ends(&extension)))
+    FORMATS.iter().find(|format| format.extensions.iter().any(ends))
 }
 
 /// The file's name in lower case.

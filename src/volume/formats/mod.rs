@@ -22,6 +22,11 @@ pub(crate) use detect::start_of;
 use super::{ReadOptions, Volume, VolumeError};
 use crate::advice::Setting;
 
+/// Reads a file or folder.
+type Read = fn(&Path, &ReadOptions) -> Result<Volume, VolumeError>;
+/// Names the files that hold the samples.
+type DataFiles = fn(&Path) -> Result<Vec<PathBuf>, VolumeError>;
+
 /// A format of volumes.
 pub struct VolumeFormat {
     /// For people.
@@ -47,9 +52,9 @@ pub struct VolumeFormat {
     /// How its folders look.
     is_folder: fn(&Path) -> Result<bool, VolumeError>,
     /// Reads a file or folder; `None` where it was left out of the build.
-    read: Option<fn(&Path, &ReadOptions) -> Result<Volume, VolumeError>>,
+    read: Option<Read>,
     /// The files that hold the samples, where a header does not.
-    data_files: Option<fn(&Path) -> Result<Vec<PathBuf>, VolumeError>>,
+    data_files: Option<DataFiles>,
 }
 
 /// What a format keeps.

@@ -61,7 +61,8 @@ mod tests {
     #[test]
     fn a_missing_skull_says_how_to_get_it() {
         let nowhere = Path::new("/nonexistent");
-        let text = find(Some(nowhere), &nowhere.join("data.tar.gz")).unwrap_err().to_string();
+        let error = find(Some(nowhere), &nowhere.join("data.tar.gz")).unwrap_err();
+        let text = format!("{error}; {}", error.advice().unwrap());
         for part in ["libcgal-demo", "CGAL_DATA_DIR", "sample:phantom", "/nonexistent"] {
             assert!(text.contains(part), "{part} is missing in: {text}");
         }

@@ -72,7 +72,7 @@ pub(super) fn stacked(
 }
 
 /// The step from one slice to the next; `None` for a single one.
-fn even(slices: &[Slice], normal: [f64; 3]) -> Result<Option<[f64; 3]>, String> {
+fn even(slices: &[Slice], normal: [f64; 3]) -> Result<Option<[f64; 3]>, Reason> {
     let [first, .., last] = slices else { return Ok(None) };
     let at = |slice: &Slice| dot(slice.position, normal);
     let mut gaps: Vec<f64> = slices.windows(2).map(|two| at(&two[1]) - at(&two[0])).collect();
