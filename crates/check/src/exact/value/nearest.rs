@@ -14,6 +14,9 @@ const LARGEST: i64 = 1024;
 
 impl Exact {
     /// The nearest double, of two the one whose last digit is even; ±∞ beyond them.
+    ///
+    /// # Panics
+    /// Never: no more than 53 digits are kept.
     pub fn nearest(&self) -> f64 {
         let negative = sign(&self.numerator).is_lt();
         let size = if negative { -&self.numerator } else { self.numerator.clone() };
