@@ -18,7 +18,7 @@ use walpha::points::{Points, Selection, Units, difference, select, weigh};
 use walpha::shape::{Engine, ShapeOptions};
 use walpha::triangulation::{Maker, Sites, triangulate};
 use walpha::{Alpha, Gray, Simplices, Volume, WeightedPoints, Weighting};
-use walpha::{alpha_shape, memory, volume};
+use walpha::{alpha_shape, volume};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
@@ -247,7 +247,7 @@ fn run(engine: &str, points: &str, alpha: &str, threads: usize, memory: Option<u
             let made = triangulate(&sites, Maker::Native)?;
             assert!(!made.cells().is_empty());
             let seconds = started.elapsed().as_secs_f64();
-            println!("{seconds} {} 0 0 0 0 0 0 0 0 0 0", memory::peak_bytes().unwrap_or(0) >> 10);
+            println!("{seconds} {} 0 0 0 0 0 0 0 0 0 0", peak());
             return Ok(());
         }
     };
@@ -259,7 +259,7 @@ fn run(engine: &str, points: &str, alpha: &str, threads: usize, memory: Option<u
     let complex = shape.complex();
     println!(
         "{seconds} {} {} {} {} {}",
-        memory::peak_bytes().unwrap_or(0) >> 10,
+        peak(),
         complex.cells.len(),
         by_class(&complex.facets),
         by_class(&complex.edges),
@@ -325,4 +325,11 @@ fn random(count: usize) -> Points {
     };
     let positions = (0..count).map(|_| [next(), next(), next()]).collect();
     Points { positions, ..Points::default() }
+}
+
+/// The most memory this process ever held, in KiB; 0 where the system does not say.
+fn peak() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    line.and_then(|line| line.trim().strip_suffix("kB")?.trim().parse().ok()).unwrap_or(0)
 }

@@ -32,13 +32,15 @@ pub use ndarray;
 pub mod advice;
 #[cfg_attr(not(feature = "cgal"), path = "cgal/absent.rs")]
 mod cgal;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod export;
 pub mod haar;
 pub mod interpolate;
 pub mod ladder;
 mod math;
-pub mod memory;
-pub mod near;
+mod memory;
+mod near;
 pub mod pipeline;
 pub mod points;
 pub mod progress;
@@ -48,7 +50,7 @@ pub mod render;
 pub mod reproduce;
 mod select;
 pub mod shape;
-pub mod shown;
+mod shown;
 pub mod triangulation;
 pub mod volume;
 
@@ -57,6 +59,7 @@ pub use walpha_check as check;
 
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
 pub use interpolate::Interpolant;
+pub use memory::NoMemory;
 pub use pipeline::Pipeline;
 pub use points::{Points, PointsError, Selection, SelectionRule, Units, WeightedPoints, Weighting};
 pub use shape::{Alpha, AlphaShape, Balls, Class, Complex, Simplices, alpha_shape};

@@ -1,7 +1,5 @@
-//! The `walpha` command.
-
-mod cli;
+//! The command `walpha`: see `walpha --help`.
 
 fn main() -> std::process::ExitCode {
-    cli::run()
+    walpha::cli::run()
 }

@@ -4,6 +4,7 @@ use crate::advice::Advice;
 
 /// The most memory this process ever held, in bytes; `None` where the system does not say (only
 /// Linux does).
+#[cfg(feature = "cli")]
 pub fn peak_bytes() -> Option<u64> {
     status("VmHWM:")
 }

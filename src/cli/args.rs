@@ -4,17 +4,17 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
-use walpha::export::Target;
-use walpha::interpolate::Adaptive;
-use walpha::pipeline::{AlphaRule, Choice, Parameter};
-use walpha::points::Columns;
-use walpha::shape::{Engine, ShapeOptions};
-use walpha::volume::{Dtype, Endian, Nan, RawLayout, ReadOptions, Region};
-use walpha::{
+use crate::export::Target;
+use crate::interpolate::Adaptive;
+use crate::pipeline::{AlphaRule, Choice, Parameter};
+use crate::points::Columns;
+use crate::shape::{Engine, ShapeOptions};
+use crate::volume::{Dtype, Endian, Nan, RawLayout, ReadOptions, Region};
+use crate::{
     Alpha, Balls, Coordinates, Decomposition, Dims, Gray, GrayRange, HaarOptions, LengthUnit,
     Selection, SelectionRule, Space, Tolerance, Units, Volume, Weighting,
 };
+use clap::{Args, ValueEnum};
 
 use super::given::Given;
 use super::ranges;

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use crate::check::schema::PlacedComplex;
+use crate::check::{Certificate, Comparison, Extent, Finding, compare, enumerate};
+use crate::progress::Stage;
+use crate::shown::shown;
 use clap::{Args, Command};
 use serde::Serialize;
-use walpha::check::schema::PlacedComplex;
-use walpha::check::{Certificate, Comparison, Extent, Finding, compare, enumerate};
-use walpha::progress::Stage;
-use walpha::shown::shown;
 
 use super::args::{PipelineArgs, ShapeArgs};
 use super::output::{name, tell};

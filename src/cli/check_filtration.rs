@@ -4,9 +4,9 @@ use std::fmt::{self, Display};
 use std::path::Path;
 use std::process::ExitCode;
 
+use crate::check::{FiltrationCertificate, FiltrationFinding, certify_filtration};
+use crate::progress::Stage;
 use serde::Serialize;
-use walpha::check::{FiltrationCertificate, FiltrationFinding, certify_filtration};
-use walpha::progress::Stage;
 
 use super::check::{MOST_LISTED, MOST_PRINTED};
 use super::output::{name, tell};

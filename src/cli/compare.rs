@@ -4,9 +4,9 @@ use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use crate::check::{Comparison, compare};
 use clap::Args;
 use serde::Serialize;
-use walpha::check::{Comparison, compare};
 
 use super::output::{name, tell};
 use super::report::SCHEMA_VERSION;

@@ -4,8 +4,8 @@ use std::fmt::{self, Display};
 use std::path::Path;
 use std::process::ExitCode;
 
+use crate::check::{FiltrationComparison, compare_filtrations};
 use serde::Serialize;
-use walpha::check::{FiltrationComparison, compare_filtrations};
 
 use super::output::{name, tell};
 use super::report::SCHEMA_VERSION;

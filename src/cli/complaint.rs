@@ -3,9 +3,9 @@
 use std::error::Error;
 use std::io::IsTerminal;
 
+use crate::shown::escaped;
+use crate::volume::UnknownFormat;
 use clap::error::ErrorKind;
-use walpha::shown::escaped;
-use walpha::volume::UnknownFormat;
 
 use super::progress;
 use super::said::{Said, advice};
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn the_library_speaks_in_options() {
-        let error = walpha::shape::ShapeError::Exterior { blocks: 3 };
+        let error = crate::shape::ShapeError::Exterior { blocks: 3 };
         let (why, next) = reasons(&error.into());
         assert!(why.contains("3 blocks") && !why.contains("--"), "{why}");
         assert_eq!(next.as_deref(), Some("give --blocks 1, or omit --exterior"));

@@ -3,10 +3,10 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
+use crate::check::schema::{ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
+use crate::points::read_points;
+use crate::shown::shown;
 use anyhow::Context;
-use walpha::check::schema::{ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
-use walpha::points::read_points;
-use walpha::shown::shown;
 
 use super::said::{Said, refused, said};
 

@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use super::said::{Said, refused, said};
+use crate::near::nearest;
+use crate::shown::shown;
 use anyhow::Context;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 use toml::{Table, Value};
-use walpha::near::nearest;
-use walpha::shown::shown;
 
 /// The option that names the file.
 const FILE: &str = "config";

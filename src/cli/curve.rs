@@ -4,14 +4,14 @@ use std::fmt::{self, Display};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
-use walpha::export::{Content, NewFolder, Target, write_all};
-use walpha::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
-use walpha::progress::Stage;
+use crate::export::{Content, NewFolder, Target, write_all};
+use crate::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
+use crate::progress::Stage;
 #[cfg(feature = "render")]
-use walpha::render::error_figure;
-use walpha::shown::shown;
-use walpha::{LengthUnit, SelectionRule, Volume, Weighting, haar};
+use crate::render::error_figure;
+use crate::shown::shown;
+use crate::{LengthUnit, SelectionRule, Volume, Weighting, haar};
+use serde::Serialize;
 
 use super::Global;
 use super::args::{PipelineArgs, SelectArgs};

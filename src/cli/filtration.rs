@@ -5,13 +5,13 @@ use std::fmt::{self, Display};
 use std::io::Write;
 use std::path::PathBuf;
 
+use crate::Coordinates;
+use crate::export::{Content, FiltrationFormat, Target, write_all};
+use crate::ladder::{self, Ordered};
+use crate::pipeline::{Parameter, Weighed};
+use crate::progress::Stage;
 use clap::Args;
 use serde::Serialize;
-use walpha::Coordinates;
-use walpha::export::{Content, FiltrationFormat, Target, write_all};
-use walpha::ladder::{self, Ordered};
-use walpha::pipeline::{Parameter, Weighed};
-use walpha::progress::Stage;
 
 use super::args::{FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
 use super::formats::filtration_output;

@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::said::said;
-use walpha::export::{Filled, NewFolder, Target, put_all};
-use walpha::shown::shown;
+use crate::export::{Filled, NewFolder, Target, put_all};
+use crate::shown::shown;
 
 /// The folder results go to: found writable before the long work. All files appear in it at the end,
 /// or none.

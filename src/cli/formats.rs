@@ -1,6 +1,6 @@
 //! What help says of formats, from the library's tables.
 
-use walpha::{export, points, volume};
+use crate::{export, points, volume};
 
 /// What INPUT may be.
 fn inputs() -> String {

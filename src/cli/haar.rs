@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
+use crate::export::Target;
+use crate::haar::smooth;
+use crate::progress::Stage;
+use crate::volume::VolumeWriter;
 use clap::Args;
 use serde::Serialize;
-use walpha::export::Target;
-use walpha::haar::smooth;
-use walpha::progress::Stage;
-use walpha::volume::VolumeWriter;
 
 use super::Global;
 use super::args::{HaarArgs, InputArgs};

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use crate::points::read_points;
+use crate::progress::Stage;
+use crate::shown::number;
+use crate::volume::{self, Series};
+use crate::{Coordinates, Frame, LengthUnit};
 use clap::Args;
 use serde::Serialize;
-use walpha::points::read_points;
-use walpha::progress::Stage;
-use walpha::shown::number;
-use walpha::volume::{self, Series};
-use walpha::{Coordinates, Frame, LengthUnit};
 
 use super::args::InputArgs;
 use super::output::{name, tell};

@@ -1,4 +1,4 @@
-//! Floor 7: parse, call the library, print, choose an exit code.
+//! Floor 7: the command. It parses, calls the library, prints, and chooses an exit code.
 
 mod args;
 mod check;
@@ -39,6 +39,8 @@ use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 
+use crate::export::Target;
+use crate::progress::TARGET;
 use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use tracing::Level;
 use tracing::level_filters::LevelFilter;
@@ -46,8 +48,6 @@ use tracing_subscriber::Layer;
 use tracing_subscriber::filter::Targets;
 use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::util::SubscriberInitExt;
-use walpha::export::Target;
-use walpha::progress::TARGET;
 
 use output::{is_broken_pipe, print};
 use said::said;

@@ -3,8 +3,8 @@
 use std::fmt::Display;
 use std::io::{self, Write};
 
+use crate::shown::escaped;
 use serde::Serialize;
-use walpha::shown::escaped;
 
 use super::Global;
 

@@ -5,13 +5,13 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::said::refused;
-use clap::{Args, ValueEnum};
-use walpha::AlphaShape;
-use walpha::export::Exporter;
-use walpha::render::{
+use crate::AlphaShape;
+use crate::export::Exporter;
+use crate::render::{
     Background, Camera, ColourMap, Colouring, Projection, RenderError, Scene, ShapeStyle, Size,
     View,
 };
+use clap::{Args, ValueEnum};
 
 /// How a shape is drawn.
 #[derive(Args, Clone, Copy)]

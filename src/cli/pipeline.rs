@@ -3,15 +3,15 @@
 use std::fmt::{self, Display};
 use std::path::Path;
 
+use crate::export::{Scratch, Target};
+use crate::ladder::{Curve, Filtration};
+use crate::pipeline::{Model, PipelineError, Weighed};
+use crate::points::{is_point_file, read_points};
+use crate::progress::Stage;
+use crate::shape::ShapeOptions;
+use crate::volume::Reason;
+use crate::{Alpha, GrayRange, LengthUnit, Pipeline, Points, Units, Volume, VolumeError, volume};
 use serde::Serialize;
-use walpha::export::{Scratch, Target};
-use walpha::ladder::{Curve, Filtration};
-use walpha::pipeline::{Model, PipelineError, Weighed};
-use walpha::points::{is_point_file, read_points};
-use walpha::progress::Stage;
-use walpha::shape::ShapeOptions;
-use walpha::volume::Reason;
-use walpha::{Alpha, GrayRange, LengthUnit, Pipeline, Points, Units, Volume, VolumeError, volume};
 
 use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, WeightArgs};
 use super::complaint::{is_usage, reasons};
@@ -54,7 +54,7 @@ pub fn with_points(error: VolumeError) -> anyhow::Error {
     if !matches!(error, VolumeError::Format { reason: Reason::Unknown { .. }, .. }) {
         return error.into();
     }
-    let names: Vec<&str> = walpha::points::FORMATS.iter().map(|format| format.name).collect();
+    let names: Vec<&str> = crate::points::FORMATS.iter().map(|format| format.name).collect();
     let said = Said::from(error);
     Said { why: format!("{}, {} as points", said.why, names.join(", ")), ..said }.into()
 }

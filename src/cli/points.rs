@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::export::Target;
+use crate::points::PointWriter;
+use crate::progress::Stage;
 use clap::Args;
-use walpha::export::Target;
-use walpha::points::PointWriter;
-use walpha::progress::Stage;
 
 use super::args::PipelineArgs;
 use super::formats::points_output;

@@ -4,10 +4,10 @@ use std::fmt;
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
+use crate::progress::Stage;
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use tracing::field::{Field, Visit};
 use tracing_subscriber::layer::Context;
-use walpha::progress::Stage;
 
 use super::Global;
 
@@ -112,7 +112,7 @@ fn style(template: &str) -> ProgressStyle {
     style.with_key("rate", rate).progress_chars("=> ")
 }
 
-/// Hears how far the library is: events of the target [`walpha::progress::TARGET`].
+/// Hears how far the library is: events of the target [`crate::progress::TARGET`].
 pub struct Listener;
 
 impl<S: tracing::Subscriber> tracing_subscriber::Layer<S> for Listener {

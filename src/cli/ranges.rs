@@ -1,7 +1,7 @@
 //! Ranges along x, y and z: X0:X1,Y0:Y1,Z0:Z1.
 
-use walpha::ladder;
-use walpha::volume::Region;
+use crate::ladder;
+use crate::volume::Region;
 
 use super::said::{Said, refused, said};
 

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
+use crate::interpolate::Adaptive;
+use crate::pipeline::{Model, Parameter, Weighed};
+use crate::points::WeightSummary;
+use crate::shape::{Betti, ByClass, Component, Cuts, Engine, Void};
+use crate::shown::number;
+use crate::{AlphaShape, Coordinates, GrayRange, LengthUnit, Truncation, memory};
 use serde::Serialize;
-use walpha::interpolate::Adaptive;
-use walpha::pipeline::{Model, Parameter, Weighed};
-use walpha::points::WeightSummary;
-use walpha::shape::{Betti, ByClass, Component, Cuts, Engine, Void};
-use walpha::shown::number;
-use walpha::{AlphaShape, Coordinates, GrayRange, LengthUnit, Truncation, memory};
 
 use super::output::name;
 use super::pipeline::VolumeFacts;

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use crate::progress::Stage;
+use crate::reproduce::{File, Report, Subject, page, reproduce};
+use crate::shown::shown;
+use crate::volume::{ReadOptions, open};
+use crate::{Gray, Volume, VolumeError};
 use clap::Args;
-use walpha::progress::Stage;
-use walpha::reproduce::{File, Report, Subject, page, reproduce};
-use walpha::shown::shown;
-use walpha::volume::{ReadOptions, open};
-use walpha::{Gray, Volume, VolumeError};
 
 use super::Global;
 use super::folder::Folder;

@@ -2,18 +2,19 @@
 
 use std::error::Error;
 
-use walpha::advice::{Advice, Setting};
-use walpha::export::TargetError;
-use walpha::haar::HaarError;
-use walpha::interpolate::InterpolateError;
-use walpha::memory::NoMemory;
-use walpha::pipeline::PipelineError;
-use walpha::points::{UnknownColumns, UnknownWeighting};
-use walpha::reproduce::ReproduceError;
-use walpha::shape::{AlphaError, PlanError, ShapeError};
-use walpha::triangulation::{SitesError, TriangulationError};
-use walpha::volume::{UnknownFormat, UnknownName};
-use walpha::{PointsError, VolumeError};
+use crate::advice::{Advice, Setting};
+use crate::export::TargetError;
+use crate::haar::HaarError;
+use crate::interpolate::InterpolateError;
+use crate::memory::NoMemory;
+use crate::pipeline::PipelineError;
+use crate::points::{UnknownColumns, UnknownWeighting};
+#[cfg(feature = "paper")]
+use crate::reproduce::ReproduceError;
+use crate::shape::{AlphaError, PlanError, ShapeError};
+use crate::triangulation::{SitesError, TriangulationError};
+use crate::volume::{UnknownFormat, UnknownName};
+use crate::{PointsError, VolumeError};
 
 /// Why a command cannot do something, and what to do next.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -64,16 +65,18 @@ pub(crate) use {misused, refused, said};
 
 /// Lists the library's errors that know what to do.
 macro_rules! advising {
-    ($($error:ty),* $(,)?) => {
+    ($($(#[$condition:meta])? $error:ty),* $(,)?) => {
         /// What an error of the library knows about what to do.
         fn of_library(error: &(dyn Error + 'static)) -> Option<Advice> {
-            $(if let Some(error) = error.downcast_ref::<$error>() {
-                return error.advice().into();
+            $($(#[$condition])? {
+                if let Some(error) = error.downcast_ref::<$error>() {
+                    return error.advice().into();
+                }
             })*
             None
         }
 
-        $(impl From<$error> for Said {
+        $($(#[$condition])? impl From<$error> for Said {
             fn from(error: $error) -> Self {
                 Self { usage: false, ..Self::usage_of(&error) }
             }
@@ -87,6 +90,7 @@ advising![
     PipelineError,
     PlanError,
     PointsError,
+    #[cfg(feature = "paper")]
     ReproduceError,
     ShapeError,
     SitesError,

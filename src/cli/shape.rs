@@ -3,12 +3,12 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use crate::export::{Content, ExportOptions, Exporter, FORMATS, Format, Target, write_all};
+use crate::progress::Stage;
+use crate::shape::{ShapeOptions, Surface};
+use crate::shown::shown;
+use crate::volume::UnknownFormat;
 use clap::Args;
-use walpha::export::{Content, ExportOptions, Exporter, FORMATS, Format, Target, write_all};
-use walpha::progress::Stage;
-use walpha::shape::{ShapeOptions, Surface};
-use walpha::shown::shown;
-use walpha::volume::UnknownFormat;
 
 use super::args::{PipelineArgs, ShapeArgs};
 use super::formats::shape_output;

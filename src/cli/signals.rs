@@ -1,6 +1,6 @@
 //! What ends the command before its time, and how it goes then: no file is left half written.
 
-use walpha::export::abandon;
+use crate::export::abandon;
 
 use super::{INTERRUPTED, progress};
 
@@ -22,9 +22,9 @@ pub fn prepare() {
 
 #[cfg(unix)]
 mod unix {
+    use crate::export::sweep;
     use nix::libc::{_exit, c_int};
     use nix::sys::signal::{SigHandler, Signal, signal};
-    use walpha::export::sweep;
 
     const ABORTED: &str = "\
 error: walpha stopped in the middle of its work

@@ -5,17 +5,17 @@ use std::fmt::{self, Display};
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use crate::export::Target;
+use crate::ladder::Filtration;
+use crate::pipeline::{AlphaRule, Parameter, Weighed};
+use crate::progress::Stage;
+use crate::render::{Original, Page, Subject};
+use crate::shown::{number, shown};
+use crate::volume::UnknownFormat;
+use crate::{Alpha, GrayRange};
 use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
-use walpha::export::Target;
-use walpha::ladder::Filtration;
-use walpha::pipeline::{AlphaRule, Parameter, Weighed};
-use walpha::progress::Stage;
-use walpha::render::{Original, Page, Subject};
-use walpha::shown::{number, shown};
-use walpha::volume::UnknownFormat;
-use walpha::{Alpha, GrayRange};
 
 use super::Global;
 use super::args::{self, Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};

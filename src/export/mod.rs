@@ -54,6 +54,8 @@ pub use ply::Ply;
 pub use scratch::Scratch;
 pub use stl::Stl;
 pub use target::{Content, Filled, Target, TargetError, put_all, write_all};
-pub use unfinished::{NewFolder, abandon, sweep};
+#[cfg(feature = "cli")]
+pub(crate) use unfinished::abandon;
+pub use unfinished::{NewFolder, sweep};
 pub use vtp::Vtp;
 pub use vtu::Vtu;

@@ -101,7 +101,8 @@ pub fn sweep() {
 
 /// Removes what is not complete, and ends the process before another file can appear. For the handler
 /// of an interrupt, in a thread of its own: files that stand under their names are complete.
-pub fn abandon(code: i32) -> ! {
+#[cfg(feature = "cli")]
+pub(crate) fn abandon(code: i32) -> ! {
     let _for_good = gate();
     sweep();
     std::process::exit(code)

@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::io;
 
-use serde::Serialize;
-use walpha::ladder::focus;
-use walpha::pipeline::Parameter;
-use walpha::points::{Points, Units, difference, select, weigh};
-use walpha::progress::Stage;
-use walpha::shape::{Betti, Measures, ShapeOptions};
-use walpha::{
+use crate::ladder::focus;
+use crate::pipeline::Parameter;
+use crate::points::{Points, Units, difference, select, weigh};
+use crate::progress::Stage;
+use crate::shape::{Betti, Measures, ShapeOptions};
+use crate::{
     Coordinates, GrayRange, HaarOptions, Selection, SelectionRule, Tolerance, Truncation, Volume,
     Weighting, alpha_shape, haar,
 };
+use serde::Serialize;
 
 use super::super::Global;
 use super::super::args::WeightArgs;
@@ -119,7 +119,7 @@ impl Ladder {
                 epsilon: truncation.epsilon,
                 rms: truncation.rms,
                 cells: shape.complex().cells.len(),
-                boundary_facets: walpha::shape::Surface::of(&shape).facets().count(),
+                boundary_facets: crate::shape::Surface::of(&shape).facets().count(),
                 betti: shape.betti(),
                 measures: *shape.measures(),
                 coverage: shape.measures().volume / domain.volume,
@@ -136,7 +136,7 @@ impl Ladder {
             })?;
             rows.push(row);
         }
-        let in_region = |(points, region): &(Points, &walpha::ladder::Region)| {
+        let in_region = |(points, region): &(Points, &crate::ladder::Region)| {
             points.positions.iter().filter(|&&p| region.contains(p)).count()
         };
         let facts = Facts {

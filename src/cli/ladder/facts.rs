@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display, Write as _};
 use std::io;
 
+use crate::Coordinates;
+use crate::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
+use crate::pipeline::{Parameter, Weighed};
+use crate::shape::{Betti, ByClass, Measures, Void, number_or_name};
 use serde::Serialize;
-use walpha::Coordinates;
-use walpha::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
-use walpha::pipeline::{Parameter, Weighed};
-use walpha::shape::{Betti, ByClass, Measures, Void, number_or_name};
 
 use super::super::output::name;
 use super::super::pipeline::Domain;

@@ -6,13 +6,13 @@ mod facts;
 use std::fmt::{Display, LowerExp};
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use walpha::export::{ExportOptions, Exporter, Format};
-use walpha::ladder::{Filtration, Ladder as Levels, Level, Region};
-use walpha::pipeline::Parameter;
-use walpha::progress::Stage;
+use crate::export::{ExportOptions, Exporter, Format};
+use crate::ladder::{Filtration, Ladder as Levels, Level, Region};
+use crate::pipeline::Parameter;
+use crate::progress::Stage;
 #[cfg(feature = "render")]
-use walpha::render::ladder_figure;
+use crate::render::ladder_figure;
+use clap::Args;
 
 use super::Global;
 use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use crate::export::Exporter;
 use clap::Args;
-use walpha::export::Exporter;
 
 #[derive(Args, Clone, Copy)]
 pub struct PictureArgs {}

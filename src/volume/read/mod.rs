@@ -50,8 +50,10 @@ pub(crate) use inr::read as read_inr;
 #[cfg(feature = "formats")]
 pub(crate) use lines::Lines;
 pub(crate) use npy::NpyFile;
+#[cfg(feature = "formats")]
+pub(crate) use payload::Element;
+pub(crate) use payload::Length;
 use payload::PayloadError;
-pub(crate) use payload::{Element, Length};
 pub use raw::RawLayout;
 pub use series::Series;
 #[cfg(feature = "formats")]
