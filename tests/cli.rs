@@ -310,7 +310,8 @@ fn bad_selections_exit_with_1() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     fails(f, 1, "shape sample:phantom@8 --count 513", &["from 1 to 512"]);
-    fails(f, 1, "shape sample:phantom@8 --count 3", &["3 distinct points", "at least 4"]);
+    let few = "shape sample:phantom@8 --count 3 --dimension 3";
+    fails(f, 1, few, &["3 distinct points", "at least 4"]);
     fails(f, 1, "shape sample:phantom@8 --threshold 300", &["none of 512 voxels"]);
     fails(f, 1, "shape sample:phantom@8 --gray-min 300", &["no voxel reaches", "give less"]);
     fails(f, 1, "shape sample:phantom@1 --ratio 1", &["1 distinct points"]);

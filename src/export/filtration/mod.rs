@@ -41,7 +41,7 @@ pub static FILTRATION_FORMATS: [FiltrationFormat; 3] = [
     FiltrationFormat {
         name: "text",
         extension: "txt",
-        about: "A line for each simplex, in order: value, whether Gabriel, from where on regular and interior, vertices.",
+        about: "A line for each simplex, in order: value, Gabriel or not, intervals, vertices.",
         write: text::write,
     },
 ];

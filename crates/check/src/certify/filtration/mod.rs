@@ -5,16 +5,18 @@ mod order;
 mod spans;
 mod values;
 
+use serde::Serialize;
+
 use super::structure::Structure;
 use super::{Certificate, CertifyError, Points};
 use crate::Alpha;
 use crate::schema::{Below, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
 
 use finding::differences;
-pub use finding::{Bound, FiltrationFinding};
-use serde::Serialize;
 use spans::Spans;
 use values::Ranks;
+
+pub use finding::{Bound, FiltrationFinding};
 
 /// What was judged of a filtration, and what not.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -69,8 +71,9 @@ pub enum CertifyFiltrationError {
 }
 
 /// Judges a filtration: that its simplices are the whole regular triangulation (the rules of
-/// [`Claim::visit`](crate::Claim::visit) at α = ∞), the value of each, whether it is Gabriel, from which α on it is regular
-/// and interior, and the order. All by exact numbers; what a file has as doubles must be the nearest.
+/// [`Claim::visit`](crate::Claim::visit) at α = ∞), the value of each, whether it is Gabriel, from
+/// which α on it is regular and interior, and the order. All by exact numbers; what a file has as
+/// doubles must be the nearest.
 ///
 /// With the intervals every class at every α is judged: below its value a simplex is exterior, then
 /// singular, regular and interior. Faces come before their cofaces where the order is right: no value
