@@ -87,7 +87,9 @@ fn flat_shapes_are_those_of_the_definition() {
         let scale = points.positions.as_flattened().iter().fold(1e-3f64, |m, x| m.max(x.abs()));
         for alpha in [-0.5, 0.0, 0.02, 0.05, 0.1, 0.25, 1.0, f64::INFINITY] {
             let alpha = alpha * scale * scale;
-            let made = enumerate(&points.positions, &points.weights, alpha).unwrap();
+            let made =
+                enumerate(&points.positions, &points.weights, Alpha::from_squared(alpha).unwrap())
+                    .unwrap();
             for engine in [Engine::Native, Engine::Cgal] {
                 let whole = shape(&points, alpha, engine, true);
                 assert_eq!(*whole.complex(), made.complex, "{engine:?} at {alpha}: {points:?}");
@@ -97,10 +99,10 @@ fn flat_shapes_are_those_of_the_definition() {
                 assert_eq!(whole.voids(), Some(vec![]));
                 let alone = shape(&points, alpha, engine, false);
                 assert_eq!(alone.betti(), whole.betti());
-                assert!(alone.complex().facets.counts()[Class::Exterior as usize] == 0);
+                assert!(alone.complex().facets.counts()[Class::Exterior] == 0);
             }
             for class in Class::ALL {
-                counts[class as usize] += made.complex.edges.counts()[class as usize];
+                counts[class as usize] += made.complex.edges.counts()[class];
             }
         }
     }

@@ -54,7 +54,7 @@ pub struct Weighed {
     pub points: WeightedPoints,
     /// How it all came about.
     pub origin: Origin,
-    /// α; `None` where it is still to be found ([`Pipeline::find`]), because weights do not need it.
+    /// α; `None` where it is still to be found ([`Weighed::find_parameter`]), because weights do not need it.
     pub parameter: Option<Parameter>,
 }
 
