@@ -1,3 +1,5 @@
+use std::num::NonZeroU64;
+
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -67,10 +69,16 @@ impl Filtration {
     /// The smallest α at which all points are in one solid component: [`Suggestions::one_region`],
     /// for less than half of what a [`Curve`] costs. O(n log n).
     pub fn one_region(&self) -> Alpha {
+        self.regions(NonZeroU64::MIN)
+    }
+
+    /// The smallest α at which every vertex of the triangulation is one of a cell, and the cells are at
+    /// most so many solid components: CGAL's `Alpha_shape_3::find_optimal_alpha`. O(n log n).
+    pub fn regions(&self, most: NonZeroU64) -> Alpha {
         let values = self.values();
         let levels = self.levels_of(&values);
         let (loose, solid) = rayon::join(|| self.loose(&levels), || levels.solid_components());
-        let first = (0..values.len()).find(|&k| loose[k] == 0 && solid[k] == 1);
+        let first = (0..values.len()).find(|&k| loose[k] == 0 && solid[k] <= most.get());
         let first = values[first.expect("the whole triangulation is one solid")];
         Alpha::from_squared(self.first_alpha(first)).expect("radii are numbers")
     }
