@@ -69,6 +69,10 @@ mod bridge {
             // A system header's warnings are not ours.
             build.flag("-isystem").flag(include.to_str().expect("UTF-8 path"));
         }
+        if !cgal.gmp {
+            // Found or not: CGAL then computes with Boost.Multiprecision.
+            build.define("CGAL_DISABLE_GMP", "1");
+        }
         build.flag_if_supported("-Wall").flag_if_supported("-Wextra");
         build.compile("walpha_cgal");
 
@@ -146,7 +150,7 @@ mod bridge {
         found
     }
 
-    /// Preprocesses a few lines to learn the version of CGAL, and whether it computes with GMP.
+    /// Preprocesses a few lines to learn the version of CGAL, and whether it is to compute with GMP.
     fn probe(include: Option<&Path>) -> Option<((u32, u32), bool)> {
         let source = PathBuf::from(env::var_os("OUT_DIR")?).join("probe.cc");
         fs::write(
@@ -169,6 +173,7 @@ mod bridge {
             after.split_whitespace().find(|word| word.len() == 10 && word.starts_with('1'))?;
         let number: u32 = number.parse().ok()?;
         let version = (number / 10_000_000 % 100, number / 100_000 % 100);
-        Some((version, text.lines().any(|line| line.starts_with("walpha_gmp"))))
+        let gmp = text.lines().any(|line| line.starts_with("walpha_gmp"));
+        Some((version, gmp && cfg!(feature = "gmp")))
     }
 }

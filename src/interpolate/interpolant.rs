@@ -57,6 +57,18 @@ impl<'a> Interpolant<'a> {
     /// Points without values, or with one that is not finite.
     pub fn new(shape: &'a AlphaShape) -> Result<Self, InterpolateError> {
         let values = shape.points().values.as_deref().ok_or(InterpolateError::NoValues)?;
+        Self::with_values(shape, values)
+    }
+
+    /// The interpolant of other values, one for each point of a shape. O(n).
+    ///
+    /// # Errors
+    /// A value that is no finite number.
+    ///
+    /// # Panics
+    /// When there are not as many values as points.
+    pub fn with_values(shape: &'a AlphaShape, values: &'a [f64]) -> Result<Self, InterpolateError> {
+        assert_eq!(values.len(), shape.points().len(), "a value for each point");
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
             return Err(InterpolateError::Value { index, value: values[index] });
         }

@@ -1,0 +1,118 @@
+//! Complexes of any program, to be judged and compared.
+
+use std::sync::Arc;
+
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use walpha::Class;
+use walpha::check::schema::{ComplexFile, PlacedComplex};
+use walpha::check::{Alpha, CertifyError, CompareError};
+use walpha::progress::Stage;
+
+use crate::arrays::{numbers, rows};
+use crate::errors::{Told, wrong};
+use crate::shape::{Shape, json};
+use crate::work::run;
+
+/// A complex with its points, in canonical order.
+#[pyclass(frozen, module = "walpha._walpha")]
+pub struct Complex(Arc<PlacedComplex>);
+
+/// Simplices of one dimension, and their classes.
+type Listed<'py> = (Option<PyReadonlyArray2<'py, u32>>, Option<PyReadonlyArray1<'py, u8>>);
+
+/// How many findings there are, of the first what they say and their fields as JSON, and the certificate as
+/// JSON.
+type Verdict = (usize, Vec<(String, String)>, String);
+
+#[pymethods]
+impl Complex {
+    /// Simplices as another program lists them; what is missing is filled in.
+    #[new]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn new(
+        py: Python<'_>,
+        points: PyReadonlyArray2<'_, f64>,
+        weights: Option<PyReadonlyArray1<'_, f64>>,
+        alpha: f64,
+        cells: Listed<'_>,
+        facets: Listed<'_>,
+        edges: Listed<'_>,
+        vertices: Listed<'_>,
+        hidden: Option<PyReadonlyArray1<'_, u32>>,
+        duplicates: Option<PyReadonlyArray2<'_, u32>>,
+    ) -> PyResult<Self> {
+        let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
+        let mut file = ComplexFile::of_points(rows("points", &points)?, alpha);
+        file.weights = weights.as_ref().map(numbers);
+        file.cells = table("cells", &cells)?;
+        file.facets = table("facets", &facets)?;
+        file.edges = table("edges", &edges)?;
+        file.vertices = table::<1>("vertices", &vertices)?.map(|rows| rows.into_flattened());
+        file.classes.cells = classes("cell_classes", &cells)?;
+        file.classes.facets = classes("facet_classes", &facets)?;
+        file.classes.edges = classes("edge_classes", &edges)?;
+        file.classes.vertices = classes("vertex_classes", &vertices)?;
+        file.hidden = hidden.as_ref().map(numbers);
+        file.duplicates = duplicates.as_ref().map(|pairs| rows("duplicates", pairs)).transpose()?;
+        Ok(Self(Arc::new(run(py, None, move |_| file.into_complex())?)))
+    }
+
+    /// What a shape claims to be.
+    #[staticmethod]
+    fn of(py: Python<'_>, shape: &Bound<'_, Shape>) -> PyResult<Self> {
+        let shape = Arc::clone(shape.get().shape());
+        let placed =
+            run(py, None, move |_| Ok::<_, CertifyError>(PlacedComplex::from(shape.claim())))?;
+        Ok(Self(Arc::new(placed)))
+    }
+
+    /// What is wrong with it: how many findings, of the first `most` what they say and their fields as JSON,
+    /// and the certificate as JSON.
+    fn check(
+        &self,
+        py: Python<'_>,
+        most: usize,
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Verdict> {
+        let placed = Arc::clone(&self.0);
+        run(py, progress.as_ref(), move |call| {
+            call.begin(Stage::Certify);
+            let (findings, certificate) = placed.claim().findings()?;
+            let told =
+                findings.iter().take(most).map(|finding| (finding.to_string(), json(finding)));
+            let unjudged: Vec<String> =
+                certificate.not_judged.iter().map(ToString::to_string).collect();
+            Ok::<_, CertifyError>((findings.len(), told.collect(), json(&unjudged)))
+        })
+    }
+}
+
+/// How B differs from A: whether they are equal, in words, and as JSON.
+#[pyfunction]
+pub fn compare(
+    py: Python<'_>,
+    a: &Bound<'_, Complex>,
+    b: &Bound<'_, Complex>,
+) -> PyResult<(bool, String, String)> {
+    let (a, b) = (Arc::clone(&a.get().0), Arc::clone(&b.get().0));
+    run(py, None, move |_| {
+        let comparison = walpha::check::compare(a.placed(), b.placed())?;
+        let text = comparison.to_string();
+        Ok::<_, CompareError>((comparison.is_equal(), text, json(&comparison)))
+    })
+}
+
+fn table<const N: usize>(name: &str, listed: &Listed<'_>) -> PyResult<Option<Vec<[u32; N]>>> {
+    listed.0.as_ref().map(|array| rows(name, array)).transpose()
+}
+
+fn classes(name: &str, listed: &Listed<'_>) -> PyResult<Option<Vec<Class>>> {
+    let class = |number: u8| {
+        Class::from_number(number).ok_or_else(|| {
+            wrong(format!("{name} holds {number}: classes are numbered from 0 to 3"))
+        })
+    };
+    let all = |array: &PyReadonlyArray1<'_, u8>| numbers(array).into_iter().map(class).collect();
+    listed.1.as_ref().map(all).transpose()
+}

@@ -1,0 +1,171 @@
+//! Errors of the library as exceptions of Python.
+
+use std::io::ErrorKind;
+
+use pyo3::PyErr;
+use pyo3::exceptions::{
+    PyFileNotFoundError, PyIsADirectoryError, PyMemoryError, PyOSError, PyPermissionError,
+    PyRuntimeError, PyValueError,
+};
+use walpha::NoMemory;
+use walpha::advice::Advice;
+use walpha::check::schema::SchemaError;
+use walpha::check::{AlphaError, CertifyError, CompareError};
+use walpha::export::{TargetError, UnknownFormat};
+use walpha::haar::HaarError;
+use walpha::interpolate::InterpolateError;
+use walpha::pipeline::PipelineError;
+use walpha::points::{PointsError, UnknownWeighting};
+use walpha::shape::ShapeError;
+use walpha::triangulation::TriangulationError;
+use walpha::volume::VolumeError;
+
+/// An error that Python can be told.
+pub trait Told {
+    /// The exception: `ValueError` for what was given, `OSError` for files, `MemoryError`.
+    fn told(self) -> PyErr;
+}
+
+/// What was given is wrong.
+pub fn wrong(text: impl Into<String>) -> PyErr {
+    PyValueError::new_err(text.into())
+}
+
+/// What is wrong, and what to do about it.
+fn message(error: &impl ToString, advice: impl Into<Option<Advice>>) -> String {
+    match advice.into() {
+        Some(advice) => format!("{}; {advice}", error.to_string()),
+        None => error.to_string(),
+    }
+}
+
+/// Errors that say nothing but what is wrong with what was given.
+macro_rules! wrong_value {
+    ($($error:ty, $advice:expr;)*) => {$(
+        impl Told for $error {
+            fn told(self) -> PyErr {
+                let advice: fn(&Self) -> Option<Advice> = $advice;
+                wrong(message(&self, advice(&self)))
+            }
+        }
+    )*};
+}
+
+wrong_value! {
+    AlphaError, |error| Some(error.advice().into());
+    CompareError, |_| None;
+    SchemaError, |_| None;
+    UnknownFormat, |error| error.advice().into();
+    UnknownWeighting, |error| error.advice().into();
+}
+
+impl Told for NoMemory {
+    fn told(self) -> PyErr {
+        PyMemoryError::new_err(message(&self, self.advice()))
+    }
+}
+
+impl Told for TriangulationError {
+    fn told(self) -> PyErr {
+        let text = message(&self, self.advice());
+        match self {
+            Self::Memory { .. } => PyMemoryError::new_err(text),
+            Self::Thrown { .. } => PyRuntimeError::new_err(text),
+            _ => wrong(text),
+        }
+    }
+}
+
+impl Told for ShapeError {
+    fn told(self) -> PyErr {
+        match self {
+            Self::Triangulation(error) => error.told(),
+            Self::Memory(error) => error.told(),
+            other => wrong(message(&other, other.advice())),
+        }
+    }
+}
+
+impl Told for VolumeError {
+    fn told(self) -> PyErr {
+        let text = message(&self, self.advice());
+        match self {
+            Self::Io { source, .. } => of_system(source.kind(), text),
+            // The file of a sample that is not installed.
+            Self::NoSkull { .. } => PyOSError::new_err(text),
+            Self::Memory(error) => error.told(),
+            _ => wrong(text),
+        }
+    }
+}
+
+impl Told for TargetError {
+    fn told(self) -> PyErr {
+        PyOSError::new_err(message(&self, self.advice()))
+    }
+}
+
+impl Told for HaarError {
+    fn told(self) -> PyErr {
+        match self {
+            Self::Memory(error) => error.told(),
+            other => wrong(message(&other, other.advice())),
+        }
+    }
+}
+
+impl Told for PointsError {
+    fn told(self) -> PyErr {
+        match self {
+            Self::Memory(error) => error.told(),
+            Self::File(error) => error.told(),
+            Self::Neighbours(TriangulationError::Memory { .. }) => {
+                PyMemoryError::new_err(message(&self, self.advice()))
+            }
+            other => wrong(message(&other, other.advice())),
+        }
+    }
+}
+
+impl Told for InterpolateError {
+    fn told(self) -> PyErr {
+        match self {
+            Self::Memory(error) => error.told(),
+            Self::Shape(error) => error.told(),
+            Self::Points(error) => error.told(),
+            Self::Haar(error) => error.told(),
+            other => wrong(message(&other, other.advice())),
+        }
+    }
+}
+
+impl Told for PipelineError {
+    fn told(self) -> PyErr {
+        match self {
+            Self::Haar(error) => error.told(),
+            Self::Points(error) => error.told(),
+            Self::Interpolate(error) => error.told(),
+            Self::Shape(error) => error.told(),
+            other => wrong(message(&other, other.advice())),
+        }
+    }
+}
+
+impl Told for CertifyError {
+    fn told(self) -> PyErr {
+        let text = self.to_string();
+        match self {
+            Self::Memory { .. } => PyMemoryError::new_err(text),
+            _ => wrong(text),
+        }
+    }
+}
+
+fn of_system(kind: ErrorKind, text: String) -> PyErr {
+    match kind {
+        ErrorKind::NotFound => PyFileNotFoundError::new_err(text),
+        ErrorKind::PermissionDenied => PyPermissionError::new_err(text),
+        ErrorKind::IsADirectory => PyIsADirectoryError::new_err(text),
+        _ => PyOSError::new_err(text),
+    }
+}

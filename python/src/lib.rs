@@ -1,0 +1,42 @@
+//! `walpha._walpha`: what the Python package `walpha` asks of the library.
+//!
+//! Arrays go in and out, options as numbers and names, and what is small and has many fields as JSON. Names,
+//! defaults and documentation for people are in Python (`walpha/*.py`). Long work runs in threads of its own,
+//! without the interpreter ([`work`]).
+
+mod arrays;
+mod complex;
+mod errors;
+mod filtration;
+mod listen;
+mod shape;
+mod volume;
+mod work;
+
+/// The module.
+#[pyo3::pymodule]
+mod _walpha {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use super::complex::{Complex, compare};
+    #[pymodule_export]
+    use super::filtration::Filtration;
+    #[pymodule_export]
+    use super::shape::{Shape, alpha_shape};
+    #[pymodule_export]
+    use super::volume::{difference, haar, pipeline, read, select, weigh};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        super::listen::listen();
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+
+    /// Removes files that are not complete: for the end of the process, which may come in the midst of
+    /// interrupted work.
+    #[pyfunction]
+    fn sweep() {
+        walpha::export::sweep();
+    }
+}

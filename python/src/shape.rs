@@ -1,0 +1,352 @@
+//! An alpha shape in Python.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use numpy::ndarray::Array3;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use walpha::export::{ExportOptions, Format, Target};
+use walpha::interpolate::{Grid, Interpolant, InterpolateError};
+use walpha::pipeline::{AlphaRule, Model};
+use walpha::progress::Stage;
+use walpha::shape::{Balls, Engine, ShapeOptions, Surface};
+use walpha::volume::Dims;
+use walpha::{Alpha, AlphaShape, Pipeline, Points, Simplices, Weighting};
+
+use crate::arrays::{lend, numbers, rows};
+use crate::errors::{Told, wrong};
+use crate::work::run;
+
+/// A shape, which is never changed.
+#[pyclass(frozen, module = "walpha._walpha")]
+pub struct Shape {
+    shape: Arc<AlphaShape>,
+    /// What is known of it besides, as JSON: where its α and its points come from.
+    #[pyo3(get)]
+    facts: String,
+}
+
+/// How a shape is computed, by the names that Python has.
+pub fn options(engine: &str, balls: &str, exterior: bool) -> PyResult<ShapeOptions> {
+    let engine = match engine {
+        "cgal" => Engine::Cgal,
+        "native" => Engine::Native,
+        "reference" => Engine::Reference,
+        _ => return Err(unknown("engine", engine, "'cgal', 'native' and 'reference'")),
+    };
+    let balls = match balls {
+        "power" => Balls::Power,
+        "radius" => Balls::Radius,
+        _ => return Err(unknown("balls", balls, "'power' and 'radius'")),
+    };
+    Ok(ShapeOptions { engine, balls, exterior, ..ShapeOptions::new(Alpha::INFINITE) })
+}
+
+/// A name that is none of those an option has.
+pub fn unknown(option: &str, name: &str, known: &str) -> PyErr {
+    wrong(format!("{option}={name:?} is unknown: there are {known}"))
+}
+
+/// `None` is the default, NaN is to be found, anything else is α.
+pub fn alpha_rule(alpha: Option<f64>) -> AlphaRule {
+    match alpha {
+        None => AlphaRule::Default,
+        Some(alpha) => Alpha::from_squared(alpha).map_or(AlphaRule::Auto, AlphaRule::Given),
+    }
+}
+
+/// The shape of scattered points.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+pub fn alpha_shape(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    values: Option<PyReadonlyArray1<'_, f64>>,
+    alpha: Option<f64>,
+    engine: &str,
+    balls: &str,
+    exterior: bool,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<Shape> {
+    let options = options(engine, balls, exterior)?;
+    let points = weighted(&points, weights.as_ref(), values.as_ref())?;
+    let pipeline = Pipeline::new().alpha(alpha_rule(alpha)).shape(options);
+    let model = run(py, progress.as_ref(), move |call| {
+        let mut hear = |stage: Stage| call.begin(stage);
+        let weighed = pipeline.weighed_points(points, &mut hear)?;
+        pipeline.finish(weighed, &mut hear)
+    })?;
+    Ok(Shape::of(model))
+}
+
+/// Points with a column of weights, or without; as many of each as points.
+pub fn weighted(
+    points: &PyReadonlyArray2<'_, f64>,
+    weights: Option<&PyReadonlyArray1<'_, f64>>,
+    values: Option<&PyReadonlyArray1<'_, f64>>,
+) -> PyResult<Points> {
+    let positions: Vec<[f64; 3]> = rows("points", points)?;
+    let column = |name, column: Option<&PyReadonlyArray1<'_, f64>>| {
+        column.map(|column| paired(name, numbers(column), positions.len())).transpose()
+    };
+    let (weights, values) = (column("weights", weights)?, column("values", values)?);
+    Ok(Points { positions, values, weights, differences: None })
+}
+
+fn paired(name: &str, column: Vec<f64>, points: usize) -> PyResult<Vec<f64>> {
+    if column.len() == points {
+        Ok(column)
+    } else {
+        Err(wrong(format!("{} {name} but {points} points: each needs one", column.len())))
+    }
+}
+
+impl Shape {
+    pub fn of(model: Model) -> Self {
+        let facts = serde_json::json!({
+            "alpha_origin": model.parameter.origin,
+            "weighting": model.origin.weighting.to_string(),
+            "truncation": model.origin.truncation,
+        });
+        Self { shape: Arc::new(model.shape), facts: facts.to_string() }
+    }
+
+    pub fn at_level(shape: AlphaShape) -> Self {
+        let facts = serde_json::json!({
+            "alpha_origin": "given",
+            "weighting": Weighting::Column.to_string(),
+            "truncation": null,
+        });
+        Self { shape: Arc::new(shape), facts: facts.to_string() }
+    }
+
+    pub fn shape(&self) -> &Arc<AlphaShape> {
+        &self.shape
+    }
+
+    /// The values to interpolate: these, or those of the points.
+    fn values(&self, given: Option<PyReadonlyArray1<'_, f64>>) -> PyResult<Vec<f64>> {
+        match given {
+            Some(given) => paired("values", numbers(&given), self.shape.points().len()),
+            None => self.shape.points().values.clone().ok_or_else(|| {
+                wrong("the points carry no values to interpolate: give values=, one for each point")
+            }),
+        }
+    }
+}
+
+/// Class numbers, as in [`walpha::Class`].
+fn class_numbers<const N: usize>(simplices: &Simplices<N>) -> Vec<u8> {
+    simplices.classes().iter().map(|&class| class as u8).collect()
+}
+
+#[pymethods]
+impl Shape {
+    #[getter]
+    fn points<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        // SAFETY: the shape is frozen.
+        unsafe { lend(&slf.get().shape.points().positions, slf.as_any()) }
+    }
+
+    #[getter]
+    fn weights<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.shape.points().weights.clone().into_pyarray(py)
+    }
+
+    #[getter(values)]
+    fn own_values<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.shape.points().values.clone().map(|values| values.into_pyarray(py))
+    }
+
+    #[getter]
+    fn cells<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the shape is frozen.
+        unsafe { lend(slf.get().shape.complex().cells.rows(), slf.as_any()) }
+    }
+
+    #[getter]
+    fn facets<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the shape is frozen.
+        unsafe { lend(slf.get().shape.complex().facets.rows(), slf.as_any()) }
+    }
+
+    #[getter]
+    fn edges<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the shape is frozen.
+        unsafe { lend(slf.get().shape.complex().edges.rows(), slf.as_any()) }
+    }
+
+    #[getter]
+    fn vertices<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the shape is frozen.
+        unsafe { lend(slf.get().shape.complex().vertices.rows(), slf.as_any()) }
+    }
+
+    /// Classes of cells, facets, edges and vertices.
+    fn classes<'py>(&self, py: Python<'py>) -> [Bound<'py, PyArray1<u8>>; 4] {
+        let complex = self.shape.complex();
+        [
+            class_numbers(&complex.cells),
+            class_numbers(&complex.facets),
+            class_numbers(&complex.edges),
+            class_numbers(&complex.vertices),
+        ]
+        .map(|classes| classes.into_pyarray(py))
+    }
+
+    #[getter]
+    fn alpha(&self) -> f64 {
+        self.shape.options().alpha.squared()
+    }
+
+    #[getter]
+    fn exterior(&self) -> bool {
+        self.shape.options().exterior
+    }
+
+    /// Volume, area of regular facets, area of singular ones.
+    #[getter]
+    fn measures(&self) -> (f64, f64, f64) {
+        let measures = self.shape.measures();
+        (measures.volume, measures.area, measures.singular_area)
+    }
+
+    #[getter]
+    fn betti(&self) -> Option<(u64, u64, u64)> {
+        self.shape.betti().map(|betti| (betti.b0, betti.b1, betti.b2))
+    }
+
+    #[getter]
+    fn hidden<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<u32>>> {
+        self.shape.hidden().map(|hidden| hidden.to_vec().into_pyarray(py))
+    }
+
+    #[getter]
+    fn duplicates<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the shape is frozen.
+        unsafe { lend(slf.get().shape.duplicates(), slf.as_any()) }
+    }
+
+    /// The components, as JSON.
+    fn components(&self, py: Python<'_>) -> PyResult<String> {
+        let shape = Arc::clone(&self.shape);
+        run(py, None, move |_| Ok::<_, InterpolateError>(json(&shape.components())))
+    }
+
+    /// The number of the component of each point; −1 outside.
+    fn component_numbers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        let number = |n: u32| if n == walpha::shape::NO_COMPONENT { -1 } else { i64::from(n) };
+        let numbers = py.detach(|| self.shape.component_numbers());
+        numbers.into_iter().map(number).collect::<Vec<_>>().into_pyarray(py)
+    }
+
+    /// The voids, as JSON; `None` without exterior simplices.
+    fn voids(&self, py: Python<'_>) -> PyResult<Option<String>> {
+        let shape = Arc::clone(&self.shape);
+        run(py, None, move |_| Ok::<_, InterpolateError>(shape.voids().as_ref().map(json)))
+    }
+
+    /// Places, triangles over them, and the input index of each; then edges cut, vertices doubled, midpoints.
+    #[expect(clippy::type_complexity, reason = "taken apart at once, in Python")]
+    fn boundary<'py>(
+        &self,
+        py: Python<'py>,
+        solid: bool,
+    ) -> PyResult<(
+        Bound<'py, PyArray2<f64>>,
+        Bound<'py, PyArray2<u32>>,
+        Bound<'py, PyArray1<u32>>,
+        (usize, usize, usize),
+    )> {
+        let shape = Arc::clone(&self.shape);
+        let (places, triangles, indices, cuts) = run(py, None, move |_| {
+            let (surface, cuts) = match solid {
+                true => Surface::solid(&shape),
+                false => (Surface::of(&shape), Default::default()),
+            };
+            let places: Vec<[f64; 3]> = surface.positions(&shape.points().positions).collect();
+            let indices: Vec<u32> = surface.indices().collect();
+            let cuts = (cuts.edges, cuts.vertices, cuts.midpoints);
+            Ok::<_, InterpolateError>((places, surface.regular, indices, cuts))
+        })?;
+        let table = |n: usize| (n, 3);
+        let (n, m) = (places.len(), triangles.len());
+        let places = numpy::ndarray::Array2::from_shape_vec(table(n), places.into_flattened());
+        let triangles =
+            numpy::ndarray::Array2::from_shape_vec(table(m), triangles.into_flattened());
+        let (places, triangles) =
+            (places.expect("rows of three"), triangles.expect("rows of three"));
+        Ok((places.into_pyarray(py), triangles.into_pyarray(py), indices.into_pyarray(py), cuts))
+    }
+
+    /// F at places; NaN outside the shape.
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        places: PyReadonlyArray2<'_, f64>,
+        values: Option<PyReadonlyArray1<'_, f64>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let (places, values) = (rows("places", &places)?, self.values(values)?);
+        let shape = Arc::clone(&self.shape);
+        let found = run(py, None, move |_| {
+            let interpolant = Interpolant::with_values(&shape, &values)?;
+            let values = interpolant.values_at(&places).into_iter();
+            Ok::<Vec<f64>, InterpolateError>(values.map(|v| v.unwrap_or(f64::NAN)).collect())
+        })?;
+        Ok(found.into_pyarray(py))
+    }
+
+    /// F on a grid over a box, `[z, y, x]`; sizes and corners as (x, y, z). NaN outside the shape.
+    fn interpolate<'py>(
+        &self,
+        py: Python<'py>,
+        sizes: [u64; 3],
+        low: [f64; 3],
+        high: [f64; 3],
+        values: Option<PyReadonlyArray1<'_, f64>>,
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray3<f32>>> {
+        let [nx, ny, nz] = sizes;
+        let grid = Grid::spanning(low, high, Dims::new(nx, ny, nz).map_err(Told::told)?);
+        let (values, shape) = (self.values(values)?, Arc::clone(&self.shape));
+        let samples = run(py, progress.as_ref(), move |call| {
+            call.begin(Stage::Interpolate);
+            let found = Interpolant::with_values(&shape, &values)?.resample(&grid)?;
+            Ok::<_, InterpolateError>(with_nan(found))
+        })?;
+        Ok(samples.into_pyarray(py))
+    }
+
+    /// Writes a file, by its extension.
+    fn save(&self, py: Python<'_>, path: PathBuf, solid: bool) -> PyResult<()> {
+        let format = Format::of(&path).map_err(Told::told)?;
+        if solid && !format.boundary {
+            return Err(wrong(
+                "solid=True is for formats of boundaries: this one holds all simplices; omit it",
+            ));
+        }
+        let options = ExportOptions { solid, ..ExportOptions::default() };
+        let (shape, target) = (Arc::clone(&self.shape), Target::open(&path).map_err(Told::told)?);
+        run(py, None, move |_| target.write(|out| format.exporter(&options).write(&shape, out)))
+    }
+}
+
+/// Samples outside the shape made NaN.
+fn with_nan(found: walpha::interpolate::Resampled) -> Array3<f32> {
+    let inside: Vec<bool> =
+        (0..found.volume().dims().samples()).map(|sample| found.is_inside(sample)).collect();
+    let mut samples = found.into_volume().into_samples();
+    for (sample, inside) in samples.iter_mut().zip(inside) {
+        if !inside {
+            *sample = f32::NAN;
+        }
+    }
+    samples
+}
+
+/// What is small, for Python to read.
+pub fn json(of: &impl serde::Serialize) -> String {
+    serde_json::to_string(of).expect("plain numbers and names")
+}

@@ -1,0 +1,217 @@
+//! Volumes of Python: arrays `[z, y, x]`.
+
+use numpy::ndarray::Array3;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray3};
+use pyo3::prelude::*;
+use walpha::haar::{Decomposition, HaarOptions, Tolerance, smooth};
+use walpha::pipeline::{Choice, PipelineError};
+use walpha::points::{self, PointsError, Weighting};
+use walpha::progress::Stage;
+use walpha::volume::{Coordinates, Frame, Gray, GrayRange, ReadOptions, Space, Volume, open};
+use walpha::{Alpha, Pipeline, Points, Selection, SelectionRule, Units};
+
+use crate::arrays::numbers;
+use crate::errors::{Told, wrong};
+use crate::shape::{Shape, alpha_rule, json, options, unknown};
+use crate::work::run;
+
+/// A file or sample: its samples, whether they are gray levels, and its frame as JSON, in LPS where it says in
+/// which space it is.
+#[pyfunction]
+pub fn read<'py>(
+    py: Python<'py>,
+    input: String,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<(Bound<'py, PyArray3<f32>>, bool, String)> {
+    let volume = run(py, progress.as_ref(), move |call| {
+        call.begin(Stage::Read);
+        open(&input, &ReadOptions::default())
+    })?;
+    let mut frame = *volume.frame();
+    if frame.coordinates.space.is_known() {
+        frame = frame.to(Coordinates { space: Space::Lps, ..frame.coordinates });
+    }
+    let gray = volume.has_gray_levels();
+    Ok((volume.into_samples().into_pyarray(py), gray, json(&frame)))
+}
+
+/// The truncated volume, and what truncation did as JSON.
+#[pyfunction]
+pub fn haar<'py>(
+    py: Python<'py>,
+    samples: PyReadonlyArray3<'_, f32>,
+    tolerance: (String, f64),
+    decomposition: &str,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<(Bound<'py, PyArray3<f32>>, String)> {
+    let options = haar_options(&tolerance, decomposition)?;
+    let samples = samples.as_array().to_owned();
+    let (smoothed, truncation) = run(py, progress.as_ref(), move |call| {
+        call.begin(Stage::Haar);
+        smooth(&Volume::new(samples, Frame::VOXEL)?, &options)
+    })?;
+    Ok((smoothed.into_samples().into_pyarray(py), json(&truncation)))
+}
+
+/// The difference L of each voxel.
+#[pyfunction]
+pub fn difference<'py>(
+    py: Python<'py>,
+    samples: PyReadonlyArray3<'_, f32>,
+) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    let samples = samples.as_array().to_owned();
+    let found = run(py, None, move |_| {
+        Ok::<_, PointsError>(points::difference(&Volume::new(samples, Frame::VOXEL)?))
+    })?;
+    Ok(found.into_pyarray(py))
+}
+
+/// Selected voxels: positions, values, differences.
+type Selected<'py> =
+    (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+
+/// Voxels of the largest differences.
+#[pyfunction]
+pub fn select<'py>(
+    py: Python<'py>,
+    samples: PyReadonlyArray3<'_, f32>,
+    smoothed: PyReadonlyArray3<'_, f32>,
+    frame: Option<&str>,
+    rule: (String, f64),
+    gray_min: Option<f64>,
+) -> PyResult<Selected<'py>> {
+    let (samples, smoothed) = (samples.as_array().to_owned(), smoothed.as_array().to_owned());
+    if samples.dim() != smoothed.dim() {
+        let (given, other) = (samples.shape(), smoothed.shape());
+        return Err(wrong(format!(
+            "smoothed has shape {other:?}, the volume {given:?}: give one of its shape"
+        )));
+    }
+    let (frame, units) = place(frame)?;
+    let selection = Selection { rule: selection_rule(&rule)?, gray_min };
+    let found = run(py, None, move |call| {
+        call.begin(Stage::Points);
+        let (volume, smoothed) = (Volume::new(samples, frame)?, Volume::new(smoothed, frame)?);
+        let differences = points::difference(&smoothed);
+        points::select(&volume, &smoothed, &differences, &selection, units)
+    })?;
+    let Points { positions, values, differences, .. } = found;
+    let n = positions.len();
+    let positions = numpy::ndarray::Array2::from_shape_vec((n, 3), positions.into_flattened());
+    let column = |column: Option<Vec<f64>>| column.expect("voxels have it").into_pyarray(py);
+    let positions = positions.expect("rows of three").into_pyarray(py);
+    Ok((positions, column(values), column(differences)))
+}
+
+/// Weights of points with these differences, at α.
+#[pyfunction]
+pub fn weigh<'py>(
+    py: Python<'py>,
+    differences: PyReadonlyArray1<'_, f64>,
+    weighting: &str,
+    alpha: f64,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let weighting: Weighting = weighting.parse().map_err(Told::told)?;
+    let differences = numbers(&differences);
+    // Places do not count here.
+    let positions = vec![[0.0; 3]; differences.len()];
+    let points = Points { positions, differences: Some(differences), ..Points::default() };
+    let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
+    let weighed = points::weigh(&points, weighting, alpha).map_err(Told::told)?;
+    Ok(weighed.weights.into_pyarray(py))
+}
+
+/// All stages. `gray` is the range of values that becomes 0 to 255, `frame` JSON; without one, coordinates are
+/// indices.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+pub fn pipeline(
+    py: Python<'_>,
+    samples: PyReadonlyArray3<'_, f32>,
+    is_gray: bool,
+    gray: Option<(f64, f64)>,
+    frame: Option<&str>,
+    haar: ((String, f64), String),
+    rule: (String, f64),
+    gray_min: Option<f64>,
+    weighting: &str,
+    alpha: Option<f64>,
+    engine: &str,
+    balls: &str,
+    exterior: bool,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<Shape> {
+    let (frame, units) = place(frame)?;
+    let rule = selection_rule(&rule)?;
+    let pipeline = Pipeline::new()
+        .haar(haar_options(&haar.0, &haar.1)?)
+        .choice(Choice::Difference(Selection { rule, gray_min }))
+        .units(units)
+        .weighting(weighting.parse().map_err(Told::told)?)
+        .alpha(alpha_rule(alpha))
+        .shape(options(engine, balls, exterior)?);
+    let gray = gray.map_or(Gray::Automatic, |(low, high)| Gray::Range(GrayRange { low, high }));
+    let samples = samples.as_array().to_owned();
+    let model = run(py, progress.as_ref(), move |call| {
+        let volume = grays(samples, frame, is_gray)?.into_gray(gray).map_err(PointsError::from)?;
+        let (volume, range) = volume;
+        let pipeline = pipeline.values(range);
+        let mut hear = |stage: Stage| call.begin(stage);
+        let weighed = pipeline.weighed(&volume, &mut hear)?;
+        pipeline.finish(weighed, &mut hear)
+    })?;
+    Ok(Shape::of(model))
+}
+
+fn grays(samples: Array3<f32>, frame: Frame, is_gray: bool) -> Result<Volume, PipelineError> {
+    let volume = Volume::new(samples, frame).map_err(PointsError::from)?;
+    Ok(if is_gray { volume.with_gray_levels() } else { volume })
+}
+
+/// Where a grid lies, and what coordinates of its points are measured in.
+fn place(frame: Option<&str>) -> PyResult<(Frame, Units)> {
+    let Some(frame) = frame else { return Ok((Frame::VOXEL, Units::Voxel)) };
+    let frame: Frame =
+        serde_json::from_str(frame).map_err(|error| wrong(format!("the frame: {error}")))?;
+    let positive = frame.spacing.iter().all(|length| *length > 0.0 && length.is_finite());
+    if !positive || frame.origin.iter().any(|x| !x.is_finite()) {
+        return Err(wrong(
+            "spacing must be three lengths above 0, and origin three finite numbers",
+        ));
+    }
+    Ok((frame, Units::World))
+}
+
+fn haar_options(tolerance: &(String, f64), decomposition: &str) -> PyResult<HaarOptions> {
+    let number = tolerance.1;
+    let tolerance = match tolerance.0.as_str() {
+        "rms" => Tolerance::Rms(number),
+        "epsilon" => Tolerance::Epsilon(number),
+        "coefficients" => Tolerance::Coefficients(whole("coefficients", number)?),
+        other => return Err(unknown("tolerance", other, "'rms', 'epsilon' and 'coefficients'")),
+    };
+    let decomposition = match decomposition {
+        "nonstandard" => Decomposition::NonStandard,
+        "standard" => Decomposition::Standard,
+        other => return Err(unknown("decomposition", other, "'nonstandard' and 'standard'")),
+    };
+    Ok(HaarOptions { decomposition, tolerance })
+}
+
+fn selection_rule(rule: &(String, f64)) -> PyResult<SelectionRule> {
+    Ok(match rule.0.as_str() {
+        "count" => SelectionRule::Count(whole("count", rule.1)?),
+        "ratio" => SelectionRule::Ratio(rule.1),
+        "threshold" => SelectionRule::Threshold(rule.1),
+        other => return Err(unknown("rule", other, "'count', 'ratio' and 'threshold'")),
+    })
+}
+
+/// A count.
+fn whole(name: &str, number: f64) -> PyResult<u64> {
+    if number >= 0.0 && number.fract() == 0.0 && number < 2f64.powi(53) {
+        Ok(number as u64)
+    } else {
+        Err(wrong(format!("{name}={number} is no count: give a whole number from 0 up")))
+    }
+}

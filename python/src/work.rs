@@ -1,0 +1,84 @@
+//! Long work beside the interpreter.
+
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::exceptions::PyOSError;
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::errors::Told;
+use crate::listen::Call;
+
+/// How often the interpreter is asked for an interrupt, and told of progress.
+const TICK: Duration = Duration::from_millis(50);
+/// As a main thread has it; rayon's default is a quarter.
+const STACK: usize = 8 << 20;
+
+/// Does work in threads of its own while other threads of Python run, and returns its result.
+///
+/// This thread waits; it asks Python for interrupts and calls `progress(stage, done, total)`. After an
+/// interrupt, or an exception of `progress`, it returns at once. The work then owns all that it works on, and
+/// ends when it next says how far it is.
+pub fn run<T, E>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&Call) -> Result<T, E> + Send + 'static,
+) -> PyResult<T>
+where
+    T: Send + 'static,
+    E: Told + Send + 'static,
+{
+    let call = Arc::new(Call::default());
+    let wanted = Wanted(Arc::clone(&call));
+    let threads = pool(&call)?;
+    let (sender, mut receiver) = sync_channel(1);
+    thread::Builder::new().name("walpha".into()).spawn(move || {
+        let outcome = catch_unwind(AssertUnwindSafe(|| threads.install(|| work(&call))));
+        // Nobody waits after an interrupt.
+        let _ = sender.send(outcome);
+    })?;
+    loop {
+        // A receiver may be sent to where Python is not, but not lent.
+        let (back, received) = py.detach(move || {
+            let received = receiver.recv_timeout(TICK);
+            (receiver, received)
+        });
+        receiver = back;
+        if let Some(progress) = progress {
+            for step in wanted.0.take() {
+                progress.call1((step.stage, step.done, step.total))?;
+            }
+        }
+        match received {
+            Ok(Ok(result)) => return result.map_err(Told::told),
+            Ok(Err(panic)) => resume_unwind(panic),
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => unreachable!("an outcome is always sent"),
+        }
+    }
+}
+
+/// Threads that work for one call: events they tell of are its own. `RAYON_NUM_THREADS` says how many, or else
+/// the cores.
+fn pool(call: &Arc<Call>) -> PyResult<ThreadPool> {
+    let call = Arc::clone(call);
+    ThreadPoolBuilder::new()
+        .thread_name(|i| format!("walpha {i}"))
+        .stack_size(STACK)
+        .start_handler(move |_| Arc::clone(&call).enter())
+        .build()
+        .map_err(|error| PyOSError::new_err(format!("no threads to work in: {error}")))
+}
+
+/// Stops the work of a call when nobody waits for it any more.
+struct Wanted(Arc<Call>);
+
+impl Drop for Wanted {
+    fn drop(&mut self) {
+        self.0.stop();
+    }
+}

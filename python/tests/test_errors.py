@@ -1,0 +1,87 @@
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import walpha
+
+
+@pytest.mark.parametrize(
+    "points, message",
+    [
+        ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, np.nan]], "point 3 .* finite"),
+        ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [np.inf, 0, 0]], "point 3 .* finite"),
+        ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1e200, 0, 0]], "point 3 .* magnitude"),
+        ([], "0 distinct points"),
+        ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 1, 0]], "3 distinct points"),
+        ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [3, 1, 0]], "in one plane"),
+    ],
+)
+@pytest.mark.parametrize("engine", ["cgal", "native", "reference"])
+def test_points_that_make_no_shape(points, message, engine):
+    with pytest.raises(ValueError, match=message):
+        walpha.alpha_shape(points, alpha=1, engine=engine)
+    with pytest.raises(ValueError, match=message):
+        walpha.filtration(points)
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"alpha": 1, "alpha_radius": 1}, "one of them"),
+        ({"alpha": np.nan}, "alpha is NaN"),
+        ({"alpha": "car"}, "auto"),
+        ({"alpha_radius": -1}, "no radius"),
+        ({"engine": "qhull"}, "'cgal', 'native' and 'reference'"),
+        ({"balls": "cubes"}, "'power' and 'radius'"),
+        ({"balls": "radius"}, "α is a radius"),
+        ({"alpha": 0.1, "balls": "radius", "weights": np.full(600, -1.0)}, "balls='radius'"),
+        ({"weights": np.full(600, np.nan)}, "weight of point 0 is NaN"),
+    ],
+)
+def test_options_that_make_no_sense(cloud, options, message):
+    with pytest.raises(ValueError, match=message):
+        walpha.alpha_shape(cloud, **options)
+
+
+def test_unknown_names_are_type_errors(cloud):
+    with pytest.raises(TypeError):
+        walpha.alpha_shape(cloud, apha=1)
+
+
+def test_files(tmp_path, cloud):
+    with pytest.raises(FileNotFoundError, match="no/such.nrrd"):
+        walpha.read("no/such.nrrd")
+    (tmp_path / "bad.nrrd").write_text("NRRD0004\n")
+    with pytest.raises(ValueError, match="bad.nrrd"):
+        walpha.read(tmp_path / "bad.nrrd")
+    shape = walpha.alpha_shape(cloud, alpha=0.01)
+    with pytest.raises(OSError, match="nothing/here.ply"):
+        shape.save(tmp_path / "nothing/here.ply")
+    with pytest.raises(ValueError, match="did you mean .ply"):
+        shape.save(tmp_path / "here.plyy")
+    with pytest.raises(ValueError, match="solid=True"):
+        shape.save(tmp_path / "here.vtu", solid=True)
+    assert list(tmp_path.iterdir()) == [tmp_path / "bad.nrrd"]
+
+
+def test_values_are_needed_to_interpolate(cloud):
+    with pytest.raises(ValueError, match="values="):
+        walpha.alpha_shape(cloud, alpha=0.01).at(cloud)
+
+
+GREEDY = """
+import numpy as np, resource, walpha
+shape = walpha.alpha_shape(np.eye(4)[:, :3], alpha=9, values=np.zeros(4))
+resource.setrlimit(resource.RLIMIT_AS, (4 << 30, resource.RLIM_INFINITY))
+try:
+    shape.interpolate((4000, 1000, 1000))
+except MemoryError as error:
+    print(error)
+"""
+
+
+def test_memory():
+    ran = subprocess.run([sys.executable, "-c", GREEDY], capture_output=True, text=True)
+    assert "bytes of memory, which cannot be had" in ran.stdout, ran.stderr

@@ -1,0 +1,32 @@
+import importlib.util
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+FOLDER = pathlib.Path(__file__).parent.parent / "examples"
+NEEDS = {
+    "picture.py": ["pyvista"],
+    "check_others.py": ["gudhi", "scipy"],
+    "own_weights.py": [],
+    "napari_surface.py": [],
+    "choose_alpha.py": [],
+}
+
+
+def test_every_example_is_listed():
+    assert {path.name for path in FOLDER.glob("*.py")} == set(NEEDS)
+
+
+@pytest.mark.parametrize("name", NEEDS)
+def test_an_example_runs(name, tmp_path):
+    for package in NEEDS[name]:
+        pytest.importorskip(package)
+    ran = subprocess.run([sys.executable, FOLDER / name], cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout
+    if name == "picture.py":
+        assert (tmp_path / "phantom.png").stat().st_size > 10_000
+    if name == "napari_surface.py" and importlib.util.find_spec("napari") is None:
+        assert "pip install napari" in ran.stdout

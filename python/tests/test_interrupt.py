@@ -1,0 +1,99 @@
+import signal
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import walpha
+
+LONG = """
+import numpy as np, sys, walpha
+points = np.random.default_rng(0).random((1_500_000, 3))
+print("begun", flush=True)
+try:
+    walpha.alpha_shape(points, alpha=1e-4, engine=sys.argv[1], exterior=True)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+    sys.exit(3)
+"""
+
+
+@pytest.mark.parametrize("engine", ["native", "cgal", "reference"])
+def test_ctrl_c_returns_at_once(engine):
+    with subprocess.Popen([sys.executable, "-c", LONG, engine], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "begun\n"
+        time.sleep(1.0)
+        sent = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        assert process.stdout.readline() == "interrupted\n"
+        waited = time.monotonic() - sent
+        assert process.wait(timeout=60) == 3
+    # A tick is 50 ms; the rest is the machine's load.
+    assert waited < 2.0
+
+
+def test_the_lock_is_released():
+    points = np.random.default_rng(0).random((100_000, 3))
+    done, beats = threading.Event(), []
+
+    def beat():
+        while not done.is_set():
+            beats.append(time.monotonic())
+            time.sleep(0.005)
+
+    thread = threading.Thread(target=beat)
+    thread.start()
+    started = time.monotonic()
+    walpha.alpha_shape(points, alpha=1e-3)
+    took = time.monotonic() - started
+    done.set()
+    thread.join()
+    # With the lock held there would be one beat before and one after.
+    assert len(beats) > 5 and took > 0.05
+
+
+def test_progress_is_told_in_this_thread(cloud):
+    told = []
+    points = np.random.default_rng(0).random((60_000, 3))
+
+    def progress(stage, done, total):
+        assert threading.current_thread() is threading.main_thread()
+        told.append((stage, done, total))
+
+    walpha.alpha_shape(points, engine="native", progress=progress)
+    stages = [stage for stage, _, _ in told]
+    assert set(stages) >= {"alpha", "shape"} and stages.index("alpha") < stages.index("shape")
+    for name in ("alpha", "shape"):
+        shares = [done / total for stage, done, total in told if stage == name and total]
+        assert shares == sorted(shares) and 0 <= shares[0] and shares[-1] <= 1
+    assert len(told) > 3
+
+
+def test_an_exception_of_progress_ends_the_work():
+    points = np.random.default_rng(0).random((200_000, 3))
+
+    def progress(stage, done, total):
+        raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        walpha.filtration(points, progress=progress)
+
+
+def test_calls_at_the_same_time_have_progress_of_their_own():
+    points = np.random.default_rng(0).random((60_000, 3))
+
+    def work(kind):
+        stages = set()
+        progress = lambda stage, done, total: stages.add(stage)  # noqa: E731
+        if kind == "shape":
+            walpha.alpha_shape(points, alpha=1e-3, progress=progress)
+        else:
+            walpha.filtration(points, progress=progress)
+        return stages
+
+    with ThreadPoolExecutor(2) as pool:
+        assert list(pool.map(work, ["shape", "filtration"])) == [{"shape"}, {"filtration"}]

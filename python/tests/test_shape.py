@@ -1,0 +1,105 @@
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+import walpha
+from walpha import Class
+
+CUBE = np.array(list(itertools.product((0.0, 1.0), repeat=3)))
+
+
+def arrays(shape):
+    return [shape.cells, shape.facets, shape.edges, shape.vertices, *shape._classes]
+
+
+def same(a, b):
+    return all(np.array_equal(x, y) for x, y in zip(arrays(a), arrays(b)))
+
+
+def test_a_cube_is_full_at_three_quarters_and_not_before():
+    full = walpha.alpha_shape(CUBE, alpha=0.75)
+    assert full.volume == 1.0 and full.area == 6.0 and full.betti == (1, 0, 0)
+    assert len(full.facets[full.facet_classes == Class.REGULAR]) == 12
+    assert (full.vertex_classes == Class.REGULAR).all() and full.cells.dtype == np.uint32
+    less = walpha.alpha_shape(CUBE, alpha=np.nextafter(0.75, 0))
+    assert less.volume == 0.0 and len(less.cells) == 0 and less.edges.shape == (12, 2)
+
+
+def test_alpha_is_squared_and_alpha_radius_is_not(cloud):
+    squared, radius = walpha.alpha_shape(cloud, alpha=0.0625), walpha.alpha_shape(cloud, alpha_radius=0.25)
+    assert squared.alpha == radius.alpha == 0.0625 and radius.alpha_radius == 0.25
+    assert same(squared, radius)
+    assert not same(squared, walpha.alpha_shape(cloud, alpha=0.01))
+
+
+@pytest.mark.parametrize("engine", ["cgal", "native", "reference"])
+@pytest.mark.parametrize("exterior", [False, True])
+def test_engines_agree(cloud, weights, engine, exterior):
+    wanted = walpha.alpha_shape(cloud, weights, 0.003, engine="native", exterior=exterior)
+    shape = walpha.alpha_shape(cloud, weights, 0.003, engine=engine, exterior=exterior)
+    assert same(shape, wanted) and shape.betti == wanted.betti and shape.volume == wanted.volume
+    assert exterior == bool((shape.cell_classes == Class.EXTERIOR).any())
+
+
+def test_auto_is_one_solid_component(cloud):
+    shape = walpha.alpha_shape(cloud)
+    assert shape.alpha_origin == "auto" and shape.betti.b0 == 1 and len(shape.components) == 1
+    assert shape.alpha == walpha.filtration(cloud).optimal_alpha()
+    assert len(np.unique(shape.cells)) == len(cloud)
+
+
+def test_voids_and_components(hollow):
+    for exterior in (False, True):
+        shape = walpha.alpha_shape(hollow, alpha=0.75, exterior=exterior)
+        (void,) = shape.voids
+        assert shape.betti == (1, 0, 1)
+        assert void.low == (1, 1, 1) and void.high == (5, 5, 5)
+        assert math.isclose(shape.volume + void.volume, 6**3)
+        assert (void.filling_alpha is not None) == exterior
+    left = walpha.alpha_shape(hollow, alpha=void.filling_alpha, exterior=True)
+    assert left.voids == [] and left.volume == 6**3
+    (component,) = shape.components
+    assert component.voids[0].volume == pytest.approx(void.volume) and component.vertices == len(hollow)
+    two = walpha.alpha_shape(np.concatenate([CUBE, CUBE + 9]), alpha=0.75)
+    assert [c.volume for c in two.components] == [1, 1]
+    assert two.component_numbers.tolist() == [0] * 8 + [1] * 8
+
+
+def test_voids_that_are_not_known_are_refused(hollow):
+    shape = walpha.filtration(hollow).shape(0.75)
+    with pytest.raises(ValueError, match="exterior=True"):
+        shape.voids
+    assert len(walpha.filtration(hollow).shape(0.75, exterior=True).voids) == 1
+
+
+def test_duplicates_and_hidden_points():
+    points = np.concatenate([CUBE, CUBE[:1], [[0.5, 0.5, 0.5]]])
+    weights = np.zeros(10)
+    weights[9] = -5
+    shape = walpha.alpha_shape(points, weights, 1.0, exterior=True)
+    assert shape.duplicates.tolist() == [[8, 0]] and shape.hidden.tolist() == [9]
+    assert shape.vertices[:, 0].tolist() == list(range(8))
+
+
+def test_what_is_lent_cannot_be_written_and_outlives_the_shape(cloud):
+    cells = walpha.alpha_shape(cloud, alpha=0.01).cells
+    again = walpha.alpha_shape(cloud, alpha=0.01)
+    assert np.array_equal(cells, again.cells) and not cells.flags.owndata
+    with pytest.raises(ValueError, match="read-only"):
+        again.cells[0] = 0
+    with pytest.raises(ValueError, match="read-only"):
+        again.points[0] = 0
+
+
+def test_balls_of_radii(cloud):
+    radius = walpha.alpha_shape(cloud, np.full(600, 0.02), 0.05, balls="radius")
+    assert same(radius, walpha.alpha_shape(cloud, alpha=0.07**2))
+
+
+def test_html_has_the_counts(cloud):
+    shape = walpha.alpha_shape(cloud, alpha=0.01)
+    text = shape._repr_html_()
+    assert f"<td>{shape.counts()['cells']['interior']}</td>" in text and "&lt;walpha.AlphaShape" in text
+    assert sum(shape.counts()["facets"].values()) == len(shape.facets)

@@ -1,0 +1,102 @@
+import numpy as np
+import pytest
+
+import walpha
+
+from test_shape import same
+
+
+@pytest.fixture(scope="module")
+def phantom():
+    return walpha.read("sample:phantom@32")
+
+
+def test_a_sample_is_read(phantom):
+    assert phantom.samples.shape == (32, 32, 32) and phantom.samples.dtype == np.float32
+    assert phantom.unit == "voxel" and phantom.spacing == (1, 1, 1)
+    assert np.array_equal(np.asarray(phantom), phantom.samples)
+
+
+def test_stages_by_hand_are_the_pipeline(phantom):
+    low, high = phantom.samples.min(), phantom.samples.max()
+    gray = (255.0 * (phantom.samples.astype(float) - low) / (float(high) - low)).astype(np.float32)
+    smoothed, truncation = walpha.haar(gray)
+    assert truncation["rms"] <= 1 and truncation["kept"] < truncation["total"] == 32**3
+    assert np.isclose(np.sqrt(((smoothed - gray).astype(float) ** 2).mean()), truncation["rms"], rtol=1e-3)
+    chosen = walpha.select(gray, smoothed, count=1500)
+    assert chosen.points.shape == (1500, 3)
+    x, y, z = chosen.points.astype(int).T
+    assert np.array_equal(walpha.difference(smoothed)[z, y, x], chosen.differences)
+    assert np.array_equal(chosen.values, gray[z, y, x])
+    weights = walpha.weigh(chosen.differences, "min-max", alpha=10)
+    assert weights.min() == 0 and weights.max() == 10
+    by_hand = walpha.alpha_shape(chosen.points, weights, 10)
+    whole = walpha.pipeline(phantom, count=1500, weighting="min-max", alpha=10)
+    assert same(by_hand, whole) and np.array_equal(by_hand.weights, whole.weights)
+    assert whole.truncation["kept"] == truncation["kept"]
+    assert np.array_equal(whole.values, phantom.samples[z, y, x])
+
+
+def test_haar_keeps_what_is_asked(phantom):
+    assert walpha.haar(phantom, coefficients=100)[1]["kept"] == 100
+    assert walpha.haar(phantom, epsilon=5)[1]["epsilon"] <= 5
+    assert np.array_equal(walpha.haar(phantom, rms=0)[0], phantom.samples)
+    standard, nonstandard = (walpha.haar(phantom, coefficients=100, decomposition=d)[0] for d in ("standard", "nonstandard"))
+    assert not np.array_equal(standard, nonstandard)
+
+
+def test_spacing_is_z_y_x(phantom):
+    voxels = walpha.pipeline(phantom.samples, count=1000, alpha=10)
+    world = walpha.pipeline(phantom.samples, count=1000, spacing=(4, 2, 1), origin=(7, 8, 9), alpha=10)
+    assert np.array_equal(world.points, voxels.points * [1, 2, 4] + [7, 8, 9])
+    chosen = walpha.select(phantom.samples, count=9, spacing=(4, 2, 1))
+    assert np.array_equal(chosen.points, walpha.select(phantom.samples, count=9).points * [1, 2, 4])
+    # 10 h², h³ being the volume of a voxel.
+    default = walpha.pipeline(phantom.samples, count=1000, spacing=(2, 2, 2))
+    assert default.alpha == pytest.approx(40) and default.alpha_origin == "default"
+
+
+def test_bytes_are_gray_levels(phantom):
+    gray = np.clip(phantom.samples, 10, 200).astype(np.uint8)
+    as_bytes = walpha.pipeline(gray, count=500)
+    assert same(as_bytes, walpha.pipeline(gray.astype(float), gray=(0, 255), count=500))
+    strided = np.asfortranarray(gray)
+    assert same(as_bytes, walpha.pipeline(strided, count=500))
+
+
+def test_axes_are_not_exchanged():
+    volume = np.zeros((3, 5, 7))
+    volume[1, 2, 4] = 1
+    assert walpha.select(volume, count=1).points.tolist() == [[4, 2, 1]]
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"rms": 1, "epsilon": 1}, "rms and epsilon contradict"),
+        ({"count": 1, "ratio": 0.1}, "count and ratio contradict"),
+        ({"count": 1.5}, "no count"),
+        ({"ratio": 2}, "ratio=2"),
+        ({"origin": (0, 0, 0)}, "spacing"),
+        ({"spacing": (1, 1)}, "three lengths"),
+        ({"spacing": (1, 1, -1)}, "above 0"),
+        ({"weighting": "heavy"}, "min-max"),
+        ({"gray": (5, 5)}, "gray range"),
+        ({"gray_min": 300}, "gray_min=300"),
+        ({"decomposition": "cosine"}, "nonstandard"),
+    ],
+)
+def test_options_that_make_no_sense(phantom, options, message):
+    with pytest.raises(ValueError, match=message):
+        walpha.pipeline(phantom.samples, **options)
+
+
+def test_volumes_that_are_none():
+    with pytest.raises(ValueError, match="three axes"):
+        walpha.difference(np.zeros((3, 3)))
+    with pytest.raises(ValueError, match="empty"):
+        walpha.difference(np.zeros((3, 0, 3)))
+    with pytest.raises(ValueError, match="nan|NaN"):
+        walpha.haar(np.full((3, 3, 3), np.nan))
+    with pytest.raises(ValueError, match="shape"):
+        walpha.select(np.zeros((3, 3, 3)), np.zeros((3, 3, 4)), count=1)

@@ -1,0 +1,61 @@
+"""Whatever stands for an array, as the library takes it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def floats(name, given, ndim):
+    """`given` as float64 of `ndim` axes; no copy where it is that already."""
+    array = _numbers(name, given)
+    if array.ndim != ndim:
+        raise ValueError(f"{name} has {array.ndim} axes, expected {ndim}: its shape is {array.shape}")
+    return array.astype(np.float64, copy=False)
+
+
+def points(given):
+    """Places, n×3. An empty list is no place."""
+    array = _numbers("points", given)
+    if array.size == 0:
+        array = array.reshape(0, 3)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"points have shape {array.shape}, expected (n, 3): x, y, z of each")
+    return array.astype(np.float64, copy=False)
+
+
+def samples(given):
+    """A volume `[z, y, x]` as float32, and whether it holds gray levels (unsigned bytes)."""
+    array = _numbers("volume", given)
+    if array.ndim != 3:
+        raise ValueError(f"a volume has three axes [z, y, x], and this one has shape {array.shape}")
+    with np.errstate(over="ignore"):
+        return array.astype(np.float32, copy=False), array.dtype == np.uint8
+
+
+def indices(name, given, columns):
+    """Rows of input indices as uint32, n×columns."""
+    if given is None:
+        return None
+    array = np.asarray(given)
+    if array.size == 0:
+        return np.zeros((0, columns), np.uint32)
+    if columns == 1 and array.ndim == 1:
+        array = array[:, None]
+    if array.ndim != 2 or array.shape[1] != columns:
+        raise ValueError(f"{name} have shape {array.shape}, expected (n, {columns})")
+    if array.dtype.kind not in "iu":
+        raise ValueError(f"{name} must be integers, input indices from 0 on, not {array.dtype}")
+    least, most = array.min(), array.max()
+    if least < 0 or most >= 2**32:
+        raise ValueError(f"{name} hold the index {least if least < 0 else most}: they count from 0")
+    return array.astype(np.uint32, copy=False)
+
+
+def _numbers(name, given):
+    try:
+        array = np.asarray(given)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+    if array.size and array.dtype.kind not in "fiub":
+        raise ValueError(f"{name} must be real numbers, not {array.dtype}")
+    return array

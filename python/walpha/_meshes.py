@@ -1,0 +1,76 @@
+"""Shapes for other packages, which are imported only here, when they are asked for."""
+
+from __future__ import annotations
+
+import importlib
+
+import numpy as np
+
+from ._class import Class
+
+
+def to_pyvista(shape, what):
+    pyvista = _import("pyvista", "to_pyvista")
+    if what == "boundary":
+        points, triangles, indices, _ = shape.boundary()
+        faces = _with_sizes(triangles, np.int64)
+        mesh = pyvista.PolyData(points, faces=faces) if len(triangles) else pyvista.PolyData()
+    elif what == "cells":
+        cells = shape.cells[shape.cell_classes == Class.INTERIOR]
+        types = np.full(len(cells), pyvista.CellType.TETRA, np.uint8)
+        indices = np.arange(len(shape.points), dtype=np.uint32)
+        mesh = pyvista.UnstructuredGrid(_with_sizes(cells, np.int64), types, np.array(shape.points))
+    else:
+        raise ValueError(f'what={what!r} is unknown: there are "boundary" and "cells"')
+    if mesh.n_points:
+        mesh.point_data["index"] = indices
+        mesh.point_data["weight"] = shape.weights[indices]
+        if shape.values is not None:
+            mesh.point_data["value"] = shape.values[indices]
+    return mesh
+
+
+def to_meshio(shape):
+    meshio = _import("meshio", "to_meshio")
+    blocks, classes = [], []
+    for kind, rows, of in (
+        ("tetra", shape.cells, shape.cell_classes),
+        ("triangle", shape.facets, shape.facet_classes),
+        ("line", shape.edges, shape.edge_classes),
+        ("vertex", shape.vertices, shape.vertex_classes),
+    ):
+        # Faces of higher simplices would be there twice, but for the boundary.
+        seen = of == Class.INTERIOR if kind == "tetra" else of == Class.SINGULAR
+        if kind == "triangle":
+            seen |= of == Class.REGULAR
+        if seen.any():
+            blocks.append((kind, rows[seen].astype(np.int64)))
+            classes.append(of[seen])
+    data = {"weight": shape.weights}
+    if shape.values is not None:
+        data["value"] = shape.values
+    return meshio.Mesh(np.array(shape.points), blocks, point_data=data, cell_data={"class": classes})
+
+
+def to_trimesh(shape):
+    trimesh = _import("trimesh", "to_trimesh")
+    points, triangles, indices, _ = shape.boundary()
+    # Processed, it would unite the vertices at which parts of the solid were cut apart.
+    mesh = trimesh.Trimesh(points, triangles.astype(np.int64), process=False)
+    mesh.vertex_attributes["index"] = indices
+    return mesh
+
+
+def _with_sizes(rows, dtype):
+    """Rows as VTK lists them, each after its length."""
+    listed = np.empty((len(rows), rows.shape[1] + 1), dtype)
+    listed[:, 0] = rows.shape[1]
+    listed[:, 1:] = rows
+    return listed.ravel()
+
+
+def _import(name, method):
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise ImportError(f"{method}() needs the package {name}: pip install {name}") from error

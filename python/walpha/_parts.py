@@ -1,0 +1,125 @@
+"""What is found in a shape, as named tuples."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Betti(NamedTuple):
+    """Betti numbers.
+
+    Attributes
+    ----------
+    b0 : int
+        Connected components.
+    b1 : int
+        Independent tunnels.
+    b2 : int
+        Voids.
+    """
+
+    b0: int
+    b1: int
+    b2: int
+
+
+class Void(NamedTuple):
+    """A bounded component of what is outside the shape.
+
+    Attributes
+    ----------
+    volume : float
+        Cubed units of the points.
+    low, high : tuple of float
+        Corners of its box, (x, y, z).
+    cells : int or None
+        Cells of the triangulation that fill it; None without the exterior simplices.
+    filling_alpha : float or None
+        The smallest α (a squared length) at which nothing of it is left; None likewise.
+    """
+
+    volume: float
+    low: tuple
+    high: tuple
+    cells: int | None = None
+    filling_alpha: float | None = None
+
+    @classmethod
+    def of(cls, facts):
+        """From the fields of the library."""
+        return cls(
+            facts["volume"],
+            tuple(facts["low"]),
+            tuple(facts["high"]),
+            facts.get("cells"),
+            facts.get("filling_alpha"),
+        )
+
+
+class Component(NamedTuple):
+    """A connected component of a shape.
+
+    Attributes
+    ----------
+    vertices, cells : int
+        How many it has; 0 cells where it is nowhere solid.
+    volume : float
+        Of its cells, in cubed units of the points.
+    area : float
+        Of its regular facets, the boundary of its solid part, in squared units.
+    singular_area : float
+        Of its singular facets, one side of each.
+    low, high : tuple of float
+        Corners of its box, (x, y, z).
+    voids : list of Void or None
+        What its boundary shuts in, largest first. Another component may float in one: its volume
+        counts. None where the engine does not tell (``engine="reference"``, shapes of a filtration).
+    """
+
+    vertices: int
+    cells: int
+    volume: float
+    area: float
+    singular_area: float
+    low: tuple
+    high: tuple
+    voids: list | None
+
+    @classmethod
+    def of(cls, facts):
+        """From the fields of the library."""
+        voids = facts["voids"]
+        return cls(
+            facts["vertices"],
+            facts["cells"],
+            facts["volume"],
+            facts["area"],
+            facts["singular_area"],
+            tuple(facts["low"]),
+            tuple(facts["high"]),
+            None if voids is None else [Void.of(void) for void in voids],
+        )
+
+
+class Boundary(NamedTuple):
+    """A triangle mesh.
+
+    Attributes
+    ----------
+    points : ndarray of float64, (m, 3)
+        Places of its vertices.
+    triangles : ndarray of uint32, (k, 3)
+        Rows of ``points``, counter-clockwise seen from outside the solid.
+    indices : ndarray of uint32, (m,)
+        The input index of each vertex; of a midpoint, that of one end of its edge.
+    cuts : tuple of int
+        Edges at which parts of the solid touched, vertices that stand there more than once, and
+        midpoints added; all 0 unless the boundary was cut apart into a manifold.
+    """
+
+    points: np.ndarray
+    triangles: np.ndarray
+    indices: np.ndarray
+    cuts: tuple

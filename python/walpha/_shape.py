@@ -1,0 +1,411 @@
+from __future__ import annotations
+
+import functools
+import html
+import json
+import math
+import os
+
+import numpy as np
+
+from . import _arrays, _meshes, _walpha
+from ._class import Class
+from ._parts import Betti, Boundary, Component, Void
+
+
+class AlphaShape:
+    """The alpha shape of weighted points, by input index.
+
+    Made by :func:`alpha_shape`, :func:`pipeline` and :meth:`Filtration.shape`. Arrays of simplices
+    and of points lend the library's memory: they cost nothing, and cannot be written to.
+
+    Notes
+    -----
+    Rows are in a canonical order. Cells are positively oriented, regular facets turn
+    counter-clockwise seen from outside, and equal shapes have equal arrays whatever the engine or
+    the number of threads.
+    """
+
+    def __init__(self, shape):
+        self._shape = shape
+
+    # What it was made of.
+
+    @functools.cached_property
+    def points(self):
+        """ndarray of float64, (n, 3): the points as given, duplicates and hidden ones too."""
+        return self._shape.points
+
+    @functools.cached_property
+    def weights(self):
+        """ndarray of float64, (n,): the weights ω, squared lengths."""
+        return self._shape.weights
+
+    @functools.cached_property
+    def values(self):
+        """ndarray of float64, (n,), or None: the values that :meth:`at` interpolates."""
+        return self._shape.values
+
+    @property
+    def alpha(self):
+        """float: α, a **squared** length, as in CGAL and GUDHI. See :attr:`alpha_radius`."""
+        return self._shape.alpha
+
+    @property
+    def alpha_radius(self):
+        """float: √α, the radius of the balls of points of weight 0; NaN for a negative α."""
+        return math.sqrt(self.alpha) if self.alpha >= 0 else math.nan
+
+    @functools.cached_property
+    def _facts(self):
+        return json.loads(self._shape.facts)
+
+    @property
+    def alpha_origin(self):
+        """str: ``given``, ``default`` (10 h² for a volume), ``auto``, or ``auto-unweighted``."""
+        return self._facts["alpha_origin"]
+
+    @property
+    def truncation(self):
+        """dict or None: what truncation kept of a volume: kept, total, epsilon, rms, asked."""
+        return self._facts["truncation"]
+
+    # Simplices.
+
+    @functools.cached_property
+    def cells(self):
+        """ndarray of uint32, (n, 4): tetrahedra, positively oriented."""
+        return self._shape.cells
+
+    @functools.cached_property
+    def facets(self):
+        """ndarray of uint32, (n, 3): triangles; regular ones turn outward."""
+        return self._shape.facets
+
+    @functools.cached_property
+    def edges(self):
+        """ndarray of uint32, (n, 2): edges."""
+        return self._shape.edges
+
+    @functools.cached_property
+    def vertices(self):
+        """ndarray of uint32, (n, 1): vertices."""
+        return self._shape.vertices
+
+    @functools.cached_property
+    def _classes(self):
+        return self._shape.classes()
+
+    @property
+    def cell_classes(self):
+        """ndarray of uint8, (n,): the :class:`Class` of each cell."""
+        return self._classes[0]
+
+    @property
+    def facet_classes(self):
+        """ndarray of uint8, (n,): the :class:`Class` of each facet."""
+        return self._classes[1]
+
+    @property
+    def edge_classes(self):
+        """ndarray of uint8, (n,): the :class:`Class` of each edge."""
+        return self._classes[2]
+
+    @property
+    def vertex_classes(self):
+        """ndarray of uint8, (n,): the :class:`Class` of each vertex."""
+        return self._classes[3]
+
+    @functools.cached_property
+    def hidden(self):
+        """ndarray of uint32, (n,), or None.
+
+        Points that are no vertices of the regular triangulation, as heavier ones near them make
+        them redundant. None where the shape was made in several blocks, none of which sees the
+        whole triangulation: ask with ``exterior=True``.
+        """
+        return self._shape.hidden
+
+    @functools.cached_property
+    def duplicates(self):
+        """ndarray of uint32, (n, 2): a point that went, and the one at its place that stayed."""
+        return self._shape.duplicates
+
+    # Topology and size.
+
+    @property
+    def volume(self):
+        """float: the volume of the cells, in cubed units of the points."""
+        return self._shape.measures[0]
+
+    @property
+    def area(self):
+        """float: the area of the regular facets, the boundary of the solid part, in squared units."""
+        return self._shape.measures[1]
+
+    @property
+    def singular_area(self):
+        """float: the area of the singular facets, one side of each, in squared units."""
+        return self._shape.measures[2]
+
+    @property
+    def betti(self):
+        """Betti or None: components, tunnels and voids."""
+        betti = self._shape.betti
+        return None if betti is None else Betti(*betti)
+
+    @functools.cached_property
+    def components(self):
+        """list of Component: in the order of their smallest vertices."""
+        return [Component.of(facts) for facts in json.loads(self._shape.components())]
+
+    @functools.cached_property
+    def component_numbers(self):
+        """ndarray of int64, (n,): for each point the number of its component; −1 outside."""
+        return self._shape.component_numbers()
+
+    @functools.cached_property
+    def voids(self):
+        """list of Void: largest first, as many as ``betti.b2``.
+
+        With ``exterior=True`` they are made of exterior cells, and know the α that fills them.
+        Without, they are what boundaries shut in: the volume of a component that floats in a void
+        then counts as the void's.
+
+        Raises
+        ------
+        ValueError
+            For a shape that knows neither its exterior nor its sheets (``engine="reference"``,
+            a filtration's): make it with ``exterior=True``.
+        """
+        exact = self._shape.voids()
+        if exact is not None:
+            return [Void.of(facts) for facts in json.loads(exact)]
+        shut_in = [component.voids for component in self.components]
+        if any(voids is None for voids in shut_in):
+            raise ValueError("the voids of this shape are not known: make it with exterior=True")
+        return sorted((void for voids in shut_in for void in voids), key=lambda void: -void.volume)
+
+    def boundary(self, solid=True):
+        """The boundary of the solid part, as a triangle mesh.
+
+        Parameters
+        ----------
+        solid : bool
+            Cut the boundary apart where parts of the solid only touch, so that it is a closed,
+            oriented manifold: every edge is on two triangles. No place moves. With False the
+            regular facets are given as they are.
+
+        Returns
+        -------
+        Boundary
+            Its triangles turn counter-clockwise seen from outside; the volume they enclose is
+            :attr:`volume`.
+        """
+        return Boundary(*self._shape.boundary(solid))
+
+    # The interpolant.
+
+    def at(self, places, values=None):
+        """F at places: linear on each simplex of the shape.
+
+        Parameters
+        ----------
+        places : array_like, (m, 3)
+            x, y, z, in the units of the points.
+        values : array_like, (n,), optional
+            One for each point; by default those the shape was made with.
+
+        Returns
+        -------
+        ndarray of float64, (m,)
+            NaN outside the shape. Which simplex holds a place is decided exactly.
+        """
+        return self._shape.at(_arrays.points(places), self._own(values))
+
+    def interpolate(self, shape, low=None, high=None, values=None, progress=None):
+        """F on a grid over a box.
+
+        Parameters
+        ----------
+        shape : tuple of int
+            Samples along z, y and x, as numpy orders them.
+        low, high : array_like, (3,), optional
+            Corners of the box (x, y, z), on which the first and last samples stand; by default
+            those of the points.
+        values : array_like, (n,), optional
+            As in :meth:`at`.
+        progress : callable, optional
+            ``progress(stage, done, total)``.
+
+        Returns
+        -------
+        ndarray of float32, ``shape``
+            ``[z, y, x]``, NaN outside the shape.
+        """
+        nz, ny, nx = (int(n) for n in shape)
+        low = self.points.min(axis=0) if low is None else _arrays.floats("low", low, 1)
+        high = self.points.max(axis=0) if high is None else _arrays.floats("high", high, 1)
+        if low.shape != (3,) or high.shape != (3,) or not (np.isfinite([low, high]).all()):
+            raise ValueError("low and high are corners: give three finite numbers x, y, z for each")
+        if min(nz, ny, nx) < 1:
+            raise ValueError(f"a grid of shape {tuple(shape)} is empty: every axis needs a sample")
+        sizes = [nx, ny, nz]
+        return self._shape.interpolate(sizes, list(low), list(high), self._own(values), progress)
+
+    @staticmethod
+    def _own(values):
+        return None if values is None else _arrays.floats("values", values, 1)
+
+    # Elsewhere.
+
+    def save(self, path, solid=False):
+        """Write a file; it appears under its name only when it is complete.
+
+        Parameters
+        ----------
+        path : str or path-like
+            Its extension says the format: ``.ply .off .obj .stl .glb .vtp`` (the boundary),
+            ``.vtu .npz .json`` (all simplices).
+        solid : bool
+            For boundaries: a closed manifold, as :meth:`boundary` makes it.
+
+        Raises
+        ------
+        OSError
+            The file cannot be written. Nothing is left behind.
+        ValueError
+            No format has this extension, or it holds no boundary.
+        """
+        self._shape.save(os.fspath(path), solid)
+
+    def to_pyvista(self, what="boundary"):
+        """For PyVista: the solid boundary (PolyData), or ``what="cells"`` (UnstructuredGrid)."""
+        return _meshes.to_pyvista(self, what)
+
+    def to_meshio(self):
+        """For meshio: cells, boundary and singular simplices as a ``meshio.Mesh``."""
+        return _meshes.to_meshio(self)
+
+    def to_trimesh(self):
+        """For trimesh: the solid boundary as a ``trimesh.Trimesh``, closed and oriented."""
+        return _meshes.to_trimesh(self)
+
+    def counts(self):
+        """dict: for each dimension, how many simplices there are of each class, by its name."""
+        names = ("cells", "facets", "edges", "vertices")
+        return {
+            name: {c.name.lower(): int((classes == c).sum()) for c in Class}
+            for name, classes in zip(names, self._classes)
+        }
+
+    def __repr__(self):
+        return (
+            f"<walpha.AlphaShape α={self.alpha:g} (√α={self.alpha_radius:g}): {len(self.points)} points, "
+            f"{len(self.cells)} cells, volume {self.volume:g}, betti {tuple(self.betti or ())}>"
+        )
+
+    def _repr_html_(self):
+        head = "".join(f"<th>{c.name.lower()}</th>" for c in Class)
+        rows = "".join(
+            f"<tr><th>{name}</th>" + "".join(f"<td>{n}</td>" for n in counts.values()) + "</tr>"
+            for name, counts in self.counts().items()
+        )
+        return f"<p>{html.escape(repr(self))}</p><table><tr><th></th>{head}</tr>{rows}</table>"
+
+
+def alpha_shape(
+    points,
+    weights=None,
+    alpha="auto",
+    *,
+    alpha_radius=None,
+    engine="cgal",
+    exterior=False,
+    balls="power",
+    values=None,
+    progress=None,
+):
+    """The alpha shape of weighted points.
+
+    The simplices of their regular triangulation whose smallest orthogonal sphere is empty and has
+    a squared radius of at most α, and the faces of these. Every decision is exact.
+
+    Parameters
+    ----------
+    points : array_like, (n, 3)
+        x, y, z. Any real type, contiguous or not; taken as float64.
+    weights : array_like, (n,), optional
+        ω, squared lengths: at α a point is a ball of squared radius α + ω. By default 0.
+    alpha : float or "auto"
+        α, a **squared** length, as in CGAL and GUDHI; ``inf`` gives the convex hull. "auto" is the
+        smallest α at which all points are in one solid component.
+    alpha_radius : float, optional
+        √α instead of α, as Open3D and PyVista have it.
+    engine : {"cgal", "native", "reference"}
+        Who computes it; all give the same answer. "native" is the fastest.
+    exterior : bool
+        Keep the simplices outside the shape: the whole triangulation. Voids then know what fills
+        them, and hidden points are always known.
+    balls : {"power", "radius"}
+        "radius": a point is a ball of radius α + ω instead.
+    values : array_like, (n,), optional
+        Values that :meth:`AlphaShape.at` interpolates.
+    progress : callable, optional
+        ``progress(stage, done, total)``, called in this thread, at most 20 times a second: so many
+        of ``total`` equal parts of a stage ("alpha", "shape", …) are done. A total of 0 says that a
+        stage begins. An exception ends the work.
+
+    Returns
+    -------
+    AlphaShape
+
+    Raises
+    ------
+    ValueError
+        Numbers that are NaN, infinite or absurd, fewer than four different points, points in one
+        plane, options that contradict each other.
+    MemoryError
+        The system gives no more.
+
+    References
+    ----------
+    H. Edelsbrunner and E. P. Mücke, Three-dimensional alpha shapes, ACM Transactions on Graphics
+    13 (1994), doi:10.1145/174462.156635.
+
+    H. Edelsbrunner, Weighted alpha shapes, UIUCDCS-R-92-1760 (1992).
+
+    Examples
+    --------
+    >>> cube = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    >>> walpha.alpha_shape(cube, alpha=0.75).volume
+    1.0
+    """
+    weights = None if weights is None else _arrays.floats("weights", weights, 1)
+    values = None if values is None else _arrays.floats("values", values, 1)
+    rule = squared(alpha, alpha_radius)
+    shape = _walpha.alpha_shape(
+        _arrays.points(points), weights, values, rule, engine, balls, exterior, progress
+    )
+    return AlphaShape(shape)
+
+
+def squared(alpha, alpha_radius):
+    """α as the library has it: None by default, NaN to be found, or a squared length."""
+    if alpha_radius is not None:
+        if alpha is not None and not isinstance(alpha, str):
+            raise ValueError("alpha is the square of alpha_radius: give one of them")
+        radius = float(alpha_radius)
+        if not radius >= 0:
+            raise ValueError(f"alpha_radius={radius} is no radius: give a number from 0 up")
+        return radius * radius
+    if alpha is None:
+        return None
+    if isinstance(alpha, str):
+        if alpha != "auto":
+            raise ValueError(f'alpha={alpha!r}: give a squared length, or "auto"')
+        return math.nan
+    alpha = float(alpha)
+    if math.isnan(alpha):
+        raise ValueError('alpha is NaN: give a squared length, or "auto"')
+    return alpha
