@@ -236,14 +236,16 @@ def pcd():
 
 
 def las():
-    """Two points of format 0 in LAS 1.2."""
+    """Two points of format 0 in LAS 1.2, and the head of one that claims records of 58 369 bytes."""
     head = bytearray(227)
     head[0:4] = b"LASF"
     head[24:26] = b"\1\2"
     struct.pack_into("<HHHIIBHI5I", head, 90, 1, 2020, 227, 227, 0, 0, 20, 2, 2, 0, 0, 0, 0)
     struct.pack_into("<3d3d6d", head, 131, 0.01, 0.01, 0.01, 0, 0, 0, 1, 0, 1, 0, 1, 0)
     points = b"".join(struct.pack("<iiiHBBbBH", at, at, at, 7, 0b1001, 2, 0, 0, 1) for at in (0, 100))
-    return [bytes(head) + points]
+    long = bytearray(head)
+    struct.pack_into("<H", long, 105, 58_369)
+    return [bytes(head) + points, bytes(long) + b"\1\2\3"]
 
 
 def dicom():

@@ -44,3 +44,24 @@ fn clouds_of_scanners_are_read() {
         assert!(error.contains(name), "{error}");
     }
 }
+
+/// Found by fuzzing: records of 58 369 bytes each, in a file of 230.
+#[cfg(target_os = "linux")]
+#[test]
+fn long_records_take_no_more_than_their_share() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.las");
+    write(&path);
+    let mut bytes = std::fs::read(&path).unwrap();
+    bytes[105..107].copy_from_slice(&58_369u16.to_le_bytes());
+    std::fs::write(&path, &bytes).unwrap();
+    let peak = || {
+        let status = std::fs::read_to_string("/proc/self/status").unwrap();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmPeak:")).unwrap();
+        line.trim().trim_end_matches(" kB").parse::<u64>().unwrap()
+    };
+    let before = peak();
+    assert!(read_points(&path, None).is_err());
+    let more = peak() - before;
+    assert!(more < 1 << 20, "{more} KiB more");
+}

@@ -5,8 +5,8 @@ use std::path::Path;
 use super::{Points, PointsError, format};
 use crate::volume::Reason;
 
-/// Points read at once.
-const BATCH: u64 = 1 << 16;
+/// Bytes of points read at once. A header may claim records of 64 KiB each, and more than there are.
+const BATCH: u64 = 1 << 22;
 
 /// Reads the places of the points, and their intensity as values. Numbers are those that the file's
 /// scales and offsets make, in doubles.
@@ -16,9 +16,10 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     };
     let mut reader = las::Reader::from_path(path).map_err(said)?;
     let mut points = Points { values: Some(Vec::new()), ..Points::default() };
-    // In batches, as a header may claim more points than there are.
+    let record = u64::from(reader.header().point_format().len()).max(1);
+    let at_once = (BATCH / record).max(1);
     let mut batch = las::PointDataBuilder::new().for_header(reader.header()).build();
-    while reader.fill_points(BATCH, &mut batch).map_err(said)? > 0 {
+    while reader.fill_points(at_once, &mut batch).map_err(said)? > 0 {
         let places = batch.x().zip(batch.y()).zip(batch.z());
         points.positions.extend(places.map(|((x, y), z)| [x, y, z]));
         points.values.get_or_insert_default().extend(batch.intensity().map(f64::from));
