@@ -314,7 +314,7 @@ fn bad_selections_exit_with_1() {
     fails(f, 1, few, &["3 distinct points", "at least 4"]);
     fails(f, 1, "shape sample:phantom@8 --threshold 300", &["none of 512 voxels"]);
     fails(f, 1, "shape sample:phantom@8 --gray-min 300", &["no voxel reaches", "give less"]);
-    fails(f, 1, "shape sample:phantom@1 --ratio 1", &["1 distinct points"]);
+    fails(f, 1, "shape sample:phantom@1 --ratio 1 --dimension 3", &["1 distinct points"]);
     fails(f, 1, "shape sample:phantom@8 --weights column", &["column"]);
     fails(f, 1, "shape sample:phantom@8 --weights min-max --alpha inf", &["proportional to α"]);
 }
