@@ -96,4 +96,4 @@ def test_calls_at_the_same_time_have_progress_of_their_own():
         return stages
 
     with ThreadPoolExecutor(2) as pool:
-        assert list(pool.map(work, ["shape", "filtration"])) == [{"shape"}, {"filtration"}]
+        assert list(pool.map(work, ["shape", "filtration"])) == [{"points", "shape"}, {"filtration"}]

@@ -24,7 +24,9 @@ def test_a_cube_is_full_at_three_quarters_and_not_before():
     assert len(full.facets[full.facet_classes == Class.REGULAR]) == 12
     assert (full.vertex_classes == Class.REGULAR).all() and full.cells.dtype == np.uint32
     less = walpha.alpha_shape(CUBE, alpha=np.nextafter(0.75, 0))
-    assert less.volume == 0.0 and len(less.cells) == 0 and less.edges.shape == (12, 2)
+    # The sides of the cube, each of two right triangles.
+    assert less.volume == 0.0 and len(less.cells) == 0 and less.betti == (1, 0, 1)
+    assert (less.facet_classes == Class.SINGULAR).all() and less.facets.shape == (12, 3)
 
 
 def test_alpha_is_squared_and_alpha_radius_is_not(cloud):

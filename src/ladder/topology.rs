@@ -32,8 +32,9 @@ impl Levels<'_> {
         let mut sets = UnionFind::new(self.cells.len());
         let mut count = 0;
         let grow = |level| {
+            // All of them first: one may be united with others that come at the same level.
+            count += cells.at(level).len() as u64;
             for &cell in cells.at(level) {
-                count += 1;
                 for &facet in &incidence.cell_facets[cell as usize] {
                     let [a, b] = incidence.facet_cells[facet as usize];
                     let there = |side: u32| {
