@@ -1,0 +1,174 @@
+//! What to read, and which part of it.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::cli::given::Given;
+use crate::cli::ranges;
+use crate::cli::said::misused;
+use crate::export::Target;
+use crate::points::Columns;
+use crate::volume::{Dtype, Endian, Nan, RawLayout, ReadOptions, Region};
+use crate::{Dims, Gray, GrayRange};
+
+use super::values::{dims, gray_range, nan};
+
+/// What to read.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "Input")]
+pub struct InputArgs {
+    /// What was given, the command's own options aside.
+    #[command(flatten)]
+    pub given: Given,
+    /// Volume or point file, - (standard input), sample:skull, sample:phantom or sample:phantom@N.
+    #[arg(value_name = "INPUT", help_heading = None::<&str>)]
+    pub input: String,
+    /// Format of standard input or output (-), as in --format nrrd.
+    #[arg(long, value_name = "EXTENSION")]
+    format: Option<String>,
+    #[command(flatten)]
+    part: PartArgs,
+    /// Values mapped to gray 0 and 255 [default: unchanged for unsigned 8-bit samples, otherwise min..max].
+    #[arg(long, value_name = "LO..HI", value_parser = gray_range, allow_hyphen_values = true)]
+    gray: Option<GrayRange>,
+    /// Write gray levels 0..255 instead of the values of INPUT.
+    #[arg(long)]
+    gray_out: bool,
+    /// Columns of a table of points (CSV, XYZ): x, y, z, optionally weight and value, others under any
+    /// name, as in x,y,z,nx,ny,nz; without z and others, points lie in the plane z = 0 [default: from
+    /// its header, otherwise from its numbers].
+    #[arg(long, value_name = "NAME,NAME,…")]
+    columns: Option<Columns>,
+    #[command(flatten)]
+    pub raw: RawArgs,
+}
+
+impl InputArgs {
+    /// How to read a volume.
+    pub fn options(&self) -> ReadOptions {
+        let PartArgs { level, array, frame, series, nan, roi, downsample } = self.part.clone();
+        ReadOptions {
+            raw: self.raw.layout(),
+            level,
+            array,
+            frame,
+            series,
+            nan,
+            region: roi,
+            downsample,
+        }
+    }
+
+    /// What the name of standard input would end with.
+    pub fn extension(&self) -> String {
+        let dotted = |format: &String| format!(".{}", format.trim_start_matches('.'));
+        self.format.as_ref().map(dotted).unwrap_or_default()
+    }
+
+    /// A path for an output whose extension names the format: its own path, if it has one.
+    pub fn output(&self, path: &Path) -> anyhow::Result<PathBuf> {
+        match &self.format {
+            _ if path.extension().is_some() => Ok(path.to_owned()),
+            Some(_) => Ok(format!("output{}", self.extension()).into()),
+            None if path == Path::new(Target::STDOUT) => {
+                misused!("standard output has no extension" => "name the format, as in --format nrrd")
+            }
+            None => Ok(path.to_owned()),
+        }
+    }
+
+    /// Refuses --format where nothing needs it.
+    pub fn check_format<'a>(
+        &self,
+        mut outputs: impl Iterator<Item = &'a PathBuf>,
+    ) -> anyhow::Result<()> {
+        let used = self.input == Target::STDOUT || outputs.any(|path| path.extension().is_none());
+        if self.format.is_some() && !used {
+            misused!("--format has no effect: the extension of each file says its format" => "omit it");
+        }
+        Ok(())
+    }
+
+    /// What the columns of a table of points are.
+    pub fn columns(&self) -> Option<&Columns> {
+        self.columns.as_ref()
+    }
+
+    /// How values become gray levels.
+    pub fn gray(&self) -> Gray {
+        self.gray.map_or(Gray::Automatic, Gray::Range)
+    }
+
+    /// The values that gray levels stand for in what is written, where `range` became 0..255.
+    pub fn written(&self, range: GrayRange) -> GrayRange {
+        if self.gray_out { GrayRange::IDENTITY } else { range }
+    }
+}
+
+/// Which part of a file is the volume, and what of it is taken.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "Parts of a volume")]
+struct PartArgs {
+    /// Level of a pyramid (OME-Zarr); 0 is the finest [default: 0].
+    #[arg(long, value_name = "N", conflicts_with = "dims")]
+    level: Option<u32>,
+    /// Array to read from a file with several (VTK, NPZ) [default for VTK: the first point array].
+    #[arg(long, value_name = "NAME", conflicts_with = "dims")]
+    array: Option<String>,
+    /// Volume to read from a file with several (a fourth axis), counted from 0.
+    #[arg(long, value_name = "K", conflicts_with = "dims")]
+    frame: Option<u64>,
+    /// Series to read from a folder with several (DICOM): its number in `walpha info`, or the end of its
+    /// UID.
+    #[arg(long, value_name = "N", conflicts_with = "dims")]
+    series: Option<String>,
+    /// Value that replaces NaN samples; without a value they are masked: no points, no errors.
+    #[arg(long, value_name = "VALUE", num_args = 0..=1, default_missing_value = "mask",
+          value_parser = nan, allow_negative_numbers = true)]
+    nan: Option<Nan>,
+    /// Crop to a range of indices along x, y and z, each end exclusive; ends may be omitted, as in
+    /// 20:40,:,10:.
+    #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = ranges::samples)]
+    roi: Option<Region>,
+    /// Average blocks of N×N×N samples.
+    #[arg(long, value_name = "N")]
+    downsample: Option<NonZeroUsize>,
+}
+
+/// The layout of a raw file.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "Raw volumes")]
+pub struct RawArgs {
+    /// Sizes of a raw file along x, y and z (x fastest).
+    #[arg(long, value_name = "X,Y,Z", value_parser = dims, requires = "dtype")]
+    dims: Option<Dims>,
+    #[arg(long, value_name = "TYPE", requires = "dims", help = dtype_help())]
+    dtype: Option<Dtype>,
+    /// Byte order of a sample: little or big.
+    #[arg(long, value_name = "ORDER", default_value = "little", requires = "dims")]
+    endian: Endian,
+    /// Bytes to skip at the start of the file.
+    #[arg(long, value_name = "BYTES", default_value_t = 0, requires = "dims")]
+    offset: u64,
+}
+
+impl RawArgs {
+    /// The grid that `--dims` asks for where it does not describe a raw file.
+    pub fn grid(&self) -> Option<Dims> {
+        self.dims.filter(|_| self.dtype.is_none())
+    }
+
+    /// How samples lie in the file, if it is raw.
+    fn layout(&self) -> Option<RawLayout> {
+        let layout =
+            |(dims, dtype)| RawLayout { dims, dtype, endian: self.endian, offset: self.offset };
+        self.dims.zip(self.dtype).map(layout)
+    }
+}
+
+/// The help of `--dtype`.
+fn dtype_help() -> String {
+    format!("Type of a sample: {}", Dtype::ALL.map(Dtype::name).join(", "))
+}

@@ -1,0 +1,28 @@
+//! Options that several commands share, and how they become options of the library.
+
+mod input;
+mod select;
+mod shape;
+mod values;
+mod weights;
+
+use clap::Args;
+
+pub use input::InputArgs;
+pub use select::{HaarArgs, SelectArgs};
+pub use shape::ShapeArgs;
+pub use values::{not_negative, number};
+pub use weights::{Alphas, FrozenArgs, WeightArgs};
+
+/// From an input to weighted points.
+#[derive(Args, Clone)]
+pub struct PipelineArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+    #[command(flatten)]
+    pub haar: HaarArgs,
+    #[command(flatten)]
+    pub select: SelectArgs,
+    #[command(flatten)]
+    pub weights: WeightArgs,
+}

@@ -1,0 +1,163 @@
+//! The wavelet stage, which samples become points, and where these stand.
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::said::{misused, refused};
+use crate::interpolate::Adaptive;
+use crate::pipeline::Choice;
+use crate::{
+    Coordinates, Decomposition, GrayRange, HaarOptions, LengthUnit, Selection, SelectionRule,
+    Space, Tolerance, Units, Volume,
+};
+
+use super::values::{count, not_nan, not_negative, share};
+
+/// The wavelet stage.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Wavelet stage")]
+pub struct HaarArgs {
+    /// Decomposition: all axes once per level, or each axis fully.
+    #[arg(long, value_enum, default_value_t, value_name = "KIND")]
+    haar: Decomposition,
+    /// Root mean square error allowed, in gray levels.
+    #[arg(long, value_name = "E", group = "tolerance", value_parser = not_negative,
+          default_value = "1")]
+    rms: f64,
+    /// L² norm of the error allowed, in gray levels.
+    #[arg(long, value_name = "E", group = "tolerance", value_parser = not_negative)]
+    epsilon: Option<f64>,
+    /// Coefficients to keep.
+    #[arg(long, value_name = "N", group = "tolerance")]
+    coefficients: Option<u64>,
+}
+
+impl HaarArgs {
+    /// The stage's options.
+    pub fn options(&self) -> HaarOptions {
+        let tolerance = match (self.epsilon, self.coefficients) {
+            (Some(epsilon), _) => Tolerance::Epsilon(epsilon),
+            (_, Some(count)) => Tolerance::Coefficients(count),
+            _ => Tolerance::Rms(self.rms),
+        };
+        HaarOptions { decomposition: self.haar, tolerance }
+    }
+}
+
+/// Which samples become points.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Points")]
+pub struct SelectArgs {
+    /// Select the samples of largest gray difference, or adaptively: starting from the corners of the
+    /// volume, those where the interpolant of the previous ones is worst.
+    #[arg(long, value_enum, default_value_t, value_name = "HOW")]
+    select: SelectArg,
+    /// Adaptive: stop when the RMSE of the interpolant over all samples is at most E gray levels
+    /// (--rms belongs to the wavelet stage). With --count or --ratio: at whichever comes first.
+    #[arg(long, value_name = "E", value_parser = not_negative)]
+    target_rmse: Option<f64>,
+    /// Keep N samples.
+    #[arg(long, value_name = "N", group = "rule", value_parser = count)]
+    count: Option<u64>,
+    /// Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609].
+    #[arg(long, value_name = "R", group = "rule", value_parser = share)]
+    ratio: Option<f64>,
+    /// Keep the samples whose gray difference is at least T gray levels.
+    #[arg(long, value_name = "T", group = "rule", value_parser = not_nan,
+          allow_negative_numbers = true)]
+    threshold: Option<f64>,
+    /// Drop samples below this gray level after truncation.
+    #[arg(long, value_name = "G", value_parser = not_nan, allow_negative_numbers = true)]
+    gray_min: Option<f64>,
+    /// Drop samples below this value of INPUT, as in --value-min 300 for Hounsfield units.
+    #[arg(long, value_name = "V", allow_negative_numbers = true, conflicts_with = "gray_min")]
+    value_min: Option<f64>,
+    #[command(flatten)]
+    place: PlaceArgs,
+}
+
+/// In what coordinates points, shapes and all lengths are.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Coordinates")]
+pub struct PlaceArgs {
+    /// Coordinates, α, weights and sizes in voxels, or in the unit of the file [default: world where the
+    /// file states a spacing or an origin, otherwise voxel].
+    #[arg(long, value_enum, value_name = "UNITS")]
+    units: Option<Units>,
+    /// Direction of world coordinates, where the file states the patient's orientation: x to the left
+    /// and y to the back (lps), or to the right and the front (ras) [default: lps].
+    #[arg(long, value_enum, value_name = "SPACE")]
+    space: Option<Space>,
+}
+
+impl PlaceArgs {
+    /// What the coordinates of this volume's points are measured in, and the volume in the space that
+    /// they are in.
+    pub fn place(&self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
+        let Coordinates { space, unit } = volume.frame().coordinates;
+        let silent = if unit == LengthUnit::Voxel { Units::Voxel } else { Units::World };
+        let units = self.units.unwrap_or(silent);
+        let asked = match self.space {
+            Some(_) if units == Units::Voxel => {
+                refused!("--space is for world coordinates, and these are voxels" => "omit it")
+            }
+            Some(_) if !space.is_known() => {
+                refused!("the input does not say how its axes lie in a patient, and --space cannot know" => "omit it")
+            }
+            asked => asked.unwrap_or(Space::Lps),
+        };
+        let frame = volume.frame().to(Coordinates { space: asked, unit });
+        Ok((volume.with_frame(frame), units))
+    }
+}
+
+#[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
+enum SelectArg {
+    #[default]
+    Difference,
+    Adaptive,
+}
+
+impl SelectArgs {
+    /// The stage's options, for a volume whose values `range` are gray 0..255.
+    pub fn selection(&self, range: &GrayRange) -> Selection {
+        let gray_min = self.gray_min.or(self.value_min.map(|value| range.gray(value)));
+        Selection { rule: self.rule(), gray_min }
+    }
+
+    /// By what rule samples are chosen.
+    pub fn rule(&self) -> SelectionRule {
+        match (self.count, self.threshold) {
+            (Some(count), _) => SelectionRule::Count(count),
+            (_, Some(threshold)) => SelectionRule::Threshold(threshold),
+            _ => self.ratio.map_or_else(SelectionRule::default, SelectionRule::Ratio),
+        }
+    }
+
+    /// Which samples, of so many, become points.
+    pub fn choice(&self, range: &GrayRange, samples: usize) -> anyhow::Result<Choice> {
+        if self.select != SelectArg::Adaptive {
+            if self.target_rmse.is_some() {
+                misused!("--target-rmse belongs to --select adaptive" => "add it, or use --count");
+            }
+            return Ok(Choice::Difference(self.selection(range)));
+        }
+        if self.threshold.is_some() || self.gray_min.or(self.value_min).is_some() {
+            misused!("--threshold, --gray-min and --value-min choose by gray levels, which --select adaptive does not" => "use --count, --ratio or --target-rmse");
+        }
+        let rmse = self.target_rmse.unwrap_or(0.0);
+        let count = match self.rule() {
+            SelectionRule::Count(count) => count,
+            SelectionRule::Ratio(_) if self.ratio.is_none() && self.target_rmse.is_some() => {
+                samples as u64
+            }
+            SelectionRule::Ratio(ratio) => (ratio * samples as f64).round() as u64,
+            SelectionRule::Threshold(_) => unreachable!("refused above"),
+        };
+        Ok(Choice::Adaptive(Adaptive { count, rmse }))
+    }
+
+    /// In what coordinates the points are.
+    pub fn place(&self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
+        self.place.place(volume)
+    }
+}

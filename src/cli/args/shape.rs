@@ -1,0 +1,65 @@
+//! How the shape is computed.
+
+use std::num::NonZeroUsize;
+
+use clap::Args;
+
+use crate::cli::said::{Said, misused};
+use crate::pipeline::AlphaRule;
+use crate::shape::{Engine, ShapeOptions};
+use crate::{Alpha, Balls};
+
+use super::values::bytes;
+
+/// How the shape is computed.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Shape")]
+pub struct ShapeArgs {
+    /// A point is a ball of squared radius α + ω (power) or of radius α + ω (radius).
+    #[arg(long, value_enum, default_value_t, value_name = "READING")]
+    balls: Balls,
+    /// Engine that computes the shape; all give the same answer.
+    #[arg(long, value_enum, default_value_t, value_name = "ENGINE")]
+    engine: Engine,
+    /// Number of blocks [default: from threads and memory]; only a single block, the whole
+    /// triangulation, knows hidden points.
+    #[arg(long, value_name = "N")]
+    blocks: Option<NonZeroUsize>,
+    /// Memory limit to size blocks for, as in 2G or 500M; not with what needs the whole triangulation
+    /// (α = inf, --exterior, --engine reference).
+    #[arg(long, value_name = "SIZE", value_parser = bytes, conflicts_with = "blocks")]
+    memory: Option<u64>,
+    /// Keep the simplices outside the shape, too: the whole triangulation.
+    #[arg(long)]
+    exterior: bool,
+}
+
+impl ShapeArgs {
+    /// Refuses options that have no use for each other, before the work.
+    pub fn check(&self, alpha: AlphaRule) -> anyhow::Result<()> {
+        if self.engine == Engine::Reference && self.blocks.is_some_and(|blocks| blocks.get() > 1) {
+            misused!("--blocks has no effect: the reference engine knows no blocks" => "omit it, or take --engine native");
+        }
+        // What is found is finite.
+        let alpha = match alpha {
+            AlphaRule::Given(alpha) => alpha,
+            _ => Alpha::from_squared(0.0)?,
+        };
+        let options = ShapeOptions { alpha, ..self.options() };
+        Ok(options.check().map_err(|error| Said::usage_of(&error))?)
+    }
+
+    /// The stage's options, at α = ∞.
+    pub fn options(&self) -> ShapeOptions {
+        let Self { balls, engine, exterior, blocks, memory } = *self;
+        ShapeOptions {
+            alpha: Alpha::INFINITE,
+            balls,
+            engine,
+            exterior,
+            blocks,
+            memory,
+            refuse_flat: true,
+        }
+    }
+}
