@@ -1,7 +1,7 @@
 use std::ffi::OsStr;
-use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
+#[cfg(any(feature = "json", feature = "npz"))]
+use std::{fs::File, io::BufReader};
 
 use super::{ComplexFile, FiltrationFile, SchemaError};
 
@@ -58,6 +58,7 @@ impl FiltrationFile {
     }
 }
 
+#[cfg(any(feature = "json", feature = "npz"))]
 fn open(path: &Path) -> Result<BufReader<File>, SchemaError> {
     Ok(BufReader::new(File::open(path).map_err(SchemaError::Io)?))
 }
