@@ -139,26 +139,56 @@ impl View {
         let (haar, select) = (&self.haar, &self.select);
         let (weighed, source) =
             pipeline::weigh_input(read, haar, select, &weights, Values::Written, &mut progress)?;
-        let unit = weighed.origin.coordinates.unit;
-        let facts = source.as_ref().map(|source| &source.facts);
-        let domain = pipeline::domain(&weighed, facts);
         let filtration =
             progress.stage(Stage::Filtration, || Filtration::new(weighed.points.clone()))?;
-        let found = || Parameter::of_filtration(&filtration, unit);
+        let page = self.page(&weighed, source.as_ref(), &filtration, &mut progress)?;
+        if !global.quiet {
+            let size = page.html.len() as f64 / 1e6;
+            eprintln!("walpha: {} takes {size:.1} MB", shown(&self.output));
+            if let Some(told) = &page.simplified {
+                eprintln!("walpha: {told}");
+            }
+        }
+        progress.stage(Stage::Write, || target.write(|out| out.write_all(page.html.as_bytes())))?;
+        let facts = Facts {
+            schema_version: SCHEMA_VERSION,
+            input: self.input.input,
+            points: filtration.points().len(),
+            levels: page.levels,
+            bytes: page.html.len(),
+            simplified: page.simplified,
+            file: self.output.display().to_string(),
+            seconds: progress.finish().into_iter().collect(),
+        };
+        tell(global, &facts)
+    }
+
+    /// The page of the shapes in a filtration.
+    fn page(
+        &self,
+        weighed: &Weighed,
+        source: Option<&Source>,
+        filtration: &Filtration,
+        progress: &mut Progress,
+    ) -> anyhow::Result<Page> {
+        let unit = weighed.origin.coordinates.unit;
+        let facts = source.map(|source| &source.facts);
+        let domain = pipeline::domain(weighed, facts);
+        let found = || Parameter::of_filtration(filtration, unit);
         let reference = weighed.parameter.unwrap_or_else(found);
-        let told = self.told(&weighed, facts, reference);
+        let told = self.told(weighed, facts, reference);
         let opening = match self.alpha {
             None => reference.alpha,
             Some(asked) => asked.given(unit).unwrap_or_else(found).alpha,
         };
-        let original = source.as_ref().map(|Source { volume, facts }| Original {
+        let original = source.map(|Source { volume, facts }| Original {
             volume,
             isovalue: self.isovalue.unwrap_or_default().gray(&facts.range),
             units: facts.units,
         });
         let alphas = match &self.alphas {
             Alphas::Given(alphas) => [&alphas[..], self.alpha.map(|_| opening).as_slice()].concat(),
-            Alphas::Auto => progress.stage(Stage::Curve, || stops(&filtration, opening)),
+            Alphas::Auto => progress.stage(Stage::Curve, || stops(filtration, opening)),
         };
         let levels = filtration.levels(&alphas);
         if levels.len() > Page::MOST_LEVELS {
@@ -185,26 +215,7 @@ impl View {
             first: first.saturating_sub(1),
             original,
         };
-        let page = progress.stage(Stage::Page, || Page::new(&subject))?;
-        if !global.quiet {
-            let size = page.html.len() as f64 / 1e6;
-            eprintln!("walpha: {} takes {size:.1} MB", shown(&self.output));
-            if let Some(told) = &page.simplified {
-                eprintln!("walpha: {told}");
-            }
-        }
-        progress.stage(Stage::Write, || target.write(|out| out.write_all(page.html.as_bytes())))?;
-        let facts = Facts {
-            schema_version: SCHEMA_VERSION,
-            input: self.input.input,
-            points: filtration.points().len(),
-            levels: levels.len(),
-            bytes: page.html.len(),
-            simplified: page.simplified,
-            file: self.output.display().to_string(),
-            seconds: progress.finish().into_iter().collect(),
-        };
-        tell(global, &facts)
+        Ok(progress.stage(Stage::Page, || Page::new(&subject))?)
     }
 
     /// What the page shows besides the levels' numbers.

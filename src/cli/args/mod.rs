@@ -11,7 +11,9 @@ use clap::Args;
 pub use input::InputArgs;
 pub use select::{HaarArgs, SelectArgs};
 pub use shape::ShapeArgs;
-pub use values::{not_negative, number};
+pub use values::not_negative;
+#[cfg(feature = "render")]
+pub use values::number;
 pub use weights::{Alphas, FrozenArgs, WeightArgs};
 
 /// From an input to weighted points.

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::io;
 
-use crate::ladder::focus;
+use crate::ladder::{Region, focus};
 use crate::pipeline::Parameter;
 use crate::points::{Points, Units, difference, select, weigh};
 use crate::progress::Stage;
-use crate::shape::{Betti, Measures, ShapeOptions};
+use crate::shape::{AlphaShape, Betti, Measures, ShapeOptions, Surface};
 use crate::{
     Coordinates, GrayRange, HaarOptions, Selection, SelectionRule, Tolerance, Truncation, Volume,
     Weighting, alpha_shape, haar,
@@ -59,6 +59,25 @@ struct Row {
     files: Vec<String>,
 }
 
+impl Row {
+    /// Of a level's shape, before its meshes are written.
+    fn of(shape: &AlphaShape, truncation: &Truncation, domain: &Domain) -> Self {
+        Self {
+            points: shape.points().len(),
+            kept: truncation.kept,
+            epsilon: truncation.epsilon,
+            rms: truncation.rms,
+            cells: shape.complex().cells.len(),
+            boundary_facets: Surface::of(shape).facets().count(),
+            betti: shape.betti(),
+            measures: *shape.measures(),
+            coverage: shape.measures().volume / domain.volume,
+            bytes: 0,
+            files: Vec::new(),
+        }
+    }
+}
+
 /// What a level asks for.
 struct Wanted {
     name: String,
@@ -86,18 +105,7 @@ impl Ladder {
         let coordinates = units.coordinates(&volume);
         let domain = Domain::of_grid(&volume, units);
         let mut stages = Stages { volume: &volume, units, smoothed: None };
-        let full = match &self.focus {
-            None => None,
-            Some(region) => {
-                let wanted = (self.haar.options(), self.select.selection(&range));
-                let points =
-                    progress.stage(Stage::Points, || stages.points(&wanted.0, &wanted.1))?.0;
-                if !points.positions.iter().any(|&p| region.contains(p)) {
-                    refused!("no point lies in --focus: it is in the units of the points, x first");
-                }
-                Some((points, region))
-            }
-        };
+        let full = progress.stage(Stage::Points, || self.full(&mut stages, &range))?;
         let mut rows = Vec::new();
         for wanted in self.wanted(&range) {
             let (coarse, truncation) =
@@ -113,19 +121,7 @@ impl Ladder {
             let options = ShapeOptions { refuse_flat: true, ..ShapeOptions::new(alpha) };
             let shape = progress.stage(Stage::Shape, || alpha_shape(weighted, &options))?;
             let shape = shape.meaning(coordinates);
-            let mut row = Row {
-                points: points.len(),
-                kept: truncation.kept,
-                epsilon: truncation.epsilon,
-                rms: truncation.rms,
-                cells: shape.complex().cells.len(),
-                boundary_facets: crate::shape::Surface::of(&shape).facets().count(),
-                betti: shape.betti(),
-                measures: *shape.measures(),
-                coverage: shape.measures().volume / domain.volume,
-                bytes: 0,
-                files: Vec::new(),
-            };
+            let mut row = Row::of(&shape, &truncation, &domain);
             progress.stage(Stage::Write, || -> anyhow::Result<()> {
                 for mesh in &meshes {
                     let name = format!("detail-{}.{}", wanted.name, mesh.extension);
@@ -136,7 +132,7 @@ impl Ladder {
             })?;
             rows.push(row);
         }
-        let in_region = |(points, region): &(Points, &crate::ladder::Region)| {
+        let in_region = |(points, region): &(Points, &Region)| {
             points.positions.iter().filter(|&&p| region.contains(p)).count()
         };
         let facts = Facts {
@@ -154,6 +150,20 @@ impl Ladder {
         folder.write("detail.json", |out| Ok(serde_json::to_writer_pretty(out, &facts)?))?;
         folder.finish()?;
         tell(global, &facts)
+    }
+
+    /// The points of full detail, and the region that keeps them, if one does.
+    fn full(
+        &self,
+        stages: &mut Stages<'_>,
+        range: &GrayRange,
+    ) -> anyhow::Result<Option<(Points, &Region)>> {
+        let Some(region) = &self.focus else { return Ok(None) };
+        let (points, _) = stages.points(&self.haar.options(), &self.select.selection(range))?;
+        if !points.positions.iter().any(|&p| region.contains(p)) {
+            refused!("no point lies in --focus: it is in the units of the points, x first");
+        }
+        Ok(Some((points, region)))
     }
 
     fn wanted(&self, range: &GrayRange) -> Vec<Wanted> {

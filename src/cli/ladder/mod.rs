@@ -6,6 +6,7 @@ mod facts;
 use std::fmt::{Display, LowerExp};
 use std::path::{Path, PathBuf};
 
+use crate::Coordinates;
 use crate::export::{ExportOptions, Exporter, Format};
 use crate::ladder::{Filtration, Ladder as Levels, Level, Region};
 use crate::pipeline::Parameter;
@@ -158,17 +159,7 @@ impl Ladder {
                 folder.write("ladder.png", |out| out.write_all(&png))?;
                 folder.write("ladder.svg", |out| out.write_all(svg.as_bytes()))?;
             }
-            for (k, level) in ladder.levels.iter().enumerate() {
-                if meshes.is_empty() {
-                    break;
-                }
-                let shape = levels.shape(k, false, level.betti).meaning(coordinates);
-                for mesh in &meshes {
-                    let name = level_name(&ladder, k, level, &mesh.extension);
-                    folder.write(&name, |out| mesh.exporter.write(&shape, out))?;
-                }
-            }
-            Ok(())
+            write_meshes(&levels, &ladder, coordinates, &meshes, &mut folder)
         })?;
         facts.add(&filtration, &curve, suggested, &ladder);
         let mut files = folder.written().to_vec();
@@ -178,6 +169,27 @@ impl Ladder {
         folder.finish()?;
         tell(global, &facts)
     }
+}
+
+/// Writes a mesh of each level in each format.
+fn write_meshes(
+    levels: &crate::ladder::Levels<'_>,
+    ladder: &Levels,
+    coordinates: Coordinates,
+    meshes: &[Mesh],
+    folder: &mut Folder,
+) -> anyhow::Result<()> {
+    if meshes.is_empty() {
+        return Ok(());
+    }
+    for (k, level) in ladder.levels.iter().enumerate() {
+        let shape = levels.shape(k, false, level.betti).meaning(coordinates);
+        for mesh in meshes {
+            let name = level_name(ladder, k, level, &mesh.extension);
+            folder.write(&name, |out| mesh.exporter.write(&shape, out))?;
+        }
+    }
+    Ok(())
 }
 
 /// The name of a level's mesh: its place in the ladder, and its α.

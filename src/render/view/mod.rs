@@ -15,6 +15,8 @@ pub struct Page {
     pub html: String,
     /// What was simplified for display, if anything.
     pub simplified: Option<String>,
+    /// How many levels it has.
+    pub levels: usize,
 }
 
 impl Page {
@@ -40,6 +42,7 @@ impl Page {
         let levels = subject.levels.len();
         assert!((1..=Self::MOST_LEVELS).contains(&levels), "{levels} levels");
         let packed = pack::Packed::of(subject, Self::MOST_FACETS)?;
-        Ok(Self { html: html::page(subject, &packed), simplified: packed.simplified })
+        let (html, levels) = (html::page(subject, &packed), subject.levels.len());
+        Ok(Self { html, simplified: packed.simplified, levels })
     }
 }
