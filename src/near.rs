@@ -3,12 +3,6 @@
 /// The known name most like `given`, if a slip or two of the fingers explains the difference: a letter
 /// left out, put in, wrong, or exchanged with its neighbour, one for every three letters. Letter case is
 /// passed over; the first of equals is taken. One comparison for each name.
-///
-/// ```
-/// use walpha::near::nearest;
-/// assert_eq!(nearest("nrd", ["nrrd", "nii"]), Some("nrrd"));
-/// assert_eq!(nearest("docx", ["nrrd", "nii"]), None);
-/// ```
 pub fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let given = given.to_lowercase();
     let slips = |name: &str| strsim::osa_distance(&given, &name.to_lowercase());
@@ -19,4 +13,15 @@ pub fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
         .filter(|&(slips, _)| slips <= most)
         .min_by_key(|&(slips, _)| slips)
         .map(|(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mistyped_name_is_meant() {
+        assert_eq!(nearest("nrd", ["nrrd", "nii"]), Some("nrrd"));
+        assert_eq!(nearest("docx", ["nrrd", "nii"]), None);
+    }
 }

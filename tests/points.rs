@@ -291,7 +291,7 @@ fn bad_point_files_say_where_they_are_bad() {
     };
     refuse("empty.csv", b"", &["first line must name"]);
     refuse("nothing.csv", b"x,y,z\n", &["no point"]);
-    refuse("axis.csv", b"x,y\n1,2\n", &["x, y and z"]);
+    refuse("axis.csv", b"x,z\n1,2\n", &["x, y and z"]);
     refuse("twice.csv", b"x,y,z,X\n1,2,3,4\n", &["twice"]);
     refuse("word.csv", b"x,y,z\n1,2,3\n1,two,3\n", &["line 3", "column y", "two"]);
     refuse("nan.csv", b"x,y,z,weight\n1,2,3,NaN\n", &["line 2", "column weight"]);
