@@ -14,8 +14,6 @@ import walpha
         ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [np.inf, 0, 0]], "point 3 .* finite"),
         ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1e200, 0, 0]], "point 3 .* magnitude"),
         ([], "0 distinct points"),
-        ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 1, 0]], "3 distinct points"),
-        ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [3, 1, 0]], "in one plane"),
     ],
 )
 @pytest.mark.parametrize("engine", ["cgal", "native", "reference"])
@@ -24,6 +22,17 @@ def test_points_that_make_no_shape(points, message, engine):
         walpha.alpha_shape(points, alpha=1, engine=engine)
     with pytest.raises(ValueError, match=message):
         walpha.filtration(points)
+
+
+@pytest.mark.parametrize("engine", ["cgal", "native"])
+def test_points_of_a_plane_have_the_shape_that_they_have_there(engine):
+    square = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [3, 1, 0]]
+    shape = walpha.alpha_shape(square, alpha=1, engine=engine)
+    assert len(shape.cells) == 0
+    assert len(shape.facets) == 2 and len(shape.vertices) == 5
+    # All shapes at once are made of cells.
+    with pytest.raises(ValueError, match="in one plane"):
+        walpha.filtration(square)
 
 
 @pytest.mark.parametrize(
@@ -36,7 +45,7 @@ def test_points_that_make_no_shape(points, message, engine):
         ({"engine": "qhull"}, "'cgal', 'native' and 'reference'"),
         ({"balls": "cubes"}, "'power' and 'radius'"),
         ({"balls": "radius"}, "α is a radius"),
-        ({"alpha": 0.1, "balls": "radius", "weights": np.full(600, -1.0)}, "balls='radius'"),
+        ({"alpha": 0.1, "balls": "radius", "weights": np.full(600, -1.0)}, "use `balls` power"),
         ({"weights": np.full(600, np.nan)}, "weight of point 0 is NaN"),
     ],
 )
