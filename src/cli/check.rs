@@ -1,21 +1,25 @@
 //! `walpha check`: is it the α-complex?
 
+use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
-use crate::check::schema::PlacedComplex;
-use crate::check::{Certificate, Comparison, Extent, Finding, compare, enumerate};
-use crate::progress::Stage;
-use crate::shown::shown;
 use clap::{Args, Command};
 use serde::Serialize;
 
+use crate::check::schema::{FiltrationFile, PlacedComplex};
+use crate::check::{Comparison, Extent, certify_filtration, compare, enumerate};
+use crate::progress::Stage;
+use crate::shown::shown;
+
 use super::args::{PipelineArgs, ShapeArgs};
+use super::judged::{self, Judged};
 use super::output::{name, tell};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 use super::said::{Said, misused, refused};
-use super::{DIFFERENT, Global, check_filtration, complex_file, pipeline};
+use super::{DIFFERENT, Global, pipeline};
 
 /// Check a complex exactly: one of an engine, or one that another program wrote.
 ///
@@ -47,22 +51,30 @@ pub struct Check {
 /// Points that `--enumerate` takes: more would take hours.
 const MOST_ENUMERATED: usize = 200;
 /// Findings that are printed as text, and as JSON; all are counted.
-pub const MOST_PRINTED: usize = 20;
-pub const MOST_LISTED: usize = 1000;
+const MOST_PRINTED: usize = 20;
+const MOST_LISTED: usize = 1000;
 
+/// What was found in a complex or filtration.
 #[derive(Serialize)]
-struct Facts {
+struct Facts<F, C> {
     schema_version: u32,
     input: String,
+    #[serde(skip)]
+    kind: &'static str,
     points: usize,
     /// Cells, facets, edges, vertices.
     simplices: [usize; 4],
-    extent: &'static str,
+    /// Of a complex.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    extent: Option<&'static str>,
     valid: bool,
     findings_total: usize,
     /// The first of them.
-    findings: Vec<Finding>,
-    certificate: Certificate,
+    findings: Vec<F>,
+    certificate: C,
+    /// In words.
+    #[serde(skip)]
+    not_judged: Vec<String>,
     enumeration: Option<Comparison>,
     seconds: f64,
 }
@@ -70,77 +82,38 @@ struct Facts {
 impl Check {
     pub fn run(self, global: Global) -> anyhow::Result<ExitCode> {
         let path = Path::new(&self.pipeline.input.input);
-        if complex_file::is_complex(path) && complex_file::is_filtration(path) {
-            return self.filtration(global, path);
-        }
-        self.shape.check(self.pipeline.weights.alpha())?;
         let mut progress = Progress::new(global);
-        let judged = self.complex(&mut progress)?;
-        let n = judged.positions.len();
-        if self.enumerate && n > MOST_ENUMERATED {
-            refused!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}" => "omit it");
+        if !judged::is_named(path) {
+            let made = self.made(path, &mut progress)?;
+            return self.complex(global, &made, progress);
         }
-        let claim = judged.claim();
-        let started = std::time::Instant::now();
-        let (mut findings, certificate) = progress.stage(Stage::Certify, || claim.findings())?;
-        let seconds = started.elapsed().as_secs_f64();
-        let enumeration = if self.enumerate {
-            Some(progress.stage(Stage::Enumerate, || by_definition(&judged))?)
-        } else {
-            None
-        };
-        progress.finish();
-
-        let complex = &judged.complex;
-        let total = findings.len();
-        findings.truncate(MOST_LISTED);
-        let facts = Facts {
-            schema_version: SCHEMA_VERSION,
-            input: self.pipeline.input.input,
-            points: n,
-            simplices: [
-                complex.cells.len(),
-                complex.facets.len(),
-                complex.edges.len(),
-                complex.vertices.len(),
-            ],
-            extent: if claim.extent == Extent::Whole { "whole" } else { "shape" },
-            valid: total == 0 && enumeration.as_ref().is_none_or(Comparison::is_equal),
-            findings_total: total,
-            findings,
-            certificate,
-            enumeration,
-            seconds,
-        };
-        tell(global, &facts)?;
-        Ok(if facts.valid { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
-    }
-
-    /// Judges a filtration.
-    fn filtration(&self, global: Global, path: &Path) -> anyhow::Result<ExitCode> {
-        self.refuse_ours(format!("{} is a filtration, made already", shown(path)))?;
-        if self.enumerate {
-            misused!("--enumerate belongs to a complex, and {} is a filtration", shown(path) => "omit it");
+        let read = || judged::read(path, self.points.as_deref());
+        match progress.stage(Stage::Read, read)? {
+            Judged::Complex(complex) => {
+                self.refuse_ours(format!("{} is a complex, made already", shown(path)))?;
+                self.complex(global, &complex, progress)
+            }
+            Judged::Filtration(filtration) => {
+                self.refuse_ours(format!("{} is a filtration, made already", shown(path)))?;
+                if self.enumerate {
+                    misused!("--enumerate belongs to a complex, and {} is a filtration", shown(path) => "omit it");
+                }
+                self.filtration(global, &filtration, progress)
+            }
         }
-        check_filtration::run(global, path, self.points.as_deref())
     }
 
     /// Refuses options of how a complex is made.
     fn refuse_ours(&self, why: String) -> Result<(), Said> {
-        let ours = ShapeArgs::augment_args(PipelineArgs::augment_args(Command::new("check")));
+        let ours = ShapeArgs::augment_args(<PipelineArgs>::augment_args(Command::new("check")));
         let options = ours.get_arguments().filter(|arg| !arg.is_positional());
         let names: Vec<&str> = options.map(|arg| arg.get_id().as_str()).collect();
         self.pipeline.input.given.refuse(&names, why)
     }
 
-    /// The complex to judge.
-    fn complex(&self, progress: &mut Progress) -> anyhow::Result<PlacedComplex> {
-        let path = Path::new(&self.pipeline.input.input);
-        if complex_file::is_complex(path) {
-            self.refuse_ours(format!("{} is a complex, made already", shown(path)))?;
-            return progress
-                .stage(Stage::Read, || complex_file::read(path, self.points.as_deref()));
-        }
+    /// The shape of INPUT, by an engine.
+    fn made(&self, path: &Path, progress: &mut Progress) -> anyhow::Result<PlacedComplex> {
+        self.shape.check(self.pipeline.weights.alpha())?;
         if self.points.is_some() {
             misused!("--points belongs to a complex (.json, .npz), and {} is none", shown(path) => "omit it");
         }
@@ -152,6 +125,82 @@ impl Check {
         let model = pipeline::shape(weighed, options, progress)?;
         Ok(PlacedComplex::from(model.shape.claim()))
     }
+
+    /// Judges a complex.
+    fn complex(
+        &self,
+        global: Global,
+        judged: &PlacedComplex,
+        mut progress: Progress,
+    ) -> anyhow::Result<ExitCode> {
+        let n = judged.positions.len();
+        if self.enumerate && n > MOST_ENUMERATED {
+            refused!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}" => "omit it");
+        }
+        let (claim, complex) = (judged.claim(), &judged.complex);
+        let started = Instant::now();
+        let (findings, certificate) = progress.stage(Stage::Certify, || claim.findings())?;
+        let seconds = started.elapsed().as_secs_f64();
+        let enumeration = if self.enumerate {
+            Some(progress.stage(Stage::Enumerate, || by_definition(judged))?)
+        } else {
+            None
+        };
+        progress.finish();
+        let facts = Facts {
+            schema_version: SCHEMA_VERSION,
+            input: self.pipeline.input.input.clone(),
+            kind: "",
+            points: n,
+            simplices: [
+                complex.cells.len(),
+                complex.facets.len(),
+                complex.edges.len(),
+                complex.vertices.len(),
+            ],
+            extent: Some(if claim.extent == Extent::Whole { "whole" } else { "shape" }),
+            valid: findings.is_empty() && enumeration.as_ref().is_none_or(Comparison::is_equal),
+            findings_total: findings.len(),
+            findings,
+            not_judged: certificate.not_judged.iter().map(ToString::to_string).collect(),
+            certificate,
+            enumeration,
+            seconds,
+        };
+        facts.tell(global)
+    }
+
+    /// Judges a filtration.
+    fn filtration(
+        &self,
+        global: Global,
+        file: &FiltrationFile,
+        mut progress: Progress,
+    ) -> anyhow::Result<ExitCode> {
+        let started = Instant::now();
+        let (findings, certificate) =
+            progress.stage(Stage::Certify, || certify_filtration(file))?;
+        let seconds = started.elapsed().as_secs_f64();
+        progress.finish();
+        let of_triangulation = certificate.triangulation.not_judged.iter().map(ToString::to_string);
+        let of_values = certificate.not_judged.iter().map(ToString::to_string);
+        let facts = Facts {
+            schema_version: SCHEMA_VERSION,
+            input: self.pipeline.input.input.clone(),
+            kind: "a filtration of ",
+            points: file.points.len(),
+            simplices: [file.cells.len(), file.facets.len(), file.edges.len(), file.vertices.len()],
+            extent: None,
+            valid: findings.is_empty(),
+            findings_total: findings.len(),
+            findings,
+            not_judged: of_triangulation.chain(of_values).collect(),
+            certificate,
+            enumeration: None,
+            seconds,
+        };
+        facts.tell(global)
+    }
 }
 
 /// How a complex (A) differs from the one its definition makes (B).
@@ -161,15 +210,24 @@ fn by_definition(judged: &PlacedComplex) -> anyhow::Result<Comparison> {
     Ok(compare(judged, judged.with_complex(&made.complex))?)
 }
 
-impl std::fmt::Display for Facts {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl<F: Serialize + Display, C: Serialize> Facts<F, C> {
+    /// Prints them.
+    fn tell(mut self, global: Global) -> anyhow::Result<ExitCode> {
+        self.findings.truncate(MOST_LISTED);
+        tell(global, &self)?;
+        Ok(if self.valid { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
+    }
+}
+
+impl<F: Display, C> Display for Facts<F, C> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [cells, facets, edges, vertices] = self.simplices;
-        writeln!(f, "judged    {}: {} points", name(&self.input), self.points)?;
+        writeln!(f, "judged    {}: {}{} points", name(&self.input), self.kind, self.points)?;
         writeln!(
             f,
             "          {cells} cells, {facets} facets, {edges} edges, {vertices} vertices"
         )?;
-        for rule in &self.certificate.not_judged {
+        for rule in &self.not_judged {
             writeln!(f, "not judged: {rule}")?;
         }
         for finding in self.findings.iter().take(MOST_PRINTED) {

@@ -1,17 +1,19 @@
-//! `walpha compare`: how do two complexes differ?
+//! `walpha compare`: how do two complexes or filtrations differ?
 
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::check::{Comparison, compare};
 use clap::Args;
 use serde::Serialize;
 
+use crate::check::{compare, compare_filtrations};
+
+use super::judged::{self, Judged};
 use super::output::{name, tell};
 use super::report::SCHEMA_VERSION;
 use super::said::refused;
-use super::{DIFFERENT, Global, compare_filtrations, complex_file};
+use super::{DIFFERENT, Global};
 
 /// Compare two complexes by points, weights, α and simplices with their classes, or two filtrations
 /// by points, weights, simplices with their values, and order.
@@ -37,40 +39,46 @@ pub struct Compare {
 }
 
 #[derive(Serialize)]
-struct Facts {
+struct Facts<C> {
     schema_version: u32,
     a: String,
     b: String,
     equal: bool,
     #[serde(flatten)]
-    comparison: Comparison,
+    comparison: C,
 }
 
 impl Compare {
     pub fn run(self, global: Global) -> anyhow::Result<ExitCode> {
-        match [&self.a, &self.b].map(|path| complex_file::is_filtration(path)) {
-            [true, true] => return compare_filtrations::run(global, &self.a, &self.b),
-            [false, false] => {}
+        let read = |path: &Path| judged::read(path, None);
+        match (read(&self.a)?, read(&self.b)?) {
+            (Judged::Complex(a), Judged::Complex(b)) => {
+                let comparison = compare(a.placed(), b.placed())?;
+                self.tell(global, comparison.is_equal(), comparison)
+            }
+            (Judged::Filtration(a), Judged::Filtration(b)) => {
+                let comparison = compare_filtrations(&a, &b)?;
+                self.tell(global, comparison.is_equal(), comparison)
+            }
             _ => {
                 refused!("one file is a filtration, the other a complex" => "compare two of a kind")
             }
         }
-        let read = |path: &Path| complex_file::read(path, None);
-        let (a, b) = (read(&self.a)?, read(&self.b)?);
-        let comparison = compare(a.placed(), b.placed())?;
-        let facts = Facts {
-            schema_version: SCHEMA_VERSION,
-            a: self.a.display().to_string(),
-            b: self.b.display().to_string(),
-            equal: comparison.is_equal(),
-            comparison,
-        };
-        tell(global, &facts)?;
-        Ok(if facts.equal { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
+    }
+
+    fn tell(
+        &self,
+        global: Global,
+        equal: bool,
+        comparison: impl Serialize + Display,
+    ) -> anyhow::Result<ExitCode> {
+        let [a, b] = [&self.a, &self.b].map(|path| path.display().to_string());
+        tell(global, &Facts { schema_version: SCHEMA_VERSION, a, b, equal, comparison })?;
+        Ok(if equal { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
     }
 }
 
-impl Display for Facts {
+impl<C: Display> Display for Facts<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "A         {}\nB         {}", name(&self.a), name(&self.b))?;
         writeln!(f, "{}", self.comparison)?;

@@ -3,9 +3,10 @@
 use std::error::Error;
 use std::io::IsTerminal;
 
+use clap::error::ErrorKind;
+
 use crate::shown::escaped;
 use crate::volume::UnknownFormat;
-use clap::error::ErrorKind;
 
 use super::progress;
 use super::said::{Said, advice};

@@ -7,13 +7,15 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use super::said::{Said, refused, said};
-use crate::near::nearest;
-use crate::shown::shown;
 use anyhow::Context;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 use toml::{Table, Value};
+
+use crate::near::nearest;
+use crate::shown::shown;
+
+use super::said::{Said, refused, said};
 
 /// The option that names the file.
 const FILE: &str = "config";

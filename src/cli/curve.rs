@@ -4,6 +4,8 @@ use std::fmt::{self, Display};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 use crate::export::{Content, NewFolder, Target, write_all};
 use crate::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
 use crate::progress::Stage;
@@ -11,7 +13,6 @@ use crate::progress::Stage;
 use crate::render::error_figure;
 use crate::shown::shown;
 use crate::{LengthUnit, SelectionRule, Volume, Weighting, haar};
-use serde::Serialize;
 
 use super::Global;
 use super::args::{PipelineArgs, SelectArgs};

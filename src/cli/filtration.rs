@@ -5,20 +5,20 @@ use std::fmt::{self, Display};
 use std::io::Write;
 use std::path::PathBuf;
 
+use clap::Args;
+use serde::Serialize;
+
 use crate::Coordinates;
 use crate::export::{Content, FiltrationFormat, Target, write_all};
 use crate::ladder::{self, Ordered};
 use crate::pipeline::{Parameter, Weighed};
 use crate::progress::Stage;
-use clap::Args;
-use serde::Serialize;
 
-use super::args::{FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::args::FrozenPipelineArgs;
 use super::formats::filtration_output;
 use super::output::{name, tell};
-use super::pipeline::Values;
 use super::progress::Progress;
-use super::report::{SCHEMA_VERSION, WeightsReport};
+use super::report::{SCHEMA_VERSION, WeightsReport, ending};
 use super::{Global, pipeline};
 
 /// Every simplex of the regular triangulation, and the α at which it comes.
@@ -41,13 +41,7 @@ pub struct Filtration {
     #[arg(short, long, value_name = "FILE", num_args = 1.., help = filtration_output())]
     output: Vec<PathBuf>,
     #[command(flatten)]
-    input: InputArgs,
-    #[command(flatten)]
-    haar: HaarArgs,
-    #[command(flatten)]
-    select: SelectArgs,
-    #[command(flatten)]
-    weights: FrozenArgs,
+    pipeline: FrozenPipelineArgs,
 }
 
 #[derive(Serialize)]
@@ -91,19 +85,15 @@ struct Persistence {
 
 impl Filtration {
     pub fn run(self, global: Global) -> anyhow::Result<()> {
-        self.input.check_format(self.output.iter())?;
+        let input = &self.pipeline.input;
+        input.check_format(self.output.iter())?;
         let mut targets = Vec::new();
         for path in &self.output {
-            let format = FiltrationFormat::of(&self.input.output(path)?)?;
+            let format = FiltrationFormat::of(&input.output(path)?)?;
             targets.push((Target::open(path)?, format));
         }
         let mut progress = Progress::new(global);
-        let weights = WeightArgs::from(self.weights);
-        let read = pipeline::read(&self.input, &mut progress)?;
-        read.accepts(&self.input)?;
-        let (haar, select) = (&self.haar, &self.select);
-        let (weighed, _) =
-            pipeline::weigh_input(read, haar, select, &weights, Values::Written, &mut progress)?;
+        let (weighed, _) = pipeline::weighted_points(&self.pipeline, &mut progress)?;
         let filtration = progress
             .stage(Stage::Filtration, || ladder::Filtration::new(weighed.points.clone()))?;
         let ordered = progress.stage(Stage::Order, || filtration.simplices())?;
@@ -114,7 +104,7 @@ impl Filtration {
                 (target, Box::new(content) as Content<'_>)
             }))
         })?;
-        let mut facts = Facts::new(&self.input.input, &weighed, &ordered);
+        let mut facts = Facts::new(&input.input, &weighed, &ordered);
         if global.json {
             facts.persistence = Some(progress.stage(Stage::Pairs, || Persistence::of(&ordered)));
         }
@@ -189,14 +179,7 @@ impl Display for Facts {
         writeln!(f, "edges     {}", self.edges)?;
         writeln!(f, "vertices  {}", self.vertices)?;
         writeln!(f, "values    {} different numbers", self.values)?;
-        for file in &self.files {
-            writeln!(f, "wrote     {}", name(file))?;
-        }
-        let seconds = |stage: &str| self.seconds.get(stage).copied().unwrap_or_default();
-        write!(f, "time      ")?;
-        for stage in ["read", "points", "filtration", "order", "write"] {
-            write!(f, "{stage} {:.2} s, ", seconds(stage))?;
-        }
-        writeln!(f, "total {:.2} s", seconds("total"))
+        let stages = ["read", "haar", "points", "filtration", "order", "write", "total"];
+        ending(f, &self.files, &stages, &self.seconds)
     }
 }

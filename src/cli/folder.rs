@@ -3,9 +3,10 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::said::said;
 use crate::export::{Filled, NewFolder, Target, put_all};
 use crate::shown::shown;
+
+use super::said::said;
 
 /// The folder results go to: found writable before the long work. All files appear in it at the end,
 /// or none.

@@ -17,8 +17,8 @@ pub struct Given(Vec<String>);
 
 impl Given {
     /// Refuses options that would have no effect; `why` follows their names.
-    pub fn refuse(&self, names: &[&str], why: impl fmt::Display) -> Result<(), Said> {
-        let wanted = self.0.iter().filter(|name| names.contains(&name.as_str()));
+    pub fn refuse(&self, names: &[impl AsRef<str>], why: impl fmt::Display) -> Result<(), Said> {
+        let wanted = self.0.iter().filter(|given| names.iter().any(|name| name.as_ref() == *given));
         let options: Vec<String> =
             wanted.map(|name| format!("--{}", name.replace('_', "-"))).collect();
         match &options[..] {

@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use clap::Args;
+use serde::Serialize;
+
 use crate::export::Target;
 use crate::haar::smooth;
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
-use clap::Args;
-use serde::Serialize;
 
 use super::Global;
 use super::args::{HaarArgs, InputArgs};

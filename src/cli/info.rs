@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use clap::Args;
+use serde::Serialize;
+
 use crate::points::read_points;
 use crate::progress::Stage;
 use crate::shown::number;
 use crate::volume::{self, Series};
 use crate::{Coordinates, Frame, LengthUnit};
-use clap::Args;
-use serde::Serialize;
 
 use super::args::InputArgs;
 use super::output::{name, tell};

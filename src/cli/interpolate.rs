@@ -4,14 +4,15 @@ use std::fmt::{self, Display};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use clap::Args;
+use serde::Serialize;
+
 use crate::export::{Content, Target, write_all};
 use crate::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
 use crate::progress::Stage;
 use crate::shape::number_or_null_or_name;
 use crate::volume::VolumeWriter;
 use crate::{AlphaShape, GrayRange, Units, Volume};
-use clap::Args;
-use serde::Serialize;
 
 use super::args::{PipelineArgs, ShapeArgs};
 use super::formats::volume_output;

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use crate::export::Target;
-use crate::shown::shown;
 use clap::Args;
 use clap_mangen::Man as Page;
+
+use crate::export::Target;
+use crate::shown::shown;
 
 use super::output::print;
 use super::{Global, described};

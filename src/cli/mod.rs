@@ -2,12 +2,9 @@
 
 mod args;
 mod check;
-mod check_filtration;
 mod compare;
-mod compare_filtrations;
 mod complaint;
 mod completions;
-mod complex_file;
 mod config;
 mod curve;
 mod filtration;
@@ -17,6 +14,7 @@ mod given;
 mod haar;
 mod info;
 mod interpolate;
+mod judged;
 mod ladder;
 mod man;
 mod output;
@@ -39,8 +37,6 @@ use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 
-use crate::export::Target;
-use crate::progress::TARGET;
 use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use tracing::Level;
 use tracing::level_filters::LevelFilter;
@@ -48,6 +44,9 @@ use tracing_subscriber::Layer;
 use tracing_subscriber::filter::Targets;
 use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::util::SubscriberInitExt;
+
+use crate::export::Target;
+use crate::progress::TARGET;
 
 use output::{is_broken_pipe, print};
 use said::said;

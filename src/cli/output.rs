@@ -3,8 +3,9 @@
 use std::fmt::Display;
 use std::io::{self, Write};
 
-use crate::shown::escaped;
 use serde::Serialize;
+
+use crate::shown::escaped;
 
 use super::Global;
 

@@ -4,14 +4,16 @@ use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::said::refused;
+use clap::{Args, ValueEnum};
+
 use crate::AlphaShape;
 use crate::export::Exporter;
 use crate::render::{
     Background, Camera, ColourMap, Colouring, Projection, RenderError, Scene, ShapeStyle, Size,
     View,
 };
-use clap::{Args, ValueEnum};
+
+use super::said::refused;
 
 /// How a shape is drawn.
 #[derive(Args, Clone, Copy)]

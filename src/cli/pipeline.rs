@@ -3,6 +3,9 @@
 use std::fmt::{self, Display};
 use std::path::Path;
 
+use clap::Args;
+use serde::Serialize;
+
 use crate::export::{Scratch, Target};
 use crate::ladder::{Curve, Filtration};
 use crate::pipeline::{Model, PipelineError, Weighed};
@@ -11,9 +14,8 @@ use crate::progress::Stage;
 use crate::shape::ShapeOptions;
 use crate::volume::Reason;
 use crate::{Alpha, GrayRange, LengthUnit, Pipeline, Points, Units, Volume, VolumeError, volume};
-use serde::Serialize;
 
-use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, WeightArgs};
+use super::args::{self, InputArgs, PipelineArgs, WeightArgs};
 use super::complaint::{is_usage, reasons};
 use super::progress::Progress;
 use super::said::{Said, said};
@@ -80,39 +82,15 @@ pub fn with_file<T>(
     })
 }
 
-/// Options that speak of a volume.
-const OF_VOLUMES: [&str; 22] = [
-    "level",
-    "array",
-    "frame",
-    "series",
-    "nan",
-    "roi",
-    "downsample",
-    "gray",
-    "gray_out",
-    "haar",
-    "rms",
-    "epsilon",
-    "coefficients",
-    "select",
-    "target_rmse",
-    "count",
-    "ratio",
-    "threshold",
-    "gray_min",
-    "value_min",
-    "units",
-    "space",
-];
-
 impl Input {
     /// Refuses options that have no effect on what INPUT is.
     pub fn accepts(&self, args: &InputArgs) -> Result<(), Said> {
         let holds = |what| format!("{} holds {what}", args.input);
         match self {
             Self::Volume(..) => args.given.refuse(&["columns"], holds("a volume")),
-            Self::Points(_) => args.given.refuse(&OF_VOLUMES, holds("points, and no volume")),
+            Self::Points(_) => {
+                args.given.refuse(&args::of_volumes(), holds("points, and no volume"))
+            }
         }
     }
 }
@@ -152,8 +130,8 @@ pub enum Values {
 }
 
 /// Steps 1 to 7: reads INPUT and makes weighted points of it, with the values that are written.
-pub fn weighted_points(
-    args: &PipelineArgs,
+pub fn weighted_points<W: Args + Copy + Into<WeightArgs>>(
+    args: &PipelineArgs<W>,
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<VolumeFacts>)> {
     let (weighed, source) = points_and_volume(args, Values::Written, progress)?;
@@ -161,26 +139,25 @@ pub fn weighted_points(
 }
 
 /// The same, and the volume they come from.
-pub fn points_and_volume(
-    args: &PipelineArgs,
+pub fn points_and_volume<W: Args + Copy + Into<WeightArgs>>(
+    args: &PipelineArgs<W>,
     values: Values,
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Source>)> {
-    let PipelineArgs { input, haar, select, weights } = args;
-    let read = read(input, progress)?;
-    read.accepts(input)?;
-    weigh_input(read, haar, select, weights, values, progress)
+    let read = read(&args.input, progress)?;
+    read.accepts(&args.input)?;
+    weigh_input(read, args, values, progress)
 }
 
 /// The same from what was read already.
-pub fn weigh_input(
+pub fn weigh_input<W: Args + Copy + Into<WeightArgs>>(
     input: Input,
-    haar: &HaarArgs,
-    select: &SelectArgs,
-    weights: &WeightArgs,
+    args: &PipelineArgs<W>,
     values: Values,
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Source>)> {
+    let PipelineArgs { haar, select, .. } = args;
+    let weights: WeightArgs = args.weights.into();
     let mut pipeline = Pipeline::new().haar(haar.options()).alpha(weights.alpha());
     if let Some(kind) = weights.weights {
         pipeline = pipeline.weighting(kind);

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
+use clap::Args;
+
 use crate::export::Target;
 use crate::points::PointWriter;
 use crate::progress::Stage;
-use clap::Args;
 
 use super::args::PipelineArgs;
 use super::formats::points_output;

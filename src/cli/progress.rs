@@ -4,10 +4,11 @@ use std::fmt;
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-use crate::progress::Stage;
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use tracing::field::{Field, Visit};
 use tracing_subscriber::layer::Context;
+
+use crate::progress::Stage;
 
 use super::Global;
 

@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
+use serde::Serialize;
+
 use crate::interpolate::Adaptive;
 use crate::pipeline::{Model, Parameter, Weighed};
 use crate::points::WeightSummary;
 use crate::shape::{Betti, ByClass, Component, Cuts, Engine, Void};
 use crate::shown::number;
 use crate::{AlphaShape, Coordinates, GrayRange, LengthUnit, Truncation, memory};
-use serde::Serialize;
 
 use super::output::name;
 use super::pipeline::VolumeFacts;

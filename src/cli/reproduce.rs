@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use clap::Args;
+
 use crate::progress::Stage;
 use crate::reproduce::{File, Report, Subject, page, reproduce};
 use crate::shown::shown;
 use crate::volume::{ReadOptions, open};
 use crate::{Gray, Volume, VolumeError};
-use clap::Args;
 
 use super::Global;
 use super::folder::Folder;

@@ -3,12 +3,13 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use clap::Args;
+
 use crate::export::{Content, ExportOptions, Exporter, FORMATS, Format, Target, write_all};
 use crate::progress::Stage;
 use crate::shape::{ShapeOptions, Surface};
 use crate::shown::shown;
 use crate::volume::UnknownFormat;
-use clap::Args;
 
 use super::args::{PipelineArgs, ShapeArgs};
 use super::formats::shape_output;

@@ -5,6 +5,10 @@ use std::fmt::{self, Display};
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use anyhow::bail;
+use clap::Args;
+use serde::Serialize;
+
 use crate::export::Target;
 use crate::ladder::Filtration;
 use crate::pipeline::{AlphaRule, Parameter, Weighed};
@@ -13,12 +17,9 @@ use crate::render::{Original, Page, Subject};
 use crate::shown::{number, shown};
 use crate::volume::UnknownFormat;
 use crate::{Alpha, GrayRange};
-use anyhow::bail;
-use clap::Args;
-use serde::Serialize;
 
 use super::Global;
-use super::args::{self, Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::args::{self, Alphas, FrozenPipelineArgs};
 use super::output::{name, tell};
 use super::pipeline::{self, Input, Source, Values, VolumeFacts};
 use super::progress::Progress;
@@ -55,13 +56,7 @@ pub struct View {
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     isovalue: Option<Level>,
     #[command(flatten)]
-    input: InputArgs,
-    #[command(flatten)]
-    haar: HaarArgs,
-    #[command(flatten)]
-    select: SelectArgs,
-    #[command(flatten)]
-    weights: FrozenArgs,
+    pipeline: FrozenPipelineArgs,
 }
 
 /// A gray level, or a value of the file: `50` or `300v`.
@@ -130,15 +125,14 @@ impl View {
         }
         let target = Target::open(&self.output)?;
         let mut progress = Progress::new(global);
-        let weights = WeightArgs::from(self.weights);
-        let read = pipeline::read(&self.input, &mut progress)?;
-        read.accepts(&self.input)?;
+        let input = &self.pipeline.input;
+        let read = pipeline::read(input, &mut progress)?;
+        read.accepts(input)?;
         if self.isovalue.is_some() && matches!(read, Input::Points(_)) {
             misused!("--isovalue has no effect: points have no isosurface" => "omit it");
         }
-        let (haar, select) = (&self.haar, &self.select);
         let (weighed, source) =
-            pipeline::weigh_input(read, haar, select, &weights, Values::Written, &mut progress)?;
+            pipeline::weigh_input(read, &self.pipeline, Values::Written, &mut progress)?;
         let filtration =
             progress.stage(Stage::Filtration, || Filtration::new(weighed.points.clone()))?;
         let page = self.page(&weighed, source.as_ref(), &filtration, &mut progress)?;
@@ -152,7 +146,7 @@ impl View {
         progress.stage(Stage::Write, || target.write(|out| out.write_all(page.html.as_bytes())))?;
         let facts = Facts {
             schema_version: SCHEMA_VERSION,
-            input: self.input.input,
+            input: self.pipeline.input.input,
             points: filtration.points().len(),
             levels: page.levels,
             bytes: page.html.len(),
@@ -198,7 +192,7 @@ impl View {
         let ladder = progress.stage(Stage::Ladder, || levels.ladder(domain.volume));
         // That level, or the last below it.
         let first = levels.alphas().partition_point(|alpha| *alpha <= opening);
-        let title = format!("Alpha shapes of {}", self.input.input);
+        let title = format!("Alpha shapes of {}", self.pipeline.input.input);
         let subject = Subject {
             title: &title,
             facts: &told,
@@ -225,7 +219,7 @@ impl View {
         volume: Option<&VolumeFacts>,
         reference: Parameter,
     ) -> Vec<(String, String)> {
-        let mut told = vec![("input".to_owned(), self.input.input.clone())];
+        let mut told = vec![("input".to_owned(), self.pipeline.input.input.clone())];
         if let Some((volume, t)) = volume.zip(weighed.origin.truncation.as_ref()) {
             let [x, y, z] = volume.dims;
             let (low, high) = (number(volume.range.low), number(volume.range.high));

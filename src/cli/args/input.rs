@@ -110,7 +110,7 @@ impl InputArgs {
 /// Which part of a file is the volume, and what of it is taken.
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Parts of a volume")]
-struct PartArgs {
+pub(super) struct PartArgs {
     /// Level of a pyramid (OME-Zarr); 0 is the finest [default: 0].
     #[arg(long, value_name = "N", conflicts_with = "dims")]
     level: Option<u32>,

@@ -6,9 +6,10 @@ mod shape;
 mod values;
 mod weights;
 
-use clap::Args;
+use clap::{Args, Command};
 
 pub use input::InputArgs;
+use input::PartArgs;
 pub use select::{HaarArgs, SelectArgs};
 pub use shape::ShapeArgs;
 pub use values::not_negative;
@@ -18,7 +19,7 @@ pub use weights::{Alphas, FrozenArgs, WeightArgs};
 
 /// From an input to weighted points.
 #[derive(Args, Clone)]
-pub struct PipelineArgs {
+pub struct PipelineArgs<W: Args = WeightArgs> {
     #[command(flatten)]
     pub input: InputArgs,
     #[command(flatten)]
@@ -26,5 +27,16 @@ pub struct PipelineArgs {
     #[command(flatten)]
     pub select: SelectArgs,
     #[command(flatten)]
-    pub weights: WeightArgs,
+    pub weights: W,
+}
+
+/// The same with weights that stay as they are while α varies.
+pub type FrozenPipelineArgs = PipelineArgs<FrozenArgs>;
+
+/// The names of the options that belong to a volume.
+pub fn of_volumes() -> Vec<String> {
+    let part = PartArgs::augment_args(Command::new("volume"));
+    let all = SelectArgs::augment_args(HaarArgs::augment_args(part));
+    let names = all.get_arguments().map(|arg| arg.get_id().to_string());
+    names.chain(["gray", "gray_out"].map(str::to_owned)).collect()
 }

@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::io;
 
+use serde::Serialize;
+
+use crate::cli::said::refused;
 use crate::ladder::{Region, focus};
 use crate::pipeline::Parameter;
 use crate::points::{Points, Units, difference, select, weigh};
@@ -13,17 +16,15 @@ use crate::{
     Coordinates, GrayRange, HaarOptions, Selection, SelectionRule, Tolerance, Truncation, Volume,
     Weighting, alpha_shape, haar,
 };
-use serde::Serialize;
 
 use super::super::Global;
-use super::super::args::WeightArgs;
+use super::super::args::{FrozenPipelineArgs, WeightArgs};
 use super::super::folder::Folder;
 use super::super::output::{name, tell};
 use super::super::pipeline::{Domain, Grays, Input, read};
 use super::super::progress::Progress;
 use super::super::report::SCHEMA_VERSION;
 use super::{Ladder, Mesh, short};
-use crate::cli::said::refused;
 
 /// What `walpha ladder` did over detail.
 #[derive(Serialize)]
@@ -93,13 +94,14 @@ impl Ladder {
         mut folder: Folder,
     ) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
-        let Input::Volume(Grays { volume, range, written }) = read(&self.input, &mut progress)?
+        let Input::Volume(Grays { volume, range, written }) =
+            read(&self.pipeline.input, &mut progress)?
         else {
             refused!("levels of detail are made of a volume, and this is a point file" => "use --alphas");
         };
-        let weights = WeightArgs::from(self.weights);
+        let weights = WeightArgs::from(self.pipeline.weights);
         let weighting = weights.weights.unwrap_or(Weighting::Common(0.0));
-        let (volume, units) = self.select.place(volume)?;
+        let (volume, units) = self.pipeline.select.place(volume)?;
         let parameter = weights.of_volume(&volume, units)?;
         let alpha = parameter.alpha;
         let coordinates = units.coordinates(&volume);
@@ -137,7 +139,7 @@ impl Ladder {
         };
         let facts = Facts {
             schema_version: SCHEMA_VERSION,
-            input: self.input.input.clone(),
+            input: self.pipeline.input.input.clone(),
             coordinates,
             alpha: parameter,
             weights: weighting.to_string(),
@@ -159,7 +161,8 @@ impl Ladder {
         range: &GrayRange,
     ) -> anyhow::Result<Option<(Points, &Region)>> {
         let Some(region) = &self.focus else { return Ok(None) };
-        let (points, _) = stages.points(&self.haar.options(), &self.select.selection(range))?;
+        let FrozenPipelineArgs { haar, select, .. } = &self.pipeline;
+        let (points, _) = stages.points(&haar.options(), &select.selection(range))?;
         if !points.positions.iter().any(|&p| region.contains(p)) {
             refused!("no point lies in --focus: it is in the units of the points, x first");
         }
@@ -167,7 +170,8 @@ impl Ladder {
     }
 
     fn wanted(&self, range: &GrayRange) -> Vec<Wanted> {
-        let (haar, selection) = (self.haar.options(), self.select.selection(range));
+        let FrozenPipelineArgs { haar, select, .. } = &self.pipeline;
+        let (haar, selection) = (haar.options(), select.selection(range));
         let by_count = self.counts.iter().map(|&count| Wanted {
             name: count.to_string(),
             haar,

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display, Write as _};
 use std::io;
 
+use serde::Serialize;
+
 use crate::Coordinates;
 use crate::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
 use crate::pipeline::{Parameter, Weighed};
 use crate::shape::{Betti, ByClass, Measures, Void, number_or_name};
-use serde::Serialize;
 
 use super::super::output::name;
 use super::super::pipeline::Domain;

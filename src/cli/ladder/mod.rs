@@ -6,23 +6,24 @@ mod facts;
 use std::fmt::{Display, LowerExp};
 use std::path::{Path, PathBuf};
 
+use clap::Args;
+
 use crate::Coordinates;
+use crate::cli::ranges;
+use crate::cli::said::{Said, misused};
 use crate::export::{ExportOptions, Exporter, Format};
 use crate::ladder::{Filtration, Ladder as Levels, Level, Region};
 use crate::pipeline::Parameter;
 use crate::progress::Stage;
 #[cfg(feature = "render")]
 use crate::render::ladder_figure;
-use clap::Args;
 
 use super::Global;
-use super::args::{Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::args::{Alphas, FrozenPipelineArgs};
 use super::folder::Folder;
 use super::output::tell;
-use super::pipeline::{self, Values};
+use super::pipeline;
 use super::progress::Progress;
-use crate::cli::ranges;
-use crate::cli::said::{Said, misused};
 use facts::{Facts, write_levels, write_voids};
 
 /// Compute shapes at many α from one triangulation, or at several levels of detail.
@@ -73,13 +74,7 @@ pub struct Ladder {
     #[arg(long, value_name = "EXT,EXT,…", value_delimiter = ',')]
     mesh: Vec<String>,
     #[command(flatten)]
-    input: InputArgs,
-    #[command(flatten)]
-    haar: HaarArgs,
-    #[command(flatten)]
-    select: SelectArgs,
-    #[command(flatten)]
-    weights: FrozenArgs,
+    pipeline: FrozenPipelineArgs,
 }
 
 /// Levels that `--alphas auto` chooses, suggested ones not counted.
@@ -120,20 +115,14 @@ impl Ladder {
         mut folder: Folder,
     ) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
-        let weights = WeightArgs::from(self.weights);
-        let read = pipeline::read(&self.input, &mut progress)?;
-        read.accepts(&self.input)?;
-        let (haar, select) = (&self.haar, &self.select);
-        let (weighed, source) =
-            pipeline::weigh_input(read, haar, select, &weights, Values::Written, &mut progress)?;
-        let volume = source.map(|source| source.facts);
+        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, &mut progress)?;
         let domain = pipeline::domain(&weighed, volume.as_ref());
         let filtration =
             progress.stage(Stage::Filtration, || Filtration::new(weighed.points.clone()))?;
         let coordinates = weighed.origin.coordinates;
         let found = || Parameter::of_filtration(&filtration, coordinates.unit);
         let reference = weighed.parameter.unwrap_or_else(found);
-        let mut facts = Facts::new(&self.input.input, &weighed, reference, domain);
+        let mut facts = Facts::new(&self.pipeline.input.input, &weighed, reference, domain);
         let curve = progress.stage(Stage::Curve, || filtration.curve());
         let suggested = progress.stage(Stage::Curve, || filtration.suggest(&curve));
         let alphas = match &self.alphas {
@@ -147,7 +136,7 @@ impl Ladder {
 
         #[cfg(feature = "render")]
         let figure = {
-            let title = format!("Ladder of {}, ω frozen", self.input.input);
+            let title = format!("Ladder of {}, ω frozen", self.pipeline.input.input);
             ladder_figure(&title, &ladder, &curve, &suggested, domain.volume)?
         };
         progress.stage(Stage::Write, || -> anyhow::Result<()> {

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use crate::export::Exporter;
 use clap::Args;
+
+use crate::export::Exporter;
 
 #[derive(Args, Clone, Copy)]
 pub struct PictureArgs {}

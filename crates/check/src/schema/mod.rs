@@ -33,7 +33,7 @@
 //! `facet_classes`, `edge_classes` and `vertex_classes`, with 0 exterior, 1 interior, 2 regular,
 //! 3 singular.
 //!
-//! A [`FiltrationFile`] is a complex at all values of α.
+//! A [`FiltrationFile`] is a complex at all values of α; [`AnyFile`] opens either.
 
 mod build;
 mod error;
@@ -53,6 +53,7 @@ use crate::{Alpha, Claim, Class, Placed, Simplices};
 
 pub use error::SchemaError;
 pub use filtration::{Below, FiltrationFile, PairsFile, Values};
+pub use open::AnyFile;
 pub use placed::PlacedComplex;
 
 /// A complex as a file holds it; see the [module](self) for the meaning of the fields.

@@ -43,17 +43,41 @@ impl FiltrationFile {
         }
     }
 
-    /// Whether a file holds a filtration, which has a field `order`, and not a complex, which has
-    /// none. Reads all of a JSON file, and the list of arrays of an NPZ file. A file that cannot be
-    /// read holds neither.
-    pub fn is_in(path: impl AsRef<Path>) -> bool {
-        let path = path.as_ref();
+    /// Whether a file has a field `order`, as a filtration has and a complex has not.
+    fn is_in(path: &Path) -> bool {
         match Format::of(path) {
             None => false,
             #[cfg(feature = "json")]
             Some(Format::Json) => open(path).is_ok_and(Self::is_json),
             #[cfg(feature = "npz")]
             Some(Format::Npz) => open(path).is_ok_and(Self::is_npz),
+        }
+    }
+}
+
+/// A file of either kind.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there are one or two, moved a few times")]
+pub enum AnyFile {
+    /// A complex.
+    Complex(ComplexFile),
+    /// A filtration.
+    Filtration(FiltrationFile),
+}
+
+impl AnyFile {
+    /// Reads a file, as JSON or NPZ by its extension. It is a filtration if it has a field `order`.
+    ///
+    /// # Errors
+    /// As [`ComplexFile::open`] and [`FiltrationFile::open`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, SchemaError> {
+        let path = path.as_ref();
+        match ComplexFile::open(path) {
+            Ok(file) => Ok(Self::Complex(file)),
+            Err(_) if FiltrationFile::is_in(path) => {
+                FiltrationFile::open(path).map(Self::Filtration)
+            }
+            Err(error) => Err(error),
         }
     }
 }
