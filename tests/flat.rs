@@ -1,6 +1,8 @@
 //! Points in one plane, on one line, or one alone: their shape there, against the definition.
 
 mod common;
+#[path = "common/random.rs"]
+mod random;
 
 use std::num::NonZeroUsize;
 
@@ -8,21 +10,7 @@ use walpha::check::enumerate;
 use walpha::shape::{Betti, Engine, ShapeOptions, flat_region};
 use walpha::{Alpha, AlphaShape, Class, WeightedPoints, alpha_shape};
 
-/// SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) % n
-    }
-
-    fn whole(&mut self, low: i64, high: i64) -> f64 {
-        (low + self.below((high - low + 1) as u64) as i64) as f64
-    }
-}
+use random::Random;
 
 /// Points of a plane or line through the lattice, tilted as it comes, with ties everywhere.
 fn set(random: &mut Random) -> WeightedPoints {

@@ -1,6 +1,9 @@
 //! Two makers, one triangulation, on small sets where nearly everything is degenerate; and the three
 //! engines on the same sets, byte by byte.
 
+#[path = "common/random.rs"]
+mod random;
+
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
@@ -8,26 +11,7 @@ use walpha::shape::{Engine, ShapeOptions};
 use walpha::triangulation::{Maker, Sites, Triangulation, TriangulationError, triangulate};
 use walpha::{Alpha, WeightedPoints, alpha_shape};
 
-/// SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) % n
-    }
-
-    /// A whole number from `low` to `high`.
-    fn whole(&mut self, low: i64, high: i64) -> f64 {
-        (low + self.below((high - low + 1) as u64) as i64) as f64
-    }
-
-    fn unit(&mut self) -> f64 {
-        self.below(1 << 53) as f64 / (1u64 << 53) as f64
-    }
-}
+use random::Random;
 
 /// What a set is made of, by its number.
 const FAMILIES: [fn(&mut Random) -> WeightedPoints; 9] = [

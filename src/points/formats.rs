@@ -10,7 +10,7 @@ use super::read::{format, npy};
 use super::read::{obj, off, pcd, ply, stl, table, vtk, xyz};
 use super::write;
 use super::{Columns, Points, PointsError, WeightedPoints};
-use crate::volume::{NpyFile, Reason, UnknownFormat, is_vtk_xml, start_of};
+use crate::volume::{NpyFile, Reason, UnknownFormat, built, is_vtk_xml, start_of};
 
 /// Reads a file whose columns may be named.
 type Read = fn(&Path, Option<&Columns>) -> Result<Points, PointsError>;
@@ -56,20 +56,6 @@ const PLAIN: PointFormat = PointFormat {
     writers: &[],
     read: None,
 };
-
-/// What a feature brings, or `None` where it is left out.
-macro_rules! built {
-    ($feature:tt, $what:expr) => {{
-        #[cfg(feature = $feature)]
-        {
-            Some($what)
-        }
-        #[cfg(not(feature = $feature))]
-        {
-            None
-        }
-    }};
-}
 
 /// The formats of points, in the order in which they are looked for. The first is that of files which
 /// nothing tells.

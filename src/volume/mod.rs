@@ -34,7 +34,7 @@ pub use formats::{
     FORMATS, Keeps, UnknownFormat, VolumeFormat, VolumeWriter, data_files, format_name, read,
     series,
 };
-pub(crate) use formats::{is_vtk_xml, start_of};
+pub(crate) use formats::{built, is_vtk_xml, start_of};
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
 pub use part::{Region, downsample};

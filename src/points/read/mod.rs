@@ -66,8 +66,7 @@ pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
 /// a number is not finite (the message has its place), the file holds no point, or `columns` are given for
 /// a format that tells its own.
 pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
-    let found = found(path)?.or_else(|| FORMATS.first());
-    let Some(known) = found else { return Err(format(path, Reason::other("is no table"))) };
+    let known = found(path)?.unwrap_or(&FORMATS[0]);
     if columns.is_some() && !known.takes_columns {
         let reason = Reason::needless(Setting::Columns, "says itself what its columns are");
         return Err(format(path, reason));

@@ -2,6 +2,7 @@
 //! keeps. Whatever else lists formats is made from the [table](FORMATS).
 
 mod begins;
+mod built;
 mod detect;
 mod table;
 mod unknown;
@@ -17,6 +18,7 @@ pub use unknown::UnknownFormat;
 pub(crate) use begins::is_vtk_xml;
 #[cfg(feature = "formats")]
 pub(crate) use begins::{NIFTI_HEADERS, nifti_version};
+pub(crate) use built::built;
 pub(crate) use detect::start_of;
 
 use super::{ReadOptions, Volume, VolumeError};

@@ -1,4 +1,5 @@
 use super::begins::{is_dicom, is_metaimage, is_nifti, is_vtk_xml};
+use super::built;
 use super::{Keeps, VolumeFormat, VolumeWriter, detect};
 use crate::advice::Setting;
 use crate::volume::read::{NpyFile, inr, npy, raw, series};
@@ -11,20 +12,6 @@ const ALL: Keeps = Keeps { spacing: true, directions: true, space: true, unit: t
 /// The samples alone.
 const SAMPLES: Keeps =
     Keeps { spacing: false, directions: false, space: false, unit: false, dtype: true };
-
-/// What a feature brings, or `None` where it is left out.
-macro_rules! built {
-    ($feature:tt, $what:expr) => {{
-        #[cfg(feature = $feature)]
-        {
-            Some($what)
-        }
-        #[cfg(not(feature = $feature))]
-        {
-            None
-        }
-    }};
-}
 
 /// The writers that the feature `formats` brings.
 macro_rules! writers {

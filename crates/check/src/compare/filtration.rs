@@ -5,6 +5,7 @@ use std::fmt::{self, Display};
 
 use serde::Serialize;
 
+use super::text::{PRINTED, rows};
 use super::{Places, WeightDifference, weights_by_place};
 use crate::canonical::sorted;
 use crate::schema::{Below, FiltrationFile, SchemaError};
@@ -226,9 +227,6 @@ fn of<T>(below: &Below<T>, dimension: usize) -> &[T] {
     }
 }
 
-/// How many differences of a kind are printed one by one.
-const PRINTED: usize = 10;
-
 impl Display for FiltrationComparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (only_a, only_b) = (&self.points_only_a, &self.points_only_b);
@@ -255,11 +253,8 @@ impl Display for FiltrationComparison {
             ("Gabriel in one", &self.gabriel),
             ("regular or interior from another α on", &self.intervals),
         ];
-        for (what, simplices) in kinds.into_iter().filter(|(_, simplices)| !simplices.is_empty()) {
-            writeln!(f, "{what}: {}", simplices.len())?;
-            for simplex in simplices.iter().take(PRINTED) {
-                writeln!(f, "  {simplex}")?;
-            }
+        for (what, simplices) in kinds {
+            rows(f, what, simplices.iter())?;
         }
         match (&self.order, self.order_compared) {
             (Some(simplex), _) => write!(f, "order: another from {simplex} on"),

@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 use super::Comparison;
 
 /// How many differences of a kind are printed one by one.
-const PRINTED: usize = 10;
+pub(super) const PRINTED: usize = 10;
 
 impl Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -55,7 +55,7 @@ impl Display for Comparison {
 }
 
 /// How many there are, and the first of them; nothing if there are none.
-fn rows<T: Display>(
+pub(super) fn rows<T: Display>(
     f: &mut fmt::Formatter<'_>,
     what: &str,
     rows: impl ExactSizeIterator<Item = T>,
