@@ -272,6 +272,40 @@ def read_dicom(check):
             frame = (theirs.GetOrigin(), np.reshape(theirs.GetDirection(), (3, 3)), theirs.GetSpacing())
             check.volume(f"{name}: as ITK", folder, sitk.GetArrayFromImage(theirs), *frame)
         check.volume(f"{name}: as written", folder, data * 0.5 - 1024 if spoil is rescaled else data, ORIGIN, axes, SPACING)
+    for name, data in (("one file", samples("i2")), ("one file, RLE", samples("u2"))):
+        # Enhanced CT: frames in any order, elements in functional groups.
+        order = np.random.default_rng(7).permutation(len(data))
+
+        def framed(ds, _):
+            def groups(**elements):
+                outer = pydicom.Dataset()
+                for sequence, inner in elements.items():
+                    item = pydicom.Dataset()
+                    for key, value in inner.items():
+                        setattr(item, key, value)
+                    setattr(outer, sequence, [item])
+                return outer
+
+            ds.SOPClassUID = ds.file_meta.MediaStorageSOPClassUID = pydicom.uid.EnhancedCTImageStorage
+            measures = {"PixelSpacing": ds.PixelSpacing, "SliceThickness": SPACING[2]}
+            turned = {"ImageOrientationPatient": ds.ImageOrientationPatient}
+            ds.SharedFunctionalGroupsSequence = [groups(PixelMeasuresSequence=measures, PlaneOrientationSequence=turned)]
+            places = [[round(float(v), 9) for v in ORIGIN + axes[:, 2] * SPACING[2] * z] for z in order]
+            values = [{"RescaleSlope": 2, "RescaleIntercept": int(z), "RescaleType": "HU"} for z in order]
+            ds.PerFrameFunctionalGroupsSequence = [
+                groups(PlanePositionSequence={"ImagePositionPatient": place}, PixelValueTransformationSequence=value)
+                for place, value in zip(places, values)
+            ]
+            for element in ("PixelSpacing", "ImageOrientationPatient", "ImagePositionPatient"):
+                delattr(ds, element)
+            ds.NumberOfFrames, (_, ds.Rows, ds.Columns) = len(data), data.shape
+            ds.PixelData = data[order].tobytes() + b"\0" * (data.nbytes % 2)
+            if "RLE" in name:
+                packed(ds, 0)
+
+        folder = series(check.path(f"dicom {name}"), data[:1], framed)
+        expected = 2.0 * data + np.arange(len(data))[:, None, None]
+        check.volume(f"DICOM frames in {name}", folder, expected, ORIGIN, axes, SPACING)
     folder = series(check.path("dicom-gap"), samples("i2", (5, 4, 5)))
     # The third of five, by the names given above.
     os.remove(os.path.join(folder, f"{(5 * 2 + 2) % 7}.dcm"))

@@ -1,6 +1,8 @@
-//! DICOM series: the slices of one series as a volume.
+//! DICOM series: the slices of one series as a volume, each in a file of its own or several as the
+//! frames of one.
 
 mod claims;
+mod header;
 mod slice;
 mod stack;
 
@@ -15,7 +17,7 @@ use super::{ReadOptions, format_error};
 use crate::advice::{Setting, advice};
 use crate::progress;
 use crate::volume::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
-use slice::{Found, Slice};
+use slice::{Found, Slice, pixels};
 use stack::stacked;
 
 /// Reads the series that a file belongs to, or one in a folder.
@@ -39,7 +41,7 @@ fn read_series_of(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeErr
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
-    one.slice?;
+    one.slices?;
     let mut found = found(&series::files(folder, false)?)?;
     found.retain(|other| other.series == one.series);
     assemble(path, slices(found)?)
@@ -96,7 +98,9 @@ fn found(files: &[PathBuf]) -> Result<Vec<Found>, VolumeError> {
 }
 
 fn slices(found: Vec<Found>) -> Result<Vec<Slice>, VolumeError> {
-    found.into_iter().map(|one| one.slice).collect()
+    let slices: Vec<Vec<Slice>> =
+        found.into_iter().map(|one| one.slices).collect::<Result<_, _>>()?;
+    Ok(slices.concat())
 }
 
 fn listed(found: &[Found]) -> Vec<Series> {
@@ -118,7 +122,7 @@ fn listed(found: &[Found]) -> Vec<Series> {
             });
             list.len() - 1
         });
-        list[place].slices += 1;
+        list[place].slices += one.slices.as_ref().map_or(1, Vec::len);
     }
     list
 }
@@ -137,12 +141,24 @@ fn assemble(path: &Path, slices: Vec<Slice>) -> Result<Volume, VolumeError> {
         );
         format_error(path, reason)
     })?;
+    samples.resize(dims.samples(), 0.0);
+    let mut places: Vec<(&Slice, &mut [f32])> =
+        slices.iter().zip(samples.chunks_exact_mut(dims.samples() / slices.len())).collect();
+    // Frames of one file are decoded together.
+    places.sort_by(|a, b| a.0.path.cmp(&b.0.path));
+    let mut files: Vec<_> = places.chunk_by_mut(|a, b| a.0.path == b.0.path).collect();
+    let count = files.len();
     // So many at once: pixels decoded ahead take memory.
-    for (done, batch) in slices.chunks(16).enumerate() {
-        let pixels: Vec<Vec<f32>> =
-            batch.par_iter().map(Slice::pixels).collect::<Result<_, _>>()?;
-        samples.extend(pixels.into_iter().flatten());
-        progress::report((16 * done + batch.len()) as u64, slices.len() as u64);
+    for (done, batch) in files.chunks_mut(16).enumerate() {
+        batch.par_iter_mut().try_for_each(|file| {
+            let frames: Vec<&Slice> = file.iter().map(|(slice, _)| *slice).collect();
+            let pixels = pixels(&frames)?;
+            file.iter_mut()
+                .zip(pixels)
+                .for_each(|((_, place), pixels)| place.copy_from_slice(&pixels));
+            Ok::<_, VolumeError>(())
+        })?;
+        progress::report((16 * done + batch.len()) as u64, count as u64);
     }
     let dtype =
         slices.iter().map(|slice| slice.dtype).reduce(|a, b| if a == b { a } else { Dtype::F32 });

@@ -1,9 +1,11 @@
 use std::path::{Path, PathBuf};
 
-use dicom_object::{DefaultDicomObject, OpenFileOptions, Tag};
+use dicom_object::{InMemDicomObject, OpenFileOptions, Tag};
 use dicom_pixeldata::PixelDecoder;
 
 use super::claims;
+use super::header::Header;
+use crate::shown::shown;
 use crate::volume::read::format_error;
 use crate::volume::read::payload::MOST_EXPANSION;
 use crate::volume::{Dtype, Reason, VolumeError};
@@ -25,12 +27,20 @@ const BITS_ALLOCATED: Tag = Tag(0x0028, 0x0100);
 const PIXEL_REPRESENTATION: Tag = Tag(0x0028, 0x0103);
 const RESCALE_INTERCEPT: Tag = Tag(0x0028, 0x1052);
 const RESCALE_SLOPE: Tag = Tag(0x0028, 0x1053);
+// Functional groups.
+const PLANE_POSITION: Tag = Tag(0x0020, 0x9113);
+const PLANE_ORIENTATION: Tag = Tag(0x0020, 0x9116);
+const PIXEL_MEASURES: Tag = Tag(0x0028, 0x9110);
+const PIXEL_VALUE_TRANSFORMATION: Tag = Tag(0x0028, 0x9145);
 const PIXEL_DATA: Tag = Tag(0x7FE0, 0x0010);
 
 /// One slice of a series: all but its pixels.
 #[derive(Clone, Debug)]
 pub(super) struct Slice {
     pub path: PathBuf,
+    /// Which frame of the file it is, from 0, and how many the file has.
+    pub frame: u32,
+    pub frames: u32,
     pub columns: u64,
     pub rows: u64,
     /// Where its first pixel lies, in mm: x to the patient's left, y to the back, z to the head.
@@ -56,8 +66,8 @@ pub(super) struct Found {
     pub description: String,
     /// Columns and rows, if it is an image.
     pub size: Option<[u64; 2]>,
-    /// What it is as a slice, or why it is none.
-    pub slice: Result<Slice, VolumeError>,
+    /// Its slices, one for each frame, or why it has none.
+    pub slices: Result<Vec<Slice>, VolumeError>,
 }
 
 impl Found {
@@ -72,69 +82,84 @@ impl Found {
             let element = object.get(tag).and_then(|e| e.to_str().ok());
             element.map(|text| text.trim().to_owned()).unwrap_or_default()
         };
-        let header = Header { path, object: &object };
-        let number = |tag| header.number(tag).ok().flatten().map(|n| n as u64);
+        let header = Header::new(path, &object);
+        let number = |tag| header.number(None, tag).ok().flatten().map(|n| n as u64);
         Ok(Self {
             path: path.to_owned(),
             series: text(SERIES_INSTANCE_UID),
             modality: text(MODALITY),
             description: text(SERIES_DESCRIPTION),
             size: number(COLUMNS).zip(number(ROWS)).map(|(columns, rows)| [columns, rows]),
-            slice: Slice::of(path, &object),
+            slices: Slice::all(path, &object),
         })
     }
 }
 
 impl Slice {
-    /// Of what stands before the pixels.
-    fn of(path: &Path, object: &DefaultDicomObject) -> Result<Self, VolumeError> {
+    /// The slices of a file, of what stands before the pixels: one, or as many as it has frames.
+    fn all(path: &Path, object: &InMemDicomObject) -> Result<Vec<Self>, VolumeError> {
         let said = |reason: Reason| format_error(path, reason);
-        let header = Header { path, object };
-        let frames = header.number(NUMBER_OF_FRAMES)?.unwrap_or(1.0);
-        if frames > 1.0 {
-            return Err(said(Reason::content(
-                format!("holds {frames} frames, and series of single slices are read"),
-                "convert it to NRRD or NIfTI",
-            )));
-        }
-        if header.number(SAMPLES_PER_PIXEL)?.unwrap_or(1.0) != 1.0 {
+        let header = Header::new(path, object);
+        if header.number(None, SAMPLES_PER_PIXEL)?.unwrap_or(1.0) != 1.0 {
             return Err(said(Reason::unsupported(
                 "has pixels of colours, and only gray is read",
                 "convert it",
             )));
         }
-        let [column, row] = [COLUMNS, ROWS].map(|tag| header.number(tag));
+        let [column, row] = [COLUMNS, ROWS].map(|tag| header.number(None, tag));
         let (Some(columns), Some(rows)) = (column?, row?) else {
             return Err(said(Reason::content(
                 "holds no image",
                 "move what is no slice out of the folder",
             )));
         };
-        let placed = "which a slice of a volume needs: move localisers and reports away";
-        let position = header.vector::<3>(IMAGE_POSITION, "Image Position (Patient)", placed)?;
-        let [a, b, c, d, e, f] =
-            header.vector::<6>(IMAGE_ORIENTATION, "Image Orientation (Patient)", placed)?;
-        // The standard gives the distance of rows first.
-        let [of_rows, of_columns] = header.vector::<2>(PIXEL_SPACING, "Pixel Spacing", placed)?;
-        let thickness = match header.number(SPACING_BETWEEN_SLICES)? {
-            Some(spacing) => spacing.abs(),
-            None => header.number(SLICE_THICKNESS)?.unwrap_or(1.0),
-        };
-        let bits = header.number(BITS_ALLOCATED)?.unwrap_or(16.0);
-        let (columns, rows) = (columns as u64, rows as u64);
-        let claimed = columns.saturating_mul(rows).saturating_mul((bits as u64).div_ceil(8));
+        let size = [columns as u64, rows as u64];
+        let frames = header.number(None, NUMBER_OF_FRAMES)?.unwrap_or(1.0).max(1.0);
+        let bits = header.number(None, BITS_ALLOCATED)?.unwrap_or(16.0);
+        let frame =
+            size[0].saturating_mul(size[1]).saturating_mul((bits as u64).div_ceil(8)).max(1);
         let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
-        if claimed > length.saturating_mul(MOST_EXPANSION) {
+        if frame.saturating_mul(frames as u64) > length.saturating_mul(MOST_EXPANSION) {
             return Err(said(Reason::truncated(format!(
-                "claims {columns}×{rows} pixels, which {length} bytes cannot hold: it is \
-                     truncated or damaged"
+                "claims {frames} × {columns}×{rows} pixels, which {length} bytes cannot hold: it is \
+                 truncated or damaged"
             ))));
         }
-        let unsigned = header.number(PIXEL_REPRESENTATION)?.unwrap_or(0.0) == 0.0;
-        let slope = header.number(RESCALE_SLOPE)?.unwrap_or(1.0);
-        let intercept = header.number(RESCALE_INTERCEPT)?.unwrap_or(0.0);
+        let frames = frames as u32;
+        (0..frames)
+            .map(|frame| Self::of(path, header.of_frame(frame), size, [frame, frames]))
+            .collect()
+    }
+
+    /// One frame of several.
+    fn of(
+        path: &Path,
+        header: Header<'_>,
+        [columns, rows]: [u64; 2],
+        [frame, frames]: [u32; 2],
+    ) -> Result<Self, VolumeError> {
+        let placed = "which a slice of a volume needs: move localisers and reports away";
+        let name = "Image Position (Patient)";
+        let position = header.vector::<3>(PLANE_POSITION, IMAGE_POSITION, name, placed)?;
+        let name = "Image Orientation (Patient)";
+        let [a, b, c, d, e, f] =
+            header.vector::<6>(PLANE_ORIENTATION, IMAGE_ORIENTATION, name, placed)?;
+        // The standard gives the distance of rows first.
+        let [of_rows, of_columns] =
+            header.vector::<2>(PIXEL_MEASURES, PIXEL_SPACING, "Pixel Spacing", placed)?;
+        let thickness = match header.number(PIXEL_MEASURES, SPACING_BETWEEN_SLICES)? {
+            Some(spacing) => spacing.abs(),
+            None => header.number(PIXEL_MEASURES, SLICE_THICKNESS)?.unwrap_or(1.0),
+        };
+        let bits = header.number(None, BITS_ALLOCATED)?.unwrap_or(16.0);
+        let unsigned = header.number(None, PIXEL_REPRESENTATION)?.unwrap_or(0.0) == 0.0;
+        let slope = header.number(PIXEL_VALUE_TRANSFORMATION, RESCALE_SLOPE)?.unwrap_or(1.0);
+        let intercept =
+            header.number(PIXEL_VALUE_TRANSFORMATION, RESCALE_INTERCEPT)?.unwrap_or(0.0);
         Ok(Self {
             path: path.to_owned(),
+            frame,
+            frames,
             columns,
             rows,
             position,
@@ -145,22 +170,41 @@ impl Slice {
         })
     }
 
-    /// The pixels, row by row, in the units of the modality (rescaled, as Hounsfield units are).
-    pub fn pixels(&self) -> Result<Vec<f32>, VolumeError> {
-        let path = &self.path;
-        let object = dicom_object::open_file(path).map_err(|error| damaged(path, &error))?;
-        let pixels = object.decode_pixel_data().and_then(|pixels| pixels.to_vec::<f32>());
+    /// Its file, for people, and which frame it is of several.
+    pub fn name(&self) -> String {
+        let file = shown(&self.path);
+        if self.frames == 1 { file } else { format!("frame {} of {file}", self.frame + 1) }
+    }
+}
+
+/// The pixels of frames of one file, row by row, in the units of the modality (rescaled, as Hounsfield
+/// units are).
+pub(super) fn pixels(slices: &[&Slice]) -> Result<Vec<Vec<f32>>, VolumeError> {
+    let Some(&first) = slices.first() else { return Ok(Vec::new()) };
+    let Slice { columns, rows, frames: claimed, .. } = *first;
+    let path = &first.path;
+    let object = dicom_object::open_file(path).map_err(|error| damaged(path, &error))?;
+    let decoded = object.decode_pixel_data().map_err(|error| damaged(path, &error))?;
+    let found = decoded.number_of_frames();
+    if found != claimed {
+        let reason = Reason::truncated(format!(
+            "claims {claimed} frames and holds {found}: it is truncated or damaged"
+        ));
+        return Err(format_error(path, reason));
+    }
+    let frame = |slice: &&Slice| {
+        let pixels = decoded.to_vec_frame::<f32>(slice.frame);
         let pixels = pixels.map_err(|error| damaged(path, &error))?;
-        let (found, claimed) = (pixels.len() as u64, self.columns * self.rows);
+        let (found, claimed) = (pixels.len() as u64, columns * rows);
         if found != claimed {
-            let (columns, rows) = (self.columns, self.rows);
             let reason = Reason::truncated(format!(
                 "claims {columns}×{rows} pixels and holds {found}: it is truncated or damaged"
             ));
             return Err(format_error(path, reason));
         }
         Ok(pixels)
-    }
+    };
+    slices.iter().map(frame).collect()
 }
 
 /// The type of the numbers that pixels stand for: that of the file, if these are shifted by whole steps.
@@ -187,41 +231,4 @@ pub(super) fn damaged(path: &Path, error: &dyn std::error::Error) -> VolumeError
         "copy it again, or convert the series to NRRD",
     );
     format_error(path, reason)
-}
-
-struct Header<'a> {
-    path: &'a Path,
-    object: &'a DefaultDicomObject,
-}
-
-impl Header<'_> {
-    fn number(&self, tag: Tag) -> Result<Option<f64>, VolumeError> {
-        let Some(element) = self.object.get(tag) else { return Ok(None) };
-        if element.value().multiplicity() == 0 {
-            return Ok(None);
-        }
-        let number = element.to_float64().ok().filter(|number| number.is_finite());
-        number.map(Some).ok_or_else(|| {
-            format_error(
-                self.path,
-                Reason::damaged(format!("has no number at {tag}: it is damaged")),
-            )
-        })
-    }
-
-    fn vector<const N: usize>(
-        &self,
-        tag: Tag,
-        name: &str,
-        why: &str,
-    ) -> Result<[f64; N], VolumeError> {
-        let numbers = self.object.get(tag).and_then(|element| element.to_multi_float64().ok());
-        let numbers = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
-        numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite())).ok_or_else(|| {
-            format_error(
-                self.path,
-                Reason::header(format!("has no {name} {tag} of {N} numbers, {why}")),
-            )
-        })
-    }
 }

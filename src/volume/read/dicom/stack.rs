@@ -2,7 +2,6 @@ use std::path::Path;
 
 use super::slice::Slice;
 use crate::math::vector::{cross, dot};
-use crate::shown::shown;
 use crate::volume::read::format_error;
 use crate::volume::{Coordinates, Frame, Reason, VolumeError};
 
@@ -27,7 +26,7 @@ pub(super) fn stacked(
         return Err(said(Reason::content("holds no DICOM slices", "name a folder of them")));
     };
     for slice in &slices {
-        let (name, other) = (shown(&slice.path), shown(&first.path));
+        let (name, other) = (slice.name(), first.name());
         if (slice.columns, slice.rows) != (first.columns, first.rows) {
             return Err(said(Reason::content(
                 format!(
@@ -59,7 +58,7 @@ pub(super) fn stacked(
     let normal = cross(column, row);
     slices.sort_by(|a, b| {
         let [a_at, b_at] = [a, b].map(|slice| dot(slice.position, normal));
-        a_at.total_cmp(&b_at).then_with(|| a.path.cmp(&b.path))
+        a_at.total_cmp(&b_at).then_with(|| (&a.path, a.frame).cmp(&(&b.path, b.frame)))
     });
     let step = match even(&slices, normal).map_err(said)? {
         Some(step) => step,
@@ -77,7 +76,7 @@ fn even(slices: &[Slice], normal: [f64; 3]) -> Result<Option<[f64; 3]>, Reason> 
     let at = |slice: &Slice| dot(slice.position, normal);
     let mut gaps: Vec<f64> = slices.windows(2).map(|two| at(&two[1]) - at(&two[0])).collect();
     let pairs: Vec<_> = slices.windows(2).zip(gaps.clone()).collect();
-    let names = |two: &[Slice]| format!("{} and {}", shown(&two[0].path), shown(&two[1].path));
+    let names = |two: &[Slice]| format!("{} and {}", two[0].name(), two[1].name());
     gaps.sort_by(f64::total_cmp);
     // Of an even number the greater, so that not all places need be doubled; the lesser for what is
     // usual, so that a gap among few stands out.
@@ -85,7 +84,7 @@ fn even(slices: &[Slice], normal: [f64; 3]) -> Result<Option<[f64; 3]>, Reason> 
     if let Some((two, _)) = pairs.iter().find(|(_, gap)| *gap <= UNEVEN * greater) {
         return Err(Reason::content(
             format!("has two slices at one place, {}: it has several times or echoes", names(two)),
-            "move those of one into a folder of their own",
+            "move those of one into a folder of their own, or convert it to NRRD or NIfTI",
         ));
     }
     if let Some((two, gap)) = pairs.iter().find(|(_, gap)| *gap >= MISSING * usual) {
