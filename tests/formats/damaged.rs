@@ -114,7 +114,7 @@ fn damaged_volumes_say_what_is_wrong() {
     refuses("v.tif", &pages[..pages.len() - 9], &["v.tif"]);
     refuses("v.tif", &pages[..9], &["truncated"]);
     let hyper = "ImageJ=1.53\nimages=2\nslices=2\nframes=2\n";
-    refuses("v.tif", tiff(2, Some(hyper)), &["2 times"]);
+    refuses("v.tif", tiff(2, Some(hyper)), &["2 volumes", "`frame`"]);
     refuses("v.tif", tiff(2, Some("<OME><Pixels SizeZ=\"x\"/></OME>")), &["OME-XML"]);
     let many = "ImageJ=1.53\nimages=1000\nslices=1000\n";
     refuses("v.tif", tiff(1, Some(many)), &["12000 bytes"]);

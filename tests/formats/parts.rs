@@ -56,9 +56,43 @@ fn one_of_several_volumes_is_read() {
             assert!(error.contains(name) && error.contains("`frame`, from 0 to 1"), "{error}");
         }
     }
-    let one = save(folder.path(), "tiff.tif", tiff(2, None));
+    let one = save(folder.path(), "v.vtk", VTK);
     let options = ReadOptions { frame: Some(0), ..ReadOptions::default() };
     assert!(read(&one, &options).unwrap_err().told().contains("omit `frame`"));
+}
+
+#[test]
+fn channels_and_times_of_a_tiff_are_volumes() {
+    let folder = tempfile::tempdir().unwrap();
+    let sizes = "SizeZ=\"3\" SizeC=\"2\" SizeT=\"2\"";
+    let ome = |order| format!("<OME><Image><Pixels {order} {sizes}/></Image></OME>");
+    // The page of a slice, channel and time.
+    type Page = fn(u64, u64, u64) -> u64;
+    let cases: [(String, Page); 3] = [
+        ("ImageJ=1.53\nimages=12\nchannels=2\nslices=3\nframes=2\n".into(), |z, c, t| {
+            (3 * t + z) * 2 + c
+        }),
+        (ome("DimensionOrder=\"XYTZC\""), |z, c, t| (3 * c + z) * 2 + t),
+        (ome(""), |z, c, t| (2 * t + c) * 3 + z),
+    ];
+    for (description, page) in cases {
+        let path = save(folder.path(), "v.tif", tiff(12, Some(&description)));
+        let frame = |frame| read(&path, &ReadOptions { frame, ..ReadOptions::default() });
+        for k in 0..4 {
+            let volume = frame(Some(k)).unwrap();
+            assert_eq!(volume.dims().xyz(), [3, 2, 3]);
+            let pages = (0..3).map(|z| page(z, k % 2, k / 2));
+            let expected: Vec<f32> =
+                pages.flat_map(|page| (0..6).map(move |i| (2 * (6 * page + i)) as f32)).collect();
+            assert_eq!(volume.as_slice(), expected, "{description} {k}");
+        }
+        let error = frame(None).unwrap_err().told();
+        assert!(error.contains("4 volumes") && error.contains("`frame`, from 0 to 3"), "{error}");
+        // Too few pages, and the first volume whole.
+        let path = save(folder.path(), "few.tif", tiff(11, Some(&description)));
+        let last = ReadOptions { frame: Some(3), ..ReadOptions::default() };
+        assert!(read(&path, &last).unwrap_err().told().contains("fewer pages"));
+    }
 }
 
 #[test]

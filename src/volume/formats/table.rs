@@ -139,11 +139,12 @@ pub static FORMATS: [VolumeFormat; 13] = [
         name: "TIFF",
         extensions: &["tif", "tiff"],
         keeps: Keeps { spacing: true, unit: true, ..SAMPLES },
+        chooses: &[Setting::Frame],
         feature: Some("formats"),
         fuzzed_by: &["tiff"],
         writers: writers!["tif": write::tiff, "tiff": write::tiff],
         begins: |start| TIFF.iter().any(|magic| start.starts_with(magic)),
-        read: built!("formats", |path, _| tiff::read(path)),
+        read: built!("formats", |path, options| tiff::read(path, options.frame)),
         ..PLAIN
     },
     VolumeFormat {

@@ -1,16 +1,17 @@
+mod about;
+
 use std::fs::File;
 use std::io::{BufReader, Seek, SeekFrom};
 use std::path::Path;
 
-use quick_xml::events::Event;
-use tiff::decoder::{Decoder, DecodingResult, Limits, ifd::Value};
+use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::{ByteOrder, Tag};
 use tiff::{ColorType, TiffError};
 
-use super::described::{Described, Encoding, diagonal, frame};
 use super::frames::Frames;
 use super::{format_error, io_error};
-use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Reason, Volume, VolumeError};
+use crate::volume::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
+use about::{About, Wanted};
 
 /// The most a compression that TIFF knows expands by: LZW writes up to 4096 bytes for a code of 12
 /// bits.
@@ -21,16 +22,24 @@ const IMAGE_DEPTH: Tag = Tag::Unknown(32997);
 /// Reads TIFF and BigTIFF: the pages are the slices. Spacing is what ImageJ or OME-XML say of it in
 /// the description of the first page; resolutions of other programs are those of prints.
 ///
-/// ImageJ writes large stacks behind one page; they are read too. Colours, palettes, samples of
-/// fewer than 8 bits, and stacks of several channels or times are refused.
-pub(crate) fn read(path: &Path) -> Result<Volume, VolumeError> {
+/// ImageJ writes large stacks behind one page; they are read too. Of a stack with several channels or
+/// times, `frame` chooses one volume, channels counted first. Colours, palettes and samples of fewer
+/// than 8 bits are refused.
+pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
     let mut pages = Pages::open(path)?;
     let about = About::of(path, &mut pages.decoder)?;
+    let wanted = about.wanted(path, frame)?;
+    let alone = !pages.decoder.more_images();
+    if alone && about.images.is_some_and(|images| images > 1) {
+        let first = pages.page()?;
+        return behind_one_page(path, pages, &about, wanted, first.size, first.dtype);
+    }
+    pages.skip(wanted.first)?;
     let first = pages.page()?;
     let mut stack = first.samples;
     let mut slices = 1;
-    while pages.decoder.more_images() {
-        pages.decoder.next_image().map_err(damaged(path))?;
+    while wanted.count.map_or(pages.decoder.more_images(), |count| slices < count) {
+        pages.skip(wanted.step)?;
         pages.reserve(stack.len(), first.dtype)?;
         let page = pages.page()?;
         if (page.size, page.dtype) != (first.size, first.dtype) {
@@ -53,12 +62,8 @@ pub(crate) fn read(path: &Path) -> Result<Volume, VolumeError> {
         stack.extend(page.samples);
         slices += 1;
     }
-    if about.images.is_some_and(|images| images > 1) && slices == 1 {
-        drop(stack);
-        return behind_one_page(path, pages, &about, first.size, first.dtype);
-    }
     let dims = Dims::new(first.size[0], first.size[1], slices)?;
-    about.described(path, dims, first.dtype, Endian::Little)?.volume(stack)
+    about.described(path, dims, first.dtype, Endian::Little, Frames::ONE)?.volume(stack)
 }
 
 /// Reads one page alone, as a slice.
@@ -102,6 +107,20 @@ impl<'a> Pages<'a> {
         limits.ifd_value_size = usize::try_from(length).unwrap_or(usize::MAX);
         let decoder = Decoder::new(BufReader::new(file)).map_err(damaged(path))?;
         Ok(Self { path, decoder: decoder.with_limits(limits), most })
+    }
+
+    /// Goes so many pages on.
+    fn skip(&mut self, pages: u64) -> Result<(), VolumeError> {
+        for _ in 0..pages {
+            if !self.decoder.more_images() {
+                let reason = Reason::truncated(
+                    "has fewer pages than its description says: it is truncated or damaged",
+                );
+                return Err(format_error(self.path, reason));
+            }
+            self.decoder.next_image().map_err(damaged(self.path))?;
+        }
+        Ok(())
     }
 
     /// Refuses another page where the file cannot hold so many samples.
@@ -178,10 +197,18 @@ fn behind_one_page(
     path: &Path,
     mut pages: Pages,
     about: &About,
+    wanted: Wanted,
     size: [u64; 2],
     dtype: Dtype,
 ) -> Result<Volume, VolumeError> {
-    let slices = about.images.unwrap_or(1);
+    let slices = wanted.count.or(about.images).unwrap_or(1);
+    if wanted.step > 1 {
+        let reason = Reason::unsupported(
+            "interleaves its channels behind one page",
+            "save it with a page for each image, or one channel alone",
+        );
+        return Err(format_error(path, reason));
+    }
     let compression: Option<u64> =
         pages.decoder.find_tag_unsigned(Tag::Compression).map_err(damaged(path))?;
     let offsets: Option<Vec<u64>> =
@@ -198,132 +225,13 @@ fn behind_one_page(
         ByteOrder::BigEndian => Endian::Big,
     };
     let dims = Dims::new(size[0], size[1], slices)?;
-    let described = about.described(path, dims, dtype, endian)?;
+    let described = about.described(path, dims, dtype, endian, wanted.frames)?;
     let mut file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     file.seek(SeekFrom::Start(offset)).map_err(io_error(path))?;
     // Tags may follow the samples.
     let bytes = described.bytes().min(length.saturating_sub(offset));
     described.read(path, std::io::Read::take(file, bytes), bytes)
-}
-
-/// What the first page says of the stack.
-#[derive(Debug)]
-struct About {
-    spacing: [f64; 3],
-    unit: LengthUnit,
-    /// Slices, as ImageJ counts them.
-    images: Option<u64>,
-}
-
-impl About {
-    fn of(path: &Path, decoder: &mut Decoder<BufReader<File>>) -> Result<Self, VolumeError> {
-        let text = match decoder.find_tag(Tag::ImageDescription) {
-            Ok(Some(Value::Ascii(text))) => text,
-            _ => String::new(),
-        };
-        if text.starts_with("ImageJ=") {
-            return Self::of_imagej(path, decoder, &text);
-        }
-        if text.contains("<OME") {
-            return Self::of_ome(path, &text);
-        }
-        Ok(Self { spacing: [1.0; 3], unit: LengthUnit::Voxel, images: None })
-    }
-
-    fn of_imagej(
-        path: &Path,
-        decoder: &mut Decoder<BufReader<File>>,
-        text: &str,
-    ) -> Result<Self, VolumeError> {
-        let value =
-            |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
-        let count = |key: &str| value(key).and_then(|text| text.trim().parse::<u64>().ok());
-        one_axis(path, ["slices", "channels", "frames"].map(|key| count(key).unwrap_or(1)))?;
-        // Pixels a unit.
-        let mut along = |tag| match decoder.find_tag(tag) {
-            Ok(Some(Value::Rational(n, d))) if n > 0 && d > 0 => f64::from(d) / f64::from(n),
-            _ => 1.0,
-        };
-        let slices = value("spacing").and_then(|text| text.trim().parse().ok());
-        let spacing = [along(Tag::XResolution), along(Tag::YResolution), slices.unwrap_or(1.0)];
-        let unit = value("unit").map(LengthUnit::named);
-        let silent = if spacing == [1.0; 3] { LengthUnit::Voxel } else { LengthUnit::Unstated };
-        Ok(Self { spacing, unit: unit.unwrap_or(silent), images: count("images") })
-    }
-
-    fn of_ome(path: &Path, text: &str) -> Result<Self, VolumeError> {
-        let damaged = |what: &dyn std::fmt::Display| {
-            format_error(path, Reason::damaged(format!("has OME-XML that cannot be read: {what}")))
-        };
-        let mut reader = quick_xml::Reader::from_str(text);
-        loop {
-            let pixels = match reader.read_event().map_err(|error| damaged(&error))? {
-                Event::Start(start) | Event::Empty(start)
-                    if start.local_name().as_ref() == "Pixels" =>
-                {
-                    start
-                }
-                Event::Eof => return Err(damaged(&"it has no element Pixels")),
-                _ => continue,
-            };
-            let number = |name: &str| -> Result<Option<f64>, VolumeError> {
-                let attribute = pixels.try_get_attribute(name).map_err(|error| damaged(&error))?;
-                let Some(attribute) = attribute else { return Ok(None) };
-                let text = &attribute.value;
-                let number =
-                    text.trim().parse().map_err(|_| damaged(&format!("{name}={text:?}")))?;
-                Ok(Some(number))
-            };
-            let size = |name| number(name).map(|size| size.unwrap_or(1.0) as u64);
-            one_axis(path, [size("SizeZ")?, size("SizeC")?, size("SizeT")?])?;
-            let text = |name: &str| -> Result<Option<String>, VolumeError> {
-                let attribute = pixels.try_get_attribute(name).map_err(|error| damaged(&error))?;
-                Ok(attribute.map(|attribute| attribute.value.to_string()))
-            };
-            let mut about = Self { spacing: [1.0; 3], unit: LengthUnit::Voxel, images: None };
-            for (k, axis) in ["X", "Y", "Z"].into_iter().enumerate() {
-                let Some(length) = number(&format!("PhysicalSize{axis}"))? else { continue };
-                // The schema's default.
-                let unit = text(&format!("PhysicalSize{axis}Unit"))?;
-                let unit = unit.map_or(LengthUnit::Micrometre, |name| LengthUnit::named(&name));
-                if about.unit == LengthUnit::Voxel {
-                    about.unit = unit;
-                }
-                let [from, unit] =
-                    [unit, about.unit].map(|unit| Coordinates { unit, ..Coordinates::default() });
-                about.spacing[k] = from.to(unit).length(length);
-            }
-            return Ok(about);
-        }
-    }
-
-    fn described(
-        &self,
-        path: &Path,
-        dims: Dims,
-        dtype: Dtype,
-        endian: Endian,
-    ) -> Result<Described, VolumeError> {
-        let coordinates = Coordinates { unit: self.unit, ..Coordinates::default() };
-        let frame = frame(path, [0.0; 3], diagonal(self.spacing), coordinates)?;
-        let (encoding, frames) = (Encoding::Raw, Frames::ONE);
-        Ok(Described { dims, dtype, endian, frame, encoding, frames })
-    }
-}
-
-/// Pages run along one axis only. Programs name it as they like: a stack of many channels and one
-/// slice is common.
-fn one_axis(path: &Path, sizes: [u64; 3]) -> Result<(), VolumeError> {
-    if sizes.iter().filter(|&&size| size > 1).count() <= 1 {
-        return Ok(());
-    }
-    let [z, c, t] = sizes;
-    let reason = Reason::content(
-        format!("has {z} slices, {c} channels and {t} times"),
-        "save one volume of them alone",
-    );
-    Err(format_error(path, reason))
 }
 
 fn damaged(path: &Path) -> impl Fn(TiffError) -> VolumeError {
