@@ -454,7 +454,7 @@ def read_tiff(check):
     tifffile.imwrite(check.path("rgb.tif"), np.zeros((3, 4, 5, 3), "u1"), photometric="rgb")
     check.refused("tifffile colours", check.path("rgb.tif"), "only gray")
     tifffile.imwrite(check.path("hyper.tif"), np.zeros((2, 3, 4, 5), "u1"), imagej=True, metadata={"axes": "TZYX"})
-    check.refused("ImageJ hyperstack", check.path("hyper.tif"), "2 times")
+    check.refused("ImageJ hyperstack", check.path("hyper.tif"), "choose one with --frame")
 
 
 def one_page_imagej(check):
@@ -602,7 +602,10 @@ def part_of_several(check):
     nrrd.write(check.path("four.nrrd"), data.T.copy(order="F"), {"kinds": ["domain"] * 3 + ["time"]})
     sitk.WriteImage(sitk.GetImageFromArray(data, isVector=False), check.path("four.mha"))
     np.save(check.path("four.npy"), data)
-    for name in ["four.nii.gz", "four.nrrd", "four.mha", "four.npy"]:
+    tifffile.imwrite(check.path("four.tif"), data, imagej=True, metadata={"axes": "TZYX"})
+    tifffile.imwrite(check.path("channels.tif"), data.swapaxes(0, 1), imagej=True, metadata={"axes": "ZCYX"})
+    tifffile.imwrite(check.path("four.ome.tif"), data, metadata={"axes": "CZYX"})
+    for name in ["four.nii.gz", "four.nrrd", "four.mha", "four.npy", "four.tif", "channels.tif", "four.ome.tif"]:
         for frame in range(2):
             run = check.run("haar", check.path(name), "--frame", frame, "--rms", "0", "-o", check.path("frame.npy"))
             if run.returncode:
