@@ -4,9 +4,12 @@
 
 use divan::Bencher;
 use walpha::haar::{HaarOptions, smooth};
+use walpha::ladder::Filtration;
 use walpha::points::{Selection, Units, difference, select, weigh};
 use walpha::shape::{Engine, ShapeOptions};
-use walpha::{Alpha, Gray, Points, Volume, Weighting, alpha_shape, volume};
+use walpha::{
+    Alpha, AlphaShape, Gray, Points, Volume, WeightedPoints, Weighting, alpha_shape, volume,
+};
 
 const WEIGHTINGS: [&str; 3] = ["common=0", "min-max", "barycentric"];
 
@@ -69,6 +72,48 @@ fn engine(bencher: Bencher, engine: Engine, weighting: &str) {
     bencher
         .with_inputs(|| points.clone())
         .bench_local_values(|points| alpha_shape(points, &options));
+}
+
+/// Fifty levels of frozen weights, which should cost less than two whole shapes.
+#[divan::bench]
+fn ladder(bencher: Bencher) {
+    let points = heavy();
+    let squared = (0..50).map(|k| 0.25 * 1.17f64.powi(k));
+    let alphas: Vec<_> =
+        squared.map(|alpha| Alpha::from_squared(alpha).expect("a number")).collect();
+    bencher.with_inputs(|| points.clone()).bench_local_values(|points| {
+        Filtration::new(points).expect("a filtration").ladder(&alphas, 63f64.powi(3))
+    });
+}
+
+/// A whole shape, with its exterior simplices.
+#[divan::bench]
+fn whole(bencher: Bencher) {
+    let points = heavy();
+    bencher.with_inputs(|| points.clone()).bench_local_values(whole_shape);
+}
+
+/// What judging it costs.
+#[divan::bench]
+fn certify(bencher: Bencher) {
+    let shape = whole_shape(heavy());
+    bencher.bench_local(|| shape.claim().findings());
+}
+
+/// The whole triangulation, as a shape.
+fn whole_shape(points: WeightedPoints) -> AlphaShape {
+    let options = ShapeOptions {
+        exterior: true,
+        engine: Engine::Native,
+        ..ShapeOptions::new(Alpha::INFINITE)
+    };
+    alpha_shape(points, &options).expect("a shape")
+}
+
+/// The points of the phantom at 64³ with min-max weights.
+fn heavy() -> WeightedPoints {
+    let alpha = Alpha::from_squared(10.0).expect("a number");
+    weigh(&selected(64), parsed("min-max"), alpha).expect("weights")
 }
 
 fn parsed(weighting: &str) -> Weighting {

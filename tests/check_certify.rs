@@ -75,33 +75,3 @@ fn shapes_made_slab_by_slab_are_certified() {
         assert!(shape.complex().cells.len() > 1000);
     }
 }
-
-/// One voxel in sixteen of a big grid: size by `WALPHA_CHECK_GRID`, 256 for a million points.
-#[test]
-#[ignore = "a measurement; minutes in the engine for a million points"]
-fn time_of_big_complexes() {
-    let side = std::env::var("WALPHA_CHECK_GRID").map_or(256, |side| side.parse().unwrap());
-    let mut random = Random::new(1);
-    let mut positions = grid(side);
-    positions.retain(|_| random.unit() < 0.0609);
-    for kind in ["lattice, common weights", "lattice, min-max weights", "random doubles"] {
-        if kind == "random doubles" {
-            positions.iter_mut().flatten().for_each(|x| *x += random.unit());
-        }
-        let weight = |_| if kind == "lattice, common weights" { 0.0 } else { 10.0 * random.unit() };
-        let weights = (0..positions.len()).map(weight).collect();
-        let case = Case { positions: positions.clone(), weights, alpha: 10.0 };
-        let clock = std::time::Instant::now();
-        let answer = engine(&case).unwrap();
-        let shape_alone = shape_of(&answer);
-        let made = clock.elapsed();
-        assert_eq!(whole(&case, &answer), []);
-        let whole = clock.elapsed() - made;
-        assert_eq!(shape(&case, &shape_alone), []);
-        let shape = clock.elapsed() - made - whole;
-        let (points, cells) = (case.positions.len(), answer.complex.cells.len());
-        println!(
-            "{kind}: {points} points, {cells} cells, engine {made:.1?}, whole {whole:.1?}, shape {shape:.1?}"
-        );
-    }
-}

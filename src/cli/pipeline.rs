@@ -255,6 +255,5 @@ pub fn suggested(filtration: &Filtration, curve: &Curve) -> Vec<Alpha> {
     let suggested = filtration.suggest(curve);
     let [low, high] = suggested.plateau;
     let also = [suggested.all_points, suggested.one_region, suggested.no_void, low, high];
-    let finite = also.into_iter().filter(|alpha| alpha.is_finite());
-    finite.filter_map(|alpha| Alpha::from_squared(alpha).ok()).collect()
+    also.into_iter().filter(|alpha| alpha.squared().is_finite()).collect()
 }

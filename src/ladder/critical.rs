@@ -7,7 +7,7 @@ use super::levels::ByLevel;
 use super::stops::Sight;
 use super::values::Value;
 use super::{Filtration, Levels};
-use crate::shape::{Alpha, Betti, each_number_or_name};
+use crate::shape::{Alpha, Betti};
 
 /// The topology of a filtration at every α at which a simplex comes.
 ///
@@ -16,7 +16,7 @@ use crate::shape::{Alpha, Betti, each_number_or_name};
 /// that leaves few.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    values: Vec<Value>,
+    pub(super) values: Vec<Value>,
     /// The Betti numbers from each value on.
     pub betti: Vec<Betti>,
     /// The solid components from each value on.
@@ -33,19 +33,18 @@ pub struct Curve {
 pub struct Suggestions {
     /// Every vertex of the triangulation is one of a cell: MATLAB's
     /// `criticalAlpha(shp, 'all-points')`, CGAL's `Alpha_shape_3::find_alpha_solid`.
-    pub all_points: f64,
+    pub all_points: Alpha,
     /// That, and the cells are one solid component: MATLAB's `criticalAlpha(shp, 'one-region')`,
     /// CGAL's `Alpha_shape_3::find_optimal_alpha(1)`, which searches by halving and may find a
     /// larger one. This is the smallest α with the property, not one from which it lasts: the
     /// number of components goes up and down.
-    pub one_region: f64,
+    pub one_region: Alpha,
     /// That, and there is no void.
-    pub no_void: f64,
+    pub no_void: Alpha,
     /// From where to where the Betti numbers stay the same longest, as a ratio of the squared radii
     /// of the largest balls, looked for from `all_points` on. The second is the α at which they
     /// change again; ∞, the string "inf" in JSON, if from `all_points` on they never change.
-    #[serde(serialize_with = "each_number_or_name")]
-    pub plateau: [f64; 2],
+    pub plateau: [Alpha; 2],
 }
 
 impl Filtration {
@@ -80,7 +79,7 @@ impl Filtration {
         let (loose, solid) = rayon::join(|| self.loose(&levels), || levels.solid_components());
         let first = (0..values.len()).find(|&k| loose[k] == 0 && solid[k] <= components.get());
         let first = values[first.expect("the whole triangulation is one solid")];
-        Alpha::from_squared(self.first_alpha(first)).expect("radii are numbers")
+        self.first_alpha(first)
     }
 
     /// A level for each critical value.
@@ -122,8 +121,8 @@ impl Filtration {
         let no_void = from(one_region, &|k| curve.betti[k].b2 == 0);
         let (from, to) = curve.plateau(all_points);
         let [all_points, one_region, no_void, low] =
-            self.alphas_at(curve, [all_points, one_region, no_void, from]);
-        let high = to.map_or(f64::INFINITY, |to| self.first_alpha(curve.values[to]));
+            [all_points, one_region, no_void, from].map(|k| self.first_alpha(curve.values[k]));
+        let high = to.map_or(Alpha::INFINITE, |to| self.first_alpha(curve.values[to]));
         Suggestions { all_points, one_region, no_void, plateau: [low, high] }
     }
 
@@ -152,16 +151,7 @@ impl Filtration {
         };
         let mut chosen: Vec<usize> = (0..count).map(nearest).collect();
         chosen.dedup();
-        let alpha = |&k: &usize| {
-            let [alpha] = self.alphas_at(curve, [k]);
-            Alpha::from_squared(alpha).expect("radii are numbers")
-        };
-        chosen.par_iter().map(alpha).collect()
-    }
-
-    /// The first doubles that are not below critical values.
-    pub(super) fn alphas_at<const M: usize>(&self, curve: &Curve, values: [usize; M]) -> [f64; M] {
-        values.map(|k| self.first_alpha(curve.values[k]))
+        chosen.par_iter().map(|&k| self.first_alpha(curve.values[k])).collect()
     }
 }
 

@@ -19,7 +19,7 @@
 //! assert_eq!(voids, [0, 1, 0]);
 //! // The hole in the middle, an octahedron, is filled at α = 1.
 //! let hole = ladder.levels[1].voids[0];
-//! assert_eq!((hole.cells, hole.filling_alpha), (4, 1.0));
+//! assert_eq!((hole.cells, hole.filling_alpha.squared()), (4, 1.0));
 //! assert_eq!(ladder.levels[2].coverage, 1.0);
 //! # Ok::<(), walpha::shape::ShapeError>(())
 //! ```

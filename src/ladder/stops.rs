@@ -97,8 +97,7 @@ impl Filtration {
                 chosen.push(all[at]);
             }
         }
-        let alpha = |k| Alpha::from_squared(self.alphas_at(curve, [k])[0]);
-        chosen.into_iter().map(|k| alpha(k).expect("radii are numbers")).collect()
+        chosen.into_iter().map(|k| self.first_alpha(curve.values[k])).collect()
     }
 }
 

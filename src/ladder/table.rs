@@ -3,9 +3,7 @@ use serde::Serialize;
 
 use super::levels::{ByLevel, Span};
 use super::{Filtration, Levels};
-use crate::shape::{
-    Alpha, Betti, ByClass, Class, Measures, Void, facet_area, number_or_name, six_volumes,
-};
+use crate::shape::{Alpha, Betti, ByClass, Class, Measures, Void, facet_area, six_volumes};
 
 /// What is measured of each level of a filtration, by ascending α.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -18,8 +16,7 @@ pub struct Ladder {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Level {
     /// α, a squared length; the string "inf" where it is infinite.
-    #[serde(serialize_with = "number_or_name")]
-    pub alpha: f64,
+    pub alpha: Alpha,
     /// Cells of the shape.
     pub cells: usize,
     /// Its facets, and those of the triangulation outside it.
@@ -83,7 +80,7 @@ impl Levels<'_> {
         let rows = voids.into_iter().enumerate().map(|(k, voids)| {
             cell_count += cells.at(k).len();
             Level {
-                alpha: self.alphas[k].squared(),
+                alpha: self.alphas[k],
                 cells: cell_count,
                 facets: facets[k],
                 edges: edges[k],

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::Filtration;
 use crate::math::number::lowest_bit;
 use crate::points::WeightedPoints;
+use crate::shape::Alpha;
 use crate::triangulation::{Interval, Predicates};
 
 /// A critical value of α, as far as it is known.
@@ -79,15 +80,16 @@ impl Filtration {
     }
 
     /// The first double that is not below a value.
-    pub(super) fn first_alpha(&self, value: Value) -> f64 {
-        match value {
+    pub(super) fn first_alpha(&self, value: Value) -> Alpha {
+        let first = match value {
             Value::First(alpha) => alpha,
             Value::Of(row, _) => {
                 let spheres = self.spheres();
                 Firsts { filtration: self, spheres: &spheres, exact: false }
                     .of(row, &mut HashMap::new())
             }
-        }
+        };
+        Alpha::from_squared(first).expect("radii are numbers")
     }
 }
 

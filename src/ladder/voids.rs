@@ -9,8 +9,8 @@ use super::levels::ByLevel;
 use crate::shape::{Hollow, UnionFind, Void};
 use crate::triangulation::Predicates;
 
-/// The components of a level's complement.
-pub(super) struct Complement<'a> {
+/// What a level leaves empty: the components of its complement.
+pub(super) struct Hollows<'a> {
     levels: &'a Levels<'a>,
     spheres: Predicates<'a>,
     sets: UnionFind,
@@ -36,7 +36,7 @@ impl Levels<'_> {
     }
 
     /// Visits the complement of each level, from the last to the first.
-    pub(super) fn descend(&self, mut visit: impl FnMut(usize, &mut Complement<'_>)) {
+    pub(super) fn descend(&self, mut visit: impl FnMut(usize, &mut Hollows<'_>)) {
         let incidence = &self.filtration.incidence;
         let cells = ByLevel::new(self.len(), self.cells.iter().copied());
         let facets = ByLevel::new(self.len(), self.facets.iter().map(|span| span.first));
@@ -47,7 +47,7 @@ impl Levels<'_> {
             Hollow::of(self.filtration.cells[row], corners)
         };
         let outside = self.cells.len() as u32;
-        let mut complement = Complement {
+        let mut complement = Hollows {
             levels: self,
             spheres: self.filtration.spheres(),
             sets: UnionFind::new(self.cells.len() + 1),
@@ -71,7 +71,7 @@ impl Levels<'_> {
     }
 }
 
-impl Complement<'_> {
+impl Hollows<'_> {
     fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.sets.find(a), self.sets.find(b));
         if !self.sets.unite(a, b) {

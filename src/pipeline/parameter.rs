@@ -6,9 +6,7 @@ use serde::Serialize;
 use super::PipelineError;
 use crate::ladder::Filtration;
 use crate::points::{Points, Units, WeightedPoints, Weighting, weigh};
-use crate::shape::{
-    Alpha, AlphaError, ShapeError, flat_region, number_or_name, number_or_null_or_name,
-};
+use crate::shape::{Alpha, AlphaError, ShapeError, flat_region, number_or_null_or_name};
 use crate::shown::{number, six_digits};
 use crate::volume::{LengthUnit, Volume};
 
@@ -72,8 +70,7 @@ pub enum ParameterOrigin {
 /// α as a squared length and as a radius.
 #[derive(Serialize)]
 struct Facts {
-    #[serde(serialize_with = "number_or_name")]
-    squared: f64,
+    squared: Alpha,
     #[serde(serialize_with = "number_or_null_or_name")]
     radius: Option<f64>,
     unit: LengthUnit,
@@ -145,7 +142,7 @@ impl Parameter {
 
 impl From<Parameter> for Facts {
     fn from(Parameter { alpha, unit, origin }: Parameter) -> Self {
-        Self { squared: alpha.squared(), radius: alpha.radius(), unit, origin }
+        Self { squared: alpha, radius: alpha.radius(), unit, origin }
     }
 }
 

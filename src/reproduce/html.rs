@@ -221,7 +221,9 @@ fn shapes(html: &mut String, shapes: &[ShapeNumbers]) {
         let _ = writeln!(html, "<tr><td>{label}</td>{cells}</tr>");
     };
     let classes = |c: &ByClass<usize>| format!("{} · {} · {}", c.interior, c.regular, c.singular);
-    row("α, and √α", &|s| format!("{}, {}", number(s.alpha), number(s.alpha.sqrt())));
+    row("α, and √α", &|s| {
+        format!("{}, {}", number(s.alpha.squared()), number(s.alpha.squared().sqrt()))
+    });
     row("ω: least, mean, most", &|s| {
         let w = s.weights;
         format!("{}, {}, {}", number(w.min), number(w.mean), number(w.max))

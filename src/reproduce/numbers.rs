@@ -1,7 +1,7 @@
 use serde::Serialize;
 
 use crate::points::WeightSummary;
-use crate::shape::{AlphaShape, Balls, Betti, ByClass, Void, number_or_name};
+use crate::shape::{Alpha, AlphaShape, Balls, Betti, ByClass, Void};
 
 /// What is measured of a shape.
 #[derive(Clone, Debug, Serialize)]
@@ -11,8 +11,7 @@ pub struct ShapeNumbers {
     /// The command line that computes it.
     pub command: String,
     /// α, a squared length; the string "inf" where it is infinite.
-    #[serde(serialize_with = "number_or_name")]
-    pub alpha: f64,
+    pub alpha: Alpha,
     /// What α + ω means.
     pub balls: Balls,
     /// The range of the weights ω, squared lengths.
@@ -61,7 +60,7 @@ impl ShapeNumbers {
         Self {
             label,
             command,
-            alpha: shape.options().alpha.squared(),
+            alpha: shape.options().alpha,
             balls: shape.options().balls,
             weights: shape.points().summary(),
             points: shape.points().len(),

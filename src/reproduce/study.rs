@@ -192,7 +192,7 @@ impl Shapes {
     pub fn by_alpha(&self) -> Vec<&Shaped> {
         let mut shapes: Vec<&Shaped> = [&self.plain, &self.shifted].into();
         shapes.extend(&self.ladder);
-        shapes.sort_by(|a, b| a.numbers.alpha.total_cmp(&b.numbers.alpha));
+        shapes.sort_by(|a, b| a.numbers.alpha.squared().total_cmp(&b.numbers.alpha.squared()));
         shapes
     }
 }

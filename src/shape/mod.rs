@@ -35,8 +35,7 @@ pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape}
 pub use balls::Balls;
 pub use blocks::PlanError;
 pub use flat::flat_region;
-pub(crate) use infinite::each_number_or_name;
-pub use infinite::{number_or_name, number_or_null_or_name};
+pub use infinite::number_or_null_or_name;
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;
 pub(crate) use measure::{facet_area, six_volumes};

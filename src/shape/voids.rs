@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::measure::six_volumes;
 use super::topology::Complement;
-use super::{AlphaShape, Class};
+use super::{Alpha, AlphaShape, Class};
 use crate::triangulation::{Interval, Predicates};
 
 /// A void of a shape: a bounded component of its complement, made of exterior cells.
@@ -22,7 +22,7 @@ pub struct Void {
     /// of the largest orthogonal sphere of its cells, exactly. It may fall into several voids before. With
     /// [`Balls::Radius`](super::Balls::Radius), where weights follow α, it is the parameter of the
     /// power weights instead, as [`AlphaShape::power_alpha`].
-    pub filling_alpha: f64,
+    pub filling_alpha: Alpha,
 }
 
 impl Void {
@@ -90,6 +90,7 @@ impl Hollow {
     /// The void it is, given when its last cell goes.
     pub fn void(&self, filling_alpha: f64) -> Void {
         let Self { cells, six_volumes, low, high, .. } = *self;
+        let filling_alpha = Alpha::from_squared(filling_alpha).expect("radii are numbers");
         Void { cells, volume: six_volumes / 6.0, low, high, filling_alpha }
     }
 }
@@ -143,7 +144,7 @@ fn voids(shape: &AlphaShape) -> Vec<Void> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Alpha, Engine, ShapeOptions, alpha_shape};
+    use super::super::{Engine, ShapeOptions, alpha_shape};
     use super::*;
     use crate::points::WeightedPoints;
 
@@ -179,14 +180,14 @@ mod tests {
             let filled = shape.measures().volume + large.volume + small.volume;
             assert!((filled - whole).abs() < 1e-9, "{filled} of {whole}");
             // The octahedron's sphere; and one that touches what remains around the large hollow.
-            assert_eq!(small.filling_alpha, 1.0);
+            assert_eq!(small.filling_alpha.squared(), 1.0);
             for void in [large, small] {
                 let left = |alpha| hollow(engine, alpha, true).voids().unwrap();
                 let inside = |other: &Void| {
                     (0..3).all(|k| other.low[k] >= void.low[k] && other.high[k] <= void.high[k])
                 };
-                assert!(!left(void.filling_alpha).iter().any(inside));
-                assert!(left(void.filling_alpha.next_down()).iter().any(inside));
+                assert!(!left(void.filling_alpha.squared()).iter().any(inside));
+                assert!(left(void.filling_alpha.squared().next_down()).iter().any(inside));
             }
         }
     }

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::Coordinates;
 use crate::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
 use crate::pipeline::{Parameter, Weighed};
-use crate::shape::{Betti, ByClass, Measures, Void, number_or_name};
+use crate::shape::{Alpha, Betti, ByClass, Measures, Void};
 
 use super::super::output::name;
 use super::super::pipeline::Domain;
@@ -40,8 +40,7 @@ pub struct Facts {
 
 #[derive(Serialize)]
 struct Row {
-    #[serde(serialize_with = "number_or_name")]
-    alpha: f64,
+    alpha: Alpha,
     cells: usize,
     #[serde(serialize_with = "ByClass::serialize_shape")]
     facets: ByClass<usize>,
@@ -158,7 +157,7 @@ impl Facts {
         writeln!(f, "          {:<12} the first with that and one solid component", s.one_region)?;
         writeln!(f, "          {:<12} the first with that and no void", s.no_void)?;
         let [low, high] = s.plateau;
-        if high == f64::INFINITY {
+        if high == Alpha::INFINITE {
             writeln!(f, "          {low:<12} to inf: b0, b1, b2 change no more")?;
         } else {
             let all = s.all_points;
@@ -190,7 +189,7 @@ impl Facts {
             let Betti { b0, b1, b2 } = level.betti;
             let mut alpha = String::new();
             // Digits that do not fit the column are in the files.
-            write!(alpha, "{}", (level.alpha * 1e6).round() / 1e6)?;
+            write!(alpha, "{}", (level.alpha.squared() * 1e6).round() / 1e6)?;
             writeln!(
                 f,
                 "{alpha:>12} {:>8} {:>8} {:>8} {b0:>6} {b1:>6} {b2:>6} {:>6} {:>12.1} {:>8.2}% {:>12.1}",
@@ -243,7 +242,7 @@ pub fn write_levels(ladder: &Ladder, out: &mut dyn io::Write) -> io::Result<()> 
         let Measures { volume, area, singular_area } = level.measures;
         let sizes = [volume, area, singular_area, level.coverage, level.void_volume()];
         // Without a void both fields are empty.
-        let largest = level.voids.first().map(|void| [void.volume, void.filling_alpha]);
+        let largest = level.voids.first().map(|void| [void.volume, void.filling_alpha.squared()]);
         let field = |k: usize| largest.map_or(String::new(), |largest| largest[k].to_string());
         let record = std::iter::once(level.alpha.to_string())
             .chain(counts.map(|count| count.to_string()))
@@ -273,7 +272,8 @@ pub fn write_voids(ladder: &Ladder, out: &mut dyn io::Write) -> io::Result<()> {
     for level in &ladder.levels {
         for void in &level.voids {
             let numbers =
-                [&[void.volume][..], &void.low, &void.high, &[void.filling_alpha]].concat();
+                [&[void.volume][..], &void.low, &void.high, &[void.filling_alpha.squared()]]
+                    .concat();
             let record = [level.alpha.to_string(), void.cells.to_string()]
                 .into_iter()
                 .chain(numbers.iter().map(|number| number.to_string()));

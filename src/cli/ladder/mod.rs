@@ -184,7 +184,7 @@ fn write_meshes(
 /// The name of a level's mesh: its place in the ladder, and its α.
 fn level_name(ladder: &Levels, k: usize, level: &Level, extension: &str) -> String {
     let digits = ladder.levels.len().to_string().len();
-    format!("level-{:0digits$}-alpha-{}.{extension}", k + 1, short(level.alpha))
+    format!("level-{:0digits$}-alpha-{}.{extension}", k + 1, short(level.alpha.squared()))
 }
 
 /// A number for the name of a file, which must not have hundreds of digits.

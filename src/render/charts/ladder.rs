@@ -2,6 +2,7 @@ use crate::ladder::{Curve, Ladder, Level, Suggestions};
 use crate::render::error::RenderError;
 use crate::render::figure::{Content, Drawing, Figure, Panel, Pen};
 use crate::render::pixels::{PALETTE, Rgb, Size};
+use crate::shape::Alpha;
 
 const BETTI: [(&str, Rgb); 3] =
     [("components b0", PALETTE[1]), ("tunnels b1", PALETTE[3]), ("voids b2", PALETTE[0])];
@@ -71,9 +72,10 @@ struct Chart<'a> {
 
 impl<'a> Chart<'a> {
     fn new(ladder: &'a Ladder, curve: &'a Curve, suggested: &Suggestions) -> Self {
-        let marks = [suggested.all_points, suggested.one_region, suggested.no_void];
+        let marks =
+            [suggested.all_points, suggested.one_region, suggested.no_void].map(Alpha::squared);
         let weight = curve.largest_weight();
-        let shown = ladder.levels.iter().map(|level| level.alpha).chain(marks);
+        let shown = ladder.levels.iter().map(|level| level.alpha.squared()).chain(marks);
         let ends = shown
             .map(|alpha| place(alpha, weight))
             .filter(|x| x.is_finite())
@@ -107,7 +109,7 @@ impl<'a> Chart<'a> {
                 self.curve.alphas().zip(all.clone()).map(|(a, b)| [self.x(a), numbers(b)[k]]);
             drawing.polyline(&stairs(line, self.ends), Pen::line(colour, 4.0));
             for level in &self.ladder.levels {
-                drawing.dot([self.x(level.alpha), numbers(level.betti)[k]], 9.0, colour);
+                drawing.dot([self.x(level.alpha.squared()), numbers(level.betti)[k]], 9.0, colour);
             }
         }
         drawing
@@ -129,7 +131,8 @@ impl<'a> Chart<'a> {
         };
         let mut drawing = self.drawing(1.05, "share");
         for (k, &(_, colour)) in SIZES.iter().enumerate() {
-            let points: Vec<_> = levels.iter().map(|l| [self.x(l.alpha), sizes(l)[k]]).collect();
+            let points: Vec<_> =
+                levels.iter().map(|l| [self.x(l.alpha.squared()), sizes(l)[k]]).collect();
             drawing.polyline(&points, Pen::line(colour, 4.0));
             points.iter().for_each(|&at| drawing.dot(at, 9.0, colour));
         }

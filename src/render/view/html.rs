@@ -82,15 +82,15 @@ fn level(level: &Level) -> serde_json::Value {
     let by_class = |c: crate::shape::ByClass<usize>| {
         format!("{} interior, {} regular, {} singular", c.interior, c.regular, c.singular)
     };
-    let radius = if level.alpha >= 0.0 {
-        format!("√α = {}", significant(level.alpha.sqrt()))
-    } else {
-        "negative, so no radius".into()
+    let alpha = significant(level.alpha.squared());
+    let radius = match level.alpha.radius() {
+        Some(radius) => format!("√α = {}", significant(radius)),
+        None => "negative, so no radius".into(),
     };
     json!({
-        "name": format!("α = {}", significant(level.alpha)),
+        "name": format!("α = {alpha}"),
         "rows": [
-            ["α", format!("{} ({radius})", significant(level.alpha))],
+            ["α", format!("{alpha} ({radius})")],
             ["cells", level.cells.to_string()],
             ["facets", by_class(level.facets)],
             ["edges", by_class(level.edges)],

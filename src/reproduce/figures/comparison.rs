@@ -209,7 +209,7 @@ fn against(Trial { weighted: w, raised: r }: Trial<'_>) -> String {
         w.label,
         r.holes(),
         text::number(r.void_volume),
-        text::number(r.alpha)
+        text::number(r.alpha.squared())
     )
 }
 
@@ -224,7 +224,7 @@ fn voids(shown: [&ShapeNumbers; 4]) -> Table {
                 void.cells.to_string(),
                 text::number(void.volume),
                 format!("({}) to ({})", corner(void.low), corner(void.high)),
-                text::number(void.filling_alpha),
+                text::number(void.filling_alpha.squared()),
             ]
         })
     });

@@ -42,7 +42,7 @@ impl Evidence {
         let rows = self.ladder.iter().map(|n| {
             let cells = [n.cells as u64, n.betti.b0, n.betti.b1, n.betti.b2].map(|v| v.to_string());
             let sizes = [n.volume, n.void_volume].map(text::number);
-            [&[text::number(n.alpha)], &cells[..], &sizes].concat()
+            [&[text::number(n.alpha.squared())], &cells[..], &sizes].concat()
         });
         Table {
             caption: "The unweighted shape at other α (squared lengths)".into(),
@@ -62,9 +62,9 @@ const CLAIMS: [Claim<Evidence>; 3] = [
             let reason = format!(
                 "the volume goes from {} at α = {} to {} at α = {}, without a step back",
                 text::number(small.volume),
-                text::number(small.alpha),
+                text::number(small.alpha.squared()),
                 text::number(large.volume),
-                text::number(large.alpha)
+                text::number(large.alpha.squared())
             );
             (Verdict::of(e.grows()), reason)
         },
@@ -77,7 +77,7 @@ const CLAIMS: [Claim<Evidence>; 3] = [
                 "{} at α = ∞, {} at α = {}",
                 text::count(largest.betti.b2, "void", "voids"),
                 text::count(hollow.betti.b2, "void", "voids"),
-                text::number(hollow.alpha)
+                text::number(hollow.alpha.squared())
             );
             (Verdict::of(hollow.betti.b2 > largest.betti.b2), reason)
         },

@@ -1,0 +1,138 @@
+//! `walpha ladder`.
+
+use crate::common;
+
+#[test]
+fn the_command_writes_tables_plots_and_meshes() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = common::json(
+        folder.path(),
+        &[
+            "ladder",
+            "sample:phantom@24",
+            "--weights",
+            "min-max",
+            "--alphas",
+            "10,2,inf,2",
+            "--mesh",
+            "ply,off",
+            "-o",
+            "out",
+        ],
+    );
+    let alphas: Vec<_> = made["levels"].as_array().unwrap().iter().map(|l| &l["alpha"]).collect();
+    assert_eq!(
+        alphas,
+        [&serde_json::json!(2.0), &serde_json::json!(10.0), &serde_json::json!("inf")]
+    );
+    let names: std::collections::BTreeSet<String> = std::fs::read_dir(folder.path().join("out"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    let expected = [
+        "ladder.csv",
+        "ladder.json",
+        "ladder.png",
+        "ladder.svg",
+        "voids.csv",
+        "level-1-alpha-2.off",
+        "level-1-alpha-2.ply",
+        "level-2-alpha-10.off",
+        "level-2-alpha-10.ply",
+        "level-3-alpha-inf.off",
+        "level-3-alpha-inf.ply",
+    ];
+    assert_eq!(names, expected.map(String::from).into());
+    let read = |name: &str| std::fs::read(folder.path().join("out").join(name)).unwrap();
+    // Weights frozen at 10 by default are those `shape` has at α = 10.
+    common::ok(
+        folder.path(),
+        &[
+            "shape",
+            "sample:phantom@24",
+            "--weights",
+            "min-max",
+            "--alpha",
+            "10",
+            "-o",
+            "one.off",
+            "-q",
+        ],
+    );
+    assert!(read("level-2-alpha-10.off") == std::fs::read(folder.path().join("one.off")).unwrap());
+    let json: serde_json::Value = serde_json::from_slice(&read("ladder.json")).unwrap();
+    assert_eq!(json["levels"], made["levels"]);
+    let csv = String::from_utf8(read("ladder.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 4);
+    let voids: u64 =
+        made["levels"].as_array().unwrap().iter().map(|l| l["betti"][2].as_u64().unwrap()).sum();
+    assert_eq!(String::from_utf8(read("voids.csv")).unwrap().lines().count() as u64, 1 + voids);
+}
+
+#[test]
+fn the_command_makes_levels_of_detail() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = [
+        "ladder",
+        "sample:phantom@24",
+        "--counts",
+        "200,600",
+        "--focus",
+        "0:23,0:23,8:12",
+        "-o",
+        "out",
+    ];
+    let made = common::json(folder.path(), &args);
+    let points: Vec<_> =
+        made["levels"].as_array().unwrap().iter().map(|l| l["points"].as_u64().unwrap()).collect();
+    let region = made["points_in_region"].as_u64().unwrap();
+    assert!(points[0] > region && points[0] < points[1] && points[0] < region + 200, "{points:?}");
+    for (level, name) in ["detail-200.ply", "detail-600.ply"].iter().enumerate() {
+        let size = std::fs::metadata(folder.path().join("out").join(name)).unwrap().len();
+        assert_eq!(made["levels"][level]["bytes"], size);
+    }
+    let made = common::json(
+        folder.path(),
+        &["ladder", "sample:phantom@24", "--epsilons", "100,1000", "-o", "eps"],
+    );
+    let epsilon = |k: usize| made["levels"][k]["epsilon"].as_f64().unwrap();
+    assert!(epsilon(0) <= 100.0 && epsilon(1) > 100.0 && epsilon(1) <= 1000.0);
+}
+
+/// A level of more points than those of full detail has them in the region, too.
+#[test]
+fn a_region_is_not_coarser_than_its_level() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["ladder", "sample:phantom@24", "--counts", "6000", "-o", "out"];
+    let region = ["--focus", "4:19,4:19,8:12", "--count", "300"];
+    let points =
+        |args: &[&str]| common::json(folder.path(), args)["levels"][0]["points"].as_u64().unwrap();
+    assert_eq!(points(&[&args[..], &region].concat()), points(&args));
+}
+
+#[test]
+fn bad_wishes_leave_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let phantom = "sample:phantom@16";
+    for (args, code, word) in [
+        (&["ladder", phantom, "-o", "out", "--alphas", "1,x"][..], 2, "--alphas"),
+        (&["ladder", phantom, "-o", "out", "--mesh", "doc"], 2, "--mesh"),
+        (&["ladder", phantom, "-o", "out", "--focus", "1:2,1:2,1:2"], 2, "--counts"),
+        (
+            &["ladder", phantom, "-o", "out", "--counts", "9", "--focus", "2:1,1:2,1:2"],
+            2,
+            "no range",
+        ),
+        (
+            &["ladder", phantom, "-o", "out", "--counts", "9", "--focus", "90:99,1:2,1:2"],
+            1,
+            "--focus",
+        ),
+        (&["ladder", phantom, "-o", "out", "--counts", "9", "--alphas", "1"], 2, "--counts"),
+    ] {
+        let (got, _, stderr) = common::run(folder.path(), args);
+        assert_eq!(got, code, "{stderr}");
+        assert!(stderr.contains(word), "{stderr}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "{args:?}");
+    }
+}
