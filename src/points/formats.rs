@@ -44,7 +44,7 @@ pub struct PointWriter {
     write: fn(&WeightedPoints, &mut dyn Write) -> io::Result<()>,
 }
 
-/// A format that only its extension tells.
+/// A format recognised by extension only.
 const PLAIN: PointFormat = PointFormat {
     name: "",
     extensions: &[],

@@ -101,7 +101,7 @@ impl LengthUnit {
         Self::Angstrom,
     ];
 
-    /// The power of ten that it is of a metre; `None` where it is no known length.
+    /// The unit as a power of ten metres; `None` if it is not a known length.
     fn exponent(self) -> Option<i32> {
         match self {
             Self::Voxel | Self::Unstated => None,
@@ -119,7 +119,7 @@ impl LengthUnit {
         self.exponent().is_some()
     }
 
-    /// As it stands behind a number: `mm`, `voxel`; `unit` where nobody named it.
+    /// The symbol after a number: `mm`, `voxel`; `unit` if it is not known.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Voxel => "voxel",

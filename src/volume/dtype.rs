@@ -33,7 +33,7 @@ pub enum Endian {
     Big,
 }
 
-/// A name that is no sample type or byte order.
+/// An unknown name of a sample type or byte order.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{given:?} is no {kind}")]
 pub struct UnknownName {

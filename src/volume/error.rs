@@ -54,7 +54,7 @@ pub enum VolumeError {
     Region {
         /// The first index of each axis.
         first: [usize; 3],
-        /// One behind the last of each axis.
+        /// One past the last along each axis.
         end: [usize; 3],
         /// The volume.
         dims: Dims,

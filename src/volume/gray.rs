@@ -24,7 +24,7 @@ impl GrayRange {
     /// The range that leaves values as they are.
     pub const IDENTITY: Self = Self { low: 0.0, high: 255.0 };
 
-    /// Whether values are gray levels as they stand.
+    /// Whether values are gray levels unchanged.
     pub fn is_identity(&self) -> bool {
         *self == Self::IDENTITY
     }
@@ -34,8 +34,8 @@ impl GrayRange {
         (self.high - self.low) / 255.0
     }
 
-    /// The value that a gray level stands for. Gray levels are `f32`: a value that their rounding does
-    /// not tell from a whole number is that number, so that those of a file come back as they were.
+    /// The value that a gray level represents. Gray levels are `f32`: a value within their rounding error
+    /// of a whole number becomes that number, so that whole values of a file survive the round trip.
     pub fn value(&self, gray: f64) -> f64 {
         if self.is_identity() {
             return gray;

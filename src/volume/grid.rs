@@ -5,7 +5,7 @@ use super::{Conversion, Coordinates, VolumeError};
 /// The number of samples along each axis of a volume, checked once: none is zero, and the volume
 /// has at most [`Dims::MAX_SAMPLES`] samples, so a voxel index fits `u32` and a byte count `u64`.
 ///
-/// Written (x, y, z), as points are; the array behind it is `[z, y, x]`.
+/// Written (x, y, z), as points are; the underlying array is `[z, y, x]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct Dims {
@@ -90,7 +90,7 @@ impl std::fmt::Display for Dims {
     }
 }
 
-/// Where a grid lies in the world: sample (i, j, k) along (x, y, z) stands at
+/// Where a grid lies in the world: sample (i, j, k) along (x, y, z) is at
 /// `origin + direction · (spacing ∘ (i, j, k))`, in coordinates that say of themselves what they mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
@@ -133,7 +133,7 @@ impl Frame {
         numbers.copied().all(f64::is_finite).then_some(frame)
     }
 
-    /// The same grid, said to stand in these coordinates. Numbers stay what they are.
+    /// The same numbers, declared to be in these coordinates.
     pub fn meaning(self, coordinates: Coordinates) -> Self {
         Self { coordinates, ..self }
     }

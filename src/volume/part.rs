@@ -14,7 +14,7 @@ use super::{Volume, VolumeError};
 pub struct Region {
     /// The first of each axis.
     pub first: [usize; 3],
-    /// One behind the last of each axis.
+    /// One past the last along each axis.
     pub end: [Option<usize>; 3],
 }
 
@@ -38,7 +38,7 @@ impl Region {
     }
 }
 
-/// A coarser volume: the mean of each `n`×`n`×`n` samples stands in their middle. What is left at the
+/// A coarser volume: the mean of each `n`×`n`×`n` samples is placed at their centre. What is left at the
 /// end of an axis is dropped; an axis of fewer samples becomes one. Missing samples have no part in the
 /// mean.
 pub fn downsample(volume: Volume, n: NonZeroUsize) -> Volume {

@@ -1,4 +1,4 @@
-//! Why a file is no volume or holds no points.
+//! Why a file cannot be read as a volume or as points.
 
 use std::fmt;
 
@@ -41,9 +41,9 @@ pub enum Reason {
         /// The field, and what is wrong with it.
         what: String,
     },
-    /// A line or number in it is none that could stand there.
+    /// A line or number in it is invalid.
     Value {
-        /// Where it stands, and what it is.
+        /// Where it is, and what it is.
         what: String,
     },
     /// Its content is damaged.
@@ -81,7 +81,7 @@ pub enum Reason {
         /// What to do with the setting.
         advice: Advice,
     },
-    /// The same of a part of it: an array, or the files in which a header says its samples stand.
+    /// The same for a part of it: an array, or the data files that a header names.
     Within {
         /// The part.
         part: String,

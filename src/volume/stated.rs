@@ -13,13 +13,13 @@ pub(crate) fn alpha(alpha: Alpha) -> String {
     }
 }
 
-/// For the comments of a file, behind what stands there: ` SPACE=LPS UNIT=mm`, as 3D Slicer looks for
+/// For the comments of a file, appended to what is there: ` SPACE=LPS UNIT=mm`, as 3D Slicer looks for
 /// it; `UNIT` alone where the space is not known, and nothing where nothing is.
 pub(crate) fn comment(coordinates: Coordinates) -> String {
     pairs(coordinates).into_iter().map(|(name, value)| format!(" {name}={value}")).collect()
 }
 
-/// The same as a line of its own, behind the word or sign that begins a comment; none where nothing is
+/// The same on a line of its own, after the word or sign that begins a comment; none where nothing is
 /// known.
 pub(crate) fn line(sign: &str, coordinates: Coordinates) -> String {
     match comment(coordinates) {

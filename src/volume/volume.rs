@@ -22,7 +22,7 @@ pub struct Volume {
     frame: Frame,
     /// Whether values are gray levels already, as those of unsigned 8-bit files are.
     gray_levels: bool,
-    /// How the file stores a sample; `f32` where there is no file.
+    /// How the file stores a sample; `f32` if there is no file.
     dtype: Dtype,
     /// Samples that the file has no number for, if there are any.
     missing: Option<Vec<bool>>,
@@ -31,9 +31,9 @@ pub struct Volume {
 /// What becomes of samples that are NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Nan {
-    /// This value stands in for them.
+    /// This value replaces them.
     Value(f32),
-    /// They are missing: the least of the other values stands in for them, and they take no part where
+    /// They are masked: the least of the other values replaces them, and they take no part where
     /// points are selected and errors measured.
     Mask,
 }
@@ -63,7 +63,7 @@ impl Volume {
         Ok(volume)
     }
 
-    /// Says what NaN are, and refuses what is no number after that.
+    /// Applies the rule for NaN, and refuses samples that are still not finite.
     pub(crate) fn settled(mut self, nan: Option<Nan>) -> Result<Self, VolumeError> {
         let value = match nan {
             Some(Nan::Value(value)) => value,
@@ -94,7 +94,7 @@ impl Volume {
         Self { dtype, gray_levels: dtype == Dtype::U8, ..self }
     }
 
-    /// How the file stores a sample; `f32` where there is no file.
+    /// How the file stores a sample; `f32` if there is no file.
     pub fn dtype(&self) -> Dtype {
         self.dtype
     }
@@ -155,7 +155,7 @@ impl Volume {
         &self.frame
     }
 
-    /// The same samples with their grid elsewhere, or told in other coordinates.
+    /// The same samples on another grid, or in other coordinates.
     pub fn with_frame(self, frame: Frame) -> Self {
         Self { frame, ..self }
     }
@@ -214,7 +214,7 @@ impl Volume {
 }
 
 impl Volume {
-    /// The volume with the values that its gray levels stand for: what [`Volume::into_gray`] did, undone.
+    /// The volume with the values that its gray levels represent: the inverse of [`Volume::into_gray`].
     /// In place.
     pub fn into_values(mut self, range: &GrayRange) -> Self {
         if !range.is_identity() {

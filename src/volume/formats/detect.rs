@@ -101,7 +101,7 @@ pub fn series(folder: &Path) -> Result<Vec<Series>, VolumeError> {
     }
 }
 
-/// The bytes that tell the format of a file.
+/// The first bytes of a file, from which its format is recognised.
 pub(crate) fn start_of(path: &Path) -> Result<Vec<u8>, VolumeError> {
     let mut start = Vec::new();
     let file = File::open(path).map_err(io_error(path))?;

@@ -27,7 +27,7 @@ macro_rules! writers {
     }};
 }
 
-/// A format of files of their own, which nothing but its name tells.
+/// A format of single files, recognised by extension only.
 const PLAIN: VolumeFormat = VolumeFormat {
     name: "",
     extensions: &[],

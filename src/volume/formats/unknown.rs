@@ -16,7 +16,7 @@ pub struct UnknownFormat {
 }
 
 impl UnknownFormat {
-    /// Of pairs of an extension and what it stands for, that whose extension ends a path.
+    /// Given pairs of an extension and its meaning, the meaning of the extension that ends a path.
     pub(crate) fn find<'a, F>(
         path: &Path,
         thing: &'static str,

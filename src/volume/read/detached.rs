@@ -8,7 +8,7 @@ use super::{format_error, io_error};
 use crate::shown::shown;
 use crate::volume::{Reason, Volume, VolumeError};
 
-/// The files that a header names, relative to its folder; they may stand anywhere.
+/// The files that a header names, relative to its folder; they may be anywhere.
 pub(super) fn beside(header: &Path, names: &[String]) -> Vec<PathBuf> {
     let folder = header.parent().unwrap_or(Path::new(""));
     names.iter().map(|name| folder.join(name)).collect()
@@ -27,7 +27,7 @@ pub(super) fn read(
     described.read(header, source, bytes).map_err(naming(header, files))
 }
 
-/// Errors about samples that stand in other files than their header, with the names of both.
+/// Errors about samples in files separate from their header, with the names of both.
 pub(super) fn naming<'a>(
     header: &'a Path,
     files: &'a [PathBuf],
@@ -51,7 +51,7 @@ pub(super) fn naming<'a>(
     }
 }
 
-/// Samples that stand in other files than their header: these files one after the other, each
+/// Samples in files separate from their header: these files one after the other, each
 /// without its first bytes. One is open at a time.
 #[derive(Debug)]
 struct Detached {

@@ -6,7 +6,7 @@ use super::{format_error, io_error};
 use crate::advice::{Setting, advice};
 use crate::volume::{Reason, VolumeError};
 
-/// Which of the volumes of a file is read: those of a fourth axis, and perhaps more, one behind the
+/// Which of the volumes of a file is read: those along a fourth axis (and further axes), one after the
 /// other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frames {

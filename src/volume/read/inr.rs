@@ -14,7 +14,7 @@ const END: &[u8] = b"\n##}\n";
 /// Longer headers than these 16 kB are taken for damage.
 const MAX_HEADER: usize = 1 << 14;
 
-/// Reads a file of it, perhaps compressed with gzip.
+/// Reads a file, gzipped or not.
 pub(crate) fn open(path: &Path) -> Result<Volume, VolumeError> {
     let (reader, length) = unpacked(path)?;
     read(path, reader, length)

@@ -3,7 +3,7 @@ use std::io::{self, BufRead, Read};
 /// Longer lines than this are data taken for a header.
 const MAX_LINE: u64 = 1 << 20;
 
-/// Lines of a header that stands before data of any kind, with the number of bytes they took.
+/// Lines of a header before data of any kind, with the number of bytes they took.
 pub(crate) struct Lines<R> {
     reader: R,
     bytes: u64,
@@ -34,7 +34,7 @@ impl<R: BufRead> Lines<R> {
         Ok((found > 0).then(|| String::from_utf8_lossy(&line).into_owned()))
     }
 
-    /// Passes over bytes that are no lines.
+    /// Skips bytes that are not lines.
     pub fn skip(&mut self, bytes: u64) -> io::Result<()> {
         let passed = io::copy(&mut (&mut self.reader).take(bytes), &mut io::sink())?;
         self.bytes += passed;
@@ -51,7 +51,7 @@ impl<R: BufRead> Lines<R> {
         self.bytes
     }
 
-    /// The reader, which stands behind the last line.
+    /// The reader, positioned after the last line.
     pub fn into_inner(self) -> R {
         self.reader
     }

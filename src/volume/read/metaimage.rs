@@ -15,7 +15,7 @@ const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
 const ORIGIN: [&str; 3] = ["Offset", "Origin", "Position"];
 const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
 
-/// Reads MetaImage, the format of ITK's MetaIO, with its samples behind the header (`.mha`) or in
+/// Reads MetaImage, the format of ITK's MetaIO, with its samples after the header (`.mha`) or in
 /// other files (`.mhd`: one, a `LIST`, or a numbered row), raw, zlib-compressed or text.
 ///
 /// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame.

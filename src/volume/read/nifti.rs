@@ -150,7 +150,7 @@ impl Header {
         }
     }
 
-    /// Whether the samples stand in a file of their own.
+    /// Whether the samples are in a separate file.
     fn is_pair(&self, path: &Path) -> Result<bool, VolumeError> {
         let place = if self.version == 1 { 344 } else { 4 };
         match &self.bytes[place..place + 4] {

@@ -18,7 +18,7 @@ pub(crate) struct NpyFile<R = BufReader<File>> {
     pub fortran: bool,
     dtype: Dtype,
     endian: Endian,
-    /// Booleans are read as 0 and 1, and are no gray levels.
+    /// Booleans are read as 0 and 1, not as gray levels.
     boolean: bool,
     payload: Payload<R>,
 }

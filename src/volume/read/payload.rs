@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::progress;
 use crate::volume::{Dtype, Endian};
 
-/// Decoded at a time, so that a file never stands in memory beside its samples.
+/// Decoded at a time, so that a file is never held in memory along with its samples.
 const CHUNK_BYTES: usize = 8 << 20;
 
 /// What follows a header: a row of samples, and how many bytes of them there can be.
@@ -25,7 +25,7 @@ pub(crate) const MOST_EXPANSION: u64 = 1032;
 pub(crate) enum Length {
     /// An uncompressed file or archive member.
     Exactly(u64),
-    /// A gzip stream, which tells only when it is read; this is the most it can hold.
+    /// A gzip stream, whose length is known only once it is read; this is the most it can hold.
     AtMost(u64),
 }
 

@@ -6,7 +6,7 @@ use crate::memory::{NoMemory, room};
 use crate::volume::{Dtype, Reason};
 
 /// Reads exactly `count` numbers of a type, written as text with white space between them, from
-/// `bytes` bytes. The text stands in memory beside the numbers.
+/// `bytes` bytes. The text is held in memory along with the numbers.
 ///
 /// The error says what is wrong, in words that follow the name of the file.
 pub(crate) fn numbers<T: Element + FromStr + Into<f64>>(

@@ -8,7 +8,7 @@ use super::vtk_xml::VtkXml;
 use crate::volume::{Coordinates, Dims, Endian, LengthUnit, Reason, Space, Volume, VolumeError};
 
 /// Reads VTI, VTK's image data in XML, in one piece: the array of this name; or else the active scalars of
-/// its points, its first array of points, or that of cells, whose samples stand at the cells' centres.
+/// its points, its first array of points, or of cells, whose samples are at the cells' centres.
 pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
     let said = |reason: Reason| format_error(path, reason);
     let file = VtkXml::open(path)?;

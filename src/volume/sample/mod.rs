@@ -34,7 +34,7 @@ pub fn open(input: &str, options: &ReadOptions) -> Result<Volume, VolumeError> {
 /// `sample:phantom` is a [`phantom`] of 64³ samples, `sample:phantom@N` one of N³.
 ///
 /// # Errors
-/// No sample has this name; the skull is not installed or its archive damaged; N is no size.
+/// Unknown name; the skull is not installed, or its archive is damaged; N is not a size.
 pub fn sample(name: &str) -> Result<Volume, VolumeError> {
     match name.strip_prefix("sample:") {
         // Its header has numbers, but the paper's lengths are voxels.

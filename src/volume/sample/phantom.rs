@@ -89,7 +89,7 @@ fn nose(p: Point) -> f64 {
     unite(upper, lower, 0.04)
 }
 
-/// Cheek bone and the arch that bridges the temple, with a gap behind it.
+/// Cheek bone and the arch that bridges the temple, with a gap under it.
 fn cheek(p: Point) -> f64 {
     let bone = rod(p, [0.30, -0.60, -0.16], [0.44, -0.48, -0.13], 0.07);
     let rim = rod(p, [0.42, -0.52, 0.10], [0.44, -0.48, -0.12], 0.05);

@@ -3,7 +3,7 @@ use std::io::{self, Write};
 use super::raw;
 use crate::volume::{Coordinates, Frame, Space, Volume};
 
-/// Writes a volume as NRRD with its samples raw behind the header. The grid stands in the volume's own
+/// Writes a volume as NRRD with raw samples after the header. The grid is written in the volume's own
 /// space, which is named; that of a patient in millimetres, as ITK and Slicer expect. A volume in
 /// voxels has no place.
 ///

@@ -5,7 +5,7 @@ use crate::volume::stated::field_data;
 use crate::volume::{Coordinates, Space, Volume};
 
 /// Writes a volume as VTI, VTK's image data: point data `value`, appended raw. A known space is LPS; the
-/// field data `SPACE` and `UNIT` tell it.
+/// the field data `SPACE` and `UNIT` say so.
 ///
 /// # Errors
 /// Whatever `out` returns.

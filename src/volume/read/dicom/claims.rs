@@ -42,7 +42,7 @@ pub(super) fn check(path: &Path) -> Result<(), VolumeError> {
     check_elements(path, file, syntax, length)
 }
 
-/// Of the table that every file begins with: it tells its own length, then come elements.
+/// Checks the table that every file begins with: its own length, then its elements.
 fn check_table(path: &Path, mut file: impl Read + Seek, length: u64) -> Result<(), VolumeError> {
     let decoder = ExplicitVRLittleEndianDecoder::default();
     let mut size = [0; 4];

@@ -9,8 +9,8 @@ use crate::volume::{Reason, VolumeError};
 const SHARED_FUNCTIONAL_GROUPS: Tag = Tag(0x5200, 0x9229);
 const PER_FRAME_FUNCTIONAL_GROUPS: Tag = Tag(0x5200, 0x9230);
 
-/// What stands before the pixels of a file, as one of its frames has it: in enhanced images some
-/// elements stand within functional groups, of the frame or of all frames (PS3.3, C.7.6.16).
+/// The header of a file, as it applies to one of its frames: in enhanced images some elements are in
+/// functional groups, of the frame or shared by all frames (PS3.3, C.7.6.16).
 #[derive(Clone, Copy)]
 pub(super) struct Header<'a> {
     path: &'a Path,

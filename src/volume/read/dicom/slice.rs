@@ -51,7 +51,7 @@ pub(super) struct Slice {
     pub spacing: [f64; 2],
     /// Distance to the next slice as the header has it, for a series of one.
     pub thickness: f64,
-    /// The type of a pixel, where they stand for themselves; else `f32`.
+    /// The type of a pixel if pixels are used unscaled, otherwise `f32`.
     pub dtype: Dtype,
 }
 
@@ -71,7 +71,7 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// Reads what stands before the pixels.
+    /// Reads the header.
     pub fn open(path: &Path) -> Result<Self, VolumeError> {
         claims::check(path)?;
         let object = OpenFileOptions::new()
@@ -96,7 +96,7 @@ impl Found {
 }
 
 impl Slice {
-    /// The slices of a file, of what stands before the pixels: one, or as many as it has frames.
+    /// The slices of a file, from its header: one, or as many as it has frames.
     fn all(path: &Path, object: &InMemDicomObject) -> Result<Vec<Self>, VolumeError> {
         let said = |reason: Reason| format_error(path, reason);
         let header = Header::new(path, object);
@@ -207,7 +207,7 @@ pub(super) fn pixels(slices: &[&Slice]) -> Result<Vec<Vec<f32>>, VolumeError> {
     slices.iter().map(frame).collect()
 }
 
-/// The type of the numbers that pixels stand for: that of the file, if these are shifted by whole steps.
+/// The type of the rescaled values: that of the file, if pixels are only shifted by whole steps.
 fn dtype(bits: f64, unsigned: bool, slope: f64, intercept: f64) -> Dtype {
     match (bits as u64, unsigned) {
         (8, true) if (slope, intercept) == (1.0, 0.0) => Dtype::U8,

@@ -9,7 +9,7 @@ use crate::volume::{Coordinates, Frame, Reason, VolumeError};
 const SAME_DIRECTION: f64 = 1e-3;
 /// A gap this many times the usual one, or more, has slices missing.
 const MISSING: f64 = 1.5;
-/// Distances that differ by more than this share of the usual one are told.
+/// A warning is given for distances that differ by more than this share of the usual one.
 const UNEVEN: f64 = 0.01;
 
 /// Slices in the order of their positions along the normal, and where their grid lies.

@@ -7,7 +7,7 @@ use super::super::{format_error, io_error};
 use crate::volume::{Reason, VolumeError};
 
 /// The names a `data file` field gives: one, a `LIST` of the lines that follow, or a numbered row
-/// `pattern min max step`, where the pattern has one `%d`, perhaps `%03d`.
+/// `pattern min max step`, where the pattern has one `%d` or, say, `%03d`.
 pub(super) fn named(
     path: &Path,
     value: &str,
@@ -29,7 +29,7 @@ pub(super) fn named(
     }
 }
 
-/// The files of a numbered row; `None` where the words are no such row.
+/// The files of a numbered sequence; `None` if the words do not describe one.
 pub fn numbered(words: &[&str]) -> Option<Result<Vec<String>, Reason>> {
     /// A row has a file a slice, at most.
     const MAX_FILES: i64 = 1 << 20;

@@ -92,7 +92,7 @@ impl Header {
         Coordinates { space, unit }
     }
 
-    /// A number for each axis; `None` where the field is not there or has NaN, which stands for
+    /// A number for each axis; `None` if the field is absent or NaN, which means
     /// "unknown".
     fn numbers(
         &self,

@@ -7,7 +7,7 @@ use super::super::lines::Lines;
 use super::super::{format_error, io_error};
 use crate::volume::{Dtype, Reason, VolumeError};
 
-/// Words that begin a section behind the grid.
+/// Keywords that begin a section after the grid.
 pub(super) const KEYWORDS: [&str; 14] = [
     "METADATA",
     "SCALARS",
@@ -46,7 +46,7 @@ pub(super) struct Array {
 
 /// Finds the arrays; `line` begins the data of points or cells.
 ///
-/// What cannot be understood behind the first array ends the search.
+/// The search ends at whatever cannot be parsed after the first array.
 pub(super) fn find(
     path: &Path,
     lines: &mut Lines<impl BufRead>,

@@ -20,7 +20,7 @@ pub(super) const MAGIC: &[u8] = b"# vtk DataFile";
 
 /// Reads the legacy VTK format (VTK User's Guide, "VTK File Formats"), text or binary (big endian):
 /// the scalars of this name of a `STRUCTURED_POINTS` dataset; or else the first ones of its points, or of
-/// its cells, which stand at the cells' centres.
+/// its cells, located at the cells' centres.
 pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
     let said = |reason: Reason| format_error(path, reason);
     let file = File::open(path).map_err(io_error(path))?;
@@ -243,7 +243,7 @@ pub(super) fn to_centres(dims: &mut [u64; 3], origin: &mut [f64; 3], axes: [[f64
     }
 }
 
-/// The numbers behind a keyword.
+/// The numbers after a keyword.
 fn numbers<const N: usize>(path: &Path, words: &[&str]) -> Result<[f64; N], VolumeError> {
     let numbers: Option<Vec<f64>> = words[1..].iter().map(|word| word.parse().ok()).collect();
     numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| {

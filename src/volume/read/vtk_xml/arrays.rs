@@ -83,7 +83,7 @@ impl VtkXml {
         Ok(Some(String::from_utf8_lossy(first).into_owned()))
     }
 
-    /// Reads an array behind its length, or behind the lengths of its compressed blocks; there are
+    /// Reads an array that follows its length, or the lengths of its compressed blocks; there are
     /// at most `most` bytes.
     fn decoded<T: Element>(
         &self,
