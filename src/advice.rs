@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::fmt;
 
 /// What to do about an error. Settings are named as the library has them; a program with other names
-/// for them, such as options of a command, tells it with these ([`told`](Self::told)).
+/// for them, such as options of a command, words it with these ([`told`](Self::told)).
 ///
 /// ```
 /// use walpha::volume::{ReadOptions, sample};

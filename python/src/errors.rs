@@ -20,7 +20,7 @@ use walpha::shape::ShapeError;
 use walpha::triangulation::TriangulationError;
 use walpha::volume::VolumeError;
 
-/// An error that Python can be told.
+/// An error that can be raised in Python.
 pub trait Told {
     /// The exception: `ValueError` for what was given, `OSError` for files, `MemoryError`.
     fn told(self) -> PyErr;

@@ -1,4 +1,4 @@
-//! What stands in for the bridge where the crate is built without CGAL: every question is answered by
+//! Replaces the bridge where the crate is built without CGAL: every question is answered by
 //! [`TriangulationError::WithoutCgal`], and results have no values.
 
 use crate::triangulation::{Sites, TriangulationError};

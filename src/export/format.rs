@@ -29,10 +29,10 @@ pub struct ExportOptions {
     /// The boundary as that of a [solid](Surface::solid): regular facets alone, closed, oriented and
     /// cut apart into a manifold. For formats of boundaries.
     pub solid: bool,
-    /// Regular and singular facets told apart, where some programs do not expect it: by groups (OBJ, edges
+    /// Separate regular and singular facets, where some programs do not expect it: by groups (OBJ, edges
     /// and points too), colours (OFF) or numbers (PLY, components and sheets too).
     pub groups: bool,
-    /// What the shape was made of, to be told in the file: VTP and VTU.
+    /// What the shape was made of, recorded in the file: VTP and VTU.
     pub input: Option<String>,
 }
 
@@ -56,7 +56,7 @@ pub struct Format {
     pub boundary: bool,
     /// Whether it has a text form and a binary one.
     pub ascii: bool,
-    /// Whether it can tell regular and singular facets apart where some programs do not expect it.
+    /// Whether it can separate regular and singular facets where some programs do not expect it.
     pub groups: bool,
     exporter: fn(ExportOptions) -> Box<dyn Exporter>,
 }

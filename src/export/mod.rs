@@ -17,7 +17,7 @@
 //! let mut bytes = Vec::new();
 //! exporter.write(&shape, &mut bytes)?;
 //! assert!(bytes.starts_with(b"OFF"));
-//! // Into a file: nothing stands under the name before the last byte is written.
+//! // Into a file, which appears under its name only when the last byte is written.
 //! let folder = tempfile::tempdir()?;
 //! let path = folder.path().join("tetrahedron.off");
 //! Target::open(&path)?.write(|out| exporter.write(&shape, out))?;

@@ -27,7 +27,7 @@ pub(super) struct Whole {
 enum Way {
     /// At once, for all who look.
     Renamed,
-    /// Byte by byte into the file that stands there, which has other names, an owner we cannot give
+    /// Byte by byte into the existing file, which has other names, an owner we cannot give
     /// away to, or a list of who may read it: a new file under this name would be another file.
     #[cfg_attr(not(unix), expect(dead_code, reason = "only Unix tells of these"))]
     Copied,
@@ -95,7 +95,7 @@ fn overwrite(file: &mut File, content: &mut File) -> io::Result<()> {
     file.set_len(new)
 }
 
-/// A new file. One that replaces another is nobody else's to read before it is like that one.
+/// A new file. One that replaces another is private until it has the permissions of that one.
 #[cfg(unix)]
 fn create(path: &Path, private: bool) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;

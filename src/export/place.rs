@@ -1,4 +1,4 @@
-//! Where a file is to stand, and whether two names are one place.
+//! Where a file will be, and whether two names are one place.
 
 use std::fs::{self, Metadata, OpenOptions};
 use std::io::{self, ErrorKind};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::unfinished::gate;
 use crate::shown::shown;
 
-/// A place for a file: behind all links, and with what stands there.
+/// A place for a file, with all links followed, and what is there now.
 #[derive(Debug)]
 pub(super) struct Place {
     pub path: PathBuf,
@@ -46,7 +46,7 @@ impl Place {
         Ok(Self { path, existing })
     }
 
-    /// Whether a pipe, a device or the like stands there, which is written to as it comes.
+    /// Whether it is a pipe, a device or the like, which is written to directly.
     pub fn is_stream(&self) -> bool {
         self.existing.as_ref().is_some_and(|existing| !existing.is_file())
     }
@@ -63,7 +63,7 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// The path that links of this name lead to, whether something stands there or not.
+/// The path that links of this name lead to, whether it exists or not.
 fn behind_links(path: &Path) -> PathBuf {
     /// As many as Linux follows.
     const MOST_LINKS: usize = 40;
@@ -75,11 +75,11 @@ fn behind_links(path: &Path) -> PathBuf {
     path
 }
 
-/// What tells places apart.
+/// The identity of a place.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Key {
     path: PathBuf,
-    /// Device and number of the file that stands there: hard links are one file.
+    /// Device and inode of an existing file: hard links are one file.
     file: Option<(u64, u64)>,
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::unfinished::Temporary;
 
-/// A file with a name for a while, which goes when it is dropped, and also when the process is
+/// A temporary file with a name, removed when it is dropped, and also when the process is
 /// interrupted.
 #[derive(Debug)]
 pub struct Scratch {

@@ -14,9 +14,9 @@ use crate::shown::shown;
 /// What stood under the name is replaced, and the new file has its mode and owner; links are
 /// followed. A file that has other names, too, or whose owner cannot be kept, is not replaced but
 /// overwritten, when all of the new content is on the disk: that alone is not done at one blow. There
-/// are no two targets of one file at a time.
+/// are never two targets for one file at a time.
 ///
-/// `-` is standard output. That, and what is no ordinary file (a pipe, a device), is written to as it
+/// `-` is standard output. That, and whatever is not an ordinary file (a pipe, a device), is written to as it
 /// comes.
 #[derive(Debug)]
 pub struct Target {
@@ -107,7 +107,7 @@ impl Target {
         Ok((Sink::Part(Part::beside(place)?.into()), Some(claim)))
     }
 
-    /// Where the file will stand.
+    /// Where the file will be.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -148,7 +148,7 @@ impl Target {
     }
 }
 
-/// A complete file that is to be put in its place; dropped before that, it goes.
+/// A complete file to be put in its place; dropped before that, it is removed.
 #[derive(Debug)]
 pub struct Filled {
     path: PathBuf,
@@ -164,7 +164,7 @@ impl Filled {
     }
 }
 
-/// Puts complete files in their places. An interrupt waits until they all stand there.
+/// Puts complete files in their places. An interrupt waits until all are in place.
 ///
 /// # Errors
 /// What the system said of the first that cannot be put there; the others after it go.

@@ -1,4 +1,4 @@
-//! What is not complete yet, and how it goes when the process ends before its time.
+//! Unfinished files, and their removal when the process ends early.
 
 use std::fs;
 use std::io;
@@ -8,7 +8,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use tempfile::TempPath;
 
-/// A file or folder that goes again unless it is finished. Entries are never freed, and their list
+/// A file or folder that is removed unless it is finished. Entries are never freed, and their list
 /// is read without a lock: the handler of a signal may do so at any moment.
 #[derive(Debug)]
 pub(super) struct Entry {
@@ -26,7 +26,7 @@ type Name = PathBuf;
 
 static FIRST: OnceLock<&'static Entry> = OnceLock::new();
 
-/// What is known of the run's outputs. Locked while a file or folder comes or goes.
+/// The outputs of the run. Locked while a file or folder is made or removed.
 #[derive(Debug, Default)]
 pub(super) struct Gate {
     last: Option<&'static Entry>,
@@ -100,7 +100,7 @@ pub fn sweep() {
 }
 
 /// Removes what is not complete, and ends the process before another file can appear. For the handler
-/// of an interrupt, in a thread of its own: files that stand under their names are complete.
+/// of an interrupt, in a thread of its own: files under their final names are complete.
 #[cfg(feature = "cli")]
 pub(crate) fn abandon(code: i32) -> ! {
     let _for_good = gate();
@@ -108,7 +108,7 @@ pub(crate) fn abandon(code: i32) -> ! {
     std::process::exit(code)
 }
 
-/// A file that goes when it is dropped, and also when the process is interrupted.
+/// A file that is removed when it is dropped, and also when the process is interrupted.
 #[derive(Debug)]
 pub(super) struct Temporary {
     path: Option<TempPath>,
@@ -146,7 +146,7 @@ impl Temporary {
         self.path.take()
     }
 
-    /// What was taken stands under its name, or is gone.
+    /// The file is under its final name, or removed.
     pub fn settle(&self, _: &Gate) {
         self.entry.strike();
     }
@@ -160,7 +160,7 @@ impl Drop for Temporary {
     }
 }
 
-/// A folder made for files to come. Dropped before it is kept, it goes again if it is empty.
+/// A folder made for outputs. Dropped before it is kept, it is removed if empty.
 #[derive(Debug)]
 pub struct NewFolder {
     path: PathBuf,
@@ -171,7 +171,7 @@ impl NewFolder {
     /// Makes a folder; `None` if there is one already.
     ///
     /// # Errors
-    /// What the system said: a file stands there, the folder above is missing, and so on.
+    /// What the system returns: a file of that name exists, the parent folder is missing, and so on.
     pub fn make(path: &Path) -> io::Result<Option<Self>> {
         let path = std::path::absolute(path)?;
         let mut gate = gate();

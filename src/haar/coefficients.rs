@@ -10,7 +10,7 @@ use super::{nonstandard, standard};
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Decomposition {
-    /// All axes step once per level, then the octant of means goes on: cubes of 2ˡ samples a side.
+    /// All axes step once per level, then the octant of means continues: cubes of 2ˡ samples a side.
     #[default]
     NonStandard,
     /// Each axis is transformed fully: boxes of any powers of two.
@@ -28,8 +28,8 @@ impl fmt::Display for Decomposition {
 
 /// Orthonormal Haar coefficients of a volume, in the place of its samples.
 ///
-/// Along an axis, the coefficient of the whole row's mean stands at 0, and the detail between the
-/// samples from i to i + 2ˡ and those from there to i + 2·2ˡ stands at i + 2ˡ: the number of
+/// Along an axis, the coefficient of the whole row's mean is at 0, and the detail between the
+/// samples from i to i + 2ˡ and those from there to i + 2·2ˡ is at i + 2ˡ: the number of
 /// trailing zeros of an index is its level. In the non-standard decomposition the level of a voxel
 /// is the least of its three indices'. A row of four samples becomes `[mean, fine detail of 0 and
 /// 1, coarse detail, fine detail of 2 and 3]`:

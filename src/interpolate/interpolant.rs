@@ -63,7 +63,7 @@ impl<'a> Interpolant<'a> {
     /// The interpolant of other values, one for each point of a shape. O(n).
     ///
     /// # Errors
-    /// A value that is no finite number.
+    /// A value that is not finite.
     ///
     /// # Panics
     /// When there are not as many values as points.

@@ -2,7 +2,7 @@ use std::cmp::Ordering;
 
 /// Boxes in a binary tree, to find those that hold a place.
 ///
-/// Nodes stand in preorder, each with the node that follows its whole subtree, so that a search
+/// Nodes are in preorder, each with the node that follows its whole subtree, so that a search
 /// needs no stack. Memory: a node for every two boxes or so.
 #[derive(Debug)]
 pub(super) struct Tree {
@@ -17,7 +17,7 @@ struct Node {
     high: [f64; 3],
     /// The node after this one's subtree.
     next: u32,
-    /// Where its boxes stand in the order, if it is a leaf.
+    /// The range of its boxes in the order, if it is a leaf.
     leaf: Option<(u32, u32)>,
 }
 

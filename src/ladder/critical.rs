@@ -11,8 +11,8 @@ use crate::shape::{Alpha, Betti};
 
 /// The topology of a filtration at every α at which a simplex comes.
 ///
-/// Critical values are told apart exactly; those for which the same double is the first not below
-/// are one entry, as no α tells them apart. On a voxel grid, where values are equal by the thousand,
+/// Critical values are distinguished exactly; those for which the same double is the first not below
+/// are one entry, as no double separates them. On a voxel grid, where values are equal by the thousand,
 /// that leaves few.
 #[derive(Clone, Debug)]
 pub struct Curve {
@@ -37,7 +37,7 @@ pub struct Suggestions {
     /// That, and the cells are one solid component: MATLAB's `criticalAlpha(shp, 'one-region')`,
     /// CGAL's `Alpha_shape_3::find_optimal_alpha(1)`, which searches by halving and may find a
     /// larger one. This is the smallest α with the property, not one from which it lasts: the
-    /// number of components goes up and down.
+    /// number of components rises and falls.
     pub one_region: Alpha,
     /// That, and there is no void.
     pub no_void: Alpha,

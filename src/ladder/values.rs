@@ -1,4 +1,4 @@
-//! The critical values of a filtration, told apart exactly.
+//! The critical values of a filtration, distinguished exactly.
 
 use std::collections::HashMap;
 

@@ -9,7 +9,7 @@ use crate::shown::shown;
 use crate::triangulation::TriangulationError;
 use crate::volume::{Reason, VolumeError};
 
-/// Why there are no points, or no weights for them.
+/// Why points or their weights cannot be had.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PointsError {
@@ -73,7 +73,7 @@ pub enum PointsError {
     /// The input has no weights.
     #[error("column weights need a column `weight` in the input")]
     NoColumn,
-    /// A weight that is no finite number.
+    /// A weight that is not finite.
     #[error("the weight of point {index} is {weight}: it must be finite")]
     Weight {
         /// The point, counted from 0.

@@ -57,8 +57,8 @@ const PLAIN: PointFormat = PointFormat {
     read: None,
 };
 
-/// The formats of points, in the order in which they are looked for. The first is that of files which
-/// nothing tells.
+/// The formats of points, in the order in which they are looked for. The first is the default for
+/// files that nothing identifies.
 pub static FORMATS: [PointFormat; 11] = [
     PointFormat {
         name: "CSV, TSV",

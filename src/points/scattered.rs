@@ -4,7 +4,7 @@ use crate::triangulation::{Maker, Sites, Triangulation, TriangulationError, tria
 /// The difference L of each scattered point: the mean of |F(point) − F(neighbour)| over its
 /// neighbours in the Delaunay triangulation of the places.
 ///
-/// Of several points at one place the first stands in the triangulation; each differs from the
+/// Of several points at one place the first is in the triangulation; each differs from the
 /// neighbours of that place by its own value. On a regular grid, where neighbours on one sphere are
 /// many, the symbolic perturbation chooses among them. Sums in f64 in ascending order of the
 /// neighbours. The time and memory of a

@@ -82,7 +82,7 @@ impl Units {
         }
     }
 
-    /// Where a voxel of a volume, by its index x + X·(y + Y·z), stands in these units.
+    /// The position of a voxel, by its index x + X·(y + Y·z), in these units.
     pub fn position(self, volume: &Volume, voxel: u32) -> [f64; 3] {
         let [nx, ny, _] = volume.dims().xyz();
         let voxel = voxel as usize;

@@ -66,7 +66,7 @@ impl WeightedPoints {
         self.positions.is_empty()
     }
 
-    /// Smallest, mean and largest weight; all 0 where there is no point.
+    /// Smallest, mean and largest weight; all 0 without points.
     pub fn summary(&self) -> WeightSummary {
         if self.weights.is_empty() {
             return WeightSummary { min: 0.0, mean: 0.0, max: 0.0 };

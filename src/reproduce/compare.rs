@@ -24,7 +24,7 @@ impl Difference {
     }
 }
 
-/// Rows of these classes that stand in one list only. Rows ascend in both.
+/// Rows of these classes that are in one list only. Rows ascend in both.
 fn not_shared<const N: usize>(a: &Simplices<N>, b: &Simplices<N>, classes: &[Class]) -> usize {
     let rows = |list: &Simplices<N>| -> Vec<([u32; N], Class)> {
         let rows = list.iter().filter(|(_, class)| classes.contains(class));

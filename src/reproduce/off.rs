@@ -11,7 +11,7 @@ pub struct OffMesh {
     pub colours: Vec<Rgb>,
 }
 
-/// A text is no OFF file of coloured triangles.
+/// A text is not an OFF file of coloured triangles.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: expected {expected}, got {got:?}")]
 pub struct OffError {

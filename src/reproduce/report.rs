@@ -8,7 +8,7 @@ use crate::haar::Truncation;
 /// Everything that was found, as `report.json` has it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Counted up when a field changes its meaning or goes; new fields may come at any time.
+    /// Incremented when a field is removed or changes its meaning; new fields may be added at any time.
     pub schema_version: u32,
     /// What is made again.
     pub paper: &'static str,

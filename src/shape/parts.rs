@@ -165,7 +165,7 @@ impl AlphaShape {
         components
     }
 
-    /// Sheets that shut something in, with their components, largest first.
+    /// Sheets that enclose a void, with their components, largest first.
     fn enclosed(&self, sheets: &Sheets, numbers: &[u32]) -> Vec<(usize, Enclosed)> {
         let positions = &self.points().positions;
         let complex = self.complex();

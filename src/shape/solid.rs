@@ -12,7 +12,7 @@ use super::{AlphaShape, Surface};
 pub struct Cuts {
     /// Edges on more than two facets, along which parts of the shape touch.
     pub edges: usize,
-    /// Vertices that stand there more than once now.
+    /// Vertices that now occur more than once.
     pub vertices: usize,
     /// Vertices in the middle of an edge, at which one of two sheets that share both of its ends
     /// was bent apart from the other.
@@ -26,7 +26,7 @@ impl Surface {
     /// The regular facets alone, as the boundary of a solid: each edge is on two facets, which go
     /// along it in opposite directions, and the facets around a vertex are one fan. Where the shape
     /// is not a manifold, its parts are cut apart: facets that bound the same cells stay together, and
-    /// vertices between others stand there once for each fan. Where that leaves an edge on four facets, as both
+    /// vertices between others occur once for each fan. Where that leaves an edge on four facets, as both
     /// of its ends are in one fan, two of them get a vertex in its middle. No place moves, but for the
     /// rounding of such middles. O(n log n).
     pub fn solid(shape: &AlphaShape) -> (Self, Cuts) {

@@ -55,7 +55,7 @@ pub(super) fn sheet_betti(complex: &Complex, b0: u64, sheets: &Sheets) -> Betti 
     Betti { b0, b1: u64::try_from(b1).expect("b1 counts something"), b2 }
 }
 
-/// The Betti numbers of a shape in a plane or on a line, which shuts nothing in.
+/// The Betti numbers of a shape in a plane or on a line, which has no voids.
 pub(super) fn flat_betti(complex: &Complex) -> Betti {
     let b0 = components(complex);
     let b1 = b0 as i64 - complex.euler_characteristic();

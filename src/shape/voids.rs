@@ -33,7 +33,7 @@ impl Void {
     }
 }
 
-/// Cells of a complement that hang together, and what is summed over them.
+/// A component of the complement, and what is summed over its cells.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hollow {
     cells: usize,
@@ -87,7 +87,7 @@ impl Hollow {
         }
     }
 
-    /// The void it is, given when its last cell goes.
+    /// As a void that is filled at this α.
     pub fn void(&self, filling_alpha: f64) -> Void {
         let Self { cells, six_volumes, low, high, .. } = *self;
         let filling_alpha = Alpha::from_squared(filling_alpha).expect("radii are numbers");

@@ -117,7 +117,7 @@ impl<'a, const D: usize> Sites<'a, D> {
     }
 }
 
-/// Whether every number is one that predicates can stand; coordinates are x, y and perhaps z.
+/// Whether every number is in the range of the predicates; coordinates are x, y and, in space, z.
 fn check<const D: usize>(positions: &[[f64; D]], weights: &[f64]) -> Result<(), SitesError> {
     if positions.len() != weights.len() {
         return Err(SitesError::Lengths { positions: positions.len(), weights: weights.len() });

@@ -21,7 +21,7 @@ pub struct Enumeration {
     pub duplicates: Vec<[u32; 2]>,
 }
 
-/// Why there is no regular triangulation of some points.
+/// Why points have no regular triangulation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnumerateError {

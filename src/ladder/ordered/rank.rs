@@ -1,4 +1,4 @@
-//! The values of a filtration told apart exactly, and put in order.
+//! The values of a filtration, distinguished exactly and put in order.
 //!
 //! Rounding keeps order: where the nearest doubles of two squared radii differ, so do these. So only
 //! simplices with one nearest double are compared as exact numbers; on a lattice nearly all of them

@@ -49,13 +49,13 @@ pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
 /// from 0.
 ///
 /// - CSV, TSV (fields between commas, semicolons or tabs) and XYZ (between white space): the first line
-///   may name the columns, x, y and z among them, perhaps weight and value, in any order and case; others
-///   are passed over. Without names, `columns` tells them; without both, x y z are read, perhaps with a
-///   value, with a normal or with a colour behind, which are passed over. XYZ may be atoms as chemistry
+///   may name the columns: x, y, z, optionally weight and value, in any order and case; others
+///   are skipped. Without names, `columns` gives them; without both, x y z are read, followed by a
+///   value, or by a normal or a colour, which are skipped. XYZ may be atoms as chemistry
 ///   writes them, too.
 /// - PWN: as XYZ; or the number of points, the points, and as many normals.
 /// - OFF, OBJ, STL: the vertices; of STL each place once.
-/// - PCD: the fields x, y, z, perhaps weight, and value or else intensity.
+/// - PCD: the fields x, y, z, optionally weight, and value or else intensity.
 /// - LAS and LAZ: coordinates, and the intensity as value.
 /// - PLY (text, or binary of either byte order), VTU and VTP: the vertices, with their properties or
 ///   point data `weight` and `value`; VTK's active scalars are the values where none are named so.
@@ -64,7 +64,7 @@ pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
 /// # Errors
 /// The file cannot be read, is truncated or longer than it claims, a column is missing or named twice,
 /// a number is not finite (the message has its place), the file holds no point, or `columns` are given for
-/// a format that tells its own.
+/// a format that names its own.
 pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
     let known = found(path)?.unwrap_or(&FORMATS[0]);
     if columns.is_some() && !known.takes_columns {

@@ -5,7 +5,7 @@ use super::{Points, PointsError, format};
 use crate::volume::{Lines, Reason, io_error};
 
 /// Reads PCD, the Point Cloud Library's format: text, binary or compressed, with the fields x, y and z,
-/// perhaps weight, and value or else intensity. Points without a place (NaN, as scanners mark them) are
+/// optionally weight, and value or else intensity. Points without a place (NaN, as scanners mark them) are
 /// left out.
 pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let said = |reason: Reason| format(path, reason);
@@ -48,7 +48,7 @@ struct Header {
     points: usize,
 }
 
-/// A column to read: numbers behind the start of a point, their type and size.
+/// A column to read: its offset from the start of a point, type and size.
 struct Field {
     index: usize,
     offset: usize,
@@ -235,7 +235,7 @@ fn number(kind: &str, bytes: &[u8]) -> Result<f64, Reason> {
     })
 }
 
-/// Unpacks LZF: two sizes, then pieces that are literal or stand further ahead in the output.
+/// Unpacks LZF: two sizes, then pieces that are literal or repeat earlier output.
 fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, Reason> {
     let damaged = || Reason::damaged("has compressed data that are damaged or truncated");
     let sizes = bytes.first_chunk::<8>().ok_or_else(damaged)?;

@@ -5,7 +5,7 @@ use super::{COLUMNS, Points, PointsError, format};
 use crate::volume::{Dtype, Element as _, Endian, Lines, Reason, io_error};
 
 /// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z,
-/// perhaps weight and value. All other elements must be there as the header claims.
+/// optionally weight and value. All other elements must be there as the header claims.
 pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let said = |reason: Reason| format(path, reason);
     let file = std::fs::File::open(path).map_err(io_error(path))?;
@@ -149,7 +149,7 @@ impl Header {
 }
 
 impl Element {
-    /// Refuses more of this element than the bytes behind the header can hold.
+    /// Refuses more of this element than the bytes after the header can hold.
     fn fits(&self, binary: bool, left: u64) -> Result<(), Reason> {
         let least = |property: &Property| match (binary, property) {
             (true, Property::Scalar(_, dtype) | Property::List(dtype, _)) => dtype.size() as u64,
@@ -197,7 +197,7 @@ impl Property {
     }
 }
 
-/// The numbers behind a header.
+/// The numbers after a header.
 enum Numbers {
     Text { text: String, at: usize },
     Binary(BufReader<std::fs::File>, Endian),

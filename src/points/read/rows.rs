@@ -5,7 +5,7 @@ use crate::advice::{Setting, advice};
 use crate::volume::Reason;
 
 impl Columns {
-    /// By the numbers in them: x y z, perhaps with a value, with a normal (of length 1 or 0) or with a
+    /// By the numbers in them: x y z, followed by a value, with a normal (of length 1 or 0) or with a
     /// colour (whole numbers up to 255).
     fn guessed(rows: &[Vec<f64>]) -> Result<Self, Reason> {
         let count = rows.first().map_or(0, Vec::len);

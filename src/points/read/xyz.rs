@@ -15,7 +15,7 @@ pub(crate) enum Counted {
     PointsThenNormals,
 }
 
-/// Reads lines of numbers between white space (or commas). A first line of names, perhaps behind `#` or
+/// Reads lines of numbers between white space (or commas). A first line of names, optionally after `#` or
 /// `//`, says what they are; other lines that begin so are remarks.
 pub(crate) fn read(
     path: &Path,
@@ -69,7 +69,7 @@ fn finite(path: &Path, line: u64, name: &str, word: &str) -> Result<f64, PointsE
     })
 }
 
-/// Reads atoms, behind the line that counts them.
+/// Reads atoms, after the line that counts them.
 fn atoms(path: &Path, mut lines: Lines<impl BufRead>, count: u64) -> Result<Points, PointsError> {
     let mut points = Points::default();
     let mut number = 1;

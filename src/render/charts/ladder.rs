@@ -15,7 +15,7 @@ const SIZES: [(&str, Rgb); 4] = [
 
 /// A ladder as a figure: Betti numbers at every critical value with the ladder's levels as dots, and
 /// sizes at the levels, over the logarithm of the squared radius α + max ω of the largest balls.
-/// Dashed lines stand at the α suggested.
+/// Dashed lines mark the α suggested.
 ///
 /// # Errors
 /// [`RenderError::Size`], never met.

@@ -34,9 +34,9 @@ pub struct Figure {
     pub panel: Size,
     /// In reading order.
     pub panels: Vec<Panel>,
-    /// What values the colours stand for.
+    /// The values that colours represent.
     pub colour_bar: Option<ColourBar>,
-    /// What classes the colours stand for.
+    /// The classes that colours represent.
     pub legend: Vec<(String, Rgb)>,
     /// Below everything, wrapped to the width; a paragraph each.
     pub notes: Vec<String>,

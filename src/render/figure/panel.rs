@@ -21,7 +21,7 @@ pub enum Content {
     Drawing(Drawing),
 }
 
-/// What values the colours of a figure stand for.
+/// The values that the colours of a figure represent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourBar {
     /// From values to colours.

@@ -18,7 +18,7 @@ use crate::math::vector::{cross, length, sub};
 /// vertices coincide, and triangles between them have no area.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Isosurface {
-    /// Vertices, (x, y, z), in voxels: sample `[z, y, x]` stands at (x, y, z).
+    /// Vertices, (x, y, z), in voxels: sample `[z, y, x]` is at (x, y, z).
     pub positions: Vec<[f64; 3]>,
     /// Triangles, counter-clockwise seen from the side of the lower values.
     pub triangles: Vec<[u32; 3]>,

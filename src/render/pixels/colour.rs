@@ -10,8 +10,8 @@ impl Rgb {
     /// The light warm gray of bare bone, which leaves room for light and shadow.
     pub const BONE: Self = Self([222, 212, 194]);
 
-    /// Amounts of light, 0 to 1. The square stands in for the sRGB curve (exponent 2.2 or so):
-    /// its inverse is a square root, which every machine rounds alike.
+    /// Amounts of light, 0 to 1. The square replaces the sRGB curve (exponent 2.2 or so):
+    /// its inverse is a square root, which every machine rounds the same way.
     pub(crate) fn light(self) -> [f32; 3] {
         self.0.map(|c| {
             let c = f32::from(c) / 255.0;

@@ -8,7 +8,7 @@ pub use camera::{Camera, Projection, View};
 use super::error::RenderError;
 use super::pixels::Rgb;
 
-/// What stands before the camera. Built once, seen from anywhere.
+/// The scene before the camera. Built once, seen from anywhere.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// Surfaces.
@@ -49,7 +49,7 @@ pub struct Mesh {
     pub two_sided: bool,
     /// Flat or smooth.
     pub shading: Shading,
-    /// 1 for a solid surface; less lets what is behind shine through.
+    /// 1 for a solid surface; less is translucent.
     pub opacity: f64,
 }
 
@@ -108,7 +108,7 @@ pub struct Tube {
     pub colour: Rgb,
 }
 
-/// What is behind the scene.
+/// The background.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Background {
     /// White, for paper.

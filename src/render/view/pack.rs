@@ -141,7 +141,7 @@ fn simplify(
     }
 }
 
-/// Simplices between those that stand for their vertices; without those that have collapsed, and
+/// Simplices between the representatives of their vertices; without those that have collapsed, and
 /// each once.
 fn collapsed<const N: usize>(
     simplices: &[([u32; N], Span)],

@@ -6,7 +6,7 @@ use crate::points::{Units, Weighting};
 use crate::render::error_figure;
 use crate::shape::Alpha;
 
-/// What the paper does not measure: how well F, linear on the cells, stands for the volume.
+/// What the paper does not measure: how well F, linear on the cells, approximates the volume.
 ///
 /// Three counts and two kinds of weights keep it short; `walpha interpolate --curve` has more.
 pub(super) fn error_against_points(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {

@@ -28,7 +28,7 @@ pub struct PlaneComplex {
     pub triangles: Simplices<3>,
     /// Edges: interior between two triangles of the shape, regular at one, singular at none.
     pub edges: Simplices<2>,
-    /// Vertices: singular ones stand alone, interior ones have triangles of the shape all around.
+    /// Vertices: singular ones are isolated, interior ones have triangles of the shape all around.
     pub vertices: Simplices<1>,
 }
 

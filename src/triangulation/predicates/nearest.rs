@@ -1,4 +1,4 @@
-//! Squared radii as numbers: the nearest double, and the exact number where that does not tell two
+//! Squared radii as numbers: the nearest double, and the exact number where that does not distinguish two
 //! apart.
 
 use super::formulas::{Ray, quotient};

@@ -53,7 +53,7 @@ pub(super) enum Kind {
     Scalar,
     /// One number for each row of another array.
     Column(&'static str),
-    /// Rows of so many numbers, no two alike.
+    /// Rows of so many distinct numbers.
     Rows(u64),
 }
 

@@ -8,7 +8,7 @@ use crate::npy::Header;
 /// Bytes decoded at a time, so that an array and its numbers are not in memory together.
 const CHUNK_BYTES: usize = 8 << 20;
 
-/// All elements of an array in the order of the file. The reader stands behind the header, and
+/// All elements of an array in the order of the file. The reader is positioned after the header, and
 /// holds `bytes` more, which must be exactly what the header claims.
 pub(super) fn read(
     name: &'static str,

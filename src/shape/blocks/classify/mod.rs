@@ -83,7 +83,7 @@ impl Local<'_> {
     }
 }
 
-/// The points that hang together with another one, and that one, by input index.
+/// Points and the representative of their component, by input index.
 fn joined(components: &mut UnionFind, input: &[u32]) -> Vec<[u32; 2]> {
     let pair = |v: u32| {
         let root = components.find(v);

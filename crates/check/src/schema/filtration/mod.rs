@@ -37,7 +37,7 @@ use crate::Alpha;
 ///   shape, and off its boundary; `"inf"` where they never are. All three may be missing.
 /// - `pairs` are persistence pairs by these numbers whose simplices have different values:
 ///   `components` (a vertex and the edge that ends it), `lasting` (vertices whose components never
-///   end), `voids` (a facet and the cell that fills what it has shut in).
+///   end), `voids` (a facet that closes a void, and the cell that fills it).
 /// - `hidden`, `duplicates` and `info` are as in a complex.
 ///
 /// In NPZ the same names are arrays, and of those with dimensions `vertex_values`, `edge_values`,
@@ -102,7 +102,7 @@ pub struct Values {
     pub cells: Vec<Alpha>,
 }
 
-/// Something of each simplex that is no cell, by dimension.
+/// A value for each vertex, edge and facet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Below<T> {
@@ -122,7 +122,7 @@ pub struct PairsFile {
     pub components: Vec<[u32; 2]>,
     /// Vertices whose components last for ever.
     pub lasting: Vec<u32>,
-    /// A facet, and the cell that fills the void that it has shut in.
+    /// A facet that closes a void, and the cell that fills it.
     pub voids: Vec<[u32; 2]>,
 }
 
