@@ -124,7 +124,7 @@ mod bridge {
     }
 
     /// Include folders in the order they are tried. `CGAL_DIR` may be the prefix, its include folder,
-    /// or the folder of `CGALConfig.cmake`, as CMake takes it.
+    /// or the folder of `CGALConfig.cmake`, as `CMake` takes it.
     fn candidates() -> Vec<Option<PathBuf>> {
         let mut found = Vec::new();
         if let Some(dir) = env::var_os("CGAL_DIR").map(PathBuf::from) {

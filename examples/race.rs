@@ -69,8 +69,8 @@ fn triangulations() -> Result<()> {
     for set in ["skull@128", "random@128000", "skull@256", "random@1000000"] {
         let points = race.points(set, "common=0", 1.0)?;
         let plain = || race.plain(&points, "triangulation");
-        let native = || race.engine("triangulation", &points, 0.0, 1, None);
-        let hxt = || race.hxt(&points);
+        let native = || run_engine("triangulation", &points, 0.0, 1, None);
+        let hxt = || hxt(&points);
         let gmsh = std::env::var_os("GMSH_PYTHON").is_some();
         let runs: Vec<&dyn Fn() -> Result<Run>> =
             if gmsh { vec![&plain, &native, &hxt] } else { vec![&plain, &native] };
@@ -137,7 +137,7 @@ impl Race {
         let plain = || self.plain(&points, &alpha.to_string());
         let points = &points;
         let by = |engine: &'static str, threads| {
-            move || self.engine(engine, points, alpha, threads, None)
+            move || run_engine(engine, points, alpha, threads, None)
         };
         let (cgal, cgals) = (by("cgal", 1), by("cgal", THREADS));
         let (native, natives) = (by("native", 1), by("native", THREADS));
@@ -146,7 +146,7 @@ impl Race {
         let time = |k: usize| format!("{:.2} s ({:.1}×)", runs[k].seconds, base / runs[k].seconds);
         let mebibytes = |bytes: u64| format!("{} MiB", bytes >> 20);
         // A small set may not do with so little: threads and code take some, too.
-        let least = self.engine("native", points, alpha, THREADS, Some(runs[0].peak / 4));
+        let least = run_engine("native", points, alpha, THREADS, Some(runs[0].peak / 4));
         println!(
             "| {set} | {count} | {weighting} | {alpha} | {base:.2} s | {} | {} | {} | {} | {} | {} | {} | {} |",
             time(1),
@@ -174,27 +174,26 @@ impl Race {
     fn plain(&self, points: &Path, what: &str) -> Result<Run> {
         output(Command::new(&self.plain).arg(points).arg(what))
     }
+}
 
-    fn engine(
-        &self,
-        engine: &str,
-        points: &Path,
-        alpha: f64,
-        threads: usize,
-        memory: Option<u64>,
-    ) -> Result<Run> {
-        let memory = memory.map_or("-".to_owned(), |bytes| bytes.to_string());
-        let mut command = Command::new(std::env::current_exe()?);
-        command.args(["run", engine]).arg(points);
-        output(command.args([alpha.to_string(), threads.to_string(), memory]))
-    }
+fn run_engine(
+    engine: &str,
+    points: &Path,
+    alpha: f64,
+    threads: usize,
+    memory: Option<u64>,
+) -> Result<Run> {
+    let memory = memory.map_or("-".to_owned(), |bytes| bytes.to_string());
+    let mut command = Command::new(std::env::current_exe()?);
+    command.args(["run", engine]).arg(points);
+    output(command.args([alpha.to_string(), threads.to_string(), memory]))
+}
 
-    /// Gmsh's parallel Delaunay triangulation, on one thread.
-    fn hxt(&self, points: &Path) -> Result<Run> {
-        let python = std::env::var_os("GMSH_PYTHON").ok_or("GMSH_PYTHON is not set")?;
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/race_gmsh.py");
-        output(Command::new(python).arg(script).arg(points))
-    }
+/// Gmsh's parallel Delaunay triangulation, on one thread.
+fn hxt(points: &Path) -> Result<Run> {
+    let python = std::env::var_os("GMSH_PYTHON").ok_or("GMSH_PYTHON is not set")?;
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/race_gmsh.py");
+    output(Command::new(python).arg(script).arg(points))
 }
 
 /// Runs everything in turn, several times; gives the medians of times and peaks.

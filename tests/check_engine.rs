@@ -15,7 +15,7 @@ fn agree(case: &Case) -> bool {
     for which in [Engine::Reference, Engine::Cgal, Engine::Native] {
         match (&expected, engine_of(case, which)) {
             (Ok(expected), Ok(got)) => {
-                assert!(*expected == got, "{which:?} {case:?}\nexpected {expected:?}\ngot {got:?}")
+                assert!(*expected == got, "{which:?} {case:?}\nexpected {expected:?}\ngot {got:?}");
             }
             (Err(_), Err(_)) => {}
             (expected, got) => {

@@ -19,7 +19,7 @@ fn points() -> WeightedPoints {
     WeightedPoints { positions, weights, values: None }
 }
 
-/// The two files of a shape say the same, also when NumPy has compressed one of them.
+/// The two files of a shape say the same, also when `NumPy` has compressed one of them.
 #[test]
 fn npz_is_json() {
     let points = points();

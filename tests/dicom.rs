@@ -39,11 +39,11 @@ fn slice(number: i16, z: f64) -> Slice {
     }
 }
 
-fn element(group: u16, number: u16, kind: &[u8; 2], value: &[u8]) -> Vec<u8> {
+fn element(group: u16, number: u16, kind: &[u8], value: &[u8]) -> Vec<u8> {
     let mut bytes = [group.to_le_bytes(), number.to_le_bytes()].concat();
     bytes.extend(kind);
     let length = value.len() + value.len() % 2;
-    if [b"OW", b"OB", b"SQ"].contains(&kind) {
+    if [b"OW", b"OB", b"SQ"].iter().any(|long| kind == *long) {
         bytes.extend([0, 0]);
         bytes.extend((length as u32).to_le_bytes());
     } else {
@@ -104,7 +104,7 @@ impl Slice {
         }
         elements.sort_by_key(|e| (e.0, e.1));
         let data: Vec<u8> =
-            elements.iter().flat_map(|(g, n, k, v)| element(*g, *n, k, v)).collect();
+            elements.iter().flat_map(|(g, n, k, v)| element(*g, *n, k.as_slice(), v)).collect();
         let length = element(2, 0, b"UL", &(meta.len() as u32).to_le_bytes());
         [&[0; 128][..], b"DICM", &length, &meta, &data].concat()
     }

@@ -282,7 +282,7 @@ fn file(ordered: &Ordered<'_>) -> FiltrationFile {
     let json = FiltrationFile::read_json(&written(ordered, "json")[..]).unwrap();
     let npz = Cursor::new(written(ordered, "npz"));
     let mut npz = FiltrationFile::read_npz(npz).unwrap();
-    npz.info = json.info.clone();
+    npz.info.clone_from(&json.info);
     assert_eq!(npz, json);
     json
 }

@@ -20,7 +20,7 @@ fn shape(points: &Points, weighting: Weighting, alpha: f64) -> AlphaShape {
     alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(alpha).unwrap())).unwrap()
 }
 
-/// Counts of plain CGAL over points selected by NumPy.
+/// Counts of plain CGAL over points selected by `NumPy`.
 #[test]
 fn plain_cgal_counts_the_same() {
     if !has_skull() {

@@ -120,7 +120,7 @@ fn sheets_that_share_both_ends_are_bent_apart() {
     let values = shape.points().values.as_ref().unwrap();
     let value = solid.numbers(values).last().unwrap();
     let ends = solid.midpoints[0].map(|v| values[solid.vertices[v as usize] as usize]);
-    assert_eq!(value, (ends[0] + ends[1]) / 2.0, "F is linear on an edge");
+    assert_eq!(value, f64::midpoint(ends[0], ends[1]), "F is linear on an edge");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::volume::UnknownFormat;
 use super::progress;
 use super::said::{Said, advice};
 
-/// Whether standard error takes colours: a terminal, and NO_COLOR is not set (<https://no-color.org>).
+/// Whether standard error takes colours: a terminal, and `NO_COLOR` is not set (<https://no-color.org>).
 pub fn coloured() -> bool {
     let forbidden = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     std::io::stderr().is_terminal() && !forbidden
@@ -79,10 +79,10 @@ pub fn tell_usage(command: &str, error: &clap::Error, configured: bool) {
         Some(values) => (format!("it is one of {}", values.trim_end_matches(']')), None),
         None => (rest, error.source().and_then(advice)),
     };
-    let why = if !why.is_empty() {
-        why
-    } else {
+    let why = if why.is_empty() {
         usage.map_or_else(|| format!("{command} does not take it"), |u| format!("the usage is {u}"))
+    } else {
+        why
     };
     tips.extend(next);
     if configured {

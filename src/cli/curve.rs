@@ -59,7 +59,7 @@ pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Resu
         Method::Haar => "truncated Haar",
     };
     let curve =
-        error_curve(&volume, &smoothed, &options, &mut |method| progress.show(show(method)))?;
+        error_curve(&volume, &smoothed, &options, &mut |method| Progress::show(show(method)))?;
     let mut csv = Vec::new();
     write_curve_csv(&curve, range.step(), &mut csv)?;
     let alpha = options.alpha.squared();

@@ -104,12 +104,11 @@ impl Info {
         }
         let volume = volume::open(input, &options).map_err(pipeline::with_points)?;
         let (min, max) = volume.value_range();
-        let (format, data_files) = match input.starts_with("sample:") {
-            true => ("sample".to_owned(), Vec::new()),
-            false => {
-                let path = input.as_ref();
-                (volume::format_name(path, &options)?, volume::data_files(path, &options)?)
-            }
+        let (format, data_files) = if input.starts_with("sample:") {
+            ("sample".to_owned(), Vec::new())
+        } else {
+            let path = input.as_ref();
+            (volume::format_name(path, &options)?, volume::data_files(path, &options)?)
         };
         Ok(Content::Volume {
             format,

@@ -69,6 +69,7 @@ const VERSION: &str = concat!(
 /// Options of every command.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = EVERY_COMMAND)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
 struct Global {
     /// Print one JSON object instead of text.
     #[arg(long, global = true)]

@@ -69,7 +69,7 @@ impl Progress {
         self.end();
         // In this order: each of them draws.
         BAR.set_style(style(STAGE));
-        self.show(stage.name());
+        Self::show(stage.name());
         BAR.unset_length();
         BAR.reset();
         self.running = Some((stage, Instant::now()));
@@ -86,7 +86,7 @@ impl Progress {
     }
 
     /// Shows what is at work, without timing it: a step of the stage before.
-    pub fn show(&self, name: &'static str) {
+    pub fn show(name: &'static str) {
         BAR.set_message(name);
     }
 

@@ -49,7 +49,7 @@ impl Reproduce {
         let (volume, range) = volume.into_gray(Gray::Automatic)?;
         let date = today();
         let subject = Subject { volume: &volume, range, name: &name, date: &date };
-        let made = reproduce(&subject, &mut |stage| progress.show(stage))?;
+        let made = reproduce(&subject, &mut |stage| Progress::show(stage))?;
         let mut files = made.files;
         files.push(File {
             name: "report.html".into(),
@@ -91,7 +91,7 @@ impl Reproduce {
     }
 }
 
-/// The day in UTC, or that of SOURCE_DATE_EPOCH (<https://reproducible-builds.org/specs/source-date-epoch/>).
+/// The day in UTC, or that of `SOURCE_DATE_EPOCH` (<https://reproducible-builds.org/specs/source-date-epoch/>).
 fn today() -> String {
     let asked = std::env::var("SOURCE_DATE_EPOCH").ok().and_then(|seconds| seconds.parse().ok());
     // Beyond the year 9999 it is a mistake.

@@ -8,7 +8,7 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 use super::Exporter;
 use crate::shape::{AlphaShape, Class, NO_COMPONENT};
 
-/// NPZ, NumPy's archive of arrays: the complex with its points, power weights and α, in the
+/// NPZ, `NumPy`'s archive of arrays: the complex with its points, power weights and α, in the
 /// [`schema`](crate::check::schema) that `walpha check` and `walpha compare` read, as in
 /// [`Json`](super::Json). Beside it, where known: `values` of all points; `components` (n), the number
 /// of each point's component, −1 for points that are not in the shape; `boundary_sheets` (k×2), the

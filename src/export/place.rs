@@ -122,6 +122,7 @@ impl Drop for Claim {
 }
 
 #[cfg(unix)]
+#[expect(clippy::unnecessary_wraps, reason = "elsewhere there is none")]
 fn number(existing: &Metadata) -> Option<(u64, u64)> {
     use std::os::unix::fs::MetadataExt;
     Some((existing.dev(), existing.ino()))

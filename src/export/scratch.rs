@@ -28,6 +28,7 @@ impl Scratch {
     }
 
     /// Where it is.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn path(&self) -> &Path {
         self.temporary.path().expect("it is never taken")
     }

@@ -60,9 +60,10 @@ impl Entry {
     fn remove(&self) {
         // It may have gone by itself; there is nobody to tell.
         #[cfg(unix)]
-        let _ = match self.folder {
-            true => rustix::fs::rmdir(&*self.name),
-            false => rustix::fs::unlink(&*self.name),
+        let _ = if self.folder {
+            rustix::fs::rmdir(&*self.name)
+        } else {
+            rustix::fs::unlink(&*self.name)
         };
         #[cfg(not(unix))]
         let _ = match self.folder {

@@ -111,6 +111,7 @@ impl Coefficients {
     ///
     /// # Errors
     /// [`HaarError::Tolerance`] when the tolerance is negative or NaN.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn truncate(&mut self, asked: Tolerance) -> Result<Truncation, HaarError> {
         asked.check()?;
         let values = self.values.as_slice_mut().expect("standard layout");

@@ -58,6 +58,7 @@ impl Deviation {
     }
 
     /// The same where a gray level is `step` of another unit.
+    #[must_use]
     pub fn scaled(&self, step: f64) -> Self {
         let scaled = |error: Option<f64>| error.map(|error| error * step);
         Self { rmse: scaled(self.rmse), max: scaled(self.max), ..*self }

@@ -20,6 +20,7 @@ impl Interpolant<'_> {
     ///
     /// # Errors
     /// Values that pass the range of `f32`; no memory for as many samples.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn resample(&self, grid: &Grid) -> Result<Resampled, InterpolateError> {
         let owners = owners(self, grid)?;
         let [nx, ny, _] = grid.dims().xyz();
@@ -69,6 +70,7 @@ impl Resampled {
     ///
     /// # Errors
     /// No memory for it.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn mask(&self) -> Result<Volume, InterpolateError> {
         let dims = self.volume.dims();
         let mut inside = room(dims.samples(), || format!("a mask of {dims} samples"))?;

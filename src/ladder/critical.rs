@@ -73,6 +73,7 @@ impl Filtration {
 
     /// The smallest α at which all points are in at most so many solid components; as
     /// [`Filtration::one_region`], of CGAL's `Alpha_shape_3::find_optimal_alpha`. O(n log n).
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn optimal_alpha(&self, components: NonZeroU64) -> Alpha {
         let values = self.values();
         let levels = self.levels_of(&values);
@@ -111,6 +112,7 @@ impl Filtration {
     }
 
     /// What α to try. O(n).
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn suggest(&self, curve: &Curve) -> Suggestions {
         let last = curve.values.len() - 1;
         let from = |start: usize, holds: &dyn Fn(usize) -> bool| {

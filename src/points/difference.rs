@@ -11,6 +11,7 @@ const ROWS: usize = 32;
 ///
 /// In double precision: the six differences are exact unless samples differ 2²⁸-fold in magnitude, so
 /// voxels of equal L have the same double, and it is the one nearest to L. O(n), parallel.
+#[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn difference(volume: &Volume) -> Array3<f64> {
     let [nx, ny, nz] = volume.dims().xyz();
     let samples = volume.as_slice();

@@ -158,6 +158,10 @@ pub static FORMATS: [PointFormat; 11] = [
 ];
 
 /// Whether a file of VTK's XML holds points.
+#[cfg_attr(
+    not(feature = "formats"),
+    expect(clippy::unnecessary_wraps, reason = "the file is not read")
+)]
 fn is_geometry(path: &Path) -> Result<bool, PointsError> {
     #[cfg(feature = "formats")]
     return vtk::holds_points(path);
@@ -187,12 +191,11 @@ impl PointFormat {
         path: &Path,
         columns: Option<&Columns>,
     ) -> Result<Points, PointsError> {
-        match self.read {
-            Some(read) => read(path, columns),
-            None => {
-                let (what, feature) = (self.name, self.feature.unwrap_or_default());
-                Err(format(path, Reason::Without { what, feature }))
-            }
+        if let Some(read) = self.read {
+            read(path, columns)
+        } else {
+            let (what, feature) = (self.name, self.feature.unwrap_or_default());
+            Err(format(path, Reason::Without { what, feature }))
         }
     }
 }

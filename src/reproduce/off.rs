@@ -33,7 +33,7 @@ impl OffMesh {
             .map(|(k, line)| (k + 1, line.split('#').next().unwrap_or("").trim()))
             .filter(|(_, line)| !line.is_empty());
         let mut next = |expected| {
-            let missing = || OffError { line: text.lines().count(), expected, got: "".into() };
+            let missing = || OffError { line: text.lines().count(), expected, got: String::new() };
             lines.next().ok_or_else(missing)
         };
         let (line, word) = next("the word OFF")?;

@@ -81,11 +81,10 @@ impl ShapeOptions {
         }
         let unbounded = |by| Err(ShapeError::Unbounded { by });
         match self.memory {
-            None => Ok(()),
             Some(_) if self.engine == Engine::Reference => unbounded(Whole::Reference),
             Some(_) if self.exterior => unbounded(Whole::Exterior),
             Some(_) if power_alpha(self) == Alpha::INFINITE => unbounded(Whole::Hull),
-            Some(_) => Ok(()),
+            _ => Ok(()),
         }
     }
 }
@@ -375,6 +374,7 @@ impl AlphaShape {
     }
 
     /// The same shape, said to stand in these coordinates. Numbers stay what they are.
+    #[must_use]
     pub fn meaning(self, coordinates: Coordinates) -> Self {
         Self { coordinates, ..self }
     }

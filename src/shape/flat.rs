@@ -103,6 +103,7 @@ fn by_input<const N: usize>(mut simplices: Simplices<N>, input: &[u32]) -> Simpl
 ///
 /// # Errors
 /// As [`alpha_shape`](super::alpha_shape).
+#[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn flat_region(points: &WeightedPoints) -> Result<Alpha, ShapeError> {
     let sites = Sites::any(&points.positions, &points.weights)?;
     let Flat { triangles, edges, vertices } = triangulate_flat(&sites, Maker::Native)?;

@@ -29,6 +29,7 @@ impl Surface {
     /// vertices between others occur once for each fan. Where that leaves an edge on four facets, as both
     /// of its ends are in one fan, two of them get a vertex in its middle. No place moves, but for the
     /// rounding of such middles. O(n log n).
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn solid(shape: &AlphaShape) -> (Self, Cuts) {
         let whole = Self::of(shape);
         let pairs = Pairs::of(shape, &whole);

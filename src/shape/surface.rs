@@ -25,6 +25,7 @@ pub struct Surface {
 
 impl Surface {
     /// The surface of a shape. O(n log n).
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn of(shape: &AlphaShape) -> Self {
         let complex = shape.complex();
         let regular: Vec<_> = complex.facets.of(Class::Regular).copied().collect();

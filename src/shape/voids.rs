@@ -161,7 +161,7 @@ mod tests {
         let weights = vec![0.0; positions.len()];
         let points = WeightedPoints { positions, weights, values: None };
         let alpha = Alpha::from_squared(alpha).unwrap();
-        let options = ShapeOptions { exterior, engine, ..ShapeOptions::new(alpha) };
+        let options = ShapeOptions { engine, exterior, ..ShapeOptions::new(alpha) };
         alpha_shape(points, &options).unwrap()
     }
 

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Space {
-    /// x to the left, y to the back, z to the head: DICOM, ITK, MetaImage.
+    /// x to the left, y to the back, z to the head: DICOM, ITK, `MetaImage`.
     #[serde(rename = "LPS")]
     Lps,
-    /// x to the right, y to the front, z to the head: NIfTI.
+    /// x to the right, y to the front, z to the head: `NIfTI`.
     #[serde(rename = "RAS")]
     Ras,
     /// x to the left, y to the front, z to the head: some NRRD files.
@@ -142,7 +142,7 @@ impl LengthUnit {
         }
     }
 
-    /// The unit that a file names, in the spellings of NRRD, MetaImage, ImageJ, OME-XML and OME-Zarr.
+    /// The unit that a file names, in the spellings of NRRD, `MetaImage`, `ImageJ`, OME-XML and OME-Zarr.
     /// A name that is not understood is [`LengthUnit::Unstated`].
     pub fn named(name: &str) -> Self {
         let name = name.trim().trim_matches('"').trim().to_lowercase();

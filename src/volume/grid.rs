@@ -134,12 +134,14 @@ impl Frame {
     }
 
     /// The same numbers, declared to be in these coordinates.
+    #[must_use]
     pub fn meaning(self, coordinates: Coordinates) -> Self {
         Self { coordinates, ..self }
     }
 
     /// The same places in other coordinates, as far as both are known: axes are turned, and lengths
     /// converted. What is not known stays as it is. Signs are exact, lengths rounded once.
+    #[must_use]
     pub fn to(self, coordinates: Coordinates) -> Self {
         let conversion: Conversion = self.coordinates.to(coordinates);
         let columns = [0, 1, 2].map(|c| conversion.direction(self.direction.map(|row| row[c])));
@@ -153,6 +155,7 @@ impl Frame {
 
     /// The grid of every `step`-th sample from the sample `first` on, both as (x, y, z); fractions
     /// are places between samples.
+    #[must_use]
     pub fn part(self, first: [f64; 3], step: [f64; 3]) -> Self {
         let spacing = [0, 1, 2].map(|k| self.spacing[k] * step[k]);
         Self { origin: self.to_world(first), spacing, ..self }

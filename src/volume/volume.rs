@@ -135,6 +135,7 @@ impl Volume {
     }
 
     /// Says that the samples are gray levels 0..255 already, as those of unsigned 8-bit files are.
+    #[must_use]
     pub fn with_gray_levels(mut self) -> Self {
         self.gray_levels = true;
         self
@@ -156,6 +157,7 @@ impl Volume {
     }
 
     /// The same samples on another grid, or in other coordinates.
+    #[must_use]
     pub fn with_frame(self, frame: Frame) -> Self {
         Self { frame, ..self }
     }
@@ -166,6 +168,7 @@ impl Volume {
     }
 
     /// The samples in memory order: voxel (x, y, z) at `x + X·(y + Y·z)`.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn as_slice(&self) -> &[f32] {
         self.samples.as_slice().expect("standard layout is an invariant of Volume")
     }
@@ -216,6 +219,7 @@ impl Volume {
 impl Volume {
     /// The volume with the values that its gray levels represent: the inverse of [`Volume::into_gray`].
     /// In place.
+    #[must_use]
     pub fn into_values(mut self, range: &GrayRange) -> Self {
         if !range.is_identity() {
             self.samples.par_mapv_inplace(|gray| range.value(gray.into()) as f32);

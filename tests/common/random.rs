@@ -1,4 +1,4 @@
-//! Random numbers that are the same everywhere (SplitMix64).
+//! Random numbers that are the same everywhere (`SplitMix64`).
 #![allow(dead_code, reason = "each program uses its part")]
 
 /// Its state; any seed will do.

@@ -1,9 +1,11 @@
+//! A row for each damage: the file, and what its error says.
+
 use ndarray::Array3;
 
 use crate::files::*;
 
 #[test]
-fn damaged_volumes_say_what_is_wrong() {
+fn a_damaged_nrrd_says_what_is_wrong() {
     let n = |from: &'static str, to: &'static str| nrrd(move |h| h.replace(from, to), &shorts());
     refuses("v.nrrd", "hello", &["no NRRD file"]);
     refuses("v.nrrd", NRRD, &["truncated"]);
@@ -35,7 +37,10 @@ fn damaged_volumes_say_what_is_wrong() {
     );
     let large = words.replace("twelve", "40000");
     refuses("v.nrrd", nrrd(|h| h.replace("raw", "text"), large.as_bytes()), &["no i16"]);
+}
 
+#[test]
+fn a_damaged_metaimage_says_what_is_wrong() {
     let m = |from: &str, to: &str, tail: &str| {
         [MHA.replace(from, to).as_bytes(), tail.as_bytes(), &shorts()].concat()
     };
@@ -51,7 +56,10 @@ fn damaged_volumes_say_what_is_wrong() {
     refuses("v.mha", m("NDims", "ElementNumberOfChannels = 3\nNDims", local), &["only scalar"]);
     refuses("v.mha", m("NDims", "CompressedData = True\nNDims", local), &["encoded data"]);
     refuses("v.mha", m("NDims", "ElementSpacing = 1 2\nNDims", local), &["not 3 numbers"]);
+}
 
+#[test]
+fn a_damaged_vtk_says_what_is_wrong() {
     let v = |from: &str, to: &str| VTK.replace(from, to) + "0 1 2 3 4 5 6 7 8 9 10 11\n";
     refuses("v.vtk", "hello", &["no legacy VTK"]);
     refuses("v.vtk", v("STRUCTURED_POINTS", "POLYDATA"), &["POLYDATA"]);
@@ -65,7 +73,10 @@ fn damaged_volumes_say_what_is_wrong() {
     refuses("v.vtk", v("ASCII", "BINARY"), &["bytes behind the 24"]);
     refuses("v.vtk", v("ASCII\n", ""), &["no ASCII or BINARY"]);
     refuses("v.vtk", &VTK[..90], &["\"SPACIN\""]);
+}
 
+#[test]
+fn a_damaged_vti_says_what_is_wrong() {
     let text = "format=\"ascii\">0 1 2 3 4 5 6 7 8 9 10 11";
     let x = |from: &str, to: &str| {
         String::from_utf8(vti("", text, b"")).unwrap().replace(from, to).into_bytes()
@@ -90,7 +101,10 @@ fn damaged_volumes_say_what_is_wrong() {
         vti("compressor=\"vtkZLibDataCompressor\"", &blocks, b""),
         &["compressed blocks"],
     );
+}
 
+#[test]
+fn a_damaged_nifti_says_what_is_wrong() {
     let (_, nifti) = examples().into_iter().find(|(name, _)| *name == "one.nii").unwrap();
     let with = |place: usize, value: &[u8]| {
         let mut bytes = nifti.clone();
@@ -109,7 +123,10 @@ fn damaged_volumes_say_what_is_wrong() {
     refuses("v.nii", with(40, &[4, 0, 3, 0, 2, 0, 2, 0, 2, 0]), &["2 volumes", "`frame`"]);
     refuses("v.nii", with(108, &1e9f32.to_le_bytes()), &["ends before its samples"]);
     refuses("v.nii.gz", gzip(&nifti[..300]), &["truncated"]);
+}
 
+#[test]
+fn a_damaged_tiff_says_what_is_wrong() {
     let pages = tiff(2, None);
     refuses("v.tif", &pages[..pages.len() - 9], &["v.tif"]);
     refuses("v.tif", &pages[..9], &["truncated"]);
@@ -118,11 +135,18 @@ fn damaged_volumes_say_what_is_wrong() {
     refuses("v.tif", tiff(2, Some("<OME><Pixels SizeZ=\"x\"/></OME>")), &["OME-XML"]);
     let many = "ImageJ=1.53\nimages=1000\nslices=1000\n";
     refuses("v.tif", tiff(1, Some(many)), &["12000 bytes"]);
+}
 
+#[test]
+fn a_damaged_npz_says_what_is_wrong() {
     let array = Array3::zeros((1, 1, 1));
     refuses("v.npz", npz(&[]), &["no array of three axes"]);
     refuses("v.npz", npz(&[("a", &array), ("b", &array)]), &["a.npy, b.npy"]);
     refuses("v.npz", &npz(&[("a", &array)])[..40], &["no NPZ archive"]);
+}
+
+#[test]
+fn files_of_no_known_format_are_refused() {
     refuses("v.bin", b"\x89HDF\r\n\x1a\n rest", &["HDF5"]);
     refuses("v.png", b"\x89PNG\r\n\x1a\n rest", &["folder of all slices"]);
     refuses("v.gz", gzip(b"something else"), &["holds no format known"]);

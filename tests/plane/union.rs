@@ -40,7 +40,7 @@ pub fn outline(discs: &[Disc]) -> Vec<Arc> {
             Some(&first) => {
                 let next = ends.iter().copied().skip(1).chain([first + TAU]);
                 let pieces = ends.iter().copied().zip(next);
-                let free = pieces.filter(|&(from, to)| free((from + to) / 2.0));
+                let free = pieces.filter(|&(from, to)| free(f64::midpoint(from, to)));
                 arcs.extend(free.map(|(from, to)| arc(at(from), at(to))));
             }
         }

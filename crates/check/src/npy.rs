@@ -1,4 +1,4 @@
-//! NPY, NumPy's file of one array (versions 1 to 3 of `numpy.lib.format`).
+//! NPY, `NumPy`'s file of one array (versions 1 to 3 of `numpy.lib.format`).
 //!
 //! ```
 //! use walpha_check::npy::Header;
@@ -15,14 +15,14 @@ use std::io::{self, ErrorKind, Read};
 
 /// The first bytes of every NPY file.
 pub const MAGIC: &[u8] = b"\x93NUMPY";
-/// NumPy itself refuses longer headers than this as unsafe.
+/// `NumPy` itself refuses longer headers than this as unsafe.
 const MAX_HEADER: u64 = 10_000;
 
 /// What an NPY file says of its array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Header {
-    /// The element type as NumPy writes it, such as `<f4` or `|u1`; text without meaning for a
+    /// The element type as `NumPy` writes it, such as `<f4` or `|u1`; text without meaning for a
     /// structured type.
     pub descr: String,
     /// The first axis is the fastest in the file.
@@ -46,10 +46,10 @@ pub enum NpyError {
     /// The first bytes are others.
     #[error("is not an NPY file: it does not begin with \\x93NUMPY")]
     Magic,
-    /// A version of the format that NumPy does not write.
+    /// A version of the format that `NumPy` does not write.
     #[error("is NPY version {0}: 1, 2 and 3 are read")]
     Version(u8),
-    /// A header longer than NumPy accepts.
+    /// A header longer than `NumPy` accepts.
     #[error("has an NPY header of {0} bytes: it is damaged")]
     Length(u64),
     /// The header is not the dictionary it should be.

@@ -27,6 +27,7 @@ impl<'a> Placed<'a> {
     }
 
     /// Another complex over the same points, at the same α.
+    #[must_use]
     pub fn with_complex(self, complex: &'a Complex) -> Self {
         Self { complex, ..self }
     }

@@ -139,7 +139,7 @@ fn damage_makes_errors_or_findings() {
     for file in files() {
         for _ in 0..1500 {
             let mut bytes = file.clone();
-            for _ in 0..1 + random.below(4) {
+            for _ in 0..=random.below(4) {
                 let at = random.below(bytes.len());
                 let digit = b'0' + random.below(10) as u8;
                 bytes[at] = random.pick(&[digit, digit, 0, 0xff, b'-', b',']);

@@ -92,7 +92,7 @@ pub struct PlaceArgs {
 impl PlaceArgs {
     /// What the coordinates of this volume's points are measured in, and the volume in the space that
     /// they are in.
-    pub fn place(&self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
+    pub fn place(self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
         let Coordinates { space, unit } = volume.frame().coordinates;
         let silent = if unit == LengthUnit::Voxel { Units::Voxel } else { Units::World };
         let units = self.units.unwrap_or(silent);

@@ -90,7 +90,7 @@ impl Ladder {
     pub(super) fn over_detail(
         &self,
         global: Global,
-        meshes: Vec<Mesh>,
+        meshes: &[Mesh],
         mut folder: Folder,
     ) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
@@ -125,7 +125,7 @@ impl Ladder {
             let shape = shape.meaning(coordinates);
             let mut row = Row::of(&shape, &truncation, &domain);
             progress.stage(Stage::Write, || -> anyhow::Result<()> {
-                for mesh in &meshes {
+                for mesh in meshes {
                     let name = format!("detail-{}.{}", wanted.name, mesh.extension);
                     row.bytes += folder.write(&name, |out| mesh.exporter.write(&shape, out))?;
                     row.files.push(name);
@@ -199,13 +199,13 @@ impl Stages<'_> {
         options: &HaarOptions,
         selection: &Selection,
     ) -> anyhow::Result<(Points, Truncation)> {
-        let (_, smoothed, truncation) = match self.smoothed.take().filter(|s| s.0 == *options) {
-            Some(known) => self.smoothed.insert(known),
-            None => {
+        let (_, smoothed, truncation) =
+            if let Some(known) = self.smoothed.take().filter(|s| s.0 == *options) {
+                self.smoothed.insert(known)
+            } else {
                 let (smoothed, truncation) = haar::smooth(self.volume, options)?;
                 self.smoothed.insert((*options, smoothed, truncation))
-            }
-        };
+            };
         let points = select(self.volume, smoothed, &difference(smoothed), selection, self.units)?;
         Ok((points, *truncation))
     }

@@ -276,7 +276,7 @@ pub fn write_voids(ladder: &Ladder, out: &mut dyn io::Write) -> io::Result<()> {
                     .concat();
             let record = [level.alpha.to_string(), void.cells.to_string()]
                 .into_iter()
-                .chain(numbers.iter().map(|number| number.to_string()));
+                .chain(numbers.iter().map(ToString::to_string));
             csv.write_record(record)?;
         }
     }

@@ -89,9 +89,10 @@ impl Ladder {
         once("--counts", &self.counts)?;
         once("--epsilons", &self.epsilons)?;
         let meshes = meshes(&self.mesh, if detail { &["ply"] } else { &[] })?;
-        let names: &[&str] = match detail {
-            true => &["detail.csv", "detail.json"],
-            false => &[
+        let names: &[&str] = if detail {
+            &["detail.csv", "detail.json"]
+        } else {
+            &[
                 "ladder.csv",
                 "voids.csv",
                 #[cfg(feature = "render")]
@@ -99,19 +100,19 @@ impl Ladder {
                 #[cfg(feature = "render")]
                 "ladder.svg",
                 "ladder.json",
-            ],
+            ]
         };
         let folder = Folder::open(&self.output, "--output", names)?;
         if detail {
-            return self.over_detail(global, meshes, folder);
+            return self.over_detail(global, &meshes, folder);
         }
-        self.over_alpha(global, meshes, folder)
+        self.over_alpha(global, &meshes, folder)
     }
 
     fn over_alpha(
         &self,
         global: Global,
-        meshes: Vec<Mesh>,
+        meshes: &[Mesh],
         mut folder: Folder,
     ) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
@@ -148,7 +149,7 @@ impl Ladder {
                 folder.write("ladder.png", |out| out.write_all(&png))?;
                 folder.write("ladder.svg", |out| out.write_all(svg.as_bytes()))?;
             }
-            write_meshes(&levels, &ladder, coordinates, &meshes, &mut folder)
+            write_meshes(&levels, &ladder, coordinates, meshes, &mut folder)
         })?;
         facts.add(&filtration, &curve, suggested, &ladder);
         let mut files = folder.written().to_vec();

@@ -1,4 +1,4 @@
-//! What stands in for pictures where the command is built without them: no options, no file.
+//! Replaces pictures where the command is built without them: no options, no files.
 
 use std::path::Path;
 
@@ -17,6 +17,7 @@ impl PictureArgs {
         false
     }
 
+    #[expect(clippy::unused_self, reason = "there are no options")]
     pub fn exporter(self) -> Box<dyn Exporter> {
         unreachable!("no path asks for a picture")
     }

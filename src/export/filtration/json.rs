@@ -32,10 +32,10 @@ fn file(ordered: &Ordered<'_>) -> FiltrationFile {
     fn below<'a, T, I: Iterator<Item = Entry<'a>>>(
         entries: impl Fn(usize) -> I,
         of: fn(Entry<'_>) -> T,
-    ) -> Option<Below<T>> {
+    ) -> Below<T> {
         let [vertices, edges, facets] =
             [0, 1, 2].map(|dimension| entries(dimension).map(of).collect());
-        Some(Below { vertices, edges, facets })
+        Below { vertices, edges, facets }
     }
     FiltrationFile {
         points: whole.points().positions.clone(),
@@ -50,9 +50,9 @@ fn file(ordered: &Ordered<'_>) -> FiltrationFile {
             facets: values(2),
             cells: values(3),
         },
-        gabriel: below(entries, |simplex| simplex.gabriel),
-        regular: below(entries, |simplex| alpha(simplex.regular)),
-        interior: below(entries, |simplex| alpha(simplex.interior)),
+        gabriel: Some(below(entries, |simplex| simplex.gabriel)),
+        regular: Some(below(entries, |simplex| alpha(simplex.regular))),
+        interior: Some(below(entries, |simplex| alpha(simplex.interior))),
         order: ordered.order().to_vec(),
         pairs: Some(PairsFile {
             components: lasting(ordered, &pairs.components),

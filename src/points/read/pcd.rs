@@ -35,7 +35,7 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
             "convert it first",
         )),
     };
-    header.points(rows.map_err(said)?).map_err(said)
+    Ok(header.points(rows.map_err(said)?))
 }
 
 #[derive(Default)]
@@ -117,12 +117,13 @@ impl Header {
             field("weight"),
             field("value").or(field("intensity")),
         ];
-        match fields[..3].iter().all(Option::is_some) {
-            true => Ok(fields),
-            false => Err(Reason::header(format!(
+        if fields[..3].iter().all(Option::is_some) {
+            Ok(fields)
+        } else {
+            Err(Reason::header(format!(
                 "has the fields {}, without x, y or z",
                 self.names.join(", ")
-            ))),
+            )))
         }
     }
 
@@ -174,9 +175,10 @@ impl Header {
         }
         let at = |row: usize, field: &Field| {
             let own = self.sizes[field.index] * self.counts[field.index];
-            let start = match by_field {
-                true => self.points * field.offset + row * own,
-                false => row * width + field.offset,
+            let start = if by_field {
+                self.points * field.offset + row * own
+            } else {
+                row * width + field.offset
             };
             let kind = self.types[field.index].as_str();
             number(kind, &bytes[start..start + self.sizes[field.index]])
@@ -191,7 +193,7 @@ impl Header {
         (0..self.points).map(row).collect()
     }
 
-    fn points(&self, rows: Vec<[Option<f64>; 5]>) -> Result<Points, Reason> {
+    fn points(&self, rows: Vec<[Option<f64>; 5]>) -> Points {
         let placed =
             |row: &[Option<f64>; 5]| row[..3].iter().all(|c| c.is_some_and(|c| !c.is_nan()));
         let kept: Vec<_> = rows.into_iter().filter(placed).collect();
@@ -203,7 +205,7 @@ impl Header {
             );
         }
         let column = |k: usize| kept.iter().map(|row| row[k]).collect();
-        Ok(Points {
+        Points {
             positions: kept
                 .iter()
                 .map(|row| [0, 1, 2].map(|k| row[k].unwrap_or(f64::NAN)))
@@ -211,7 +213,7 @@ impl Header {
             weights: column(3),
             values: column(4),
             differences: None,
-        })
+        }
     }
 }
 

@@ -14,13 +14,12 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let header = Header::read(path, &mut lines)?;
     let left = length - lines.bytes();
     let mut reader = lines.into_inner();
-    let mut numbers = match header.endian {
-        Some(endian) => Numbers::Binary(reader, endian),
-        None => {
-            let mut text = String::new();
-            reader.read_to_string(&mut text).map_err(io_error(path))?;
-            Numbers::Text { text, at: 0 }
-        }
+    let mut numbers = if let Some(endian) = header.endian {
+        Numbers::Binary(reader, endian)
+    } else {
+        let mut text = String::new();
+        reader.read_to_string(&mut text).map_err(io_error(path))?;
+        Numbers::Text { text, at: 0 }
     };
     let mut points = None;
     for element in &header.elements {

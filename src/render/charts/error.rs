@@ -6,6 +6,7 @@ use crate::render::pixels::{PALETTE, Rgb, Size};
 /// The figure of an error curve (see [`error_curve`](crate::interpolate::error_curve)): RMSE of the
 /// filled interpolant, RMSE inside the shape at α (squared), coverage, and how many points are
 /// hidden, over the number of points. A colour for each method; unweighted lines are solid.
+#[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn error_figure(title: &str, alpha: f64, curve: &[CurvePoint]) -> Figure {
     let size = Size::new(800, 640).expect("a size that is right");
     let panel = |title: &str, unit: &str, value: &dyn Fn(&CurvePoint) -> Option<f64>| Panel {

@@ -40,6 +40,7 @@ impl Pen {
     }
 
     /// The same pen, with a broken line.
+    #[must_use]
     pub fn dashed(self) -> Self {
         Self { dashed: true, ..self }
     }

@@ -26,7 +26,7 @@ impl Drawing {
             svg,
             r#"<clipPath id="{name}"><rect x="{x}" y="{y}" width="{w}" height="{h}"/></clipPath>"#
         );
-        let _ = writeln!(svg, r##"<g clip-path="url(#{name})" stroke-linejoin="round">"##);
+        let _ = writeln!(svg, r#"<g clip-path="url(#{name})" stroke-linejoin="round">"#);
         for (shape, pen) in &self.shapes {
             write_shape(svg, shape, pen, &place, unit);
         }
@@ -100,7 +100,7 @@ impl Place {
         if !stretch {
             scale = [scale[0].min(scale[1]); 2];
         }
-        let middle = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
+        let middle = [0, 1].map(|k| f64::midpoint(low[k], high[k]));
         let shift = [
             corner[0] + size[0] / 2.0 - middle[0] * scale[0],
             corner[1] + size[1] / 2.0 + middle[1] * scale[1],

@@ -67,7 +67,7 @@ impl Capsule {
         let lens = &stage.lens;
         let (origin, direction) = lens.ray(x, y);
         let [a, b] = self.ends;
-        let t = self.entry(origin, direction).unwrap_or((a[2] + b[2]) / 2.0);
+        let t = self.entry(origin, direction).unwrap_or(f64::midpoint(a[2], b[2]));
         let p = along(origin, t, direction);
         let axis = sub(b, a);
         let share = dot(axis, sub(p, a)) / dot(axis, axis).max(f64::MIN_POSITIVE);

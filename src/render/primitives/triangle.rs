@@ -112,7 +112,7 @@ impl Triangle {
         let corners = mesh.triangles[self.triangle as usize];
         let places = corners.map(|c| mesh.positions[c as usize]);
         let flat = cross(sub(places[1], places[0]), sub(places[2], places[0]));
-        let weights = self.weights(stage, &places, flat, x, y);
+        let weights = weights(stage, &places, flat, x, y);
         let blend = |each: [V3; 3]| {
             let sum = add(scale(each[0], weights[0]), scale(each[1], weights[1]));
             along(sum, weights[2], each[2])
@@ -142,21 +142,20 @@ impl Triangle {
         let [mean, key, _] = blend(light.map(|l| [l.mean, l.key, 0.0]));
         stage.studio.shade(albedo, normal, to_eye, mean + 2.0 * dot(sky, normal), key)
     }
+}
 
-    /// Barycentric coordinates of the point seen at a pixel position.
-    fn weights(&self, stage: &Stage, places: &[V3; 3], flat: V3, x: f64, y: f64) -> [f64; 3] {
-        let lens = &stage.lens;
-        let (origin, direction) = lens.ray(x, y);
-        let world = |v: V3| lens.world_direction(v[0], v[1], -v[2]);
-        let (origin, direction) = (add(lens.eye, world(origin)), world(direction));
-        let t = dot(flat, sub(places[0], origin)) / dot(flat, direction);
-        let p = along(origin, t, direction);
-        let part = |a: V3, b: V3| dot(flat, cross(sub(a, p), sub(b, p))).max(0.0);
-        let w =
-            [part(places[1], places[2]), part(places[2], places[0]), part(places[0], places[1])];
-        let sum = w[0] + w[1] + w[2];
-        if sum > 0.0 && sum.is_finite() { w.map(|w| w / sum) } else { [1.0 / 3.0; 3] }
-    }
+/// Barycentric coordinates of the point seen at a pixel position.
+fn weights(stage: &Stage, places: &[V3; 3], flat: V3, x: f64, y: f64) -> [f64; 3] {
+    let lens = &stage.lens;
+    let (origin, direction) = lens.ray(x, y);
+    let world = |v: V3| lens.world_direction(v[0], v[1], -v[2]);
+    let (origin, direction) = (add(lens.eye, world(origin)), world(direction));
+    let t = dot(flat, sub(places[0], origin)) / dot(flat, direction);
+    let p = along(origin, t, direction);
+    let part = |a: V3, b: V3| dot(flat, cross(sub(a, p), sub(b, p))).max(0.0);
+    let w = [part(places[1], places[2]), part(places[2], places[0]), part(places[0], places[1])];
+    let sum = w[0] + w[1] + w[2];
+    if sum > 0.0 && sum.is_finite() { w.map(|w| w / sum) } else { [1.0 / 3.0; 3] }
 }
 
 /// One side of a triangle: a function of the place that is not negative inside.

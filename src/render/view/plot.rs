@@ -68,7 +68,7 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
 
 fn colour_bar(value: &str) -> ColorBar {
     ColorBar::new()
-        .title(Title::with_text(format!("F: {}", value)).side(Side::Top).font(Font::new().size(12)))
+        .title(Title::with_text(format!("F: {value}")).side(Side::Top).font(Font::new().size(12)))
         .orientation(Orientation::Horizontal)
         .thickness(12)
         .y(0.0)
@@ -83,10 +83,8 @@ fn rgb(index: usize) -> Rgb {
 
 fn layout(unit: &str) -> Layout {
     // There is no room for a sentence beside an axis.
-    let label = |name: &str| match unit.contains(' ') {
-        true => name.to_owned(),
-        false => format!("{name} ({unit})"),
-    };
+    let label =
+        |name: &str| if unit.contains(' ') { name.to_owned() } else { format!("{name} ({unit})") };
     let axis = |name: &str| Axis::new().title(Title::with_text(label(name))).n_ticks(6);
     let camera = Camera::new()
         .center(CameraCenter::from((0.0, 0.0, -0.16)))

@@ -93,6 +93,7 @@ fn agree(pairs: &[(&[f64], &[f64])]) -> (Verdict, String) {
 }
 
 /// Table 1: the Haar coefficients of a row, what remains when details go, and its weights.
+#[expect(clippy::unnecessary_wraps, reason = "a figure as any other")]
 pub(super) fn table_1(_: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let evidence = Evidence::new();
     Ok(Item {

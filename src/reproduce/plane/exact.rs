@@ -117,7 +117,7 @@ impl Exact {
         quotient.to_f64().value().sqrt() * 2f64.powi(half) * 2f64.powi(exponent - half)
     }
 
-    /// |q−p|² + ωₚ − ω_q: the power of q to the disc around p of squared radius −ωₚ.
+    /// |q−p|² + ωₚ − `ω_q`: the power of q to the disc around p of squared radius −ωₚ.
     fn power(&self, a: &[IBig; 2], p: u32, q: u32) -> IBig {
         dot(a, a) + &self.weights[p as usize] - &self.weights[q as usize]
     }

@@ -116,7 +116,7 @@ impl Cover<'_> {
         }
         let mut free: Vec<[f64; 2]> = Vec::new();
         for pair in shares.windows(2) {
-            if self.covers(arc.at((pair[0] + pair[1]) / 2.0)) {
+            if self.covers(arc.at(f64::midpoint(pair[0], pair[1]))) {
                 continue;
             }
             match free.last_mut() {

@@ -54,7 +54,7 @@ impl WeightedPlaneShape {
             .collect()
     }
 
-    /// What is at least as near to p as to q in power: x·a ≤ (a² + ωₚ − ω_q)/2 with a = q − p.
+    /// What is at least as near to p as to q in power: x·a ≤ (a² + ωₚ − `ω_q)/2` with a = q − p.
     fn wall(&self, p: u32, q: u32) -> HalfPlane {
         let (p, q) = (p as usize, q as usize);
         let ([px, py], [qx, qy]) = (self.positions[p], self.positions[q]);
@@ -62,7 +62,7 @@ impl WeightedPlaneShape {
         let length = x.hypot(y);
         HalfPlane {
             normal: [x / length, y / length],
-            offset: (length + (self.weights[p] - self.weights[q]) / length) / 2.0,
+            offset: f64::midpoint(length, (self.weights[p] - self.weights[q]) / length),
         }
     }
 }

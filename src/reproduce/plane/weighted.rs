@@ -140,6 +140,7 @@ fn of_shape<const N: usize>(rows: impl Iterator<Item = ([u32; N], Class)>) -> Si
 impl PlaneComplex {
     /// Betti numbers [b0, b1]: components, and holes by the Euler characteristic. The union of the
     /// discs has the same. O(n log n).
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn betti(&self) -> [u64; 2] {
         let number = |v: u32| {
             self.vertices.rows().binary_search(&[v]).expect("ends of edges are vertices") as u32

@@ -86,7 +86,7 @@ struct Starts<'a> {
 }
 
 impl Starts<'_> {
-    fn range(&self, place: &Place) -> Range<usize> {
+    fn range(&self, place: Place) -> Range<usize> {
         let start = |point: u32| {
             self.blocks[place.block as usize][point as usize][self.dimension as usize] as usize
         };
@@ -110,14 +110,14 @@ impl Merged<'_> {
         for (shelf, sites) in self.shelves.iter().enumerate() {
             let (starts, rows) = take(blocks, shelf, dimension, of);
             let places = &self.places[sites.clone()];
-            let count = |places: &[Place]| places.iter().map(|p| starts.range(p).len()).sum();
+            let count = |places: &[Place]| places.iter().map(|p| starts.range(*p).len()).sum();
             let counts: Vec<usize> = places.par_chunks(CHUNK).map(count).collect();
             let to = split(&mut to, &counts).into_iter().zip(split(&mut to_classes, &counts));
             let from = places.chunks(CHUNK).zip(self.input[sites.clone()].chunks(CHUNK));
             let tasks: Vec<_> = from.zip(to).collect();
             tasks.into_par_iter().for_each(|((places, input), (mut vertices, mut classes))| {
                 for (place, &smallest) in places.iter().zip(input) {
-                    let (rows, range) = (&rows[place.block as usize], starts.range(place));
+                    let (rows, range) = (&rows[place.block as usize], starts.range(*place));
                     let own = split_off(&mut vertices, range.len());
                     for (to, from) in own.iter_mut().zip(&rows.vertices[range.clone()]) {
                         to[0] = smallest;
@@ -146,7 +146,7 @@ impl Merged<'_> {
             let (starts, names) = take(blocks, shelf, dimension, of);
             let common = |place: &Place| {
                 let (names, common) = (&names[place.block as usize], &common[place.block as usize]);
-                names[starts.range(place)].iter().map(|&name| common[name as usize])
+                names[starts.range(*place)].iter().map(|&name| common[name as usize])
             };
             merged.par_extend(self.places[sites.clone()].par_iter().flat_map_iter(common));
         }
@@ -181,12 +181,12 @@ impl Merged<'_> {
 }
 
 /// What all blocks have on a shelf, taken from them, and where each point's begins.
-fn take<'a, T: Default>(
-    blocks: &'a mut [Owned],
+fn take<T: Default>(
+    blocks: &mut [Owned],
     shelf: usize,
     dimension: Dimension,
     of: fn(&mut Shelf) -> &mut T,
-) -> (Starts<'a>, Vec<T>) {
+) -> (Starts<'_>, Vec<T>) {
     let take = |block: &mut Owned| std::mem::take(of(&mut block.shelves[shelf]));
     let taken = blocks.iter_mut().map(take).collect();
     let starts = blocks.iter().map(|block| &block.shelves[shelf].starts[..]).collect();
@@ -194,10 +194,12 @@ fn take<'a, T: Default>(
 }
 
 /// Cuts pieces of these lengths off a slice.
+#[expect(clippy::mut_mut, reason = "the slice itself becomes shorter")]
 fn split<'a, T>(whole: &mut &'a mut [T], lengths: &[usize]) -> Vec<&'a mut [T]> {
     lengths.iter().map(|&length| split_off(whole, length)).collect()
 }
 
+#[expect(clippy::mut_mut, reason = "the slice itself becomes shorter")]
 fn split_off<'a, T>(whole: &mut &'a mut [T], length: usize) -> &'a mut [T] {
     whole.split_off_mut(..length).expect("as many as were counted")
 }

@@ -96,9 +96,10 @@ impl Predicates<'_> {
         };
         let terms = bounds.numerator + 4.0 * weight.abs() * bounds.denominator;
         let folded = self.lattice.holds_weights && self.holds(terms, 2 * N);
-        let (numerator, weight) = match folded {
-            true => (numerator - 4.0 * weight * denominator, 0.0),
-            false => (numerator, weight),
+        let (numerator, weight) = if folded {
+            (numerator - 4.0 * weight * denominator, 0.0)
+        } else {
+            (numerator, weight)
         };
         Some(Small {
             numerator: steps(numerator, 2 * N),

@@ -2,15 +2,15 @@
 
 use crate::volume::Endian;
 
-/// Lengths of the headers of NIfTI's versions 1 and 2, which their first numbers repeat.
+/// Lengths of the headers of `NIfTI`'s versions 1 and 2, which their first numbers repeat.
 pub(crate) const NIFTI_HEADERS: [usize; 2] = [348, 540];
 
-/// Whether a file begins as a NIfTI (or Analyze) header does, of either version and byte order.
+/// Whether a file begins as a `NIfTI` (or Analyze) header does, of either version and byte order.
 pub(super) fn is_nifti(start: &[u8]) -> bool {
     start.len() >= NIFTI_HEADERS[0] && nifti_version(start).is_some()
 }
 
-/// NIfTI's version and byte order, by the first number.
+/// `NIfTI`'s version and byte order, by the first number.
 pub(crate) fn nifti_version(start: &[u8]) -> Option<(u8, Endian)> {
     let first: [u8; 4] = start.get(..4)?.try_into().ok()?;
     for (size, version) in NIFTI_HEADERS.into_iter().zip(1..) {
@@ -24,7 +24,7 @@ pub(crate) fn nifti_version(start: &[u8]) -> Option<(u8, Endian)> {
     None
 }
 
-/// Whether a file begins as a MetaImage header does: with a line of one of these keys.
+/// Whether a file begins as a `MetaImage` header does: with a line of one of these keys.
 pub(super) fn is_metaimage(start: &[u8]) -> bool {
     const FIRST_KEYS: [&str; 4] = ["ObjectType", "NDims", "Comment", "ObjectSubType"];
     let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();

@@ -71,7 +71,7 @@ pub fn format_name(path: &Path, options: &ReadOptions) -> Result<String, VolumeE
 }
 
 /// The files that hold the samples of a volume, where its header is a file of its own (NRRD,
-/// MetaImage, NIfTI); else none. A header may name any file, not only those of its folder.
+/// `MetaImage`, `NIfTI`); else none. A header may name any file, not only those of its folder.
 ///
 /// # Errors
 /// The header cannot be read.
@@ -181,6 +181,7 @@ fn found(path: &Path) -> Result<Found, VolumeError> {
     if start.starts_with(&[0x1f, 0x8b]) {
         return unpacked(path);
     }
+    #[expect(clippy::case_sensitive_file_extension_comparisons, reason = "names are in lower case")]
     if name(path).ends_with(".gz") {
         let what = "is not compressed with gzip, whatever its name says";
         return Err(format_error(path, Reason::content(what, "rename it")));

@@ -61,6 +61,7 @@ pub struct VolumeFormat {
 
 /// What a format keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
 pub struct Keeps {
     /// Distances of samples.
     pub spacing: bool,

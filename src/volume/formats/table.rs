@@ -199,5 +199,5 @@ pub static FORMATS: [VolumeFormat; 13] = [
     },
 ];
 
-/// How TIFF and BigTIFF begin, of either byte order.
+/// How TIFF and `BigTIFF` begin, of either byte order.
 const TIFF: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];

@@ -15,7 +15,7 @@ const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
 const ORIGIN: [&str; 3] = ["Offset", "Origin", "Position"];
 const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
 
-/// Reads MetaImage, the format of ITK's MetaIO, with its samples after the header (`.mha`) or in
+/// Reads `MetaImage`, the format of ITK's `MetaIO`, with its samples after the header (`.mha`) or in
 /// other files (`.mhd`: one, a `LIST`, or a numbered row), raw, zlib-compressed or text.
 ///
 /// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame.
@@ -216,7 +216,7 @@ impl Header {
         Ok(Described { dims, dtype, endian, frame, encoding, frames })
     }
 
-    /// MetaImage is LPS, and in millimetres unless `DistanceUnits` say otherwise.
+    /// `MetaImage` is LPS, and in millimetres unless `DistanceUnits` say otherwise.
     fn coordinates(&self) -> Coordinates {
         let keys = [SPACING.as_slice(), &ORIGIN, &MATRIX].concat();
         if self.field(&keys).is_none() {

@@ -119,7 +119,7 @@ impl<R: Read> NpyFile<R> {
     }
 }
 
-/// Type, byte order and whether it is boolean, of a NumPy type string such as `<f4`.
+/// Type, byte order and whether it is boolean, of a `NumPy` type string such as `<f4`.
 fn element(descr: &str) -> Option<(Dtype, Endian, bool)> {
     let (order, kind) = descr.split_at_checked(1)?;
     let dtype = match kind {

@@ -11,7 +11,7 @@ use super::{format_error, io_error};
 use crate::advice::{Setting, advice};
 use crate::volume::{Reason, Volume, VolumeError};
 
-/// Reads NPZ, NumPy's archive of arrays (`savez`, `savez_compressed`): its only array of three axes, or
+/// Reads NPZ, `NumPy`'s archive of arrays (`savez`, `savez_compressed`): its only array of three axes, or
 /// the one of this name.
 pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
     let file = File::open(path).map_err(io_error(path))?;

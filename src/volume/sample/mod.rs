@@ -40,13 +40,14 @@ pub fn sample(name: &str) -> Result<Volume, VolumeError> {
         // Its header has numbers, but the paper's lengths are voxels.
         Some("skull") => Ok(skull::skull()?.settled(None)?.with_frame(Frame::VOXEL)),
         Some("phantom") => phantom(PHANTOM_SIZE),
-        Some(other) if other.starts_with("phantom@") => match other["phantom@".len()..].parse() {
-            Ok(size) => phantom(size),
-            Err(_) => {
+        Some(other) if other.starts_with("phantom@") => {
+            if let Ok(size) = other["phantom@".len()..].parse() {
+                phantom(size)
+            } else {
                 let advice = "give N as a number of samples along each axis, as in @128";
                 Err(unknown(name, advice.into()))
             }
-        },
+        }
         _ => {
             let meant = nearest(name, SAMPLES).map(|near| format!("did you mean {near}?"));
             let advice = meant.map_or("name one of these, or a file".into(), Advice::from);

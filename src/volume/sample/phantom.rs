@@ -24,6 +24,7 @@ const TEETH: f64 = 245.0;
 ///
 /// # Errors
 /// A size of 0, or above 1625, the largest whose cube is within [`Dims::MAX_SAMPLES`], or no memory.
+#[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn phantom(size: u64) -> Result<Volume, VolumeError> {
     let dims = Dims::new(size, size, size)?;
     let n = dims.x();

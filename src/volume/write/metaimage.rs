@@ -3,7 +3,7 @@ use std::io::{self, Write};
 use super::raw;
 use crate::volume::{Coordinates, Frame, Volume};
 
-/// Writes a volume as MetaImage (`.mha`), ITK's own format, with raw samples after the header. A
+/// Writes a volume as `MetaImage` (`.mha`), ITK's own format, with raw samples after the header. A
 /// known space is LPS there, in millimetres. A volume in voxels has no place.
 ///
 /// # Errors

@@ -29,7 +29,7 @@ pub fn nifti_gzip(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     packed.finish().map(drop)
 }
 
-/// NIfTI's number for `float32`, and its bits.
+/// `NIfTI`'s number for `float32`, and its bits.
 const FLOAT32: [i16; 2] = [16, 32];
 /// Coordinates that are those of the scanner, or of another space that something is aligned to; none.
 const SCANNER: i16 = 1;
@@ -38,7 +38,7 @@ const NONE: i16 = 0;
 /// In front of version 2's name, so that a transfer as text is found out.
 const MAGIC_2: &[u8; 8] = b"n+2\0\r\n\x1a\n";
 
-/// RAS, in the unit there is if NIfTI knows it.
+/// RAS, in the unit there is if `NIfTI` knows it.
 fn convention(Coordinates { unit, .. }: Coordinates) -> Coordinates {
     let unit = if unit_code(unit) == 0 { LengthUnit::Millimetre } else { unit };
     Coordinates { space: Space::Ras, unit }

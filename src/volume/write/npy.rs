@@ -4,7 +4,7 @@ use ndarray_npy::{WriteNpyError, WriteNpyExt};
 
 use crate::volume::Volume;
 
-/// Writes the samples of a volume as a NumPy array: `f32`, axes z, y, x.
+/// Writes the samples of a volume as a `NumPy` array: `f32`, axes z, y, x.
 ///
 /// # Errors
 /// Whatever `out` returns.

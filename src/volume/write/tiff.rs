@@ -6,8 +6,8 @@ use tiff::tags::{CompressionMethod, PhotometricInterpretation, ResolutionUnit, S
 
 use crate::volume::{LengthUnit, Volume};
 
-/// Writes a volume as TIFF, a page for each slice, or BigTIFF where it has more than 4 GB. Spacing and
-/// its unit stand where ImageJ looks for them; TIFF knows no origin and no directions. The file stands
+/// Writes a volume as TIFF, a page for each slice, or `BigTIFF` where it has more than 4 GB. Spacing and
+/// its unit stand where `ImageJ` looks for them; TIFF knows no origin and no directions. The file stands
 /// in memory first.
 ///
 /// # Errors

@@ -49,16 +49,19 @@ impl<'a> Claim<'a> {
     }
 
     /// With another extent.
+    #[must_use]
     pub fn with_extent(self, extent: Extent) -> Self {
         Self { extent, ..self }
     }
 
     /// With these points listed as hidden.
+    #[must_use]
     pub fn with_hidden(self, hidden: impl Into<Option<&'a [u32]>>) -> Self {
         Self { hidden: hidden.into(), ..self }
     }
 
     /// With these pairs (went, stayed) listed as duplicates.
+    #[must_use]
     pub fn with_duplicates(self, duplicates: impl Into<Option<&'a [[u32; 2]]>>) -> Self {
         Self { duplicates: duplicates.into(), ..self }
     }

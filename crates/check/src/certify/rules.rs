@@ -77,17 +77,14 @@ fn apply_to(
     }
     report(irregular)?;
     report(places::duplicates(&structure, stays, claim.duplicates))?;
-    match judge.emptiness {
-        Some(emptiness) => {
-            let alpha = judge.alpha;
-            report(places::of_shape(&structure, points, alpha, emptiness, stays, claim.hidden))?;
-        }
-        None => {
-            let (hidden, findings) = places::hidden(&structure, stays, claim.hidden);
-            report(findings)?;
-            if regular {
-                report(places::hiddenness(&structure, points, &hidden))?;
-            }
+    if let Some(emptiness) = judge.emptiness {
+        let alpha = judge.alpha;
+        report(places::of_shape(&structure, points, alpha, emptiness, stays, claim.hidden))?;
+    } else {
+        let (hidden, findings) = places::hidden(&structure, stays, claim.hidden);
+        report(findings)?;
+        if regular {
+            report(places::hiddenness(&structure, points, &hidden))?;
         }
     }
     report(classes::judge(&structure, judge))?;

@@ -27,7 +27,7 @@ impl Binary {
     /// The value in units of 2^`exponent`, which must not exceed its own exponent, when
     /// [`Range::bits`] says that it fits.
     pub(super) fn small(self, exponent: i32) -> i128 {
-        if self.mantissa == 0 { 0 } else { (self.mantissa as i128) << (self.exponent - exponent) }
+        if self.mantissa == 0 { 0 } else { i128::from(self.mantissa) << (self.exponent - exponent) }
     }
 
     /// The value in units of 2^`exponent`, which must not exceed its own exponent.

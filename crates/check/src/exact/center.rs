@@ -27,7 +27,7 @@ impl RoundedSphere {
 
     /// Whether `q` is certainly strictly outside.
     ///
-    /// With v the vertex, f(c) = |q − c|² − ω_q − |v − c|² + ω_v is q's power with respect to the
+    /// With v the vertex, f(c) = |q − c|² − `ω_q` − |v − c|² + `ω_v` is q's power with respect to the
     /// sphere about c. It is linear in c, so moving the centre by e changes it by at most
     /// 2 |q − v| e, and computing it here rounds by at most 8 · 2⁻⁵³ of what is added up.
     pub(crate) fn surely_outside(&self, q: &WeightedPoint) -> bool {

@@ -32,7 +32,7 @@ impl Formula<4> for Power4 {
     }
 }
 
-/// det G · (h_q − 2c·a_q) for a triangle: negative when q is inside.
+/// det G · (`h_q` − `2c·a_q`) for a triangle: negative when q is inside.
 pub(super) struct Power3;
 
 impl Formula<3> for Power3 {
@@ -46,7 +46,7 @@ impl Formula<3> for Power3 {
     }
 }
 
-/// |a|² · (h_q − 2c·a_q) for a segment: negative when q is inside.
+/// |a|² · (`h_q` − `2c·a_q`) for a segment: negative when q is inside.
 pub(super) struct Power2;
 
 impl Formula<2> for Power2 {
@@ -56,7 +56,7 @@ impl Formula<2> for Power2 {
     }
 }
 
-/// h_q for a point: negative when q is inside the sphere of squared radius −w₀ about p₀.
+/// `h_q` for a point: negative when q is inside the sphere of squared radius −w₀ about p₀.
 pub(super) struct Power1;
 
 impl Formula<1> for Power1 {

@@ -20,7 +20,7 @@ fn rank(a: &WeightedPoint, b: &WeightedPoint) -> Ordering {
 /// the regular triangulation is unique: a function of the points alone.
 ///
 /// **Its sign.** For q on the sphere, let q = Σ λᵢ pᵢ with Σ λᵢ = 1. The raised q is above the
-/// hyperplane through the raised cell by ε_q − Σ λᵢ εᵢ, and inside if that is negative. Take the
+/// hyperplane through the raised cell by `ε_q` − Σ λᵢ εᵢ, and inside if that is negative. Take the
 /// five points from the largest: if it is q, q is outside; if it is pᵢ, q is inside for λᵢ > 0 and
 /// outside for λᵢ < 0, and for λᵢ = 0 the next point decides. λᵢ has the sign of the cell's
 /// orientation with q in the place of pᵢ. At most two λ are zero, or q would be a vertex, so the

@@ -90,7 +90,7 @@ pub(crate) fn six_volume([a, b, c, d]: [&WeightedPoint; 4]) -> Exact {
 }
 
 /// The power of `q` with respect to the smallest orthogonal sphere of a simplex, less its weight:
-/// |q − centre|² − R² − w_q, negative inside.
+/// |q − centre|² − R² − `w_q`, negative inside.
 ///
 /// # Panics
 /// If the simplex has no vertices, more than 4, or dependent ones.

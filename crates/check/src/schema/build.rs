@@ -128,7 +128,7 @@ fn settle<const N: usize, const M: usize>(
     let derived = listed.rows.is_none();
     let rows = listed
         .rows
-        .unwrap_or_else(|| BTreeSet::from_iter(above.keys().copied()).into_iter().collect());
+        .unwrap_or_else(|| above.keys().copied().collect::<BTreeSet<_>>().into_iter().collect());
     let implied = |row: &[u32; M]| match above.get(&sorted(*row)) {
         // Nothing is above a cell.
         _ if M == 4 => Class::Interior,

@@ -49,7 +49,7 @@ mod placed;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Alpha, Claim, Class, Placed, Simplices};
+use crate::{Alpha, Claim, Class, Placed};
 
 pub use error::SchemaError;
 pub use filtration::{Below, FiltrationFile, PairsFile, Values};
@@ -124,9 +124,6 @@ impl Classes {
 impl ComplexFile {
     /// The file of a complex with its points, and what it claims of hidden points and duplicates.
     pub fn new(claim: Claim) -> Self {
-        fn classes<const N: usize>(simplices: &Simplices<N>) -> Option<Vec<Class>> {
-            Some(simplices.classes().to_vec())
-        }
         let Placed { positions, weights, alpha, complex } = claim.placed;
         Self {
             weights: Some(weights.to_vec()),
@@ -135,10 +132,10 @@ impl ComplexFile {
             edges: Some(complex.edges.rows().to_vec()),
             vertices: Some(complex.vertices.rows().as_flattened().to_vec()),
             classes: Classes {
-                cells: classes(&complex.cells),
-                facets: classes(&complex.facets),
-                edges: classes(&complex.edges),
-                vertices: classes(&complex.vertices),
+                cells: Some(complex.cells.classes().to_vec()),
+                facets: Some(complex.facets.classes().to_vec()),
+                edges: Some(complex.edges.classes().to_vec()),
+                vertices: Some(complex.vertices.classes().to_vec()),
             },
             hidden: claim.hidden.map(<[_]>::to_vec),
             duplicates: claim.duplicates.map(<[_]>::to_vec),

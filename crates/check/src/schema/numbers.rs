@@ -52,8 +52,9 @@ pub(super) fn read(
 /// Makes a double of the bytes of one element.
 type Decode = fn(&[u8]) -> f64;
 
-/// The bytes of an element and what makes a double of them, for a NumPy type such as `<f4`.
+/// The bytes of an element and what makes a double of them, for a `NumPy` type such as `<f4`.
 /// Integers beyond 2⁵³ are rounded: no point number is that large.
+#[expect(clippy::cast_lossless, reason = "one rule for all types, of which two are lossy")]
 fn element(descr: &str) -> Option<(usize, Decode)> {
     macro_rules! number {
         ($kind:ty, $from:ident) => {

@@ -1,4 +1,4 @@
-//! NumPy's files, by hand.
+//! `NumPy`'s files, by hand.
 
 use std::io::{Cursor, Write};
 

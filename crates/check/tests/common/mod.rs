@@ -68,7 +68,7 @@ pub fn definition(case: &Case) -> Result<Answer, EnumerateError> {
     Ok(Answer { complex: made.complex, hidden: made.hidden, duplicates: made.duplicates })
 }
 
-/// SplitMix64: the same numbers everywhere.
+/// `SplitMix64`: the same numbers everywhere.
 pub struct Random(u64);
 
 impl Random {
@@ -125,7 +125,7 @@ pub fn shape_of(answer: &Answer) -> Answer {
 pub fn closed(cells: &[[u32; 4]]) -> Complex {
     fn exterior<const N: usize>(rows: impl IntoIterator<Item = Vec<u32>>) -> Simplices<N> {
         let rows = rows.into_iter().map(|row| sorted(&row).try_into().expect("N vertices"));
-        BTreeSet::from_iter(rows).into_iter().map(|row| (row, Class::Exterior)).collect()
+        rows.collect::<BTreeSet<_>>().into_iter().map(|row| (row, Class::Exterior)).collect()
     }
     let faces = |size: u32| {
         cells.iter().flat_map(move |cell| {

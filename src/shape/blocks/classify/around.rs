@@ -157,7 +157,7 @@ impl<'a> Walker<'a> {
                 let row = u64::from(low) << 32 | u64::from(high);
                 let side = 4 * cell + opposite as u32;
                 facets[flat] = FacetRow { row, side, clockwise: !even(k, m, n) };
-                flat += usize::from(state.gives(opposite) & (smallest < low));
+                flat += usize::from(state.gives(opposite) && (smallest < low));
             }
             cells[solid] = CellRow::new(k, [x, y, z], state.is_inside());
             let wanted = state.is_inside() | local.exterior;

@@ -16,7 +16,7 @@ use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Reason, Volume
 pub(super) struct About {
     spacing: [f64; 3],
     unit: LengthUnit,
-    /// Pages, as ImageJ counts them.
+    /// Pages, as `ImageJ` counts them.
     pub images: Option<u64>,
     /// What the pages run along, fastest first, and how many there are of each.
     axes: [(Axis, u64); 3],

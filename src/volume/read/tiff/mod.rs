@@ -19,10 +19,10 @@ const MOST_EXPANSION: u64 = 2731;
 /// SGI's tag for volumes in one page.
 const IMAGE_DEPTH: Tag = Tag::Unknown(32997);
 
-/// Reads TIFF and BigTIFF: the pages are the slices. Spacing is what ImageJ or OME-XML say of it in
+/// Reads TIFF and `BigTIFF`: the pages are the slices. Spacing is what `ImageJ` or OME-XML say of it in
 /// the description of the first page; resolutions of other programs are those of prints.
 ///
-/// Large stacks that ImageJ writes after a single page are read too. Of a stack with several channels or
+/// Large stacks that `ImageJ` writes after a single page are read too. Of a stack with several channels or
 /// times, `frame` chooses one volume, channels counted first. Colours, palettes and samples of fewer
 /// than 8 bits are refused.
 pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
@@ -192,7 +192,7 @@ impl<'a> Pages<'a> {
     }
 }
 
-/// Reads a stack that ImageJ wrote uncompressed after its only page.
+/// Reads a stack that `ImageJ` wrote uncompressed after its only page.
 fn behind_one_page(
     path: &Path,
     mut pages: Pages,

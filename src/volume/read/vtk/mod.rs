@@ -95,9 +95,8 @@ fn read_binary(
 /// Which of some arrays, each with its name and whether it is one of cells: that of the name wanted, or
 /// else the first, which is said where there are others.
 pub(super) fn choice(arrays: &[(&str, bool)], wanted: Option<&str>) -> Result<usize, Reason> {
-    let told = |&(name, cells): &(&str, bool)| match cells {
-        true => format!("{name} (of cells)"),
-        false => name.to_owned(),
+    let told = |&(name, cells): &(&str, bool)| {
+        if cells { format!("{name} (of cells)") } else { name.to_owned() }
     };
     let all = || arrays.iter().map(told).collect::<Vec<_>>().join(", ");
     if let Some(wanted) = wanted {
