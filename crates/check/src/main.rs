@@ -27,6 +27,7 @@ const MOST_PRINTED: usize = 20;
 const FAILED: u8 = 1;
 const FOUND: u8 = 3;
 
+#[expect(clippy::unnecessary_debug_formatting, reason = "it escapes control characters")]
 fn main() -> ExitCode {
     let Arguments { files } = Arguments::parse();
     let (mut failed, mut found) = (false, false);
@@ -64,6 +65,7 @@ fn read(path: &Path) -> Result<PlacedComplex, SchemaError> {
 }
 
 /// Prints what is found, and gives whether that is nothing.
+#[expect(clippy::unnecessary_debug_formatting, reason = "it escapes control characters")]
 fn judge(path: &Path, complex: &PlacedComplex) -> Result<bool, Failure> {
     let (findings, certificate) = complex.claim().findings()?;
     let mut out = io::stdout().lock();

@@ -4,7 +4,7 @@ mod common;
 
 use common::base::{base, findings};
 use common::{closed, drop_row, shape_of, sorted};
-use walpha_check::schema::ComplexFile;
+use walpha_check::schema::{Classes, ComplexFile};
 use walpha_check::{Claim, Class, Extent, Finding, Simplices};
 
 #[test]
@@ -58,7 +58,7 @@ fn each_dropped_cell_of_a_file_without_classes() {
     let (case, answer) = base();
     let shape = shape_of(&answer);
     let mut whole = ComplexFile::new(Claim::new(case.placed(&shape.complex)));
-    whole.classes = Default::default();
+    whole.classes = Classes::default();
     for row in 0..shape.complex.cells.len() {
         let mut file = whole.clone();
         let dropped = sorted(&file.cells.as_mut().unwrap().remove(row));

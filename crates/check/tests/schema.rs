@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Case, Random, definition, grid, shape_of};
-use walpha_check::schema::{ComplexFile, SchemaError};
+use walpha_check::schema::{Classes, ComplexFile, SchemaError};
 use walpha_check::{ByClass, Claim, Class, Extent};
 
 fn parse(json: &str) -> Result<ComplexFile, SchemaError> {
@@ -44,7 +44,7 @@ fn classes_follow_from_a_shape_alone() {
         let answer = definition(&case).unwrap();
         let shape = shape_of(&answer).complex;
         let mut file = ComplexFile::new(Claim::new(case.placed(&shape)));
-        file.classes = Default::default();
+        file.classes = Classes::default();
         file.cells.iter_mut().flatten().for_each(|row| row.sort_unstable());
         file.facets.iter_mut().flatten().for_each(|row| row.sort_unstable());
         assert_eq!(file.clone().into_complex().unwrap().complex, shape, "α = {alpha}");
