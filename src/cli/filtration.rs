@@ -102,8 +102,13 @@ impl Filtration {
         let read = pipeline::read(&self.input, &mut progress)?;
         read.accepts(&self.input)?;
         let (haar, select) = (&self.haar, &self.select);
-        let (weighed, _) =
-            pipeline::weigh_input(read, haar, select, &weights, Values::Written, &mut progress)?;
+        let (weighed, _) = pipeline::weigh_input(
+            read,
+            pipeline::stages(haar, &weights),
+            select,
+            Values::Written,
+            &mut progress,
+        )?;
         let filtration = progress
             .stage(Stage::Filtration, || ladder::Filtration::new(weighed.points.clone()))?;
         let ordered = progress.stage(Stage::Order, || filtration.simplices())?;

@@ -60,7 +60,7 @@ pub struct Interpolate {
     fill: bool,
     /// Measure error against the number of points.
     #[arg(long, requires = "output", conflicts_with_all = [
-        "mask", "fill", "select", "target_rmse", "threshold", "gray_min", "value_min", "weights", "balls",
+        "mask", "fill", "select", "target_rmse", "threshold", "gray_min", "value_min", "refit", "weights", "balls",
         "engine", "blocks", "memory", "exterior",
     ])]
     curve: bool,
@@ -156,8 +156,12 @@ impl Interpolate {
         };
         let mask = self.mask.as_deref().map(open).transpose()?;
         let mut progress = Progress::new(global);
-        let (weighed, source) =
-            pipeline::points_and_volume(&self.pipeline, Values::Gray, &mut progress)?;
+        let (weighed, source) = pipeline::points_and_volume(
+            &self.pipeline,
+            self.shape.options(),
+            Values::Gray,
+            &mut progress,
+        )?;
         let original = source.as_ref().map(Original::of);
         let facts = source.as_ref().map(|source| &source.facts);
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, facts);

@@ -4,6 +4,7 @@ use std::fmt::{self, Display};
 use std::path::Path;
 
 use crate::export::{Scratch, Target};
+use crate::interpolate::Refit;
 use crate::ladder::{Curve, Filtration};
 use crate::pipeline::{Model, PipelineError, Weighed};
 use crate::points::{is_point_file, read_points};
@@ -16,7 +17,7 @@ use serde::Serialize;
 use super::args::{HaarArgs, InputArgs, PipelineArgs, SelectArgs, WeightArgs};
 use super::complaint::{is_usage, reasons};
 use super::progress::Progress;
-use super::said::{Said, said};
+use super::said::{Said, misused, said};
 
 /// What INPUT turned out to be.
 pub enum Input {
@@ -81,7 +82,7 @@ pub fn with_file<T>(
 }
 
 /// Options that speak of a volume.
-const OF_VOLUMES: [&str; 22] = [
+const OF_VOLUMES: [&str; 23] = [
     "level",
     "array",
     "frame",
@@ -102,6 +103,7 @@ const OF_VOLUMES: [&str; 22] = [
     "threshold",
     "gray_min",
     "value_min",
+    "refit",
     "units",
     "space",
 ];
@@ -154,37 +156,50 @@ pub enum Values {
 /// Steps 1 to 7: reads INPUT and makes weighted points of it, with the values that are written.
 pub fn weighted_points(
     args: &PipelineArgs,
+    shape: ShapeOptions,
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<VolumeFacts>)> {
-    let (weighed, source) = points_and_volume(args, Values::Written, progress)?;
+    let (weighed, source) = points_and_volume(args, shape, Values::Written, progress)?;
     Ok((weighed, source.map(|source| source.facts)))
 }
 
 /// The same, and the volume they come from.
 pub fn points_and_volume(
     args: &PipelineArgs,
+    shape: ShapeOptions,
     values: Values,
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Source>)> {
-    let PipelineArgs { input, haar, select, weights } = args;
+    let PipelineArgs { input, haar, select, refit, weights } = args;
+    if refit.refit == Some(Refit::Whole) && shape.memory.is_some() {
+        misused!("--memory has no effect: --refit fits values on the whole triangulation" => "omit it, or give --refit=shape");
+    }
     let read = read(input, progress)?;
     read.accepts(input)?;
-    weigh_input(read, haar, select, weights, values, progress)
+    let mut stages = stages(haar, weights).shape(shape);
+    if let Some(to) = refit.refit {
+        stages = stages.refit(to);
+    }
+    weigh_input(read, stages, select, values, progress)
+}
+
+/// The stages of a pipeline that do not depend on what INPUT is.
+pub fn stages(haar: &HaarArgs, weights: &WeightArgs) -> Pipeline {
+    let pipeline = Pipeline::new().haar(haar.options()).alpha(weights.alpha());
+    match weights.weights {
+        Some(kind) => pipeline.weighting(kind),
+        None => pipeline,
+    }
 }
 
 /// The same from what was read already.
 pub fn weigh_input(
     input: Input,
-    haar: &HaarArgs,
+    mut pipeline: Pipeline,
     select: &SelectArgs,
-    weights: &WeightArgs,
     values: Values,
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Source>)> {
-    let mut pipeline = Pipeline::new().haar(haar.options()).alpha(weights.alpha());
-    if let Some(kind) = weights.weights {
-        pipeline = pipeline.weighting(kind);
-    }
     let Grays { volume, range, written } = match input {
         Input::Points(points) => {
             let weighed = progress.watch(|hear| pipeline.weighed_points(points, hear))?;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use crate::export::Target;
 use crate::points::PointWriter;
 use crate::progress::Stage;
+use crate::shape::{Alpha, ShapeOptions};
 use clap::Args;
 
 use super::args::PipelineArgs;
@@ -40,7 +41,11 @@ impl Points {
             }
         };
         let mut progress = Progress::new(global);
-        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, &mut progress)?;
+        let (weighed, volume) = pipeline::weighted_points(
+            &self.pipeline,
+            ShapeOptions::new(Alpha::INFINITE),
+            &mut progress,
+        )?;
         if let Some((target, writer)) = target {
             progress
                 .stage(Stage::Write, || target.write(|out| writer.write(&weighed.points, out)))?;

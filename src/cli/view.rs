@@ -18,7 +18,9 @@ use clap::Args;
 use serde::Serialize;
 
 use super::Global;
-use super::args::{self, Alphas, FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::args::{
+    self, Alphas, FrozenArgs, HaarArgs, InputArgs, RefitArgs, SelectArgs, WeightArgs,
+};
 use super::output::{name, tell};
 use super::pipeline::{self, Input, Source, Values, VolumeFacts};
 use super::progress::Progress;
@@ -60,6 +62,8 @@ pub struct View {
     haar: HaarArgs,
     #[command(flatten)]
     select: SelectArgs,
+    #[command(flatten)]
+    refit: RefitArgs,
     #[command(flatten)]
     weights: FrozenArgs,
 }
@@ -137,8 +141,12 @@ impl View {
             misused!("--isovalue has no effect: points have no isosurface" => "omit it");
         }
         let (haar, select) = (&self.haar, &self.select);
+        let mut stages = pipeline::stages(haar, &weights);
+        if let Some(to) = self.refit.refit {
+            stages = stages.refit(to);
+        }
         let (weighed, source) =
-            pipeline::weigh_input(read, haar, select, &weights, Values::Written, &mut progress)?;
+            pipeline::weigh_input(read, stages, select, Values::Written, &mut progress)?;
         let filtration =
             progress.stage(Stage::Filtration, || Filtration::new(weighed.points.clone()))?;
         let page = self.page(&weighed, source.as_ref(), &filtration, &mut progress)?;

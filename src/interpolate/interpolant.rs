@@ -107,6 +107,16 @@ impl<'a> Interpolant<'a> {
         self.parts.len()
     }
 
+    /// The values of the points.
+    pub(super) fn values(&self) -> &[f64] {
+        self.values
+    }
+
+    /// The vertices of a simplex.
+    pub(super) fn vertices(&self, part: u32) -> &[u32] {
+        self.parts[part as usize].vertices()
+    }
+
     /// The corners of a simplex; the first so many count.
     pub(super) fn corners(&self, part: u32) -> ([[f64; 3]; 4], usize) {
         let part = self.parts[part as usize];

@@ -9,7 +9,7 @@ mod weights;
 use clap::Args;
 
 pub use input::InputArgs;
-pub use select::{HaarArgs, SelectArgs};
+pub use select::{HaarArgs, RefitArgs, SelectArgs};
 pub use shape::ShapeArgs;
 pub use values::not_negative;
 #[cfg(feature = "render")]
@@ -25,6 +25,8 @@ pub struct PipelineArgs {
     pub haar: HaarArgs,
     #[command(flatten)]
     pub select: SelectArgs,
+    #[command(flatten)]
+    pub refit: RefitArgs,
     #[command(flatten)]
     pub weights: WeightArgs,
 }

@@ -124,8 +124,13 @@ impl Ladder {
         let read = pipeline::read(&self.input, &mut progress)?;
         read.accepts(&self.input)?;
         let (haar, select) = (&self.haar, &self.select);
-        let (weighed, source) =
-            pipeline::weigh_input(read, haar, select, &weights, Values::Written, &mut progress)?;
+        let (weighed, source) = pipeline::weigh_input(
+            read,
+            pipeline::stages(haar, &weights),
+            select,
+            Values::Written,
+            &mut progress,
+        )?;
         let volume = source.map(|source| source.facts);
         let domain = pipeline::domain(&weighed, volume.as_ref());
         let filtration =
