@@ -43,6 +43,7 @@ mod number;
 mod raster;
 mod refit;
 mod resample;
+mod sampled;
 mod tree;
 
 pub use adaptive::{Adaptive, adaptive_voxels};

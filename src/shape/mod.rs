@@ -33,6 +33,7 @@ mod voids;
 
 pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
 pub use balls::Balls;
+pub(crate) use canonical::smallest_even_permutation;
 pub use blocks::PlanError;
 pub use flat::flat_region;
 pub(crate) use infinite::each_number_or_name;
