@@ -19,6 +19,8 @@ pub enum Stage {
     Points,
     /// Finds α.
     Alpha,
+    /// Fits the values of points.
+    Refit,
     /// Computes the shape.
     Shape,
     /// Computes all shapes at once.
@@ -53,6 +55,7 @@ impl Stage {
             Self::Haar => "haar",
             Self::Points => "points",
             Self::Alpha => "alpha",
+            Self::Refit => "refit",
             Self::Shape => "shape",
             Self::Filtration => "filtration",
             Self::Curve => "curve",

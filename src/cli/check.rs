@@ -117,8 +117,11 @@ impl Check {
         if self.points.is_some() {
             misused!("--points belongs to a complex (.json, .npz), and {} is none", shown(path) => "omit it");
         }
-        let (weighed, _) = pipeline::weighted_points(&self.pipeline, progress)?;
+        let given = &self.pipeline.input.given;
+        given.refuse(&["refit"], "values are not judged")?;
         let mut options = self.shape.options();
+        let stages = pipeline::stages(&self.pipeline);
+        let (weighed, _) = pipeline::weighted_points(&self.pipeline, stages, progress)?;
         // The whole triangulation can be judged wholly. Several blocks are judged as they are.
         options.exterior |=
             options.blocks.is_none_or(|blocks| blocks.get() == 1) && options.memory.is_none();

@@ -93,7 +93,9 @@ impl Filtration {
             targets.push((Target::open(path)?, format));
         }
         let mut progress = Progress::new(global);
-        let (weighed, _) = pipeline::weighted_points(&self.pipeline, &mut progress)?;
+        input.given.refuse(&["refit"], "a filtration has no values")?;
+        let stages = pipeline::stages(&self.pipeline);
+        let (weighed, _) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
         let filtration = progress
             .stage(Stage::Filtration, || ladder::Filtration::new(weighed.points.clone()))?;
         let ordered = progress.stage(Stage::Order, || filtration.simplices())?;

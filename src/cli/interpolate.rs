@@ -61,7 +61,7 @@ pub struct Interpolate {
     fill: bool,
     /// Measure error against the number of points.
     #[arg(long, requires = "output", conflicts_with_all = [
-        "mask", "fill", "select", "target_rmse", "threshold", "gray_min", "value_min", "weights", "balls",
+        "mask", "fill", "select", "target_rmse", "threshold", "gray_min", "value_min", "refit", "weights", "balls",
         "engine", "blocks", "memory", "exterior",
     ])]
     curve: bool,
@@ -157,8 +157,9 @@ impl Interpolate {
         };
         let mask = self.mask.as_deref().map(open).transpose()?;
         let mut progress = Progress::new(global);
+        let stages = pipeline::stages_to(&self.pipeline, self.shape.options())?;
         let (weighed, source) =
-            pipeline::points_and_volume(&self.pipeline, Values::Gray, &mut progress)?;
+            pipeline::points_and_volume(&self.pipeline, stages, Values::Gray, &mut progress)?;
         let original = source.as_ref().map(Original::of);
         let facts = source.as_ref().map(|source| &source.facts);
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, facts);

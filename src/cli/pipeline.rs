@@ -7,6 +7,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::export::{Scratch, Target};
+use crate::interpolate::Refit;
 use crate::ladder::{Curve, Filtration};
 use crate::pipeline::{Model, PipelineError, Weighed};
 use crate::points::{is_point_file, read_points};
@@ -15,10 +16,10 @@ use crate::shape::ShapeOptions;
 use crate::volume::Reason;
 use crate::{Alpha, GrayRange, LengthUnit, Pipeline, Points, Units, Volume, VolumeError, volume};
 
-use super::args::{self, InputArgs, PipelineArgs, WeightArgs};
+use super::args::{self, InputArgs, PipelineArgs, SelectArgs, WeightArgs};
 use super::complaint::{is_usage, reasons};
 use super::progress::Progress;
-use super::said::{Said, said};
+use super::said::{Said, misused, said};
 
 /// What INPUT turned out to be.
 pub enum Input {
@@ -130,38 +131,56 @@ pub enum Values {
 }
 
 /// Steps 1 to 7: reads INPUT and makes weighted points of it, with the values that are written.
-pub fn weighted_points<W: Args + Copy + Into<WeightArgs>>(
+pub fn weighted_points<W: Args>(
     args: &PipelineArgs<W>,
+    stages: Pipeline,
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<VolumeFacts>)> {
-    let (weighed, source) = points_and_volume(args, Values::Written, progress)?;
+    let (weighed, source) = points_and_volume(args, stages, Values::Written, progress)?;
     Ok((weighed, source.map(|source| source.facts)))
 }
 
 /// The same, and the volume they come from.
-pub fn points_and_volume<W: Args + Copy + Into<WeightArgs>>(
+pub fn points_and_volume<W: Args>(
     args: &PipelineArgs<W>,
+    stages: Pipeline,
     values: Values,
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Source>)> {
     let read = read(&args.input, progress)?;
     read.accepts(&args.input)?;
-    weigh_input(read, args, values, progress)
+    weigh_input(read, stages, &args.select, values, progress)
+}
+
+/// The stages that do not depend on what INPUT is.
+pub fn stages<W: Args + Copy + Into<WeightArgs>>(args: &PipelineArgs<W>) -> Pipeline {
+    let weights: WeightArgs = args.weights.into();
+    let mut stages = Pipeline::new().haar(args.haar.options()).alpha(weights.alpha());
+    if let Some(kind) = weights.weights {
+        stages = stages.weighting(kind);
+    }
+    match args.refit.refit {
+        Some(to) => stages.refit(to),
+        None => stages,
+    }
+}
+
+/// The same up to a shape.
+pub fn stages_to(args: &PipelineArgs, shape: ShapeOptions) -> Result<Pipeline, Said> {
+    if args.refit.refit == Some(Refit::Whole) && shape.memory.is_some() {
+        misused!("--memory has no effect: --refit fits values on the whole triangulation" => "omit it, or give --refit=shape");
+    }
+    Ok(stages(args).shape(shape))
 }
 
 /// The same from what was read already.
-pub fn weigh_input<W: Args + Copy + Into<WeightArgs>>(
+pub fn weigh_input(
     input: Input,
-    args: &PipelineArgs<W>,
+    mut pipeline: Pipeline,
+    select: &SelectArgs,
     values: Values,
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Source>)> {
-    let PipelineArgs { haar, select, .. } = args;
-    let weights: WeightArgs = args.weights.into();
-    let mut pipeline = Pipeline::new().haar(haar.options()).alpha(weights.alpha());
-    if let Some(kind) = weights.weights {
-        pipeline = pipeline.weighting(kind);
-    }
     let Grays { volume, range, written } = match input {
         Input::Points(points) => {
             let weighed = progress.watch(|hear| pipeline.weighed_points(points, hear))?;

@@ -41,7 +41,8 @@ impl Points {
             }
         };
         let mut progress = Progress::new(global);
-        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, &mut progress)?;
+        let stages = pipeline::stages(&self.pipeline);
+        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
         if let Some((target, writer)) = target {
             progress
                 .stage(Stage::Write, || target.write(|out| writer.write(&weighed.points, out)))?;

@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 
 use serde::Serialize;
 
-use crate::interpolate::Adaptive;
+use crate::interpolate::{Adaptive, Fit, Refit};
 use crate::pipeline::{Model, Parameter, Weighed};
 use crate::points::WeightSummary;
 use crate::shape::{Betti, ByClass, Component, Cuts, Engine, Void};
@@ -19,8 +19,8 @@ use super::pipeline::VolumeFacts;
 pub const SCHEMA_VERSION: u32 = 1;
 
 /// The stages whose times are told, in the order of the work.
-const STAGES: [&str; 9] =
-    ["read", "haar", "points", "alpha", "shape", "fill", "interpolate", "write", "total"];
+const STAGES: [&str; 10] =
+    ["read", "haar", "points", "alpha", "refit", "shape", "fill", "interpolate", "write", "total"];
 
 /// What `walpha shape` and `walpha points` did. A fact that is not known is null.
 #[derive(Serialize)]
@@ -32,6 +32,8 @@ pub struct Report {
     coordinates: Coordinates,
     haar: Option<HaarReport>,
     points: PointsReport,
+    /// How values were fitted; null where they are those of samples.
+    fit: Option<Fit>,
     /// Null where no α was needed.
     alpha: Option<Parameter>,
     weights: WeightsReport,
@@ -204,6 +206,7 @@ impl Report {
                     .ended
                     .map(|Adaptive { count, rmse }| Ended { asked: count, rmse }),
             },
+            fit: origin.fit,
             alpha: weighed.parameter,
             weights: WeightsReport::of(weighed),
             shape: None,
@@ -274,6 +277,14 @@ impl Display for Report {
         }
         if let Some(ended) = &self.points.ended_early {
             write!(f, "\n          {ended}")?;
+        }
+        if let Some(Fit { to, steps, residual }) = self.fit {
+            let samples = match to {
+                Refit::Whole => "all samples",
+                Refit::Shape => "the samples on the shape",
+            };
+            write!(f, "\nvalues    fitted to {samples} by least squares: {steps} steps, ")?;
+            write!(f, "relative residual {residual:.1e}")?;
         }
         writeln!(f, "\nlengths   in {}", self.coordinates)?;
         writeln!(f, "weights   {} (squared lengths)", self.weights)?;

@@ -124,10 +124,11 @@ impl Shape {
         }
 
         let mut progress = Progress::new(global);
-        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, &mut progress)?;
-        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
         let refuse_flat = self.dimension.is_some();
         let options = ShapeOptions { refuse_flat, ..self.shape.options() };
+        let stages = pipeline::stages_to(&self.pipeline, options)?;
+        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
+        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
         let model = pipeline::shape(weighed, options, &mut progress)?;
         report.add_model(&model);
         let shape = model.shape;

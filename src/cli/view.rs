@@ -131,8 +131,10 @@ impl View {
         if self.isovalue.is_some() && matches!(read, Input::Points(_)) {
             misused!("--isovalue has no effect: points have no isosurface" => "omit it");
         }
+        let stages = pipeline::stages(&self.pipeline);
+        let select = &self.pipeline.select;
         let (weighed, source) =
-            pipeline::weigh_input(read, &self.pipeline, Values::Written, &mut progress)?;
+            pipeline::weigh_input(read, stages, select, Values::Written, &mut progress)?;
         let filtration =
             progress.stage(Stage::Filtration, || Filtration::new(weighed.points.clone()))?;
         let page = self.page(&weighed, source.as_ref(), &filtration, &mut progress)?;

@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 use super::fill::corners;
 use super::raster::NOTHING;
-use super::{Deviation, Grid, Interpolant, InterpolateError, Resampled};
-use crate::points::{Units, WeightedPoints};
-use crate::progress::{Share, report, within};
-use crate::shape::{Alpha, ShapeOptions, alpha_shape};
+use super::sampled::Sampled;
+use super::{Deviation, InterpolateError};
+use crate::points::Units;
+use crate::progress::report;
 use crate::volume::{Dims, Volume};
 
 /// When adaptive selection is done: as soon as either is reached.
@@ -64,15 +64,9 @@ pub fn adaptive_voxels(
     if goal.rmse.is_nan() || goal.rmse < 0.0 {
         return Err(InterpolateError::Target(goal.rmse));
     }
-    let grid = Grid::of(volume, units);
-    let solid = ShapeOptions { refuse_flat: true, ..ShapeOptions::new(Alpha::INFINITE) };
+    let mut sampled = Sampled::new(volume, units, &voxels)?;
     loop {
-        let points = points(volume, &voxels, units);
-        let shape = within(Share::NONE, || alpha_shape(points, &solid))?;
-        let interpolant = Interpolant::new(&shape)?;
-        let resampled = interpolant.resample(&grid)?;
-        let Deviation { rmse: Some(rmse), max: Some(max), .. } = Deviation::of(volume, &resampled)
-        else {
+        let Deviation { rmse: Some(rmse), max: Some(max), .. } = sampled.deviation() else {
             return Ok(voxels);
         };
         tracing::debug!(points = voxels.len(), rmse, "adaptive");
@@ -82,36 +76,28 @@ pub fn adaptive_voxels(
         if rmse <= goal.rmse || batch == 0 {
             return Ok(voxels);
         }
-        let candidates = worst(volume, &resampled, interpolant.len(), max);
+        let candidates = worst(volume, &sampled, max);
         let joining = apart(volume.dims(), candidates, batch);
         voxels.extend(&joining);
         if joining.is_empty() || voxels.len() as u64 == goal.count {
             return Ok(voxels);
         }
-    }
-}
-
-fn points(volume: &Volume, voxels: &[u32], units: Units) -> WeightedPoints {
-    let value = |&voxel: &u32| f64::from(volume.as_slice()[voxel as usize]);
-    WeightedPoints {
-        positions: voxels.iter().map(|&voxel| units.position(volume, voxel)).collect(),
-        weights: vec![0.0; voxels.len()],
-        values: Some(voxels.iter().map(value).collect()),
+        sampled.add(&joining)?;
     }
 }
 
 /// The worst voxel of each simplex, in order of the squared error of its whole simplex, the
 /// largest first. Voxels without error are none. `max` is the largest error.
-fn worst(volume: &Volume, resampled: &Resampled, simplices: usize, max: f64) -> Vec<u32> {
+fn worst(volume: &Volume, sampled: &Sampled<'_>, max: f64) -> Vec<u32> {
     // Sums of integers do not depend on their order: squares in units of max²/2³¹, of which 2³²
     // samples make less than 2⁶⁴.
     let units = |error: f64| ((error / max).powi(2) * 2f64.powi(31)) as u64;
     // Floats that are not negative are ordered as their bits are; of equal ones the lowest voxel.
     let key = |error: f32, voxel: u32| u64::from(error.to_bits()) << 32 | u64::from(!voxel);
-    let zeros = || (0..simplices).map(|_| AtomicU64::new(0)).collect::<Vec<_>>();
+    let zeros = || (0..sampled.cells()).map(|_| AtomicU64::new(0)).collect::<Vec<_>>();
     let (sums, worst) = (zeros(), zeros());
-    let pairs = volume.as_slice().par_iter().zip(resampled.volume().as_slice());
-    pairs.zip(&resampled.owners).enumerate().for_each(|(voxel, ((f, g), &owner))| {
+    let pairs = volume.as_slice().par_iter().zip(sampled.f());
+    pairs.zip(sampled.owners()).enumerate().for_each(|(voxel, ((f, g), &owner))| {
         let error = (f - g).abs();
         if owner != NOTHING && error > 0.0 {
             sums[owner as usize].fetch_add(units(error.into()), Relaxed);

@@ -30,13 +30,22 @@ impl Deviation {
     /// When the two are not of one shape.
     pub fn of(original: &Volume, resampled: &Resampled) -> Self {
         assert_eq!(original.dims(), resampled.volume().dims(), "one grid");
+        Self::at(original, resampled.volume().as_slice(), |sample| resampled.is_inside(sample))
+    }
+
+    /// Compares a volume with numbers at its samples, where there are some.
+    pub(super) fn at(
+        original: &Volume,
+        ours: &[f32],
+        is_inside: impl Fn(usize) -> bool + Sync,
+    ) -> Self {
         let pairs = original.as_slice().par_chunks(CHUNK);
-        let pairs = pairs.zip(resampled.volume().as_slice().par_chunks(CHUNK)).enumerate();
+        let pairs = pairs.zip(ours.par_chunks(CHUNK)).enumerate();
         let part = |(chunk, (theirs, ours)): (usize, (&[f32], &[f32]))| {
             let (mut count, mut sum, mut max) = (0, 0.0, 0f64);
             for (i, (f, g)) in theirs.iter().zip(ours).enumerate() {
                 let sample = chunk * CHUNK + i;
-                if resampled.is_inside(sample) && !original.is_missing(sample) {
+                if is_inside(sample) && !original.is_missing(sample) {
                     let difference = (f64::from(*f) - f64::from(*g)).abs();
                     count += 1;
                     sum += difference * difference;

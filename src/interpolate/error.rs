@@ -36,6 +36,12 @@ pub enum InterpolateError {
     /// A target that no error can reach.
     #[error("an RMSE of {0} gray levels makes no sense as a target")]
     Target(f64),
+    /// The normal equations of values that are fitted were not solved.
+    #[error("after {steps} steps the values of the points are not fitted to 1e-6")]
+    Fit {
+        /// Steps of conjugate gradients.
+        steps: usize,
+    },
     /// The points make no shape.
     #[error(transparent)]
     Shape(#[from] ShapeError),
@@ -63,6 +69,7 @@ impl InterpolateError {
             Self::Count { available, .. } => {
                 format!("give a count from 8 to {available}, its samples").into()
             }
+            Self::Fit { .. } => "keep the samples' own values".into(),
             Self::Target(_) => "give a number from 0 up".into(),
             Self::Shape(error) => return error.advice(),
             Self::Points(error) => return error.advice(),

@@ -107,6 +107,16 @@ impl<'a> Interpolant<'a> {
         self.parts.len()
     }
 
+    /// The values of the points.
+    pub(super) fn values(&self) -> &[f64] {
+        self.values
+    }
+
+    /// The vertices of a simplex.
+    pub(super) fn vertices(&self, part: u32) -> &[u32] {
+        self.parts[part as usize].vertices()
+    }
+
     /// The corners of a simplex; the first so many count.
     pub(super) fn corners(&self, part: u32) -> ([[f64; 3]; 4], usize) {
         let part = self.parts[part as usize];
@@ -122,14 +132,7 @@ impl<'a> Interpolant<'a> {
     /// F on a simplex.
     pub(super) fn value(&self, part: u32, coordinates: &[f64; 4]) -> f64 {
         let part = self.parts[part as usize];
-        let at = |k: usize| self.values[part.vertices[k] as usize];
-        if let Some(vertex) = coordinates.iter().position(|&share| share == 1.0) {
-            return at(vertex);
-        }
-        // Summed in order of size, so that it does not matter in which order the vertices stand.
-        let mut terms = [0, 1, 2, 3].map(|k| coordinates[k] * at(k));
-        terms.sort_unstable_by(f64::total_cmp);
-        terms.iter().sum()
+        combine(coordinates, part.vertices.map(|v| self.values[v as usize]))
     }
 
     fn part_at(&self, place: [f64; 3]) -> Option<u32> {
@@ -150,6 +153,17 @@ impl<'a> Interpolant<'a> {
         });
         tree.first(place, |part| self.coordinates(part, place).is_some())
     }
+}
+
+/// The sum of values by their shares, in order of size, so that it does not matter in which order the
+/// vertices stand. A vertex's own value bit for bit.
+pub(super) fn combine(shares: &[f64; 4], values: [f64; 4]) -> f64 {
+    if let Some(vertex) = shares.iter().position(|&share| share == 1.0) {
+        return values[vertex];
+    }
+    let mut terms = [0, 1, 2, 3].map(|k| shares[k] * values[k]);
+    terms.sort_unstable_by(f64::total_cmp);
+    terms.iter().sum()
 }
 
 impl Part {

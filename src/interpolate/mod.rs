@@ -38,9 +38,12 @@ mod error;
 mod fill;
 mod grid;
 mod interpolant;
+mod least_squares;
 mod number;
 mod raster;
+mod refit;
 mod resample;
+mod sampled;
 mod tree;
 
 pub use adaptive::{Adaptive, adaptive_voxels};
@@ -50,4 +53,5 @@ pub use error::InterpolateError;
 pub use fill::fill;
 pub use grid::Grid;
 pub use interpolant::{Interpolant, Place};
+pub use refit::{Fit, Refit, Refitted, refit};
 pub use resample::Resampled;

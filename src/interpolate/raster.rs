@@ -12,7 +12,7 @@ use crate::memory::{NoMemory, room};
 pub(super) const NOTHING: u32 = u32::MAX;
 
 /// Simplices rasterised as one piece of work, at least.
-const CHUNK: usize = 32;
+pub(super) const CHUNK: usize = 32;
 
 /// The simplex each sample belongs to, in memory order: the first of those that hold it, or
 /// [`NOTHING`].
@@ -45,7 +45,8 @@ const MARGIN: f64 = 1e-3;
 /// Below so many samples in its box a simplex needs no planes.
 const FEW: usize = 24;
 
-fn for_each_near(grid: &Grid, corners: &[[f64; 3]], mut visit: impl FnMut([usize; 3])) {
+/// Visits the samples in a simplex, and some beside it.
+pub(super) fn for_each_near(grid: &Grid, corners: &[[f64; 3]], mut visit: impl FnMut([usize; 3])) {
     let corners: Vec<[f64; 3]> = corners.iter().map(|&p| grid.index(p)).collect();
     let ends = |k: usize| {
         let along = corners.iter().map(|p| p[k]);

@@ -7,12 +7,12 @@ pub use error::PipelineError;
 pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
 
 use crate::haar::{HaarOptions, Truncation, smooth};
-use crate::interpolate::{Adaptive, adaptive_voxels};
+use crate::interpolate::{Adaptive, Fit, Refit, adaptive_voxels, refit};
 use crate::points::{
     Points, Selection, Units, WeightedPoints, Weighting, difference, points_at,
     scattered_difference, select, weigh,
 };
-use crate::progress::Stage;
+use crate::progress::{Share, Stage, within};
 use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, alpha_shape};
 use crate::volume::{Coordinates, GrayRange, Volume};
 
@@ -43,6 +43,7 @@ pub struct Pipeline {
     weighting: Option<Weighting>,
     alpha: AlphaRule,
     shape: ShapeOptions,
+    refit: Option<Refit>,
 }
 
 /// Weighted points, and how they came about.
@@ -70,6 +71,8 @@ pub struct Origin {
     pub truncation: Option<Truncation>,
     /// Adaptive selection ended before it had as many points as asked for.
     pub ended: Option<Adaptive>,
+    /// How values were fitted to the volume; `None` where they are those of its samples.
+    pub fit: Option<Fit>,
 }
 
 /// A shape, and how it came about.
@@ -95,6 +98,7 @@ impl Default for Pipeline {
             alpha: AlphaRule::default(),
             // Its α is never looked at.
             shape: ShapeOptions::new(Alpha::INFINITE),
+            refit: None,
         }
     }
 }
@@ -141,6 +145,12 @@ impl Pipeline {
         Self { shape, ..self }
     }
 
+    /// Fits the values of points to the volume by least squares. By default they are those of its
+    /// samples.
+    pub fn refit(self, to: Refit) -> Self {
+        Self { refit: Some(to), ..self }
+    }
+
     /// The shape of a volume of gray levels.
     ///
     /// # Errors
@@ -176,8 +186,13 @@ impl Pipeline {
             weighting: self.weighting_of(&points),
             truncation: Some(truncation),
             ended,
+            fit: None,
         };
-        self.weigh(points, origin, parameter, hear)
+        let mut weighed = Self::weigh(points, origin, parameter, hear)?;
+        if let Some(to) = self.refit {
+            self.fit(&mut weighed, volume, to, hear)?;
+        }
+        Ok(self.written(weighed))
     }
 
     /// Scattered points, weighted. `hear` is called with each stage as it begins.
@@ -194,9 +209,10 @@ impl Pipeline {
             weighting: self.weighting_of(&points),
             truncation: None,
             ended: None,
+            fit: None,
         };
         let parameter = self.alpha.given(origin.coordinates.unit);
-        self.weigh(points, origin, parameter, hear)
+        Ok(self.written(Self::weigh(points, origin, parameter, hear)?))
     }
 
     /// The shape of weighted points. `hear` is called with each stage as it begins.
@@ -209,14 +225,47 @@ impl Pipeline {
         hear: &mut dyn FnMut(Stage),
     ) -> Result<Model, PipelineError> {
         let parameter = weighed.find_parameter(hear)?;
-        if self.shape.balls == Balls::Radius && parameter.is_found() {
-            return Err(PipelineError::Radii { radius: parameter.alpha.squared().abs().sqrt() });
-        }
+        let options = self.options(parameter)?;
         hear(Stage::Shape);
-        let options = ShapeOptions { alpha: parameter.alpha, ..self.shape };
         let Weighed { points, origin, .. } = weighed;
         let shape = alpha_shape(points, &options)?.meaning(origin.coordinates);
         Ok(Model { shape, parameter, origin })
+    }
+
+    /// The options of the shape at an α.
+    fn options(&self, parameter: Parameter) -> Result<ShapeOptions, PipelineError> {
+        if self.shape.balls == Balls::Radius && parameter.is_found() {
+            return Err(PipelineError::Radii { radius: parameter.alpha.squared().abs().sqrt() });
+        }
+        Ok(ShapeOptions { alpha: parameter.alpha, ..self.shape })
+    }
+
+    /// Fits the values of weighted points to their volume.
+    fn fit(
+        &self,
+        weighed: &mut Weighed,
+        volume: &Volume,
+        to: Refit,
+        hear: &mut dyn FnMut(Stage),
+    ) -> Result<(), PipelineError> {
+        let parameter = weighed.find_parameter(hear)?;
+        hear(Stage::Refit);
+        let shape = within(Share::NONE, || {
+            alpha_shape(weighed.points.clone(), &self.options(parameter)?)
+                .map_err(PipelineError::from)
+        })?;
+        let fitted = refit(&shape, volume, self.units, to)?;
+        weighed.points.values = Some(fitted.values);
+        weighed.origin.fit = Some(fitted.fit);
+        Ok(())
+    }
+
+    /// With values as they are written.
+    fn written(&self, mut weighed: Weighed) -> Weighed {
+        if let (Some(range), Some(values)) = (self.values, &mut weighed.points.values) {
+            values.iter_mut().for_each(|value| *value = range.value(*value));
+        }
+        weighed
     }
 
     fn weighting_of(&self, points: &Points) -> Weighting {
@@ -249,7 +298,6 @@ impl Pipeline {
 
     /// Gives points their weights, and finds α first where these are in proportion to it.
     fn weigh(
-        &self,
         mut points: Points,
         origin: Origin,
         mut parameter: Option<Parameter>,
@@ -270,10 +318,7 @@ impl Pipeline {
         }
         // Weights that do not depend on α are the same at ∞.
         let alpha = parameter.map_or(Alpha::INFINITE, |parameter| parameter.alpha);
-        let mut points = weigh(&points, weighting, alpha)?;
-        if let (Some(range), Some(values)) = (self.values, &mut points.values) {
-            values.iter_mut().for_each(|value| *value = range.value(*value));
-        }
+        let points = weigh(&points, weighting, alpha)?;
         Ok(Weighed { points, origin, parameter })
     }
 }

@@ -42,7 +42,7 @@ fn sorted<const N: usize>(mut row: [u32; N]) -> [u32; N] {
 
 /// The even permutation of four distinct indices that comes first: ascending, or ascending with
 /// the last two exchanged.
-fn smallest_even_permutation(row: [u32; 4]) -> [u32; 4] {
+pub(crate) fn smallest_even_permutation(row: [u32; 4]) -> [u32; 4] {
     let inversions =
         (0..4).flat_map(|j| (0..j).map(move |i| (i, j))).filter(|&(i, j)| row[i] > row[j]).count();
     let [a, b, c, d] = sorted(row);

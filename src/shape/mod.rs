@@ -34,6 +34,7 @@ mod voids;
 pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
 pub use balls::Balls;
 pub use blocks::PlanError;
+pub(crate) use canonical::smallest_even_permutation;
 pub use flat::flat_region;
 pub use infinite::number_or_null_or_name;
 pub use manifold::ManifoldDefects;

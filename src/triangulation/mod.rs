@@ -25,6 +25,7 @@ mod sites;
 
 pub use error::{SitesError, TriangulationError};
 pub(crate) use flat::{Flat, is_flat, triangulate_flat};
+pub(crate) use native::Growing;
 pub(crate) use predicates::{Interval, Predicates, Ratio, SmallRadius};
 pub use sites::{MAX_COORDINATE, MAX_WEIGHT, Sites};
 
@@ -140,9 +141,9 @@ fn no_memory(bytes: usize) -> TriangulationError {
 
 /// A cell as its makers have it: its corners, and 4·cell + corner across each facet.
 #[derive(Clone, Copy, Default)]
-struct Cell {
-    corners: [u32; 4],
-    beside: [u32; 4],
+pub(crate) struct Cell {
+    pub corners: [u32; 4],
+    pub beside: [u32; 4],
 }
 
 /// The first corner of a cell that is none.

@@ -10,7 +10,7 @@ use clap::{Args, Command};
 
 pub use input::InputArgs;
 use input::PartArgs;
-pub use select::{HaarArgs, SelectArgs};
+pub use select::{HaarArgs, RefitArgs, SelectArgs};
 pub use shape::ShapeArgs;
 pub use values::not_negative;
 #[cfg(feature = "render")]
@@ -27,6 +27,8 @@ pub struct PipelineArgs<W: Args = WeightArgs> {
     #[command(flatten)]
     pub select: SelectArgs,
     #[command(flatten)]
+    pub refit: RefitArgs,
+    #[command(flatten)]
     pub weights: W,
 }
 
@@ -36,7 +38,8 @@ pub type FrozenPipelineArgs = PipelineArgs<FrozenArgs>;
 /// The names of the options that belong to a volume.
 pub fn of_volumes() -> Vec<String> {
     let part = PartArgs::augment_args(Command::new("volume"));
-    let all = SelectArgs::augment_args(HaarArgs::augment_args(part));
+    let points = SelectArgs::augment_args(HaarArgs::augment_args(part));
+    let all = RefitArgs::augment_args(points);
     let names = all.get_arguments().map(|arg| arg.get_id().to_string());
     names.chain(["gray", "gray_out"].map(str::to_owned)).collect()
 }

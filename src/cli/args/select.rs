@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use crate::cli::said::{misused, refused};
-use crate::interpolate::Adaptive;
+use crate::interpolate::{Adaptive, Refit};
 use crate::pipeline::Choice;
 use crate::{
     Coordinates, Decomposition, GrayRange, HaarOptions, LengthUnit, Selection, SelectionRule,
@@ -73,6 +73,18 @@ pub struct SelectArgs {
     value_min: Option<f64>,
     #[command(flatten)]
     place: PlaceArgs,
+}
+
+/// Which values points get.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Points")]
+pub struct RefitArgs {
+    /// Fit the values of points to the volume by least squares: to all its samples, on the triangulation
+    /// that `interpolate --fill` uses, or to those that the shape covers. Otherwise points have the
+    /// values of their samples.
+    #[arg(long, value_enum, value_name = "TO", num_args = 0..=1, require_equals = true,
+          default_missing_value = "whole")]
+    pub refit: Option<Refit>,
 }
 
 /// In what coordinates points, shapes and all lengths are.

@@ -93,6 +93,8 @@ impl Ladder {
         meshes: &[Mesh],
         mut folder: Folder,
     ) -> anyhow::Result<()> {
+        let given = &self.pipeline.input.given;
+        given.refuse(&["refit"], "levels of detail keep the values of the samples")?;
         let mut progress = Progress::new(global);
         let Input::Volume(Grays { volume, range, written }) =
             read(&self.pipeline.input, &mut progress)?

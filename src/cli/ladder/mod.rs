@@ -116,7 +116,8 @@ impl Ladder {
         mut folder: Folder,
     ) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
-        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, &mut progress)?;
+        let stages = pipeline::stages(&self.pipeline);
+        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
         let domain = pipeline::domain(&weighed, volume.as_ref());
         let filtration =
             progress.stage(Stage::Filtration, || Filtration::new(weighed.points.clone()))?;

@@ -1,5 +1,6 @@
 //! The cells that go when a point comes, and those that take their place.
 
+use super::super::predicates::Screen;
 use super::super::{Cell, Triangulation, TriangulationError, filled};
 use super::{Mesh, Native};
 
@@ -39,9 +40,9 @@ struct Facet {
 const APEX: u32 = 3;
 
 impl Cavity {
-    pub fn new(ghost: u32) -> Result<Self, TriangulationError> {
-        let count = ghost as usize + 1;
-        let names = filled(count, 0)?;
+    /// For points with numbers below one.
+    pub fn new(below: usize) -> Result<Self, TriangulationError> {
+        let names = filled(below, 0)?;
         Ok(Self {
             cells: Vec::new(),
             boundary: vec![Facet::default(); 4],
@@ -52,6 +53,16 @@ impl Cavity {
             table: vec![0; TABLE * TABLE].try_into().expect("as long"),
             seen: 0,
         })
+    }
+
+    /// Makes room for points of larger numbers.
+    pub fn admit(&mut self, below: usize) {
+        self.names.resize(self.names.len().max(below), 0);
+    }
+
+    /// The cells that the last insertion made.
+    pub fn made(&self) -> &[u32] {
+        &self.cells[..self.facets]
     }
 
     /// Forgets the last cavity.
@@ -73,10 +84,10 @@ impl Cavity {
     }
 }
 
-impl Native<'_> {
+impl Native {
     /// Collects the cells in conflict with a point, beginning with one, and their boundary.
-    pub(super) fn dig(&mut self, start: u32, v: u32) {
-        let Self { screen, mesh, marks, cavity, .. } = self;
+    pub(super) fn dig(&mut self, screen: &Screen<'_>, start: u32, v: u32) {
+        let Self { mesh, marks, cavity, .. } = self;
         cavity.clear(marks);
         let seen = cavity.seen;
         marks[start as usize] = seen + 1;

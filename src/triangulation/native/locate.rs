@@ -1,11 +1,12 @@
 use super::Native;
+use crate::triangulation::predicates::Screen;
 
-impl Native<'_> {
+impl Native {
     /// The cell that holds a point, or the infinite cell that a line to it leaves the hull by, found
     /// by a walk through facets that have the point beyond them. In a regular triangulation no walk
     /// comes back to a cell (Edelsbrunner 1990, doi:10.1007/BF02122778).
     #[inline(never)]
-    pub(super) fn locate(&self, v: u32) -> u32 {
+    pub(super) fn locate(&self, screen: &Screen<'_>, v: u32) -> u32 {
         let mut cell = self.near;
         if let Some(corner) = self.mesh.ghost_corner(cell) {
             cell = self.mesh.cells[cell as usize].beside[corner] / 4;
@@ -21,7 +22,7 @@ impl Native<'_> {
                 }
                 let mut moved = corners;
                 moved[corner] = v;
-                if self.screen.orientation(moved).is_lt() {
+                if screen.orientation(moved).is_lt() {
                     if self.mesh.ghost_corner(next).is_some() {
                         return next;
                     }

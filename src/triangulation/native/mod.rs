@@ -11,6 +11,7 @@
 //!    cavity's boundary ([`cavity`]), in the places of the old ones.
 
 mod cavity;
+mod growing;
 mod locate;
 mod start;
 
@@ -19,6 +20,7 @@ use std::cmp::Ordering;
 use super::predicates::{Predicates, Screen};
 use super::{Cell, GONE, Triangulation, TriangulationError};
 use cavity::Cavity;
+pub(crate) use growing::Growing;
 
 /// So many insertions are counted at once: some milliseconds.
 const TOGETHER: usize = 4096;
@@ -35,21 +37,22 @@ pub(super) fn native(
 ) -> Result<Triangulation, TriangulationError> {
     let predicates = Predicates::new(positions, weights);
     let screen = Screen::new(&predicates)?;
-    let mut native = Native::start(&screen)?;
-    for (i, v) in rounds(screen.len() as u32).enumerate() {
+    let count = screen.len() as u32;
+    let mut native = Native::empty(screen.len(), screen.len() + 1, count)?;
+    native.begin(&screen, 0..count)?;
+    for (i, v) in rounds(count).enumerate() {
         if i % TOGETHER == TOGETHER - 1 {
             inserted(TOGETHER);
         }
         if !native.first.contains(&v) {
-            native.insert(v)?;
+            native.insert(&screen, v)?;
         }
     }
     native.finish()
 }
 
 /// A triangulation that grows.
-struct Native<'a> {
-    screen: &'a Screen<'a>,
+struct Native {
     mesh: Mesh,
     /// What the last insertions said of each cell, see [`Cavity`].
     marks: Vec<u32>,
@@ -62,15 +65,16 @@ struct Native<'a> {
     cavity: Cavity,
 }
 
-impl Native<'_> {
-    /// Makes a point a vertex, or leaves it hidden.
-    fn insert(&mut self, v: u32) -> Result<(), TriangulationError> {
-        let cell = self.locate(v);
-        if self.mesh.conflicts(self.screen, cell, v) {
-            self.dig(cell, v);
+impl Native {
+    /// Makes a point a vertex, or leaves it hidden; tells which.
+    fn insert(&mut self, screen: &Screen<'_>, v: u32) -> Result<bool, TriangulationError> {
+        let cell = self.locate(screen, v);
+        let joins = self.mesh.conflicts(screen, cell, v);
+        if joins {
+            self.dig(screen, cell, v);
             self.fill(v)?;
         }
-        Ok(())
+        Ok(joins)
     }
 
     fn finish(mut self) -> Result<Triangulation, TriangulationError> {

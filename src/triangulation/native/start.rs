@@ -6,42 +6,57 @@ use super::super::predicates::Screen;
 use super::super::{Cell, SitesError, TriangulationError, no_memory};
 use super::{Cavity, Mesh, Native};
 
-impl<'a> Native<'a> {
-    /// A triangulation of four points that span a volume. O(n) if the first ones do not.
-    pub(super) fn start(screen: &'a Screen<'a>) -> Result<Self, TriangulationError> {
-        let first = spanning(screen)?;
-        let ghost = screen.len() as u32;
+impl Native {
+    /// Nothing yet, with room for a triangulation of so many of the points below a number, which no
+    /// point has or which is the ghost's own.
+    pub(super) fn empty(
+        points: usize,
+        below: usize,
+        ghost: u32,
+    ) -> Result<Self, TriangulationError> {
         // About 6.8 cells a point, of which a few more come and go.
-        let expected = (screen.len() + screen.len() / 16).saturating_mul(7).max(64);
+        let expected = (points + points / 16).saturating_mul(7).max(64);
         let mut native = Self {
-            screen,
             mesh: Mesh { cells: Vec::new(), ghost },
             marks: Vec::new(),
             free: Vec::new(),
-            first,
+            first: [ghost; 4],
             near: 0,
-            cavity: Cavity::new(ghost)?,
+            cavity: Cavity::new(below)?,
         };
         native.reserve(expected)?;
-        native.mesh.cells.push(Cell { corners: first, beside: [0; 4] });
+        Ok(native)
+    }
+
+    /// Begins with four of some points that span a volume. O(n) if the first ones do not.
+    pub(super) fn begin(
+        &mut self,
+        screen: &Screen<'_>,
+        points: impl Iterator<Item = u32> + Clone,
+    ) -> Result<(), TriangulationError> {
+        let Self { mesh: Mesh { cells, ghost }, marks, free, first, near, .. } = self;
+        *first = spanning(screen, points)?;
+        cells.clear();
+        free.clear();
+        marks.clear();
+        *near = 0;
+        cells.push(Cell { corners: *first, beside: [0; 4] });
         for corner in 0..4 {
-            let mut infinite = first;
-            infinite[corner] = ghost;
+            let mut infinite = *first;
+            infinite[corner] = *ghost;
             // Seen from outside the facet turns the other way.
             infinite.swap((corner + 1) % 4, (corner + 2) % 4);
-            native.mesh.cells.push(Cell { corners: infinite, beside: [0; 4] });
+            cells.push(Cell { corners: infinite, beside: [0; 4] });
         }
-        native.marks.resize(5, 0);
+        marks.resize(5, 0);
         for a in 0..5 {
             for b in 0..5 {
-                if let Some([from, to]) =
-                    common_facet(native.mesh.cells[a].corners, native.mesh.cells[b].corners)
-                {
-                    native.mesh.cells[a].beside[from] = (4 * b + to) as u32;
+                if let Some([from, to]) = common_facet(cells[a].corners, cells[b].corners) {
+                    cells[a].beside[from] = (4 * b + to) as u32;
                 }
             }
         }
-        Ok(native)
+        Ok(())
     }
 
     /// Makes room for so many more cells.
@@ -56,13 +71,17 @@ impl<'a> Native<'a> {
 }
 
 /// Four points that span a volume, positively oriented.
-fn spanning(screen: &Screen<'_>) -> Result<[u32; 4], TriangulationError> {
-    let n = screen.len() as u32;
-    let flat = |dimension| SitesError::flat(screen.len(), dimension);
-    let c = (2..n).find(|&c| !screen.collinear([0, 1, c])).ok_or(flat(1))?;
-    let sign = |d: u32| screen.orientation([0, 1, c, d]);
-    let d = (c + 1..n).find(|&d| sign(d).is_ne()).ok_or(flat(2))?;
-    Ok(if sign(d) == Ordering::Greater { [0, 1, c, d] } else { [1, 0, c, d] })
+fn spanning(
+    screen: &Screen<'_>,
+    mut points: impl Iterator<Item = u32> + Clone,
+) -> Result<[u32; 4], TriangulationError> {
+    let all = points.clone();
+    let flat = |dimension| SitesError::flat(all.clone().count(), dimension);
+    let (Some(a), Some(b)) = (points.next(), points.next()) else { return Err(flat(0).into()) };
+    let c = points.find(|&c| !screen.collinear([a, b, c])).ok_or_else(|| flat(1))?;
+    let sign = |d: u32| screen.orientation([a, b, c, d]);
+    let d = points.find(|&d| sign(d).is_ne()).ok_or_else(|| flat(2))?;
+    Ok(if sign(d) == Ordering::Greater { [a, b, c, d] } else { [b, a, c, d] })
 }
 
 /// The corners opposite the facet that two different cells share.

@@ -73,6 +73,16 @@ impl<'a> Screen<'a> {
         Ok(Self { predicates, points, order, orientation, power })
     }
 
+    /// The same where the ghost has the number of a point, whose place is another point's.
+    ///
+    /// # Errors
+    /// No memory for 32 bytes a point.
+    pub fn haunted(predicates: &'a Predicates<'a>, ghost: u32) -> Result<Self, TriangulationError> {
+        let mut screen = Self::new(predicates)?;
+        screen.points[ghost as usize] = [f64::NAN; 4];
+        Ok(screen)
+    }
+
     /// The number of points.
     pub fn len(&self) -> usize {
         self.points.len() - 1

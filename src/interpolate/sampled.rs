@@ -1,0 +1,192 @@
+//! F at the samples of a volume, kept while points come and leave.
+
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+use rayon::prelude::*;
+
+use super::barycentric::coordinates;
+use super::interpolant::combine;
+use super::raster::{CHUNK, NOTHING, for_each_near};
+use super::{Deviation, Grid, InterpolateError};
+use crate::math::Reach;
+use crate::points::Units;
+use crate::shape::{ShapeError, smallest_even_permutation};
+use crate::triangulation::{Growing, TriangulationError};
+use crate::volume::Volume;
+
+/// The interpolant of samples of a volume on their Delaunay triangulation, at all samples.
+///
+/// A sample belongs to the same cell, and F has the same bits there, as if
+/// [`Interpolant::resample`](super::Interpolant::resample) were asked for the triangulation of the
+/// points in the order in which they came. Only what new cells hold is computed anew.
+pub(super) struct Sampled<'a> {
+    volume: &'a Volume,
+    units: Units,
+    grid: Grid,
+    growing: Growing,
+    /// Values of points by their numbers in the triangulation.
+    values: Vec<f64>,
+    /// F at each sample.
+    f: Vec<f32>,
+    /// The cell of each sample, by its number in the triangulation.
+    owners: Vec<u32>,
+}
+
+impl<'a> Sampled<'a> {
+    /// Begins with some samples.
+    ///
+    /// # Errors
+    /// Samples that span no volume; no memory.
+    pub fn new(volume: &'a Volume, units: Units, voxels: &[u32]) -> Result<Self, InterpolateError> {
+        let samples = volume.dims().samples();
+        let growing = Growing::new(&positions(volume, units, voxels)).map_err(ShapeError::from)?;
+        let mut sampled = Self {
+            volume,
+            units,
+            grid: Grid::of(volume, units),
+            growing,
+            values: vec![0.0; Growing::FIRST as usize],
+            f: vec![0.0; samples],
+            owners: vec![NOTHING; samples],
+        };
+        sampled.add_values(voxels);
+        sampled.follow();
+        Ok(sampled)
+    }
+
+    /// Makes more samples points.
+    ///
+    /// # Errors
+    /// No memory.
+    pub fn add(&mut self, voxels: &[u32]) -> Result<(), InterpolateError> {
+        let positions = positions(self.volume, self.units, voxels);
+        let named: Vec<u32> = self.growing.name(&positions).collect();
+        let inserted: Result<(), TriangulationError> = self.growing.insert(&named);
+        inserted.map_err(ShapeError::from)?;
+        self.add_values(voxels);
+        self.follow();
+        Ok(())
+    }
+
+    /// How far F is from the volume.
+    pub fn deviation(&self) -> Deviation {
+        Deviation::at(self.volume, &self.f, |sample| self.owners[sample] != NOTHING)
+    }
+
+    /// F at each sample, 0 where no cell is.
+    pub fn f(&self) -> &[f32] {
+        &self.f
+    }
+
+    /// The cell of each sample, or [`NOTHING`].
+    pub fn owners(&self) -> &[u32] {
+        &self.owners
+    }
+
+    /// One more than the largest number of a cell.
+    pub fn cells(&self) -> usize {
+        self.growing.cells().len()
+    }
+
+    fn add_values(&mut self, voxels: &[u32]) {
+        let value = |&voxel: &u32| f64::from(self.volume.as_slice()[voxel as usize]);
+        self.values.extend(voxels.iter().map(value));
+    }
+
+    /// Finds the cells of the samples that new cells hold, and F there.
+    fn follow(&mut self) {
+        let fresh = self.growing.take_fresh();
+        let mut is_fresh = vec![false; self.cells()];
+        fresh.iter().for_each(|&cell| is_fresh[cell as usize] = true);
+        let stays = |&&owner: &&u32| {
+            owner != NOTHING && !is_fresh[owner as usize] && self.growing.is_cell(owner)
+        };
+        let left = |owner: &u32| AtomicU32::new(*Some(owner).filter(stays).unwrap_or(&NOTHING));
+        let owners: Vec<AtomicU32> = self.owners.par_iter().map(left).collect();
+        let cells = Cells::of(&self.growing);
+        let [nx, ny, _] = self.grid.dims().xyz();
+        fresh.par_iter().with_min_len(CHUNK).for_each(|&cell| {
+            let row = cells.row(cell);
+            let corners = row.map(|v| self.growing.positions()[v as usize]);
+            for_each_near(&self.grid, &corners, |index| {
+                let place = self.grid.position(index);
+                let owner = &owners[index[0] + nx * (index[1] + ny * index[2])];
+                let Some(shares) = cells.coordinates(row, place) else { return };
+                if !shares.contains(&0.0) {
+                    owner.store(cell, Relaxed);
+                } else if shares.contains(&1.0) {
+                    // At a vertex F is its value, whichever cell the sample belongs to.
+                    owner.fetch_min(cell, Relaxed);
+                } else {
+                    owner.store(cells.first_at(cell, place), Relaxed);
+                }
+            });
+        });
+        let owners: Vec<u32> = owners.into_iter().map(AtomicU32::into_inner).collect();
+        let (grid, values, before) = (&self.grid, &self.values, &self.owners);
+        self.f.par_chunks_mut(nx).enumerate().for_each(|(y, f)| {
+            for (x, f) in f.iter_mut().enumerate() {
+                let owner = owners[x + nx * y];
+                let same = owner == before[x + nx * y];
+                if owner == NOTHING || same && !is_fresh[owner as usize] {
+                    continue;
+                }
+                let row = cells.row(owner);
+                let place = grid.position([x, y % ny, y / ny]);
+                if let Some(shares) = cells.coordinates(row, place) {
+                    *f = combine(&shares, row.map(|v| values[v as usize])) as f32;
+                }
+            }
+        });
+        self.owners = owners;
+    }
+}
+
+fn positions(volume: &Volume, units: Units, voxels: &[u32]) -> Vec<[f64; 3]> {
+    voxels.iter().map(|&voxel| units.position(volume, voxel)).collect()
+}
+
+/// The cells of a triangulation as an interpolant has them.
+struct Cells<'a> {
+    growing: &'a Growing,
+    reach: Reach,
+}
+
+impl<'a> Cells<'a> {
+    fn of(growing: &'a Growing) -> Self {
+        Self { growing, reach: Reach::of(growing.positions()) }
+    }
+
+    /// The corners of a cell in canonical order. Numbers of points are in the order of their indices.
+    fn row(&self, cell: u32) -> [u32; 4] {
+        smallest_even_permutation(self.growing.cells()[cell as usize].corners)
+    }
+
+    fn coordinates(&self, row: [u32; 4], place: [f64; 3]) -> Option<[f64; 4]> {
+        let corners = row.map(|v| self.growing.positions()[v as usize]);
+        coordinates(&corners, place, self.reach.is_exact_with(place))
+    }
+
+    /// The first in canonical order of the cells that hold a place, of which one is known. From one to the
+    /// next the way leads through facets that the place is on.
+    fn first_at(&self, cell: u32, place: [f64; 3]) -> u32 {
+        let mut seen = vec![cell];
+        let mut first = (self.row(cell), cell);
+        let mut at = 0;
+        while let Some(&cell) = seen.get(at) {
+            at += 1;
+            let row = self.row(cell);
+            first = first.min((row, cell));
+            let Some(shares) = self.coordinates(row, place) else { continue };
+            let here = &self.growing.cells()[cell as usize];
+            for (v, _) in row.iter().zip(shares).filter(|(_, share)| *share == 0.0) {
+                let corner = here.corners.iter().position(|w| w == v).expect("a corner");
+                let next = here.beside[corner] / 4;
+                if self.growing.is_cell(next) && !seen.contains(&next) {
+                    seen.push(next);
+                }
+            }
+        }
+        first.1
+    }
+}
