@@ -1,7 +1,7 @@
 use std::ops::Range;
 
 use crate::points::Units;
-use crate::volume::{Coordinates, Dims, Frame, Volume};
+use crate::volume::{Coordinates, Dims, Frame, Volume, inverse};
 
 /// A grid of places to sample F at.
 ///
@@ -113,16 +113,6 @@ fn steps(first: f64, last: f64, n: usize) -> Vec<f64> {
 fn step(first: f64, last: f64, n: usize) -> f64 {
     let length = if last > first { last - first } else { 1.0 };
     length / (n - 1).max(1) as f64
-}
-
-/// The inverse of the matrix with these columns. Not finite where there is none.
-fn inverse([a, b, c]: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    let cross = |u: [f64; 3], v: [f64; 3]| {
-        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-    };
-    let rows = [cross(b, c), cross(c, a), cross(a, b)];
-    let determinant = a[0] * rows[0][0] + a[1] * rows[0][1] + a[2] * rows[0][2];
-    rows.map(|row| row.map(|v| v / determinant))
 }
 
 #[cfg(test)]
