@@ -133,7 +133,7 @@ impl View {
         let weights = WeightArgs::from(self.weights);
         let read = pipeline::read(&self.input, &mut progress)?;
         read.accepts(&self.input)?;
-        if self.isovalue.is_some() && matches!(read, Input::Points(_)) {
+        if self.isovalue.is_some() && matches!(read, Input::Points(..)) {
             misused!("--isovalue has no effect: points have no isosurface" => "omit it");
         }
         let (haar, select) = (&self.haar, &self.select);

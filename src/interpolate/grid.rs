@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use crate::points::Units;
+use crate::points::{SampleGrid, Units};
 use crate::volume::{Coordinates, Dims, Frame, Volume, inverse};
 
 /// A grid of places to sample F at.
@@ -35,8 +35,14 @@ impl Grid {
 
     /// As many samples as asked for over the extent of a volume.
     pub fn over(volume: &Volume, dims: Dims, units: Units) -> Self {
-        let source = *volume.frame();
-        let (counts, n) = (volume.dims().xyz(), dims.xyz());
+        let samples = SampleGrid { dims: volume.dims(), frame: *volume.frame(), units };
+        Self::over_samples(&samples, dims)
+    }
+
+    /// The same over the extent of the grid that points are samples of.
+    pub fn over_samples(samples: &SampleGrid, dims: Dims) -> Self {
+        let SampleGrid { dims: counts, frame: source, units } = *samples;
+        let (counts, n) = (counts.xyz(), dims.xyz());
         let axes: [Vec<f64>; 3] = [0, 1, 2].map(|k| steps(0.0, (counts[k] - 1) as f64, n[k]));
         let step = [0, 1, 2].map(|k| step(0.0, (counts[k] - 1) as f64, n[k]));
         let frame = source.part([0, 1, 2].map(|k| axes[k][0]), step);
