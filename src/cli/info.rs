@@ -5,11 +5,11 @@ use std::path::Path;
 use clap::Args;
 use serde::Serialize;
 
-use crate::points::read_points;
+use crate::points::read_model;
 use crate::progress::Stage;
 use crate::shown::number;
 use crate::volume::{self, Series};
-use crate::{Coordinates, Frame, LengthUnit};
+use crate::{Alpha, Coordinates, Frame, LengthUnit};
 
 use super::args::InputArgs;
 use super::output::{name, tell};
@@ -62,15 +62,20 @@ enum Content {
         data_files: Vec<String>,
     },
     /// Several series in a folder, of which --series reads one.
-    Series {
-        series: Vec<Series>,
-    },
+    Series { series: Vec<Series> },
     Points {
         count: usize,
         low: [f64; 3],
         high: [f64; 3],
         weights: bool,
         values: bool,
+        /// Samples along x, y and z of the grid that they stand on; null where the file tells none.
+        grid: Option<[usize; 3]>,
+        coordinates: Coordinates,
+        /// The α that their shape is meant to be made at, a squared length.
+        alpha: Option<Alpha>,
+        /// The values that were gray 0 and 255.
+        gray_range: Option<[f64; 2]>,
     },
 }
 
@@ -83,7 +88,8 @@ impl Info {
 
     fn look(&self, input: &str) -> anyhow::Result<Content> {
         if pipeline::is_points(&self.input, input)? {
-            let points = read_points(input.as_ref(), self.input.columns())?;
+            let level = self.input.options().level;
+            let (points, facts) = read_model(input.as_ref(), self.input.columns(), level)?;
             let axis = |end: fn(f64, f64) -> f64, start: f64, axis: usize| {
                 points.positions.iter().fold(start, |so_far, p| end(so_far, p[axis]))
             };
@@ -93,6 +99,10 @@ impl Info {
                 high: [0, 1, 2].map(|i| axis(f64::max, f64::NEG_INFINITY, i)),
                 weights: points.weights.is_some(),
                 values: points.values.is_some(),
+                grid: facts.grid.map(|grid| grid.dims.xyz()),
+                coordinates: facts.coordinates,
+                alpha: facts.alpha,
+                gray_range: facts.range.map(|range| [range.low, range.high]),
             });
         }
         let options = self.input.options();
@@ -129,6 +139,22 @@ impl Info {
 impl std::fmt::Display for Facts {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.content.fmt(f)
+    }
+}
+
+impl Content {
+    /// What the points are meant for.
+    fn fmt_meant(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self::Points { alpha, gray_range, coordinates, .. } = self else { return Ok(()) };
+        if let Some(alpha) = alpha {
+            writeln!(f, "α         {} {}²", number(alpha.squared()), coordinates.unit.symbol())?;
+        }
+        match gray_range {
+            Some([low, high]) => {
+                writeln!(f, "gray      values {} to {} were 0 to 255", number(*low), number(*high))
+            }
+            None => Ok(()),
+        }
     }
 }
 
@@ -181,13 +207,17 @@ impl std::fmt::Display for Content {
                 writeln!(f, "series    {} in the folder; --series N reads one", series.len())?;
                 series.iter().try_for_each(|one| writeln!(f, "          {one}"))
             }
-            Self::Points { count, low, high, weights, values } => {
+            Self::Points { count, low, high, weights, values, grid, coordinates, .. } => {
                 writeln!(f, "points    {count}")?;
                 for (i, axis) in ["x", "y", "z"].iter().enumerate() {
                     writeln!(f, "{axis}         {} to {}", number(low[i]), number(high[i]))?;
                 }
                 let has = |there: bool| if there { "yes" } else { "no" };
-                writeln!(f, "weights   {}\nvalues    {}", has(*weights), has(*values))
+                writeln!(f, "weights   {}\nvalues    {}", has(*weights), has(*values))?;
+                if let Some([x, y, z]) = grid {
+                    writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;
+                }
+                self.fmt_meant(f)
             }
         }
     }

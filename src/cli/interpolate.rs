@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::export::{Content, Target, write_all};
 use crate::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
+use crate::pipeline::Weighed;
 use crate::progress::Stage;
 use crate::shape::number_or_null_or_name;
 use crate::volume::VolumeWriter;
@@ -29,7 +30,7 @@ use super::{Global, curve, pipeline};
 /// is sampled on the grid of the volume or, with --dims, on another grid over the same extent; samples
 /// outside the shape are gray 0, the lowest value. The error is measured on the samples of INPUT that the
 /// shape covers; PSNR is relative to gray 255. Hidden points carry no value. Points without a volume need
-/// --dims, a grid over their box.
+/// --dims, a grid over their box; a .wvm knows the grid that its points are samples of.
 ///
 /// With --curve: error and coverage over the number of points instead, from a sixteenth to twice
 /// those selected, for each way to select them and the weights common=0, min-max and barycentric, as
@@ -163,7 +164,8 @@ impl Interpolate {
         let original = source.as_ref().map(Original::of);
         let facts = source.as_ref().map(|source| &source.facts);
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, facts);
-        let grid = self.grid(original, &weighed.points.positions)?;
+        let grid = self.grid(original, &weighed)?;
+        let written = original.map(|original| original.written).or(weighed.origin.range);
         let model = pipeline::shape(weighed, self.shape.options(), &mut progress)?;
         report.add_model(&model);
         let shape = model.shape;
@@ -182,7 +184,7 @@ impl Interpolate {
         };
         progress.stage(Stage::Write, || {
             let (mask, inside) = mask.unzip();
-            let written = original.map_or(GrayRange::IDENTITY, |original| original.written);
+            let written = written.unwrap_or(GrayRange::IDENTITY);
             let values = resampled.into_volume().into_values(&written);
             let volumes = [(output, Some(&values)), (mask, inside.as_ref())];
             write_all(volumes.into_iter().filter_map(|(open, volume)| {
@@ -201,21 +203,25 @@ impl Interpolate {
     }
 
     /// The grid asked for.
-    fn grid(&self, original: Option<Original>, positions: &[[f64; 3]]) -> anyhow::Result<Grid> {
+    fn grid(&self, original: Option<Original>, weighed: &Weighed) -> anyhow::Result<Grid> {
         let asked = self.pipeline.input.raw.grid();
-        match (original, asked) {
-            (Some(Original { volume, units, .. }), None) => Ok(Grid::of(volume, units)),
-            (Some(Original { volume, units, .. }), Some(dims)) => {
+        match (original, weighed.origin.grid, asked) {
+            (Some(Original { volume, units, .. }), _, None) => Ok(Grid::of(volume, units)),
+            (Some(Original { volume, units, .. }), _, Some(dims)) => {
                 Ok(Grid::over(volume, dims, units))
             }
-            (None, Some(dims)) => {
+            (None, Some(samples), asked) => {
+                Ok(Grid::over_samples(&samples, asked.unwrap_or(samples.dims)))
+            }
+            (None, None, Some(dims)) => {
+                let positions = &weighed.points.positions;
                 let end = |f: fn(f64, f64) -> f64| {
                     let join = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| f(a[k], b[k]));
                     positions.iter().copied().reduce(join).unwrap_or_default()
                 };
                 Ok(Grid::spanning(end(f64::min), end(f64::max), dims))
             }
-            (None, None) => {
+            (None, None, None) => {
                 refused!("{} holds points, which have no grid of their own", self.pipeline.input.input => "give --dims X,Y,Z")
             }
         }

@@ -10,7 +10,7 @@ use crate::export::{Scratch, Target};
 use crate::interpolate::Refit;
 use crate::ladder::{Curve, Filtration};
 use crate::pipeline::{Model, PipelineError, Weighed};
-use crate::points::{is_point_file, read_points};
+use crate::points::{ModelFacts, is_point_file, read_model};
 use crate::progress::Stage;
 use crate::shape::ShapeOptions;
 use crate::volume::Reason;
@@ -25,8 +25,8 @@ use super::said::{Said, misused, said};
 pub enum Input {
     /// A grid of gray levels.
     Volume(Grays),
-    /// Points, with weights and values perhaps.
-    Points(Points),
+    /// Points, with weights and values perhaps, and what their file tells of them besides.
+    Points(Points, ModelFacts),
 }
 
 /// A volume in gray levels, and what they stand for.
@@ -43,7 +43,9 @@ pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> 
     progress.stage(Stage::Read, || {
         with_file(args, |input| {
             if is_points(args, input)? {
-                return Ok(Input::Points(read_points(Path::new(input), args.columns())?));
+                let level = args.options().level;
+                let (points, facts) = read_model(Path::new(input), args.columns(), level)?;
+                return Ok(Input::Points(points, facts));
             }
             let volume = volume::open(input, &args.options()).map_err(with_points)?;
             let (volume, range) = volume.into_gray(args.gray())?;
@@ -83,14 +85,19 @@ pub fn with_file<T>(
     })
 }
 
+/// Options that points have, too: the level of a `.wvm`.
+const OF_POINTS: [&str; 1] = ["level"];
+
 impl Input {
     /// Refuses options that have no effect on what INPUT is.
     pub fn accepts(&self, args: &InputArgs) -> Result<(), Said> {
         let holds = |what| format!("{} holds {what}", args.input);
         match self {
             Self::Volume(..) => args.given.refuse(&["columns"], holds("a volume")),
-            Self::Points(_) => {
-                args.given.refuse(&args::of_volumes(), holds("points, and no volume"))
+            Self::Points(..) => {
+                let mut names = args::of_volumes();
+                names.retain(|name| !OF_POINTS.contains(&name.as_str()));
+                args.given.refuse(&names, holds("points, and no volume"))
             }
         }
     }
@@ -182,8 +189,14 @@ pub fn weigh_input(
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Source>)> {
     let Grays { volume, range, written } = match input {
-        Input::Points(points) => {
-            let weighed = progress.watch(|hear| pipeline.weighed_points(points, hear))?;
+        Input::Points(mut points, facts) => {
+            if let (Values::Gray, Some(range)) = (values, facts.range) {
+                points.values.iter_mut().flatten().for_each(|value| {
+                    // As in a volume, gray levels are of single precision.
+                    *value = f64::from(range.gray(*value) as f32);
+                });
+            }
+            let weighed = progress.watch(|hear| pipeline.weighed_model(points, &facts, hear))?;
             return Ok((weighed, None));
         }
         Input::Volume(grays) => grays,

@@ -5,14 +5,17 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::export::Target;
-use crate::points::PointWriter;
+use crate::pipeline::Weighed;
+use crate::points::{ModelFacts, Packing, PointWriter};
 use crate::progress::Stage;
 
-use super::args::PipelineArgs;
+use super::args::{PipelineArgs, not_negative};
 use super::formats::points_output;
 use super::output::tell;
+use super::pipeline::VolumeFacts;
 use super::progress::Progress;
 use super::report::Report;
+use super::said::misused;
 use super::{Global, pipeline};
 
 /// Select points from a volume and weight them.
@@ -22,10 +25,21 @@ use super::{Global, pipeline};
 /// walpha points ct.nii.gz --gray 0..1000 --gray-min 64 --count 100000 -o bone.csv
 ///
 /// walpha points sample:skull --count 15956 --weights min-max -o skull.csv
+///
+/// walpha points sample:skull --select adaptive --target-rmse 2 --value-error 3 -o skull.wvm
 #[derive(Args)]
 pub struct Points {
     #[arg(short, long, value_name = "FILE", help = points_output())]
     output: Option<PathBuf>,
+    /// Largest error of a value in a .wvm, in gray levels (of points without a volume: in their values): the
+    /// values of F are off by as much at most, everywhere, and the file is smaller; 0 keeps every bit.
+    #[arg(long, value_name = "E", value_parser = not_negative, default_value = "0")]
+    value_error: f64,
+    /// Layers of points in a .wvm, the most important first, each of four times as many points as all
+    /// before; --level reads the first ones. One layer makes the smallest file.
+    #[arg(long, value_name = "N", default_value = "1",
+          value_parser = clap::value_parser!(u8).range(1..=i64::from(Packing::MOST_LAYERS)))]
+    layers: u8,
     #[command(flatten)]
     pipeline: PipelineArgs,
 }
@@ -40,16 +54,39 @@ impl Points {
                 Some((Target::open(path)?, PointWriter::of(&name)?))
             }
         };
+        if !target.as_ref().is_some_and(|(_, writer)| writer.packs) {
+            let why = "no .wvm is written";
+            self.pipeline.input.given.refuse(&["value_error", "layers"], why)?;
+        }
         let mut progress = Progress::new(global);
         let stages = pipeline::stages(&self.pipeline);
         let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
+        if self.layers > 1 && weighed.order.is_none() {
+            misused!("--layers has no effect: which points are the most important is known only where they are selected from a volume" => "omit it");
+        }
         if let Some((target, writer)) = target {
-            progress
-                .stage(Stage::Write, || target.write(|out| writer.write(&weighed.points, out)))?;
+            let (facts, packing) = self.packed(&weighed, volume.as_ref());
+            progress.stage(Stage::Write, || {
+                target.write(|out| writer.write_model(&weighed.points, &facts, &packing, out))
+            })?;
         }
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         tell(global, &report)
+    }
+    /// What a .wvm is told besides the points, and how it is packed.
+    fn packed(&self, weighed: &Weighed, volume: Option<&VolumeFacts>) -> (ModelFacts, Packing) {
+        let origin = weighed.origin;
+        let range = volume.map(|volume| volume.written).or(origin.range);
+        let step = volume.map_or(1.0, |volume| volume.written.step());
+        let facts = ModelFacts {
+            grid: origin.grid,
+            coordinates: origin.coordinates,
+            alpha: weighed.parameter.map(|parameter| parameter.alpha),
+            range,
+            order: weighed.order.clone(),
+        };
+        (facts, Packing { value_error: self.value_error * step, layers: self.layers })
     }
 }

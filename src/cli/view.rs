@@ -128,7 +128,7 @@ impl View {
         let input = &self.pipeline.input;
         let read = pipeline::read(input, &mut progress)?;
         read.accepts(input)?;
-        if self.isovalue.is_some() && matches!(read, Input::Points(_)) {
+        if self.isovalue.is_some() && matches!(read, Input::Points(..)) {
             misused!("--isovalue has no effect: points have no isosurface" => "omit it");
         }
         let stages = pipeline::stages(&self.pipeline);

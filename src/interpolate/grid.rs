@@ -1,7 +1,7 @@
 use std::ops::Range;
 
-use crate::points::Units;
-use crate::volume::{Coordinates, Dims, Frame, Volume};
+use crate::points::{SampleGrid, Units};
+use crate::volume::{Coordinates, Dims, Frame, Volume, inverse};
 
 /// A grid of places to sample F at.
 ///
@@ -35,8 +35,14 @@ impl Grid {
 
     /// As many samples as asked for over the extent of a volume.
     pub fn over(volume: &Volume, dims: Dims, units: Units) -> Self {
-        let source = *volume.frame();
-        let (counts, n) = (volume.dims().xyz(), dims.xyz());
+        let samples = SampleGrid { dims: volume.dims(), frame: *volume.frame(), units };
+        Self::over_samples(&samples, dims)
+    }
+
+    /// The same over the extent of the grid that points are samples of.
+    pub fn over_samples(samples: &SampleGrid, dims: Dims) -> Self {
+        let SampleGrid { dims: counts, frame: source, units } = *samples;
+        let (counts, n) = (counts.xyz(), dims.xyz());
         let axes: [Vec<f64>; 3] = [0, 1, 2].map(|k| steps(0.0, (counts[k] - 1) as f64, n[k]));
         let step = [0, 1, 2].map(|k| step(0.0, (counts[k] - 1) as f64, n[k]));
         let frame = source.part([0, 1, 2].map(|k| axes[k][0]), step);
@@ -113,16 +119,6 @@ fn steps(first: f64, last: f64, n: usize) -> Vec<f64> {
 fn step(first: f64, last: f64, n: usize) -> f64 {
     let length = if last > first { last - first } else { 1.0 };
     length / (n - 1).max(1) as f64
-}
-
-/// The inverse of the matrix with these columns. Not finite where there is none.
-fn inverse([a, b, c]: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    let cross = |u: [f64; 3], v: [f64; 3]| {
-        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-    };
-    let rows = [cross(b, c), cross(c, a), cross(a, b)];
-    let determinant = a[0] * rows[0][0] + a[1] * rows[0][1] + a[2] * rows[0][2];
-    rows.map(|row| row.map(|v| v / determinant))
 }
 
 #[cfg(test)]

@@ -6,11 +6,13 @@ mod parameter;
 pub use error::PipelineError;
 pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
 
+use rayon::prelude::*;
+
 use crate::haar::{HaarOptions, Truncation, smooth};
 use crate::interpolate::{Adaptive, Fit, Refit, adaptive_voxels, refit};
 use crate::points::{
-    Points, Selection, Units, WeightedPoints, Weighting, difference, points_at,
-    scattered_difference, select, weigh,
+    ModelFacts, Points, SampleGrid, Selection, Units, WeightedPoints, Weighting, difference,
+    points_at, scattered_difference, select, weigh,
 };
 use crate::progress::{Share, Stage, within};
 use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, alpha_shape};
@@ -57,6 +59,9 @@ pub struct Weighed {
     pub origin: Origin,
     /// α; `None` where it is still to be found ([`Weighed::find_parameter`]), because weights do not need it.
     pub parameter: Option<Parameter>,
+    /// The points by their indices, the most important first, where they were selected from a volume: the
+    /// first so many are what a smaller count would have selected.
+    pub order: Option<Vec<u32>>,
 }
 
 /// What is known of points besides themselves.
@@ -69,6 +74,10 @@ pub struct Origin {
     pub weighting: Weighting,
     /// What was dropped of the volume they come from.
     pub truncation: Option<Truncation>,
+    /// The grid that they are samples of, where that is known.
+    pub grid: Option<SampleGrid>,
+    /// The values that were gray 0 and 255, where a file of points tells them.
+    pub range: Option<GrayRange>,
     /// Adaptive selection ended before it had as many points as asked for.
     pub ended: Option<Adaptive>,
     /// How values were fitted to the volume; `None` where they are those of its samples.
@@ -180,15 +189,19 @@ impl Pipeline {
         hear(Stage::Haar);
         let (smoothed, truncation) = smooth(volume, &self.haar)?;
         hear(Stage::Points);
-        let (points, ended) = self.points(volume, &smoothed)?;
+        let (points, order, ended) = self.points(volume, &smoothed)?;
+        let (dims, frame, units) = (volume.dims(), *volume.frame(), self.units);
         let origin = Origin {
-            coordinates: self.units.coordinates(volume),
+            coordinates: units.coordinates(volume),
             weighting: self.weighting_of(&points),
             truncation: Some(truncation),
+            grid: Some(SampleGrid { dims, frame, units }),
+            range: None,
             ended,
             fit: None,
         };
-        let mut weighed = Self::weigh(points, origin, parameter, hear)?;
+        let weighed = Self::weigh(points, origin, parameter, hear)?;
+        let mut weighed = Weighed { order: Some(order), ..weighed };
         if let Some(to) = self.refit {
             self.fit(&mut weighed, volume, to, hear)?;
         }
@@ -204,14 +217,33 @@ impl Pipeline {
         points: Points,
         hear: &mut dyn FnMut(Stage),
     ) -> Result<Weighed, PipelineError> {
+        self.weighed_model(points, &ModelFacts::default(), hear)
+    }
+
+    /// The points of a file, with what it tells of them: α by default is the one there. `hear` is called
+    /// with each stage as it begins.
+    ///
+    /// # Errors
+    /// Whatever a stage refuses.
+    pub fn weighed_model(
+        &self,
+        points: Points,
+        facts: &ModelFacts,
+        hear: &mut dyn FnMut(Stage),
+    ) -> Result<Weighed, PipelineError> {
         let origin = Origin {
-            coordinates: Coordinates::default(),
+            coordinates: facts.coordinates,
             weighting: self.weighting_of(&points),
             truncation: None,
+            grid: facts.grid,
+            range: facts.range,
             ended: None,
             fit: None,
         };
-        let parameter = self.alpha.given(origin.coordinates.unit);
+        let unit = origin.coordinates.unit;
+        let stored = facts.alpha.filter(|_| self.alpha == AlphaRule::Default);
+        let stored = stored.map(|alpha| Parameter { alpha, unit, origin: ParameterOrigin::Stored });
+        let parameter = stored.or_else(|| self.alpha.given(unit));
         Ok(self.written(Self::weigh(points, origin, parameter, hear)?))
     }
 
@@ -274,26 +306,33 @@ impl Pipeline {
         self.weighting.unwrap_or(silent)
     }
 
-    /// The samples chosen, and what they were asked for where fewer do.
+    /// The samples chosen, their order of importance, and what they were asked for where fewer do.
     fn points(
         &self,
         volume: &Volume,
         smoothed: &Volume,
-    ) -> Result<(Points, Option<Adaptive>), PipelineError> {
+    ) -> Result<(Points, Vec<u32>, Option<Adaptive>), PipelineError> {
         let differences = difference(smoothed);
         let goal = match self.choice {
             Choice::Difference(selection) => {
                 let points = select(volume, smoothed, &differences, &selection, self.units)?;
-                return Ok((points, None));
+                let by_difference = points.differences.as_deref().unwrap_or_default();
+                let order = largest_first(by_difference);
+                return Ok((points, order, None));
             }
             Choice::Adaptive(goal) => goal,
         };
         let mut voxels = adaptive_voxels(volume, &goal, self.units)?;
+        // Points stand in the order of their voxels; which was chosen when is kept beside them.
+        let chosen = voxels.clone();
         voxels.sort_unstable();
+        let place = |voxel: &u32| voxels.binary_search(voxel).expect("the same voxels") as u32;
+        let order = chosen.iter().map(place).collect();
         // With a target alone as many as there are samples may be needed, and none is asked for.
         let asked = goal.count < volume.dims().samples() as u64;
         let fewer = asked && (voxels.len() as u64) < goal.count;
-        Ok((points_at(volume, &differences, &voxels, self.units), fewer.then_some(goal)))
+        let points = points_at(volume, &differences, &voxels, self.units);
+        Ok((points, order, fewer.then_some(goal)))
     }
 
     /// Gives points their weights, and finds α first where these are in proportion to it.
@@ -319,7 +358,7 @@ impl Pipeline {
         // Weights that do not depend on α are the same at ∞.
         let alpha = parameter.map_or(Alpha::INFINITE, |parameter| parameter.alpha);
         let points = weigh(&points, weighting, alpha)?;
-        Ok(Weighed { points, origin, parameter })
+        Ok(Weighed { points, origin, parameter, order: None })
     }
 }
 
@@ -340,6 +379,14 @@ impl Weighed {
         self.parameter = Some(found);
         Ok(found)
     }
+}
+
+/// The indices of numbers, the largest first, ties by the index.
+fn largest_first(numbers: &[f64]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..numbers.len() as u32).collect();
+    let number = |index: u32| numbers[index as usize];
+    order.par_sort_unstable_by(|&a, &b| number(b).total_cmp(&number(a)).then(a.cmp(&b)));
+    order
 }
 
 /// Hears which stage begins, and does nothing.

@@ -61,6 +61,8 @@ pub enum ParameterOrigin {
     Given,
     /// Ten squared voxels, as in the paper.
     Default,
+    /// The file that points come from has it.
+    Stored,
     /// The smallest at which all points are in one solid component.
     Auto,
     /// The same without weights, which are in proportion to it.
@@ -157,6 +159,7 @@ impl Display for Parameter {
         f.write_str(match self.origin {
             ParameterOrigin::Given => "",
             ParameterOrigin::Default => ", the default",
+            ParameterOrigin::Stored => ", that of the file",
             ParameterOrigin::Auto => {
                 ", the smallest at which all points are in one solid component"
             }

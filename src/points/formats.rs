@@ -9,11 +9,16 @@ use super::read::{format, npy};
 #[cfg(feature = "formats")]
 use super::read::{obj, off, pcd, ply, stl, table, vtk, xyz};
 use super::write;
-use super::{Columns, Points, PointsError, WeightedPoints};
+#[cfg(feature = "formats")]
+use super::wvm;
+use super::{Columns, ModelFacts, Packing, Points, PointsError, WeightedPoints};
 use crate::volume::{NpyFile, Reason, UnknownFormat, built, is_vtk_xml, start_of};
 
 /// Reads a file whose columns may be named.
 type Read = fn(&Path, Option<&Columns>) -> Result<Points, PointsError>;
+
+/// Reads a file without so many of its last layers, and what is known of its points.
+type ReadLevel = fn(&Path, u32) -> Result<(Points, ModelFacts), PointsError>;
 
 /// A format of points.
 pub struct PointFormat {
@@ -34,6 +39,8 @@ pub struct PointFormat {
     holds_points: fn(&Path) -> Result<bool, PointsError>,
     /// Reads a file; `None` where it was left out of the build.
     read: Option<Read>,
+    /// Reads a level of a file that has several, with all that it holds.
+    read_level: Option<ReadLevel>,
 }
 
 /// How points are written under an extension.
@@ -41,8 +48,13 @@ pub struct PointFormat {
 pub struct PointWriter {
     /// The extension without its dot.
     pub extension: &'static str,
-    write: fn(&WeightedPoints, &mut dyn Write) -> io::Result<()>,
+    /// Whether it keeps what is known of points besides themselves ([`ModelFacts`]), and is packed.
+    pub packs: bool,
+    write: WriteAll,
 }
+
+/// Writes points, with what is known of them.
+type WriteAll = fn(&WeightedPoints, &ModelFacts, &Packing, &mut dyn Write) -> io::Result<()>;
 
 /// A format recognised by extension only.
 const PLAIN: PointFormat = PointFormat {
@@ -55,18 +67,23 @@ const PLAIN: PointFormat = PointFormat {
     holds_points: |_| Ok(true),
     writers: &[],
     read: None,
+    read_level: None,
 };
 
 /// The formats of points, in the order in which they are looked for. The first is the default for
 /// files that nothing identifies.
-pub static FORMATS: [PointFormat; 11] = [
+pub static FORMATS: [PointFormat; 12] = [
     PointFormat {
         name: "CSV, TSV",
         extensions: &["csv", "tsv"],
         takes_columns: true,
         fuzzed_by: "table",
         read: built!("formats", table::read),
-        writers: &[PointWriter { extension: "csv", write: write::csv }],
+        writers: &[PointWriter {
+            extension: "csv",
+            packs: false,
+            write: |points, _, _, out| write::csv(points, out),
+        }],
         ..PLAIN
     },
     PointFormat {
@@ -143,7 +160,11 @@ pub static FORMATS: [PointFormat; 11] = [
             Ok(NpyFile::begins(&start_of(path)?) && NpyFile::open(path)?.shape.len() == 2)
         },
         read: Some(|path, _| npy::read(path)),
-        writers: &[PointWriter { extension: "npy", write: write::npy }],
+        writers: &[PointWriter {
+            extension: "npy",
+            packs: false,
+            write: |points, _, _, out| write::npy(points, out),
+        }],
         ..PLAIN
     },
     PointFormat {
@@ -155,6 +176,25 @@ pub static FORMATS: [PointFormat; 11] = [
         read: built!("las", |path, _| super::read::las::read(path)),
         ..PLAIN
     },
+    PointFormat {
+        name: "WVM",
+        extensions: &["wvm"],
+        fuzzed_by: "wvm",
+        begins: |start| start.starts_with(MODEL),
+        read: built!("formats", |path, _| Ok(wvm::read(path, 0)?.0)),
+        read_level: built!("formats", wvm::read),
+        writers: MODEL_WRITERS,
+        ..PLAIN
+    },
+];
+
+/// How a `.wvm` begins. As with PNG, a transfer that changes the ends of lines damages it.
+pub(super) const MODEL: &[u8] = b"\x89wvm\r\n\x1a\n";
+
+/// The writers of models, where these are built in.
+const MODEL_WRITERS: &[PointWriter] = &[
+    #[cfg(feature = "formats")]
+    PointWriter { extension: "wvm", packs: true, write: wvm::write },
 ];
 
 /// Whether a file of VTK's XML holds points.
@@ -186,16 +226,24 @@ impl PointFormat {
         (self.holds_points)(path)
     }
 
+    /// Whether files of it may hold several levels.
+    pub fn has_levels(&self) -> bool {
+        self.read_level.is_some()
+    }
+
     pub(super) fn read(
         &self,
         path: &Path,
         columns: Option<&Columns>,
-    ) -> Result<Points, PointsError> {
-        if let Some(read) = self.read {
-            read(path, columns)
-        } else {
-            let (what, feature) = (self.name, self.feature.unwrap_or_default());
-            Err(format(path, Reason::Without { what, feature }))
+        level: u32,
+    ) -> Result<(Points, ModelFacts), PointsError> {
+        match (self.read_level, self.read) {
+            (Some(read_level), _) => read_level(path, level),
+            (None, Some(read)) => Ok((read(path, columns)?, ModelFacts::default())),
+            (None, None) => {
+                let (what, feature) = (self.name, self.feature.unwrap_or_default());
+                Err(format(path, Reason::Without { what, feature }))
+            }
         }
     }
 }
@@ -225,7 +273,22 @@ impl PointWriter {
     /// # Errors
     /// Whatever `out` returns.
     pub fn write(&self, points: &WeightedPoints, out: &mut dyn Write) -> io::Result<()> {
-        (self.write)(points, out)
+        self.write_model(points, &ModelFacts::default(), &Packing::default(), out)
+    }
+
+    /// The same with what is known of the points, packed as asked for; both have an effect where the
+    /// format [packs](Self::packs).
+    ///
+    /// # Errors
+    /// Whatever `out` returns.
+    pub fn write_model(
+        &self,
+        points: &WeightedPoints,
+        facts: &ModelFacts,
+        packing: &Packing,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
+        (self.write)(points, facts, packing, out)
     }
 }
 

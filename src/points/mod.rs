@@ -21,16 +21,20 @@
 mod difference;
 mod error;
 mod formats;
+mod model;
 mod read;
 mod scattered;
 mod select;
 mod weigh;
 mod write;
+#[cfg(feature = "formats")]
+mod wvm;
 
 pub use difference::{difference, difference_row};
 pub use error::PointsError;
 pub use formats::{FORMATS, PointFormat, PointWriter};
-pub use read::{Columns, UnknownColumns, is_point_file, read_points};
+pub use model::{ModelFacts, Packing, SampleGrid};
+pub use read::{Columns, UnknownColumns, is_point_file, read_model, read_points};
 pub use scattered::scattered_difference;
 pub use select::{Points, Selection, SelectionRule, Units, points_at, select};
 pub use weigh::{UnknownWeighting, WeightSummary, WeightedPoints, Weighting, weigh};

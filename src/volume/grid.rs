@@ -181,4 +181,22 @@ impl Frame {
             self.origin[r] + row[0] * step[0] + row[1] * step[1] + row[2] * step[2]
         })
     }
+
+    /// The (fractional) index of a world position, both as (x, y, z): what
+    /// [`to_world`](Self::to_world) does, undone up to rounding. Not finite where axes lie in a plane.
+    pub fn to_index(&self, position: [f64; 3]) -> [f64; 3] {
+        let from = [0, 1, 2].map(|k| position[k] - self.origin[k]);
+        let dot = |row: [f64; 3]| row[0] * from[0] + row[1] * from[1] + row[2] * from[2];
+        inverse(self.axes()).map(dot)
+    }
+}
+
+/// The inverse of the matrix with these columns. Not finite where there is none.
+pub(crate) fn inverse([a, b, c]: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let cross = |u: [f64; 3], v: [f64; 3]| {
+        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    };
+    let rows = [cross(b, c), cross(c, a), cross(a, b)];
+    let determinant = a[0] * rows[0][0] + a[1] * rows[0][1] + a[2] * rows[0][2];
+    rows.map(|row| row.map(|v| v / determinant))
 }

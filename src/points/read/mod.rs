@@ -28,7 +28,7 @@ pub use columns::{Columns, UnknownColumns};
 use std::path::Path;
 
 use super::formats::{FORMATS, PointFormat};
-use super::{Points, PointsError};
+use super::{ModelFacts, Points, PointsError};
 use crate::advice::Setting;
 use crate::volume::{Reason, start_of};
 
@@ -60,18 +60,37 @@ pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
 /// - PLY (text, or binary of either byte order), VTU and VTP: the vertices, with their properties or
 ///   point data `weight` and `value`; VTK's active scalars are the values where none are named so.
 /// - NPY: an array n×4 (x, y, z, weight) or n×5 (x, y, z, weight, value).
+/// - WVM: all layers ([`read_model`] knows more).
 ///
 /// # Errors
 /// The file cannot be read, is truncated or longer than it claims, a column is missing or named twice,
 /// a number is not finite (the message has its place), the file holds no point, or `columns` are given for
 /// a format that names its own.
 pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
+    Ok(read_model(path, columns, None)?.0)
+}
+
+/// Reads points with what is known of them besides; nothing, where their format keeps nothing. `level`
+/// says how many of the last layers of a `.wvm` are left out, each of four times as many points as all
+/// before: every level is a coarser model.
+///
+/// # Errors
+/// As [`read_points`], and a level that the file does not have.
+pub fn read_model(
+    path: &Path,
+    columns: Option<&Columns>,
+    level: Option<u32>,
+) -> Result<(Points, ModelFacts), PointsError> {
     let known = found(path)?.unwrap_or(&FORMATS[0]);
     if columns.is_some() && !known.takes_columns {
         let reason = Reason::needless(Setting::Columns, "says itself what its columns are");
         return Err(format(path, reason));
     }
-    let points = known.read(path, columns)?;
+    if level.is_some() && !known.has_levels() {
+        let reason = Reason::needless(Setting::Level, "has no layers of points");
+        return Err(format(path, reason));
+    }
+    let (points, facts) = known.read(path, columns, level.unwrap_or_default())?;
     if points.is_empty() {
         return Err(format(
             path,
@@ -79,7 +98,7 @@ pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, Poi
         ));
     }
     finite(path, &points)?;
-    Ok(points)
+    Ok((points, facts))
 }
 
 /// The format of a file, by its content and then its extension.

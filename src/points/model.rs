@@ -1,0 +1,99 @@
+use crate::volume::{Coordinates, Dims, Frame, GrayRange};
+use walpha_check::Alpha;
+
+use super::Units;
+
+/// The grid that points are samples of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleGrid {
+    /// Samples along the axes.
+    pub dims: Dims,
+    /// Where they lie in the world.
+    pub frame: Frame,
+    /// What coordinates of points are measured in.
+    pub units: Units,
+}
+
+/// What is known of weighted points besides themselves: what a `.wvm` keeps, and other formats of points
+/// do not.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ModelFacts {
+    /// The grid that they are samples of.
+    pub grid: Option<SampleGrid>,
+    /// What coordinates mean.
+    pub coordinates: Coordinates,
+    /// The α that their shape is meant to be made at, and weights in proportion to.
+    pub alpha: Option<Alpha>,
+    /// The values that were gray 0 and 255.
+    pub range: Option<GrayRange>,
+    /// The points by their indices, the most important first.
+    pub order: Option<Vec<u32>>,
+}
+
+/// How a `.wvm` is packed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Packing {
+    /// The largest error of a value, in units of the values. The values of F then are off by as much at
+    /// most, everywhere. 0 keeps every value bit for bit.
+    pub value_error: f64,
+    /// Layers of points, each of four times as many as all before, in order of importance; a reader may
+    /// stop behind any. One layer makes the smallest file.
+    pub layers: u8,
+}
+
+impl Default for Packing {
+    fn default() -> Self {
+        Self { value_error: 0.0, layers: 1 }
+    }
+}
+
+impl Packing {
+    /// Layers at most.
+    pub const MOST_LAYERS: u8 = 8;
+}
+
+impl SampleGrid {
+    /// The position of a sample, by its indices (x, y, z).
+    pub fn position(&self, sample: [u32; 3]) -> [f64; 3] {
+        let index = sample.map(f64::from);
+        match self.units {
+            Units::Voxel => index,
+            Units::World => self.frame.to_world(index),
+        }
+    }
+
+    /// The sample that stands exactly at a position.
+    pub fn sample_at(&self, position: [f64; 3]) -> Option<[u32; 3]> {
+        let index = match self.units {
+            Units::Voxel => position,
+            Units::World => self.frame.to_index(position),
+        };
+        let dims = self.dims.xyz();
+        let mut sample = [0; 3];
+        for k in 0..3 {
+            let nearest = index[k].round();
+            if !(nearest >= 0.0 && nearest < dims[k] as f64) {
+                return None;
+            }
+            sample[k] = nearest as u32;
+        }
+        (self.position(sample) == position).then_some(sample)
+    }
+
+    /// The grid in voxels that reaches from 0 to the last of some positions, all of them whole numbers
+    /// from 0 up.
+    pub(super) fn spanned(positions: &[[f64; 3]], coordinates: Coordinates) -> Option<Self> {
+        let mut end = [0u64; 3];
+        for position in positions {
+            for k in 0..3 {
+                let x = position[k];
+                if !(x.fract() == 0.0 && (0.0..4e9).contains(&x)) {
+                    return None;
+                }
+                end[k] = end[k].max(x as u64 + 1);
+            }
+        }
+        let dims = Dims::new(end[0], end[1], end[2]).ok()?;
+        Some(Self { dims, frame: Frame::VOXEL.meaning(coordinates), units: Units::Voxel })
+    }
+}

@@ -1,0 +1,328 @@
+//! The head of a file: what it holds, and the length of everything behind it.
+
+use super::super::formats::MODEL;
+use super::super::{ModelFacts, SampleGrid, Units};
+use crate::volume::{Coordinates, Dims, Frame, GrayRange, LengthUnit, Reason, Space};
+use walpha_check::Alpha;
+
+/// The version that is written, and the only one that is read.
+const VERSION: u8 = 1;
+
+/// Points per byte of a layer, at most: what is believed of a header is in proportion to the file.
+pub(super) const POINTS_PER_BYTE: u64 = 64;
+
+/// Bytes of a checksum.
+pub(super) const CHECKSUM: usize = 4;
+
+/// What a file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Header {
+    pub grid: Option<SampleGrid>,
+    pub coordinates: Coordinates,
+    pub alpha: Option<Alpha>,
+    pub range: Option<GrayRange>,
+    pub values: Values,
+    pub weights: Weights,
+    pub layers: Vec<Layer>,
+}
+
+/// How values are kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Values {
+    None,
+    /// As whole multiples of a step, from a base on.
+    Steps {
+        base: f64,
+        step: f64,
+    },
+    /// Bit for bit.
+    Exact,
+}
+
+/// How weights are kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Weights {
+    /// One for all.
+    Common(f64),
+    /// Bit for bit.
+    Exact,
+}
+
+/// Points of a layer, and the bytes of its places, values and weights.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Layer {
+    pub count: u64,
+    pub bytes: [u64; 3],
+}
+
+impl Layer {
+    /// Bytes of all its parts; `None` where they are more than can be.
+    pub fn length(&self) -> Option<u64> {
+        self.bytes.iter().try_fold(0u64, |sum, &part| sum.checked_add(part))
+    }
+}
+
+/// The bits of the byte of flags.
+const GRID: u8 = 1;
+const FRAME: u8 = 2;
+const WORLD: u8 = 4;
+const STEPS: u8 = 8;
+const EXACT_VALUES: u8 = 16;
+const EXACT_WEIGHTS: u8 = 32;
+const ALPHA: u8 = 64;
+const RANGE: u8 = 128;
+
+const SPACES: [Space; 4] = [Space::Unknown, Space::Lps, Space::Ras, Space::Las];
+
+const UNITS: [LengthUnit; 8] = [
+    LengthUnit::Unstated,
+    LengthUnit::Voxel,
+    LengthUnit::Metre,
+    LengthUnit::Centimetre,
+    LengthUnit::Millimetre,
+    LengthUnit::Micrometre,
+    LengthUnit::Nanometre,
+    LengthUnit::Angstrom,
+];
+
+impl Header {
+    /// What is told besides the points.
+    pub fn facts(&self) -> ModelFacts {
+        let Self { grid, coordinates, alpha, range, .. } = *self;
+        ModelFacts { grid, coordinates, alpha, range, order: None }
+    }
+
+    /// The frame of the grid, where it has to be told.
+    fn frame(&self) -> Option<Frame> {
+        let silent = Frame::VOXEL.meaning(self.coordinates);
+        self.grid.map(|grid| grid.frame).filter(|frame| *frame != silent)
+    }
+
+    /// The bytes of the head, with its checksum.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let frame = self.frame();
+        let world = self.grid.is_some_and(|grid| grid.units == Units::World);
+        let flags = [
+            (GRID, self.grid.is_some()),
+            (FRAME, frame.is_some()),
+            (WORLD, world),
+            (STEPS, matches!(self.values, Values::Steps { .. })),
+            (EXACT_VALUES, self.values == Values::Exact),
+            (EXACT_WEIGHTS, self.weights == Weights::Exact),
+            (ALPHA, self.alpha.is_some()),
+            (RANGE, self.range.is_some()),
+        ];
+        let flags = flags.iter().filter(|(_, set)| *set).map(|(flag, _)| flag).sum();
+        let mut out = Out(MODEL.to_vec());
+        out.0.extend([VERSION, flags, code(&SPACES, self.coordinates.space)]);
+        out.0.extend([code(&UNITS, self.coordinates.unit), self.layers.len() as u8]);
+        for Layer { count, bytes } in &self.layers {
+            out.whole(*count);
+            bytes.iter().for_each(|&part| out.whole(part));
+        }
+        if let Some(grid) = self.grid {
+            grid.dims.xyz().iter().for_each(|&n| out.whole(n as u64));
+        }
+        if let Some(frame) = frame {
+            out.frame(&frame);
+        }
+        if let Values::Steps { base, step } = self.values {
+            out.doubles(&[base, step]);
+        }
+        if let Weights::Common(weight) = self.weights {
+            out.doubles(&[weight]);
+        }
+        if let Some(alpha) = self.alpha {
+            out.doubles(&[alpha.squared()]);
+        }
+        if let Some(range) = self.range {
+            out.doubles(&[range.low, range.high]);
+        }
+        let checksum = crc32fast::hash(&out.0);
+        out.0.extend(checksum.to_le_bytes());
+        out.0
+    }
+
+    /// Reads the head of a file, and says how long it is. Nothing is believed of it beyond that; what is
+    /// allocated is a few hundred bytes.
+    pub fn of_bytes(file: &[u8]) -> Result<(Self, usize), Reason> {
+        let Some(rest) = file.strip_prefix(MODEL) else {
+            return Err(Reason::other("is no .wvm: it does not begin as one"));
+        };
+        let mut fields = In { rest };
+        let version = fields.byte()?;
+        if version != VERSION {
+            let what = format!("is of version {version} of the format: version {VERSION} is read");
+            return Err(Reason::unsupported(what, "update walpha"));
+        }
+        let header = Self::of_fields(&mut fields);
+        let length = file.len() - fields.rest.len();
+        // Fields that cannot be are told of a head that is whole, and damage of one that is not.
+        let claimed = fields.checksum()?;
+        if crc32fast::hash(&file[..length]) != claimed {
+            return Err(damaged("its header"));
+        }
+        Ok((header?, length + CHECKSUM))
+    }
+
+    fn of_fields(fields: &mut In<'_>) -> Result<Self, Reason> {
+        let flags = fields.byte()?;
+        let has = |flag: u8| flags & flag != 0;
+        let space = fields.one_of(&SPACES, "space")?;
+        let coordinates = Coordinates { space, unit: fields.one_of(&UNITS, "unit of length")? };
+        let count = fields.byte()?;
+        let layers = (0..count).map(|_| fields.layer()).collect::<Result<Vec<_>, _>>()?;
+        let grid = if has(GRID) {
+            let [x, y, z] = [fields.whole()?, fields.whole()?, fields.whole()?];
+            let dims = Dims::new(x, y, z).map_err(|error| Reason::header(error.to_string()))?;
+            let silent = Frame::VOXEL.meaning(coordinates);
+            let frame = if has(FRAME) { fields.frame()? } else { silent };
+            let units = if has(WORLD) { Units::World } else { Units::Voxel };
+            Some(SampleGrid { dims, frame, units })
+        } else {
+            None
+        };
+        let values = match (has(STEPS), has(EXACT_VALUES)) {
+            (true, true) => return Err(Reason::header("its header keeps values in two ways")),
+            (true, false) => Values::Steps { base: fields.double()?, step: fields.double()? },
+            (false, true) => Values::Exact,
+            (false, false) => Values::None,
+        };
+        let exact_weights = has(EXACT_WEIGHTS);
+        let weights =
+            if exact_weights { Weights::Exact } else { Weights::Common(fields.double()?) };
+        let alpha = if has(ALPHA) { Some(fields.alpha()?) } else { None };
+        let range = if has(RANGE) {
+            Some(GrayRange { low: fields.double()?, high: fields.double()? })
+        } else {
+            None
+        };
+        let header = Self { grid, coordinates, alpha, range, values, weights, layers };
+        header.check()?;
+        Ok(header)
+    }
+
+    /// Refuses what contradicts itself.
+    fn check(&self) -> Result<(), Reason> {
+        let what = |what: &str| Err(Reason::header(format!("its header {what}")));
+        if self.grid.is_none()
+            && (self.layers.len() > 1 || matches!(self.values, Values::Steps { .. }))
+        {
+            return what("has layers or steps without a grid");
+        }
+        let mut points = 0u64;
+        for layer in &self.layers {
+            let Some(length) = layer.length() else { return what("claims more bytes than can be") };
+            if layer.count > length.saturating_mul(POINTS_PER_BYTE) {
+                return what("claims more points than its bytes can hold");
+            }
+            points = points.saturating_add(layer.count);
+        }
+        let most = self.grid.map_or(Dims::MAX_SAMPLES, |grid| grid.dims.samples() as u64);
+        if points > most { what("claims more points than samples") } else { Ok(()) }
+    }
+}
+
+/// The error for damaged bytes.
+pub(super) fn damaged(what: &str) -> Reason {
+    Reason::damaged(format!("is damaged: the checksum of {what} does not fit"))
+}
+
+/// The number of one of several.
+fn code<T: PartialEq>(all: &[T], one: T) -> u8 {
+    all.iter().position(|other| *other == one).expect("all are in the list") as u8
+}
+
+/// Bytes to be.
+struct Out(Vec<u8>);
+
+impl Out {
+    /// A whole number: seven bits to a byte, the lowest first, the eighth bit set on all but the last.
+    fn whole(&mut self, mut number: u64) {
+        while number >= 128 {
+            self.0.push(number as u8 | 128);
+            number >>= 7;
+        }
+        self.0.push(number as u8);
+    }
+
+    fn doubles(&mut self, numbers: &[f64]) {
+        numbers.iter().for_each(|number| self.0.extend(number.to_le_bytes()));
+    }
+
+    fn frame(&mut self, frame: &Frame) {
+        let Coordinates { space, unit } = frame.coordinates;
+        self.0.extend([code(&SPACES, space), code(&UNITS, unit)]);
+        self.doubles(&frame.origin);
+        self.doubles(&frame.spacing);
+        self.doubles(frame.direction.as_flattened());
+    }
+}
+
+/// Bytes that are left.
+struct In<'a> {
+    rest: &'a [u8],
+}
+
+impl In<'_> {
+    fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
+        let Some((first, rest)) = self.rest.split_first_chunk::<N>() else {
+            return Err(Reason::truncated("ends within its header"));
+        };
+        self.rest = rest;
+        Ok(*first)
+    }
+
+    fn byte(&mut self) -> Result<u8, Reason> {
+        Ok(self.bytes::<1>()?[0])
+    }
+
+    fn checksum(&mut self) -> Result<u32, Reason> {
+        Ok(u32::from_le_bytes(self.bytes()?))
+    }
+
+    fn whole(&mut self) -> Result<u64, Reason> {
+        let mut number = 0;
+        for shift in (0..64).step_by(7) {
+            let byte = self.byte()?;
+            number |= u64::from(byte & 127) << shift;
+            if byte < 128 {
+                return Ok(number);
+            }
+        }
+        Err(Reason::header("its header has a whole number of more than 64 bits"))
+    }
+
+    fn double(&mut self) -> Result<f64, Reason> {
+        let number = f64::from_le_bytes(self.bytes()?);
+        if number.is_finite() {
+            return Ok(number);
+        }
+        Err(Reason::header(format!("its header has the number {number}, which must be finite")))
+    }
+
+    fn alpha(&mut self) -> Result<Alpha, Reason> {
+        let number = f64::from_le_bytes(self.bytes()?);
+        Alpha::from_squared(number).map_err(|error| Reason::header(error.to_string()))
+    }
+
+    fn one_of<T: Copy>(&mut self, all: &[T], what: &str) -> Result<T, Reason> {
+        let code = self.byte()?;
+        let unknown = || Reason::header(format!("its header names a {what} {code}, which is none"));
+        all.get(usize::from(code)).copied().ok_or_else(unknown)
+    }
+
+    fn layer(&mut self) -> Result<Layer, Reason> {
+        let count = self.whole()?;
+        Ok(Layer { count, bytes: [self.whole()?, self.whole()?, self.whole()?] })
+    }
+
+    fn frame(&mut self) -> Result<Frame, Reason> {
+        let space = self.one_of(&SPACES, "space")?;
+        let coordinates = Coordinates { space, unit: self.one_of(&UNITS, "unit of length")? };
+        let mut three = || Ok([self.double()?, self.double()?, self.double()?]);
+        let (origin, spacing) = (three()?, three()?);
+        let direction = [three()?, three()?, three()?];
+        Ok(Frame { origin, spacing, direction, coordinates })
+    }
+}

@@ -1,0 +1,82 @@
+//! How likely a bit is, from what followed like places before: adaptive probabilities under several
+//! contexts, mixed by weights that are learnt as well.
+//!
+//! This is mixing by gradient descent on the coding cost, as in the PAQ programs (Mahoney, "Adaptive
+//! weighing of context models for lossless data compression", 2005), with an algebraic link x/√(1 + x²)
+//! in place of the logistic one: addition, multiplication, division and square roots alone are the same
+//! on every machine, to the last bit.
+
+use super::coder::{Coder, WHOLE};
+
+/// Contexts are numbers below this.
+pub(super) const CONTEXTS: usize = 1 << 16;
+
+/// A probability is kept this far from 0 and from 1.
+const LEAST: u32 = 16;
+
+/// Bits known under some contexts.
+pub(super) struct Mixer {
+    /// For each kind of context one slot per context: the balance of bits, from −1 (only 0 so far) to 1
+    /// (only 1), and their number.
+    slots: Vec<[f64; 2]>,
+    /// For each set of weights one for each input.
+    weights: Vec<f64>,
+    inputs: Vec<f64>,
+    kinds: usize,
+    /// Bits that a slot averages over, at most.
+    memory: f64,
+    rate: f64,
+}
+
+impl Mixer {
+    /// A mixer of so many kinds of contexts, with so many sets of weights.
+    pub fn new(kinds: usize, sets: usize, memory: f64, rate: f64) -> Self {
+        let inputs = 2 * kinds + 1;
+        Self {
+            slots: vec![[0.0; 2]; kinds * CONTEXTS],
+            weights: vec![0.35; sets * inputs],
+            inputs: vec![0.0; inputs],
+            kinds,
+            memory,
+            rate,
+        }
+    }
+
+    /// Codes a bit under one context of each kind, with a set of weights, and learns from it.
+    pub fn code(
+        &mut self,
+        coder: &mut impl Coder,
+        contexts: &[usize],
+        set: usize,
+        bit: bool,
+    ) -> bool {
+        debug_assert_eq!(contexts.len(), self.kinds);
+        debug_assert!(contexts.iter().all(|&context| context < CONTEXTS), "{contexts:?}");
+        let (kinds, count) = (self.kinds, self.inputs.len());
+        for (kind, &context) in contexts.iter().enumerate() {
+            let [balance, seen] = self.slots[kind * CONTEXTS + context];
+            let input = balance / (1.0 - balance * balance).sqrt();
+            self.inputs[kind] = input;
+            self.inputs[kinds + kind] = 0.5 * input * (seen / (seen + 1.5));
+        }
+        self.inputs[2 * kinds] = 0.3;
+        let weights = &mut self.weights[set * count..][..count];
+        let sum: f64 = self.inputs.iter().zip(weights.iter()).map(|(x, w)| x * w).sum();
+        let length = (1.0 + sum * sum).sqrt();
+        let probability = 0.5 + 0.5 * (sum / length);
+        let one = ((probability * f64::from(WHOLE)) as u32).clamp(LEAST, WHOLE - LEAST);
+        let bit = coder.bit(one, bit);
+
+        let (share, side) = if bit { (1.0, 1.0) } else { (0.0, -1.0) };
+        let step = self.rate * 2.0 * (share - probability) / length;
+        for (weight, input) in weights.iter_mut().zip(&self.inputs) {
+            *weight += step * input;
+        }
+        for (kind, &context) in contexts.iter().enumerate() {
+            let [balance, seen] = &mut self.slots[kind * CONTEXTS + context];
+            *seen = (*seen + 1.0).min(self.memory);
+            *balance = (*balance + (side - *balance) / (*seen + 0.6)).clamp(-0.9998, 0.9998);
+        }
+        bit
+    }
+}

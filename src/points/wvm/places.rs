@@ -1,0 +1,316 @@
+//! Which voxels of a grid have points.
+
+use std::collections::HashSet;
+
+use super::blocks::{
+    Blocks, Cell, MIDDLE, SIDE, Shape, Window, bit_of, is_earlier, reached, squared, steps,
+};
+use super::coder::{Coder, WHOLE};
+use super::mixer::Mixer;
+
+/// Blocks along the side of a superblock.
+const SUPER: u32 = 8;
+
+/// Codes places layer by layer: the superblocks that have points, then their blocks, then the voxels of
+/// these, each in the order of z, then y, then x. What is known already says what is likely.
+pub(super) struct Places {
+    shape: Shape,
+    known: Blocks,
+    gaps: Mixer,
+    blocks: Mixer,
+    voxels: Mixer,
+    earlier_blocks: Vec<[i32; 3]>,
+    windows: Windows,
+}
+
+/// Where points are counted around a voxel.
+struct Windows {
+    /// Earlier voxels, the nearest, farther ones, and so on.
+    earlier: [Window; 4],
+    /// Later ones, where only points of earlier layers are known.
+    later: [Window; 3],
+    /// The nine nearest earlier ones.
+    nearest: Vec<[i32; 3]>,
+}
+
+/// How many points there are around a voxel.
+struct Counts {
+    earlier: [usize; 4],
+    later: [usize; 3],
+    /// One bit for each of the nine nearest.
+    pattern: usize,
+}
+
+/// The nearest earlier steps first; of equal ones in the order of z, then y, then x.
+fn earlier_steps(reach: i32) -> Vec<[i32; 3]> {
+    let mut earlier: Vec<[i32; 3]> = steps(reach).filter(|&step| is_earlier(step)).collect();
+    earlier.sort_by_key(|&step| squared(step));
+    earlier
+}
+
+impl Windows {
+    fn new() -> Self {
+        let shell = |earlier: bool, low: i32, high: i32| {
+            Window::new(move |step| {
+                is_earlier(step) == earlier && squared(step) > low && squared(step) <= high
+            })
+        };
+        Self {
+            earlier: [(0, 3), (3, 6), (6, 12), (12, 48)].map(|(a, b)| shell(true, a, b)),
+            later: [(0, 3), (3, 9), (9, 48)].map(|(a, b)| shell(false, a, b)),
+            nearest: earlier_steps(1)[..9].to_vec(),
+        }
+    }
+
+    fn count(&self, around: &[u64; 27], bit: u32) -> Counts {
+        let mut pattern = 0;
+        for (k, &step) in self.nearest.iter().enumerate() {
+            let (block, there) = reached(bit, step);
+            pattern |= usize::from(around[block] >> there & 1 == 1) << k;
+        }
+        Counts {
+            earlier: self.earlier.each_ref().map(|window| window.count(around, bit)),
+            later: self.later.each_ref().map(|window| window.count(around, bit)),
+            pattern,
+        }
+    }
+}
+
+/// 0 for 0, else one more than the number of the highest bit.
+fn size(count: usize) -> usize {
+    (usize::BITS - count.leading_zeros()) as usize
+}
+
+impl Places {
+    /// Of a grid of which no point is known.
+    pub fn new(voxels: Cell) -> Self {
+        Self {
+            shape: Shape::new(voxels),
+            known: Blocks::default(),
+            gaps: Mixer::new(1, 1, 60.0, 0.02),
+            blocks: Mixer::new(4, 1, 250.0, 0.02),
+            voxels: Mixer::new(8, 4, 250.0, 0.015),
+            earlier_blocks: earlier_steps(2),
+            windows: Windows::new(),
+        }
+    }
+
+    /// The voxels that are known to have points.
+    pub fn known(&self) -> &Blocks {
+        &self.known
+    }
+
+    /// Codes a layer of so many voxels, and returns them in order. `fresh` are those that an encoder
+    /// adds, in order, and none of them known before; a decoder has none. `None` where a stream does
+    /// not hold as many.
+    pub fn code(
+        &mut self,
+        coder: &mut impl Coder,
+        fresh: &[Cell],
+        count: usize,
+    ) -> Option<Vec<Cell>> {
+        let mut wanted = Blocks::default();
+        let mut supers: Vec<Cell> = Vec::new();
+        for voxel in fresh {
+            let block = voxel.map(|v| v / SIDE);
+            wanted.add(self.shape.number(block), bit_of(*voxel));
+            supers.push(block.map(|b| b / SUPER));
+        }
+        supers.sort_unstable_by_key(|&[x, y, z]| [z, y, x]);
+        supers.dedup();
+        let supers = self.supers(coder, &supers, count)?;
+        let blocks = self.code_blocks(coder, &supers, &wanted, count)?;
+        self.code_voxels(coder, &blocks, &wanted, count)
+    }
+
+    /// The superblocks, by how many are passed over between one and the next.
+    fn supers(
+        &mut self,
+        coder: &mut impl Coder,
+        wanted: &[Cell],
+        count: usize,
+    ) -> Option<Vec<Cell>> {
+        let [nx, ny, nz] = self.shape.blocks.map(|n| u64::from(n.div_ceil(SUPER)));
+        let number = |[x, y, z]: Cell| u64::from(x) + nx * (u64::from(y) + ny * u64::from(z));
+        let many = self.number(coder, 0, wanted.len() as u64)?;
+        if many > count as u64 {
+            return None;
+        }
+        let (mut supers, mut next) = (Vec::new(), 0);
+        for k in 0..many as usize {
+            let gap = wanted.get(k).map_or(0, |&cell| number(cell) - next);
+            let at = next + self.number(coder, 1, gap)?;
+            if at >= nx * ny * nz {
+                return None;
+            }
+            supers.push([at % nx, at / nx % ny, at / (nx * ny)].map(|v| v as u32));
+            next = at + 1;
+        }
+        Some(supers)
+    }
+
+    /// A number: that of its binary digits by as many ones, then these.
+    fn number(&mut self, coder: &mut impl Coder, kind: usize, number: u64) -> Option<u64> {
+        let digits = (number + 1).ilog2();
+        let mut length = 0;
+        while self.gaps.code(coder, &[64 * kind + length as usize], 0, length < digits) {
+            length += 1;
+            if length > 40 {
+                return None;
+            }
+        }
+        let digit = |so_far: u64, k: u32| {
+            2 * so_far + u64::from(coder.bit(WHOLE / 2, (number + 1) >> k & 1 == 1))
+        };
+        Some((0..length).rev().fold(1, digit) - 1)
+    }
+
+    fn code_blocks(
+        &mut self,
+        coder: &mut impl Coder,
+        supers: &[Cell],
+        wanted: &Blocks,
+        count: usize,
+    ) -> Option<Vec<Cell>> {
+        let end = self.shape.blocks;
+        let (mut blocks, mut flagged) = (Vec::new(), HashSet::new());
+        rows(supers, SUPER, end, &mut |cell, y, z| {
+            for x in span(cell[0], SUPER, end[0]) {
+                let block = [x, y, z];
+                let number = self.shape.number(block);
+                let contexts = self.block_contexts(&flagged, block);
+                let bit = wanted.of(number) != 0;
+                if self.blocks.code(coder, &contexts, 0, bit) {
+                    flagged.insert(number);
+                    blocks.push(block);
+                }
+            }
+            (blocks.len() <= count).then_some(())
+        })?;
+        Some(blocks)
+    }
+
+    fn block_contexts(&self, flagged: &HashSet<u32>, block: Cell) -> [usize; 4] {
+        let end = self.shape.blocks;
+        let is_flagged = |step: &[i32; 3]| {
+            let there = Shape::beside(block, *step, end);
+            there.is_some_and(|there| flagged.contains(&self.shape.number(there)))
+        };
+        let (near, far) = self.earlier_blocks.split_at(13);
+        let mut pattern = 0;
+        for (k, step) in near.iter().enumerate() {
+            pattern |= usize::from(is_flagged(step)) << k;
+        }
+        let count = pattern.count_ones() as usize;
+        let farther = far.iter().filter(|step| is_flagged(step)).count();
+        let edge = usize::from((0..3).any(|k| block[k] == 0 || block[k] + 1 == end[k]));
+        let here = self.known.of(self.shape.number(block)).count_ones().min(7) as usize;
+        [
+            pattern % 128 + 128 * here,
+            count + 14 * (edge + 2 * here),
+            pattern + 8192 * here,
+            count + 14 * (farther / 4 + 13 * here),
+        ]
+    }
+
+    fn code_voxels(
+        &mut self,
+        coder: &mut impl Coder,
+        blocks: &[Cell],
+        wanted: &Blocks,
+        count: usize,
+    ) -> Option<Vec<Cell>> {
+        let (shape, mut voxels) = (self.shape, Vec::new());
+        let flagged: HashSet<u32> = blocks.iter().map(|&block| shape.number(block)).collect();
+        let mut fresh = Blocks::default();
+        rows(blocks, SIDE, shape.voxels, &mut |block, y, z| {
+            let number = shape.number(block);
+            let mut around = self.known.around(&shape, block);
+            let open = shape.within(block) & !(around[MIDDLE] & !fresh.of(number));
+            for x in span(block[0], SIDE, shape.voxels[0]) {
+                let voxel = [x, y, z];
+                let bit = bit_of(voxel);
+                if open >> bit & 1 == 0 {
+                    continue;
+                }
+                // The last voxel that can be it, of a block that has none yet, must be it.
+                let left = (open >> bit).count_ones() as usize;
+                let left = if fresh.of(number) == 0 { left } else { 0 };
+                let has = wanted.of(number) >> bit & 1 == 1;
+                let has = left == 1 || {
+                    let counts = self.windows.count(&around, bit);
+                    let sides = self.sides(&flagged, block, voxel);
+                    let edge = (0..3).any(|k| voxel[k] == 0 || voxel[k] + 1 == shape.voxels[k]);
+                    let contexts = counts.contexts(sides, left, usize::from(edge));
+                    let set = usize::from(edge) + 2 * usize::from(left > 0);
+                    self.voxels.code(coder, &contexts, set, has)
+                };
+                if has {
+                    self.known.add(number, bit);
+                    fresh.add(number, bit);
+                    around[MIDDLE] |= 1 << bit;
+                    voxels.push(voxel);
+                }
+            }
+            (voxels.len() <= count).then_some(())
+        })?;
+        (voxels.len() == count).then_some(voxels)
+    }
+
+    /// Which of the three blocks nearest to a voxel of a block have points of this layer.
+    fn sides(&self, flagged: &HashSet<u32>, block: Cell, voxel: Cell) -> usize {
+        let mut sides = 0;
+        for k in 0..3 {
+            let mut step = [0; 3];
+            step[k] = if voxel[k] % SIDE < SIDE / 2 { -1 } else { 1 };
+            let there = Shape::beside(block, step, self.shape.blocks);
+            let has = there.is_some_and(|there| flagged.contains(&self.shape.number(there)));
+            sides |= usize::from(has) << k;
+        }
+        sides
+    }
+}
+
+impl Counts {
+    fn contexts(&self, sides: usize, left: usize, edge: usize) -> [usize; 8] {
+        let ([a, b, c, d], [e, f, g]) = (self.earlier, self.later);
+        let left = if left == 0 { 0 } else { left.min(63) / 4 + 1 };
+        let few = |count: usize| count.min(3);
+        [
+            self.pattern + 512 * (few(e) + 4 * left),
+            a + 14 * (b + 28 * (size(c).min(6) + 7 * few(e))),
+            a + 14
+                * ((b / 2).min(9) + 10 * ((c / 4).min(9) + 10 * ((d / 8).min(15) + 16 * e.min(1)))),
+            2 * a + 2 * b + c + 130 * ((d / 4).min(31) + 32 * (e + f / 2).min(7)),
+            e + 14 * ((f / 2).min(15) + 16 * (few(a) + 4 * (edge + 2 * left))),
+            sides + 8 * (few(a) + 4 * (left + 17 * size(d).min(8))),
+            a + e + 27 * (((b + c + f) / 2).min(63) + 64 * ((d + g) / 8).min(31)),
+            d.min(127) + 128 * (edge + 2 * (few(a) + 4 * left)),
+        ]
+    }
+}
+
+/// The part of a side that a cell covers.
+fn span(cell: u32, factor: u32, end: u32) -> std::ops::Range<u32> {
+    cell * factor..end.min((cell + 1).saturating_mul(factor))
+}
+
+/// The rows of smaller cells, `factor` along each side, of cells in order, in the order of the smaller
+/// ones: each by the cell it is in, its y and its z. Ends at the first `None`.
+fn rows(
+    cells: &[Cell],
+    factor: u32,
+    end: Cell,
+    visit: &mut impl FnMut(Cell, u32, u32) -> Option<()>,
+) -> Option<()> {
+    for slab in cells.chunk_by(|a, b| a[2] == b[2]) {
+        for z in span(slab[0][2], factor, end[2]) {
+            for row in slab.chunk_by(|a, b| a[1] == b[1]) {
+                for y in span(row[0][1], factor, end[1]) {
+                    row.iter().try_for_each(|&cell| visit(cell, y, z))?;
+                }
+            }
+        }
+    }
+    Some(())
+}

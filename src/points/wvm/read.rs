@@ -1,0 +1,169 @@
+//! From bytes to points.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::super::read::format;
+use super::super::{ModelFacts, Points, PointsError, SampleGrid, WeightedPoints};
+use super::coder::Decoder;
+use super::column;
+use super::header::{CHECKSUM, Header, Layer, Values, Weights, damaged};
+use super::write::{Coders, in_order};
+use crate::advice::{Setting, advice};
+use crate::memory::room;
+use crate::volume::{Reason, io_error};
+
+/// Reads points without the last `level` layers, and what is known of them.
+///
+/// Memory is in proportion to the file, whatever its header claims: a byte holds 64 points at most.
+pub(in super::super) fn read(path: &Path, level: u32) -> Result<(Points, ModelFacts), PointsError> {
+    let said = |reason: Reason| format(path, reason);
+    let mut file = File::open(path).map_err(io_error(path))?;
+    let length = file.metadata().map_err(io_error(path))?.len();
+    let mut bytes = room(length as usize, || format!("{length} bytes of a file"))?;
+    file.read_to_end(&mut bytes).map_err(io_error(path))?;
+    let (header, head) = Header::of_bytes(&bytes).map_err(said)?;
+    let layers = header.layers.len();
+    let wanted = layers.saturating_sub(level as usize);
+    if wanted == 0 && level > 0 {
+        let what = format!("has {layers} levels");
+        let most = layers.saturating_sub(1);
+        let advice = advice!["give ", Setting::Level, format!(" from 0 to {most}")];
+        return Err(said(Reason::choice(Setting::Level, what, advice)));
+    }
+    let body = layers_of(&header, &bytes[head..], wanted).map_err(said)?;
+    let mut model = Model::new(&header);
+    for (k, (layer, bytes)) in header.layers.iter().zip(body).enumerate() {
+        let (bytes, checksum) = bytes.split_at(bytes.len() - CHECKSUM);
+        if crc32fast::hash(bytes).to_le_bytes() != checksum {
+            return Err(said(damaged(&format!("layer {k}"))));
+        }
+        model.reserve(layer.count as usize)?;
+        if model.layer(layer, bytes).is_none() {
+            let what = format!("is damaged: layer {k} does not hold what the header says");
+            return Err(said(Reason::damaged(what)));
+        }
+    }
+    let WeightedPoints { positions, weights, values } = model.points();
+    Ok((Points { positions, weights: Some(weights), values, differences: None }, header.facts()))
+}
+
+/// The bytes of the first layers, each with its checksum.
+fn layers_of<'a>(
+    header: &Header,
+    mut bytes: &'a [u8],
+    wanted: usize,
+) -> Result<Vec<&'a [u8]>, Reason> {
+    let found = bytes.len() as u64;
+    let lengths: Vec<u64> =
+        header.layers.iter().map(|layer| layer.length().unwrap_or(u64::MAX)).collect();
+    let needed = lengths
+        .iter()
+        .fold(0u64, |sum, &length| sum.saturating_add(length).saturating_add(CHECKSUM as u64));
+    if found > needed {
+        let claim = format!("{} layers", lengths.len());
+        return Err(Reason::Length { claim, needed, found, bound: "" });
+    }
+    let mut layers = Vec::new();
+    for (k, length) in lengths.iter().take(wanted).enumerate() {
+        let length = usize::try_from(*length).ok().and_then(|length| length.checked_add(CHECKSUM));
+        let Some((layer, rest)) = length.and_then(|length| bytes.split_at_checked(length)) else {
+            let all = lengths.len();
+            let what = format!("is truncated: {k} of its {all} layers are whole");
+            if k == 0 {
+                return Err(Reason::truncated(what));
+            }
+            let level = format!(" {} for the layers that are whole", all - k);
+            let advice = advice!["copy it again, or give ", Setting::Level, level];
+            return Err(Reason::choice(Setting::Level, what, advice));
+        };
+        layers.push(layer);
+        bytes = rest;
+    }
+    Ok(layers)
+}
+
+/// Points as they are read.
+struct Model<'a> {
+    header: &'a Header,
+    coders: Option<(SampleGrid, Coders)>,
+    /// The sample of each, where there is a grid.
+    cells: Vec<[u32; 3]>,
+    points: WeightedPoints,
+}
+
+impl<'a> Model<'a> {
+    fn new(header: &'a Header) -> Self {
+        let values = (header.values != Values::None).then(Vec::new);
+        Self {
+            header,
+            coders: header.grid.map(|grid| (grid, Coders::new(&grid))),
+            cells: Vec::new(),
+            points: WeightedPoints { values, ..WeightedPoints::default() },
+        }
+    }
+
+    /// Sees that there is memory for so many more points.
+    fn reserve(&self, count: usize) -> Result<(), PointsError> {
+        /// Of a point, as it is read and as it is sorted.
+        const BYTES: usize = 128;
+        let all = self.points.len().saturating_add(count);
+        Ok(room::<[u8; BYTES]>(all, || format!("a model of {all} points")).map(drop)?)
+    }
+
+    /// Adds a layer; `None` where its bytes do not hold it.
+    fn layer(&mut self, layer: &Layer, bytes: &[u8]) -> Option<()> {
+        let count = usize::try_from(layer.count).ok()?;
+        let (places, rest) = bytes.split_at_checked(layer.bytes[0] as usize)?;
+        let (values, weights) = rest.split_at_checked(layer.bytes[1] as usize)?;
+        let mut multiples = Vec::new();
+        match &mut self.coders {
+            None => {
+                let numbers = column::unpack(places, count.checked_mul(3)?)?;
+                self.points.positions.extend(numbers.as_chunks().0);
+            }
+            Some((grid, coders)) => {
+                let cells = coders.places.code(&mut Decoder::new(places), &[], count)?;
+                if matches!(self.header.values, Values::Steps { .. }) {
+                    let known = coders.places.known();
+                    multiples =
+                        coders.values.code(&mut Decoder::new(values), &cells, known, &[])?;
+                }
+                self.points.positions.extend(cells.iter().map(|&cell| grid.position(cell)));
+                self.cells.extend(cells);
+            }
+        }
+        if let Some(all) = &mut self.points.values {
+            match self.header.values {
+                Values::Steps { base, step } => {
+                    all.extend(multiples.iter().map(|&k| base + f64::from(k) * step));
+                }
+                _ => all.extend(column::unpack(values, count)?),
+            }
+        }
+        match self.header.weights {
+            Weights::Common(weight) => {
+                self.points.weights.resize(self.points.weights.len() + count, weight);
+            }
+            Weights::Exact => self.points.weights.extend(column::unpack(weights, count)?),
+        }
+        Some(())
+    }
+
+    /// The points, those of a grid in the order of its samples.
+    fn points(self) -> WeightedPoints {
+        let Self { cells, points, .. } = self;
+        if cells.is_sorted_by_key(|&cell| in_order(cell)) {
+            return points;
+        }
+        let mut order: Vec<usize> = (0..cells.len()).collect();
+        order.sort_unstable_by_key(|&point| in_order(cells[point]));
+        let sorted = |column: &[f64]| order.iter().map(|&point| column[point]).collect();
+        WeightedPoints {
+            positions: order.iter().map(|&point| points.positions[point]).collect(),
+            weights: sorted(&points.weights),
+            values: points.values.as_deref().map(sorted),
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Whole numbers at the voxels of points, as differences from what is to be expected there.
+
+use super::blocks::{Blocks, Cell, SIDE, Shape, Window, bit_of, squared};
+use super::coder::{Coder, WHOLE};
+use super::mixer::Mixer;
+use super::predict::{Guess, Known};
+
+/// Differences up to this are counted one by one.
+const COUNTED: u64 = 12;
+
+/// Codes values layer by layer, in the order of the places, from 0 to 2³² − 1.
+pub(super) struct Values {
+    shape: Shape,
+    known: Known,
+    small: Mixer,
+    large: Mixer,
+    density: Window,
+}
+
+/// What the contexts of the bits of one value have in common.
+struct Around {
+    /// The expected value, rounded, and in which quarter around it that was.
+    expected: u64,
+    quarter: usize,
+    /// A logarithm of the spread, 0 to 23.
+    spread: usize,
+    level: usize,
+    distance: usize,
+    /// Other estimates, from the expected value, 0 to 12 with 6 for none.
+    others: [usize; 4],
+    density: usize,
+}
+
+impl Values {
+    /// Of a grid of which no value is known.
+    pub fn new(voxels: Cell) -> Self {
+        Self {
+            shape: Shape::new(voxels),
+            known: Known::default(),
+            small: Mixer::new(7, 25, 160.0, 0.015),
+            large: Mixer::new(1, 1, 60.0, 0.02),
+            density: Window::new(|step| squared(step) <= 6),
+        }
+    }
+
+    /// Codes the values at some voxels, in order, and returns them. `occupied` are all voxels that have
+    /// points. A decoder has no `values`. `None` where a stream holds none that can be.
+    pub fn code(
+        &mut self,
+        coder: &mut impl Coder,
+        voxels: &[Cell],
+        occupied: &Blocks,
+        values: &[u32],
+    ) -> Option<Vec<u32>> {
+        let mut coded = Vec::new();
+        for (k, &voxel) in voxels.iter().enumerate() {
+            let around = self.around(voxel, occupied);
+            let value = self.value(coder, &around, values.get(k).map_or(0, |&v| v.into()))?;
+            self.known.add(&self.shape, voxel, value);
+            coded.push(value);
+        }
+        Some(coded)
+    }
+
+    fn around(&self, voxel: Cell, occupied: &Blocks) -> Around {
+        let Guess { value, spread, squared, others } = self.known.guess(&self.shape, voxel);
+        let expected = (value + 0.5) as u64;
+        let offset = |other: f64| (other - expected as f64).round().clamp(-6.0, 6.0) as i64 + 6;
+        let block = voxel.map(|v| v / SIDE);
+        let around = occupied.around(&self.shape, block);
+        Around {
+            expected,
+            quarter: ((value + 0.5 - expected as f64) * 4.0).clamp(0.0, 3.0) as usize,
+            spread: logarithm(spread + 0.3),
+            level: expected.min(63) as usize,
+            distance: squared.min(12.0) as usize,
+            others: others.map(|other| offset(other) as usize),
+            density: self.density.count(&around, bit_of(voxel)),
+        }
+    }
+
+    fn value(&mut self, coder: &mut impl Coder, around: &Around, value: u64) -> Option<u32> {
+        let expected = around.expected;
+        let mut bit = |this: &mut Self, node: usize, bit: bool| {
+            this.small.code(coder, &around.contexts(node), node.min(24), bit)
+        };
+        if !bit(self, 0, value != expected) {
+            return u32::try_from(expected).ok();
+        }
+        // No value is negative, which decides the sign where 0 is expected.
+        let above = expected == 0 || bit(self, 1, value > expected);
+        let (size, most) = (value.abs_diff(expected), if above { u64::MAX } else { expected });
+        let mut counted = 1;
+        while counted < most {
+            let node = 2 + 2 * (counted - 1) as usize + usize::from(above);
+            if !bit(self, node, size > counted) {
+                break;
+            }
+            counted += 1;
+            if counted > COUNTED {
+                counted += self.rest(coder, around.spread, size.saturating_sub(counted))?;
+                break;
+            }
+        }
+        let value =
+            if above { expected.checked_add(counted) } else { expected.checked_sub(counted) };
+        u32::try_from(value?).ok()
+    }
+
+    /// What a large difference has above those counted: the number of its binary digits, then these.
+    fn rest(&mut self, coder: &mut impl Coder, spread: usize, rest: u64) -> Option<u64> {
+        let digits = (rest + 1).ilog2();
+        let mut length = 0;
+        while self.large.code(coder, &[64 * spread + length as usize], 0, length < digits) {
+            length += 1;
+            if length > 33 {
+                return None;
+            }
+        }
+        let digit = |so_far: u64, k: u32| {
+            2 * so_far + u64::from(coder.bit(WHOLE / 2, (rest + 1) >> k & 1 == 1))
+        };
+        Some((0..length).rev().fold(1, digit) - 1)
+    }
+}
+
+/// Twice the binary logarithm, rounded down, plus 4, from 0 to 23.
+fn logarithm(number: f64) -> usize {
+    let exponent = (number.to_bits() >> 52) as i64 - 1023;
+    let mantissa = f64::from_bits(number.to_bits() & ((1 << 52) - 1) | 1023 << 52);
+    let half = i64::from(mantissa * mantissa >= 2.0);
+    (2 * exponent + half + 4).clamp(0, 23) as usize
+}
+
+impl Around {
+    fn contexts(&self, node: usize) -> [usize; 7] {
+        let Self { quarter, spread, level, distance, density, .. } = *self;
+        let [nearest, next, wide, plane] = self.others;
+        let with = |context: usize| node + 26 * context;
+        [
+            with(spread + 24 * quarter),
+            with(spread + 24 * (level / 4)),
+            with(level + 64 * distance),
+            with(nearest + 13 * next),
+            with(wide + 13 * (plane + 13 * (spread / 2))),
+            with(density + 81 * (spread / 2)),
+            with(density / 8 + 11 * (level / 4 + 16 * nearest)),
+        ]
+    }
+}
