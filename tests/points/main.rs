@@ -1,6 +1,9 @@
 //! Differences, selection, weights and point files against brute force and by their laws.
 
-#[path = "common/told.rs"]
+mod files;
+mod weights;
+
+#[path = "../common/told.rs"]
 mod told;
 
 use std::path::Path;
@@ -166,149 +169,6 @@ fn threads_change_no_selection() {
     };
     assert_eq!(on(1).len(), (0.0609 * 222_040f64).round() as usize);
     assert!(on(1) == on(2) && on(1) == on(5));
-}
-
-fn points(differences: &[f64]) -> Points {
-    Points {
-        positions: (0..differences.len()).map(|i| [i as f64, 0.0, 0.0]).collect(),
-        values: None,
-        differences: Some(differences.to_vec()),
-        weights: None,
-    }
-}
-
-#[test]
-fn weights_follow_their_equations() {
-    let four = points(&[1.0, 2.0, 2.0, 5.0]);
-    let of =
-        |weighting| weigh(&four, weighting, Alpha::from_squared(8.0).unwrap()).unwrap().weights;
-    assert_eq!(of(Weighting::Common(3.0)), [3.0; 4]);
-    assert_eq!(of(Weighting::MinMax), [0.0, 2.0, 2.0, 8.0]);
-    assert_eq!(of(Weighting::Barycentric), [0.8, 1.6, 1.6, 4.0]);
-    let n = weigh(&four, Weighting::BarycentricN, Alpha::from_squared(8.0).unwrap()).unwrap();
-    assert_eq!((n.len(), n.is_empty()), (4, false));
-    assert_eq!(n.weights, [3.2, 6.4, 6.4, 16.0]);
-    assert_eq!(n.summary(), WeightSummary { min: 3.2, mean: 8.0, max: 16.0 });
-}
-
-#[test]
-fn equal_differences_weigh_nothing_by_min_max() {
-    assert_eq!(
-        weigh(&points(&[2.0; 3]), Weighting::MinMax, Alpha::from_squared(9.0).unwrap())
-            .unwrap()
-            .weights,
-        [0.0; 3]
-    );
-    for weighting in [Weighting::MinMax, Weighting::Barycentric, Weighting::BarycentricN] {
-        assert_eq!(
-            weigh(&points(&[0.0; 3]), weighting, Alpha::from_squared(9.0).unwrap())
-                .unwrap()
-                .weights,
-            [0.0; 3]
-        );
-    }
-}
-
-#[test]
-fn weights_that_cannot_be_are_refused() {
-    let here = points(&[1.0, 2.0]);
-    for weighting in [Weighting::MinMax, Weighting::Barycentric, Weighting::BarycentricN] {
-        let text = weigh(&here, weighting, Alpha::INFINITE).unwrap_err().told();
-        assert!(text.contains("finite α"), "{text}");
-        let scattered = Points { differences: None, ..here.clone() };
-        let text =
-            weigh(&scattered, weighting, Alpha::from_squared(1.0).unwrap()).unwrap_err().told();
-        assert!(text.contains("column") && text.contains("common=C"), "{text}");
-    }
-    assert!(weigh(&here, Weighting::Common(1.0), Alpha::INFINITE).is_ok());
-    assert!(matches!(
-        weigh(&here, Weighting::Column, Alpha::from_squared(1.0).unwrap()),
-        Err(PointsError::NoColumn)
-    ));
-    let error =
-        weigh(&here, Weighting::Common(f64::NAN), Alpha::from_squared(1.0).unwrap()).unwrap_err();
-    assert!(matches!(error, PointsError::Weight { index: 0, .. }));
-}
-
-#[test]
-fn weightings_are_read_as_they_are_written() {
-    use Weighting::*;
-    for weighting in [Common(10.0), Common(-0.5), MinMax, Barycentric, BarycentricN, Column] {
-        assert_eq!(weighting.to_string().parse(), Ok(weighting));
-    }
-    for text in ["common", "common=", "common=nan", "common=inf", "minmax", ""] {
-        assert!(text.parse::<Weighting>().unwrap_err().told().contains("min-max"), "{text}");
-    }
-}
-
-#[test]
-fn written_points_are_read_back() {
-    let folder = tempfile::tempdir().unwrap();
-    let third = 1.0 / 3.0;
-    for values in [None, Some(vec![1e-300, -7.5])] {
-        let points = WeightedPoints {
-            positions: vec![[third, -2.0, 1e20], [0.0, 5.0, 6.25]],
-            weights: vec![third * third, -1.0],
-            values,
-        };
-        let (csv, npy) = (folder.path().join("p.csv"), folder.path().join("p.npy"));
-        for path in [csv, npy] {
-            let mut file = std::fs::File::create(&path).unwrap();
-            PointWriter::of(&path).unwrap().write(&points, &mut file).unwrap();
-            assert!(is_point_file(&path).unwrap());
-            let back = read_points(&path, None).unwrap();
-            assert_eq!(
-                weigh(&back, Weighting::Column, Alpha::from_squared(1.0).unwrap()).unwrap(),
-                points,
-                "{path:?}"
-            );
-        }
-    }
-}
-
-#[test]
-fn csv_columns_may_stand_anywhere() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("points.csv");
-    std::fs::write(&path, "\u{feff}name,Z, y ,weight,X\na,3,2,0.5,1\n\"b, c\",6,5,-1e1,4\n")
-        .unwrap();
-    let points = read_points(&path, None).unwrap();
-    assert_eq!(points.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
-    assert_eq!(points.weights, Some(vec![0.5, -10.0]));
-    assert_eq!(points.values, None);
-}
-
-#[test]
-fn bad_point_files_say_where_they_are_bad() {
-    let folder = tempfile::tempdir().unwrap();
-    let refuse = |name: &str, bytes: &[u8], parts: &[&str]| {
-        let path = folder.path().join(name);
-        std::fs::write(&path, bytes).unwrap();
-        let text = read_points(&path, None).unwrap_err().told();
-        for part in parts.iter().chain(&[name]) {
-            assert!(text.contains(part), "{part:?} is missing in: {text}");
-        }
-    };
-    refuse("empty.csv", b"", &["first line must name"]);
-    refuse("nothing.csv", b"x,y,z\n", &["no point"]);
-    refuse("axis.csv", b"x,z\n1,2\n", &["x, y and z"]);
-    refuse("twice.csv", b"x,y,z,X\n1,2,3,4\n", &["twice"]);
-    refuse("word.csv", b"x,y,z\n1,2,3\n1,two,3\n", &["line 3", "column y", "two"]);
-    refuse("nan.csv", b"x,y,z,weight\n1,2,3,NaN\n", &["line 2", "column weight"]);
-    refuse("short.csv", b"x,y,z\n1,2,3\n1,2\n", &["line: 3"]);
-    refuse("text.csv", b"x,y,z\n\xff,2,3\n", &["UTF-8"]);
-
-    let npy = |array: ndarray::Array2<f64>| {
-        let mut bytes = Vec::new();
-        ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes).unwrap();
-        bytes
-    };
-    refuse("three.npy", &npy(ndarray::arr2(&[[1.0, 2.0, 3.0]])), &["[1, 3]", "n×4"]);
-    let infinite = ndarray::arr2(&[[1.0, 2.0, f64::INFINITY, 0.0]]);
-    refuse("inf.npy", &npy(infinite), &["row 0", "z is inf"]);
-    refuse("none.npy", &npy(ndarray::Array2::zeros((0, 4))), &["no point"]);
-    let text = read_points(Path::new("no/such.csv"), None).unwrap_err().told();
-    assert!(text.contains("no/such.csv"), "{text}");
 }
 
 /// L = 5/6 twice: neither is lost to a threshold of 5/6.
