@@ -66,30 +66,30 @@ fn head(html: &mut String, report: &Report) {
     );
 }
 
-/// What it all comes to.
+/// The conclusion.
 fn in_plain_words(report: &Report) -> String {
     let verdict = |part: &str| {
         let mut findings = report.items.iter().flat_map(|item| &item.findings);
         findings.find(|finding| finding.claim.contains(part)).map(|finding| finding.verdict)
     };
     let filled = match verdict("the hole is filled") {
-        Some(Verdict::Reproduced) => "With them the hole of its last figures is filled here.",
-        _ => "So the hole that its last figures are to show filled is not filled.",
+        Some(Verdict::Reproduced) => "With them the hole in its last figures is filled here.",
+        _ => "So the hole that its last figures should show filled stays open.",
     };
     let weights = match verdict("Barycentric weights give another shape") {
         Some(Verdict::Reproduced) => {
-            "Its weights in proportion to differences change the shape a little."
+            "Its weights, proportional to gray differences, change the shape a little."
         }
         _ => {
-            "What does not hold is what it says of weights in proportion to differences: taken as its \
-             equation has them they are so small that the shape with them is the one without."
+            "Its main claim about weights does not hold: weights proportional to gray differences, \
+             computed by its equation, are so small that the weighted shape equals the unweighted one."
         }
     };
     format!(
         "<p><b>In plain words.</b> The method works: a small share of the samples, those where the volume \
-         changes most, makes a shape of tetrahedra that shows what is in it, and the shape grows and \
-         shrinks with α as the paper says. {weights} {filled} Some claims cannot be decided, as the paper \
-         does not say how it got there.</p>\n"
+         changes most, forms a shape of tetrahedra that shows the object, and the shape grows and \
+         shrinks with α as the paper says. {weights} {filled} Some claims cannot be decided, because the \
+         paper does not say how it arrived at them.</p>\n"
     )
 }
 
@@ -165,7 +165,7 @@ fn section(html: &mut String, item: &Item, files: &[File]) {
     if !item.commands.is_empty() {
         let _ = writeln!(
             html,
-            "<h3>To make it again</h3>\n<pre>{}</pre>",
+            "<h3>Reproduce with</h3>\n<pre>{}</pre>",
             escape(&item.commands.join("\n"))
         );
     }

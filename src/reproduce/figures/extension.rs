@@ -32,8 +32,8 @@ pub(super) fn error_against_points(bench: &mut Bench<'_>) -> Result<Item, Reprod
     Ok(Item {
         id: "extension-1",
         title: "Our extension. Error against points".into(),
-        paper: "Says what the weighted alpha shape of the points is for, to stand for the volume, \
-                and does not measure how well it does. This section is not in the paper."
+        paper: "Says that the weighted alpha shape of the points represents the volume, \
+                but does not measure how well. This section is not in the paper."
             .into(),
         ours: "F is linear on each cell, and compared with the original samples: inside the shape, \
                and over the whole volume, for which the triangulation is taken whole and the 8 \

@@ -116,7 +116,7 @@ pub(super) fn figure_6(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
             .into(),
         ours:
             "The boundary of the shape, from two sides. The paper prints no count to compare with; \
-               ours stand below."
+               ours are below."
                 .into(),
         picture: Some(bench.file("figure-06.png", drawn.to_png()?)),
         commands: vec![bench.drawing_command(plain, "figure-06.png")],
