@@ -76,7 +76,7 @@ pub fn adaptive_voxels(
         if rmse <= goal.rmse || batch == 0 {
             return Ok(voxels);
         }
-        let candidates = worst(volume, &sampled, max);
+        let candidates = worst(volume, &sampled, max, |_| true);
         let joining = apart(volume.dims(), candidates, batch);
         voxels.extend(&joining);
         if joining.is_empty() || voxels.len() as u64 == goal.count {
@@ -87,8 +87,13 @@ pub fn adaptive_voxels(
 }
 
 /// The worst voxel of each simplex, in order of the squared error of its whole simplex, the
-/// largest first. Voxels without error are none. `max` is the largest error.
-fn worst(volume: &Volume, sampled: &Sampled<'_>, max: f64) -> Vec<u32> {
+/// largest first, of those that may join. Voxels without error may not. `max` is the largest error.
+pub(super) fn worst(
+    volume: &Volume,
+    sampled: &Sampled<'_>,
+    max: f64,
+    may_join: impl Fn(u32) -> bool + Sync,
+) -> Vec<u32> {
     // Sums of integers do not depend on their order: squares in units of max²/2³¹, of which 2³²
     // samples make less than 2⁶⁴.
     let units = |error: f64| ((error / max).powi(2) * 2f64.powi(31)) as u64;
@@ -101,7 +106,9 @@ fn worst(volume: &Volume, sampled: &Sampled<'_>, max: f64) -> Vec<u32> {
         let error = (f - g).abs();
         if owner != NOTHING && error > 0.0 {
             sums[owner as usize].fetch_add(units(error.into()), Relaxed);
-            worst[owner as usize].fetch_max(key(error, voxel as u32), Relaxed);
+            if may_join(voxel as u32) {
+                worst[owner as usize].fetch_max(key(error, voxel as u32), Relaxed);
+            }
         }
     });
     let pairs = sums.into_iter().zip(worst).map(|(s, w)| (s.into_inner(), w.into_inner()));

@@ -1,17 +1,19 @@
 //! F at the samples of a volume, kept while points come and leave.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
 use super::barycentric::coordinates;
 use super::interpolant::combine;
+use super::least_squares::{Normal, Pieces, Solved};
 use super::raster::{CHUNK, NOTHING, for_each_near};
 use super::{Deviation, Grid, InterpolateError};
 use crate::math::Reach;
 use crate::points::Units;
 use crate::shape::{ShapeError, smallest_even_permutation};
-use crate::triangulation::{Growing, TriangulationError};
+use crate::triangulation::Growing;
 use crate::volume::Volume;
 
 /// The interpolant of samples of a volume on their Delaunay triangulation, at all samples.
@@ -24,6 +26,8 @@ pub(super) struct Sampled<'a> {
     units: Units,
     grid: Grid,
     growing: Growing,
+    /// The sample of each point by its number in the triangulation; that of the ghost is 0.
+    voxels: Vec<u32>,
     /// Values of points by their numbers in the triangulation.
     values: Vec<f64>,
     /// F at each sample.
@@ -45,11 +49,12 @@ impl<'a> Sampled<'a> {
             units,
             grid: Grid::of(volume, units),
             growing,
+            voxels: vec![0; Growing::FIRST as usize],
             values: vec![0.0; Growing::FIRST as usize],
             f: vec![0.0; samples],
             owners: vec![NOTHING; samples],
         };
-        sampled.add_values(voxels);
+        sampled.describe(voxels);
         sampled.follow();
         Ok(sampled)
     }
@@ -59,12 +64,40 @@ impl<'a> Sampled<'a> {
     /// # Errors
     /// No memory.
     pub fn add(&mut self, voxels: &[u32]) -> Result<(), InterpolateError> {
-        let positions = positions(self.volume, self.units, voxels);
-        let named: Vec<u32> = self.growing.name(&positions).collect();
-        let inserted: Result<(), TriangulationError> = self.growing.insert(&named);
-        inserted.map_err(ShapeError::from)?;
-        self.add_values(voxels);
+        let named: Vec<u32> = self.name(voxels).collect();
+        self.growing.insert(&named).map_err(ShapeError::from)?;
         self.follow();
+        Ok(())
+    }
+
+    /// Gives samples numbers of points, which they are not yet.
+    pub fn name(&mut self, voxels: &[u32]) -> Range<u32> {
+        self.describe(voxels);
+        self.growing.name(&positions(self.volume, self.units, voxels))
+    }
+
+    /// Takes points out and puts others in, by their numbers. No two that leave are neighbours.
+    ///
+    /// # Errors
+    /// No memory.
+    pub fn change(&mut self, leave: &[u32], join: &[u32]) -> Result<(), InterpolateError> {
+        self.growing.remove(leave).map_err(ShapeError::from)?;
+        self.growing.insert(join).map_err(ShapeError::from)?;
+        self.follow();
+        Ok(())
+    }
+
+    /// Fits the values of points to the volume by least squares, as [`refit`](super::refit()) does.
+    ///
+    /// # Errors
+    /// No memory.
+    pub fn refit(&mut self) -> Result<(), InterpolateError> {
+        let pieces = Cells::of(&self.growing, &self.values);
+        let free = self.values.len();
+        let normal = Normal::assemble(&pieces, &self.owners, &self.grid, self.volume, free)?;
+        let Solved { change, .. } = normal.solve()?;
+        self.values.iter_mut().zip(change).for_each(|(value, change)| *value += change);
+        self.evaluate(|_| true);
         Ok(())
     }
 
@@ -78,6 +111,32 @@ impl<'a> Sampled<'a> {
         &self.f
     }
 
+    /// The triangulation.
+    pub fn growing(&self) -> &Growing {
+        &self.growing
+    }
+
+    /// The values of points, by their numbers.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The samples that points are, by their numbers.
+    pub fn voxels(&self) -> &[u32] {
+        &self.voxels
+    }
+
+    /// The numbers of the points there are.
+    pub fn vertices(&self) -> Vec<u32> {
+        let all = Growing::FIRST..self.voxels.len() as u32;
+        all.filter(|&v| self.growing.is_vertex(v)).collect()
+    }
+
+    /// Where a sample is, in the units of points.
+    pub fn place(&self, sample: u32) -> [f64; 3] {
+        self.units.position(self.volume, sample)
+    }
+
     /// The cell of each sample, or [`NOTHING`].
     pub fn owners(&self) -> &[u32] {
         &self.owners
@@ -88,7 +147,8 @@ impl<'a> Sampled<'a> {
         self.growing.cells().len()
     }
 
-    fn add_values(&mut self, voxels: &[u32]) {
+    fn describe(&mut self, voxels: &[u32]) {
+        self.voxels.extend(voxels);
         let value = |&voxel: &u32| f64::from(self.volume.as_slice()[voxel as usize]);
         self.values.extend(voxels.iter().map(value));
     }
@@ -103,7 +163,7 @@ impl<'a> Sampled<'a> {
         };
         let left = |owner: &u32| AtomicU32::new(*Some(owner).filter(stays).unwrap_or(&NOTHING));
         let owners: Vec<AtomicU32> = self.owners.par_iter().map(left).collect();
-        let cells = Cells::of(&self.growing);
+        let cells = Cells::of(&self.growing, &self.values);
         let [nx, ny, _] = self.grid.dims().xyz();
         fresh.par_iter().with_min_len(CHUNK).for_each(|&cell| {
             let row = cells.row(cell);
@@ -122,23 +182,31 @@ impl<'a> Sampled<'a> {
                 }
             });
         });
-        let owners: Vec<u32> = owners.into_iter().map(AtomicU32::into_inner).collect();
-        let (grid, values, before) = (&self.grid, &self.values, &self.owners);
+        let owners = owners.into_iter().map(AtomicU32::into_inner).collect();
+        let before = std::mem::replace(&mut self.owners, owners);
+        let now = self.owners.clone();
+        self.evaluate(|sample| {
+            now[sample] != before[sample] || now[sample] != NOTHING && is_fresh[now[sample] as usize]
+        });
+    }
+
+    /// Computes F at some samples.
+    fn evaluate(&mut self, wanted: impl Fn(usize) -> bool + Sync) {
+        let cells = Cells::of(&self.growing, &self.values);
+        let (grid, owners) = (&self.grid, &self.owners);
+        let [nx, ny, _] = grid.dims().xyz();
         self.f.par_chunks_mut(nx).enumerate().for_each(|(y, f)| {
             for (x, f) in f.iter_mut().enumerate() {
                 let owner = owners[x + nx * y];
-                let same = owner == before[x + nx * y];
-                if owner == NOTHING || same && !is_fresh[owner as usize] {
+                if owner == NOTHING || !wanted(x + nx * y) {
                     continue;
                 }
-                let row = cells.row(owner);
                 let place = grid.position([x, y % ny, y / ny]);
-                if let Some(shares) = cells.coordinates(row, place) {
-                    *f = combine(&shares, row.map(|v| values[v as usize])) as f32;
+                if let Some(shares) = cells.coordinates(cells.row(owner), place) {
+                    *f = cells.value(owner, &shares) as f32;
                 }
             }
         });
-        self.owners = owners;
     }
 }
 
@@ -149,12 +217,13 @@ fn positions(volume: &Volume, units: Units, voxels: &[u32]) -> Vec<[f64; 3]> {
 /// The cells of a triangulation as an interpolant has them.
 struct Cells<'a> {
     growing: &'a Growing,
+    values: &'a [f64],
     reach: Reach,
 }
 
 impl<'a> Cells<'a> {
-    fn of(growing: &'a Growing) -> Self {
-        Self { growing, reach: Reach::of(growing.positions()) }
+    fn of(growing: &'a Growing, values: &'a [f64]) -> Self {
+        Self { growing, values, reach: Reach::of(growing.positions()) }
     }
 
     /// The corners of a cell in canonical order. Numbers of points are in the order of their indices.
@@ -188,5 +257,23 @@ impl<'a> Cells<'a> {
             }
         }
         first.1
+    }
+}
+
+impl Pieces for Cells<'_> {
+    fn count(&self) -> usize {
+        self.growing.cells().len()
+    }
+
+    fn vertices(&self, cell: u32) -> ([u32; 4], usize) {
+        (self.row(cell), 4)
+    }
+
+    fn coordinates(&self, cell: u32, place: [f64; 3]) -> Option<[f64; 4]> {
+        self.coordinates(self.row(cell), place)
+    }
+
+    fn value(&self, cell: u32, shares: &[f64; 4]) -> f64 {
+        combine(shares, self.row(cell).map(|v| self.values[v as usize]))
     }
 }

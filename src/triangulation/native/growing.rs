@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::super::predicates::{Predicates, Screen};
 use super::super::{Cell, GONE, Sites, TriangulationError, curve};
+use super::leave::{Digger, Hole};
 use super::{Native, rounds};
 
 /// The Delaunay triangulation of points that come in batches, and may leave one by one.
@@ -18,21 +19,29 @@ pub(crate) struct Growing {
     body: Body,
 }
 
+/// What would come with a point.
+pub(crate) struct Crown {
+    /// Cells that would go, infinite ones among them.
+    pub goes: Vec<u32>,
+    /// The finite cells that would come.
+    pub cells: Vec<[u32; 4]>,
+}
+
 /// What changes when a point comes or leaves.
-struct Body {
-    native: Native,
+pub(super) struct Body {
+    pub native: Native,
     /// The places of vertices, so that no two stand at one.
     taken: HashSet<[u64; 3]>,
     /// A cell at each vertex; [`NONE`] at other points.
-    at: Vec<u32>,
+    pub at: Vec<u32>,
     /// Cells made since they were last asked for, some of them gone again.
     fresh: Vec<u32>,
 }
 
 /// The number before that of the first point.
-const GHOST: u32 = 0;
+pub(super) const GHOST: u32 = 0;
 /// The cell at a point that is no vertex.
-const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 
 impl Growing {
     /// The number of the first point.
@@ -87,6 +96,79 @@ impl Growing {
         body.insert_all(positions, &Screen::haunted(&predicates, GHOST)?, points)
     }
 
+    /// Removes vertices whose neighbours are not among them, other than those around which there would be no
+    /// triangulation left. Gives the number of those that left.
+    ///
+    /// # Errors
+    /// Too many cells, no memory.
+    pub fn remove(&mut self, points: &[u32]) -> Result<usize, TriangulationError> {
+        let Self { positions, weights, body } = self;
+        let predicates = Predicates::new(positions, weights);
+        let screen = Screen::haunted(&predicates, GHOST)?;
+        let mut digger = Digger::new(positions.len())?;
+        let mut left = 0;
+        for &v in points {
+            if let Some(hole) = body.hole(&screen, v, &mut digger)? {
+                body.close(v, &hole)?;
+                body.taken.remove(&place(positions[v as usize]));
+                left += 1;
+            }
+        }
+        Ok(left)
+    }
+
+    /// What the [`Screen`](Self::screen) of all points with numbers begins with.
+    pub fn predicates(&self) -> Predicates<'_> {
+        Predicates::new(&self.positions, &self.weights)
+    }
+
+    /// Tests for [`Self::hole`] and [`Self::crown`].
+    pub fn screen<'a>(predicates: &'a Predicates<'a>) -> Result<Screen<'a>, TriangulationError> {
+        Screen::haunted(predicates, GHOST)
+    }
+
+    /// What would come in the place of a vertex; `None` where no triangulation would be left.
+    pub fn hole(
+        &self,
+        screen: &Screen<'_>,
+        v: u32,
+        digger: &mut Digger,
+    ) -> Result<Option<Hole>, TriangulationError> {
+        self.body.hole(screen, v, digger)
+    }
+
+    /// What would come with a point that lies in a cell, and is no vertex.
+    pub fn crown(&self, screen: &Screen<'_>, v: u32, cell: u32) -> Crown {
+        let mesh = &self.body.native.mesh;
+        let (mut goes, mut stays, mut cells) = (vec![cell], Vec::new(), Vec::new());
+        let mut at = 0;
+        while let Some(&cell) = goes.get(at) {
+            at += 1;
+            let Cell { corners, beside } = mesh.cells[cell as usize];
+            for k in 0..4 {
+                let next = beside[k] / 4;
+                if goes.contains(&next) {
+                    continue;
+                }
+                if !stays.contains(&next) && mesh.conflicts(screen, next, v) {
+                    goes.push(next);
+                } else {
+                    stays.push(next);
+                    let mut joined = corners;
+                    joined[k] = v;
+                    cells.push(joined);
+                }
+            }
+        }
+        cells.retain(|cell| !cell.contains(&GHOST));
+        Crown { goes, cells }
+    }
+
+    /// Whether a point is a vertex.
+    pub fn is_vertex(&self, v: u32) -> bool {
+        self.body.at[v as usize] != NONE
+    }
+
     /// The corners of each cell and 4·cell + corner across each facet. Some are gone.
     pub fn cells(&self) -> &[Cell] {
         &self.body.native.mesh.cells
@@ -138,7 +220,7 @@ impl Body {
     }
 
     /// Takes note of a new cell.
-    fn note(&mut self, cell: u32) {
+    pub fn note(&mut self, cell: u32) {
         self.fresh.push(cell);
         for v in self.native.mesh.cells[cell as usize].corners {
             self.at[v as usize] = cell;
