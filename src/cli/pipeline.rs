@@ -82,7 +82,7 @@ pub fn with_file<T>(
 }
 
 /// Options that speak of a volume.
-const OF_VOLUMES: [&str; 23] = [
+const OF_VOLUMES: [&str; 25] = [
     "level",
     "array",
     "frame",
@@ -104,6 +104,8 @@ const OF_VOLUMES: [&str; 23] = [
     "gray_min",
     "value_min",
     "refit",
+    "max_error",
+    "exchange",
     "units",
     "space",
 ];

@@ -97,10 +97,9 @@ fn choose(
     most: usize,
 ) -> Result<Swap, InterpolateError> {
     let vertices = sampled.vertices();
-    let taken: HashSet<u32> =
-        vertices.iter().map(|&v| sampled.voxels()[v as usize]).collect();
+    let taken: HashSet<u32> = vertices.iter().map(|&v| sampled.voxels()[v as usize]).collect();
     let max = sampled.deviation().max.unwrap_or(0.0);
-    let mut tried = worst(volume, sampled, max, |sample| !taken.contains(&sample));
+    let mut tried = worst(volume, sampled, max, None, |sample| !taken.contains(&sample));
     tried.truncate((TRIED * vertices.len() as f64) as usize);
     let named: Vec<u32> = sampled.name(&tried).collect();
     let corners = corners(volume);

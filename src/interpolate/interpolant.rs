@@ -113,6 +113,11 @@ impl<'a> Interpolant<'a> {
         self.values
     }
 
+    /// What the coordinates of points have in common.
+    pub(super) fn reach(&self) -> Reach {
+        self.reach
+    }
+
     /// The corners of a simplex; the first so many count.
     pub(super) fn corners(&self, part: u32) -> ([[f64; 3]; 4], usize) {
         let part = self.parts[part as usize];

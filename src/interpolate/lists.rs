@@ -28,10 +28,7 @@ pub(super) struct Lists {
 
 impl Lists {
     /// `visit` names all pairs of a key and an item, in the same order each time it is called.
-    pub fn new(
-        keys: usize,
-        visit: impl Fn(&mut dyn FnMut(u32, u32)),
-    ) -> Result<Self, NoMemory> {
+    pub fn new(keys: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Result<Self, NoMemory> {
         let mut starts = room(keys + 2, || "lists of samples".into())?;
         starts.resize(keys + 2, 0u32);
         visit(&mut |key, _| starts[key as usize + 2] += 1);

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
-use super::barycentric::coordinates;
+use super::barycentric::{Planes, coordinates};
 use super::interpolant::combine;
 use super::least_squares::{Normal, Pieces, Solved};
 use super::raster::{CHUNK, NOTHING, for_each_near};
@@ -13,7 +13,7 @@ use super::{Deviation, Grid, InterpolateError};
 use crate::math::Reach;
 use crate::points::Units;
 use crate::shape::{ShapeError, smallest_even_permutation};
-use crate::triangulation::Growing;
+use crate::triangulation::{Cell, Growing};
 use crate::volume::Volume;
 
 /// The interpolant of samples of a volume on their Delaunay triangulation, at all samples.
@@ -25,6 +25,8 @@ pub(super) struct Sampled<'a> {
     volume: &'a Volume,
     units: Units,
     grid: Grid,
+    /// Whether no operation on places of samples rounds.
+    exact: bool,
     growing: Growing,
     /// The sample of each point by its number in the triangulation; that of the ghost is 0.
     voxels: Vec<u32>,
@@ -43,11 +45,13 @@ impl<'a> Sampled<'a> {
     /// Samples that span no volume; no memory.
     pub fn new(volume: &'a Volume, units: Units, voxels: &[u32]) -> Result<Self, InterpolateError> {
         let samples = volume.dims().samples();
+        let grid = Grid::of(volume, units);
         let growing = Growing::new(&positions(volume, units, voxels)).map_err(ShapeError::from)?;
         let mut sampled = Self {
             volume,
             units,
-            grid: Grid::of(volume, units),
+            exact: grid.reach().is_exact(),
+            grid,
             growing,
             voxels: vec![0; Growing::FIRST as usize],
             values: vec![0.0; Growing::FIRST as usize],
@@ -76,7 +80,7 @@ impl<'a> Sampled<'a> {
         self.growing.name(&positions(self.volume, self.units, voxels))
     }
 
-    /// Takes points out and puts others in, by their numbers. No two that leave are neighbours.
+    /// Takes points out and puts others in, by their numbers.
     ///
     /// # Errors
     /// No memory.
@@ -97,7 +101,7 @@ impl<'a> Sampled<'a> {
         let normal = Normal::assemble(&pieces, &self.owners, &self.grid, self.volume, free)?;
         let Solved { change, .. } = normal.solve()?;
         self.values.iter_mut().zip(change).for_each(|(value, change)| *value += change);
-        self.evaluate(|_| true);
+        self.evaluate(|_, _| true);
         Ok(())
     }
 
@@ -163,42 +167,62 @@ impl<'a> Sampled<'a> {
         };
         let left = |owner: &u32| AtomicU32::new(*Some(owner).filter(stays).unwrap_or(&NOTHING));
         let owners: Vec<AtomicU32> = self.owners.par_iter().map(left).collect();
+        if self.exact {
+            self.draw_exactly(&fresh, &owners);
+            self.owners = owners.into_iter().map(AtomicU32::into_inner).collect();
+            return;
+        }
         let cells = Cells::of(&self.growing, &self.values);
-        let [nx, ny, _] = self.grid.dims().xyz();
         fresh.par_iter().with_min_len(CHUNK).for_each(|&cell| {
             let row = cells.row(cell);
-            let corners = row.map(|v| self.growing.positions()[v as usize]);
-            for_each_near(&self.grid, &corners, |index| {
-                let place = self.grid.position(index);
-                let owner = &owners[index[0] + nx * (index[1] + ny * index[2])];
-                let Some(shares) = cells.coordinates(row, place) else { return };
-                if !shares.contains(&0.0) {
-                    owner.store(cell, Relaxed);
-                } else if shares.contains(&1.0) {
-                    // At a vertex F is its value, whichever cell the sample belongs to.
-                    owner.fetch_min(cell, Relaxed);
-                } else {
-                    owner.store(cells.first_at(cell, place), Relaxed);
+            for_each_near(&self.grid, &cells.corners(row), |index| {
+                if let Some(shares) = cells.coordinates(row, self.grid.position(index)) {
+                    cells.claim(cell, row, &shares, &owners[self.sample(index)]);
                 }
             });
         });
         let owners = owners.into_iter().map(AtomicU32::into_inner).collect();
         let before = std::mem::replace(&mut self.owners, owners);
-        let now = self.owners.clone();
-        self.evaluate(|sample| {
-            now[sample] != before[sample] || now[sample] != NOTHING && is_fresh[now[sample] as usize]
+        let changed =
+            |sample: usize, owner: u32| owner != before[sample] || is_fresh[owner as usize];
+        self.evaluate(changed);
+    }
+
+    /// The same where nothing rounds: F is then the same whichever of several cells a sample belongs to,
+    /// and is written at once.
+    fn draw_exactly(&mut self, fresh: &[u32], owners: &[AtomicU32]) {
+        let f: Vec<AtomicU32> = self.f.par_iter().map(|f| AtomicU32::new(f.to_bits())).collect();
+        let cells = Cells::of(&self.growing, &self.values);
+        fresh.par_iter().with_min_len(CHUNK).for_each(|&cell| {
+            let row = cells.row(cell);
+            let corners = cells.corners(row);
+            let Some(planes) = Planes::of(corners) else { return };
+            for_each_near(&self.grid, &corners, |index| {
+                if let Some(shares) = planes.shares(self.grid.position(index)) {
+                    let sample = self.sample(index);
+                    cells.claim(cell, row, &shares, &owners[sample]);
+                    let value = combine(&shares, row.map(|v| self.values[v as usize])) as f32;
+                    f[sample].store(value.to_bits(), Relaxed);
+                }
+            });
         });
+        self.f = f.into_iter().map(|f| f32::from_bits(f.into_inner())).collect();
+    }
+
+    fn sample(&self, index: [usize; 3]) -> usize {
+        let [nx, ny, _] = self.grid.dims().xyz();
+        index[0] + nx * (index[1] + ny * index[2])
     }
 
     /// Computes F at some samples.
-    fn evaluate(&mut self, wanted: impl Fn(usize) -> bool + Sync) {
+    fn evaluate(&mut self, wanted: impl Fn(usize, u32) -> bool + Sync) {
         let cells = Cells::of(&self.growing, &self.values);
         let (grid, owners) = (&self.grid, &self.owners);
         let [nx, ny, _] = grid.dims().xyz();
         self.f.par_chunks_mut(nx).enumerate().for_each(|(y, f)| {
             for (x, f) in f.iter_mut().enumerate() {
                 let owner = owners[x + nx * y];
-                if owner == NOTHING || !wanted(x + nx * y) {
+                if owner == NOTHING || !wanted(x + nx * y, owner) {
                     continue;
                 }
                 let place = grid.position([x, y % ny, y / ny]);
@@ -236,22 +260,38 @@ impl<'a> Cells<'a> {
         coordinates(&corners, place, self.reach.is_exact_with(place))
     }
 
-    /// The first in canonical order of the cells that hold a place, of which one is known. From one to the
-    /// next the way leads through facets that the place is on.
-    fn first_at(&self, cell: u32, place: [f64; 3]) -> u32 {
+    fn corners(&self, row: [u32; 4]) -> [[f64; 3]; 4] {
+        row.map(|v| self.growing.positions()[v as usize])
+    }
+
+    /// Gives a sample in a new cell to the first of the cells that hold it.
+    #[inline(always)]
+    fn claim(&self, cell: u32, row: [u32; 4], shares: &[f64; 4], owner: &AtomicU32) {
+        if !shares.contains(&0.0) {
+            owner.store(cell, Relaxed);
+        } else if shares.contains(&1.0) {
+            // At a vertex F is its value, whichever cell the sample belongs to.
+            owner.fetch_min(cell, Relaxed);
+        } else {
+            owner.store(self.first_at(cell, row, shares), Relaxed);
+        }
+    }
+
+    /// The first in canonical order of the cells at the face that a place lies on within one of them. They
+    /// are those with all vertices of the face, and from one to the next the way leads through facets
+    /// that have all of them, too.
+    fn first_at(&self, cell: u32, row: [u32; 4], shares: &[f64; 4]) -> u32 {
+        let on = |v: u32| (0..4).any(|k| row[k] == v && shares[k] != 0.0);
         let mut seen = vec![cell];
-        let mut first = (self.row(cell), cell);
+        let mut first = (row, cell);
         let mut at = 0;
         while let Some(&cell) = seen.get(at) {
             at += 1;
-            let row = self.row(cell);
-            first = first.min((row, cell));
-            let Some(shares) = self.coordinates(row, place) else { continue };
-            let here = &self.growing.cells()[cell as usize];
-            for (v, _) in row.iter().zip(shares).filter(|(_, share)| *share == 0.0) {
-                let corner = here.corners.iter().position(|w| w == v).expect("a corner");
-                let next = here.beside[corner] / 4;
-                if self.growing.is_cell(next) && !seen.contains(&next) {
+            first = first.min((self.row(cell), cell));
+            let Cell { corners, beside } = self.growing.cells()[cell as usize];
+            for k in 0..4 {
+                let next = beside[k] / 4;
+                if !on(corners[k]) && self.growing.is_cell(next) && !seen.contains(&next) {
                     seen.push(next);
                 }
             }

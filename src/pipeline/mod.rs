@@ -7,7 +7,7 @@ pub use error::PipelineError;
 pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
 
 use crate::haar::{HaarOptions, Truncation, smooth};
-use crate::interpolate::{Adaptive, Fit, Refit, adaptive_voxels, refit};
+use crate::interpolate::{Adaptive, Fit, Refit, adaptive_voxels, exchange, refit};
 use crate::points::{
     Points, Selection, Units, WeightedPoints, Weighting, difference, points_at,
     scattered_difference, select, weigh,
@@ -24,6 +24,9 @@ pub enum Choice {
     Difference(Selection),
     /// Those where the interpolant of the ones before is worst.
     Adaptive(Adaptive),
+    /// The same, and then those whose loss costs little exchanged for others
+    /// ([`exchange`](crate::interpolate::exchange())).
+    Exchanged(Adaptive),
 }
 
 impl Default for Choice {
@@ -286,9 +289,12 @@ impl Pipeline {
                 let points = select(volume, smoothed, &differences, &selection, self.units)?;
                 return Ok((points, None));
             }
-            Choice::Adaptive(goal) => goal,
+            Choice::Adaptive(goal) | Choice::Exchanged(goal) => goal,
         };
         let mut voxels = adaptive_voxels(volume, &goal, self.units)?;
+        if matches!(self.choice, Choice::Exchanged(_)) {
+            voxels = exchange(volume, &voxels, self.units)?;
+        }
         voxels.sort_unstable();
         // With a target alone as many as there are samples may be needed, and none is asked for.
         let asked = goal.count < volume.dims().samples() as u64;

@@ -33,8 +33,8 @@ mod voids;
 
 pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
 pub use balls::Balls;
-pub(crate) use canonical::smallest_even_permutation;
 pub use blocks::PlanError;
+pub(crate) use canonical::smallest_even_permutation;
 pub use flat::flat_region;
 pub(crate) use infinite::each_number_or_name;
 pub use infinite::{number_or_name, number_or_null_or_name};

@@ -9,7 +9,11 @@ use super::{Cavity, Mesh, Native};
 impl Native {
     /// Nothing yet, with room for a triangulation of so many of the points below a number, which no
     /// point has or which is the ghost's own.
-    pub(super) fn empty(points: usize, below: usize, ghost: u32) -> Result<Self, TriangulationError> {
+    pub(super) fn empty(
+        points: usize,
+        below: usize,
+        ghost: u32,
+    ) -> Result<Self, TriangulationError> {
         // About 6.8 cells a point, of which a few more come and go.
         let expected = (points + points / 16).saturating_mul(7).max(64);
         let mut native = Self {
