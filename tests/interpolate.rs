@@ -349,7 +349,10 @@ fn rmse_of(volume: &Volume, voxels: &[u32]) -> f64 {
 #[test]
 fn adaptive_points_are_better_and_the_first_are_those_of_fewer() {
     let volume = phantom(24);
-    let choose = |count, rmse| adaptive_voxels(&volume, &Adaptive { count, rmse }, Units::Voxel);
+    let choose = |count, rmse| {
+        let goal = Adaptive { count, rmse, max_error: None };
+        adaptive_voxels(&volume, &goal, Units::Voxel)
+    };
     let many = choose(800, 0.0).unwrap();
     let mut sorted = many.clone();
     sorted.sort_unstable();
@@ -382,7 +385,7 @@ fn adaptive_points_are_better_and_the_first_are_those_of_fewer() {
 fn a_perfect_interpolant_needs_no_more_points() {
     let samples = Array3::from_shape_fn((6, 7, 8), |(z, y, x)| (x + 2 * y + 4 * z) as f32);
     let volume = Volume::new(samples, Frame::VOXEL).unwrap();
-    let goal = Adaptive { count: 200, rmse: 0.0 };
+    let goal = Adaptive { count: 200, rmse: 0.0, max_error: None };
     assert_eq!(adaptive_voxels(&volume, &goal, Units::Voxel).unwrap().len(), 8);
 }
 

@@ -104,6 +104,6 @@ fn a_shape_moves_within_its_blocks() {
 
 #[test]
 fn adaptive_selection_moves() {
-    let goal = Adaptive { count: 300, rmse: 0.0 };
+    let goal = Adaptive { count: 300, rmse: 0.0, max_error: None };
     assert_moves(4, || drop(adaptive_voxels(&phantom(), &goal, Units::Voxel).unwrap()));
 }

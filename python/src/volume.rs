@@ -4,6 +4,7 @@ use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::prelude::*;
 use walpha::haar::{Decomposition, HaarOptions, Tolerance, smooth};
+use walpha::interpolate::Refit;
 use walpha::pipeline::{Choice, PipelineError};
 use walpha::points::{self, PointsError, Weighting};
 use walpha::progress::Stage;
@@ -139,17 +140,24 @@ pub fn pipeline(
     engine: &str,
     balls: &str,
     exterior: bool,
+    refit: Option<&str>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Shape> {
     let (frame, units) = place(frame)?;
     let rule = selection_rule(&rule)?;
-    let pipeline = Pipeline::new()
+    let mut pipeline = Pipeline::new()
         .haar(haar_options(&haar.0, &haar.1)?)
         .choice(Choice::Difference(Selection { rule, gray_min }))
         .units(units)
         .weighting(weighting.parse().map_err(Told::told)?)
         .alpha(alpha_rule(alpha))
         .shape(options(engine, balls, exterior)?);
+    pipeline = match refit {
+        None => pipeline,
+        Some("whole") => pipeline.refit(Refit::Whole),
+        Some("shape") => pipeline.refit(Refit::Shape),
+        Some(other) => return Err(unknown("refit", other, "'whole' and 'shape'")),
+    };
     let gray = gray.map_or(Gray::Automatic, |(low, high)| Gray::Range(GrayRange { low, high }));
     let samples = samples.as_array().to_owned();
     let model = run(py, progress.as_ref(), move |call| {

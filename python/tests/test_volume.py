@@ -64,6 +64,14 @@ def test_bytes_are_gray_levels(phantom):
     assert same(as_bytes, walpha.pipeline(strided, count=500))
 
 
+def test_values_are_fitted(phantom):
+    own, fitted = (walpha.pipeline(phantom, count=500, refit=refit) for refit in (None, "shape"))
+    assert np.array_equal(fitted.points, own.points)
+    assert not np.array_equal(fitted.values, own.values)
+    with pytest.raises(ValueError, match="'whole' and 'shape'"):
+        walpha.pipeline(phantom, count=500, refit="all")
+
+
 def test_axes_are_not_exchanged():
     volume = np.zeros((3, 5, 7))
     volume[1, 2, 4] = 1

@@ -229,6 +229,7 @@ def pipeline(
     engine="cgal",
     balls="power",
     exterior=False,
+    refit=None,
     progress=None,
 ):
     """From a volume to its alpha shape: truncation, selection, weights, shape.
@@ -256,11 +257,15 @@ def pipeline(
         :func:`alpha_shape`.
     alpha_radius, engine, balls, exterior, progress
         As in :func:`alpha_shape`.
+    refit : {"whole", "shape"}, optional
+        Fit the values of the points to the volume by least squares: to all its samples, interpolated on
+        the whole triangulation of the points and the corners of the volume, or to those that the shape
+        covers.
 
     Returns
     -------
     AlphaShape
-        Its points are (x, y, z), their values those of the volume.
+        Its points are (x, y, z), their values those of the volume, or fitted.
 
     Examples
     --------
@@ -284,6 +289,7 @@ def pipeline(
         engine,
         balls,
         exterior,
+        refit,
         progress,
     )
     return AlphaShape(shape)

@@ -113,6 +113,7 @@ def pipeline(
     engine: str,
     balls: str,
     exterior: bool,
+    refit: str | None,
     progress: _Progress,
 ) -> Shape: ...
 def sweep() -> None: ...

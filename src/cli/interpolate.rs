@@ -62,7 +62,7 @@ pub struct Interpolate {
     fill: bool,
     /// Measure error against the number of points.
     #[arg(long, requires = "output", conflicts_with_all = [
-        "mask", "fill", "select", "target_rmse", "threshold", "gray_min", "value_min", "refit", "weights", "balls",
+        "mask", "fill", "select", "target_rmse", "max_error", "exchange", "threshold", "gray_min", "value_min", "refit", "weights", "balls",
         "engine", "blocks", "memory", "exterior",
     ])]
     curve: bool,

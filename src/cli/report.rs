@@ -85,12 +85,21 @@ struct Ended {
     asked: u64,
     /// The RMSE that was good enough; 0 where only a perfect interpolant is.
     rmse: f64,
+    /// The bound on the largest error, if there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    max_error: Option<f64>,
 }
 
 impl Display for Ended {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { asked, rmse } = self;
+        let Self { asked, rmse, max_error } = self;
         write!(f, "fewer than {asked}: ")?;
+        if let Some(bound) = max_error {
+            return write!(
+                f,
+                "no sample is further than {bound} gray levels from the interpolant of these"
+            );
+        }
         match *rmse {
             0.0 => write!(f, "no sample differs from the interpolant of these any more"),
             rmse => write!(f, "these reach an RMSE of {rmse} gray levels"),
@@ -202,9 +211,11 @@ impl Report {
                 duplicates: None,
                 hidden: None,
                 in_shape: None,
-                ended_early: origin
-                    .ended
-                    .map(|Adaptive { count, rmse }| Ended { asked: count, rmse }),
+                ended_early: origin.ended.map(|Adaptive { count, rmse, max_error }| Ended {
+                    asked: count,
+                    rmse,
+                    max_error,
+                }),
             },
             fit: origin.fit,
             alpha: weighed.parameter,

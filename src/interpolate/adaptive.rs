@@ -11,7 +11,7 @@ use crate::points::Units;
 use crate::progress::report;
 use crate::volume::{Dims, Volume};
 
-/// When adaptive selection is done: as soon as either is reached.
+/// When adaptive selection is done: as soon as one of these is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adaptive {
     /// Points at most.
@@ -19,6 +19,9 @@ pub struct Adaptive {
     /// An RMSE over the whole volume, in gray levels, that is good enough; 0 asks for all of
     /// `count`, or for a perfect interpolant.
     pub rmse: f64,
+    /// A bound on the largest error of a sample, in gray levels. With one, points are chosen by that
+    /// error, and only samples beyond the bound join.
+    pub max_error: Option<f64>,
 }
 
 /// Points of a batch, over those there are: a batch is large enough for few triangulations, and
@@ -39,6 +42,9 @@ const FIRST_BATCH: usize = 32;
 /// 3. in that order these join, but none beside one that has just joined (among its 26 neighbours),
 ///    because it would repair the same error; at most a fifth as many as there are.
 ///
+/// With a bound on the largest error, cells are put in order of their largest error instead, and voxels
+/// within the bound do not join.
+///
 /// Error is measured from `volume` itself, so give the original, not a truncated one. It is looked
 /// at between batches: when that ends the selection, the last batch may have overshot the target.
 /// Fewer voxels than asked for suffice where their interpolant is perfect. Each batch costs one
@@ -46,7 +52,7 @@ const FIRST_BATCH: usize = 32;
 /// of threads.
 ///
 /// # Errors
-/// A count below 8 or above the samples, a target that is negative or NaN, missing samples, or
+/// A count below 8 or above the samples, a target or bound that is negative or NaN, missing samples, or
 /// a volume whose samples lie in one plane.
 pub fn adaptive_voxels(
     volume: &Volume,
@@ -61,8 +67,10 @@ pub fn adaptive_voxels(
     if volume.has_missing() {
         return Err(InterpolateError::Missing);
     }
-    if goal.rmse.is_nan() || goal.rmse < 0.0 {
-        return Err(InterpolateError::Target(goal.rmse));
+    for (what, target) in [("an RMSE", Some(goal.rmse)), ("a largest error", goal.max_error)] {
+        if let Some(target) = target.filter(|target| target.is_nan() || *target < 0.0) {
+            return Err(InterpolateError::Target { what, target });
+        }
     }
     let mut sampled = Sampled::new(volume, units, &voxels)?;
     loop {
@@ -73,10 +81,11 @@ pub fn adaptive_voxels(
         report(voxels.len() as u64, goal.count);
         let room = goal.count as usize - voxels.len();
         let batch = ((voxels.len() as f64 * BATCH).ceil() as usize).max(FIRST_BATCH).min(room);
-        if rmse <= goal.rmse || batch == 0 {
+        let within = goal.max_error.is_some_and(|bound| max <= bound);
+        if rmse <= goal.rmse || within || batch == 0 {
             return Ok(voxels);
         }
-        let candidates = worst(volume, &sampled, max);
+        let candidates = worst(volume, &sampled, max, goal.max_error, |_| true);
         let joining = apart(volume.dims(), candidates, batch);
         voxels.extend(&joining);
         if joining.is_empty() || voxels.len() as u64 == goal.count {
@@ -87,8 +96,15 @@ pub fn adaptive_voxels(
 }
 
 /// The worst voxel of each simplex, in order of the squared error of its whole simplex, the
-/// largest first. Voxels without error are none. `max` is the largest error.
-fn worst(volume: &Volume, sampled: &Sampled<'_>, max: f64) -> Vec<u32> {
+/// largest first, of those that may join. Voxels without error may not. `max` is the largest error.
+/// With a bound: those beyond it, in order of their own errors.
+pub(super) fn worst(
+    volume: &Volume,
+    sampled: &Sampled<'_>,
+    max: f64,
+    bound: Option<f64>,
+    may_join: impl Fn(u32) -> bool + Sync,
+) -> Vec<u32> {
     // Sums of integers do not depend on their order: squares in units of max²/2³¹, of which 2³²
     // samples make less than 2⁶⁴.
     let units = |error: f64| ((error / max).powi(2) * 2f64.powi(31)) as u64;
@@ -100,8 +116,12 @@ fn worst(volume: &Volume, sampled: &Sampled<'_>, max: f64) -> Vec<u32> {
     pairs.zip(sampled.owners()).enumerate().for_each(|(voxel, ((f, g), &owner))| {
         let error = (f - g).abs();
         if owner != NOTHING && error > 0.0 {
-            sums[owner as usize].fetch_add(units(error.into()), Relaxed);
-            worst[owner as usize].fetch_max(key(error, voxel as u32), Relaxed);
+            if bound.is_none() {
+                sums[owner as usize].fetch_add(units(error.into()), Relaxed);
+            }
+            if may_join(voxel as u32) && bound.is_none_or(|bound| f64::from(error) > bound) {
+                worst[owner as usize].fetch_max(key(error, voxel as u32), Relaxed);
+            }
         }
     });
     let pairs = sums.into_iter().zip(worst).map(|(s, w)| (s.into_inner(), w.into_inner()));

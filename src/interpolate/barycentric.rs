@@ -33,6 +33,38 @@ pub(super) fn coordinates(corners: &[[f64; 3]], place: [f64; 3], exact: bool) ->
     }
 }
 
+/// The coordinates of many places in one cell, where no operation on any of them rounds: each part is a
+/// plane, of which normal and offset are exact, too. The same bits as [`coordinates`] gives.
+pub(super) struct Planes {
+    normals: [[f64; 3]; 4],
+    offsets: [f64; 4],
+    whole: f64,
+}
+
+impl Planes {
+    /// For corners that turn positively. `None` where they span no volume.
+    pub fn of([a, b, c, d]: [[f64; 3]; 4]) -> Option<Self> {
+        let normal = |p, q, r| cross(&minus(q, p), &minus(r, p));
+        let inward = |n: [f64; 3]| n.map(|x| -x);
+        // The volume with the place instead of a corner, as it turns.
+        let normals =
+            [inward(normal(b, c, d)), normal(a, c, d), inward(normal(a, b, d)), normal(a, b, c)];
+        let offsets = [b, a, a, a];
+        let offsets = [0, 1, 2, 3].map(|k| -dot(&normals[k], &offsets[k]));
+        let whole = dot(&normals[3], &d) + offsets[3];
+        (whole > 0.0).then_some(Self { normals, offsets, whole })
+    }
+
+    /// The coordinates of a place in the cell, or `None` where it lies outside.
+    #[inline(always)]
+    pub fn shares(&self, place: [f64; 3]) -> Option<[f64; 4]> {
+        let part = |k: usize| dot(&self.normals[k], &place) + self.offsets[k];
+        let parts = [part(0), part(1), part(2), part(3)];
+        let outside = parts.iter().any(|&part| part < 0.0);
+        (!outside).then(|| parts.map(|part| part / self.whole))
+    }
+}
+
 /// What a coordinate may be off by where doubles round: 2⁻⁴³ ≈ 1.1e-13.
 const TOLERANCE: f64 = f64::from_bits((1023 - 43) << 52);
 
@@ -161,6 +193,27 @@ mod tests {
             }
         }
         assert_eq!(inside, 10);
+    }
+
+    #[test]
+    fn planes_give_the_same_bits() {
+        let cells = [
+            [[1.0, 0.0, 7.0], [5.0, 1.0, 0.0], [0.0, 6.0, 2.0], [3.0, 7.0, 7.0]],
+            [[0.0; 3], [0.0, 7.0, 0.0], [7.0, 0.0, 0.0], [3.0, 3.0, -5.0]],
+        ];
+        let mut inside = 0;
+        for cell in cells {
+            let planes = Planes::of(cell).expect("a volume");
+            for i in 0..8 * 8 * 13 {
+                let place = [f64::from(i % 8), f64::from(i / 8 % 8), f64::from(i / 64) - 5.0];
+                let slow = coordinates(&cell, place, true);
+                assert_eq!(planes.shares(place), slow, "{place:?}");
+                inside += usize::from(slow.is_some());
+            }
+        }
+        assert!(inside > 60, "{inside}");
+        let [a, b, c, _] = cells[0];
+        assert!(Planes::of([a, b, c, a]).is_none());
     }
 
     #[test]

@@ -152,7 +152,7 @@ impl Bench<'_> {
                 let Some(most) = self.counts().max().filter(|&most| most >= 8) else {
                     return Ok(Vec::new());
                 };
-                let goal = Adaptive { count: most, rmse: 0.0 };
+                let goal = Adaptive { count: most, rmse: 0.0, max_error: None };
                 let voxels = adaptive_voxels(self.volume, &goal, self.options.units)?;
                 let first = |count: u64| voxels.get(..count as usize);
                 Ok(self.counts().filter_map(first).map(|voxels| self.at(voxels)).collect())

@@ -34,8 +34,13 @@ pub enum InterpolateError {
         available: u64,
     },
     /// A target that no error can reach.
-    #[error("an RMSE of {0} gray levels makes no sense as a target")]
-    Target(f64),
+    #[error("{what} of {target} gray levels makes no sense as a target")]
+    Target {
+        /// What is to be reached.
+        what: &'static str,
+        /// The number.
+        target: f64,
+    },
     /// The normal equations of values that are fitted were not solved.
     #[error("after {steps} steps the values of the points are not fitted to 1e-6")]
     Fit {
@@ -70,7 +75,7 @@ impl InterpolateError {
                 format!("give a count from 8 to {available}, its samples").into()
             }
             Self::Fit { .. } => "keep the samples' own values".into(),
-            Self::Target(_) => "give a number from 0 up".into(),
+            Self::Target { .. } => "give a number from 0 up".into(),
             Self::Shape(error) => return error.advice(),
             Self::Points(error) => return error.advice(),
             Self::Haar(error) => return error.advice(),

@@ -1,5 +1,6 @@
 use std::ops::Range;
 
+use crate::math::Reach;
 use crate::points::{SampleGrid, Units};
 use crate::volume::{Coordinates, Dims, Frame, Volume, inverse};
 
@@ -75,6 +76,18 @@ impl Grid {
     pub fn position(&self, index: [usize; 3]) -> [f64; 3] {
         let place = [0, 1, 2].map(|k| self.axes[k][index[k]]);
         self.world.as_ref().map_or(place, |world| world.frame.to_world(place))
+    }
+
+    /// What the coordinates of all samples have in common. O(samples) where they are of the
+    /// world, else along the axes alone.
+    pub(super) fn reach(&self) -> Reach {
+        let [nx, ny, nz] = self.dims.xyz();
+        if self.world.is_some() {
+            let index = |i: usize| [i % nx, i / nx % ny, i / (nx * ny)];
+            return Reach::of_all((0..nx * ny * nz).map(|i| self.position(index(i))));
+        }
+        let along = |i: usize| [i.min(nx - 1), i.min(ny - 1), i.min(nz - 1)];
+        Reach::of_all((0..nx.max(ny).max(nz)).map(|i| self.position(along(i))))
     }
 
     /// The fractional index of a position, rounded.

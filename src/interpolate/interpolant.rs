@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::InterpolateError;
 use super::barycentric::coordinates;
+use super::least_squares::Pieces;
 use super::tree::Tree;
 use crate::math::Reach;
 use crate::shape::{AlphaShape, Class, Simplices};
@@ -112,9 +113,9 @@ impl<'a> Interpolant<'a> {
         self.values
     }
 
-    /// The vertices of a simplex.
-    pub(super) fn vertices(&self, part: u32) -> &[u32] {
-        self.parts[part as usize].vertices()
+    /// What the coordinates of points have in common.
+    pub(super) fn reach(&self) -> Reach {
+        self.reach
     }
 
     /// The corners of a simplex; the first so many count.
@@ -164,6 +165,25 @@ pub(super) fn combine(shares: &[f64; 4], values: [f64; 4]) -> f64 {
     let mut terms = [0, 1, 2, 3].map(|k| shares[k] * values[k]);
     terms.sort_unstable_by(f64::total_cmp);
     terms.iter().sum()
+}
+
+impl Pieces for Interpolant<'_> {
+    fn count(&self) -> usize {
+        self.parts.len()
+    }
+
+    fn vertices(&self, part: u32) -> ([u32; 4], usize) {
+        let part = self.parts[part as usize];
+        (part.vertices, usize::from(part.count))
+    }
+
+    fn coordinates(&self, part: u32, place: [f64; 3]) -> Option<[f64; 4]> {
+        self.coordinates(part, place)
+    }
+
+    fn value(&self, part: u32, shares: &[f64; 4]) -> f64 {
+        self.value(part, shares)
+    }
 }
 
 impl Part {

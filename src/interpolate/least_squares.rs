@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::raster::NOTHING;
-use super::{Grid, Interpolant, InterpolateError, Resampled};
-use crate::memory::{NoMemory, afford, room};
+use super::lists::{Lists, samples_of};
+use super::{Grid, InterpolateError};
+use crate::memory::{NoMemory, afford};
 use crate::progress::report;
 use crate::volume::Volume;
 
@@ -14,6 +14,18 @@ const CHUNK: usize = 1 << 10;
 
 /// How far the residual is to fall.
 const TOLERANCE: f64 = 1e-6;
+
+/// Simplices with linear functions on them.
+pub(super) trait Pieces: Sync {
+    /// How many there are, or were.
+    fn count(&self) -> usize;
+    /// The vertices of one; the first so many count.
+    fn vertices(&self, part: u32) -> ([u32; 4], usize);
+    /// The coordinates of a place in one, if it holds it.
+    fn coordinates(&self, part: u32, place: [f64; 3]) -> Option<[f64; 4]>;
+    /// F on one.
+    fn value(&self, part: u32, shares: &[f64; 4]) -> f64;
+}
 
 /// Symmetric equations for the changes of values, in compressed rows: those of the diagonal apart.
 pub(super) struct Normal {
@@ -46,22 +58,18 @@ impl Normal {
     /// The equations for the values of the first `free` points; those of the others stay. Each row is
     /// summed by one thread, over the simplices at its point in their order.
     pub fn assemble(
-        interpolant: &Interpolant<'_>,
-        resampled: &Resampled,
+        pieces: &impl Pieces,
+        owners: &[u32],
         grid: &Grid,
         volume: &Volume,
         free: usize,
     ) -> Result<Self, NoMemory> {
-        let sample_of = Lists::new(interpolant.len(), resampled.owners.len(), |add| {
-            let there =
-                |&(sample, &part): &(usize, &u32)| part != NOTHING && !volume.is_missing(sample);
-            let owned = resampled.owners.iter().enumerate().filter(there);
-            owned.for_each(|(sample, &part)| add(part, sample as u32));
-        })?;
-        let part_of = Lists::new(free, 4 * interpolant.len(), |add| {
-            for part in 0..interpolant.len() as u32 {
+        let sample_of = samples_of(pieces.count(), owners, volume)?;
+        let part_of = Lists::new(free, |add| {
+            for part in 0..pieces.count() as u32 {
                 if !sample_of.of(part).is_empty() {
-                    let corners = interpolant.vertices(part).iter();
+                    let (vertices, count) = pieces.vertices(part);
+                    let corners = vertices[..count].iter();
                     corners.filter(|&&v| (v as usize) < free).for_each(|&v| add(v, part));
                 }
             }
@@ -72,19 +80,19 @@ impl Normal {
         let row = |v: u32| {
             let mut row = Row::default();
             for &part in part_of.of(v) {
-                let vertices = interpolant.vertices(part);
+                let (vertices, count) = pieces.vertices(part);
                 let at = vertices.iter().position(|&w| w == v).expect("a part at this point");
                 let (mut products, mut right) = ([0.0; 4], 0.0);
                 for &sample in sample_of.of(part) {
                     let i = sample as usize;
                     let place = grid.position([i % nx, i / nx % ny, i / (nx * ny)]);
-                    let Some(shares) = interpolant.coordinates(part, place) else { continue };
-                    let error = f64::from(volume.as_slice()[i]) - interpolant.value(part, &shares);
+                    let Some(shares) = pieces.coordinates(part, place) else { continue };
+                    let error = f64::from(volume.as_slice()[i]) - pieces.value(part, &shares);
                     right += shares[at] * error;
                     (0..4).for_each(|k| products[k] += shares[at] * shares[k]);
                 }
                 row.right += right;
-                for (&w, product) in vertices.iter().zip(products) {
+                for (&w, product) in vertices[..count].iter().zip(products) {
                     row.add(v, w, product, free);
                 }
             }
@@ -166,44 +174,6 @@ impl Row {
                 None => self.entries.push((w, product)),
             }
         }
-    }
-}
-
-/// Lists of numbers, one for each of so many keys, side by side.
-struct Lists {
-    starts: Vec<u32>,
-    items: Vec<u32>,
-}
-
-impl Lists {
-    /// `visit` names all pairs of a key and an item, in the same order each time it is called; at
-    /// most `most` of them.
-    fn new(
-        keys: usize,
-        most: usize,
-        visit: impl Fn(&mut dyn FnMut(u32, u32)),
-    ) -> Result<Self, NoMemory> {
-        let mut starts = room(keys + 2, || "lists of samples".into())?;
-        starts.resize(keys + 2, 0u32);
-        visit(&mut |key, _| starts[key as usize + 2] += 1);
-        for key in 2..starts.len() {
-            starts[key] += starts[key - 1];
-        }
-        let count = starts[keys + 1] as usize;
-        debug_assert!(count <= most);
-        let mut items = room(count, || "lists of samples".into())?;
-        items.resize(count, 0);
-        visit(&mut |key, item| {
-            let place = &mut starts[key as usize + 1];
-            items[*place as usize] = item;
-            *place += 1;
-        });
-        Ok(Self { starts, items })
-    }
-
-    fn of(&self, key: u32) -> &[u32] {
-        let [start, end] = [0, 1].map(|k| self.starts[key as usize + k] as usize);
-        &self.items[start..end]
     }
 }
 

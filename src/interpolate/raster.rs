@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
+use super::barycentric::Planes;
 use super::{Grid, Interpolant};
 use crate::memory::{NoMemory, room};
 
@@ -25,12 +26,21 @@ pub(super) fn owners(interpolant: &Interpolant<'_>, grid: &Grid) -> Result<Vec<u
     let samples = grid.dims().samples();
     let mut owners = room(samples, || format!("sampling at {} places", grid.dims()))?;
     owners.par_extend((0..samples).into_par_iter().map(|_| AtomicU32::new(NOTHING)));
+    let exact = interpolant.reach().with_all(grid.reach()).is_exact();
     (0..interpolant.len() as u32).into_par_iter().with_min_len(CHUNK).for_each(|part| {
         let (corners, count) = interpolant.corners(part);
+        let planes = if exact && count == 4 { Planes::of(corners) } else { None };
         for_each_near(grid, &corners[..count], |index| {
             let owner = &owners[index[0] + nx * (index[1] + ny * index[2])];
-            let taken = owner.load(Relaxed) < part;
-            if !taken && interpolant.coordinates(part, grid.position(index)).is_some() {
+            if owner.load(Relaxed) < part {
+                return;
+            }
+            let place = grid.position(index);
+            let shares = match &planes {
+                Some(planes) => planes.shares(place),
+                None => interpolant.coordinates(part, place),
+            };
+            if shares.is_some() {
                 owner.fetch_min(part, Relaxed);
             }
         });

@@ -69,7 +69,7 @@ pub fn refit(
     let resampled = interpolant.resample(&grid)?;
     // The corners that were added come last.
     let free = shape.points().len();
-    let normal = Normal::assemble(&interpolant, &resampled, &grid, volume, free)?;
+    let normal = Normal::assemble(&interpolant, &resampled.owners, &grid, volume, free)?;
     let Solved { change, steps, residual } = normal.solve()?;
     tracing::debug!(steps, residual, "refit");
     let values = interpolant.values()[..free].iter().zip(change).map(|(v, d)| v + d).collect();

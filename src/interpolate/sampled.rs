@@ -1,17 +1,19 @@
 //! F at the samples of a volume, kept while points come and leave.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
-use super::barycentric::coordinates;
+use super::barycentric::{Planes, coordinates};
 use super::interpolant::combine;
+use super::least_squares::{Normal, Pieces, Solved};
 use super::raster::{CHUNK, NOTHING, for_each_near};
 use super::{Deviation, Grid, InterpolateError};
 use crate::math::Reach;
 use crate::points::Units;
 use crate::shape::{ShapeError, smallest_even_permutation};
-use crate::triangulation::{Growing, TriangulationError};
+use crate::triangulation::{Cell, Growing};
 use crate::volume::Volume;
 
 /// The interpolant of samples of a volume on their Delaunay triangulation, at all samples.
@@ -23,7 +25,11 @@ pub(super) struct Sampled<'a> {
     volume: &'a Volume,
     units: Units,
     grid: Grid,
+    /// Whether no operation on places of samples rounds.
+    exact: bool,
     growing: Growing,
+    /// The sample of each point by its number in the triangulation; that of the ghost is 0.
+    voxels: Vec<u32>,
     /// Values of points by their numbers in the triangulation.
     values: Vec<f64>,
     /// F at each sample.
@@ -39,17 +45,20 @@ impl<'a> Sampled<'a> {
     /// Samples that span no volume; no memory.
     pub fn new(volume: &'a Volume, units: Units, voxels: &[u32]) -> Result<Self, InterpolateError> {
         let samples = volume.dims().samples();
+        let grid = Grid::of(volume, units);
         let growing = Growing::new(&positions(volume, units, voxels)).map_err(ShapeError::from)?;
         let mut sampled = Self {
             volume,
             units,
-            grid: Grid::of(volume, units),
+            exact: grid.reach().is_exact(),
+            grid,
             growing,
+            voxels: vec![0; Growing::FIRST as usize],
             values: vec![0.0; Growing::FIRST as usize],
             f: vec![0.0; samples],
             owners: vec![NOTHING; samples],
         };
-        sampled.add_values(voxels);
+        sampled.describe(voxels);
         sampled.follow();
         Ok(sampled)
     }
@@ -59,12 +68,40 @@ impl<'a> Sampled<'a> {
     /// # Errors
     /// No memory.
     pub fn add(&mut self, voxels: &[u32]) -> Result<(), InterpolateError> {
-        let positions = positions(self.volume, self.units, voxels);
-        let named: Vec<u32> = self.growing.name(&positions).collect();
-        let inserted: Result<(), TriangulationError> = self.growing.insert(&named);
-        inserted.map_err(ShapeError::from)?;
-        self.add_values(voxels);
+        let named: Vec<u32> = self.name(voxels).collect();
+        self.growing.insert(&named).map_err(ShapeError::from)?;
         self.follow();
+        Ok(())
+    }
+
+    /// Gives samples numbers of points, which they are not yet.
+    pub fn name(&mut self, voxels: &[u32]) -> Range<u32> {
+        self.describe(voxels);
+        self.growing.name(&positions(self.volume, self.units, voxels))
+    }
+
+    /// Takes points out and puts others in, by their numbers.
+    ///
+    /// # Errors
+    /// No memory.
+    pub fn change(&mut self, leave: &[u32], join: &[u32]) -> Result<(), InterpolateError> {
+        self.growing.remove(leave).map_err(ShapeError::from)?;
+        self.growing.insert(join).map_err(ShapeError::from)?;
+        self.follow();
+        Ok(())
+    }
+
+    /// Fits the values of points to the volume by least squares, as [`refit`](super::refit()) does.
+    ///
+    /// # Errors
+    /// No memory.
+    pub fn refit(&mut self) -> Result<(), InterpolateError> {
+        let pieces = Cells::of(&self.growing, &self.values);
+        let free = self.values.len();
+        let normal = Normal::assemble(&pieces, &self.owners, &self.grid, self.volume, free)?;
+        let Solved { change, .. } = normal.solve()?;
+        self.values.iter_mut().zip(change).for_each(|(value, change)| *value += change);
+        self.evaluate(|_, _| true);
         Ok(())
     }
 
@@ -78,6 +115,32 @@ impl<'a> Sampled<'a> {
         &self.f
     }
 
+    /// The triangulation.
+    pub fn growing(&self) -> &Growing {
+        &self.growing
+    }
+
+    /// The values of points, by their numbers.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The samples that points are, by their numbers.
+    pub fn voxels(&self) -> &[u32] {
+        &self.voxels
+    }
+
+    /// The numbers of the points there are.
+    pub fn vertices(&self) -> Vec<u32> {
+        let all = Growing::FIRST..self.voxels.len() as u32;
+        all.filter(|&v| self.growing.is_vertex(v)).collect()
+    }
+
+    /// Where a sample is, in the units of points.
+    pub fn place(&self, sample: u32) -> [f64; 3] {
+        self.units.position(self.volume, sample)
+    }
+
     /// The cell of each sample, or [`NOTHING`].
     pub fn owners(&self) -> &[u32] {
         &self.owners
@@ -88,7 +151,8 @@ impl<'a> Sampled<'a> {
         self.growing.cells().len()
     }
 
-    fn add_values(&mut self, voxels: &[u32]) {
+    fn describe(&mut self, voxels: &[u32]) {
+        self.voxels.extend(voxels);
         let value = |&voxel: &u32| f64::from(self.volume.as_slice()[voxel as usize]);
         self.values.extend(voxels.iter().map(value));
     }
@@ -103,42 +167,70 @@ impl<'a> Sampled<'a> {
         };
         let left = |owner: &u32| AtomicU32::new(*Some(owner).filter(stays).unwrap_or(&NOTHING));
         let owners: Vec<AtomicU32> = self.owners.par_iter().map(left).collect();
-        let cells = Cells::of(&self.growing);
-        let [nx, ny, _] = self.grid.dims().xyz();
+        if self.exact {
+            self.draw_exactly(&fresh, &owners);
+            self.owners = owners.into_iter().map(AtomicU32::into_inner).collect();
+            return;
+        }
+        let cells = Cells::of(&self.growing, &self.values);
         fresh.par_iter().with_min_len(CHUNK).for_each(|&cell| {
             let row = cells.row(cell);
-            let corners = row.map(|v| self.growing.positions()[v as usize]);
-            for_each_near(&self.grid, &corners, |index| {
-                let place = self.grid.position(index);
-                let owner = &owners[index[0] + nx * (index[1] + ny * index[2])];
-                let Some(shares) = cells.coordinates(row, place) else { return };
-                if !shares.contains(&0.0) {
-                    owner.store(cell, Relaxed);
-                } else if shares.contains(&1.0) {
-                    // At a vertex F is its value, whichever cell the sample belongs to.
-                    owner.fetch_min(cell, Relaxed);
-                } else {
-                    owner.store(cells.first_at(cell, place), Relaxed);
+            for_each_near(&self.grid, &cells.corners(row), |index| {
+                if let Some(shares) = cells.coordinates(row, self.grid.position(index)) {
+                    cells.claim(cell, row, &shares, &owners[self.sample(index)]);
                 }
             });
         });
-        let owners: Vec<u32> = owners.into_iter().map(AtomicU32::into_inner).collect();
-        let (grid, values, before) = (&self.grid, &self.values, &self.owners);
+        let owners = owners.into_iter().map(AtomicU32::into_inner).collect();
+        let before = std::mem::replace(&mut self.owners, owners);
+        let changed =
+            |sample: usize, owner: u32| owner != before[sample] || is_fresh[owner as usize];
+        self.evaluate(changed);
+    }
+
+    /// The same where nothing rounds: F is then the same whichever of several cells a sample belongs to,
+    /// and is written at once.
+    fn draw_exactly(&mut self, fresh: &[u32], owners: &[AtomicU32]) {
+        let f: Vec<AtomicU32> = self.f.par_iter().map(|f| AtomicU32::new(f.to_bits())).collect();
+        let cells = Cells::of(&self.growing, &self.values);
+        fresh.par_iter().with_min_len(CHUNK).for_each(|&cell| {
+            let row = cells.row(cell);
+            let corners = cells.corners(row);
+            let Some(planes) = Planes::of(corners) else { return };
+            for_each_near(&self.grid, &corners, |index| {
+                if let Some(shares) = planes.shares(self.grid.position(index)) {
+                    let sample = self.sample(index);
+                    cells.claim(cell, row, &shares, &owners[sample]);
+                    let value = combine(&shares, row.map(|v| self.values[v as usize])) as f32;
+                    f[sample].store(value.to_bits(), Relaxed);
+                }
+            });
+        });
+        self.f = f.into_iter().map(|f| f32::from_bits(f.into_inner())).collect();
+    }
+
+    fn sample(&self, index: [usize; 3]) -> usize {
+        let [nx, ny, _] = self.grid.dims().xyz();
+        index[0] + nx * (index[1] + ny * index[2])
+    }
+
+    /// Computes F at some samples.
+    fn evaluate(&mut self, wanted: impl Fn(usize, u32) -> bool + Sync) {
+        let cells = Cells::of(&self.growing, &self.values);
+        let (grid, owners) = (&self.grid, &self.owners);
+        let [nx, ny, _] = grid.dims().xyz();
         self.f.par_chunks_mut(nx).enumerate().for_each(|(y, f)| {
             for (x, f) in f.iter_mut().enumerate() {
                 let owner = owners[x + nx * y];
-                let same = owner == before[x + nx * y];
-                if owner == NOTHING || same && !is_fresh[owner as usize] {
+                if owner == NOTHING || !wanted(x + nx * y, owner) {
                     continue;
                 }
-                let row = cells.row(owner);
                 let place = grid.position([x, y % ny, y / ny]);
-                if let Some(shares) = cells.coordinates(row, place) {
-                    *f = combine(&shares, row.map(|v| values[v as usize])) as f32;
+                if let Some(shares) = cells.coordinates(cells.row(owner), place) {
+                    *f = cells.value(owner, &shares) as f32;
                 }
             }
         });
-        self.owners = owners;
     }
 }
 
@@ -149,12 +241,13 @@ fn positions(volume: &Volume, units: Units, voxels: &[u32]) -> Vec<[f64; 3]> {
 /// The cells of a triangulation as an interpolant has them.
 struct Cells<'a> {
     growing: &'a Growing,
+    values: &'a [f64],
     reach: Reach,
 }
 
 impl<'a> Cells<'a> {
-    fn of(growing: &'a Growing) -> Self {
-        Self { growing, reach: Reach::of(growing.positions()) }
+    fn of(growing: &'a Growing, values: &'a [f64]) -> Self {
+        Self { growing, values, reach: Reach::of(growing.positions()) }
     }
 
     /// The corners of a cell in canonical order. Numbers of points are in the order of their indices.
@@ -167,26 +260,60 @@ impl<'a> Cells<'a> {
         coordinates(&corners, place, self.reach.is_exact_with(place))
     }
 
-    /// The first in canonical order of the cells that hold a place, of which one is known. From one to the
-    /// next the way leads through facets that the place is on.
-    fn first_at(&self, cell: u32, place: [f64; 3]) -> u32 {
+    fn corners(&self, row: [u32; 4]) -> [[f64; 3]; 4] {
+        row.map(|v| self.growing.positions()[v as usize])
+    }
+
+    /// Gives a sample in a new cell to the first of the cells that hold it.
+    #[inline(always)]
+    fn claim(&self, cell: u32, row: [u32; 4], shares: &[f64; 4], owner: &AtomicU32) {
+        if !shares.contains(&0.0) {
+            owner.store(cell, Relaxed);
+        } else if shares.contains(&1.0) {
+            // At a vertex F is its value, whichever cell the sample belongs to.
+            owner.fetch_min(cell, Relaxed);
+        } else {
+            owner.store(self.first_at(cell, row, shares), Relaxed);
+        }
+    }
+
+    /// The first in canonical order of the cells at the face that a place lies on within one of them. They
+    /// are those with all vertices of the face, and from one to the next the way leads through facets
+    /// that have all of them, too.
+    fn first_at(&self, cell: u32, row: [u32; 4], shares: &[f64; 4]) -> u32 {
+        let on = |v: u32| (0..4).any(|k| row[k] == v && shares[k] != 0.0);
         let mut seen = vec![cell];
-        let mut first = (self.row(cell), cell);
+        let mut first = (row, cell);
         let mut at = 0;
         while let Some(&cell) = seen.get(at) {
             at += 1;
-            let row = self.row(cell);
-            first = first.min((row, cell));
-            let Some(shares) = self.coordinates(row, place) else { continue };
-            let here = &self.growing.cells()[cell as usize];
-            for (v, _) in row.iter().zip(shares).filter(|(_, share)| *share == 0.0) {
-                let corner = here.corners.iter().position(|w| w == v).expect("a corner");
-                let next = here.beside[corner] / 4;
-                if self.growing.is_cell(next) && !seen.contains(&next) {
+            first = first.min((self.row(cell), cell));
+            let Cell { corners, beside } = self.growing.cells()[cell as usize];
+            for k in 0..4 {
+                let next = beside[k] / 4;
+                if !on(corners[k]) && self.growing.is_cell(next) && !seen.contains(&next) {
                     seen.push(next);
                 }
             }
         }
         first.1
+    }
+}
+
+impl Pieces for Cells<'_> {
+    fn count(&self) -> usize {
+        self.growing.cells().len()
+    }
+
+    fn vertices(&self, cell: u32) -> ([u32; 4], usize) {
+        (self.row(cell), 4)
+    }
+
+    fn coordinates(&self, cell: u32, place: [f64; 3]) -> Option<[f64; 4]> {
+        self.coordinates(self.row(cell), place)
+    }
+
+    fn value(&self, cell: u32, shares: &[f64; 4]) -> f64 {
+        combine(shares, self.row(cell).map(|v| self.values[v as usize]))
     }
 }

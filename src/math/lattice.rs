@@ -56,8 +56,17 @@ impl Reach {
 
     /// The reach of some places. O(n).
     pub fn of(places: &[[f64; 3]]) -> Self {
-        let empty = Self { unit: i32::MAX, reach: i32::MIN };
-        places.as_flattened().iter().fold(empty, |reach, &x| reach.with(x))
+        Self::of_all(places.iter().copied())
+    }
+
+    /// The same of places that are not in memory.
+    pub fn of_all(places: impl Iterator<Item = [f64; 3]>) -> Self {
+        places.flatten().fold(Self { unit: i32::MAX, reach: i32::MIN }, Self::with)
+    }
+
+    /// The reach of places of both.
+    pub fn with_all(self, other: Self) -> Self {
+        Self { unit: self.unit.min(other.unit), reach: self.reach.max(other.reach) }
     }
 
     fn with(self, x: f64) -> Self {
@@ -71,7 +80,12 @@ impl Reach {
 
     /// Whether formulas over these places and one more are exact in doubles.
     pub fn is_exact_with(self, place: [f64; 3]) -> bool {
-        let Self { unit, reach } = place.into_iter().fold(self, Self::with);
+        place.into_iter().fold(self, Self::with).is_exact()
+    }
+
+    /// Whether formulas over these places are exact in doubles.
+    pub fn is_exact(self) -> bool {
+        let Self { unit, reach } = self;
         reach <= unit.saturating_add(Self::BITS) && unit.abs() <= Self::RANGE || reach == i32::MIN
     }
 }

@@ -9,7 +9,7 @@ pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
 use rayon::prelude::*;
 
 use crate::haar::{HaarOptions, Truncation, smooth};
-use crate::interpolate::{Adaptive, Fit, Refit, adaptive_voxels, refit};
+use crate::interpolate::{Adaptive, Fit, Refit, adaptive_voxels, exchange, refit};
 use crate::points::{
     ModelFacts, Points, SampleGrid, Selection, Units, WeightedPoints, Weighting, difference,
     points_at, scattered_difference, select, weigh,
@@ -26,6 +26,9 @@ pub enum Choice {
     Difference(Selection),
     /// Those where the interpolant of the ones before is worst.
     Adaptive(Adaptive),
+    /// The same, and then those whose loss costs little exchanged for others
+    /// ([`exchange`](crate::interpolate::exchange())).
+    Exchanged(Adaptive),
 }
 
 impl Default for Choice {
@@ -320,10 +323,13 @@ impl Pipeline {
                 let order = largest_first(by_difference);
                 return Ok((points, order, None));
             }
-            Choice::Adaptive(goal) => goal,
+            Choice::Adaptive(goal) | Choice::Exchanged(goal) => goal,
         };
         let mut voxels = adaptive_voxels(volume, &goal, self.units)?;
-        // Points stand in the order of their voxels; which was chosen when is kept beside them.
+        if matches!(self.choice, Choice::Exchanged(_)) {
+            voxels = exchange(volume, &voxels, self.units)?;
+        }
+        // Points are in the order of their voxels; the order of importance is kept beside them.
         let chosen = voxels.clone();
         voxels.sort_unstable();
         let place = |voxel: &u32| voxels.binary_search(voxel).expect("the same voxels") as u32;

@@ -25,8 +25,8 @@ mod sites;
 
 pub use error::{SitesError, TriangulationError};
 pub(crate) use flat::{Flat, is_flat, triangulate_flat};
-pub(crate) use native::Growing;
-pub(crate) use predicates::{Interval, Predicates, Ratio, SmallRadius};
+pub(crate) use native::{Digger, Growing};
+pub(crate) use predicates::{Interval, Predicates, Ratio, Screen, SmallRadius};
 pub use sites::{MAX_COORDINATE, MAX_WEIGHT, Sites};
 
 /// A regular triangulation: its cells, and which lie beside each other.

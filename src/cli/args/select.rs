@@ -55,6 +55,15 @@ pub struct SelectArgs {
     /// (--rms belongs to the wavelet stage). With --count or --ratio: at whichever comes first.
     #[arg(long, value_name = "E", value_parser = not_negative)]
     target_rmse: Option<f64>,
+    /// Adaptive: stop when no sample is further than E gray levels from the interpolant, choosing points
+    /// by that error. With --count or --ratio: at whichever comes first.
+    #[arg(long, value_name = "E", value_parser = not_negative,
+          conflicts_with_all = ["target_rmse", "exchange"])]
+    max_error: Option<f64>,
+    /// Adaptive: exchange points whose loss costs little for samples that matter more, until nothing is
+    /// gained. The error is that of fitted values: give --refit, too.
+    #[arg(long)]
+    exchange: bool,
     /// Keep N samples.
     #[arg(long, value_name = "N", group = "rule", value_parser = count)]
     count: Option<u64>,
@@ -151,6 +160,9 @@ impl SelectArgs {
             if self.target_rmse.is_some() {
                 misused!("--target-rmse belongs to --select adaptive" => "add it, or use --count");
             }
+            if self.max_error.is_some() || self.exchange {
+                misused!("--max-error and --exchange belong to --select adaptive" => "add it");
+            }
             return Ok(Choice::Difference(self.selection(range)));
         }
         if self.threshold.is_some() || self.gray_min.or(self.value_min).is_some() {
@@ -159,13 +171,16 @@ impl SelectArgs {
         let rmse = self.target_rmse.unwrap_or(0.0);
         let count = match self.rule() {
             SelectionRule::Count(count) => count,
-            SelectionRule::Ratio(_) if self.ratio.is_none() && self.target_rmse.is_some() => {
+            SelectionRule::Ratio(_)
+                if self.ratio.is_none() && self.target_rmse.or(self.max_error).is_some() =>
+            {
                 samples as u64
             }
             SelectionRule::Ratio(ratio) => (ratio * samples as f64).round() as u64,
             SelectionRule::Threshold(_) => unreachable!("refused above"),
         };
-        Ok(Choice::Adaptive(Adaptive { count, rmse }))
+        let goal = Adaptive { count, rmse, max_error: self.max_error };
+        Ok(if self.exchange { Choice::Exchanged(goal) } else { Choice::Adaptive(goal) })
     }
 
     /// In what coordinates the points are.

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::super::predicates::{Predicates, Screen};
 use super::super::{Cell, GONE, Sites, TriangulationError, curve};
+use super::leave::{Digger, Hole};
 use super::{Native, rounds};
 
 /// The Delaunay triangulation of points that come in batches, and may leave one by one.
@@ -18,21 +19,29 @@ pub(crate) struct Growing {
     body: Body,
 }
 
+/// What would come with a point.
+pub(crate) struct Crown {
+    /// Cells that would go, infinite ones among them.
+    pub goes: Vec<u32>,
+    /// The finite cells that would come.
+    pub cells: Vec<[u32; 4]>,
+}
+
 /// What changes when a point comes or leaves.
-struct Body {
-    native: Native,
+pub(super) struct Body {
+    pub native: Native,
     /// The places of vertices, so that no two stand at one.
     taken: HashSet<[u64; 3]>,
     /// A cell at each vertex; [`NONE`] at other points.
-    at: Vec<u32>,
+    pub at: Vec<u32>,
     /// Cells made since they were last asked for, some of them gone again.
     fresh: Vec<u32>,
 }
 
 /// The number before that of the first point.
-const GHOST: u32 = 0;
+pub(super) const GHOST: u32 = 0;
 /// The cell at a point that is no vertex.
-const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 
 impl Growing {
     /// The number of the first point.
@@ -86,6 +95,79 @@ impl Growing {
         body.insert_all(positions, &Screen::haunted(&predicates, GHOST)?, points)
     }
 
+    /// Removes vertices, other than those around which no triangulation would be left. Gives the number of
+    /// those that left.
+    ///
+    /// # Errors
+    /// Too many cells, no memory.
+    pub fn remove(&mut self, points: &[u32]) -> Result<usize, TriangulationError> {
+        let Self { positions, weights, body } = self;
+        let predicates = Predicates::new(positions, weights);
+        let screen = Screen::haunted(&predicates, GHOST)?;
+        let mut digger = Digger::new(positions.len())?;
+        let mut left = 0;
+        for &v in points {
+            if let Some(hole) = body.hole(&screen, v, &mut digger)? {
+                body.close(v, &hole)?;
+                body.taken.remove(&place(positions[v as usize]));
+                left += 1;
+            }
+        }
+        Ok(left)
+    }
+
+    /// What the [`Screen`](Self::screen) of all points with numbers begins with.
+    pub fn predicates(&self) -> Predicates<'_> {
+        Predicates::new(&self.positions, &self.weights)
+    }
+
+    /// Tests for [`Self::hole`] and [`Self::crown`].
+    pub fn screen<'a>(predicates: &'a Predicates<'a>) -> Result<Screen<'a>, TriangulationError> {
+        Screen::haunted(predicates, GHOST)
+    }
+
+    /// What would come in the place of a vertex; `None` where no triangulation would be left.
+    pub fn hole(
+        &self,
+        screen: &Screen<'_>,
+        v: u32,
+        digger: &mut Digger,
+    ) -> Result<Option<Hole>, TriangulationError> {
+        self.body.hole(screen, v, digger)
+    }
+
+    /// What would come with a point that lies in a cell, and is no vertex.
+    pub fn crown(&self, screen: &Screen<'_>, v: u32, cell: u32) -> Crown {
+        let mesh = &self.body.native.mesh;
+        let (mut goes, mut stays, mut cells) = (vec![cell], Vec::new(), Vec::new());
+        let mut at = 0;
+        while let Some(&cell) = goes.get(at) {
+            at += 1;
+            let Cell { corners, beside } = mesh.cells[cell as usize];
+            for k in 0..4 {
+                let next = beside[k] / 4;
+                if goes.contains(&next) {
+                    continue;
+                }
+                if !stays.contains(&next) && mesh.conflicts(screen, next, v) {
+                    goes.push(next);
+                } else {
+                    stays.push(next);
+                    let mut joined = corners;
+                    joined[k] = v;
+                    cells.push(joined);
+                }
+            }
+        }
+        cells.retain(|cell| !cell.contains(&GHOST));
+        Crown { goes, cells }
+    }
+
+    /// Whether a point is a vertex.
+    pub fn is_vertex(&self, v: u32) -> bool {
+        self.body.at[v as usize] != NONE
+    }
+
     /// The corners of each cell and 4·cell + corner across each facet. Some are gone.
     pub fn cells(&self) -> &[Cell] {
         &self.body.native.mesh.cells
@@ -137,7 +219,7 @@ impl Body {
     }
 
     /// Takes note of a new cell.
-    fn note(&mut self, cell: u32) {
+    pub fn note(&mut self, cell: u32) {
         self.fresh.push(cell);
         for v in self.native.mesh.cells[cell as usize].corners {
             self.at[v as usize] = cell;
@@ -148,4 +230,128 @@ impl Body {
 /// Equal places have equal bits: adding 0.0 turns −0.0 into 0.0.
 fn place(position: [f64; 3]) -> [u64; 3] {
     position.map(|x| (x + 0.0).to_bits())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::{Maker, triangulate};
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The finite cells as places, corners and cells in order.
+    fn cells(rows: impl Iterator<Item = [u32; 4]>, positions: &[[f64; 3]]) -> Vec<[[u64; 3]; 4]> {
+        let mut cells: Vec<_> = rows
+            .map(|row| {
+                let mut corners = row.map(|v| place(positions[v as usize]));
+                corners.sort_unstable();
+                corners
+            })
+            .collect();
+        cells.sort_unstable();
+        cells
+    }
+
+    fn from_the_start(positions: &[[f64; 3]]) -> Vec<[[u64; 3]; 4]> {
+        let weights = vec![0.0; positions.len()];
+        let made = triangulate(&Sites::new(positions, &weights).unwrap(), Maker::Native).unwrap();
+        let finite = made.cells().iter().filter(|cell| !cell.contains(&made.ghost()));
+        cells(finite.copied(), positions)
+    }
+
+    fn agree(growing: &Growing) {
+        let there: Vec<[f64; 3]> = (Growing::FIRST..growing.positions().len() as u32)
+            .filter(|&v| growing.is_vertex(v))
+            .map(|v| growing.positions()[v as usize])
+            .collect();
+        let finite = (0..growing.cells().len() as u32).filter(|&cell| growing.is_cell(cell));
+        let rows = finite.map(|cell| growing.cells()[cell as usize].corners);
+        assert_eq!(cells(rows, growing.positions()), from_the_start(&there));
+    }
+
+    /// The corners of a box, and points in it, on its sides and on its edges.
+    fn in_a_box() -> impl Strategy<Value = (Vec<[f64; 3]>, f64)> {
+        let inside = prop::collection::btree_set([0..5u8, 0..5u8, 0..5u8], 20..70);
+        (inside, prop_oneof![Just(1.0), Just(0.1)]).prop_map(|(inside, step)| {
+            let corners = (0..8u8).map(|i| [4 * (i & 1), 4 * (i >> 1 & 1), 4 * (i >> 2)]);
+            let mut all: Vec<[u8; 3]> = corners.collect();
+            all.extend(inside.into_iter().filter(|p| p.iter().any(|x| x % 4 != 0)));
+            (all.into_iter().map(|p| p.map(|x| step * f64::from(x))).collect(), step)
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+        #[test]
+        fn it_is_that_of_the_points_in_it(
+            (points, step) in in_a_box(), cut in 8..20usize,
+            leave in prop::collection::vec(any::<prop::sample::Index>(), 1..30),
+        ) {
+            let mut growing = Growing::new(&points[..cut]).unwrap();
+            agree(&growing);
+            let rest: Vec<u32> = growing.name(&points[cut..]).collect();
+            growing.insert(&rest).unwrap();
+            agree(&growing);
+            let inner = points.len() - 8;
+            let mut leave: Vec<u32> =
+                leave.iter().map(|i| Growing::FIRST + 8 + i.index(inner) as u32).collect();
+            leave.sort_unstable();
+            leave.dedup();
+            let left = growing.remove(&leave).unwrap();
+            // Rounded places may lie outside the box of the others.
+            prop_assert!(left == leave.len() || step != 1.0);
+            agree(&growing);
+            let gone: Vec<u32> = leave.into_iter().filter(|&v| !growing.is_vertex(v)).collect();
+            growing.insert(&gone).unwrap();
+            agree(&growing);
+        }
+
+        #[test]
+        fn looks_tell_what_comes((points, _) in in_a_box(), pick in any::<prop::sample::Index>()) {
+            let mut growing = Growing::new(&points[..points.len() - 1]).unwrap();
+            let [v] = growing.name(&points[points.len() - 1..]).collect::<Vec<_>>()[..] else {
+                panic!("one point");
+            };
+            growing.take_fresh();
+            let crowns: Vec<Crown> = {
+                let predicates = growing.predicates();
+                let screen = Growing::screen(&predicates).unwrap();
+                let holds = |cell: &u32| {
+                    let cell = growing.cells()[*cell as usize].corners;
+                    (0..4).all(|k| {
+                        let mut moved = cell;
+                        moved[k] = v;
+                        screen.orientation(moved).is_ge()
+                    })
+                };
+                let finite = (0..growing.cells().len() as u32).filter(|&cell| growing.is_cell(cell));
+                finite.filter(holds).map(|cell| growing.crown(&screen, v, cell)).collect()
+            };
+            growing.insert(&[v]).unwrap();
+            let fresh = growing.take_fresh();
+            let rows = fresh.iter().map(|&cell| growing.cells()[cell as usize].corners);
+            let come = cells(rows, growing.positions());
+            for crown in &crowns {
+                let foreseen = cells(crown.cells.iter().copied(), growing.positions());
+                prop_assert_eq!(&foreseen, &come);
+            }
+            let leaves = Growing::FIRST + 8 + pick.index(points.len() - 8) as u32;
+            let foreseen = {
+                let predicates = growing.predicates();
+                let screen = Growing::screen(&predicates).unwrap();
+                let mut digger = Digger::new(growing.positions().len()).unwrap();
+                let hole = growing.hole(&screen, leaves, &mut digger).unwrap();
+                hole.map(|hole| {
+                    let rows = hole.filling.iter().map(|cell| cell.corners);
+                    cells(rows.filter(|row| !row.contains(&GHOST)), growing.positions())
+                })
+            };
+            if let Some(foreseen) = foreseen {
+                growing.remove(&[leaves]).unwrap();
+                let fresh = growing.take_fresh();
+                let rows = fresh.iter().map(|&cell| growing.cells()[cell as usize].corners);
+                prop_assert_eq!(foreseen, cells(rows, growing.positions()));
+            }
+        }
+    }
 }

@@ -12,6 +12,7 @@
 
 mod cavity;
 mod growing;
+mod leave;
 mod locate;
 mod start;
 
@@ -21,6 +22,7 @@ use super::predicates::{Predicates, Screen};
 use super::{Cell, GONE, Triangulation, TriangulationError};
 use cavity::Cavity;
 pub(crate) use growing::Growing;
+pub(crate) use leave::Digger;
 
 /// So many insertions are counted at once: some milliseconds.
 const TOGETHER: usize = 4096;
