@@ -248,6 +248,17 @@ def las():
     return [bytes(head) + points, bytes(long) + b"\1\2\3"]
 
 
+def wvm():
+    """Five points on a grid with their values as steps; four off any grid, bit for bit; 24 in two layers."""
+    return [base64.b64decode(text) for text in (
+        "iXd2bQ0KGgoBCQAAAQUECAAEBQYAAAAAAADwPwAAAAAAAPA/AAAAAAAAAAALydIs+Bnaf3dvXJ1abvZGlZPXOQ==",
+        "iXd2bQ0KGgoBMAAAAQQmFBLH5cgYeNqtxTENAAAIxMCOjAz4Af8qkMIPSPgml4KnhdBSqmF4Bx7QAgx42mNgwA5+MHAI2Ds4OAAACtwCEHja"
+        "Y2DADj4wXGCwB0IADfoCPz1u3j8=",
+        "iXd2bQ0KGgoByQABAgYICAASEBQACAgIAAAAAAAAQEAAAAAAAAAQQAAAAAAAAAAAAAAAAAAAJEAAAAAAAAAAAAAAAAAA4G9A0YpqC4wLLojD"
+        "sB51RYIBAO0kTPmIkrD4wlATkYWj2GiRR5MiZyTlTAeMc+mZumie/zh2w6Mdv04ZkasL5zU4eA==",
+    )]
+
+
 def dicom():
     """A slice of 3 columns and 2 rows, explicit little endian; the second one in a deflated file."""
 
@@ -350,7 +361,7 @@ TARGETS = {
     "nifti_gzip": lambda: [gzip.compress(file) for file in nifti()], "vtk_legacy": vtk_legacy, "vti": vti,
     "tiff": tiffs, "table": table, "xyz": xyz, "pwn": pwn, "npy_points": npy_points, "ply": ply, "vtk_geometry": vtk_geometry,
     "off": off, "obj": obj, "stl": stl,
-    "pcd": pcd, "las": las, "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes, "check_json": check_json, "check_npz": check_npz,
+    "pcd": pcd, "las": las, "wvm": wvm, "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes, "check_json": check_json, "check_npz": check_npz,
 }
 
 if __name__ == "__main__":

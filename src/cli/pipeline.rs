@@ -44,7 +44,14 @@ pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> 
         with_file(args, |input| {
             if is_points(args, input)? {
                 let level = args.options().level;
-                let (points, facts) = read_model(Path::new(input), args.columns(), level)?;
+                let (mut points, mut facts) = read_model(Path::new(input), args.columns(), level)?;
+                if let Some(range) = &mut facts.range {
+                    let written = args.written(*range);
+                    if written != *range {
+                        to_gray(&mut points, range);
+                        *range = written;
+                    }
+                }
                 return Ok(Input::Points(points, facts));
             }
             let volume = volume::open(input, &args.options()).map_err(with_points)?;
@@ -52,6 +59,12 @@ pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> 
             Ok(Input::Volume(Grays { volume, range, written: args.written(range) }))
         })
     })
+}
+
+/// Gives points gray levels for values. As in a volume, they are of single precision.
+fn to_gray(points: &mut Points, range: &GrayRange) {
+    let gray = |value: &mut f64| *value = f64::from(range.gray(*value) as f32);
+    points.values.iter_mut().flatten().for_each(gray);
 }
 
 /// Adds the formats of points to the error for a file of no format known.
@@ -85,19 +98,18 @@ pub fn with_file<T>(
     })
 }
 
-/// Options that points have, too: the level of a `.wvm`.
-const OF_POINTS: [&str; 1] = ["level"];
-
 impl Input {
     /// Refuses options that have no effect on what INPUT is.
     pub fn accepts(&self, args: &InputArgs) -> Result<(), Said> {
         let holds = |what| format!("{} holds {what}", args.input);
         match self {
             Self::Volume(..) => args.given.refuse(&["columns"], holds("a volume")),
-            Self::Points(..) => {
-                let mut names = args::of_volumes();
-                names.retain(|name| !OF_POINTS.contains(&name.as_str()));
-                args.given.refuse(&names, holds("points, and no volume"))
+            Self::Points(_, facts) => {
+                let what = holds("points, and no volume");
+                if facts.range.is_none() {
+                    args.given.refuse(&["gray_out"], &what)?;
+                }
+                args.given.refuse(&args::of_volumes(), what)
             }
         }
     }
@@ -191,10 +203,7 @@ pub fn weigh_input(
     let Grays { volume, range, written } = match input {
         Input::Points(mut points, facts) => {
             if let (Values::Gray, Some(range)) = (values, facts.range) {
-                points.values.iter_mut().flatten().for_each(|value| {
-                    // As in a volume, gray levels are of single precision.
-                    *value = f64::from(range.gray(*value) as f32);
-                });
+                to_gray(&mut points, &range);
             }
             let weighed = progress.watch(|hear| pipeline.weighed_model(points, &facts, hear))?;
             return Ok((weighed, None));

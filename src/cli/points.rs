@@ -35,8 +35,8 @@ pub struct Points {
     /// values of F are off by as much at most, everywhere, and the file is smaller; 0 keeps every bit.
     #[arg(long, value_name = "E", value_parser = not_negative, default_value = "0")]
     value_error: f64,
-    /// Layers of points in a .wvm, the most important first, each of four times as many points as all
-    /// before; --level reads the first ones. One layer makes the smallest file.
+    /// Layers of points in a .wvm, the most important first: --level 1 reads it without the last layer, a
+    /// quarter of the points, and so on. One layer makes the smallest file.
     #[arg(long, value_name = "N", default_value = "1",
           value_parser = clap::value_parser!(u8).range(1..=i64::from(Packing::MOST_LAYERS)))]
     layers: u8,

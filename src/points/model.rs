@@ -36,8 +36,8 @@ pub struct Packing {
     /// The largest error of a value, in units of the values. The values of F then are off by as much at
     /// most, everywhere. 0 keeps every value bit for bit.
     pub value_error: f64,
-    /// Layers of points, each of four times as many as all before, in order of importance; a reader may
-    /// stop behind any. One layer makes the smallest file.
+    /// Layers of points, the most important first; a reader may stop behind any, and has a quarter of the
+    /// points without the last, a quarter of these without the last two. One layer makes the smallest file.
     pub layers: u8,
 }
 

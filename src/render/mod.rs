@@ -34,7 +34,7 @@ mod scene;
 mod shape;
 mod view;
 
-pub use charts::{error_figure, ladder_figure};
+pub use charts::{RateCurve, error_figure, ladder_figure, rate_figure};
 pub use error::RenderError;
 pub use figure::{ColourBar, Content, Drawing, Figure, Panel, Pen, Step};
 pub use marching::Isosurface;

@@ -5,6 +5,7 @@
 //! beside them. Nothing is tuned to agree.
 
 mod compare;
+mod compressors;
 mod error;
 mod figures;
 mod html;

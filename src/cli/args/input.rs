@@ -111,7 +111,7 @@ impl InputArgs {
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Parts of a volume")]
 pub(super) struct PartArgs {
-    /// Level of a pyramid (OME-Zarr); 0 is the finest [default: 0].
+    /// Level of a pyramid (OME-Zarr), or of points in layers (WVM); 0 is the finest [default: 0].
     #[arg(long, value_name = "N", conflicts_with = "dims")]
     level: Option<u32>,
     /// Array to read from a file with several (VTK, NPZ) [default for VTK: the first point array].

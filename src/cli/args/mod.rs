@@ -35,11 +35,11 @@ pub struct PipelineArgs<W: Args = WeightArgs> {
 /// The same with weights that stay as they are while α varies.
 pub type FrozenPipelineArgs = PipelineArgs<FrozenArgs>;
 
-/// The names of the options that belong to a volume.
+/// The names of the options that only a volume has: points may have levels, too, and gray levels.
 pub fn of_volumes() -> Vec<String> {
     let part = PartArgs::augment_args(Command::new("volume"));
     let points = SelectArgs::augment_args(HaarArgs::augment_args(part));
     let all = RefitArgs::augment_args(points);
     let names = all.get_arguments().map(|arg| arg.get_id().to_string());
-    names.chain(["gray", "gray_out"].map(str::to_owned)).collect()
+    names.filter(|name| name != "level").chain(["gray".to_owned()]).collect()
 }

@@ -71,8 +71,8 @@ pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, Poi
 }
 
 /// Reads points with what is known of them besides; nothing, where their format keeps nothing. `level`
-/// says how many of the last layers of a `.wvm` are left out, each of four times as many points as all
-/// before: every level is a coarser model.
+/// says how many of the last layers of a `.wvm` are left out: each level is a coarser model, of a quarter
+/// of the points.
 ///
 /// # Errors
 /// As [`read_points`], and a level that the file does not have.

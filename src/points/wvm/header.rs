@@ -159,7 +159,7 @@ impl Header {
         let length = file.len() - fields.rest.len();
         // Fields that cannot be are told of a head that is whole, and damage of one that is not.
         let claimed = fields.checksum()?;
-        if crc32fast::hash(&file[..length]) != claimed {
+        if !fits(&file[..length], claimed) {
             return Err(damaged("its header"));
         }
         Ok((header?, length + CHECKSUM))
@@ -221,6 +221,11 @@ impl Header {
         let most = self.grid.map_or(Dims::MAX_SAMPLES, |grid| grid.dims.samples() as u64);
         if points > most { what("claims more points than samples") } else { Ok(()) }
     }
+}
+
+/// Whether bytes have this checksum. Fuzzers, which cannot guess one, get past it.
+pub(super) fn fits(bytes: &[u8], checksum: u32) -> bool {
+    cfg!(fuzzing) || crc32fast::hash(bytes) == checksum
 }
 
 /// The error for damaged bytes.

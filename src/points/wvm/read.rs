@@ -8,7 +8,7 @@ use super::super::read::format;
 use super::super::{ModelFacts, Points, PointsError, SampleGrid, WeightedPoints};
 use super::coder::Decoder;
 use super::column;
-use super::header::{CHECKSUM, Header, Layer, Values, Weights, damaged};
+use super::header::{CHECKSUM, Header, Layer, Values, Weights, damaged, fits};
 use super::write::{Coders, in_order};
 use crate::advice::{Setting, advice};
 use crate::memory::room;
@@ -35,8 +35,8 @@ pub(in super::super) fn read(path: &Path, level: u32) -> Result<(Points, ModelFa
     let body = layers_of(&header, &bytes[head..], wanted).map_err(said)?;
     let mut model = Model::new(&header);
     for (k, (layer, bytes)) in header.layers.iter().zip(body).enumerate() {
-        let (bytes, checksum) = bytes.split_at(bytes.len() - CHECKSUM);
-        if crc32fast::hash(bytes).to_le_bytes() != checksum {
+        let Some((bytes, checksum)) = bytes.split_last_chunk::<CHECKSUM>() else { continue };
+        if !fits(bytes, u32::from_le_bytes(*checksum)) {
             return Err(said(damaged(&format!("layer {k}"))));
         }
         model.reserve(layer.count as usize)?;

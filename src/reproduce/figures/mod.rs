@@ -4,6 +4,7 @@ mod barycentric;
 mod claim;
 mod common;
 mod comparison;
+mod compression;
 mod extension;
 mod geomview;
 mod isosurface;
@@ -25,7 +26,7 @@ use crate::render::{Figure, Panel, Picture, plain_colours};
 type Make = fn(&mut Bench<'_>) -> Result<Item, ReproduceError>;
 
 /// All there is, in the paper's order, and what we add.
-pub(super) const ALL: [(&str, Make); 13] = [
+pub(super) const ALL: [(&str, Make); 14] = [
     ("Table 1", table::table_1),
     ("Figure 1", points::figure_1),
     ("Figure 2", plane::figure_2),
@@ -39,6 +40,7 @@ pub(super) const ALL: [(&str, Make); 13] = [
     ("Figure 10", comparison::figure_10),
     ("Figure 11", geomview::figure_11),
     ("Extension", extension::error_against_points),
+    ("Compression", compression::bytes_against_error),
 ];
 
 /// What figures are made from, and where their files go.

@@ -1,0 +1,216 @@
+use super::super::compressors::{self, Compressor};
+use super::super::{Fact, Item, ReproduceError, Table, text};
+use super::Bench;
+use crate::export::Scratch;
+use crate::interpolate::{
+    Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels,
+};
+use crate::points::{
+    ModelFacts, Packing, PointWriter, SampleGrid, Units, WeightedPoints, read_model,
+};
+use crate::render::{RateCurve, rate_figure};
+use crate::shape::{Alpha, ShapeOptions, alpha_shape};
+use crate::volume::{Coordinates, Volume};
+
+/// Points of the largest model, of all samples.
+const MOST: f64 = 0.08;
+
+/// The largest error of a stored value, over the RMSE of the model without rounding.
+const ROUNDING: f64 = 1.5;
+
+/// A model as a file.
+struct Measured {
+    points: usize,
+    bytes: usize,
+    rmse: f64,
+    max: f64,
+}
+
+impl Measured {
+    fn bits(&self, volume: &Volume) -> f64 {
+        8.0 * self.bytes as f64 / volume.dims().samples() as f64
+    }
+}
+
+/// What the paper does not measure: how few bytes stand for the volume, beside compressors of volumes.
+pub(super) fn bytes_against_error(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
+    let subject = bench.study.subject;
+    let measured = models(subject.volume)?;
+    let others: &[Compressor] =
+        if subject.name == "sample:skull" { &compressors::SKULL } else { &[] };
+    let ours = measured.iter().map(|model| [model.rmse, model.bits(subject.volume)]).collect();
+    let mut curves = vec![RateCurve { name: "walpha .wvm".into(), points: ours }];
+    curves.extend(
+        others
+            .iter()
+            .map(|other| RateCurve { name: other.name.into(), points: other.curve.to_vec() }),
+    );
+    let figure = rate_figure("Our extension. PSNR of the volume against bits per sample", &curves);
+    let picture = bench.file("extension-2.png", figure.to_png()?);
+    let svg = bench.file("extension-2.svg", figure.to_svg()?.into_bytes());
+    let fact = |model: &Measured| {
+        let label = format!("bits per sample, {} points, RMSE {:.2}", model.points, model.rmse);
+        Fact::new(label, model.bits(subject.volume))
+    };
+    Ok(Item {
+        id: "extension-2",
+        title: "Our extension. Bytes against error".into(),
+        paper:
+            "Says that few points stand for the volume (6.07 %), and does not count bytes. This \
+                section is not in the paper."
+                .into(),
+        ours: remark(others),
+        picture: Some(picture),
+        files: vec![svg],
+        commands: vec![format!(
+            "{} --select adaptive --target-rmse 1.9 --value-error 3 -o model.wvm",
+            bench.study.command("points")
+        )],
+        facts: measured.iter().map(fact).collect(),
+        tables: vec![own(&measured, subject.volume), beside(&curves)],
+        ..Item::default()
+    })
+}
+
+fn remark(others: &[Compressor]) -> String {
+    let beside = if others.is_empty() {
+        "Figures of compressors are known of sample:skull only.".to_owned()
+    } else {
+        format!(
+            "Figures of compressors were measured on {} by scripts/race_compressors.py, each in its \
+             own kind of file; ours are computed now.",
+            compressors::DATE
+        )
+    };
+    format!(
+        "Points chosen where the interpolant is worst, ω = 0, written as .wvm and read back, the whole \
+         file counted; F is taken over the whole volume. Values are rounded to {ROUNDING} of the RMSE at \
+         most. {beside} A compressor gives samples and nothing else; the model is a mesh, with F at any \
+         place."
+    )
+}
+
+/// Models of an eighth, a quarter, a half and all of the points.
+fn models(volume: &Volume) -> Result<Vec<Measured>, ReproduceError> {
+    let samples = volume.dims().samples();
+    let count = ((MOST * samples as f64) as u64).max(8);
+    let voxels =
+        adaptive_voxels(volume, &Adaptive { count, rmse: 0.0, max_error: None }, Units::Voxel)?;
+    let counts = [8, 4, 2, 1].map(|part| (voxels.len() / part).max(8).min(voxels.len()));
+    let mut measured = Vec::new();
+    for count in counts {
+        let points = points_at(volume, &voxels[..count]);
+        let Deviation { rmse: Some(rmse), .. } = deviation(volume, points.clone())? else {
+            continue;
+        };
+        let (bytes, points) = through_file(volume, &points, ROUNDING * rmse)?;
+        let Deviation { rmse: Some(rmse), max: Some(max), .. } = deviation(volume, points)? else {
+            continue;
+        };
+        measured.push(Measured { points: count, bytes, rmse, max });
+    }
+    Ok(measured)
+}
+
+fn points_at(volume: &Volume, voxels: &[u32]) -> WeightedPoints {
+    let value = |&voxel: &u32| f64::from(volume.as_slice()[voxel as usize]);
+    WeightedPoints {
+        positions: voxels.iter().map(|&voxel| Units::Voxel.position(volume, voxel)).collect(),
+        weights: vec![0.0; voxels.len()],
+        values: Some(voxels.iter().map(value).collect()),
+    }
+}
+
+/// How far F on the whole triangulation is from the volume.
+fn deviation(volume: &Volume, points: WeightedPoints) -> Result<Deviation, ReproduceError> {
+    let options = ShapeOptions { refuse_flat: true, ..ShapeOptions::new(Alpha::INFINITE) };
+    let shape = alpha_shape(points, &options).map_err(InterpolateError::from)?;
+    let resampled = Interpolant::new(&shape)?.resample(&Grid::of(volume, Units::Voxel))?;
+    Ok(Deviation::of(volume, &resampled))
+}
+
+/// The bytes of a file, and the points that it gives back.
+fn through_file(
+    volume: &Volume,
+    points: &WeightedPoints,
+    value_error: f64,
+) -> Result<(usize, WeightedPoints), ReproduceError> {
+    const NAME: &str = ".wvm";
+    let grid = SampleGrid { dims: volume.dims(), frame: *volume.frame(), units: Units::Voxel };
+    let coordinates = Coordinates::VOXEL;
+    let facts = ModelFacts { grid: Some(grid), coordinates, ..ModelFacts::default() };
+    let packing = Packing { value_error, ..Packing::default() };
+    let writer = PointWriter::of(format!("model{NAME}").as_ref()).map_err(std::io::Error::other)?;
+    let mut bytes = Vec::new();
+    writer.write_model(points, &facts, &packing, &mut bytes)?;
+    let file = Scratch::of(&mut &bytes[..], NAME)?;
+    let (read, _) = read_model(file.path(), None, None)?;
+    let weights = read.weights.unwrap_or_default();
+    Ok((bytes.len(), WeightedPoints { positions: read.positions, weights, values: read.values }))
+}
+
+fn own(measured: &[Measured], volume: &Volume) -> Table {
+    let head = ["points", "bytes", "bits per sample", "RMSE", "PSNR (dB)", "largest error"];
+    let row = |model: &Measured| {
+        vec![
+            model.points.to_string(),
+            model.bytes.to_string(),
+            text::number(model.bits(volume)),
+            text::number(model.rmse),
+            text::number(20.0 * (Deviation::PEAK / model.rmse).log10()),
+            text::number(model.max),
+        ]
+    };
+    Table {
+        caption: "Files of ours, over the whole volume, in gray levels".into(),
+        head: head.map(String::from).into(),
+        rows: measured.iter().map(row).collect(),
+    }
+}
+
+/// Bits per sample at some errors, and PSNR at some rates, of everybody.
+fn beside(curves: &[RateCurve]) -> Table {
+    let head = ["", "bits at RMSE 1", "at 2", "at 4", "PSNR at ¼ bit", "at ½", "at 1"];
+    let cell = |value: Option<f64>| value.map_or_else(|| "–".into(), text::number);
+    let row = |curve: &RateCurve| {
+        let swapped: Vec<[f64; 2]> =
+            curve.points.iter().map(|&[rmse, bits]| [bits, rmse]).collect();
+        let bits = [1.0, 2.0, 4.0].map(|rmse| read_off(&curve.points, rmse));
+        let rmses = [0.25, 0.5, 1.0].map(|bits| read_off(&swapped, bits));
+        let psnrs = rmses.map(|rmse| rmse.map(|rmse| 20.0 * (Deviation::PEAK / rmse).log10()));
+        let cells = bits.into_iter().chain(psnrs).map(cell);
+        std::iter::once(curve.name.clone()).chain(cells).collect()
+    };
+    Table {
+        caption:
+            "Bits per sample at an RMSE in gray levels, and PSNR in dB at a rate; – lies beyond \
+                  what was measured"
+                .into(),
+        head: head.map(String::from).into(),
+        rows: curves.iter().map(row).collect(),
+    }
+}
+
+/// y at x, straight between the logarithms of points; `None` beyond them.
+fn read_off(curve: &[[f64; 2]], x: f64) -> Option<f64> {
+    let mut sorted = curve.to_vec();
+    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    sorted.windows(2).find_map(|pair| {
+        let [[x0, y0], [x1, y1]] = [pair[0], pair[1]];
+        let share = (x.ln() - x0.ln()) / (x1.ln() - x0.ln());
+        let between = x0 <= x && x <= x1 && x0 < x1;
+        between.then(|| (y0.ln() * (1.0 - share) + y1.ln() * share).exp())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_read_off_on_logarithmic_axes() {
+        let curve = [[4.0, 0.25], [1.0, 1.0]];
+        assert_eq!(read_off(&curve, 2.0), Some(0.5));
+        assert_eq!([read_off(&curve, 0.9), read_off(&curve, 4.1)], [None, None]);
+    }
+}
