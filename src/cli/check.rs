@@ -6,11 +6,12 @@ use std::process::ExitCode;
 use crate::check::schema::PlacedComplex;
 use crate::check::{Certificate, Comparison, Extent, Finding, compare, enumerate};
 use crate::progress::Stage;
+use crate::shape::ShapeOptions;
 use crate::shown::shown;
 use clap::{Args, Command};
 use serde::Serialize;
 
-use super::args::{PipelineArgs, ShapeArgs};
+use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::output::{name, tell};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
@@ -42,6 +43,8 @@ pub struct Check {
     pipeline: PipelineArgs,
     #[command(flatten)]
     shape: ShapeArgs,
+    #[command(flatten)]
+    periodic: PeriodicArgs,
 }
 
 /// Points that `--enumerate` takes: more would take hours.
@@ -73,7 +76,7 @@ impl Check {
         if complex_file::is_complex(path) && complex_file::is_filtration(path) {
             return self.filtration(global, path);
         }
-        self.shape.check(self.pipeline.weights.alpha())?;
+        self.shape.check(self.pipeline.weights.alpha(), self.periodic.periodic)?;
         let mut progress = Progress::new(global);
         let judged = self.complex(&mut progress)?;
         let n = judged.positions.len();
@@ -128,6 +131,7 @@ impl Check {
     /// Refuses options of how a complex is made.
     fn refuse_ours(&self, why: String) -> Result<(), Said> {
         let ours = ShapeArgs::augment_args(PipelineArgs::augment_args(Command::new("check")));
+        let ours = PeriodicArgs::augment_args(ours);
         let options = ours.get_arguments().filter(|arg| !arg.is_positional());
         let names: Vec<&str> = options.map(|arg| arg.get_id().as_str()).collect();
         self.pipeline.input.given.refuse(&names, why)
@@ -145,7 +149,8 @@ impl Check {
             misused!("--points belongs to a complex (.json, .npz), and {} is none", shown(path) => "omit it");
         }
         let (weighed, _) = pipeline::weighted_points(&self.pipeline, progress)?;
-        let mut options = self.shape.options();
+        let periodic = self.periodic.periodic;
+        let mut options = ShapeOptions { periodic, ..self.shape.options() };
         // The whole triangulation can be judged wholly. Several blocks are judged as they are.
         options.exterior |=
             options.blocks.is_none_or(|blocks| blocks.get() == 1) && options.memory.is_none();

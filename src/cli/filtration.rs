@@ -13,7 +13,7 @@ use crate::progress::Stage;
 use clap::Args;
 use serde::Serialize;
 
-use super::args::{FrozenArgs, HaarArgs, InputArgs, SelectArgs, WeightArgs};
+use super::args::{FrozenArgs, HaarArgs, InputArgs, PeriodicArgs, SelectArgs, WeightArgs};
 use super::formats::filtration_output;
 use super::output::{name, tell};
 use super::pipeline::Values;
@@ -48,6 +48,8 @@ pub struct Filtration {
     select: SelectArgs,
     #[command(flatten)]
     weights: FrozenArgs,
+    #[command(flatten)]
+    periodic: PeriodicArgs,
 }
 
 #[derive(Serialize)]
@@ -104,8 +106,10 @@ impl Filtration {
         let (haar, select) = (&self.haar, &self.select);
         let (weighed, _) =
             pipeline::weigh_input(read, haar, select, &weights, Values::Written, &mut progress)?;
+        let torus = self.periodic.periodic;
+        weighed.check_periodic(torus)?;
         let filtration = progress
-            .stage(Stage::Filtration, || ladder::Filtration::new(weighed.points.clone()))?;
+            .stage(Stage::Filtration, || ladder::Filtration::on(torus, weighed.points.clone()))?;
         let ordered = progress.stage(Stage::Order, || filtration.simplices())?;
         progress.stage(Stage::Write, || {
             write_all(targets.into_iter().map(|(target, format)| {

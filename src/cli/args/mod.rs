@@ -1,6 +1,7 @@
 //! Options that several commands share, and how they become options of the library.
 
 mod input;
+mod periodic;
 mod select;
 mod shape;
 mod values;
@@ -9,6 +10,7 @@ mod weights;
 use clap::Args;
 
 pub use input::InputArgs;
+pub use periodic::PeriodicArgs;
 pub use select::{HaarArgs, SelectArgs};
 pub use shape::ShapeArgs;
 pub use values::not_negative;
