@@ -36,6 +36,9 @@ pub enum InterpolateError {
     /// A target that no error can reach.
     #[error("an RMSE of {0} gray levels makes no sense as a target")]
     Target(f64),
+    /// The shape is one of a torus, and places are those of space.
+    #[error("a shape of a periodic box cannot be interpolated: it repeats, and the interpolant is one of space")]
+    Periodic,
     /// The points make no shape.
     #[error(transparent)]
     Shape(#[from] ShapeError),
@@ -64,6 +67,7 @@ impl InterpolateError {
                 format!("give a count from 8 to {available}, its samples").into()
             }
             Self::Target(_) => "give a number from 0 up".into(),
+            Self::Periodic => "lay the shape out in space first (AlphaShape::unwrapped)".into(),
             Self::Shape(error) => return error.advice(),
             Self::Points(error) => return error.advice(),
             Self::Haar(error) => return error.advice(),
