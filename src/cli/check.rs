@@ -80,12 +80,15 @@ impl Check {
         let mut progress = Progress::new(global);
         let judged = self.complex(&mut progress)?;
         let n = judged.positions.len();
+        if self.enumerate && judged.periodic.is_some() {
+            refused!("--enumerate knows no periodic box" => "omit it");
+        }
         if self.enumerate && n > MOST_ENUMERATED {
             refused!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}" => "omit it");
         }
         let claim = judged.claim();
         let started = std::time::Instant::now();
-        let (mut findings, certificate) = progress.stage(Stage::Certify, || claim.findings())?;
+        let (mut findings, certificate) = progress.stage(Stage::Certify, || judged.findings())?;
         let seconds = started.elapsed().as_secs_f64();
         let enumeration = if self.enumerate {
             Some(progress.stage(Stage::Enumerate, || by_definition(&judged))?)
@@ -155,7 +158,8 @@ impl Check {
         options.exterior |=
             options.blocks.is_none_or(|blocks| blocks.get() == 1) && options.memory.is_none();
         let model = pipeline::shape(weighed, options, progress)?;
-        Ok(PlacedComplex::from(model.shape.claim()))
+        let sides = periodic.map(|torus| torus.sides());
+        Ok(PlacedComplex::from(model.shape.claim()).with_periodic(sides))
     }
 }
 

@@ -57,6 +57,9 @@ impl Compare {
         }
         let read = |path: &Path| complex_file::read(path, None);
         let (a, b) = (read(&self.a)?, read(&self.b)?);
+        if a.periodic.or(b.periodic).is_some() {
+            refused!("complexes of a periodic box are not compared: their simplices have no one place" => "judge each with `walpha check`");
+        }
         let comparison = compare(a.placed(), b.placed())?;
         let facts = Facts {
             schema_version: SCHEMA_VERSION,

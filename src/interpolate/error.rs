@@ -37,7 +37,9 @@ pub enum InterpolateError {
     #[error("an RMSE of {0} gray levels makes no sense as a target")]
     Target(f64),
     /// The shape is one of a torus, and places are those of space.
-    #[error("a shape of a periodic box cannot be interpolated: it repeats, and the interpolant is one of space")]
+    #[error(
+        "a shape of a periodic box cannot be interpolated: it repeats, and the interpolant is one of space"
+    )]
     Periodic,
     /// The points make no shape.
     #[error(transparent)]

@@ -1,8 +1,8 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::voids::Closed;
 use super::levels::{ByLevel, Span};
+use super::voids::Closed;
 use super::{Filtration, Levels};
 use crate::shape::{
     Alpha, Betti, ByClass, Class, Measures, Void, facet_area, number_or_name, six_volumes,

@@ -13,7 +13,7 @@ use crate::points::{
     scattered_difference, select, weigh,
 };
 use crate::progress::Stage;
-use crate::shape::{Torus, Alpha, AlphaShape, Balls, ShapeOptions, alpha_shape};
+use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, Torus, alpha_shape};
 use crate::volume::{Coordinates, GrayRange, Volume};
 
 /// Which samples of a volume become points.

@@ -6,8 +6,8 @@ use serde::Serialize;
 use super::PipelineError;
 use crate::ladder::Filtration;
 use crate::points::{Points, Units, WeightedPoints, Weighting, weigh};
-use crate::shape::{Torus, 
-    Alpha, AlphaError, ShapeError, flat_region, number_or_name, number_or_null_or_name,
+use crate::shape::{
+    Alpha, AlphaError, ShapeError, Torus, flat_region, number_or_name, number_or_null_or_name,
 };
 use crate::shown::{number, six_digits};
 use crate::volume::{LengthUnit, Volume};

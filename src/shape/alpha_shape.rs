@@ -9,13 +9,15 @@ use super::blocks::{self, Limits, Plan, PlanError, Question, Reach};
 use super::canonical::canonical;
 use super::flat::{self, flat};
 use super::measure::together;
-use super::topology::{sheet_betti, torus_betti};
 use super::parts::wound;
+use super::topology::{sheet_betti, torus_betti};
 use super::{Alpha, Balls, Betti, Complex, Measures, Sheets, Simplices, direct_betti};
 use crate::advice::{Advice, Setting, advice};
 use crate::memory::NoMemory;
 use crate::points::WeightedPoints;
-use crate::triangulation::{Maker, Sites, SitesError, Torus, TriangulationError, check_numbers, is_flat, lattice};
+use crate::triangulation::{
+    Maker, Sites, SitesError, Torus, TriangulationError, check_numbers, is_flat, lattice,
+};
 use crate::volume::Coordinates;
 
 /// Which program computes the shape; all give the same answer.
@@ -161,7 +163,9 @@ pub enum ShapeError {
         blocks: usize,
     },
     /// The reference engine knows no periodic boxes.
-    #[error("the reference engine is CGAL's alpha shape of points in space, which knows no periodic box")]
+    #[error(
+        "the reference engine is CGAL's alpha shape of points in space, which knows no periodic box"
+    )]
     Unrepeated,
     /// An edge is so long that its ends do not say which of their copies it joins.
     #[error(
@@ -227,7 +231,9 @@ impl ShapeError {
             Self::Wraps { axis, .. } => advice![
                 "lower ",
                 Setting::Alpha,
-                format!(", or repeat the points along {axis}, and make the box as many times as long")
+                format!(
+                    ", or repeat the points along {axis}, and make the box as many times as long"
+                )
             ],
             Self::Exterior { .. } => {
                 advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Exterior]

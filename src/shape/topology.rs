@@ -145,20 +145,19 @@ fn exterior_sides(whole: &Complex) -> Vec<([u32; 3], u32)> {
 
 /// The complement of a shape within the *whole* triangulation of a torus: exterior cells joined through
 /// exterior facets. Each cell is where its first vertex is in the box. O(n log n).
-pub(super) fn complement_on(
-    torus: Torus,
-    whole: &Complex,
-    positions: &[[f64; 3]],
-) -> WindingSets {
+pub(super) fn complement_on(torus: Torus, whole: &Complex, positions: &[[f64; 3]]) -> WindingSets {
     let cells = whole.cells.rows();
     let mut sets = WindingSets::new(cells.len());
     let sides = exterior_sides(whole);
-    for pair in sides.chunk_by(|a, b| a.0 == b.0) {
-        // Beyond a boundary facet there is no exterior cell.
-        if let [(facet, a), (_, b)] = pair {
-            let [a, b] = [*a, *b];
-            sets.unite(a, b, between(torus, [cells[a as usize], cells[b as usize]], facet[0], positions));
-        }
+    let mut pairs = sides.chunk_by(|a, b| a.0 == b.0);
+    // Exterior facets are sorted rows in ascending order, so both lists run side by side.
+    for facet in whole.facets.of(Class::Exterior) {
+        let pair = pairs.find(|pair| pair[0].0 == *facet);
+        let Some(&[(_, a), (_, b)]) = pair else {
+            unreachable!("an exterior facet of a torus has exterior cells on both sides")
+        };
+        let beside = [cells[a as usize], cells[b as usize]];
+        sets.unite(a, b, between(torus, beside, facet[0], positions));
     }
     sets
 }
@@ -171,9 +170,8 @@ pub(crate) fn between(
     vertex: u32,
     positions: &[[f64; 3]],
 ) -> Winding {
-    let way = |cell: [u32; 4]| {
-        torus.windings(positions[cell[0] as usize], positions[vertex as usize])
-    };
+    let way =
+        |cell: [u32; 4]| torus.windings(positions[cell[0] as usize], positions[vertex as usize]);
     minus(way(cells[0]), way(cells[1]))
 }
 

@@ -155,8 +155,12 @@ mod tests {
     #[test]
     fn directions_are_counted_up_to_three() {
         let mut directions = Directions::default();
-        assert!(!directions.add([0; 3]) && directions.add([2, 0, 2]) && !directions.add([-1, 0, -1]));
-        assert!(directions.add([0, 1, 0]) && !directions.add([3, 5, 3]) && directions.add([0, 0, 1]));
+        assert!(
+            !directions.add([0; 3]) && directions.add([2, 0, 2]) && !directions.add([-1, 0, -1])
+        );
+        assert!(
+            directions.add([0, 1, 0]) && !directions.add([3, 5, 3]) && directions.add([0, 0, 1])
+        );
         assert!(!directions.add([7, 8, 9]));
         assert_eq!(directions.rank(), 3);
     }

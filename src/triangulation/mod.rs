@@ -27,8 +27,8 @@ mod torus;
 pub use error::{SitesError, TriangulationError};
 pub(crate) use flat::{Flat, is_flat, triangulate_flat};
 pub(crate) use predicates::{Interval, Predicates, Ratio, SmallRadius, lattice};
-pub use sites::{MAX_COORDINATE, MAX_WEIGHT, Sites};
 pub(crate) use sites::check as check_numbers;
+pub use sites::{MAX_COORDINATE, MAX_WEIGHT, Sites};
 pub(crate) use torus::AXES;
 pub use torus::{Torus, TorusError};
 

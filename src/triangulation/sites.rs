@@ -2,8 +2,8 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use super::{SitesError, Torus};
 use super::curve::{self, Keyed};
+use super::{SitesError, Torus};
 
 /// Weighted points of space (or, with `D` = 2, of the plane) that can be triangulated: all numbers
 /// finite and of sane magnitude, no two places equal. Checked once, then trusted. In space at least
@@ -140,7 +140,10 @@ impl<'a, const D: usize> Sites<'a, D> {
 }
 
 /// Whether every number is one that predicates can stand; coordinates are x, y and perhaps z.
-pub(crate) fn check<const D: usize>(positions: &[[f64; D]], weights: &[f64]) -> Result<(), SitesError> {
+pub(crate) fn check<const D: usize>(
+    positions: &[[f64; D]],
+    weights: &[f64],
+) -> Result<(), SitesError> {
     if positions.len() != weights.len() {
         return Err(SitesError::Lengths { positions: positions.len(), weights: weights.len() });
     }

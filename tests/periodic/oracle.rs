@@ -25,9 +25,8 @@ impl Random {
 /// Copies of points of a box, those of the box itself first.
 pub fn copies(points: &WeightedPoints, sides: [f64; 3], around: i32) -> WeightedPoints {
     let range = || -around..=around;
-    let mut moves: Vec<[i32; 3]> = range()
-        .flat_map(|x| range().flat_map(move |y| range().map(move |z| [x, y, z])))
-        .collect();
+    let mut moves: Vec<[i32; 3]> =
+        range().flat_map(|x| range().flat_map(move |y| range().map(move |z| [x, y, z]))).collect();
     moves.sort_by_key(|m| *m != [0; 3]);
     let mut all = WeightedPoints { positions: vec![], weights: vec![], values: None };
     for by in moves {
@@ -108,8 +107,7 @@ pub fn by_copies(
     exterior: bool,
 ) -> Option<Complex> {
     let all = copies(points, sides, 2);
-    let options =
-        ShapeOptions { exterior, engine: Engine::Native, ..ShapeOptions::new(alpha) };
+    let options = ShapeOptions { exterior, engine: Engine::Native, ..ShapeOptions::new(alpha) };
     let shape = alpha_shape(all.clone(), &options).unwrap();
     orbits(points, sides, &all, shape.complex())
 }

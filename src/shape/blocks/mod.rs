@@ -32,9 +32,9 @@ use crate::triangulation::{
 use classify::{Long, Owned, Shelves, classify};
 use merge::merge;
 pub(super) use partition::Partition;
-pub(crate) use reach::Reach;
 pub use plan::PlanError;
 pub(super) use plan::{Limits, Plan};
+pub(crate) use reach::Reach;
 
 /// What is asked about all blocks of a set.
 #[derive(Clone, Copy)]

@@ -69,11 +69,7 @@ impl<'a> Predicates<'a> {
 
     /// Looks for what the numbers of points of a torus have in common. Corners of a simplex, and what is
     /// asked about beside it, must each be nearer to its first corner than half a side. O(n).
-    pub fn on_torus(
-        positions: &'a [[f64; 3]],
-        weights: &'a [f64],
-        torus: Option<Torus>,
-    ) -> Self {
+    pub fn on_torus(positions: &'a [[f64; 3]], weights: &'a [f64], torus: Option<Torus>) -> Self {
         let lattice = lattice(positions, weights, torus);
         Self { torus, ..Self::on(lattice, positions, weights) }
     }
@@ -249,11 +245,7 @@ impl<'a> Predicates<'a> {
 }
 
 /// The lattice of points and, on a torus, of all their copies.
-pub(crate) fn lattice(
-    positions: &[[f64; 3]],
-    weights: &[f64],
-    torus: Option<Torus>,
-) -> Lattice {
+pub(crate) fn lattice(positions: &[[f64; 3]], weights: &[f64], torus: Option<Torus>) -> Lattice {
     match torus {
         None => Lattice::of(positions, weights),
         Some(torus) => Lattice::of(&[positions, &[torus.sides()]].concat(), weights),
