@@ -340,6 +340,34 @@ def check_npz():
     return [file for file in complexes() if file.startswith(b"PK")]
 
 
+def filtrations():
+    """The filtration of a tetrahedron, as JSON and as NPZ, and one of a box that repeats."""
+    points = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]]
+    facets = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]
+    edges = [[a, b] for a in range(4) for b in range(a + 1, 4)]
+    values = {"vertices": [0, 0, 0, 0], "edges": [1, 1, 1, 2, 2, 2], "facets": [2, 2, 2, 3], "cells": [3]}
+    whole = {"points": points, "weights": [0, 0, 0, 0], "vertices": [0, 1, 2, 3], "edges": edges, "facets": facets,
+             "cells": [[0, 1, 2, 3]], "values": values, "order": list(range(15)),
+             "pairs": {"components": [[1, 4], [2, 5], [3, 6]], "lasting": [0], "voids": []}}
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, rows in (("points", points), ("edges", edges), ("facets", facets), ("cells", whole["cells"]),
+                           ("component_pairs", whole["pairs"]["components"]), ("void_pairs", [])):
+            flat = sum(rows, [])
+            kind, code = ("<f8", "d") if name == "points" else ("<u4", "I")
+            shape = (len(rows), len(rows[0]) if rows else 2)
+            archive.writestr(f"{name}.npy", npy(kind, shape, struct.pack(f"<{len(flat)}{code}", *flat)))
+        lists = {"vertices": [0, 1, 2, 3], "order": whole["order"], "lasting_components": [0]}
+        for name, flat in lists.items():
+            archive.writestr(f"{name}.npy", npy("<u4", (len(flat),), struct.pack(f"<{len(flat)}I", *flat)))
+        for name, dimension in (("vertex", "vertices"), ("edge", "edges"), ("facet", "facets"), ("cell", "cells")):
+            flat = values[dimension]
+            data = struct.pack(f"<{len(flat)}d", *flat)
+            archive.writestr(f"{name}_values.npy", npy("<f8", (len(flat),), data))
+    periodic = dict(whole, periodic=[8, 8, 8])
+    return [json.dumps(whole).encode(), json.dumps(periodic).encode(), out.getvalue()]
+
+
 def zarr():
     two = {"zarr_format": 2, "shape": [2, 3, 2], "chunks": [2, 3, 2], "dtype": "|u1", "compressor": None,
            "fill_value": 0, "order": "C", "filters": None}
@@ -361,7 +389,7 @@ TARGETS = {
     "nifti_gzip": lambda: [gzip.compress(file) for file in nifti()], "vtk_legacy": vtk_legacy, "vti": vti,
     "tiff": tiffs, "table": table, "xyz": xyz, "pwn": pwn, "npy_points": npy_points, "ply": ply, "vtk_geometry": vtk_geometry,
     "off": off, "obj": obj, "stl": stl,
-    "pcd": pcd, "las": las, "wvm": wvm, "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes, "check_json": check_json, "check_npz": check_npz,
+    "pcd": pcd, "las": las, "wvm": wvm, "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes, "check_json": check_json, "check_npz": check_npz, "filtration": filtrations,
 }
 
 if __name__ == "__main__":

@@ -327,6 +327,11 @@ fn moved(alpha: Alpha, to: fn(f64) -> f64) -> Alpha {
     Alpha::from_squared(to(alpha.squared())).unwrap()
 }
 
+fn one_pair(damaged: &FiltrationFile, rule: &dyn Fn(&FiltrationFinding) -> bool) {
+    let found = findings(damaged);
+    assert!(found.len() == 1 && rule(&found[0]), "{found:?}");
+}
+
 /// What is wrong is found, and named.
 #[test]
 fn the_checker_finds_what_is_wrong() {
@@ -371,6 +376,21 @@ fn the_checker_finds_what_is_wrong() {
         let found = findings(&damage);
         assert!(!found.is_empty());
         assert!(found.iter().all(|found| matches!(found, FiltrationFinding::Order { .. })));
+        let is_pair = |wanted: usize, is: bool| move |found: &FiltrationFinding| matches!(found, FiltrationFinding::Pair { dimension, listed, .. } if *dimension == wanted && *listed == is);
+        let mut damage = right.clone();
+        if damage.pairs.as_mut().unwrap().components.pop().is_some() {
+            one_pair(&damage, &is_pair(0, false));
+        }
+        let mut damage = right.clone();
+        if damage.pairs.as_mut().unwrap().voids.pop().is_some() {
+            one_pair(&damage, &is_pair(2, false));
+        }
+        let mut damage = right.clone();
+        damage.pairs.as_mut().unwrap().voids.push([0, 1]);
+        one_pair(&damage, &is_pair(2, true));
+        let mut damage = right.clone();
+        damage.pairs.as_mut().unwrap().lasting.push(u32::MAX);
+        one_pair(&damage, &|found| matches!(found, FiltrationFinding::Lasting { .. }));
         let mut damage = right.clone();
         damage.order[0] = damage.order[1];
         let found = findings(&damage);

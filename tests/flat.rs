@@ -58,7 +58,7 @@ fn betti(shape: &AlphaShape) -> Betti {
         }
     }
     let euler = vertices.len() as i64 - edges.len() as i64 + facets;
-    Betti { b0, b1: (b0 as i64 - euler) as u64, b2: 0 }
+    Betti::in_space(b0, (b0 as i64 - euler) as u64, 0)
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn one_piece_of_a_plane_and_of_a_line() {
     let grid = with((0..20).map(|i| [f64::from(i % 5), f64::from(i / 5), 1.0]).collect());
     let found = flat_region(&grid).unwrap().squared();
     assert_eq!(found, 0.5);
-    assert_eq!(at(found, &grid).betti().unwrap(), Betti { b0: 1, b1: 0, b2: 0 });
+    assert_eq!(at(found, &grid).betti().unwrap(), Betti::in_space(1, 0, 0));
     assert_eq!(at(found, &grid).measures().singular_area, 12.0);
     assert!(at(found.next_down(), &grid).complex().facets.is_empty());
     let line = with([0.0, 1.0, 3.0, 4.0].map(|x| [x, 2.0 * x, -x]).into());

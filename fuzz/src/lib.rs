@@ -4,7 +4,8 @@
 use std::io::Cursor;
 use std::path::PathBuf;
 
-use walpha::check::schema::{ComplexFile, SchemaError};
+use walpha::check::certify_filtration;
+use walpha::check::schema::{ComplexFile, FiltrationFile, SchemaError};
 use walpha::points::{is_point_file, read_points};
 use walpha::volume::{ReadOptions, read};
 
@@ -50,7 +51,20 @@ pub fn check_npz(bytes: &[u8]) {
 
 fn judge(file: Result<ComplexFile, SchemaError>) {
     let Ok(placed) = file.and_then(ComplexFile::into_complex) else { return };
-    if let Ok((findings, _)) = placed.claim().findings() {
+    if let Ok((findings, _)) = placed.findings() {
+        findings.iter().for_each(|finding| assert!(!finding.to_string().is_empty()));
+    }
+}
+
+/// Reads bytes as a filtration, NPZ or else JSON, and judges it.
+pub fn filtration(bytes: &[u8]) {
+    let file = if bytes.starts_with(b"PK") {
+        FiltrationFile::read_npz(Cursor::new(bytes))
+    } else {
+        FiltrationFile::read_json(bytes)
+    };
+    let Ok(file) = file else { return };
+    if let Ok((findings, _)) = certify_filtration(&file) {
         findings.iter().for_each(|finding| assert!(!finding.to_string().is_empty()));
     }
 }

@@ -62,8 +62,7 @@ impl Complex {
     #[staticmethod]
     fn of(py: Python<'_>, shape: &Bound<'_, Shape>) -> PyResult<Self> {
         let shape = Arc::clone(shape.get().shape());
-        let placed =
-            run(py, None, move |_| Ok::<_, CertifyError>(PlacedComplex::from(shape.claim())))?;
+        let placed = run(py, None, move |_| Ok::<_, CertifyError>(placed(&shape)))?;
         Ok(Self(Arc::new(placed)))
     }
 
@@ -78,7 +77,7 @@ impl Complex {
         let placed = Arc::clone(&self.0);
         run(py, progress.as_ref(), move |call| {
             call.begin(Stage::Certify);
-            let (findings, certificate) = placed.claim().findings()?;
+            let (findings, certificate) = placed.findings()?;
             let told =
                 findings.iter().take(most).map(|finding| (finding.to_string(), json(finding)));
             let unjudged: Vec<String> =
@@ -86,6 +85,11 @@ impl Complex {
             Ok::<_, CertifyError>((findings.len(), told.collect(), json(&unjudged)))
         })
     }
+}
+
+fn placed(shape: &walpha::AlphaShape) -> PlacedComplex {
+    let sides = shape.options().periodic.map(|torus| torus.sides());
+    PlacedComplex::from(shape.claim()).with_periodic(sides)
 }
 
 /// How B differs from A: whether they are equal, in words, and as JSON.
@@ -96,6 +100,11 @@ pub fn compare(
     b: &Bound<'_, Complex>,
 ) -> PyResult<(bool, String, String)> {
     let (a, b) = (Arc::clone(&a.get().0), Arc::clone(&b.get().0));
+    if a.periodic.or(b.periodic).is_some() {
+        return Err(wrong(
+            "complexes of a periodic box are not compared by places; compare the arrays of rows",
+        ));
+    }
     run(py, None, move |_| {
         let comparison = walpha::check::compare(a.placed(), b.placed())?;
         let text = comparison.to_string();

@@ -16,7 +16,7 @@ use walpha::haar::HaarError;
 use walpha::interpolate::InterpolateError;
 use walpha::pipeline::PipelineError;
 use walpha::points::{PointsError, UnknownWeighting};
-use walpha::shape::ShapeError;
+use walpha::shape::{ShapeError, TorusError};
 use walpha::triangulation::TriangulationError;
 use walpha::volume::VolumeError;
 
@@ -55,6 +55,7 @@ wrong_value! {
     AlphaError, |error| Some(error.advice().into());
     CompareError, |_| None;
     SchemaError, |_| None;
+    TorusError, |error| error.advice().into();
     UnknownFormat, |error| error.advice().into();
     UnknownWeighting, |error| error.advice().into();
 }

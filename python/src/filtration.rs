@@ -3,23 +3,23 @@
 use std::num::NonZeroU64;
 use std::sync::Arc;
 
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::progress::Stage;
 use walpha::shape::ShapeError;
 use walpha::{Alpha, WeightedPoints, ladder};
 
-use crate::arrays::numbers;
+use crate::arrays::{lend, numbers};
 use crate::errors::{Told, wrong};
-use crate::shape::{Shape, json, weighted};
+use crate::shape::{Shape, json, torus, weighted};
 use crate::work::run;
 
 /// A filtration, which is never changed.
 #[pyclass(frozen, module = "walpha._walpha")]
 pub struct Filtration(Arc<ladder::Filtration>);
 
-/// The columns of a curve: just above each critical value α, b0, b1, b2, solid components.
-type Columns<'py> = (Bound<'py, PyArray1<f64>>, [Bound<'py, PyArray1<u64>>; 4]);
+/// The columns of a curve: just above each critical value α, b0, b1, b2, solid components, and of a torus b3.
+type Columns<'py> = (Bound<'py, PyArray1<f64>>, Vec<Bound<'py, PyArray1<u64>>>);
 
 #[pymethods]
 impl Filtration {
@@ -28,15 +28,17 @@ impl Filtration {
         py: Python<'_>,
         points: PyReadonlyArray2<'_, f64>,
         weights: Option<PyReadonlyArray1<'_, f64>>,
+        periodic: Option<[f64; 3]>,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let torus = torus(periodic)?;
         let points = weighted(&points, weights.as_ref(), None)?;
         let positions = points.positions;
         let weights = points.weights.unwrap_or_else(|| vec![0.0; positions.len()]);
         let points = WeightedPoints { positions, weights, values: None };
         let made = run(py, progress.as_ref(), move |call| {
             call.begin(Stage::Filtration);
-            ladder::Filtration::new(points)
+            ladder::Filtration::on(torus, points)
         })?;
         Ok(Self(Arc::new(made)))
     }
@@ -95,11 +97,30 @@ impl Filtration {
             let curve = filtration.curve();
             let alphas: Vec<f64> = curve.alphas().collect();
             let column = |k: usize| curve.betti.iter().map(|&b| <[u64; 3]>::from(b)[k]).collect();
-            let columns: [Vec<u64>; 4] =
-                [column(0), column(1), column(2), curve.solid_components.clone()];
+            let mut columns: Vec<Vec<u64>> =
+                vec![column(0), column(1), column(2), curve.solid_components.clone()];
+            if filtration.torus().is_some() {
+                columns.push(curve.betti.iter().filter_map(|betti| betti.b3).collect());
+            }
             Ok::<_, ShapeError>((alphas, columns))
         })?;
-        Ok((alphas.into_pyarray(py), columns.map(|column| column.into_pyarray(py))))
+        let columns = columns.into_iter().map(|column| column.into_pyarray(py));
+        Ok((alphas.into_pyarray(py), columns.collect()))
+    }
+
+    /// The sides of the periodic box.
+    #[getter]
+    fn periodic(&self) -> Option<[f64; 3]> {
+        self.0.torus().map(|torus| torus.sides())
+    }
+
+    /// All simplices, their values and order, and the persistence pairs.
+    fn simplices(&self, py: Python<'_>, progress: Option<Bound<'_, PyAny>>) -> PyResult<Simplices> {
+        let filtration = Arc::clone(&self.0);
+        run(py, progress.as_ref(), move |call| {
+            call.begin(Stage::Order);
+            Ok::<_, ShapeError>(Simplices::of(&filtration.simplices()?))
+        })
     }
 
     /// Values of α to try, as JSON.
@@ -125,5 +146,111 @@ impl Filtration {
             call.begin(Stage::Alpha);
             Ok::<_, ShapeError>(filtration.optimal_alpha(components).squared())
         })
+    }
+}
+
+/// All simplices of a filtration by their numbers, which never change.
+#[pyclass(frozen, module = "walpha._walpha")]
+pub struct Simplices {
+    vertices: Vec<[u32; 1]>,
+    edges: Vec<[u32; 2]>,
+    facets: Vec<[u32; 3]>,
+    cells: Vec<[u32; 4]>,
+    /// From which α on each is there, on the boundary of another, inside: a row each.
+    intervals: Vec<[f64; 3]>,
+    ranks: Vec<u32>,
+    gabriel: Vec<bool>,
+    order: Vec<u32>,
+    pairs: ladder::Pairs,
+}
+
+impl Simplices {
+    fn of(ordered: &ladder::Ordered<'_>) -> Self {
+        let mut simplices = Self {
+            vertices: ordered.vertices().to_vec(),
+            edges: ordered.edges().to_vec(),
+            facets: ordered.facets().to_vec(),
+            cells: ordered.cells().to_vec(),
+            intervals: Vec::with_capacity(ordered.len()),
+            ranks: Vec::with_capacity(ordered.len()),
+            gabriel: Vec::with_capacity(ordered.len()),
+            order: ordered.order().to_vec(),
+            pairs: ordered.pairs().clone(),
+        };
+        for number in 0..ordered.len() as u32 {
+            let ladder::Entry { value, rank, gabriel, regular, interior, .. } =
+                ordered.simplex(number);
+            simplices.intervals.push([value, regular, interior]);
+            simplices.ranks.push(rank);
+            simplices.gabriel.push(gabriel);
+        }
+        simplices
+    }
+}
+
+#[pymethods]
+impl Simplices {
+    #[getter]
+    fn vertices<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the simplices are frozen.
+        unsafe { lend(&slf.get().vertices, slf.as_any()) }
+    }
+
+    #[getter]
+    fn edges<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the simplices are frozen.
+        unsafe { lend(&slf.get().edges, slf.as_any()) }
+    }
+
+    #[getter]
+    fn facets<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the simplices are frozen.
+        unsafe { lend(&slf.get().facets, slf.as_any()) }
+    }
+
+    #[getter]
+    fn cells<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the simplices are frozen.
+        unsafe { lend(&slf.get().cells, slf.as_any()) }
+    }
+
+    #[getter]
+    fn intervals<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        // SAFETY: the simplices are frozen.
+        unsafe { lend(&slf.get().intervals, slf.as_any()) }
+    }
+
+    #[getter]
+    fn ranks<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        self.ranks.clone().into_pyarray(py)
+    }
+
+    #[getter]
+    fn gabriel<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        self.gabriel.clone().into_pyarray(py)
+    }
+
+    #[getter]
+    fn order<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        self.order.clone().into_pyarray(py)
+    }
+
+    #[getter]
+    fn component_pairs<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the simplices are frozen.
+        unsafe { lend(&slf.get().pairs.components, slf.as_any()) }
+    }
+
+    #[getter]
+    fn void_pairs<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        // SAFETY: the simplices are frozen.
+        unsafe { lend(&slf.get().pairs.voids, slf.as_any()) }
+    }
+
+    /// Simplices that begin something which never ends: of dimension 0, 2 and 3.
+    #[getter]
+    fn lasting(&self) -> (Vec<u32>, Vec<u32>, Vec<u32>) {
+        let ladder::Pairs { lasting, lasting_voids, last, .. } = &self.pairs;
+        (lasting.clone(), lasting_voids.clone(), last.iter().copied().collect())
     }
 }

@@ -21,7 +21,7 @@ mod _walpha {
     #[pymodule_export]
     use super::complex::{Complex, compare};
     #[pymodule_export]
-    use super::filtration::Filtration;
+    use super::filtration::{Filtration, Simplices};
     #[pymodule_export]
     use super::shape::{Shape, alpha_shape};
     #[pymodule_export]

@@ -10,7 +10,7 @@ use walpha::export::{ExportOptions, Format, Target};
 use walpha::interpolate::{Grid, Interpolant, InterpolateError};
 use walpha::pipeline::{AlphaRule, Model};
 use walpha::progress::Stage;
-use walpha::shape::{Balls, Engine, ShapeOptions, Surface};
+use walpha::shape::{Balls, Engine, ShapeOptions, Surface, Torus};
 use walpha::volume::Dims;
 use walpha::{Alpha, AlphaShape, Pipeline, Points, Simplices, Weighting};
 
@@ -43,6 +43,11 @@ pub fn options(engine: &str, balls: &str, exterior: bool) -> PyResult<ShapeOptio
     Ok(ShapeOptions { engine, balls, exterior, ..ShapeOptions::new(Alpha::INFINITE) })
 }
 
+/// The periodic box by its sides.
+pub fn torus(sides: Option<[f64; 3]>) -> PyResult<Option<Torus>> {
+    sides.map(|sides| Torus::new(sides).map_err(Told::told)).transpose()
+}
+
 /// A name that is none of those an option has.
 pub fn unknown(option: &str, name: &str, known: &str) -> PyErr {
     wrong(format!("{option}={name:?} is unknown: there are {known}"))
@@ -68,9 +73,10 @@ pub fn alpha_shape(
     engine: &str,
     balls: &str,
     exterior: bool,
+    periodic: Option<[f64; 3]>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Shape> {
-    let options = options(engine, balls, exterior)?;
+    let options = ShapeOptions { periodic: torus(periodic)?, ..options(engine, balls, exterior)? };
     let points = weighted(&points, weights.as_ref(), values.as_ref())?;
     let pipeline = Pipeline::new().alpha(alpha_rule(alpha)).shape(options);
     let model = run(py, progress.as_ref(), move |call| {
@@ -214,8 +220,27 @@ impl Shape {
     }
 
     #[getter]
-    fn betti(&self) -> Option<(u64, u64, u64)> {
-        self.shape.betti().map(|betti| (betti.b0, betti.b1, betti.b2))
+    fn betti(&self) -> Option<(u64, u64, u64, Option<u64>)> {
+        self.shape.betti().map(|betti| (betti.b0, betti.b1, betti.b2, betti.b3))
+    }
+
+    /// The sides of the periodic box.
+    #[getter]
+    fn periodic(&self) -> Option<[f64; 3]> {
+        self.shape.options().periodic.map(|torus| torus.sides())
+    }
+
+    /// The shape laid out in space.
+    fn unwrapped(&self, py: Python<'_>) -> PyResult<Self> {
+        let shape = Arc::clone(&self.shape);
+        let unwrapped = run(py, None, move |_| Ok::<_, InterpolateError>(shape.unwrapped()))?;
+        Ok(Self { shape: Arc::new(unwrapped), facts: self.facts.clone() })
+    }
+
+    /// What the last points are copies of.
+    #[getter]
+    fn copies<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        self.shape.copies().to_vec().into_pyarray(py)
     }
 
     #[getter]
@@ -327,9 +352,14 @@ impl Shape {
                 "solid=True is for formats of boundaries: this one holds all simplices; omit it",
             ));
         }
+        if solid && self.shape.options().periodic.is_some() {
+            return Err(wrong(
+                "solid=True is for shapes in space: the boundary of one of a torus is cut open; omit it",
+            ));
+        }
         let options = ExportOptions { solid, ..ExportOptions::default() };
         let (shape, target) = (Arc::clone(&self.shape), Target::open(&path).map_err(Told::told)?);
-        run(py, None, move |_| target.write(|out| format.exporter(&options).write(&shape, out)))
+        run(py, None, move |_| target.write(|out| format.exporter(&options).write_any(&shape, out)))
     }
 }
 

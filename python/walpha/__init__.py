@@ -17,7 +17,7 @@ import atexit as _atexit
 from . import _walpha
 from ._check import Comparison, Complex, Finding, Verdict, check, compare
 from ._class import Class
-from ._filtration import BettiCurve, Filtration, Level, Suggestions, filtration
+from ._filtration import BettiCurve, Filtration, Level, Simplices, Suggestions, filtration
 from ._parts import Betti, Boundary, Component, Void
 from ._shape import AlphaShape, alpha_shape
 from ._volume import Selected, Volume, difference, haar, pipeline, read, select, weigh
@@ -37,6 +37,7 @@ __all__ = [
     "Finding",
     "Level",
     "Selected",
+    "Simplices",
     "Suggestions",
     "Verdict",
     "Void",

@@ -14,13 +14,29 @@ def floats(name, given, ndim):
 
 
 def points(given):
-    """Places, n×3. An empty list is no place."""
+    """Places, n×3; those of a plane, n×2, are at z = 0. An empty list is no place."""
     array = _numbers("points", given)
     if array.size == 0:
         array = array.reshape(0, 3)
+    if array.ndim == 2 and array.shape[1] == 2:
+        in_space = np.zeros((len(array), 3))
+        in_space[:, :2] = array
+        return in_space
     if array.ndim != 2 or array.shape[1] != 3:
-        raise ValueError(f"points have shape {array.shape}, expected (n, 3): x, y, z of each")
+        raise ValueError(f"points have shape {array.shape}, expected (n, 3) or (n, 2): x, y, z of each")
     return array.astype(np.float64, copy=False)
+
+
+def sides(given):
+    """The sides of a periodic box, or None."""
+    if given is None:
+        return None
+    array = np.asarray(given)
+    if array.ndim == 0:
+        array = np.repeat(array, 3)
+    if array.shape != (3,):
+        raise ValueError(f"periodic has shape {array.shape}: give the sides of the box along x, y and z")
+    return [float(side) for side in array]
 
 
 def samples(given):

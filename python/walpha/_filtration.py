@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from . import _arrays, _walpha
+from ._meshes import wanted
 from ._parts import Betti, Void
 from ._shape import AlphaShape, squared
 
@@ -22,6 +23,8 @@ class BettiCurve(NamedTuple):
         Components, tunnels, voids.
     solid_components : ndarray of uint64, (m,)
         Components of the cells, joined through facets.
+    b3 : ndarray of uint64, (m,), or None
+        Of a torus.
     """
 
     alpha: np.ndarray
@@ -29,6 +32,84 @@ class BettiCurve(NamedTuple):
     b1: np.ndarray
     b2: np.ndarray
     solid_components: np.ndarray
+    b3: np.ndarray | None = None
+
+
+class Simplices:
+    """Every simplex of a filtration, and when it comes.
+
+    Simplices have *numbers*: vertices first, then edges, facets, cells, those of one dimension in
+    lexicographic order of their vertices. All arrays but those of vertices are by these numbers.
+
+    Attributes
+    ----------
+    vertices, edges, facets, cells : ndarray of uint32, (m, 1) to (m, 4)
+        Input indices, ascending in each row.
+    values : ndarray of float64, (n,)
+        The α, squared lengths, from which on each is in the shape: the double nearest to the exact number.
+    ranks : ndarray of uint32, (n,)
+        The place of the exact number among all that are different, from 0: equal for equal numbers
+        only, even where two different ones have one nearest double.
+    gabriel : ndarray of bool, (n,)
+        Whether its own smallest orthogonal sphere is empty; else it comes with a simplex it is a face of.
+    regular, interior : ndarray of float64, (n,)
+        From which α on it is a face of another simplex of the shape, and off the boundary.
+    order : ndarray of uint32, (n,)
+        Numbers in the order in which simplices come: by exact value, dimension, vertices. Faces come
+        before what they are faces of.
+    component_pairs, void_pairs : ndarray of uint32, (k, 2)
+        Persistence pairs of dimensions 0 and 2 as numbers: what makes a component or shuts a void in, and
+        what ends it. Those that last no time are there too.
+    lasting : tuple of ndarray of uint32
+        What begins something that never ends, by dimension 0, 2 and 3; of a torus 1, 3 and 1.
+    """
+
+    def __init__(self, simplices):
+        self._simplices = simplices
+        self.vertices, self.edges = simplices.vertices, simplices.edges
+        self.facets, self.cells = simplices.facets, simplices.cells
+        self.values, self.regular, self.interior = simplices.intervals.T
+        self.ranks, self.gabriel, self.order = simplices.ranks, simplices.gabriel, simplices.order
+        self.component_pairs, self.void_pairs = simplices.component_pairs, simplices.void_pairs
+        self.lasting = tuple(np.array(numbers, np.uint32) for numbers in simplices.lasting)
+
+    def __len__(self):
+        return len(self.values)
+
+    def __iter__(self):
+        """Pairs in order: a tuple of vertices, and the value."""
+        rows = [row for table in self._tables() for row in table.tolist()]
+        for number in self.order.tolist():
+            yield tuple(rows[number]), float(self.values[number])
+
+    def __repr__(self):
+        counts = ", ".join(str(len(table)) for table in self._tables())
+        return f"<walpha.Simplices {counts} vertices, edges, facets, cells>"
+
+    def persistence(self, dimension):
+        """Intervals of dimension 0 or 2 that last some time.
+
+        Parameters
+        ----------
+        dimension : {0, 2}
+            Components or voids. Loops take a reduction of matrices: see :meth:`Filtration.simplex_tree`.
+
+        Returns
+        -------
+        ndarray of float64, (k, 2)
+            Values of birth and death, in order of death for 0 and of birth for 2; what never ends is
+            last and has inf.
+        """
+        if dimension not in (0, 2):
+            raise ValueError(f"dimension={dimension}: pairs are known of 0 and 2; see simplex_tree()")
+        pairs = self.component_pairs if dimension == 0 else self.void_pairs
+        lasting = self.lasting[0 if dimension == 0 else 1]
+        pairs = pairs[self.ranks[pairs[:, 0]] != self.ranks[pairs[:, 1]]]
+        never = np.column_stack([self.values[lasting], np.full(len(lasting), np.inf)])
+        return np.vstack([self.values[pairs], never])
+
+    def _tables(self):
+        return self.vertices, self.edges, self.facets, self.cells
 
 
 class Level(NamedTuple):
@@ -108,13 +189,16 @@ class Filtration:
         x, y, z.
     weights : array_like, (n,), optional
         ω, squared lengths, the same for every α. By default 0.
+    periodic : array_like, (3,), or float, optional
+        Sides of a box that repeats, as in :func:`alpha_shape`. No edge of the whole triangulation may
+        span half of it.
     progress : callable, optional
         ``progress(stage, done, total)``.
 
     Raises
     ------
     ValueError
-        As :func:`alpha_shape`.
+        As :func:`alpha_shape`, and points in one plane.
 
     Notes
     -----
@@ -128,9 +212,83 @@ class Filtration:
     13 (1994), doi:10.1145/174462.156635.
     """
 
-    def __init__(self, points, weights=None, *, progress=None):
+    def __init__(self, points, weights=None, *, periodic=None, progress=None):
         weights = None if weights is None else _arrays.floats("weights", weights, 1)
-        self._filtration = _walpha.Filtration(_arrays.points(points), weights, progress)
+        sides = _arrays.sides(periodic)
+        self._filtration = _walpha.Filtration(_arrays.points(points), weights, sides, progress)
+        self._simplices = None
+
+    @property
+    def periodic(self):
+        """tuple of float or None: the sides of the box that repeats, if one does."""
+        sides = self._filtration.periodic
+        return None if sides is None else tuple(sides)
+
+    def simplices(self, *, progress=None):
+        """Every simplex with its exact value, in order.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            ``progress(stage, done, total)``.
+
+        Returns
+        -------
+        Simplices
+            Computed once.
+        """
+        if self._simplices is None:
+            self._simplices = Simplices(self._filtration.simplices(progress))
+        return self._simplices
+
+    def simplex_tree(self, *, ranks=False):
+        """For GUDHI: a ``gudhi.SimplexTree`` of all simplices.
+
+        Parameters
+        ----------
+        ranks : bool
+            Give each simplex the rank of its value instead (:attr:`Simplices.ranks`): a whole number, so that
+            values which differ by less than doubles can tell stay apart. ``Simplices.values`` of one
+            simplex of a rank is its value.
+
+        Returns
+        -------
+        gudhi.SimplexTree
+            Its filtration values are squared lengths, as those of ``gudhi.AlphaComplex``.
+        """
+        gudhi = wanted("gudhi", "simplex_tree")
+        simplices = self.simplices()
+        values = simplices.ranks.astype(np.float64) if ranks else simplices.values
+        tree, first = gudhi.SimplexTree(), 0
+        for rows in simplices._tables():
+            # Faces first, so that each keeps its own value.
+            if len(rows):
+                of = np.ascontiguousarray(values[first : first + len(rows)])
+                tree.insert_batch(np.ascontiguousarray(rows.T.astype(np.int32)), of)
+            first += len(rows)
+        return tree
+
+    def dionysus(self, *, ranks=False):
+        """For Dionysus 2: a ``dionysus.Filtration`` of all simplices, in order.
+
+        Parameters
+        ----------
+        ranks : bool
+            As in :meth:`simplex_tree`.
+
+        Returns
+        -------
+        dionysus.Filtration
+            Not to be sorted again: faces come before what they are faces of.
+        """
+        dionysus = wanted("dionysus", "dionysus")
+        simplices = self.simplices()
+        values = simplices.ranks if ranks else simplices.values
+        tables = [row for table in simplices._tables() for row in table.tolist()]
+        made = dionysus.Filtration()
+        for number in simplices.order.tolist():
+            made.append(dionysus.Simplex(tables[number], float(values[number])))
+        return made
 
     def whole(self):
         """AlphaShape: the whole regular triangulation, α = ∞."""
@@ -211,6 +369,6 @@ class Filtration:
         return self._filtration.optimal_alpha(components, progress)
 
 
-def filtration(points, weights=None, *, progress=None):
+def filtration(points, weights=None, *, periodic=None, progress=None):
     """All alpha shapes of weighted points: a :class:`Filtration`, which see."""
-    return Filtration(points, weights, progress=progress)
+    return Filtration(points, weights, periodic=periodic, progress=progress)

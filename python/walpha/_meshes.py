@@ -10,9 +10,10 @@ from ._class import Class
 
 
 def to_pyvista(shape, what):
-    pyvista = _import("pyvista", "to_pyvista")
+    pyvista = wanted("pyvista", "to_pyvista")
+    shape = shape.unwrapped()
     if what == "boundary":
-        points, triangles, indices, _ = shape.boundary()
+        points, triangles, indices, _ = shape.boundary(solid=not len(shape.copies))
         faces = _with_sizes(triangles, np.int64)
         mesh = pyvista.PolyData(points, faces=faces) if len(triangles) else pyvista.PolyData()
     elif what == "cells":
@@ -31,7 +32,8 @@ def to_pyvista(shape, what):
 
 
 def to_meshio(shape):
-    meshio = _import("meshio", "to_meshio")
+    meshio = wanted("meshio", "to_meshio")
+    shape = shape.unwrapped()
     blocks, classes = [], []
     for kind, rows, of in (
         ("tetra", shape.cells, shape.cell_classes),
@@ -53,8 +55,9 @@ def to_meshio(shape):
 
 
 def to_trimesh(shape):
-    trimesh = _import("trimesh", "to_trimesh")
-    points, triangles, indices, _ = shape.boundary()
+    trimesh = wanted("trimesh", "to_trimesh")
+    shape = shape.unwrapped()
+    points, triangles, indices, _ = shape.boundary(solid=not len(shape.copies))
     # Processed, it would unite the vertices at which parts of the solid were cut apart.
     mesh = trimesh.Trimesh(points, triangles.astype(np.int64), process=False)
     mesh.vertex_attributes["index"] = indices
@@ -69,7 +72,7 @@ def _with_sizes(rows, dtype):
     return listed.ravel()
 
 
-def _import(name, method):
+def wanted(name, method):
     try:
         return importlib.import_module(name)
     except ImportError as error:

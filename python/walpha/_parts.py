@@ -17,12 +17,15 @@ class Betti(NamedTuple):
     b1 : int
         Independent tunnels.
     b2 : int
-        Voids.
+        Voids. Of a torus closed surfaces that bound nothing, those that go round it too.
+    b3 : int or None
+        Of a torus 1 if the shape is the whole of it, else 0. None in space.
     """
 
     b0: int
     b1: int
     b2: int
+    b3: int | None = None
 
 
 class Void(NamedTuple):
@@ -75,7 +78,10 @@ class Component(NamedTuple):
         Corners of its box, (x, y, z).
     voids : list of Void or None
         What its boundary shuts in, largest first. Another component may float in one: its volume
-        counts. None where the engine does not tell (``engine="reference"``, shapes of a filtration).
+        counts. None where the engine does not tell (``engine="reference"``, shapes of a filtration),
+        and of a torus.
+    rounds : int or None
+        Of a torus: in how many independent directions it goes round. Its box is that of one of its copies.
     """
 
     vertices: int
@@ -86,6 +92,7 @@ class Component(NamedTuple):
     low: tuple
     high: tuple
     voids: list | None
+    rounds: int | None = None
 
     @classmethod
     def of(cls, facts):
@@ -100,6 +107,7 @@ class Component(NamedTuple):
             tuple(facts["low"]),
             tuple(facts["high"]),
             None if voids is None else [Void.of(void) for void in voids],
+            facts.get("rounds"),
         )
 
 

@@ -150,7 +150,7 @@ class AlphaShape:
 
     @property
     def betti(self):
-        """Betti or None: components, tunnels and voids."""
+        """Betti or None: components, tunnels and voids; of a torus b3 too."""
         betti = self._shape.betti
         return None if betti is None else Betti(*betti)
 
@@ -166,7 +166,9 @@ class AlphaShape:
 
     @functools.cached_property
     def voids(self):
-        """list of Void: largest first, as many as ``betti.b2``.
+        """list of Void: largest first, in space as many as ``betti.b2``.
+
+        Of a torus those parts of the complement that do not go round it.
 
         With ``exterior=True`` they are made of exterior cells, and know the α that fills them.
         Without, they are what boundaries shut in: the volume of a component that floats in a void
@@ -186,6 +188,31 @@ class AlphaShape:
             raise ValueError("the voids of this shape are not known: make it with exterior=True")
         return sorted((void for voids in shut_in for void in voids), key=lambda void: -void.volume)
 
+    @property
+    def periodic(self):
+        """tuple of float or None: the sides of the box that repeats, if one does."""
+        sides = self._shape.periodic
+        return None if sides is None else tuple(sides)
+
+    @functools.cached_property
+    def copies(self):
+        """ndarray of uint32, (k,): of which points the last k are copies, in a shape laid out."""
+        return self._shape.copies
+
+    def unwrapped(self):
+        """A shape of a torus laid out in space.
+
+        Each simplex stands where its lowest coordinates are in the box; beyond the upper sides it has
+        copies of points, which come after all others (:attr:`copies`).
+
+        Returns
+        -------
+        AlphaShape
+            Classes, sizes, components and Betti numbers are those of the torus. The layout is cut
+            open along the sides of the box, so its boundary is not closed.
+        """
+        return AlphaShape(self._shape.unwrapped()) if self.periodic else self
+
     def boundary(self, solid=True):
         """The boundary of the solid part, as a triangle mesh.
 
@@ -202,6 +229,12 @@ class AlphaShape:
             Its triangles turn counter-clockwise seen from outside; the volume they enclose is
             :attr:`volume`.
         """
+        if self.periodic:
+            if solid:
+                raise ValueError(
+                    "the boundary of a shape of a torus is not closed in space: give solid=False"
+                )
+            return self.unwrapped().boundary(solid=False)
         return Boundary(*self._shape.boundary(solid))
 
     # The interpolant.
@@ -302,7 +335,7 @@ class AlphaShape:
     def __repr__(self):
         return (
             f"<walpha.AlphaShape α={self.alpha:g} (√α={self.alpha_radius:g}): {len(self.points)} points, "
-            f"{len(self.cells)} cells, volume {self.volume:g}, betti {tuple(self.betti or ())}>"
+            f"{len(self.cells)} cells, volume {self.volume:g}, betti {tuple(b for b in self.betti or () if b is not None)}>"
         )
 
     def _repr_html_(self):
@@ -324,6 +357,7 @@ def alpha_shape(
     exterior=False,
     balls="power",
     values=None,
+    periodic=None,
     progress=None,
 ):
     """The alpha shape of weighted points.
@@ -333,8 +367,9 @@ def alpha_shape(
 
     Parameters
     ----------
-    points : array_like, (n, 3)
-        x, y, z. Any real type, contiguous or not; taken as float64.
+    points : array_like, (n, 3) or (n, 2)
+        x, y, z, or the points of a plane. Any real type, contiguous or not; taken as float64. Points in one
+        plane or on one line get the shape that they have there: triangles or edges, no cells.
     weights : array_like, (n,), optional
         ω, squared lengths: at α a point is a ball of squared radius α + ω. By default 0.
     alpha : float or "auto"
@@ -351,6 +386,11 @@ def alpha_shape(
         "radius": a point is a ball of radius α + ω instead.
     values : array_like, (n,), optional
         Values that :meth:`AlphaShape.at` interpolates.
+    periodic : array_like, (3,), or float, optional
+        Sides of a box that repeats along x, y and z: the points are those of a torus, moved into the box
+        (:attr:`AlphaShape.points`). A row of input indices means the copies nearest to its first vertex,
+        along each axis; no edge may span half of the box. With ``4 * sqrt(alpha + max(weights))`` less
+        than each side, none does. ``betti.b3`` is 1 where the shape is the whole torus.
     progress : callable, optional
         ``progress(stage, done, total)``, called in this thread, at most 20 times a second: so many
         of ``total`` equal parts of a stage ("alpha", "shape", …) are done. A total of 0 says that a
@@ -363,8 +403,8 @@ def alpha_shape(
     Raises
     ------
     ValueError
-        Numbers that are NaN, infinite or absurd, fewer than four different points, points in one
-        plane, options that contradict each other.
+        Numbers that are NaN, infinite or absurd, no points, an edge that spans half of the periodic box,
+        options that contradict each other.
     MemoryError
         The system gives no more.
 
@@ -385,7 +425,15 @@ def alpha_shape(
     values = None if values is None else _arrays.floats("values", values, 1)
     rule = squared(alpha, alpha_radius)
     shape = _walpha.alpha_shape(
-        _arrays.points(points), weights, values, rule, engine, balls, exterior, progress
+        _arrays.points(points),
+        weights,
+        values,
+        rule,
+        engine,
+        balls,
+        exterior,
+        _arrays.sides(periodic),
+        progress,
     )
     return AlphaShape(shape)
 

@@ -26,7 +26,10 @@ class Shape:
     alpha: float
     exterior: bool
     measures: tuple[float, float, float]
-    betti: tuple[int, int, int] | None
+    betti: tuple[int, int, int, int | None] | None
+    periodic: list[float] | None
+    copies: _Indices
+    def unwrapped(self) -> Shape: ...
     hidden: _Indices | None
     duplicates: _Indices
     def classes(self) -> list[NDArray[np.uint8]]: ...
@@ -47,13 +50,35 @@ class Shape:
 
 @final
 class Filtration:
-    def __init__(self, points: _Floats, weights: _Floats | None, progress: _Progress) -> None: ...
+    periodic: list[float] | None
+    def __init__(
+        self,
+        points: _Floats,
+        weights: _Floats | None,
+        periodic: list[float] | None,
+        progress: _Progress,
+    ) -> None: ...
+    def simplices(self, progress: _Progress) -> Simplices: ...
     def whole(self) -> Shape: ...
     def shape(self, alpha: float, exterior: bool, progress: _Progress) -> Shape: ...
     def ladder(self, alphas: _Floats, progress: _Progress) -> str: ...
     def curve(self, progress: _Progress) -> tuple[_Floats, list[NDArray[np.uint64]]]: ...
     def suggestions(self, progress: _Progress) -> str: ...
     def optimal_alpha(self, components: int, progress: _Progress) -> float: ...
+
+@final
+class Simplices:
+    vertices: _Indices
+    edges: _Indices
+    facets: _Indices
+    cells: _Indices
+    intervals: _Floats
+    ranks: _Indices
+    gabriel: NDArray[np.bool_]
+    order: _Indices
+    component_pairs: _Indices
+    void_pairs: _Indices
+    lasting: tuple[list[int], list[int], list[int]]
 
 @final
 class Complex:
@@ -81,6 +106,7 @@ def alpha_shape(
     engine: str,
     balls: str,
     exterior: bool,
+    periodic: list[float] | None,
     progress: _Progress,
 ) -> Shape: ...
 def compare(a: Complex, b: Complex) -> tuple[bool, str, str]: ...

@@ -11,9 +11,10 @@ use serde::Serialize;
 use crate::check::schema::{FiltrationFile, PlacedComplex};
 use crate::check::{Comparison, Extent, certify_filtration, compare, enumerate};
 use crate::progress::Stage;
+use crate::shape::ShapeOptions;
 use crate::shown::shown;
 
-use super::args::{PipelineArgs, ShapeArgs};
+use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::judged::{self, Judged};
 use super::output::{name, tell};
 use super::progress::Progress;
@@ -46,6 +47,8 @@ pub struct Check {
     pipeline: PipelineArgs,
     #[command(flatten)]
     shape: ShapeArgs,
+    #[command(flatten)]
+    periodic: PeriodicArgs,
 }
 
 /// Points that `--enumerate` takes: more would take hours.
@@ -106,6 +109,7 @@ impl Check {
     /// Refuses options of how a complex is made.
     fn refuse_ours(&self, why: String) -> Result<(), Said> {
         let ours = ShapeArgs::augment_args(<PipelineArgs>::augment_args(Command::new("check")));
+        let ours = PeriodicArgs::augment_args(ours);
         let options = ours.get_arguments().filter(|arg| !arg.is_positional());
         let names: Vec<&str> = options.map(|arg| arg.get_id().as_str()).collect();
         self.pipeline.input.given.refuse(&names, why)
@@ -113,20 +117,22 @@ impl Check {
 
     /// The shape of INPUT, by an engine.
     fn made(&self, path: &Path, progress: &mut Progress) -> anyhow::Result<PlacedComplex> {
-        self.shape.check(self.pipeline.weights.alpha())?;
+        let periodic = self.periodic.periodic;
+        self.shape.check(self.pipeline.weights.alpha(), periodic)?;
         if self.points.is_some() {
             misused!("--points belongs to a complex (.json, .npz), and {} is none", shown(path) => "omit it");
         }
         let given = &self.pipeline.input.given;
         given.refuse(&["refit"], "values are not judged")?;
-        let mut options = self.shape.options();
+        let mut options = ShapeOptions { periodic, ..self.shape.options() };
         let stages = pipeline::stages(&self.pipeline);
         let (weighed, _) = pipeline::weighted_points(&self.pipeline, stages, progress)?;
         // The whole triangulation can be judged wholly. Several blocks are judged as they are.
         options.exterior |=
             options.blocks.is_none_or(|blocks| blocks.get() == 1) && options.memory.is_none();
         let model = pipeline::shape(weighed, options, progress)?;
-        Ok(PlacedComplex::from(model.shape.claim()))
+        let sides = periodic.map(|torus| torus.sides());
+        Ok(PlacedComplex::from(model.shape.claim()).with_periodic(sides))
     }
 
     /// Judges a complex.
@@ -137,12 +143,15 @@ impl Check {
         mut progress: Progress,
     ) -> anyhow::Result<ExitCode> {
         let n = judged.positions.len();
+        if self.enumerate && judged.periodic.is_some() {
+            refused!("--enumerate knows no periodic box" => "omit it");
+        }
         if self.enumerate && n > MOST_ENUMERATED {
             refused!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}" => "omit it");
         }
         let (claim, complex) = (judged.claim(), &judged.complex);
         let started = Instant::now();
-        let (findings, certificate) = progress.stage(Stage::Certify, || claim.findings())?;
+        let (findings, certificate) = progress.stage(Stage::Certify, || judged.findings())?;
         let seconds = started.elapsed().as_secs_f64();
         let enumeration = if self.enumerate {
             Some(progress.stage(Stage::Enumerate, || by_definition(judged))?)

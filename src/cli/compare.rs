@@ -53,6 +53,9 @@ impl Compare {
         let read = |path: &Path| judged::read(path, None);
         match (read(&self.a)?, read(&self.b)?) {
             (Judged::Complex(a), Judged::Complex(b)) => {
+                if a.periodic.or(b.periodic).is_some() {
+                    refused!("complexes of a periodic box are not compared: their simplices have no one place" => "judge each with `walpha check`");
+                }
                 let comparison = compare(a.placed(), b.placed())?;
                 self.tell(global, comparison.is_equal(), comparison)
             }

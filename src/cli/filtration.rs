@@ -14,7 +14,7 @@ use crate::ladder::{self, Ordered};
 use crate::pipeline::{Parameter, Weighed};
 use crate::progress::Stage;
 
-use super::args::FrozenPipelineArgs;
+use super::args::{FrozenPipelineArgs, PeriodicArgs};
 use super::formats::filtration_output;
 use super::output::{name, tell};
 use super::progress::Progress;
@@ -42,6 +42,8 @@ pub struct Filtration {
     output: Vec<PathBuf>,
     #[command(flatten)]
     pipeline: FrozenPipelineArgs,
+    #[command(flatten)]
+    periodic: PeriodicArgs,
 }
 
 #[derive(Serialize)]
@@ -96,8 +98,10 @@ impl Filtration {
         input.given.refuse(&["refit"], "a filtration has no values")?;
         let stages = pipeline::stages(&self.pipeline);
         let (weighed, _) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
+        let torus = self.periodic.periodic;
+        weighed.check_periodic(torus)?;
         let filtration = progress
-            .stage(Stage::Filtration, || ladder::Filtration::new(weighed.points.clone()))?;
+            .stage(Stage::Filtration, || ladder::Filtration::on(torus, weighed.points.clone()))?;
         let ordered = progress.stage(Stage::Order, || filtration.simplices())?;
         progress.stage(Stage::Write, || {
             write_all(targets.into_iter().map(|(target, format)| {

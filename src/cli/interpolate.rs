@@ -149,7 +149,7 @@ impl Interpolate {
             return curve::run(global, &self.pipeline, base);
         }
         self.pipeline.input.check_format(self.output.iter())?;
-        self.shape.check(self.pipeline.weights.alpha())?;
+        self.shape.check(self.pipeline.weights.alpha(), None)?;
         let output = match &self.output {
             None => None,
             Some(path) => {

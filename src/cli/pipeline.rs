@@ -186,6 +186,9 @@ pub fn stages<W: Args + Copy + Into<WeightArgs>>(args: &PipelineArgs<W>) -> Pipe
 
 /// The same up to a shape.
 pub fn stages_to(args: &PipelineArgs, shape: ShapeOptions) -> Result<Pipeline, Said> {
+    if shape.periodic.is_some() {
+        args.input.given.refuse(&["refit"], "a periodic box repeats, and F is fitted in space")?;
+    }
     if args.refit.refit == Some(Refit::Whole) && shape.memory.is_some() {
         misused!("--memory has no effect: --refit fits values on the whole triangulation" => "omit it, or give --refit=shape");
     }

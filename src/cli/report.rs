@@ -358,8 +358,14 @@ impl ShapeReport {
         writeln!(f, "facets    {}", Line(&self.facets))?;
         writeln!(f, "edges     {}", Line(&self.edges))?;
         writeln!(f, "vertices  {}", Line(&self.vertices))?;
-        if let Some(Betti { b0, b1, b2 }) = self.betti {
-            writeln!(f, "topology  {b0} components, {b1} tunnels, {b2} voids")?;
+        match self.betti {
+            None => {}
+            Some(Betti { b0, b1, b2, b3: None }) => {
+                writeln!(f, "topology  {b0} components, {b1} tunnels, {b2} voids")?;
+            }
+            Some(Betti { b0, b1, b2, b3: Some(b3) }) => {
+                writeln!(f, "topology  b0 = {b0}, b1 = {b1}, b2 = {b2}, b3 = {b3} on the torus")?;
+            }
         }
         writeln!(f, "volume    {:.6} {unit}³", self.volume)?;
         let (area, singular) = (self.area, self.singular_area);

@@ -11,7 +11,7 @@ use crate::pipeline::PipelineError;
 use crate::points::{UnknownColumns, UnknownWeighting};
 #[cfg(feature = "paper")]
 use crate::reproduce::ReproduceError;
-use crate::shape::{AlphaError, PlanError, ShapeError};
+use crate::shape::{AlphaError, PlanError, ShapeError, TorusError};
 use crate::triangulation::{SitesError, TriangulationError};
 use crate::volume::{UnknownFormat, UnknownName};
 use crate::{PointsError, VolumeError};
@@ -95,6 +95,7 @@ advising![
     ShapeError,
     SitesError,
     TargetError,
+    TorusError,
     TriangulationError,
     UnknownColumns,
     UnknownFormat,

@@ -11,7 +11,7 @@ use crate::shape::{ShapeOptions, Surface};
 use crate::shown::shown;
 use crate::volume::UnknownFormat;
 
-use super::args::{PipelineArgs, ShapeArgs};
+use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::formats::shape_output;
 use super::output::tell;
 use super::picture::PictureArgs;
@@ -29,6 +29,8 @@ use super::{Global, pipeline};
 /// walpha shape sample:skull --weights min-max --alpha 10 -o skull.ply skull.vtu
 ///
 /// walpha shape scan.xyz --alpha auto --solid -o scan.stl
+///
+/// walpha shape foam.xyz --periodic 20,20,20 --alpha 1.5 -o foam.npz foam.vtu
 #[derive(Args)]
 pub struct Shape {
     #[arg(short, long, value_name = "FILE", num_args = 1.., help = shape_output())]
@@ -52,6 +54,8 @@ pub struct Shape {
     pipeline: PipelineArgs,
     #[command(flatten)]
     shape: ShapeArgs,
+    #[command(flatten)]
+    periodic: PeriodicArgs,
     #[command(flatten)]
     picture: PictureArgs,
 }
@@ -82,7 +86,10 @@ impl Shape {
                 _ => names.concat(),
             }
         };
-        self.shape.check(self.pipeline.weights.alpha())?;
+        self.shape.check(self.pipeline.weights.alpha(), self.periodic.periodic)?;
+        if self.solid && self.periodic.periodic.is_some() {
+            misused!("--solid is for shapes in space, and the boundary of one of a torus is cut open at the sides of the box" => "omit it, or omit --periodic");
+        }
         if !names.iter().any(|name| PictureArgs::wanted(name)) {
             input.given.refuse(&PictureArgs::NAMES, "no picture (.png) is written")?;
         }
@@ -125,7 +132,8 @@ impl Shape {
 
         let mut progress = Progress::new(global);
         let refuse_flat = self.dimension.is_some();
-        let options = ShapeOptions { refuse_flat, ..self.shape.options() };
+        let periodic = self.periodic.periodic;
+        let options = ShapeOptions { refuse_flat, periodic, ..self.shape.options() };
         let stages = pipeline::stages_to(&self.pipeline, options)?;
         let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
@@ -143,7 +151,7 @@ impl Shape {
         progress.stage(Stage::Write, || {
             write_all(targets.into_iter().map(|(target, exporter)| {
                 let shape = &shape;
-                let content = move |out: &mut dyn Write| exporter.write(shape, out);
+                let content = move |out: &mut dyn Write| exporter.write_any(shape, out);
                 (target, Box::new(content) as Content<'_>)
             }))
         })?;

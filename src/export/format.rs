@@ -15,6 +15,23 @@ pub trait Exporter {
     /// Whatever `out` returns.
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()>;
 
+    /// Whether what it writes can say that a box repeats.
+    fn knows_torus(&self) -> bool {
+        false
+    }
+
+    /// Writes the whole file, of a shape of a torus as it is [laid out](AlphaShape::unwrapped) where the format
+    /// knows no torus.
+    ///
+    /// # Errors
+    /// Whatever `out` returns.
+    fn write_any(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        match shape.options().periodic {
+            Some(_) if !self.knows_torus() => self.write(&shape.unwrapped(), out),
+            _ => self.write(shape, out),
+        }
+    }
+
     /// What whoever reads the file should know of this shape, if anything.
     fn remark(&self, _shape: &AlphaShape) -> Option<Advice> {
         None

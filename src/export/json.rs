@@ -11,8 +11,13 @@ use crate::shape::AlphaShape;
 pub struct Json;
 
 impl Exporter for Json {
+    fn knows_torus(&self) -> bool {
+        true
+    }
+
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let mut file = ComplexFile::new(shape.claim());
+        file.periodic = shape.options().periodic.map(|torus| torus.sides());
         file.info = Some(serde_json::json!({
             "program": concat!("walpha ", env!("CARGO_PKG_VERSION")),
             "balls": shape.options().balls,

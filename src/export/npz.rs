@@ -18,6 +18,10 @@ use crate::shape::{AlphaShape, Class, NO_COMPONENT};
 pub struct Npz;
 
 impl Exporter for Npz {
+    fn knows_torus(&self) -> bool {
+        true
+    }
+
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let (points, complex) = (shape.points(), shape.complex());
         let mut archive = Archive::new(ZipWriter::new(Cursor::new(Vec::new())));
@@ -36,6 +40,9 @@ impl Exporter for Npz {
             archive.list("hidden", hidden)?;
         }
         archive.rows("duplicates", shape.duplicates())?;
+        if let Some(torus) = shape.options().periodic {
+            archive.list("periodic", &torus.sides())?;
+        }
         if let Some(values) = &points.values {
             archive.list("values", values)?;
         }

@@ -47,6 +47,11 @@ pub enum InterpolateError {
         /// Steps of conjugate gradients.
         steps: usize,
     },
+    /// The shape is one of a torus, and places are those of space.
+    #[error(
+        "a shape of a periodic box cannot be interpolated: it repeats, and the interpolant is one of space"
+    )]
+    Periodic,
     /// The points make no shape.
     #[error(transparent)]
     Shape(#[from] ShapeError),
@@ -76,6 +81,7 @@ impl InterpolateError {
             }
             Self::Fit { .. } => "keep the samples' own values".into(),
             Self::Target { .. } => "give a number from 0 up".into(),
+            Self::Periodic => "lay the shape out in space first (AlphaShape::unwrapped)".into(),
             Self::Shape(error) => return error.advice(),
             Self::Points(error) => return error.advice(),
             Self::Haar(error) => return error.advice(),

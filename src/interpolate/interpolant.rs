@@ -64,12 +64,15 @@ impl<'a> Interpolant<'a> {
     /// The interpolant of other values, one for each point of a shape. O(n).
     ///
     /// # Errors
-    /// A value that is not finite.
+    /// A value that is not finite; a shape of a periodic box.
     ///
     /// # Panics
     /// When there are not as many values as points.
     pub fn with_values(shape: &'a AlphaShape, values: &'a [f64]) -> Result<Self, InterpolateError> {
         assert_eq!(values.len(), shape.points().len(), "a value for each point");
+        if shape.options().periodic.is_some() {
+            return Err(InterpolateError::Periodic);
+        }
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
             return Err(InterpolateError::Value { index, value: values[index] });
         }

@@ -7,7 +7,7 @@ use crate::memory;
 use crate::points::WeightedPoints;
 use crate::progress::{Share, report, within};
 use crate::shape::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape};
-use crate::triangulation::{Interval, Predicates};
+use crate::triangulation::{Interval, Predicates, Torus};
 
 /// All alpha shapes of a set of points at once: the regular triangulation, and for each simplex
 /// when it comes.
@@ -37,11 +37,20 @@ impl Filtration {
     /// # Errors
     /// As [`alpha_shape`] with [`ShapeOptions::refuse_flat`].
     pub fn new(points: WeightedPoints) -> Result<Self, ShapeError> {
-        let engine = Engine::Native;
+        Self::on(None, points)
+    }
+
+    /// The same of the points of a torus, if there is one: shapes are then those of
+    /// [`ShapeOptions::periodic`].
+    ///
+    /// # Errors
+    /// As [`alpha_shape`] at α = ∞; so no edge of the whole triangulation may span half of the box.
+    pub fn on(torus: Option<Torus>, points: WeightedPoints) -> Result<Self, ShapeError> {
         let options = ShapeOptions {
-            engine,
+            engine: Engine::Native,
             exterior: true,
             refuse_flat: true,
+            periodic: torus,
             ..ShapeOptions::new(Alpha::INFINITE)
         };
         let share = |from, to| Share { from, to, of: 8 };
@@ -53,7 +62,8 @@ impl Filtration {
         let done = |parts| within(share(4, 8), || report(parts, 4));
         let incidence = Incidence::of(complex, whole.points().len());
         done(1);
-        let spheres = Predicates::new(&whole.points().positions, &whole.points().weights);
+        let WeightedPoints { positions, weights, .. } = whole.points();
+        let spheres = Predicates::on_torus(positions, weights, torus);
         let cells =
             complex.cells.rows().par_iter().map(|&cell| spheres.squared_radius(cell)).collect();
         done(2);
@@ -80,6 +90,11 @@ impl Filtration {
         self.whole.points()
     }
 
+    /// The periodic box, if there is one.
+    pub fn torus(&self) -> Option<Torus> {
+        self.whole.options().periodic
+    }
+
     /// The shape at α = ∞: all simplices of the triangulation.
     pub fn whole(&self) -> &AlphaShape {
         &self.whole
@@ -93,7 +108,8 @@ impl Filtration {
     }
 
     pub(super) fn spheres(&self) -> Predicates<'_> {
-        Predicates::new(&self.points().positions, &self.points().weights)
+        let WeightedPoints { positions, weights, .. } = self.points();
+        Predicates::on_torus(positions, weights, self.torus())
     }
 }
 

@@ -2,6 +2,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::levels::{ByLevel, Span};
+use super::voids::Closed;
 use super::{Filtration, Levels};
 use crate::shape::{Alpha, Betti, ByClass, Class, Measures, Void, facet_area, six_volumes};
 
@@ -65,10 +66,12 @@ impl Levels<'_> {
     pub fn ladder(&self, domain: f64) -> Ladder {
         let ((voids, betti), (solid, measures)) = rayon::join(
             || {
-                let voids = self.voids();
-                let counts: Vec<u64> = voids.iter().map(|voids| voids.len() as u64).collect();
-                let betti = self.betti_with(&counts);
-                (voids, betti)
+                let mut voids = vec![Vec::new(); self.len()];
+                let mut closed = vec![Closed::default(); self.len()];
+                self.descend(|level, complement| {
+                    (voids[level], closed[level]) = (complement.voids(), complement.closed());
+                });
+                (voids, self.betti_with(&closed))
             },
             || (self.solid_components(), self.measures()),
         );
@@ -97,18 +100,17 @@ impl Levels<'_> {
 
     /// Volume and areas of each level.
     fn measures(&self) -> Vec<Measures> {
-        let whole = self.filtration.whole.complex();
-        let positions = &self.filtration.points().positions;
-        let at = |v: u32| positions[v as usize];
+        let whole = &self.filtration.whole;
+        let cells = whole.complex().cells.rows();
         let volumes = self.fixed_order_sums(&self.cells, |row, &first, sums| {
             // Summed up over the levels below.
             if let Some(sum) = sums.get_mut(first as usize) {
-                sum[0] += six_volumes(whole.cells.rows()[row].map(at));
+                sum[0] += six_volumes(whole.corners(cells[row]));
             }
         });
         let areas = self.fixed_order_sums(&self.facets, |row, span, sums| {
             if span.first < span.interior {
-                let area = facet_area(self.filtration.incidence.facets[row].map(at));
+                let area = facet_area(whole.corners(self.filtration.incidence.facets[row]));
                 let [first, regular, last] =
                     [span.first, span.regular, span.interior].map(|level| level as usize);
                 sums[first..regular].iter_mut().for_each(|sum| sum[1] += area);

@@ -3,6 +3,7 @@
 use super::Levels;
 use super::incidence::Incidence;
 use super::levels::ByLevel;
+use super::voids::Closed;
 use crate::shape::{Betti, UnionFind};
 
 impl Levels<'_> {
@@ -64,20 +65,19 @@ impl Levels<'_> {
         sums.take(self.len()).collect()
     }
 
-    /// The Betti numbers of each level, given the number of its voids: b1 = b0 + b2 − χ.
-    pub(super) fn betti_with(&self, voids: &[u64]) -> Vec<Betti> {
-        let parts = self.components().into_iter().zip(voids).zip(self.euler_characteristics());
-        let betti = |((b0, &b2), euler): ((u64, &u64), i64)| {
-            let b1 = (b0 + b2) as i64 - euler;
-            Betti { b0, b1: u64::try_from(b1).expect("b1 counts something"), b2 }
+    /// The Betti numbers of each level, of which some are given: b1 = b0 + b2 − b3 − χ.
+    pub(super) fn betti_with(&self, closed: &[Closed]) -> Vec<Betti> {
+        let parts = self.components().into_iter().zip(closed).zip(self.euler_characteristics());
+        let betti = |((b0, closed), euler): ((u64, &Closed), i64)| {
+            Betti::with_euler(b0, closed.b2, closed.b3, euler)
         };
         parts.map(betti).collect()
     }
 
     /// The Betti numbers of each level. O(n α(n)).
     pub fn betti(&self) -> Vec<Betti> {
-        let mut voids = vec![0; self.len()];
-        self.descend(|level, complement| voids[level] = complement.bounded());
-        self.betti_with(&voids)
+        let mut closed = vec![Closed::default(); self.len()];
+        self.descend(|level, complement| closed[level] = complement.closed());
+        self.betti_with(&closed)
     }
 }

@@ -8,7 +8,7 @@ use super::Filtration;
 use crate::math::number::lowest_bit;
 use crate::points::WeightedPoints;
 use crate::shape::Alpha;
-use crate::triangulation::{Interval, Predicates};
+use crate::triangulation::{Interval, Predicates, Torus};
 
 /// A critical value of α, as far as it is known.
 #[derive(Clone, Copy, Debug)]
@@ -63,9 +63,9 @@ impl Filtration {
         let ends = clusters.iter().copied().skip(1).chain([radii.len()]);
         let clusters: Vec<_> =
             clusters.iter().zip(ends).map(|(&from, to)| &radii[from..to]).collect();
-        let sites = self.points();
         let spheres = self.spheres();
-        let firsts = Firsts { filtration: self, spheres: &spheres, exact: is_small_lattice(sites) };
+        let exact = is_small_lattice(self.points(), self.torus());
+        let firsts = Firsts { filtration: self, spheres: &spheres, exact };
         let split = |known: &mut HashMap<Key, f64>, cluster: &&[(Interval, Row)]| match cluster {
             [(radius, row)] => vec![Value::Of(*row, radius.high)],
             several => {
@@ -123,16 +123,16 @@ impl Firsts<'_> {
         if !self.exact || N == 1 {
             return exactly();
         }
-        *known.entry(key(self.filtration.points(), simplex)).or_insert_with(exactly)
+        *known.entry(key(self.filtration, simplex)).or_insert_with(exactly)
     }
 }
 
 /// What the squared radius of a simplex is a function of. Exact on a small lattice only.
-pub(super) fn key<const N: usize>(points: &WeightedPoints, mut simplex: [u32; N]) -> Key {
-    let WeightedPoints { positions, weights, .. } = points;
+pub(super) fn key<const N: usize>(filtration: &Filtration, mut simplex: [u32; N]) -> Key {
+    let weights = &filtration.points().weights;
     // By weight: congruent simplices may have their vertices in another order.
     simplex.sort_unstable_by(|&a, &b| weights[a as usize].total_cmp(&weights[b as usize]));
-    let corners = simplex.map(|v| positions[v as usize]);
+    let corners = filtration.whole.corners(simplex);
     let pairs = (0..N).flat_map(|i| (0..i).map(move |j| (i, j)));
     let distances =
         pairs.map(|(i, j)| (0..3).map(|k| (corners[i][k] - corners[j][k]).powi(2)).sum::<f64>());
@@ -144,8 +144,10 @@ pub(super) fn key<const N: usize>(points: &WeightedPoints, mut simplex: [u32; N]
 
 /// Whether coordinates are multiples of a power of two below 2²⁵, so that squared distances are
 /// integers below 2⁵³ in its square.
-pub(super) fn is_small_lattice(points: &WeightedPoints) -> bool {
-    let coordinates = || points.positions.as_flattened().par_iter().copied();
+pub(super) fn is_small_lattice(points: &WeightedPoints, torus: Option<Torus>) -> bool {
+    let sides = torus.map(|torus| torus.sides());
+    let sides = sides.as_slice().as_flattened();
+    let coordinates = || points.positions.as_flattened().par_iter().chain(sides).copied();
     let lowest = coordinates().filter_map(lowest_bit).min().unwrap_or(0);
     let largest = coordinates().map(f64::abs).reduce(|| 0.0, f64::max);
     // Squares of units must not be lost below the smallest double.

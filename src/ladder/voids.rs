@@ -6,14 +6,14 @@ use std::collections::BTreeMap;
 use super::Levels;
 use super::incidence::Incidence;
 use super::levels::ByLevel;
-use crate::shape::{Hollow, UnionFind, Void};
-use crate::triangulation::Predicates;
+use crate::shape::{Directions, Hollow, UnionFind, United, Void, WindingSets, between};
+use crate::triangulation::{Predicates, Torus};
 
 /// What a level leaves empty: the components of its complement.
 pub(super) struct Hollows<'a> {
     levels: &'a Levels<'a>,
     spheres: Predicates<'a>,
-    sets: UnionFind,
+    sets: Sets,
     /// The hollow of each component, at its root.
     hollows: Vec<Hollow>,
     /// Roots, and cells that were roots once.
@@ -25,9 +25,33 @@ pub(super) struct Hollows<'a> {
     known: BTreeMap<u32, (usize, f64)>,
 }
 
+/// Betti numbers that the complement says.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Closed {
+    pub b2: u64,
+    pub b3: Option<u64>,
+}
+
+/// Cells that are united.
+enum Sets {
+    /// With the outside, which is one past the last cell.
+    InSpace(UnionFind),
+    /// And the directions in which all of them together go round.
+    OnTorus(Torus, WindingSets, Directions),
+}
+
+impl Sets {
+    fn find(&mut self, cell: u32) -> u32 {
+        match self {
+            Self::InSpace(sets) => sets.find(cell),
+            Self::OnTorus(_, sets, _) => sets.find(cell).0,
+        }
+    }
+}
+
 impl Levels<'_> {
-    /// The hole ledger: the voids of each level, as many as its second Betti number, largest first
-    /// as in [`AlphaShape::voids`](crate::AlphaShape::voids).
+    /// The hole ledger: the voids of each level, in space as many as its second Betti number, largest
+    /// first as in [`AlphaShape::voids`](crate::AlphaShape::voids).
     /// O(n α(n)) and the length of the answer.
     pub fn voids(&self) -> Vec<Vec<Void>> {
         let mut voids = vec![Vec::new(); self.len()];
@@ -40,20 +64,25 @@ impl Levels<'_> {
         let incidence = &self.filtration.incidence;
         let cells = ByLevel::new(self.len(), self.cells.iter().copied());
         let facets = ByLevel::new(self.len(), self.facets.iter().map(|span| span.first));
-        let complex = self.filtration.whole.complex();
-        let positions = &self.filtration.points().positions;
-        let hollow = |(row, cell): (usize, &[u32; 4])| {
-            let corners = cell.map(|v| positions[v as usize]);
-            Hollow::of(self.filtration.cells[row], corners)
+        let whole = &self.filtration.whole;
+        let hollow = |(row, &cell): (usize, &[u32; 4])| {
+            Hollow::of(self.filtration.cells[row], whole.corners(cell))
         };
         let outside = self.cells.len() as u32;
+        let (sets, count) = match self.filtration.torus() {
+            None => (Sets::InSpace(UnionFind::new(self.cells.len() + 1)), 1),
+            Some(torus) => {
+                let sets = WindingSets::new(self.cells.len());
+                (Sets::OnTorus(torus, sets, Directions::default()), 0)
+            }
+        };
         let mut complement = Hollows {
             levels: self,
             spheres: self.filtration.spheres(),
-            sets: UnionFind::new(self.cells.len() + 1),
-            hollows: complex.cells.rows().iter().enumerate().map(hollow).collect(),
+            sets,
+            hollows: whole.complex().cells.rows().iter().enumerate().map(hollow).collect(),
             roots: Vec::new(),
-            count: 1,
+            count,
             next: (0..outside).collect(),
             known: BTreeMap::new(),
         };
@@ -62,9 +91,9 @@ impl Levels<'_> {
             complement.count += gone.len() as u64;
             complement.roots.extend_from_slice(gone);
             for &facet in facets.at(level + 1) {
-                let [a, b] = incidence.facet_cells[facet as usize]
+                let sides = incidence.facet_cells[facet as usize]
                     .map(|side| if side == Incidence::OUTSIDE { outside } else { side });
-                complement.join(a, b);
+                complement.join(sides, incidence.facets[facet as usize][0]);
             }
             visit(level, &mut complement);
         }
@@ -72,13 +101,36 @@ impl Levels<'_> {
 }
 
 impl Hollows<'_> {
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.sets.find(a), self.sets.find(b));
-        if !self.sets.unite(a, b) {
-            return;
+    /// Unites the cells beside a facet that has this vertex.
+    fn join(&mut self, [a, b]: [u32; 2], vertex: u32) {
+        let roots = [self.sets.find(a), self.sets.find(b)];
+        let (low, high) = (roots[0].min(roots[1]), roots[0].max(roots[1]));
+        let filtration = self.levels.filtration;
+        let joined = match &mut self.sets {
+            Sets::InSpace(sets) => {
+                sets.unite(a, b);
+                low != high
+            }
+            Sets::OnTorus(torus, sets, rounds) => {
+                let cells = filtration.whole.complex().cells.rows();
+                let cells = [cells[a as usize], cells[b as usize]];
+                let way = between(*torus, cells, vertex, &filtration.points().positions);
+                let united = sets.unite(a, b, way);
+                if let United::Round(way) = united {
+                    rounds.add(way);
+                }
+                self.hollows[high as usize].moved(*torus, sets.find(high).1);
+                united == United::Two
+            }
+        };
+        if joined {
+            self.add_up(low as usize, high as usize);
         }
+    }
+
+    /// Accounts for a component that became part of another.
+    fn add_up(&mut self, root: usize, other: usize) {
         self.count -= 1;
-        let (root, other) = (a.min(b) as usize, a.max(b) as usize);
         // The outside is the last set of all and keeps no account.
         if other < self.hollows.len() {
             self.next.swap(root, other);
@@ -87,15 +139,32 @@ impl Hollows<'_> {
         }
     }
 
-    /// The number of voids.
-    pub fn bounded(&self) -> u64 {
-        self.count - 1
+    /// The Betti numbers that the number of components determines, and on a torus the directions in which they
+    /// go round: b2 and b3 (Alexander duality, and on a torus the exact sequence of the pair of it and the
+    /// complement: H₁(complement) → H₁(torus) → H²(shape) → H₀(complement) → H₀(torus) → H³(shape)).
+    pub fn closed(&self) -> Closed {
+        match &self.sets {
+            Sets::InSpace(_) => Closed { b2: self.count - 1, b3: None },
+            Sets::OnTorus(.., rounds) => {
+                let b3 = u64::from(self.count == 0);
+                Closed { b2: self.count + b3 + 2 - rounds.rank() as u64, b3: Some(b3) }
+            }
+        }
     }
 
-    fn voids(&mut self) -> Vec<Void> {
-        let outside = self.sets.find(self.hollows.len() as u32);
+    /// Whether a component, named by its root, is bounded.
+    fn is_bounded(&mut self, root: u32) -> bool {
+        let outside = self.hollows.len() as u32;
+        match &mut self.sets {
+            Sets::InSpace(sets) => sets.find(outside) != root,
+            Sets::OnTorus(_, sets, _) => sets.rounds(root).is_none(),
+        }
+    }
+
+    pub fn voids(&mut self) -> Vec<Void> {
         let mut roots = std::mem::take(&mut self.roots);
-        roots.retain(|&root| self.sets.find(root) == root && root != outside);
+        // What goes round once always will.
+        roots.retain(|&root| self.sets.find(root) == root && self.is_bounded(root));
         let void = |&root: &u32| {
             let alpha = self.filling(root);
             self.hollows[root as usize].void(alpha)

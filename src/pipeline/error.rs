@@ -29,6 +29,11 @@ pub enum PipelineError {
         /// The radius of the α that was found.
         radius: f64,
     },
+    /// Weights of scattered points from differences to neighbours, on a torus.
+    #[error(
+        "these weights come from differences to neighbours, and those beyond the sides of a periodic box are not looked for"
+    )]
+    PeriodicWeights,
 }
 
 impl PipelineError {
@@ -40,6 +45,9 @@ impl PipelineError {
             Self::Interpolate(error) => error.advice(),
             Self::Shape(error) => error.advice(),
             Self::Alpha(error) => Some(error.advice().into()),
+            Self::PeriodicWeights => {
+                Some(advice!["give weights as a column of the input, or omit ", Setting::Periodic])
+            }
             Self::Radii { radius } => {
                 Some(advice!["give a number, as in ", Setting::Alpha, format!(" {radius}")])
             }

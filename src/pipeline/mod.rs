@@ -15,7 +15,7 @@ use crate::points::{
     points_at, scattered_difference, select, weigh,
 };
 use crate::progress::{Share, Stage, within};
-use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, alpha_shape};
+use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, Torus, alpha_shape};
 use crate::volume::{Coordinates, GrayRange, Volume};
 
 /// Which samples of a volume become points.
@@ -259,7 +259,8 @@ impl Pipeline {
         mut weighed: Weighed,
         hear: &mut dyn FnMut(Stage),
     ) -> Result<Model, PipelineError> {
-        let parameter = weighed.find_parameter(hear)?;
+        weighed.check_periodic(self.shape.periodic)?;
+        let parameter = weighed.find_on(self.shape.periodic, hear)?;
         let options = self.options(parameter)?;
         hear(Stage::Shape);
         let Weighed { points, origin, .. } = weighed;
@@ -377,13 +378,33 @@ impl Weighed {
         &mut self,
         hear: &mut dyn FnMut(Stage),
     ) -> Result<Parameter, PipelineError> {
+        self.find_on(None, hear)
+    }
+
+    /// The same of a torus, if there is one.
+    fn find_on(
+        &mut self,
+        torus: Option<Torus>,
+        hear: &mut dyn FnMut(Stage),
+    ) -> Result<Parameter, PipelineError> {
         if let Some(parameter) = self.parameter {
             return Ok(parameter);
         }
         hear(Stage::Alpha);
-        let found = Parameter::find(&self.points, self.origin.coordinates.unit)?;
+        let found = Parameter::find(&self.points, torus, self.origin.coordinates.unit)?;
         self.parameter = Some(found);
         Ok(found)
+    }
+
+    /// Whether the points may be those of a torus: weights of scattered points that come from differences
+    /// to neighbours know nothing of the copies beyond the sides of the box.
+    ///
+    /// # Errors
+    /// [`PipelineError::PeriodicWeights`].
+    pub fn check_periodic(&self, torus: Option<Torus>) -> Result<(), PipelineError> {
+        let Origin { weighting, truncation, .. } = self.origin;
+        let scattered = truncation.is_none() && weighting.needs_differences();
+        if torus.is_some() && scattered { Err(PipelineError::PeriodicWeights) } else { Ok(()) }
     }
 }
 

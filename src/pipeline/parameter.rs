@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::PipelineError;
 use crate::ladder::Filtration;
 use crate::points::{Points, Units, WeightedPoints, Weighting, weigh};
-use crate::shape::{Alpha, AlphaError, ShapeError, flat_region, number_or_null_or_name};
+use crate::shape::{Alpha, AlphaError, ShapeError, Torus, flat_region, number_or_null_or_name};
 use crate::shown::{number, six_digits};
 use crate::volume::{LengthUnit, Volume};
 
@@ -117,9 +117,13 @@ impl Parameter {
     }
 
     /// The same of points that are triangulated for it; where they lie in one plane or on one line,
-    /// [`flat_region`].
-    pub(super) fn find(points: &WeightedPoints, unit: LengthUnit) -> Result<Self, ShapeError> {
-        match Filtration::new(points.clone()) {
+    /// [`flat_region`]; of a torus, if there is one.
+    pub(super) fn find(
+        points: &WeightedPoints,
+        torus: Option<Torus>,
+        unit: LengthUnit,
+    ) -> Result<Self, ShapeError> {
+        match Filtration::on(torus, points.clone()) {
             Err(error) if error.is_flat() => {
                 Ok(Self { alpha: flat_region(points)?, unit, origin: ParameterOrigin::Auto })
             }
@@ -132,7 +136,8 @@ impl Parameter {
         points: &Points,
         unit: LengthUnit,
     ) -> Result<Self, PipelineError> {
-        let found = Self::find(&weigh(points, Weighting::Common(0.0), Alpha::INFINITE)?, unit)?;
+        let points = weigh(points, Weighting::Common(0.0), Alpha::INFINITE)?;
+        let found = Self::find(&points, None, unit)?;
         Ok(Self { origin: ParameterOrigin::AutoUnweighted, ..found })
     }
 

@@ -3,16 +3,21 @@ use std::num::NonZeroUsize;
 use serde::{Deserialize, Serialize};
 use walpha_check::{Claim, Placed};
 
-use super::blocks::{self, Limits, Plan, PlanError, Question};
+use rayon::prelude::*;
+
+use super::blocks::{self, Limits, Plan, PlanError, Question, Reach};
 use super::canonical::canonical;
 use super::flat::{self, flat};
-use super::topology::sheet_betti;
+use super::measure::together;
+use super::parts::wound;
+use super::topology::{sheet_betti, torus_betti};
 use super::{Alpha, Balls, Betti, Complex, Measures, Sheets, Simplices, direct_betti};
 use crate::advice::{Advice, Setting, advice};
-use crate::math::Lattice;
 use crate::memory::NoMemory;
 use crate::points::WeightedPoints;
-use crate::triangulation::{Maker, Sites, SitesError, TriangulationError, is_flat};
+use crate::triangulation::{
+    Maker, Sites, SitesError, Torus, TriangulationError, check_numbers, is_flat, lattice,
+};
 use crate::volume::Coordinates;
 
 /// Which program computes the shape; all give the same answer.
@@ -51,6 +56,8 @@ pub struct ShapeOptions {
     /// Whether points in one plane, on one line, or fewer than four are an error. Otherwise their shape
     /// is the one in their plane or on their line, without cells.
     pub refuse_flat: bool,
+    /// The box that repeats, if one does: the points are those of a torus, of which the shape is.
+    pub periodic: Option<Torus>,
 }
 
 impl ShapeOptions {
@@ -64,6 +71,7 @@ impl ShapeOptions {
             blocks: None,
             memory: None,
             refuse_flat: false,
+            periodic: None,
         }
     }
 
@@ -71,8 +79,11 @@ impl ShapeOptions {
     ///
     /// # Errors
     /// [`ShapeError::Unbounded`] and [`ShapeError::Exterior`]: blocks, or a bound on memory, for what
-    /// takes the whole triangulation.
+    /// takes the whole triangulation; [`ShapeError::Unrepeated`].
     pub fn check(&self) -> Result<(), ShapeError> {
+        if self.periodic.is_some() && self.engine == Engine::Reference {
+            return Err(ShapeError::Unrepeated);
+        }
         if let Some(blocks) = self.blocks.map(NonZeroUsize::get)
             && self.exterior
             && blocks > 1
@@ -93,12 +104,14 @@ impl ShapeOptions {
 /// triangulation, by input index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlphaShape {
-    points: WeightedPoints,
+    pub(super) points: WeightedPoints,
     coordinates: Coordinates,
-    options: ShapeOptions,
+    pub(super) options: ShapeOptions,
     /// Weights (α + ω)², where the balls are read so.
-    squared: Option<Vec<f64>>,
-    complex: Complex,
+    pub(super) squared: Option<Vec<f64>>,
+    pub(super) complex: Complex,
+    /// What the last points are copies of, where a torus is laid out in space.
+    pub(super) copies: Vec<u32>,
     duplicates: Vec<[u32; 2]>,
     hidden: Option<Vec<u32>>,
     betti: Option<Betti>,
@@ -148,6 +161,27 @@ pub enum ShapeError {
         /// The blocks asked for.
         blocks: usize,
     },
+    /// The reference engine knows no periodic boxes.
+    #[error(
+        "the reference engine is CGAL's alpha shape of points in space, which knows no periodic box"
+    )]
+    Unrepeated,
+    /// An edge is so long that its ends do not say which of their copies it joins.
+    #[error(
+        "the edge between points {} and {} spans {span} along {axis}, half of the periodic box ({side}) or \
+         more: its ends would not say which of their copies it joins",
+        edge[0], edge[1]
+    )]
+    Wraps {
+        /// Input indices; equal for an edge from a point to its own copy.
+        edge: [u32; 2],
+        /// The axis along which it spans most of the box.
+        axis: char,
+        /// How much it spans.
+        span: f64,
+        /// The side of the box along that axis.
+        side: f64,
+    },
 }
 
 /// What takes the whole triangulation.
@@ -190,6 +224,16 @@ impl ShapeError {
                 let (memory, engine) = (Setting::Memory, Setting::Engine);
                 advice!["omit ", memory, ", or use ", engine, " native or ", engine, " cgal"]
             }
+            Self::Unrepeated => {
+                advice!["use ", Setting::Engine, " native or ", Setting::Engine, " cgal"]
+            }
+            Self::Wraps { axis, .. } => advice![
+                "lower ",
+                Setting::Alpha,
+                format!(
+                    ", or repeat the points along {axis}, and make the box as many times as long"
+                )
+            ],
             Self::Exterior { .. } => {
                 advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Exterior]
             }
@@ -218,15 +262,26 @@ impl From<SitesError> for ShapeError {
 /// and nothing is interior. Ties are broken as in space. It is made in one piece, whatever blocks were
 /// asked for.
 ///
+/// With [`ShapeOptions::periodic`] the shape is that of a torus. Its points are those given, moved into the
+/// box and rounded as [`Torus::wrap`] does. A simplex of the torus is listed once, by the input indices of
+/// its vertices; its copies in space are those that have all other vertices nearer to the first than half of
+/// the box, along each axis ([`AlphaShape::corners`]). Where an edge that is to be listed is longer, that
+/// would not be so: [`ShapeError::Wraps`]. With 4 √(α + max ω) less than the shortest side there is no
+/// such edge. At α = ∞ the shape is the whole torus.
+///
 /// # Errors
 /// NaN or absurd numbers, no points, and with [`ShapeOptions::refuse_flat`] fewer than four different
 /// places and points in one plane or on one line: see [`SitesError`]; a negative radius:
 /// [`ShapeError::Radius`]; options that do not go together: [`ShapeOptions::check`].
 pub fn alpha_shape(
-    points: WeightedPoints,
+    mut points: WeightedPoints,
     options: &ShapeOptions,
 ) -> Result<AlphaShape, ShapeError> {
     options.check()?;
+    if let Some(torus) = options.periodic {
+        check_numbers(&points.positions, &points.weights)?;
+        points.positions.par_iter_mut().for_each(|place| *place = torus.wrap(*place));
+    }
     let squared = match options.balls {
         Balls::Power => None,
         Balls::Radius => Some(squared_radii(&points.weights, options.alpha)?),
@@ -243,8 +298,17 @@ pub fn alpha_shape(
         complex.retain_shape();
     }
     let (counted, measures) = rayon::join(
-        || boundary.as_ref().map(|(b0, sheets)| sheet_betti(&complex, *b0, sheets)),
-        || Measures::of(&complex, &points.positions),
+        || {
+            let (b0, sheets, windings) = boundary.as_ref()?;
+            Some(match options.periodic {
+                None => sheet_betti(&complex, *b0, sheets),
+                Some(torus) => {
+                    let wound = wound(&complex, &points.positions, torus);
+                    torus_betti(&complex, wound.directions().rank(), sheets, *windings)
+                }
+            })
+        },
+        || Measures::of(&complex, &points.positions, options.periodic),
     );
     Ok(AlphaShape {
         points,
@@ -252,10 +316,11 @@ pub fn alpha_shape(
         options: *options,
         squared,
         complex,
+        copies: Vec::new(),
         duplicates,
         hidden,
         betti: direct.or(counted),
-        sheets: boundary.map(|(_, sheets)| sheets),
+        sheets: boundary.map(|(_, sheets, _)| sheets),
         measures,
     })
 }
@@ -263,8 +328,9 @@ pub fn alpha_shape(
 /// What an engine found.
 struct Found {
     complex: Complex,
-    /// The number of components and the sheets of the boundary, where the engine knows them.
-    boundary: Option<(u64, Sheets)>,
+    /// The number of components and the sheets of the boundary, where the engine knows them, and in how
+    /// many directions the sheets go round a torus.
+    boundary: Option<(u64, Sheets, usize)>,
     /// Sites that are not vertices, where the engine saw the whole triangulation.
     hidden: Option<Vec<u32>>,
     duplicates: Vec<[u32; 2]>,
@@ -277,7 +343,10 @@ fn in_space(
     weights: &[f64],
     options: &ShapeOptions,
 ) -> Result<Found, ShapeError> {
-    let sites = Sites::new(positions, weights)?;
+    let sites = match options.periodic {
+        None => Sites::new(positions, weights)?,
+        Some(torus) => Sites::on_torus(positions, weights, torus)?,
+    };
     match options.engine {
         Engine::Reference => by_reference(&sites, power_alpha(options).squared()),
         Engine::Cgal => by_blocks(&sites, Maker::Cgal, options),
@@ -317,12 +386,13 @@ fn by_blocks(sites: &Sites<'_>, maker: Maker, options: &ShapeOptions) -> Result<
     let plan = if options.exterior || alpha.is_infinite() {
         Plan::whole(sites)
     } else {
-        Plan::new(sites, alpha, maker, Limits { blocks: asked, memory: options.memory })?
+        let reach = Reach::at(sites, alpha, largest);
+        Plan::new(sites, reach, maker, Limits { blocks: asked, memory: options.memory })?
     };
-    let lattice = Lattice::of(sites.positions(), sites.weights());
+    let lattice = lattice(sites.positions(), sites.weights(), sites.torus());
     let question = Question { alpha, lattice, exterior: options.exterior, maker };
     let answer = blocks::run(sites, &plan, &question)?;
-    let boundary = Some((answer.b0, Sheets::of(&answer)));
+    let boundary = Some((answer.b0, Sheets::of(&answer), answer.sheet_windings));
     let duplicates = sites.duplicates().to_vec();
     Ok(Found { complex: answer.complex, boundary, hidden: answer.hidden, duplicates, direct: None })
 }
@@ -358,13 +428,14 @@ impl AlphaShape {
     /// The shape of the same points with the same power weights at another α, which the caller has
     /// found within this one's triangulation.
     pub(crate) fn at(&self, alpha: Alpha, exterior: bool, complex: Complex, betti: Betti) -> Self {
-        let measures = Measures::of(&complex, &self.points.positions);
+        let measures = Measures::of(&complex, &self.points.positions, self.options.periodic);
         Self {
             points: self.points.clone(),
             coordinates: self.coordinates,
             options: ShapeOptions { alpha, exterior, ..self.options },
             squared: self.squared.clone(),
             complex,
+            copies: Vec::new(),
             duplicates: self.duplicates.clone(),
             hidden: self.hidden.clone(),
             betti: Some(betti),
@@ -384,9 +455,21 @@ impl AlphaShape {
         self.coordinates
     }
 
-    /// The points as they were given, duplicates and hidden ones included.
+    /// The points as they were given, duplicates and hidden ones included; of a torus, in its box.
     pub fn points(&self) -> &WeightedPoints {
         &self.points
+    }
+
+    /// The places of a simplex's vertices; on a torus the first is in the box, and the others are the
+    /// copies nearest to it.
+    pub fn corners<const N: usize>(&self, row: [u32; N]) -> [[f64; 3]; N] {
+        together(self.options.periodic, row.map(|v| self.points.positions[v as usize]))
+    }
+
+    /// What points are copies of, in a shape that is [laid out](Self::unwrapped): of the last points, in
+    /// their order.
+    pub fn copies(&self) -> &[u32] {
+        &self.copies
     }
 
     /// How the shape was made.

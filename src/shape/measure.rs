@@ -3,6 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Class, Complex};
 use crate::math::vector::{cross, dot, length, sub};
+use crate::triangulation::Torus;
 
 /// Sizes of a shape in the units of its points, summed in double precision in a fixed order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -16,15 +17,15 @@ pub struct Measures {
 }
 
 impl Measures {
-    /// Measures a shape. Rounded sums; the same on any number of threads. O(n).
-    pub fn of(complex: &Complex, positions: &[[f64; 3]]) -> Self {
+    /// Measures a shape, of a torus perhaps. Rounded sums; the same on any number of threads. O(n).
+    pub fn of(complex: &Complex, positions: &[[f64; 3]], torus: Option<Torus>) -> Self {
         let at = |v: u32| positions[v as usize];
         let area = |class| {
             fixed_order_sum(complex.facets.rows(), |i, facet| {
                 if complex.facets.classes()[i] != class {
                     return 0.0;
                 }
-                facet_area(facet.map(at))
+                facet_area(together(torus, facet.map(at)))
             })
         };
         // Divided last: sums of determinants on a lattice are whole numbers.
@@ -32,10 +33,19 @@ impl Measures {
             if complex.cells.classes()[i] != Class::Interior {
                 return 0.0;
             }
-            six_volumes(cell.map(at))
+            six_volumes(together(torus, cell.map(at)))
         }) / 6.0;
         Self { volume, area: area(Class::Regular), singular_area: area(Class::Singular) }
     }
+}
+
+/// The corners of a simplex; of a torus those that belong together.
+#[inline]
+pub(crate) fn together<const N: usize>(
+    torus: Option<Torus>,
+    corners: [[f64; 3]; N],
+) -> [[f64; 3]; N] {
+    torus.map_or(corners, |torus| torus.together(corners))
 }
 
 /// The area of a triangle.

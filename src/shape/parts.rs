@@ -4,7 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::blocks::Answer;
 use super::union_find::UnionFind;
+use super::winding::WindingSets;
 use super::{AlphaShape, Class, Complex, facet_area, six_volumes};
+use crate::triangulation::Torus;
 
 /// The sheets of a shape's boundary: the connected pieces of its outside seen closely. A component
 /// has one around it and one for each of its voids. They are numbered from 0 in the order in which
@@ -81,8 +83,13 @@ pub struct Component {
     pub low: [f64; 3],
     /// The largest coordinates of its box, (x, y, z).
     pub high: [f64; 3],
-    /// What its boundary encloses, largest first; `None` where sheets are not known.
+    /// What its boundary encloses, largest first; `None` where sheets are not known, and on a torus, where
+    /// not every sheet encloses something ([`AlphaShape::voids`]).
     pub voids: Option<Vec<Enclosed>>,
+    /// On a torus: in how many independent directions it goes round. Its box is that of one of its copies, and
+    /// along axes that it goes round the whole side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rounds: Option<usize>,
 }
 
 /// A void by the sheet around it. Another component may float in it: its volume counts here.
@@ -106,6 +113,11 @@ impl AlphaShape {
     /// Components are numbered in the order of their smallest vertices. O(n).
     pub fn component_numbers(&self) -> Vec<u32> {
         let mut sets = connected(self.complex());
+        // Copies of a point are where the point is.
+        let first_copy = (self.points().len() - self.copies.len()) as u32;
+        for (copy, &of) in (first_copy..).zip(&self.copies) {
+            sets.unite(copy, of);
+        }
         let mut numbers = vec![NO_COMPONENT; self.points().len()];
         let mut count = 0;
         for (&[v], class) in self.complex().vertices.iter() {
@@ -128,11 +140,15 @@ impl AlphaShape {
     pub fn components(&self) -> Vec<Component> {
         let numbers = self.component_numbers();
         let positions = &self.points().positions;
-        let at = |v: u32| positions[v as usize];
+        let torus = self.options().periodic;
+        let mut wound = torus.map(|torus| (torus, wound(self.complex(), positions, torus)));
         let number = |v: u32| numbers[v as usize] as usize;
         let mut components: Vec<Component> = Vec::new();
         for &[v] in self.complex().vertices.rows() {
-            let point = at(v);
+            let mut point = positions[v as usize];
+            if let Some((torus, wound)) = &mut wound {
+                point = torus.moved(point, wound.find(v).1);
+            }
             match number(v) {
                 n if n == NO_COMPONENT as usize => {}
                 n if n == components.len() => components.push(Component::at(point)),
@@ -142,10 +158,10 @@ impl AlphaShape {
         for cell in self.complex().cells.of(Class::Interior) {
             let component = &mut components[number(cell[0])];
             component.cells += 1;
-            component.volume += six_volumes(cell.map(at));
+            component.volume += six_volumes(self.corners(*cell));
         }
         for (facet, class) in self.complex().facets.iter() {
-            let area = || facet_area(facet.map(at));
+            let area = || facet_area(self.corners(*facet));
             match class {
                 Class::Regular => components[number(facet[0])].area += area(),
                 Class::Singular => components[number(facet[0])].singular_area += area(),
@@ -156,13 +172,35 @@ impl AlphaShape {
         for component in &mut components {
             component.volume /= 6.0;
         }
-        if let Some(sheets) = self.sheets() {
+        if let Some((torus, wound)) = wound {
+            self.go_round(&mut components, &numbers, torus, wound);
+        } else if let Some(sheets) = self.sheets() {
             components.iter_mut().for_each(|component| component.voids = Some(Vec::new()));
             for (component, void) in self.enclosed(sheets, &numbers) {
                 components[component].voids.get_or_insert_default().push(void);
             }
         }
         components
+    }
+
+    /// Says how components go round a torus.
+    fn go_round(
+        &self,
+        components: &mut [Component],
+        numbers: &[u32],
+        torus: Torus,
+        mut wound: WindingSets,
+    ) {
+        components.iter_mut().for_each(|component| component.rounds = Some(0));
+        for &[v] in self.complex().vertices.rows() {
+            let (root, _) = wound.find(v);
+            let Some(directions) = wound.rounds(root).filter(|_| root == v) else { continue };
+            let component = &mut components[numbers[v as usize] as usize];
+            component.rounds = Some(directions.rank());
+            for axis in (0..3).filter(|&axis| directions.has(axis)) {
+                (component.low[axis], component.high[axis]) = (0.0, torus.sides()[axis]);
+            }
+        }
     }
 
     /// Sheets that enclose a void, with their components, largest first.
@@ -212,6 +250,7 @@ impl Component {
             low: point,
             high: point,
             voids: None,
+            rounds: None,
         }
     }
 
@@ -219,6 +258,19 @@ impl Component {
         self.vertices += 1;
         widen(&mut self.low, &mut self.high, point);
     }
+}
+
+/// The vertices of a shape of a torus, united by its edges.
+pub(super) fn wound(complex: &Complex, positions: &[[f64; 3]], torus: Torus) -> WindingSets {
+    let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
+    let mut sets = WindingSets::new(points);
+    for (&[a, b], class) in complex.edges.iter() {
+        if class != Class::Exterior {
+            let [from, to] = [a, b].map(|v| positions[v as usize]);
+            sets.unite(a, b, torus.windings(from, to));
+        }
+    }
+    sets
 }
 
 /// The vertices of a shape, united by its edges.

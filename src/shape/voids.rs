@@ -3,9 +3,10 @@ use std::cmp::Ordering;
 use serde::{Deserialize, Serialize};
 
 use super::measure::six_volumes;
-use super::topology::Complement;
+use super::topology::{Complement, complement_on};
+use super::winding::{Winding, WindingSets};
 use super::{Alpha, AlphaShape, Class};
-use crate::triangulation::{Interval, Predicates};
+use crate::triangulation::{Interval, Predicates, Torus};
 
 /// A void of a shape: a bounded component of its complement, made of exterior cells.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,6 +57,11 @@ impl Hollow {
         Self { cells: 1, six_volumes, low: end(f64::min), high: end(f64::max), radius }
     }
 
+    /// The same at another copy of it on a torus.
+    pub fn moved(&mut self, torus: Torus, way: Winding) {
+        (self.low, self.high) = (torus.moved(self.low, way), torus.moved(self.high, way));
+    }
+
     /// Takes in another.
     pub fn join(&mut self, other: &Self) {
         self.cells += other.cells;
@@ -96,7 +102,9 @@ impl Hollow {
 }
 
 impl AlphaShape {
-    /// The voids of the shape, as many as its second Betti number: largest first, ties by box.
+    /// The voids of the shape, as many as its second Betti number: largest first, ties by box. Of a torus those
+    /// components of the complement that do not go round it, so that they are bounded in space, too; each lies
+    /// where one of its copies does. What goes round is no void, and the second Betti number is another.
     /// `None` unless the shape was made with its exterior simplices
     /// ([`ShapeOptions::exterior`](super::ShapeOptions::exterior)): voids are made of them.
     ///
@@ -108,21 +116,53 @@ impl AlphaShape {
     }
 }
 
+/// What is bounded of a complement, by cells.
+enum Bounded {
+    InSpace(Complement),
+    OnTorus(Torus, WindingSets),
+}
+
+impl Bounded {
+    fn of(shape: &AlphaShape) -> Self {
+        let (whole, positions) = (shape.complex(), &shape.points().positions);
+        match shape.options().periodic {
+            None => Self::InSpace(Complement::of(whole)),
+            Some(torus) => Self::OnTorus(torus, complement_on(torus, whole, positions)),
+        }
+    }
+
+    /// The component of an exterior cell, named by its first cell, if it is bounded; and the cell's corners,
+    /// where it lies beside the component's others.
+    fn place(&mut self, cell: u32, corners: [[f64; 3]; 4]) -> Option<(u32, [[f64; 3]; 4])> {
+        match self {
+            Self::InSpace(complement) => {
+                let component = complement.component(cell);
+                (component != complement.outside()).then_some((component, corners))
+            }
+            Self::OnTorus(torus, sets) => {
+                let (component, way) = sets.find(cell);
+                let bounded = sets.rounds(component).is_none();
+                bounded.then(|| (component, corners.map(|corner| torus.moved(corner, way))))
+            }
+        }
+    }
+}
+
 fn voids(shape: &AlphaShape) -> Vec<Void> {
     let cells = &shape.complex().cells;
-    let positions = &shape.points().positions;
-    let mut complement = Complement::of(shape.complex());
-    let outside = complement.outside();
-    let spheres = Predicates::new(positions, shape.power_weights());
+    let mut bounded = Bounded::of(shape);
+    let (positions, weights) = (&shape.points().positions, shape.power_weights());
+    let spheres = Predicates::on_torus(positions, weights, shape.options().periodic);
     // By the component's number, which is its first cell's.
     let mut found: Vec<Option<Hollow>> = vec![None; cells.len() + 1];
     let mut inside = Vec::new();
     for (id, (&cell, class)) in cells.iter().enumerate() {
-        let component = complement.component(id as u32);
-        if class != Class::Exterior || component == outside {
+        if class != Class::Exterior {
             continue;
         }
-        let corners = cell.map(|v| positions[v as usize]);
+        let Some((component, corners)) = bounded.place(id as u32, shape.corners(cell)) else {
+            continue;
+        };
         let radius = spheres.squared_radius(cell);
         let hollow = Hollow::of(radius, corners);
         match &mut found[component as usize] {

@@ -22,12 +22,16 @@ mod flat;
 mod native;
 mod predicates;
 mod sites;
+mod torus;
 
 pub use error::{SitesError, TriangulationError};
 pub(crate) use flat::{Flat, is_flat, triangulate_flat};
 pub(crate) use native::{Digger, Growing};
-pub(crate) use predicates::{Interval, Predicates, Ratio, Screen, SmallRadius};
+pub(crate) use predicates::{Interval, Predicates, Ratio, Screen, SmallRadius, lattice};
+pub(crate) use sites::check as check_numbers;
 pub use sites::{MAX_COORDINATE, MAX_WEIGHT, Sites};
+pub(crate) use torus::AXES;
+pub use torus::{Torus, TorusError};
 
 /// A regular triangulation: its cells, and which lie beside each other.
 ///

@@ -2,8 +2,8 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use super::SitesError;
 use super::curve::{self, Keyed};
+use super::{SitesError, Torus};
 
 /// Weighted points of space (or, with `D` = 2, of the plane) that can be triangulated: all numbers
 /// finite and of sane magnitude, no two places equal. Checked once, then trusted. In space at least
@@ -17,6 +17,8 @@ pub struct Sites<'a, const D: usize = 3> {
     duplicates: Vec<[u32; 2]>,
     /// The sites in an order in which neighbours are near each other in space.
     curve: Vec<u32>,
+    /// The box that repeats, if one does: all positions are in it.
+    torus: Option<Torus>,
 }
 
 /// The largest coordinate accepted, 2⁵⁰⁰ ≈ 3.3e150: its square, and so every power distance, is still a
@@ -48,6 +50,24 @@ impl<'a> Sites<'a> {
         if sites.input.is_empty() { Err(SitesError::Empty) } else { Ok(sites) }
     }
 
+    /// The same for points of a torus, all of them in its box: those of space are their copies.
+    ///
+    /// # Errors
+    /// No point, and what [`SitesError`] says of numbers.
+    pub(crate) fn on_torus(
+        positions: &'a [[f64; 3]],
+        weights: &'a [f64],
+        torus: Torus,
+    ) -> Result<Self, SitesError> {
+        debug_assert!(positions.iter().all(|&place| torus.wrap(place) == place));
+        Ok(Self { torus: Some(torus), ..Self::any(positions, weights)? })
+    }
+
+    /// The box that repeats, if one does.
+    pub(crate) fn torus(&self) -> Option<Torus> {
+        self.torus
+    }
+
     /// The sites along a Hilbert curve.
     pub(crate) fn curve(&self) -> &[u32] {
         &self.curve
@@ -77,6 +97,7 @@ impl<'a, const D: usize> Sites<'a, D> {
                 input: (0..positions.len() as u32).collect(),
                 duplicates,
                 curve: curve.into_par_iter().map(|(_, point)| point).collect(),
+                torus: None,
             });
         }
         const GONE: u32 = u32::MAX;
@@ -92,6 +113,7 @@ impl<'a, const D: usize> Sites<'a, D> {
             curve: along.filter(|&at| at != GONE).collect(),
             input,
             duplicates,
+            torus: None,
         })
     }
 
@@ -118,7 +140,10 @@ impl<'a, const D: usize> Sites<'a, D> {
 }
 
 /// Whether every number is in the range of the predicates; coordinates are x, y and, in space, z.
-fn check<const D: usize>(positions: &[[f64; D]], weights: &[f64]) -> Result<(), SitesError> {
+pub(crate) fn check<const D: usize>(
+    positions: &[[f64; D]],
+    weights: &[f64],
+) -> Result<(), SitesError> {
     if positions.len() != weights.len() {
         return Err(SitesError::Lengths { positions: positions.len(), weights: weights.len() });
     }

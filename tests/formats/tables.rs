@@ -83,7 +83,7 @@ fn every_reader_is_fuzzed() {
     bins.for_each(|path| assert!(file(&path).contains("fuzz_target!"), "{path}"));
     let of_volumes = volume::FORMATS.iter().flat_map(|format| format.fuzzed_by).copied();
     let of_points = points::FORMATS.iter().map(|format| format.fuzzed_by);
-    let complexes = ["complex", "check_json", "check_npz"];
+    let complexes = ["complex", "check_json", "check_npz", "filtration"];
     let wanted: BTreeSet<&str> = of_volumes.chain(of_points).chain(complexes).collect();
     assert_eq!(targets, wanted);
     // A file without a header is for its user to describe.

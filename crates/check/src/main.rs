@@ -1,23 +1,25 @@
 //! `walpha-check`: judges complexes in files.
 
+use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use walpha_check::schema::{ComplexFile, PlacedComplex, SchemaError};
+use walpha_check::schema::{AnyFile, SchemaError};
+use walpha_check::{CertifyError, CertifyFiltrationError, Unjudged, certify_filtration};
 
 /// Judge weighted alpha shapes exactly.
 ///
 /// Each FILE is a complex in JSON or NPZ: points, power weights, α, simplices and, if known, their
-/// classes. Findings name the simplex and the rule that it breaks.
+/// classes; or a filtration: every simplex, when it comes, and the order. Findings name the simplex and the rule that it breaks.
 ///
 /// Exit code: 0 if nothing is found, 1 if a file cannot be judged, 2 for a wrong command line, 3 if
 /// something is found.
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
-    /// Complexes: .json or .npz.
+    /// Complexes and filtrations: .json or .npz.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 }
@@ -32,7 +34,7 @@ fn main() -> ExitCode {
     let Arguments { files } = Arguments::parse();
     let (mut failed, mut found) = (false, false);
     for path in &files {
-        match read(path).map_err(Into::into).and_then(|complex| judge(path, &complex)) {
+        match judge(path) {
             Ok(valid) => found |= !valid,
             // Whoever read the output has seen enough.
             Err(Failure::Output(error)) if error.kind() == ErrorKind::BrokenPipe => break,
@@ -55,19 +57,35 @@ enum Failure {
     #[error(transparent)]
     Schema(#[from] SchemaError),
     #[error(transparent)]
-    Certify(#[from] walpha_check::CertifyError),
+    Certify(#[from] CertifyError),
+    #[error(transparent)]
+    Filtration(#[from] CertifyFiltrationError),
     #[error("the result cannot be printed: {0}")]
     Output(#[from] io::Error),
 }
 
-fn read(path: &Path) -> Result<PlacedComplex, SchemaError> {
-    ComplexFile::open(path)?.into_complex()
+/// Judges a file, prints what is found, and gives whether that is nothing.
+fn judge(path: &Path) -> Result<bool, Failure> {
+    match AnyFile::open(path)? {
+        AnyFile::Complex(file) => {
+            let (findings, certificate) = file.into_complex()?.findings()?;
+            print(path, &findings, &certificate.not_judged, &[])
+        }
+        AnyFile::Filtration(file) => {
+            let (findings, certificate) = certify_filtration(&file)?;
+            print(path, &findings, &certificate.triangulation.not_judged, &certificate.not_judged)
+        }
+    }
 }
 
-/// Prints what is found, and gives whether that is nothing.
+/// Prints what is found and what was not judged, and gives whether nothing is found.
 #[expect(clippy::unnecessary_debug_formatting, reason = "it escapes control characters")]
-fn judge(path: &Path, complex: &PlacedComplex) -> Result<bool, Failure> {
-    let (findings, certificate) = complex.claim().findings()?;
+fn print(
+    path: &Path,
+    findings: &[impl Display],
+    rules: &[impl Display],
+    parts: &[Unjudged],
+) -> Result<bool, Failure> {
     let mut out = io::stdout().lock();
     // As Debug prints a path, control characters in its name cannot reach the terminal.
     writeln!(out, "{path:?}: {}", verdict(findings.len()))?;
@@ -77,9 +95,8 @@ fn judge(path: &Path, complex: &PlacedComplex) -> Result<bool, Failure> {
     if findings.len() > MOST_PRINTED {
         writeln!(out, "  and {} more", findings.len() - MOST_PRINTED)?;
     }
-    for rule in &certificate.not_judged {
-        writeln!(out, "  not judged: {rule}")?;
-    }
+    rules.iter().try_for_each(|rule| writeln!(out, "  not judged: {rule}"))?;
+    parts.iter().try_for_each(|part| writeln!(out, "  not judged: {part}"))?;
     Ok(findings.is_empty())
 }
 

@@ -1,6 +1,7 @@
 //! Options that several commands share, and how they become options of the library.
 
 mod input;
+mod periodic;
 mod select;
 mod shape;
 mod values;
@@ -10,6 +11,7 @@ use clap::{Args, Command};
 
 pub use input::InputArgs;
 use input::PartArgs;
+pub use periodic::PeriodicArgs;
 pub use select::{HaarArgs, RefitArgs, SelectArgs};
 pub use shape::ShapeArgs;
 pub use values::not_negative;

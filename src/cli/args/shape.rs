@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::cli::said::{Said, misused};
 use crate::pipeline::AlphaRule;
-use crate::shape::{Engine, ShapeOptions};
+use crate::shape::{Engine, ShapeOptions, Torus};
 use crate::{Alpha, Balls};
 
 use super::values::bytes;
@@ -36,7 +36,7 @@ pub struct ShapeArgs {
 
 impl ShapeArgs {
     /// Refuses options that have no use for each other, before the work.
-    pub fn check(&self, alpha: AlphaRule) -> anyhow::Result<()> {
+    pub fn check(&self, alpha: AlphaRule, periodic: Option<Torus>) -> anyhow::Result<()> {
         if self.engine == Engine::Reference && self.blocks.is_some_and(|blocks| blocks.get() > 1) {
             misused!("--blocks has no effect: the reference engine knows no blocks" => "omit it, or take --engine native");
         }
@@ -45,7 +45,7 @@ impl ShapeArgs {
             AlphaRule::Given(alpha) => alpha,
             _ => Alpha::from_squared(0.0)?,
         };
-        let options = ShapeOptions { alpha, ..self.options() };
+        let options = ShapeOptions { alpha, periodic, ..self.options() };
         Ok(options.check().map_err(|error| Said::usage_of(&error))?)
     }
 
@@ -60,6 +60,7 @@ impl ShapeArgs {
             blocks,
             memory,
             refuse_flat: true,
+            periodic: None,
         }
     }
 }

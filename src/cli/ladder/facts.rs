@@ -186,7 +186,7 @@ impl Facts {
             "voids"
         )?;
         for level in &self.levels {
-            let Betti { b0, b1, b2 } = level.betti;
+            let Betti { b0, b1, b2, .. } = level.betti;
             let mut alpha = String::new();
             // Digits that do not fit the column are in the files.
             write!(alpha, "{}", (level.alpha.squared() * 1e6).round() / 1e6)?;

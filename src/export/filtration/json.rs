@@ -58,7 +58,10 @@ fn file(ordered: &Ordered<'_>) -> FiltrationFile {
             components: lasting(ordered, &pairs.components),
             lasting: pairs.lasting.clone(),
             voids: lasting(ordered, &pairs.voids),
+            lasting_voids: pairs.lasting_voids.clone(),
+            last: pairs.last,
         }),
+        periodic: ordered.filtration().torus().map(|torus| torus.sides()),
         hidden: whole.hidden().map(<[u32]>::to_vec),
         duplicates: Some(whole.duplicates().to_vec()),
         info: Some(serde_json::json!({

@@ -42,6 +42,11 @@ pub fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
     archive.rows("component_pairs", &lasting(ordered, &pairs.components))?;
     archive.list("lasting_components", &pairs.lasting)?;
     archive.rows("void_pairs", &lasting(ordered, &pairs.voids))?;
+    if let Some(torus) = ordered.filtration().torus() {
+        archive.list("lasting_voids", &pairs.lasting_voids)?;
+        archive.list("last_cell", pairs.last.as_slice())?;
+        archive.list("periodic", &torus.sides())?;
+    }
     archive.list("hidden", whole.hidden().unwrap_or_default())?;
     archive.rows("duplicates", whole.duplicates())?;
     archive.finish().map(drop)

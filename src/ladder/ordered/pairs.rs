@@ -3,8 +3,9 @@
 //! doi:10.1016/0167-8396(94)00016-Y).
 
 use super::Ordered;
+use crate::ladder::Filtration;
 use crate::ladder::incidence::Incidence;
-use crate::shape::UnionFind;
+use crate::shape::{Directions, Torus, UnionFind, United, WindingSets, between};
 
 /// What comes and goes, by numbers of simplices: those that make a component, or shut in a void, and
 /// those that unite it with an older one, or fill it.
@@ -18,8 +19,12 @@ pub struct Pairs {
     /// The vertices whose components last for ever: one.
     pub lasting: Vec<u32>,
     /// Voids: a facet, and the cell that fills what it has shut in; in the order of facets. All
-    /// cells have such a facet.
+    /// cells have such a facet, on a torus all but one.
     pub voids: Vec<[u32; 2]>,
+    /// Of a torus: the facets with which its own surfaces come that nothing fills: three.
+    pub lasting_voids: Vec<u32>,
+    /// Of a torus: the cell that makes it whole, and that is in none of the pairs above.
+    pub last: Option<u32>,
 }
 
 impl Ordered<'_> {
@@ -29,7 +34,7 @@ impl Ordered<'_> {
         self.pairs.get_or_init(|| {
             let ((components, lasting), voids) =
                 rayon::join(|| self.component_pairs(), || self.void_pairs());
-            Pairs { components, lasting, voids }
+            Pairs { components, lasting, ..voids }
         })
     }
 
@@ -64,31 +69,68 @@ impl Ordered<'_> {
         (pairs, lasting)
     }
 
-    /// The same of the complement, backwards: there a cell makes a component, and a facet unites two.
-    fn void_pairs(&self) -> Vec<[u32; 2]> {
+    /// The same of the complement, backwards: there a cell makes a component, and a facet unites two; or, on a
+    /// torus, it opens a way round in a new direction.
+    fn void_pairs(&self) -> Pairs {
         let incidence = &self.filtration().incidence;
         let [_, _, of_facets, of_cells] = self.numbers.first;
         let cells = self.cells.len();
         let mut sorted = vec![0; cells];
         self.cell_rows.iter().zip(0..).for_each(|(&row, at): (_, u32)| sorted[row as usize] = at);
-        // The outside was there before all.
         let mut sets = Eldest::new(cells + 1);
-        sets.come(cells as u32, 0);
-        let mut pairs = Vec::with_capacity(cells);
+        let mut ways = self.filtration().torus().map(|torus| Ways::new(torus, self.filtration()));
+        let mut found = Pairs { voids: Vec::with_capacity(cells), ..Pairs::default() };
+        match ways {
+            // The outside was there before all.
+            None => sets.come(cells as u32, 0),
+            Some(_) => found.last = self.order.iter().rev().copied().find(|&s| s >= of_cells),
+        }
         for (age, &simplex) in (1..).zip(self.order.iter().rev()) {
             if simplex >= of_cells {
                 sets.come(self.cell_rows[(simplex - of_cells) as usize], age);
             } else if simplex >= of_facets {
-                let sides = incidence.facet_cells[(simplex - of_facets) as usize];
+                let row = (simplex - of_facets) as usize;
+                let sides = incidence.facet_cells[row];
                 let [a, b] =
                     sides.map(|side| if side == Incidence::OUTSIDE { cells as u32 } else { side });
+                let round = ways.as_mut().is_some_and(|ways| ways.open(row, [a, b]));
                 if let Some(younger) = sets.unite(a, b) {
-                    pairs.push([simplex, of_cells + sorted[younger as usize]]);
+                    found.voids.push([simplex, of_cells + sorted[younger as usize]]);
+                } else if round {
+                    found.lasting_voids.push(simplex);
                 }
             }
         }
-        pairs.reverse();
-        pairs
+        found.voids.reverse();
+        found.lasting_voids.reverse();
+        found
+    }
+}
+
+/// In which directions the complement goes round a torus.
+struct Ways<'a> {
+    torus: Torus,
+    filtration: &'a Filtration,
+    sets: WindingSets,
+    rounds: Directions,
+}
+
+impl<'a> Ways<'a> {
+    fn new(torus: Torus, filtration: &'a Filtration) -> Self {
+        let sets = WindingSets::new(filtration.whole.complex().cells.len());
+        Self { torus, filtration, sets, rounds: Directions::default() }
+    }
+
+    /// Opens a facet; says whether there is a way round now in a direction that is new.
+    fn open(&mut self, facet: usize, sides: [u32; 2]) -> bool {
+        let Filtration { whole, incidence, .. } = self.filtration;
+        let cells = sides.map(|side| whole.complex().cells.rows()[side as usize]);
+        let vertex = incidence.facets[facet][0];
+        let way = between(self.torus, cells, vertex, &whole.points().positions);
+        match self.sets.unite(sides[0], sides[1], way) {
+            United::Round(way) => self.rounds.add(way),
+            _ => false,
+        }
     }
 }
 

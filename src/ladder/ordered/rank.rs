@@ -40,7 +40,7 @@ impl Ranks {
             memory::room(numbers.all(), || format!("the order of {} simplices", numbers.all()))?;
         collect(filtration, numbers, &spheres, &mut radii);
         radii.par_sort_unstable();
-        let lattice = is_small_lattice(filtration.points());
+        let lattice = is_small_lattice(filtration.points(), filtration.torus());
         let exact = Exactly { filtration, numbers, spheres, lattice };
         let several: Vec<_> =
             radii.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > 1).collect();
@@ -138,12 +138,12 @@ impl Exactly<'_> {
     }
 
     fn key(&self, simplex: u32) -> Key {
-        let (complex, points) = (self.filtration.whole.complex(), self.filtration.points());
+        let (complex, of) = (self.filtration.whole.complex(), self.filtration);
         match self.numbers.row(simplex) {
-            (0, row) => key(points, complex.vertices.rows()[row]),
-            (1, row) => key(points, complex.edges.rows()[row]),
-            (2, row) => key(points, self.filtration.incidence.facets[row]),
-            (_, row) => key(points, complex.cells.rows()[row]),
+            (0, row) => key(of, complex.vertices.rows()[row]),
+            (1, row) => key(of, complex.edges.rows()[row]),
+            (2, row) => key(of, self.filtration.incidence.facets[row]),
+            (_, row) => key(of, complex.cells.rows()[row]),
         }
     }
 

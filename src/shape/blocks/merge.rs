@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::classify::{Dimension, Owned, Rows, Shelf, Shelves};
-use super::{Answer, Partition, Plan};
+use super::classify::{Dimension, Owned, Rows, Shelf, Shelves, Side};
+use super::{Answer, Partition, Plan, Question};
+use crate::shape::winding::{WindingSets, minus};
 use crate::shape::{Class, Complex, Simplices, UnionFind};
 use crate::triangulation::Sites;
 
@@ -19,17 +20,19 @@ pub(super) fn merge(
     sites: &Sites<'_>,
     plan: &Plan,
     mut blocks: Vec<Owned>,
-    exterior: bool,
+    question: &Question,
     shelves: Shelves,
 ) -> Answer {
-    let sheets = common_sheets(&mut blocks);
+    let (sheets, sheet_windings) = common_sheets(&mut blocks);
     let mut components = components(sites, &mut blocks);
     plan.give_back();
     let places = places(sites, &plan.partition, shelves);
     let shelves = shelves.ranges(sites.input());
     let merged = Merged { input: sites.input(), places, shelves, plan };
-    let hidden = (blocks.len() == 1).then(|| merged.hidden(&blocks));
-    let vertices = merged.vertices(&blocks, exterior);
+    // Of a torus, one block with its halo is not the whole.
+    let whole = blocks.len() == 1 && (sites.torus().is_none() || question.exterior);
+    let hidden = whole.then(|| merged.hidden(&blocks));
+    let vertices = merged.vertices(&blocks, question.exterior);
     let b0 = (vertices.iter())
         .filter(|&(&[v], class)| class != Class::Exterior && components.find(v) == v)
         .count() as u64;
@@ -46,7 +49,7 @@ pub(super) fn merge(
     let cells = merged.rows(&mut blocks, Dimension::Cells, |shelf| &mut shelf.cells);
     let edges = merged.rows(&mut blocks, Dimension::Edges, |shelf| &mut shelf.edges);
     let complex = Complex { cells, facets, edges, vertices };
-    Answer { complex, b0, facet_sheets, edge_sheets, hidden }
+    Answer { complex, b0, facet_sheets, edge_sheets, hidden, sheet_windings }
 }
 
 /// Where a site's rows are.
@@ -205,8 +208,9 @@ fn split_off<'a, T>(whole: &mut &'a mut [T], length: usize) -> &'a mut [T] {
 }
 
 /// Makes one numbering of the sheets of all blocks: those that share a side of a facet, or a
-/// singular edge, are one. Gives each block's sheets their common numbers.
-fn common_sheets(blocks: &mut [Owned]) -> Vec<Vec<u32>> {
+/// singular edge, are one. Gives each block's sheets their common numbers, and in how many directions
+/// sheets go round a torus.
+fn common_sheets(blocks: &mut [Owned]) -> (Vec<Vec<u32>>, usize) {
     let starts: Vec<u32> = (blocks.iter())
         .scan(0, |next, block| {
             let start = *next;
@@ -217,18 +221,21 @@ fn common_sheets(blocks: &mut [Owned]) -> Vec<Vec<u32>> {
     let mut shared = Vec::new();
     for (block, start) in blocks.iter_mut().zip(&starts) {
         let sides = std::mem::take(&mut block.shared).into_iter();
-        shared.extend(sides.map(|side| ((side.simplex, side.side), start + side.sheet)));
+        let side = |side: Side| ((side.simplex, side.side), start + side.sheet, side.windings);
+        shared.extend(sides.map(side));
     }
     shared.par_sort_unstable();
     let total: u32 = blocks.iter().map(|block| block.sheets).sum();
-    let mut sets = UnionFind::new(total as usize);
+    let mut sets = WindingSets::new(total as usize);
     for pair in shared.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-        sets.unite(pair[0].1, pair[1].1);
+        // Both meet where their copies of the smallest vertex do.
+        sets.unite(pair[0].1, pair[1].1, minus(pair[0].2, pair[1].2));
     }
     let numbers = |(block, start): (&Owned, &u32)| {
-        (0..block.sheets).map(|sheet| sets.find(start + sheet)).collect()
+        (0..block.sheets).map(|sheet| sets.find(start + sheet).0).collect()
     };
-    blocks.iter().zip(&starts).map(numbers).collect()
+    let numbers = blocks.iter().zip(&starts).map(numbers).collect();
+    (numbers, sets.directions().rank())
 }
 
 /// The points united by all blocks.

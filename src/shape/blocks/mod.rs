@@ -18,19 +18,23 @@ mod classify;
 mod merge;
 mod partition;
 mod plan;
+mod reach;
 
 use rayon::prelude::*;
 
 use super::{Complex, ShapeError};
 use crate::math::Lattice;
 use crate::progress::Piece;
-use crate::triangulation::{Maker, Sites, SitesError, Triangulation, TriangulationError};
+use crate::triangulation::{
+    AXES, Maker, Predicates, Sites, SitesError, Torus, Triangulation, TriangulationError,
+};
 
-use classify::{Owned, Shelves, classify};
+use classify::{Long, Owned, Shelves, classify};
 use merge::merge;
 pub(super) use partition::Partition;
 pub use plan::PlanError;
 pub(super) use plan::{Limits, Plan};
+pub(crate) use reach::Reach;
 
 /// What is asked about all blocks of a set.
 #[derive(Clone, Copy)]
@@ -55,8 +59,10 @@ pub(super) struct Answer {
     pub facet_sheets: Vec<u32>,
     /// The sheet of each singular edge, in their order.
     pub edge_sheets: Vec<u32>,
-    /// Input indices of sites that are not vertices; of one block only.
+    /// Input indices of sites that are not vertices, where the whole triangulation was made.
     pub hidden: Option<Vec<u32>>,
+    /// In how many directions loops on the sheets go round a torus.
+    pub sheet_windings: usize,
 }
 
 /// Some sites and those around them, each along the curve.
@@ -69,6 +75,23 @@ pub(super) struct Block {
     pub input: Vec<u32>,
     /// How many are the block's own.
     pub own: u32,
+    /// On a torus: what the points of the halo are copies of.
+    pub copies: Option<Copies>,
+}
+
+/// Where the points of a halo come from, on a torus.
+pub(super) struct Copies {
+    pub torus: Torus,
+    /// By how many sides each is moved.
+    pub windings: Vec<[i32; 3]>,
+}
+
+impl Block {
+    /// By how many sides a point is moved.
+    pub fn windings(&self, v: u32) -> [i32; 3] {
+        let beyond = v.checked_sub(self.own).zip(self.copies.as_ref());
+        beyond.map_or([0; 3], |(at, copies)| copies.windings[at as usize])
+    }
 }
 
 /// The α-complex of sites; with exterior simplices, which need one block, the whole triangulation.
@@ -98,7 +121,7 @@ pub(super) fn run(
         plan.keeps(bytes, points, sites.input().len())?;
         plan.give_back();
     }
-    Ok(merge(sites, plan, owned, question.exterior, shelves))
+    Ok(merge(sites, plan, owned, question, shelves))
 }
 
 /// Triangulates a block with its halo, or, where these span no volume, with all other sites.
@@ -110,21 +133,74 @@ fn decide(
     shelves: Shelves,
     work: &Piece,
 ) -> Result<Owned, ShapeError> {
-    let classified = |points: &Block, made| {
-        let owned = classify(points, made, question, shelves);
-        work.add((WORK - TRIANGULATION) * u64::from(points.own));
-        owned
-    };
-    if partition.len() > 1 {
-        let points = partition.block(sites, question.alpha, block);
+    let (points, made) = triangulated(sites, partition, block, question, work)?;
+    let owned = classify(&points, made, question, shelves);
+    work.add((WORK - TRIANGULATION) * u64::from(points.own));
+    match (owned.long, sites.torus()) {
+        (Some(edge), Some(torus)) => Err(too_long(torus, edge)),
+        _ => Ok(owned),
+    }
+}
+
+/// A block with as much around it as decides what it owns.
+fn triangulated(
+    sites: &Sites<'_>,
+    partition: &Partition,
+    block: usize,
+    question: &Question,
+    work: &Piece,
+) -> Result<(Block, Triangulation), ShapeError> {
+    for reach in question.reaches(sites, partition.len()) {
+        let points = partition.block(sites, reach, block);
         match triangulate(&points, question.maker, work) {
             Err(TriangulationError::Sites(SitesError::Flat { .. })) => {}
-            made => return Ok(classified(&points, made?)),
+            Ok(made) if !question.decides(reach, &points, &made) => {}
+            made => return Ok((points, made?)),
         }
     }
-    let points = partition.block(sites, f64::INFINITY, block);
+    let points = partition.block(sites, Reach::whole(sites), block);
     let made = triangulate(&points, question.maker, work)?;
-    Ok(classified(&points, made))
+    Ok((points, made))
+}
+
+impl Question {
+    /// How far to look before all is looked at.
+    fn reaches(&self, sites: &Sites<'_>, blocks: usize) -> Vec<Reach> {
+        let Some(torus) = sites.torus() else {
+            return if blocks > 1 { vec![Reach::Balls(self.alpha)] } else { Vec::new() };
+        };
+        let heaviest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let wanted = if self.exterior { f64::INFINITY } else { self.alpha };
+        // The largest empty spheres of points of even density are twice as large as what each point has
+        // of the box, or less: then all is known with less around it than a large α asks for.
+        let spacing = (torus.volume() / sites.input().len() as f64).cbrt();
+        let squares = [4.0, 16.0, 64.0].map(|times| times * spacing * spacing);
+        let fewer = squares.into_iter().filter(|square| 4.0 * square <= wanted + heaviest);
+        let reaches = fewer.map(|square| square - heaviest).chain([wanted]);
+        reaches.map(|alpha| Reach::at(sites, alpha, heaviest)).collect()
+    }
+
+    /// Whether the triangulation of a block with a halo decides what is asked. If the halo is for a smaller
+    /// α, it does where no sphere at the block's points is larger: all of them are empty, then.
+    fn decides(&self, reach: Reach, points: &Block, made: &Triangulation) -> bool {
+        let Reach::Balls(alpha) = reach else { return true };
+        if alpha >= self.alpha && !self.exterior {
+            return true;
+        }
+        let spheres = Predicates::on(self.lattice, &points.positions, &points.weights);
+        made.cells().par_iter().all(|&cell| {
+            !cell.iter().any(|&v| v < points.own)
+                || (!cell.contains(&made.ghost()) && spheres.fits(cell, alpha))
+        })
+    }
+}
+
+/// The error for an edge that spans half of the box.
+fn too_long(torus: Torus, Long { edge, ends }: Long) -> ShapeError {
+    let spans = |k: usize| (ends[1][k] - ends[0][k]).abs() / torus.sides()[k];
+    let axis = (0..3).max_by(|&a, &b| spans(a).total_cmp(&spans(b))).unwrap_or(0);
+    let span = spans(axis) * torus.sides()[axis];
+    ShapeError::Wraps { edge, axis: AXES[axis], span, side: torus.sides()[axis] }
 }
 
 /// What a point counts for as work, and the part of that which its triangulation takes.

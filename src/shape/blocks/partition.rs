@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::Block;
+use super::{Block, Copies, Reach};
 use crate::triangulation::Sites;
 
 /// Boxes of about equally many sites: each cut across its longest side.
@@ -74,56 +74,101 @@ impl Partition {
     }
 
     /// How many points the largest block has, those around it included.
-    pub fn largest(&self, sites: &Sites<'_>, alpha: f64) -> usize {
+    pub fn largest(&self, sites: &Sites<'_>, reach: Reach) -> usize {
         let size = |block: usize| {
             let mut count = self.nodes[self.leaves[block]].members.len();
-            self.halo(sites, alpha, block, |_| count += 1);
+            self.halo(sites, reach, block, |_, _| count += 1);
             count
         };
         (0..self.len()).into_par_iter().map(size).max().unwrap_or(0)
     }
 
-    /// The points of a block and of its halo, which at α = ∞ is all others.
-    pub fn block(&self, sites: &Sites<'_>, alpha: f64, block: usize) -> Block {
+    /// The points of a block and of its halo. Copies of points come copy by copy, each along the curve.
+    pub fn block(&self, sites: &Sites<'_>, reach: Reach, block: usize) -> Block {
         let own = self.nodes[self.leaves[block]].members.clone();
         let mut halo = Vec::new();
-        self.halo(sites, alpha, block, |place| halo.push(place));
+        self.halo(sites, reach, block, |place, windings| halo.push((windings, place)));
         halo.sort_unstable();
-        let places = || self.members[own.clone()].iter().chain(&halo);
+        let places = || self.members[own.clone()].iter().chain(halo.iter().map(|(_, place)| place));
         let site = |&place: &u32| sites.curve()[place as usize] as usize;
+        let mut positions: Vec<_> = places().map(|place| sites.positions()[site(place)]).collect();
+        let copies = sites.torus().map(|torus| {
+            let windings: Vec<_> = halo.iter().map(|&(windings, _)| windings).collect();
+            for (position, &windings) in positions[own.len()..].iter_mut().zip(&windings) {
+                *position = torus.moved(*position, windings);
+            }
+            Copies { torus, windings }
+        });
         Block {
-            positions: places().map(|place| sites.positions()[site(place)]).collect(),
+            positions,
             weights: places().map(|place| sites.weights()[site(place)]).collect(),
             input: places().map(|place| sites.input()[site(place)]).collect(),
             own: own.len() as u32,
+            copies,
         }
     }
 
-    /// Visits the places on the curve of the points around a block, in no particular order.
+    /// Visits the places on the curve of the points around a block, in no particular order, each with
+    /// the sides of the box that it is moved by.
     ///
     /// Points with α + ω < 0 have no ball and refute nothing: they are left out.
-    fn halo(&self, sites: &Sites<'_>, alpha: f64, block: usize, mut visit: impl FnMut(u32)) {
+    fn halo(
+        &self,
+        sites: &Sites<'_>,
+        reach: Reach,
+        block: usize,
+        mut visit: impl FnMut(u32, [i32; 3]),
+    ) {
         let leaf = self.leaves[block];
         let own = &self.nodes[leaf];
-        let radius = (alpha + own.heaviest).max(0.0).sqrt();
-        let mut pending = vec![0];
-        while let Some(at) = pending.pop() {
-            let node = &self.nodes[at];
-            if at == leaf || !own.reaches(node.low, node.high, radius, alpha + node.heaviest) {
-                continue;
-            }
-            if let Some(halves) = node.halves {
-                pending.extend(halves);
-                continue;
-            }
-            for &place in &self.members[node.members.clone()] {
-                let site = sites.curve()[place as usize] as usize;
-                let (at, ball) = (sites.positions()[site], alpha + sites.weights()[site]);
-                if own.reaches(at, at, radius, ball) {
-                    visit(place);
+        let near = |low, high, heaviest| own.reaches(low, high, reach.from(own.heaviest, heaviest));
+        for windings in self.windings(sites, own, reach) {
+            let moved = |place| match sites.torus() {
+                None => place,
+                Some(torus) => torus.moved(place, windings),
+            };
+            let mut pending = vec![0];
+            while let Some(at) = pending.pop() {
+                let node = &self.nodes[at];
+                if (at == leaf && windings == [0; 3])
+                    || !near(moved(node.low), moved(node.high), node.heaviest)
+                {
+                    continue;
+                }
+                if let Some(halves) = node.halves {
+                    pending.extend(halves);
+                    continue;
+                }
+                for &place in &self.members[node.members.clone()] {
+                    let site = sites.curve()[place as usize] as usize;
+                    let at = moved(sites.positions()[site]);
+                    if near(at, at, sites.weights()[site]) {
+                        visit(place, windings);
+                    }
                 }
             }
         }
+    }
+
+    /// The multiples of the sides of the box by which points near a block may have been moved.
+    fn windings(&self, sites: &Sites<'_>, own: &Node, reach: Reach) -> Vec<[i32; 3]> {
+        let Some(torus) = sites.torus() else { return vec![[0; 3]] };
+        let all = &self.nodes[0];
+        let reach = reach.from(own.heaviest, all.heaviest).max(0.0);
+        let along = |k: usize| {
+            let side = torus.sides()[k];
+            // One more than may reach, for roundings.
+            let below = ((own.low[k] - all.high[k] - reach) / side).floor() as i32;
+            let above = ((own.high[k] - all.low[k] + reach) / side).ceil() as i32;
+            below..=above
+        };
+        let mut windings = Vec::new();
+        for x in along(0) {
+            for y in along(1) {
+                windings.extend(along(2).map(|z| [x, y, z]));
+            }
+        }
+        windings
     }
 }
 
@@ -157,12 +202,11 @@ impl Node {
         (0..3).max_by(|&a, &b| side(a).total_cmp(&side(b))).unwrap_or(2)
     }
 
-    /// Whether a box is within √ball plus a radius of this one; not where there is no ball.
-    fn reaches(&self, low: [f64; 3], high: [f64; 3], radius: f64, ball: f64) -> bool {
+    /// Whether a box is within reach of this one; not where the reach is NaN.
+    fn reaches(&self, low: [f64; 3], high: [f64; 3], reach: f64) -> bool {
         let away = |k: usize| (low[k] - self.high[k]).max(self.low[k] - high[k]).max(0.0);
         let apart = away(0) * away(0) + away(1) * away(1) + away(2) * away(2);
-        let reach = ball.sqrt() + radius;
-        // NaN for a point without a ball, which compares false. Both sides come out of a few
+        // NaN compares false. Both sides come out of a few
         // operations, each off by at most 2⁻⁵³ of its result: a point too many does no harm.
         apart <= reach * reach * (1.0 + 16.0 * f64::EPSILON)
     }

@@ -1,6 +1,6 @@
 //! Into how many blocks a set is cut.
 
-use super::Partition;
+use super::{Partition, Reach};
 use crate::advice::Advice;
 use crate::memory;
 use crate::triangulation::{Maker, Sites};
@@ -90,7 +90,7 @@ impl Plan {
     /// [`PlanError`] when the bound cannot be kept.
     pub fn new(
         sites: &Sites<'_>,
-        alpha: f64,
+        reach: Reach,
         maker: Maker,
         limits: Limits,
     ) -> Result<Self, PlanError> {
@@ -105,7 +105,7 @@ impl Plan {
         }
         let mut blocks = threads.min(points / WORTHWHILE).max(1);
         let mut partition = Partition::new(sites, blocks);
-        let mut largest = partition.largest(sites, alpha);
+        let mut largest = partition.largest(sites, reach);
         // More blocks than one pay only if none of them is nearly the whole.
         if limits.memory.is_none() && largest > points - points / 8 {
             return Ok(Self::whole(sites));
@@ -143,7 +143,7 @@ impl Plan {
                 return best.map(|(_, plan)| plan).ok_or(least);
             }
             partition = Partition::new(sites, blocks);
-            largest = partition.largest(sites, alpha);
+            largest = partition.largest(sites, reach);
         }
     }
 

@@ -21,6 +21,7 @@ pub(crate) use ratio::Ratio;
 pub(crate) use screen::Screen;
 use size::{Size, View, ray};
 
+use super::Torus;
 use crate::math::Lattice;
 
 /// A weighted point.
@@ -45,6 +46,8 @@ pub(crate) struct Predicates<'a> {
     /// Below these, polynomials of degree 1 to 8 in coordinates are exact in doubles; 0 off a
     /// lattice.
     exact: [f64; 8],
+    /// Where points stand for all their copies: a simplex is made of those nearest to its first corner.
+    torus: Option<Torus>,
 }
 
 /// Every number is the result of fewer than 32 roundings, so a polynomial is off by less than 2⁻⁴⁸
@@ -61,7 +64,14 @@ impl<'a> Predicates<'a> {
     pub fn on(lattice: Lattice, positions: &'a [[f64; 3]], weights: &'a [f64]) -> Self {
         let most = (1u64 << 53) as f64;
         let exact = [1, 2, 3, 4, 5, 6, 7, 8].map(|degree| most * lattice.step.powi(degree));
-        Self { positions, weights, lattice, exact }
+        Self { positions, weights, lattice, exact, torus: None }
+    }
+
+    /// Looks for what the numbers of points of a torus have in common. Corners of a simplex, and what is
+    /// asked about beside it, must each be nearer to its first corner than half a side. O(n).
+    pub fn on_torus(positions: &'a [[f64; 3]], weights: &'a [f64], torus: Option<Torus>) -> Self {
+        let lattice = lattice(positions, weights, torus);
+        Self { torus, ..Self::on(lattice, positions, weights) }
     }
 
     #[inline(always)]
@@ -75,7 +85,21 @@ impl<'a> Predicates<'a> {
         for (site, v) in sites.iter_mut().zip(simplex) {
             *site = self.site(v);
         }
+        if let Some(torus) = &self.torus {
+            let first = sites[0].position;
+            sites.iter_mut().for_each(|site| site.position = torus.near(first, site.position));
+        }
         sites
+    }
+
+    /// A point beside a simplex.
+    #[inline(always)]
+    fn beside(&self, p: Site, v: u32) -> Site {
+        let site = self.site(v);
+        match &self.torus {
+            None => site,
+            Some(torus) => Site { position: torus.near(p.position, site.position), ..site },
+        }
     }
 
     /// The squared radius of the smallest orthogonal sphere of a simplex: α at which it fits.
@@ -131,7 +155,8 @@ impl<'a> Predicates<'a> {
     #[inline]
     pub fn inside<const N: usize>(&self, simplex: [u32; N], x: u32) -> bool {
         let sites = self.sites(simplex);
-        let (p, x) = (sites[0], self.site(x));
+        let p = sites[0];
+        let x = self.beside(p, x);
         let View { rays, size } = View::<N>::of(p, sites);
         let (ray, reach) = ray(p, x);
         let size = size.larger(reach);
@@ -166,8 +191,8 @@ impl<'a> Predicates<'a> {
     /// Whether a point lies inside (`Less`), on (`Equal`) or outside the orthogonal sphere of a
     /// positively oriented cell. Exact.
     pub fn power(&self, cell: [u32; 4], t: u32) -> Ordering {
-        let t = self.site(t);
         let sites = self.sites(cell);
+        let t = self.beside(sites[0], t);
         let View { rays, size } = View::of(t, sites);
         let value = power_determinant(&rays);
         let bound = 24.0 * size.length * size.length * size.length * size.power;
@@ -216,6 +241,14 @@ impl<'a> Predicates<'a> {
         self.lattice.step != 0.0
             && multiple.abs() < (1u64 << 53) as f64
             && multiple.round() == multiple
+    }
+}
+
+/// The lattice of points and, on a torus, of all their copies.
+pub(crate) fn lattice(positions: &[[f64; 3]], weights: &[f64], torus: Option<Torus>) -> Lattice {
+    match torus {
+        None => Lattice::of(positions, weights),
+        Some(torus) => Lattice::of(&[positions, &[torus.sides()]].concat(), weights),
     }
 }
 

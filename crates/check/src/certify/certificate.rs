@@ -62,6 +62,12 @@ pub enum CertifyError {
     /// A coordinate or weight is NaN or infinite.
     #[error("point {0} has a coordinate or weight that is not finite; clean the input")]
     NotFinite(usize),
+    /// On a torus: a point that is not in the box, or of which no exact copies can be made.
+    #[error(
+        "point {0} is not in the periodic box, or so fine that its copies would be rounded: coordinates go \
+         from 0 to less than the sides"
+    )]
+    NotInBox(usize),
     /// More simplices or points than 32-bit numbers.
     #[error("{0} cells or points are too many to check: at most {max} fit", max = MOST)]
     TooMany(usize),

@@ -75,6 +75,11 @@ pub enum Finding {
         /// det(b−a, c−a, d−a), which must be positive.
         six_volumes: Exact,
     },
+    /// On a torus: an edge spans half of the box, so that the copies it joins are not clear.
+    LongEdge {
+        /// The edge.
+        edge: Simplex,
+    },
     /// A facet lies between more than two cells.
     Crowded {
         /// The facet.
@@ -215,7 +220,80 @@ pub enum Finding {
     },
 }
 
+impl Simplex {
+    /// By the numbers of points of which there are `count`, where copies follow; says whether a vertex is
+    /// none of these.
+    fn fold(&mut self, count: u32) -> bool {
+        let is_at_box = self.0.iter().any(|&v| v < count);
+        self.0.iter_mut().for_each(|v| *v %= count);
+        is_at_box
+    }
+}
+
 impl Finding {
+    /// What is found of copies, by the numbers of the points, of which there are `count`; none if it is
+    /// about copies alone.
+    pub(super) fn at_box(mut self, count: u32) -> Option<Self> {
+        let point_at_box = |point: &mut u32| {
+            let is_at_box = *point < count;
+            *point %= count;
+            is_at_box
+        };
+        let is_at_box = match &mut self {
+            Self::Index { simplex: s, .. }
+            | Self::RepeatedVertex { simplex: s }
+            | Self::RepeatedSimplex { simplex: s }
+            | Self::Stray { simplex: s }
+            | Self::Orientation { cell: s, .. }
+            | Self::LongEdge { edge: s }
+            | Self::HullEdge { edge: s, .. }
+            | Self::MissingCell { cell: s, .. } => s.fold(count),
+            Self::MissingFace { face, of } => {
+                of.fold(count);
+                face.fold(count)
+            }
+            Self::Crowded { facet, cells } => {
+                cells.iter_mut().for_each(|cell| _ = cell.fold(count));
+                facet.fold(count)
+            }
+            Self::Overlap { facet, cells } => {
+                cells.iter_mut().for_each(|cell| _ = cell.fold(count));
+                facet.fold(count)
+            }
+            Self::NotRegular { cell, point, .. } | Self::NotHidden { cell, point, .. } => {
+                point_at_box(point);
+                cell.fold(count)
+            }
+            Self::HullBends { facet, point, .. }
+            | Self::OutsideHull { facet, point, .. }
+            | Self::Winding { facet, behind: point } => {
+                point_at_box(point);
+                facet.fold(count)
+            }
+            Self::HullWraps { first, facet } => {
+                first.fold(count);
+                facet.fold(count)
+            }
+            Self::Class { simplex, refuted_by, .. } => {
+                refuted_by.iter_mut().for_each(|(point, _)| _ = point_at_box(point));
+                simplex.fold(count)
+            }
+            Self::MissingVertex { point, .. }
+            | Self::Unaccounted { point }
+            | Self::NotOnlyHidden { point } => point_at_box(point),
+            Self::Duplicate { point, given, expected } => {
+                given.iter_mut().chain(expected).for_each(|other| *other %= count);
+                point_at_box(point)
+            }
+            Self::DuplicateVertex { point, stays } => {
+                *stays %= count;
+                point_at_box(point)
+            }
+            Self::NoCells | Self::Volume { .. } => true,
+        };
+        is_at_box.then_some(self)
+    }
+
     /// The simplex whose class or winding is wrong.
     pub(super) fn judged_class(&self) -> Option<&Simplex> {
         match self {

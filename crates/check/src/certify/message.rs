@@ -18,6 +18,12 @@ impl fmt::Display for Finding {
             Self::Stray { simplex } => write!(f, "{simplex} is not a face of any higher simplex"),
             Self::NoCells => write!(f, "a triangulation needs cells, and there are none"),
             Self::Orientation { cell, six_volumes } => orientation(f, cell, six_volumes),
+            Self::LongEdge { edge } => {
+                write!(
+                    f,
+                    "{edge} spans half of the periodic box: which copies it joins is not clear"
+                )
+            }
             Self::Crowded { facet, cells } => crowded(f, facet, cells),
             Self::Overlap { facet, cells: [a, b] } => {
                 write!(f, "{a} and {b} overlap: both are on the same side of {facet}")

@@ -17,6 +17,7 @@ mod places;
 mod points;
 mod rules;
 mod structure;
+pub(crate) mod torus;
 
 use points::Points;
 

@@ -2,6 +2,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{ComplexFile, PlacedComplex, SchemaError};
 use crate::canonical::{outward_facets, smallest_even, sort, sorted};
+use crate::certify::torus::{moved, nearest};
 use crate::exact::orientation;
 use crate::{Class, Complex, Simplices};
 
@@ -25,6 +26,15 @@ impl ComplexFile {
         {
             return Err(SchemaError::NoSimplices);
         }
+        if let Some(side) =
+            self.periodic.iter().flatten().find(|side| !(side.is_finite() && **side > 0.0))
+        {
+            return Err(SchemaError::Value {
+                name: "periodic",
+                value: side.to_string(),
+                expected: "the length of a side",
+            });
+        }
         let weights = self.weights.unwrap_or_else(|| vec![0.0; n]);
         paired("weights", weights.len(), "points", n)?;
         let numbers = self.hidden.iter().flatten();
@@ -46,7 +56,7 @@ impl ComplexFile {
         let edges = settle(edges, of_facet, &facets);
         let vertices = settle(vertices, |&[a, b]: &[u32; 2]| vec![[a], [b]], &edges);
         let mut complex = Complex { cells, facets, edges, vertices };
-        turn(&mut complex, &self.points);
+        turn(&mut complex, &self.points, self.periodic);
         sort(&mut complex);
         Ok(PlacedComplex {
             positions: self.points,
@@ -55,6 +65,7 @@ impl ComplexFile {
             complex,
             hidden: self.hidden,
             duplicates: self.duplicates,
+            periodic: self.periodic,
         })
     }
 }
@@ -145,9 +156,14 @@ fn settle<const N: usize, const M: usize>(
 }
 
 /// Turns cells positive and regular facets outward, and sorts the vertices of other rows.
-fn turn(complex: &mut Complex, points: &[[f64; 3]]) {
+fn turn(complex: &mut Complex, points: &[[f64; 3]], periodic: Option<[f64; 3]>) {
     for cell in complex.cells.rows_mut() {
-        let [a, b, c, d] = cell.map(|v| points[v as usize]);
+        let mut places = cell.map(|v| points[v as usize]);
+        if let Some(sides) = periodic {
+            let first = places[0];
+            places = places.map(|place| moved(sides, place, nearest(sides, first, place)));
+        }
+        let [a, b, c, d] = places;
         if finite(&[a, b, c, d]) && orientation(a, b, c, d).is_lt() {
             cell.swap(2, 3);
         }

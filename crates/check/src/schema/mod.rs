@@ -25,6 +25,9 @@
 //!   a facet with two cells is interior, with one regular, with none singular, and so on down.
 //! - `hidden` lists the points that are not vertices, `duplicates` pairs (went, stayed) of points
 //!   at one place. Both are optional.
+//! - `periodic` are the sides of a box that repeats along x, y and z: the complex is then one of a
+//!   torus. All points are in the box, from 0 to less than its sides, and the vertices of a simplex
+//!   that are meant are the copies nearest to its first one, which is nearer than half a side along each axis.
 //! - `info` is for whatever the writer wants to add.
 //!
 //! In NPZ (`numpy.savez`, `numpy.savez_compressed`) the same names are arrays of any integer or
@@ -90,6 +93,9 @@ pub struct ComplexFile {
     /// Pairs (went, stayed) of points at one place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duplicates: Option<Vec<[u32; 2]>>,
+    /// The sides of the box that repeats, if one does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub periodic: Option<[f64; 3]>,
     /// Whatever the writer wants to add.
     #[cfg(feature = "json")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -156,6 +162,7 @@ impl ComplexFile {
             classes: Classes::default(),
             hidden: None,
             duplicates: None,
+            periodic: None,
             #[cfg(feature = "json")]
             info: None,
         }

@@ -42,6 +42,7 @@ impl ComplexFile {
             classes,
             hidden: file.list("hidden", index)?,
             duplicates: file.rows("duplicates", index)?,
+            periodic: file.sides()?,
             ..Self::of_points(file.rows("points", |_, x| Ok(x))?.unwrap_or_default(), alpha)
         })
     }
@@ -57,9 +58,10 @@ pub(super) enum Kind {
     Rows(u64),
 }
 
-const ARRAYS: [(&str, Kind); 13] = [
+const ARRAYS: [(&str, Kind); 14] = [
     ("points", Kind::Rows(3)),
     ("alpha", Kind::Scalar),
+    ("periodic", Kind::Rows(1)),
     ("cells", Kind::Rows(4)),
     ("facets", Kind::Rows(3)),
     ("edges", Kind::Rows(2)),
@@ -169,6 +171,17 @@ impl<R: Read + Seek> Npz<R> {
                 (0..rows * columns).map(at).collect()
             }
         }))
+    }
+
+    /// The sides of the box that repeats, if one does.
+    pub(super) fn sides(&mut self) -> Result<Option<[f64; 3]>, SchemaError> {
+        let Some(sides) = self.numbers("periodic")? else { return Ok(None) };
+        let count = sides.len();
+        sides.try_into().map(Some).map_err(|_| SchemaError::Array {
+            name: "periodic",
+            got: format!("{count} numbers"),
+            expected: "three sides".into(),
+        })
     }
 
     pub(super) fn list<T>(

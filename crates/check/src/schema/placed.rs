@@ -1,4 +1,5 @@
-use crate::{Alpha, Claim, Complex, Placed};
+use crate::certify::torus;
+use crate::{Alpha, Certificate, CertifyError, Claim, Complex, Finding, Placed};
 
 /// A complex with its points, in canonical order, ready to be judged.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +16,8 @@ pub struct PlacedComplex {
     pub hidden: Option<Vec<u32>>,
     /// Duplicates, if they are listed.
     pub duplicates: Option<Vec<[u32; 2]>>,
+    /// The sides of the box that repeats, if one does.
+    pub periodic: Option<[f64; 3]>,
 }
 
 impl PlacedComplex {
@@ -23,11 +26,30 @@ impl PlacedComplex {
         Placed::new(&self.positions, &self.weights, self.alpha, &self.complex)
     }
 
-    /// What it claims, to be judged.
+    /// What it claims, to be judged as a complex in space.
     pub fn claim(&self) -> Claim<'_> {
         Claim::new(self.placed())
             .with_hidden(self.hidden.as_deref())
             .with_duplicates(self.duplicates.as_deref())
+    }
+
+    /// In a box that repeats with these sides, or in space.
+    #[must_use]
+    pub fn with_periodic(self, periodic: Option<[f64; 3]>) -> Self {
+        Self { periodic, ..self }
+    }
+
+    /// All broken rules, and what was judged: in space those of [`Claim::visit`]. On a torus the same, around
+    /// each simplex; that no edge spans half of the box; and of a whole triangulation that it fills the
+    /// box, instead of the rules on the hull.
+    ///
+    /// # Errors
+    /// [`CertifyError`].
+    pub fn findings(&self) -> Result<(Vec<Finding>, Certificate), CertifyError> {
+        match self.periodic {
+            None => self.claim().findings(),
+            Some(sides) => torus::findings(self, sides),
+        }
     }
 }
 
@@ -41,6 +63,7 @@ impl From<Claim<'_>> for PlacedComplex {
             complex: complex.clone(),
             hidden: claim.hidden.map(<[_]>::to_vec),
             duplicates: claim.duplicates.map(<[_]>::to_vec),
+            periodic: None,
         }
     }
 }

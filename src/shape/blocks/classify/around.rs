@@ -1,4 +1,4 @@
-use super::rows::{Owned, Side};
+use super::rows::{Long, Owned, Side};
 use super::{Boundary, Local, Sheets, Stars, State, even};
 use crate::shape::{Class, UnionFind};
 
@@ -231,6 +231,12 @@ impl<'a> Walker<'a> {
             } else {
                 Class::Exterior
             };
+            if (class != Class::Exterior || self.local.exterior)
+                && self.local.is_long([v, neighbour])
+            {
+                let ends = [v, neighbour].map(|v| self.local.block.positions[v as usize]);
+                self.owned.long = Some(Long { edge: [smallest, to], ends });
+            }
             if class == Class::Singular {
                 join_ends(self.local, self.sheets, self.owned, [v, neighbour], corner);
             }
@@ -324,8 +330,9 @@ fn join_ends(
         let place = cell.iter().position(|&w| w == u).expect("a cell at the edge");
         sheets.unite(corner, corner / 4 * 4 + place as u32);
     } else {
-        let (a, b) = (local.input(v), local.input(u));
-        let (low, high) = (a.min(b), a.max(b));
-        owned.shared.push(Side { simplex: [low, high, high], side: 0, sheet: corner });
+        let ends = if local.input(v) < local.input(u) { [v, u] } else { [u, v] };
+        let [low, high] = ends.map(|end| local.input(end));
+        let windings = local.block.windings(ends[0]);
+        owned.shared.push(Side { simplex: [low, high, high], side: 0, sheet: corner, windings });
     }
 }

@@ -18,7 +18,7 @@ use crate::triangulation::{Predicates, Triangulation};
 
 use around::Walker;
 use cells::{Boundary, State};
-pub(super) use rows::{Dimension, Owned, Rows, Shelf, Shelves};
+pub(super) use rows::{Dimension, Long, Owned, Rows, Shelf, Shelves, Side};
 use sheets::Sheets;
 use stars::Stars;
 
@@ -80,6 +80,16 @@ impl Local<'_> {
 
     fn fits<const N: usize>(&self, simplex: [u32; N]) -> bool {
         self.alpha == f64::INFINITY || self.predicates.fits(simplex, self.alpha)
+    }
+}
+
+impl Local<'_> {
+    /// Whether an edge spans half of the box of a torus or more, along one axis at least. Exact.
+    fn is_long(&self, [v, u]: [u32; 2]) -> bool {
+        self.block.copies.as_ref().is_some_and(|copies| {
+            let [p, q] = [v, u].map(|v| self.block.positions[v as usize]);
+            (0..3).any(|k| 2.0 * (p[k] - q[k]).abs() >= copies.torus.sides()[k])
+        })
     }
 }
 

@@ -18,6 +18,15 @@ pub(in super::super) struct Owned {
     pub shared: Vec<Side>,
     /// Points, each with another one of its component.
     pub joined: Vec<[u32; 2]>,
+    /// On a torus: an edge that spans half of the box or more.
+    pub long: Option<Long>,
+}
+
+/// An edge by its input indices, and its ends.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Long {
+    pub edge: [u32; 2],
+    pub ends: [[f64; 3]; 2],
 }
 
 /// Input indices in runs of about equal length, so that the rows of one run can be merged, and given
@@ -113,6 +122,8 @@ pub(in super::super) struct Side {
     pub side: u32,
     /// Its sheet within the block.
     pub sheet: u32,
+    /// On a torus: by how many sides its smallest vertex is moved.
+    pub windings: [i32; 3],
 }
 
 impl Owned {

@@ -95,6 +95,8 @@ impl Local<'_> {
         places.sort_unstable_by_key(|&k| self.input(cell[k]));
         let [a, b, c] = places;
         let simplex = places.map(|k| self.input(cell[k]));
-        owned.shared.push(Side { simplex, side: u32::from(even(a, b, c)), sheet: first });
+        let windings = self.block.windings(cell[a]);
+        let side = u32::from(even(a, b, c));
+        owned.shared.push(Side { simplex, side, sheet: first, windings });
     }
 }

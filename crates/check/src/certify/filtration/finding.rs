@@ -54,6 +54,22 @@ pub enum FiltrationFinding {
         /// Their values.
         values: [Exact; 2],
     },
+    /// A persistence pair that is listed is none, or is listed twice; or one is missing.
+    Pair {
+        /// 0 for components, 2 for voids.
+        dimension: usize,
+        /// Numbers of simplices: what begins it, and what ends it.
+        pair: [u32; 2],
+        /// Whether it is listed.
+        listed: bool,
+    },
+    /// The components that last for ever are others.
+    Lasting {
+        /// Numbers of vertices, as given.
+        given: Vec<u32>,
+        /// As they are.
+        expected: Vec<u32>,
+    },
     /// The simplices are not the regular triangulation.
     #[serde(untagged)]
     Triangulation(Finding),
@@ -99,6 +115,22 @@ impl fmt::Display for FiltrationFinding {
                 "the order names {number} a second time, or there is no such simplex: there are {simplices}"
             ),
             Self::Absent { number } => write!(f, "the order leaves simplex {number} out"),
+            Self::Pair { dimension, pair: [from, to], listed: true } => {
+                write!(
+                    f,
+                    "simplices {from} and {to} are no persistence pair of dimension {dimension}"
+                )
+            }
+            Self::Pair { dimension, pair: [from, to], listed: false } => write!(
+                f,
+                "the persistence pair of dimension {dimension} of simplices {from} and {to} is missing"
+            ),
+            Self::Lasting { given, expected } => {
+                write!(
+                    f,
+                    "the components that never end begin with vertices {expected:?}, not {given:?}"
+                )
+            }
             Self::Order { before, after, values: [a, b] } => write!(
                 f,
                 "{before} must come after {after}: by value ({a}, {b}), then dimension, then vertices"

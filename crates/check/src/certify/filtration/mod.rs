@@ -2,6 +2,7 @@
 
 mod finding;
 mod order;
+mod pairs;
 mod spans;
 mod values;
 
@@ -41,7 +42,7 @@ pub enum Unjudged {
     Gabriel,
     /// From when on simplices are regular and interior: the file does not say.
     Intervals,
-    /// Persistence pairs.
+    /// Persistence pairs: the file lists none.
     Pairs,
 }
 
@@ -53,7 +54,7 @@ impl std::fmt::Display for Unjudged {
             Self::Intervals => {
                 "from when on simplices are regular and interior (the file does not say)"
             }
-            Self::Pairs => "persistence pairs",
+            Self::Pairs => "persistence pairs (the file lists none)",
         })
     }
 }
@@ -68,11 +69,14 @@ pub enum CertifyFiltrationError {
     /// The triangulation cannot be judged.
     #[error(transparent)]
     Triangulation(#[from] CertifyError),
+    /// The points are those of a torus.
+    #[error("filtrations of a periodic box are not judged; judge the complexes at some α instead")]
+    Periodic,
 }
 
 /// Judges a filtration: that its simplices are the whole regular triangulation (the rules of
 /// [`Claim::visit`](crate::Claim::visit) at α = ∞), the value of each, whether it is Gabriel, from
-/// which α on it is regular and interior, and the order. All by exact numbers; what a file has as
+/// which α on it is regular and interior, the order, and where that is right the persistence pairs. All by exact numbers; what a file has as
 /// doubles must be the nearest.
 ///
 /// With the intervals every class at every α is judged: below its value a simplex is exterior, then
@@ -82,11 +86,14 @@ pub enum CertifyFiltrationError {
 /// Linear up to sorting, some microseconds for each simplex.
 ///
 /// # Errors
-/// [`CertifyFiltrationError`]: fields that do not pair up, numbers out of range.
+/// [`CertifyFiltrationError`]: fields that do not pair up, numbers out of range; points of a torus.
 pub fn certify_filtration(
     file: &FiltrationFile,
 ) -> Result<(Vec<FiltrationFinding>, FiltrationCertificate), CertifyFiltrationError> {
     file.check()?;
+    if file.periodic.is_some() {
+        return Err(CertifyFiltrationError::Periodic);
+    }
     let placed = whole(file)?;
     let (found, triangulation) = placed.claim().findings()?;
     let mut findings: Vec<_> = found.into_iter().map(FiltrationFinding::Triangulation).collect();
@@ -105,7 +112,7 @@ pub fn certify_filtration(
     let absent = [
         (file.gabriel.is_none(), Unjudged::Gabriel),
         (file.regular.is_none() || file.interior.is_none(), Unjudged::Intervals),
-        (file.pairs.is_some(), Unjudged::Pairs),
+        (file.pairs.is_none(), Unjudged::Pairs),
     ];
     not_judged.extend(absent.into_iter().filter(|absent| absent.0).map(|absent| absent.1));
     Ok((findings, FiltrationCertificate { triangulation, values, not_judged }))
@@ -179,7 +186,11 @@ fn judge(
             own(&ranks.facets, rows.facets[i])
         }));
     }
-    findings.extend(order::judge(file, &rows, ranks, spans));
+    let disorder = order::judge(file, &rows, ranks, spans);
+    if let (true, Some(given)) = (disorder.is_empty(), &file.pairs) {
+        findings.extend(pairs::judge(file, given, structure, &rows, spans));
+    }
+    findings.extend(disorder);
     findings
 }
 

@@ -37,12 +37,15 @@ use crate::Alpha;
 ///   shape, and off its boundary; `"inf"` where they never are. All three may be missing.
 /// - `pairs` are persistence pairs by these numbers whose simplices have different values:
 ///   `components` (a vertex and the edge that ends it), `lasting` (vertices whose components never
-///   end), `voids` (a facet that closes a void, and the cell that fills it).
+///   end), `voids` (a facet that closes a void, and the cell that fills it). Of a torus also
+///   `lasting_voids`, the facets that close surfaces which nothing fills, and `last`, the cell that
+///   makes it whole.
+/// - `periodic` are the sides of a box that repeats, as in a complex.
 /// - `hidden`, `duplicates` and `info` are as in a complex.
 ///
 /// In NPZ the same names are arrays, and of those with dimensions `vertex_values`, `edge_values`,
-/// `facet_values`, `cell_values`, `vertex_gabriel` and so on, `component_pairs`, `lasting_components`
-/// and `void_pairs`.
+/// `facet_values`, `cell_values`, `vertex_gabriel` and so on, `component_pairs`, `lasting_components`,
+/// `void_pairs`, `lasting_voids` and `last_cell`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FiltrationFile {
@@ -82,6 +85,9 @@ pub struct FiltrationFile {
     /// Pairs (went, stayed) of points at one place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duplicates: Option<Vec<[u32; 2]>>,
+    /// The sides of the box that repeats, if one does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub periodic: Option<[f64; 3]>,
     /// Whatever the writer wants to add.
     #[cfg(feature = "json")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -124,6 +130,12 @@ pub struct PairsFile {
     pub lasting: Vec<u32>,
     /// A facet that closes a void, and the cell that fills it.
     pub voids: Vec<[u32; 2]>,
+    /// Of a torus: facets with which surfaces come that nothing fills.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lasting_voids: Vec<u32>,
+    /// Of a torus: the cell that makes it whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last: Option<u32>,
 }
 
 impl FiltrationFile {

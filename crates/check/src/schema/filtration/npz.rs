@@ -4,7 +4,7 @@ use super::{Below, FiltrationFile, PairsFile, Values};
 use crate::schema::SchemaError;
 use crate::schema::npz::{Kind, Npz, alpha, index};
 
-const ARRAYS: [(&str, Kind); 25] = [
+const ARRAYS: [(&str, Kind); 28] = [
     ("points", Kind::Rows(3)),
     ("weights", Kind::Column("points")),
     ("vertices", Kind::Rows(1)),
@@ -28,6 +28,9 @@ const ARRAYS: [(&str, Kind); 25] = [
     ("component_pairs", Kind::Rows(2)),
     ("lasting_components", Kind::Rows(1)),
     ("void_pairs", Kind::Rows(2)),
+    ("lasting_voids", Kind::Rows(1)),
+    ("last_cell", Kind::Rows(1)),
+    ("periodic", Kind::Rows(1)),
     ("hidden", Kind::Rows(1)),
     ("duplicates", Kind::Rows(2)),
 ];
@@ -53,8 +56,15 @@ impl FiltrationFile {
         let lasting = file.list("lasting_components", index)?;
         let voids = file.rows("void_pairs", index)?;
         let pairs = components.zip(lasting).zip(voids);
-        let pairs =
-            pairs.map(|((components, lasting), voids)| PairsFile { components, lasting, voids });
+        let lasting_voids = file.list("lasting_voids", index)?.unwrap_or_default();
+        let last = file.list("last_cell", index)?.unwrap_or_default().first().copied();
+        let pairs = pairs.map(|((components, lasting), voids)| PairsFile {
+            components,
+            lasting,
+            voids,
+            lasting_voids,
+            last,
+        });
         let values = Names(["vertex_values", "edge_values", "facet_values"]);
         let values =
             below(&mut file, values, alpha)?.ok_or(SchemaError::Missing("vertex_values"))?;
@@ -87,6 +97,7 @@ impl FiltrationFile {
             pairs,
             hidden: file.list("hidden", index)?,
             duplicates: file.rows("duplicates", index)?,
+            periodic: file.sides()?,
             #[cfg(feature = "json")]
             info: None,
         })

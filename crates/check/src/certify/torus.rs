@@ -1,0 +1,223 @@
+//! Complexes of a torus: their copies in space are judged, around one box.
+//!
+//! No edge may span half of the box. Then all simplices around one that touches the box have their vertices in
+//! it or in a copy of it beside it, so among 27 copies of the complex what touches the middle one is judged as in
+//! space, by the rules for a shape alone. If the complex is whole (it lists exterior simplices, or α = ∞), then where no
+//! facet is between other than two cells, on its two sides, and the cells' volumes add up to that of the box,
+//! they cover it once.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{
+    Certificate, CertifyError, Claim, Extent, Finding, NotJudged, Points, hull, structure,
+};
+use crate::canonical::sort;
+use crate::exact::Exact;
+use crate::schema::PlacedComplex;
+use crate::{Alpha, Complex, Placed, Simplices};
+
+/// All broken rules of a complex of a torus with these sides, and what was judged.
+///
+/// # Errors
+/// [`CertifyError`]; points of which no exact copies can be made.
+pub(crate) fn findings(
+    placed: &PlacedComplex,
+    sides: [f64; 3],
+) -> Result<(Vec<Finding>, Certificate), CertifyError> {
+    let bad = |index| Err(CertifyError::NotInBox(index));
+    if let Some(index) = placed.positions.iter().position(|place| !has_copies(place, sides)) {
+        return bad(index);
+    }
+    let points = Points { positions: &placed.positions, weights: &placed.weights };
+    let mut broken = structure::rows(&placed.complex, points.len());
+    if broken.is_empty() {
+        broken.extend(long_edges(&placed.complex, points, sides));
+    }
+    if !broken.is_empty() {
+        let certificate = Certificate {
+            findings: broken.len(),
+            six_volumes: Exact::default(),
+            not_judged: vec![NotJudged::AfterFindings],
+        };
+        return Ok((broken, certificate));
+    }
+    let copies = Copies::of(placed, sides);
+    let claim = copies.claim();
+    let (all, mut certificate) = claim.findings()?;
+    let count = placed.positions.len() as u32;
+    let mut seen = BTreeSet::new();
+    let near = all.into_iter().filter_map(|finding| finding.at_box(count));
+    let mut found: Vec<Finding> =
+        near.filter(|finding| seen.insert(format!("{finding:?}"))).collect();
+    let whole = Extent::of(&placed.complex, placed.alpha) == Extent::Whole;
+    let (volume, missing) = copies.volume(count, sides);
+    certificate.six_volumes = volume;
+    if whole {
+        found.extend(missing);
+        certificate.not_judged.retain(|rule| *rule != NotJudged::MissingSimplices);
+    }
+    certificate.findings = found.len();
+    Ok((found, certificate))
+}
+
+/// Whether a place is in the box, and all its copies nearby are exact.
+fn has_copies(place: &[f64; 3], sides: [f64; 3]) -> bool {
+    place.iter().zip(sides).all(|(&x, side)| {
+        let exact = |by: f64| (x + by) - by == x && (x + by) - x == by;
+        (0.0..side).contains(&x) && [-2.0, -1.0, 1.0, 2.0].iter().all(|n| exact(n * side))
+    })
+}
+
+fn long_edges(complex: &Complex, points: Points, sides: [f64; 3]) -> Vec<Finding> {
+    let is_long = |&&[a, b]: &&[u32; 2]| {
+        let [p, q] = [a, b].map(|v| points.positions[v as usize]);
+        (0..3).any(|k| {
+            let apart = (p[k] - q[k]).abs();
+            2.0 * apart.min(sides[k] - apart) >= sides[k]
+        })
+    };
+    let long = complex.edges.rows().iter().filter(is_long);
+    long.map(|&edge| Finding::LongEdge { edge: edge.into() }).collect()
+}
+
+/// By how many sides the copy of a place that is nearest to another one is moved.
+pub(crate) fn nearest(sides: [f64; 3], from: [f64; 3], to: [f64; 3]) -> [i32; 3] {
+    [0, 1, 2].map(|k| {
+        let (way, half) = (to[k] - from[k], sides[k] / 2.0);
+        i32::from(way < -half) - i32::from(way > half)
+    })
+}
+
+/// A place moved by multiples of the sides.
+pub(crate) fn moved(sides: [f64; 3], place: [f64; 3], by: [i32; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| place[k] + f64::from(by[k]) * sides[k])
+}
+
+/// A complex copied, those of the box itself first.
+struct Copies {
+    positions: Vec<[f64; 3]>,
+    weights: Vec<f64>,
+    alpha: Alpha,
+    complex: Complex,
+    hidden: Option<Vec<u32>>,
+    duplicates: Option<Vec<[u32; 2]>>,
+}
+
+impl Copies {
+    fn of(placed: &PlacedComplex, sides: [f64; 3]) -> Self {
+        let PlacedComplex { positions, weights, complex, .. } = placed;
+        let heaviest = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let diagonal: f64 = sides.iter().map(|side| side * side).sum();
+        // No empty sphere is larger: a copy of the heaviest point is within half a diagonal of its centre.
+        let alpha = placed.alpha.squared().min(diagonal * 0.2501 - heaviest);
+        let reach = 2.0 * (alpha + heaviest).max(0.0).sqrt();
+        let layout = Layout::new(positions, sides, reach);
+        let mut copied = Complex {
+            cells: layout.copied(&complex.cells),
+            facets: layout.copied(&complex.facets),
+            edges: layout.copied(&complex.edges),
+            vertices: layout.copied(&complex.vertices),
+        };
+        sort(&mut copied);
+        let pairs = |pairs: &Vec<[u32; 2]>| {
+            layout.of_each(pairs.as_flattened()).as_chunks::<2>().0.to_vec()
+        };
+        let moves = &layout.moves;
+        Self {
+            positions: (moves.iter())
+                .flat_map(|&by| positions.iter().map(move |&place| moved(sides, place, by)))
+                .collect(),
+            weights: moves.iter().flat_map(|_| weights.iter().copied()).collect(),
+            alpha: Alpha::from_squared(alpha).expect("a number"),
+            complex: copied,
+            hidden: placed.hidden.as_deref().map(|hidden| layout.of_each(hidden)),
+            duplicates: placed.duplicates.as_ref().map(pairs),
+        }
+    }
+
+    fn claim(&self) -> Claim<'_> {
+        let placed = Placed::new(&self.positions, &self.weights, self.alpha, &self.complex);
+        let claim = Claim::new(placed).with_extent(Extent::Shape);
+        claim.with_hidden(self.hidden.as_deref()).with_duplicates(self.duplicates.as_deref())
+    }
+
+    /// Six times the volume of the cells of one box, and what is found if they do not fill it.
+    fn volume(&self, count: u32, sides: [f64; 3]) -> (Exact, Option<Finding>) {
+        // Each cell once: where its smallest point, by the number in the box, is in the box.
+        let of_box =
+            |cell: &&[u32; 4]| cell.iter().min_by_key(|&&v| v % count).is_some_and(|&v| v < count);
+        let cells: Vec<_> = self.complex.cells.rows().iter().filter(of_box).copied().collect();
+        let points = Points { positions: &self.positions, weights: &self.weights };
+        let corner = |i: u32| [0, 1, 2].map(|k| f64::from(i >> k & 1) * sides[k]);
+        let corners: Vec<[f64; 3]> = (0..8).map(corner).collect();
+        let corners = Points { positions: &corners, weights: &[0.0; 8] };
+        let [cells, hull] = [(&cells[..], points), (&BOX, corners)].map(|(cells, points)| {
+            let (sum, exponent) = hull::six_volumes(cells, points);
+            Exact::integer(sum, exponent)
+        });
+        let found = (cells != hull).then(|| Finding::Volume { cells: cells.clone(), hull });
+        (cells, found)
+    }
+}
+
+/// A box cut into cells around its diagonal, positively oriented; the bits of a corner are x, y, z.
+const BOX: [[u32; 4]; 6] =
+    [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
+
+/// How copies are numbered.
+struct Layout<'a> {
+    positions: &'a [[f64; 3]],
+    sides: [f64; 3],
+    /// By how many sides each copy of the box is moved; the first by none.
+    moves: Vec<[i32; 3]>,
+    numbers: BTreeMap<[i32; 3], u32>,
+}
+
+impl<'a> Layout<'a> {
+    /// With the copies that hold all places within `reach` of the box.
+    fn new(positions: &'a [[f64; 3]], sides: [f64; 3], reach: f64) -> Self {
+        let [x, y, z] = sides.map(|side| {
+            let around = (reach / side).ceil().max(1.0) as i32;
+            -around..=around
+        });
+        let mut moves = Vec::new();
+        for i in x {
+            for j in y.clone() {
+                moves.extend(z.clone().map(|k| [i, j, k]));
+            }
+        }
+        moves.sort_by_key(|by| *by != [0; 3]);
+        let numbers = moves.iter().copied().zip(0..).collect();
+        Self { positions, sides, moves, numbers }
+    }
+
+    /// Those copies of simplices that have no vertex beyond the copies beside the box.
+    fn copied<const N: usize>(&self, simplices: &Simplices<N>) -> Simplices<N> {
+        let beside = || self.moves.iter().filter(|by| is_beside(**by));
+        let copies = simplices.iter().flat_map(|(&row, class)| {
+            beside().filter_map(move |&by| Some((self.row(row, by)?, class)))
+        });
+        copies.collect()
+    }
+
+    fn row<const N: usize>(&self, mut row: [u32; N], by: [i32; 3]) -> Option<[u32; N]> {
+        let first = self.positions[row[0] as usize];
+        for v in &mut row {
+            let way = nearest(self.sides, first, self.positions[*v as usize]);
+            let by = [0, 1, 2].map(|k| by[k] + way[k]);
+            *v += is_beside(by).then(|| self.numbers[&by])? * self.positions.len() as u32;
+        }
+        Some(row)
+    }
+
+    /// The numbers of all copies of some points.
+    fn of_each(&self, points: &[u32]) -> Vec<u32> {
+        let count = self.positions.len() as u32;
+        let copies = 0..self.moves.len() as u32;
+        copies.flat_map(|copy| points.iter().map(move |v| copy * count + v)).collect()
+    }
+}
+
+fn is_beside(by: [i32; 3]) -> bool {
+    by.iter().all(|n| n.abs() <= 1)
+}

@@ -1,0 +1,95 @@
+//! A shape of a torus laid out in space.
+
+use std::collections::BTreeMap;
+
+use super::{AlphaShape, Simplices, Torus};
+
+/// A point, and the sides of the box that its copy is moved by.
+type Copied = (u32, [i32; 3]);
+
+/// The copies that are needed, numbered after the points themselves as they turn up.
+pub(super) struct Layout<'a> {
+    torus: Torus,
+    positions: &'a [[f64; 3]],
+    numbers: BTreeMap<Copied, u32>,
+    /// What each copy is one of.
+    pub copied: Vec<Copied>,
+}
+
+impl<'a> Layout<'a> {
+    pub fn new(torus: Torus, positions: &'a [[f64; 3]]) -> Self {
+        Self { torus, positions, numbers: BTreeMap::new(), copied: Vec::new() }
+    }
+
+    /// Rows laid out: each simplex where its lowest coordinates are in the box, so that only the upper sides
+    /// of the box have something beyond them.
+    pub fn lay_out<const N: usize>(&mut self, simplices: &Simplices<N>) -> Simplices<N> {
+        simplices.iter().map(|(&row, class)| (self.row(row), class)).collect()
+    }
+
+    fn row<const N: usize>(&mut self, row: [u32; N]) -> [u32; N] {
+        let place = |v: u32| self.positions[v as usize];
+        let ways = row.map(|v| self.torus.windings(place(row[0]), place(v)));
+        let lowest = [0, 1, 2].map(|k| ways.iter().map(|way| way[k]).min().unwrap_or(0));
+        let mut laid_out = row;
+        for (v, way) in laid_out.iter_mut().zip(ways) {
+            *v = self.number((*v, [0, 1, 2].map(|k| way[k] - lowest[k])));
+        }
+        laid_out
+    }
+
+    fn number(&mut self, copied: Copied) -> u32 {
+        if copied.1 == [0; 3] {
+            return copied.0;
+        }
+        *self.numbers.entry(copied).or_insert_with(|| {
+            self.copied.push(copied);
+            (self.positions.len() + self.copied.len()) as u32 - 1
+        })
+    }
+}
+
+impl AlphaShape {
+    /// A shape of a torus laid out in space, for programs that know no torus: a row for each simplex, as in
+    /// [`AlphaShape::complex`], but where it crosses an upper side of the box with copies of points in place
+    /// of these. Copies come after all points. Along the sides the layout is cut open, so it is not the α-complex
+    /// of its points; classes, sizes, components and sheets are those of the torus. A shape in space is
+    /// given back as it is. O(n log n).
+    #[must_use]
+    pub fn unwrapped(&self) -> Self {
+        let Some(torus) = self.options.periodic else { return self.clone() };
+        let mut layout = Layout::new(torus, &self.points.positions);
+        let mut complex = self.complex.clone();
+        complex.cells = layout.lay_out(&self.complex.cells);
+        complex.facets = layout.lay_out(&self.complex.facets);
+        complex.edges = layout.lay_out(&self.complex.edges);
+        let classes: BTreeMap<u32, _> =
+            self.complex.vertices.iter().map(|(&[v], class)| (v, class)).collect();
+        let points = self.points.len() as u32;
+        let copied = layout.copied;
+        for (copy, (v, _)) in (points..).zip(&copied) {
+            complex.vertices.push([copy], classes[v]);
+        }
+        let mut unwrapped = self.clone();
+        unwrapped.complex = complex;
+        unwrapped.options.periodic = None;
+        for (v, way) in copied {
+            let place = torus.moved(self.points.positions[v as usize], way);
+            unwrapped.push_copy(v, place);
+        }
+        unwrapped
+    }
+
+    fn push_copy(&mut self, v: u32, place: [f64; 3]) {
+        let at = v as usize;
+        self.points.positions.push(place);
+        self.points.weights.push(self.points.weights[at]);
+        if let Some(values) = &mut self.points.values {
+            values.push(values[at]);
+        }
+        if let Some(squared) = &mut self.squared {
+            squared.push(squared[at]);
+        }
+        self.copies.push(v);
+    }
+}

@@ -1,0 +1,105 @@
+//! The exact checker on complexes of a torus.
+
+use walpha::check::schema::{ComplexFile, PlacedComplex};
+use walpha::check::{CertifyError, Finding, NotJudged};
+use walpha::export::{Exporter, Json, Npz};
+use walpha::shape::{AlphaShape, Class, ShapeOptions};
+
+use crate::{alpha_shape, dense, options, sets, shape};
+
+fn placed(shape: &AlphaShape) -> PlacedComplex {
+    let sides = shape.options().periodic.unwrap().sides();
+    PlacedComplex::from(shape.claim()).with_periodic(Some(sides))
+}
+
+fn findings(placed: &PlacedComplex) -> Vec<Finding> {
+    placed.findings().unwrap().0
+}
+
+#[test]
+fn shapes_of_a_torus_are_certified() {
+    let mut judged = 0;
+    for (points, sides) in sets(36) {
+        for squared in [0.5, 1.0] {
+            let Ok(shape) = shape(&points, sides, squared) else { continue };
+            assert_eq!(findings(&placed(&shape)), []);
+            judged += 1;
+        }
+    }
+    for seed in 0..6 {
+        let (points, sides) = dense(seed);
+        for squared in [0.25, f64::INFINITY] {
+            let whole = ShapeOptions { exterior: true, ..options(sides, squared) };
+            let shape = alpha_shape(points.clone(), &whole).unwrap();
+            let (found, certificate) = placed(&shape).findings().unwrap();
+            assert_eq!(found, []);
+            assert!(!certificate.not_judged.contains(&NotJudged::MissingSimplices));
+            judged += 1;
+        }
+    }
+    assert!(judged > 40, "{judged}");
+}
+
+#[test]
+fn what_is_wrong_on_a_torus_is_found() {
+    let (points, sides) = dense(3);
+    let whole = ShapeOptions { exterior: true, ..options(sides, 0.3) };
+    let right = placed(&alpha_shape(points, &whole).unwrap());
+    let count = right.complex.cells.len();
+    // Cells at the sides of the box as well as within.
+    for at in [0, count / 3, count / 2, count - 1] {
+        let mut damaged = right.clone();
+        damaged.complex.cells = right
+            .complex
+            .cells
+            .clone()
+            .into_iter()
+            .enumerate()
+            .filter(|(k, _)| *k != at)
+            .map(|(_, cell)| cell)
+            .collect();
+        let found = findings(&damaged);
+        let names = |finding: &Finding| {
+            matches!(finding, Finding::MissingCell { .. } | Finding::Volume { .. })
+        };
+        assert!(found.iter().any(names), "{found:?}");
+        let mut damaged = right.clone();
+        let other =
+            |class| if class == Class::Interior { Class::Exterior } else { Class::Interior };
+        let cells = right.complex.cells.clone().into_iter().enumerate();
+        damaged.complex.cells = cells
+            .map(|(k, (row, class))| (row, if k == at { other(class) } else { class }))
+            .collect();
+        let row = right.complex.cells.rows()[at];
+        let found = findings(&damaged);
+        let named = found.iter().filter(|finding| matches!(finding, Finding::Class { simplex, .. } if simplex.vertices() == row));
+        assert_eq!(named.count(), 1, "{found:?}");
+    }
+    let mut damaged = right.clone();
+    damaged.periodic = Some([sides[0] + 1.0, sides[1], sides[2]]);
+    assert!(!findings(&damaged).is_empty());
+    let mut damaged = right.clone();
+    damaged.periodic = Some([2.0, sides[1], sides[2]]);
+    assert!(matches!(damaged.findings(), Err(CertifyError::NotInBox(_))));
+    let mut damaged = right;
+    damaged.complex.edges.rows_mut()[0] = [0, 40];
+    assert!(
+        findings(&damaged).iter().any(|finding| matches!(
+            finding,
+            Finding::LongEdge { .. } | Finding::MissingFace { .. }
+        ))
+    );
+}
+
+#[test]
+fn files_hold_the_box() {
+    let (points, sides) = dense(1);
+    let shape = shape(&points, sides, 0.3).unwrap();
+    let (mut json, mut npz) = (Vec::new(), Vec::new());
+    Json.write_any(&shape, &mut json).unwrap();
+    Npz.write_any(&shape, &mut npz).unwrap();
+    let json = ComplexFile::read_json(&json[..]).unwrap().into_complex().unwrap();
+    let npz = ComplexFile::read_npz(std::io::Cursor::new(npz)).unwrap().into_complex().unwrap();
+    assert_eq!(json.periodic, Some(sides));
+    assert_eq!((&json, &json), (&npz, &placed(&shape)));
+}
