@@ -52,9 +52,12 @@ pub(crate) fn findings(
     let whole = Extent::of(&placed.complex, placed.alpha) == Extent::Whole;
     let (volume, missing) = copies.volume(count, sides);
     certificate.six_volumes = volume;
+    // Cells that fill the box are all there are.
+    if whole || missing.is_none() {
+        certificate.not_judged.retain(|rule| *rule != NotJudged::MissingSimplices);
+    }
     if whole {
         found.extend(missing);
-        certificate.not_judged.retain(|rule| *rule != NotJudged::MissingSimplices);
     }
     certificate.findings = found.len();
     Ok((found, certificate))
