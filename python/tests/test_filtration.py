@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 
@@ -58,3 +60,59 @@ def test_alpha_is_needed(cloud):
         walpha.filtration(cloud).shape()
     with pytest.raises(ValueError, match="optimal_alpha"):
         walpha.filtration(cloud).shape("auto")
+
+
+def test_simplices_come_in_exact_order(cloud, weights):
+    filtration = walpha.filtration(cloud, weights)
+    simplices = filtration.simplices()
+    whole = filtration.whole()
+    counts = [len(whole.vertices), len(whole.edges), len(whole.facets), len(whole.cells)]
+    assert [len(simplices.vertices), len(simplices.edges), len(simplices.facets), len(simplices.cells)] == counts
+    assert len(simplices) == sum(counts) and sorted(simplices.order) == list(range(len(simplices)))
+    assert (np.diff(simplices.ranks[simplices.order].astype(int)) >= 0).all()
+    assert (np.diff(simplices.values[simplices.order]) >= 0).all()
+    seen = set()
+    for vertices, value in simplices:
+        assert all(face in seen for face in itertools.combinations(vertices, len(vertices) - 1) if face)
+        seen.add(vertices)
+    assert simplices.gabriel[-counts[3] :].all() and (simplices.regular[-counts[3] :] == np.inf).all()
+    assert filtration.simplices() is simplices
+
+
+def test_gudhi_agrees(cloud, weights):
+    gudhi = pytest.importorskip("gudhi")
+    filtration = walpha.filtration(cloud, weights)
+    theirs = gudhi.AlphaComplex(cloud, weights=weights, precision="exact").create_simplex_tree()
+    ours = filtration.simplex_tree()
+    values = dict((tuple(s), v) for s, v in ours.get_filtration())
+    other = dict((tuple(s), v) for s, v in theirs.get_filtration())
+    assert values.keys() == other.keys()
+    assert max(abs(values[s] - other[s]) for s in values) < 1e-12
+    assert not ours.make_filtration_non_decreasing()
+    ours.compute_persistence(persistence_dim_max=True)
+    for dimension in (0, 2):
+        found = np.array(ours.persistence_intervals_in_dimension(dimension))
+        known = filtration.simplices().persistence(dimension)
+        assert np.array_equal(np.sort(found, axis=0), np.sort(known, axis=0))
+    ranked = filtration.simplex_tree(ranks=True)
+    assert set(v for _, v in ranked.get_filtration()) == set(map(float, filtration.simplices().ranks))
+    with pytest.raises(ValueError, match="simplex_tree"):
+        filtration.simplices().persistence(1)
+
+
+def test_dionysus_agrees(hollow):
+    dionysus = pytest.importorskip("dionysus")
+    filtration = walpha.filtration(hollow)
+    made = filtration.dionysus()
+    assert [tuple(simplex) for simplex in made] == [vertices for vertices, _ in filtration.simplices()]
+    diagrams = dionysus.init_diagrams(dionysus.homology_persistence(made), made)
+    voids = sorted((point.birth, point.death) for point in diagrams[2])
+    assert voids == sorted(map(tuple, filtration.simplices().persistence(2)))
+
+
+def test_points_of_a_plane(cloud):
+    flat = walpha.alpha_shape(cloud[:, :2], alpha=np.inf)
+    assert len(flat.cells) == 0 and (flat.facet_classes == walpha.Class.SINGULAR).any()
+    assert np.array_equal(flat.points[:, :2], cloud[:, :2]) and (flat.points[:, 2] == 0).all()
+    with pytest.raises(ValueError, match="plane"):
+        walpha.filtration(cloud[:, :2])

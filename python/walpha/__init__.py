@@ -17,8 +17,16 @@ import atexit as _atexit
 from . import _walpha
 from ._check import Comparison, Complex, Finding, Verdict, check, compare
 from ._class import Class
-from ._filtration import BettiCurve, Filtration, Level, Simplices, Suggestions, filtration
-from ._parts import Betti, Boundary, Component, Void
+from ._filtration import (
+    BettiCurve,
+    Filtration,
+    Level,
+    Simplices,
+    Suggestions,
+    TorusBettiCurve,
+    filtration,
+)
+from ._parts import Betti, Boundary, Component, TorusBetti, Void
 from ._shape import AlphaShape, alpha_shape
 from ._volume import Selected, Volume, difference, haar, pipeline, read, select, weigh
 
@@ -39,6 +47,8 @@ __all__ = [
     "Selected",
     "Simplices",
     "Suggestions",
+    "TorusBetti",
+    "TorusBettiCurve",
     "Verdict",
     "Void",
     "Volume",

@@ -7,7 +7,7 @@ import numpy as np
 
 from . import _arrays, _walpha
 from ._meshes import wanted
-from ._parts import Betti, Void
+from ._parts import Void, betti
 from ._shape import AlphaShape, squared
 
 
@@ -23,8 +23,6 @@ class BettiCurve(NamedTuple):
         Components, tunnels, voids.
     solid_components : ndarray of uint64, (m,)
         Components of the cells, joined through facets.
-    b3 : ndarray of uint64, (m,), or None
-        Of a torus.
     """
 
     alpha: np.ndarray
@@ -32,7 +30,25 @@ class BettiCurve(NamedTuple):
     b1: np.ndarray
     b2: np.ndarray
     solid_components: np.ndarray
-    b3: np.ndarray | None = None
+
+
+class TorusBettiCurve(NamedTuple):
+    """The topology of a torus's shapes at every critical value of α.
+
+    Attributes
+    ----------
+    alpha, b0, b1, b2, solid_components : ndarray, (m,)
+        As in :class:`BettiCurve`.
+    b3 : ndarray of uint64, (m,)
+        1 from where on the shape is the whole torus: the last row.
+    """
+
+    alpha: np.ndarray
+    b0: np.ndarray
+    b1: np.ndarray
+    b2: np.ndarray
+    solid_components: np.ndarray
+    b3: np.ndarray
 
 
 class Simplices:
@@ -124,6 +140,7 @@ class Level(NamedTuple):
     facets, edges, vertices : dict
         How many there are, by the name of their class.
     betti : Betti
+        Of a torus TorusBetti.
     solid_components : int
         Components of the cells, joined through facets.
     volume, area, singular_area : float
@@ -139,7 +156,7 @@ class Level(NamedTuple):
     facets: dict
     edges: dict
     vertices: dict
-    betti: Betti
+    betti: tuple
     solid_components: int
     volume: float
     area: float
@@ -152,7 +169,7 @@ class Level(NamedTuple):
         """From the fields of the library."""
         changed = {
             "alpha": float(facts["alpha"]),
-            "betti": Betti(*facts["betti"]),
+            "betti": betti(facts["betti"]),
             "voids": [Void.of(void) for void in facts["voids"]],
         }
         return cls(**{name: changed.get(name, facts[name]) for name in cls._fields})
@@ -340,9 +357,10 @@ class Filtration:
         return self.levels([alpha], progress=progress)[0].voids
 
     def betti_curve(self, *, progress=None):
-        """BettiCurve: Betti numbers and solid components at every critical value."""
+        """BettiCurve, of a torus TorusBettiCurve: Betti numbers and solid components at every critical value."""
         alpha, columns = self._filtration.curve(progress)
-        return BettiCurve(alpha, *columns)
+        kind = BettiCurve if self.periodic is None else TorusBettiCurve
+        return kind(alpha, *columns)
 
     def suggestions(self, *, progress=None):
         """Suggestions: values of α to try."""

@@ -17,15 +17,41 @@ class Betti(NamedTuple):
     b1 : int
         Independent tunnels.
     b2 : int
-        Voids. Of a torus closed surfaces that bound nothing, those that go round it too.
-    b3 : int or None
-        Of a torus 1 if the shape is the whole of it, else 0. None in space.
+        Voids.
     """
 
     b0: int
     b1: int
     b2: int
-    b3: int | None = None
+
+
+class TorusBetti(NamedTuple):
+    """Betti numbers of a shape of a torus.
+
+    Attributes
+    ----------
+    b0 : int
+        Connected components.
+    b1 : int
+        Independent loops that bound nothing, those that go round the torus too.
+    b2 : int
+        Independent closed surfaces that bound nothing, those that go round the torus too.
+    b3 : int
+        1 if the shape is the whole torus, else 0.
+    """
+
+    b0: int
+    b1: int
+    b2: int
+    b3: int
+
+
+def betti(numbers):
+    """Three Betti numbers, or four of a torus; None as it is."""
+    if numbers is None:
+        return None
+    known = [number for number in numbers if number is not None]
+    return Betti(*known) if len(known) == 3 else TorusBetti(*known)
 
 
 class Void(NamedTuple):

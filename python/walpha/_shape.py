@@ -8,9 +8,9 @@ import os
 
 import numpy as np
 
-from . import _arrays, _meshes, _walpha
+from . import _arrays, _meshes, _parts, _walpha
 from ._class import Class
-from ._parts import Betti, Boundary, Component, Void
+from ._parts import Boundary, Component, Void
 
 
 class AlphaShape:
@@ -150,9 +150,8 @@ class AlphaShape:
 
     @property
     def betti(self):
-        """Betti or None: components, tunnels and voids; of a torus b3 too."""
-        betti = self._shape.betti
-        return None if betti is None else Betti(*betti)
+        """Betti or None: components, tunnels and voids. Of a torus a TorusBetti."""
+        return _parts.betti(self._shape.betti)
 
     @functools.cached_property
     def components(self):
@@ -335,7 +334,7 @@ class AlphaShape:
     def __repr__(self):
         return (
             f"<walpha.AlphaShape α={self.alpha:g} (√α={self.alpha_radius:g}): {len(self.points)} points, "
-            f"{len(self.cells)} cells, volume {self.volume:g}, betti {tuple(b for b in self.betti or () if b is not None)}>"
+            f"{len(self.cells)} cells, volume {self.volume:g}, betti {tuple(self.betti or ())}>"
         )
 
     def _repr_html_(self):

@@ -1,0 +1,82 @@
+import itertools
+
+import numpy as np
+import pytest
+
+import walpha
+
+LATTICE = np.array(list(itertools.product(range(4), repeat=3)), float)
+BCC = np.vstack([LATTICE, LATTICE + 0.5])
+
+
+def test_a_lattice_fills_the_torus():
+    shape = walpha.alpha_shape(BCC, alpha=0.3125, periodic=4)
+    assert shape.betti == walpha.TorusBetti(1, 3, 3, 1) and shape.volume == 64 and shape.area == 0
+    assert shape.periodic == (4, 4, 4) and "betti (1, 3, 3, 1)" in repr(shape)
+    assert [part.rounds for part in shape.components] == [3]
+    assert walpha.check(shape)
+    # Each cell once, and its corners the copies nearest to the first.
+    assert len(shape.cells) == 6 * len(BCC)
+    corners = shape.points[shape.cells]
+    corners -= 4 * np.round((corners - corners[:, :1]) / 4)
+    volumes = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6
+    assert (volumes > 0).all() and np.isclose(volumes.sum(), 64)
+
+
+def test_moving_all_points_changes_nothing():
+    still = walpha.alpha_shape(LATTICE, alpha=0.5, periodic=(4, 4, 4))
+    moved = walpha.alpha_shape(LATTICE + [5, -2, 0.25], alpha=0.5, periodic=(4, 4, 4))
+    assert np.array_equal(still.facets, moved.facets) and still.betti == moved.betti
+    assert (moved.points >= 0).all() and (moved.points < 4).all()
+
+
+def test_a_layout_in_space():
+    shape = walpha.alpha_shape(BCC, alpha=0.29, periodic=4, exterior=True)
+    flat = shape.unwrapped()
+    assert flat.periodic is None and len(flat.points) == len(BCC) + len(flat.copies)
+    at = flat.points[len(BCC) :]
+    assert np.array_equal(np.mod(at, 4), shape.points[flat.copies])
+    with pytest.raises(ValueError, match="solid=False"):
+        shape.boundary()
+    assert len(shape.boundary(solid=False).triangles) == (shape.facet_classes == walpha.Class.REGULAR).sum()
+    with pytest.raises(ValueError, match="periodic box"):
+        shape.at([[0, 0, 0]], values=np.zeros(len(BCC)))
+
+
+def test_a_filtration_of_a_torus():
+    rng = np.random.default_rng(3)
+    points, weights = rng.random((400, 3)), rng.random(400) * 0.002
+    filtration = walpha.filtration(points, weights, periodic=1)
+    curve = filtration.betti_curve()
+    assert (curve.b0[-1], curve.b1[-1], curve.b2[-1], curve.b3[-1]) == (1, 3, 3, 1)
+    for k in range(0, len(curve.alpha), len(curve.alpha) // 7):
+        shape = walpha.alpha_shape(points, weights, curve.alpha[k], periodic=1)
+        assert shape.betti == (curve.b0[k], curve.b1[k], curve.b2[k], curve.b3[k])
+        assert np.array_equal(shape.cells, filtration.shape(curve.alpha[k]).cells)
+    simplices = filtration.simplices()
+    assert [len(numbers) for numbers in simplices.lasting] == [1, 3, 1]
+
+
+def test_gudhi_finds_the_torus():
+    pytest.importorskip("gudhi")
+    rng = np.random.default_rng(5)
+    filtration = walpha.filtration(rng.random((250, 3)), periodic=(1, 1, 1.25))
+    tree = filtration.simplex_tree()
+    tree.compute_persistence(homology_coeff_field=11, persistence_dim_max=True)
+    assert tree.betti_numbers() == [1, 3, 3, 1]
+    curve = filtration.betti_curve()
+    for k in range(0, len(curve.alpha), len(curve.alpha) // 9):
+        # Values are the nearest doubles, so half way to the next.
+        at = curve.alpha[k] / 2 + curve.alpha[min(k + 1, len(curve.alpha) - 1)] / 2
+        found = [len([0 for b, d in tree.persistence_intervals_in_dimension(n) if b <= at < d]) for n in range(4)]
+        assert found == [curve.b0[k], curve.b1[k], curve.b2[k], curve.b3[k]]
+
+
+@pytest.mark.parametrize(
+    ("sides", "words"),
+    [((1, 1), "three sides|sides of the box"), ((1, 1, -1), "along z"), ((1, 1, np.nan), "along z"), ((0.3, 9, 9), "repeat")],
+)
+def test_bad_boxes_are_refused(sides, words):
+    points = np.random.default_rng(1).random((50, 3))
+    with pytest.raises(ValueError, match=words):
+        walpha.alpha_shape(points, alpha=1, periodic=sides)
