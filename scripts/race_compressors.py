@@ -198,9 +198,9 @@ def ours(python, walpha, file, folder):
     """Points chosen for an RMSE, their values rounded in proportion to it."""
     rows = []
     model, back = os.path.join(folder, "model.wvm"), os.path.join(folder, "back.npy")
-    for target in [8.0, 4.0, 2.0, 1.0]:
+    for target in [8.0, 5.6, 4.0, 2.8, 2.0, 1.4, 1.0]:
         command = [walpha, "points", file, "--gray", "0..255", "--select", "adaptive", "--quiet"]
-        command += ["--target-rmse", str(0.95 * target), "--value-error", str(1.5 * target), "-o", model]
+        command += ["--target-rmse", str(target), "--value-error", str(1.5 * target), "-o", model]
         started = time.perf_counter()
         subprocess.run(command, check=True)
         wrote = time.perf_counter() - started
@@ -224,9 +224,18 @@ def read_off(curve, x):
     return None
 
 
+def best(curve):
+    """The points that no other beats in both error and size, from small errors to large ones."""
+    kept = []
+    for error, rate in sorted(set(curve)):
+        if not kept or rate < kept[-1][1]:
+            kept.append((error, rate))
+    return kept
+
+
 def summary(name, rows, samples):
     lossy = [row for row in rows if not row["lossless"] and row["rmse"] > 0]
-    curve = [(row["rmse"], 8 * row["bytes"] / samples) for row in lossy]
+    curve = best([(row["rmse"], 8 * row["bytes"] / samples) for row in lossy])
     lossless = [8 * row["bytes"] / samples for row in rows if row["lossless"]]
     near = min(lossy, key=lambda row: abs(row["rmse"] - 2), default=None)
     rate_of = [(rate, error) for error, rate in curve]
@@ -239,7 +248,7 @@ def summary(name, rows, samples):
         "lossless_bits": min(lossless, default=None),
         "write_seconds": near and near["write"],
         "read_seconds": near and near["read"],
-        "curve": sorted(curve),
+        "curve": curve,
     }
 
 

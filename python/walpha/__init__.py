@@ -19,6 +19,7 @@ from ._check import Comparison, Complex, Finding, Verdict, check, compare
 from ._class import Class
 from ._filtration import BettiCurve, Filtration, Level, Suggestions, filtration
 from ._parts import Betti, Boundary, Component, Void
+from ._points import PointFile, read_points, write_points
 from ._shape import AlphaShape, alpha_shape
 from ._volume import Selected, Volume, difference, haar, pipeline, read, select, weigh
 
@@ -36,6 +37,7 @@ __all__ = [
     "Filtration",
     "Finding",
     "Level",
+    "PointFile",
     "Selected",
     "Suggestions",
     "Verdict",
@@ -49,8 +51,10 @@ __all__ = [
     "haar",
     "pipeline",
     "read",
+    "read_points",
     "select",
     "weigh",
+    "write_points",
 ]
 
 # Interrupted work may still be writing.

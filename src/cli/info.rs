@@ -61,9 +61,7 @@ enum Content {
         data_files: Vec<String>,
     },
     /// Several series in a folder, of which --series reads one.
-    Series {
-        series: Vec<Series>,
-    },
+    Series { series: Vec<Series> },
     Points {
         count: usize,
         low: [f64; 3],

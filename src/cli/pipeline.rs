@@ -41,8 +41,7 @@ pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> 
         with_file(args, |input| {
             if is_points(args, input)? {
                 let level = args.options().level;
-                let (mut points, mut facts) =
-                    read_model(Path::new(input), args.columns(), level)?;
+                let (mut points, mut facts) = read_model(Path::new(input), args.columns(), level)?;
                 if let Some(range) = &mut facts.range {
                     let written = args.written(*range);
                     if written != *range {

@@ -24,6 +24,7 @@ pub(super) fn unpack(bytes: &[u8], count: usize) -> Option<Vec<f64>> {
     if planes.len() != length {
         return None;
     }
-    let number = |k: usize| f64::from_le_bytes([0, 1, 2, 3, 4, 5, 6, 7].map(|b| planes[b * count + k]));
+    let number =
+        |k: usize| f64::from_le_bytes([0, 1, 2, 3, 4, 5, 6, 7].map(|b| planes[b * count + k]));
     Some((0..count).map(number).collect())
 }

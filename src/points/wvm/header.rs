@@ -205,7 +205,9 @@ impl Header {
     /// Refuses what contradicts itself.
     fn check(&self) -> Result<(), Reason> {
         let what = |what: &str| Err(Reason::header(format!("its header {what}")));
-        if self.grid.is_none() && (self.layers.len() > 1 || matches!(self.values, Values::Steps { .. })) {
+        if self.grid.is_none()
+            && (self.layers.len() > 1 || matches!(self.values, Values::Steps { .. }))
+        {
             return what("has layers or steps without a grid");
         }
         let mut points = 0u64;

@@ -279,7 +279,8 @@ impl Counts {
         [
             self.pattern + 512 * (few(e) + 4 * left),
             a + 14 * (b + 28 * (size(c).min(6) + 7 * few(e))),
-            a + 14 * ((b / 2).min(9) + 10 * ((c / 4).min(9) + 10 * ((d / 8).min(15) + 16 * e.min(1)))),
+            a + 14
+                * ((b / 2).min(9) + 10 * ((c / 4).min(9) + 10 * ((d / 8).min(15) + 16 * e.min(1)))),
             2 * a + 2 * b + c + 130 * ((d / 4).min(31) + 32 * (e + f / 2).min(7)),
             e + 14 * ((f / 2).min(15) + 16 * (few(a) + 4 * (edge + 2 * left))),
             sides + 8 * (few(a) + 4 * (left + 17 * size(d).min(8))),

@@ -59,9 +59,8 @@ impl Known {
                 let Some(values) = self.0.get(&shape.number(there)) else { continue };
                 found.extend(values.iter().map(|&(bit, value)| {
                     let place = place_in_block(bit.into());
-                    let step = [0, 1, 2].map(|k| {
-                        (place[k] + SIDE * there[k]).wrapping_sub(voxel[k]).cast_signed()
-                    });
+                    let step = [0, 1, 2]
+                        .map(|k| (place[k] + SIDE * there[k]).wrapping_sub(voxel[k]).cast_signed());
                     Neighbour { step, squared: squared(step).into(), value: value.into() }
                 }));
             }

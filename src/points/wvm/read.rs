@@ -17,10 +17,7 @@ use crate::volume::{Reason, io_error};
 /// Reads points without the last `level` layers, and what is known of them.
 ///
 /// Memory is in proportion to the file, whatever its header claims: a byte holds 64 points at most.
-pub(in super::super) fn read(
-    path: &Path,
-    level: u32,
-) -> Result<(Points, ModelFacts), PointsError> {
+pub(in super::super) fn read(path: &Path, level: u32) -> Result<(Points, ModelFacts), PointsError> {
     let said = |reason: Reason| format(path, reason);
     let mut file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
@@ -59,10 +56,11 @@ fn layers_of<'a>(
     wanted: usize,
 ) -> Result<Vec<&'a [u8]>, Reason> {
     let found = bytes.len() as u64;
-    let lengths: Vec<u64> = header.layers.iter().map(|layer| layer.length().unwrap_or(u64::MAX)).collect();
-    let needed = lengths.iter().fold(0u64, |sum, &length| {
-        sum.saturating_add(length).saturating_add(CHECKSUM as u64)
-    });
+    let lengths: Vec<u64> =
+        header.layers.iter().map(|layer| layer.length().unwrap_or(u64::MAX)).collect();
+    let needed = lengths
+        .iter()
+        .fold(0u64, |sum, &length| sum.saturating_add(length).saturating_add(CHECKSUM as u64));
     if found > needed {
         let claim = format!("{} layers", lengths.len());
         return Err(Reason::Length { claim, needed, found, bound: "" });
@@ -129,7 +127,8 @@ impl<'a> Model<'a> {
                 let cells = coders.places.code(&mut Decoder::new(places), &[], count)?;
                 if matches!(self.header.values, Values::Steps { .. }) {
                     let known = coders.places.known();
-                    multiples = coders.values.code(&mut Decoder::new(values), &cells, known, &[])?;
+                    multiples =
+                        coders.values.code(&mut Decoder::new(values), &cells, known, &[])?;
                 }
                 self.points.positions.extend(cells.iter().map(|&cell| grid.position(cell)));
                 self.cells.extend(cells);

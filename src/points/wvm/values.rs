@@ -102,7 +102,8 @@ impl Values {
                 break;
             }
         }
-        let value = if above { expected.checked_add(counted) } else { expected.checked_sub(counted) };
+        let value =
+            if above { expected.checked_add(counted) } else { expected.checked_sub(counted) };
         u32::try_from(value?).ok()
     }
 

@@ -40,10 +40,11 @@ pub(super) fn bytes_against_error(bench: &mut Bench<'_>) -> Result<Item, Reprodu
         if subject.name == "sample:skull" { &compressors::SKULL } else { &[] };
     let ours = measured.iter().map(|model| [model.rmse, model.bits(subject.volume)]).collect();
     let mut curves = vec![RateCurve { name: "walpha .wvm".into(), points: ours }];
-    curves.extend(others.iter().map(|other| RateCurve {
-        name: other.name.into(),
-        points: other.curve.to_vec(),
-    }));
+    curves.extend(
+        others
+            .iter()
+            .map(|other| RateCurve { name: other.name.into(), points: other.curve.to_vec() }),
+    );
     let figure = rate_figure("Our extension. PSNR of the volume against bits per sample", &curves);
     let picture = bench.file("extension-2.png", figure.to_png()?);
     let svg = bench.file("extension-2.svg", figure.to_svg()?.into_bytes());
@@ -54,9 +55,10 @@ pub(super) fn bytes_against_error(bench: &mut Bench<'_>) -> Result<Item, Reprodu
     Ok(Item {
         id: "extension-2",
         title: "Our extension. Bytes against error".into(),
-        paper: "Says that few points stand for the volume (6.07 %), and does not count bytes. This \
+        paper:
+            "Says that few points stand for the volume (6.07 %), and does not count bytes. This \
                 section is not in the paper."
-            .into(),
+                .into(),
         ours: remark(others),
         picture: Some(picture),
         files: vec![svg],
@@ -133,8 +135,7 @@ fn through_file(
     value_error: f64,
 ) -> Result<(usize, WeightedPoints), ReproduceError> {
     const NAME: &str = ".wvm";
-    let grid =
-        SampleGrid { dims: volume.dims(), frame: *volume.frame(), units: Units::Voxel };
+    let grid = SampleGrid { dims: volume.dims(), frame: *volume.frame(), units: Units::Voxel };
     let coordinates = Coordinates::VOXEL;
     let facts = ModelFacts { grid: Some(grid), coordinates, ..ModelFacts::default() };
     let packing = Packing { value_error, ..Packing::default() };
@@ -171,7 +172,8 @@ fn beside(curves: &[RateCurve]) -> Table {
     let head = ["", "bits at RMSE 1", "at 2", "at 4", "PSNR at ¼ bit", "at ½", "at 1"];
     let cell = |value: Option<f64>| value.map_or_else(|| "–".into(), text::number);
     let row = |curve: &RateCurve| {
-        let swapped: Vec<[f64; 2]> = curve.points.iter().map(|&[rmse, bits]| [bits, rmse]).collect();
+        let swapped: Vec<[f64; 2]> =
+            curve.points.iter().map(|&[rmse, bits]| [bits, rmse]).collect();
         let bits = [1.0, 2.0, 4.0].map(|rmse| read_off(&curve.points, rmse));
         let rmses = [0.25, 0.5, 1.0].map(|bits| read_off(&swapped, bits));
         let psnrs = rmses.map(|rmse| rmse.map(|rmse| 20.0 * (Deviation::PEAK / rmse).log10()));
@@ -179,9 +181,10 @@ fn beside(curves: &[RateCurve]) -> Table {
         std::iter::once(curve.name.clone()).chain(cells).collect()
     };
     Table {
-        caption: "Bits per sample at an RMSE in gray levels, and PSNR in dB at a rate; – lies beyond \
+        caption:
+            "Bits per sample at an RMSE in gray levels, and PSNR in dB at a rate; – lies beyond \
                   what was measured"
-            .into(),
+                .into(),
         head: head.map(String::from).into(),
         rows: curves.iter().map(row).collect(),
     }
