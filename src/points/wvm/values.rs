@@ -4,6 +4,7 @@ use super::blocks::{Blocks, Cell, SIDE, Shape, Window, bit_of, squared};
 use super::coder::{Coder, WHOLE};
 use super::mixer::Mixer;
 use super::predict::{Guess, Known};
+use crate::progress::report;
 
 /// Differences up to this are counted one by one.
 const COUNTED: u64 = 12;
@@ -54,6 +55,9 @@ impl Values {
     ) -> Option<Vec<u32>> {
         let mut coded = Vec::new();
         for (k, &voxel) in voxels.iter().enumerate() {
+            if k % 1024 == 0 {
+                report(k as u64, voxels.len() as u64);
+            }
             let around = self.around(voxel, occupied);
             let value = self.value(coder, &around, values.get(k).map_or(0, |&v| v.into()))?;
             self.known.add(&self.shape, voxel, value);
