@@ -145,6 +145,9 @@ impl Header {
             return Err(Reason::unsupported(what, "update walpha"));
         }
         let header = Self::of_fields(&mut fields);
+        if let Err(reason @ Reason::Truncated { .. }) = header {
+            return Err(reason);
+        }
         let length = file.len() - fields.rest.len();
         // Fields that cannot be are told of a head that is whole, and damage of one that is not.
         let claimed = fields.checksum()?;
