@@ -260,7 +260,8 @@ fn each_damaged_byte_and_each_early_end_is_told() {
 
 /// A file whose checksums are right: a head with these fields behind the version, then a layer.
 fn forged(fields: &[u8], layer: &[u8]) -> Vec<u8> {
-    let mut bytes = [b"\x89wvm\r\n\x1a\n\x01", fields].concat();
+    let length = (8 + 1 + 2 + fields.len() + 4) as u16;
+    let mut bytes = [b"\x89wvm\r\n\x1a\n\x01", &length.to_le_bytes()[..], fields].concat();
     bytes.extend(checksum(&bytes));
     bytes.extend(layer);
     bytes.extend(checksum(layer));

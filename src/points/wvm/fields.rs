@@ -57,9 +57,9 @@ pub(super) struct In<'a> {
 }
 
 impl In<'_> {
-    fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
+    pub fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
         let Some((first, rest)) = self.rest.split_first_chunk::<N>() else {
-            return Err(Reason::truncated("ends within its header"));
+            return Err(Reason::truncated("is truncated: it ends within its header"));
         };
         self.rest = rest;
         Ok(*first)
@@ -67,10 +67,6 @@ impl In<'_> {
 
     pub fn byte(&mut self) -> Result<u8, Reason> {
         Ok(self.bytes::<1>()?[0])
-    }
-
-    pub fn checksum(&mut self) -> Result<u32, Reason> {
-        Ok(u32::from_le_bytes(self.bytes()?))
     }
 
     pub fn whole(&mut self) -> Result<u64, Reason> {

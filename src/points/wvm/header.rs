@@ -15,6 +15,9 @@ pub(super) const POINTS_PER_BYTE: u64 = 64;
 /// Bytes of a checksum.
 pub(super) const CHECKSUM: usize = 4;
 
+/// Bytes of the length of the head.
+const LENGTH: usize = 2;
+
 /// What a file holds.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
@@ -102,7 +105,10 @@ impl Header {
         ];
         let flags = flags.iter().filter(|(_, set)| *set).map(|(flag, _)| flag).sum();
         let mut out = Out(MODEL.to_vec());
-        out.0.extend([VERSION, flags]);
+        out.0.push(VERSION);
+        let length = out.0.len();
+        out.0.extend([0; LENGTH]);
+        out.0.push(flags);
         out.coordinates(self.coordinates);
         out.0.push(self.layers.len() as u8);
         for Layer { count, bytes } in &self.layers {
@@ -127,13 +133,15 @@ impl Header {
         if let Some(range) = self.range {
             out.doubles(&[range.low, range.high]);
         }
+        let whole = u16::try_from(out.0.len() + CHECKSUM).expect("a few hundred bytes");
+        out.0[length..][..LENGTH].copy_from_slice(&whole.to_le_bytes());
         let checksum = crc32fast::hash(&out.0);
         out.0.extend(checksum.to_le_bytes());
         out.0
     }
 
     /// Reads the head of a file, and says how long it is. Nothing is believed of it beyond that; what is
-    /// allocated is a few hundred bytes.
+    /// allocated is a few kilobytes.
     pub fn of_bytes(file: &[u8]) -> Result<(Self, usize), Reason> {
         let Some(rest) = file.strip_prefix(MODEL) else {
             return Err(Reason::other("is no .wvm: it does not begin as one"));
@@ -144,17 +152,21 @@ impl Header {
             let what = format!("is of version {version} of the format: version {VERSION} is read");
             return Err(Reason::unsupported(what, "update walpha"));
         }
-        let header = Self::of_fields(&mut fields);
-        if let Err(reason @ Reason::Truncated { .. }) = header {
-            return Err(reason);
-        }
-        let length = file.len() - fields.rest.len();
-        // Fields that cannot be are told of a head that is whole, and damage of one that is not.
-        let claimed = fields.checksum()?;
-        if !fits(&file[..length], claimed) {
+        let length = usize::from(u16::from_le_bytes(fields.bytes()?));
+        let whole = file.get(..length).and_then(|head| head.split_last_chunk::<CHECKSUM>());
+        let Some((head, checksum)) = whole else {
+            return Err(Reason::truncated("is truncated: it ends within its header"));
+        };
+        if !fits(head, u32::from_le_bytes(*checksum)) {
             return Err(damaged("its header"));
         }
-        Ok((header?, length + CHECKSUM))
+        let mut fields =
+            In { rest: head.get(file.len() - fields.rest.len()..).unwrap_or_default() };
+        let header = Self::of_fields(&mut fields)?;
+        if !fields.rest.is_empty() {
+            return Err(Reason::header("its header is longer than its fields"));
+        }
+        Ok((header, length))
     }
 
     fn of_fields(fields: &mut In<'_>) -> Result<Self, Reason> {
