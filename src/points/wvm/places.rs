@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::around::{Windows, earlier_steps};
 use super::blocks::{Blocks, Cell, MIDDLE, SIDE, Shape, bit_of};
-use super::coder::{Coder, WHOLE};
+use super::coder::Coder;
 use super::mixer::Mixer;
 use crate::progress::report;
 
@@ -74,14 +74,14 @@ impl Places {
     ) -> Option<Vec<Cell>> {
         let [nx, ny, nz] = self.shape.blocks.map(|n| u64::from(n.div_ceil(SUPER)));
         let number = |[x, y, z]: Cell| u64::from(x) + nx * (u64::from(y) + ny * u64::from(z));
-        let many = self.number(coder, 0, wanted.len() as u64)?;
+        let many = self.gaps.number(coder, 0, wanted.len() as u64)?;
         if many > count as u64 {
             return None;
         }
         let (mut supers, mut next) = (Vec::new(), 0);
         for k in 0..many as usize {
             let gap = wanted.get(k).map_or(0, |&cell| number(cell) - next);
-            let at = next + self.number(coder, 1, gap)?;
+            let at = next + self.gaps.number(coder, 1, gap)?;
             if at >= nx * ny * nz {
                 return None;
             }
@@ -89,22 +89,6 @@ impl Places {
             next = at + 1;
         }
         Some(supers)
-    }
-
-    /// A number: that of its binary digits by as many ones, then these.
-    fn number(&mut self, coder: &mut impl Coder, kind: usize, number: u64) -> Option<u64> {
-        let digits = (number + 1).ilog2();
-        let mut length = 0;
-        while self.gaps.code(coder, &[64 * kind + length as usize], 0, length < digits) {
-            length += 1;
-            if length > 40 {
-                return None;
-            }
-        }
-        let digit = |so_far: u64, k: u32| {
-            2 * so_far + u64::from(coder.bit(WHOLE / 2, (number + 1) >> k & 1 == 1))
-        };
-        Some((0..length).rev().fold(1, digit) - 1)
     }
 
     fn code_blocks(
