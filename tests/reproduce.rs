@@ -37,7 +37,7 @@ fn all_there_and_the_same_each_time() {
     let figures: Vec<String> = (1..=11).map(|k| format!("figure-{k}")).collect();
     assert_eq!(ids[0], "table-1");
     assert_eq!(ids[1..12], figures);
-    assert_eq!(ids[12..], ["extension-1"]);
+    assert_eq!(ids[12..], ["extension-1", "extension-2"]);
 
     // Each figure has a picture, each file named is there, and none is there without a name.
     let mut named = vec!["report.html".to_owned(), "report.json".to_owned()];

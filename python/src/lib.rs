@@ -9,6 +9,7 @@ mod complex;
 mod errors;
 mod filtration;
 mod listen;
+mod points;
 mod shape;
 mod volume;
 mod work;
@@ -22,6 +23,8 @@ mod _walpha {
     use super::complex::{Complex, compare};
     #[pymodule_export]
     use super::filtration::{Filtration, Simplices};
+    #[pymodule_export]
+    use super::points::{read_points, write_points};
     #[pymodule_export]
     use super::shape::{Shape, alpha_shape};
     #[pymodule_export]

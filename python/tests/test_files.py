@@ -55,3 +55,41 @@ def test_a_solid_file_is_closed(tmp_path, cloud):
     shape.save(tmp_path / "solid.ply", solid=True)
     mesh = trimesh.load(tmp_path / "solid.ply", process=False)
     assert mesh.is_watertight and np.isclose(mesh.volume, shape.volume)
+
+
+def test_points_come_back_from_a_file(tmp_path):
+    rng = np.random.default_rng(3)
+    points = np.unique(rng.integers(0, 20, (500, 3)), axis=0).astype(float)
+    points = points[np.lexsort(points.T)]
+    values = rng.integers(0, 256, len(points)).astype(float)
+    exact, small, table = (tmp_path / name for name in ("exact.wvm", "small.wvm", "table.csv"))
+    walpha.write_points(exact, points, values=values, alpha=2.5)
+    walpha.write_points(small, points, values=values, value_error=4)
+    walpha.write_points(table, points, np.ones(len(points)), values)
+    read = walpha.read_points(exact)
+    assert np.array_equal(read.points, points) and np.array_equal(read.values, values)
+    assert (read.weights == 0).all() and read.alpha == 2.5
+    assert read.grid == tuple(int(n) + 1 for n in points.max(axis=0)[::-1])
+    assert 0 < np.abs(walpha.read_points(small).values - values).max() <= 4
+    assert small.stat().st_size < exact.stat().st_size < table.stat().st_size / 3
+    read = walpha.read_points(table)
+    assert np.array_equal(read.points, points) and read.grid is None and (read.weights == 1).all()
+
+
+def test_points_that_cannot_be_written_or_read(tmp_path):
+    points = np.eye(3)
+    for call in (
+        lambda: walpha.write_points(tmp_path / "a.ply", points),
+        lambda: walpha.write_points(tmp_path / "a.csv", points, alpha=1.0),
+        lambda: walpha.write_points(tmp_path / "a.wvm", points, value_error=-1),
+        lambda: walpha.write_points(tmp_path / "a.wvm", points, values=[1.0]),
+    ):
+        with pytest.raises(ValueError):
+            call()
+    assert list(tmp_path.iterdir()) == []
+    walpha.write_points(tmp_path / "a.wvm", points)
+    data = bytearray((tmp_path / "a.wvm").read_bytes())
+    data[-5] ^= 1
+    (tmp_path / "a.wvm").write_bytes(data)
+    with pytest.raises(ValueError, match="damaged"):
+        walpha.read_points(tmp_path / "a.wvm")

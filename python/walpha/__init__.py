@@ -27,6 +27,7 @@ from ._filtration import (
     filtration,
 )
 from ._parts import Betti, Boundary, Component, TorusBetti, Void
+from ._points import PointFile, read_points, write_points
 from ._shape import AlphaShape, alpha_shape
 from ._volume import Selected, Volume, difference, haar, pipeline, read, select, weigh
 
@@ -44,6 +45,7 @@ __all__ = [
     "Filtration",
     "Finding",
     "Level",
+    "PointFile",
     "Selected",
     "Simplices",
     "Suggestions",
@@ -60,8 +62,10 @@ __all__ = [
     "haar",
     "pipeline",
     "read",
+    "read_points",
     "select",
     "weigh",
+    "write_points",
 ]
 
 # Interrupted work may still be writing.

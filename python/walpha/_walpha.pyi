@@ -111,6 +111,22 @@ def alpha_shape(
 ) -> Shape: ...
 def compare(a: Complex, b: Complex) -> tuple[bool, str, str]: ...
 def read(input: str, progress: _Progress) -> tuple[NDArray[np.float32], bool, str]: ...
+def read_points(path: str, level: int | None) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.float64] | None,
+    NDArray[np.float64] | None,
+    list[int] | None,
+    float | None,
+    str,
+]: ...
+def write_points(
+    path: str,
+    points: NDArray[np.float64],
+    weights: NDArray[np.float64] | None,
+    values: NDArray[np.float64] | None,
+    alpha: float | None,
+    value_error: float,
+) -> None: ...
 def haar(
     samples: NDArray[np.float32],
     tolerance: tuple[str, float],

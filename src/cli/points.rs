@@ -31,17 +31,19 @@ use super::{Global, pipeline};
 pub struct Points {
     #[arg(short, long, value_name = "FILE", help = points_output())]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    pipeline: PipelineArgs,
+    // Behind the input, which sees first what was given.
     /// Largest error of a value in a .wvm, in gray levels (of points without a volume: in their values): the
     /// values of F are off by as much at most, everywhere, and the file is smaller; 0 keeps every bit.
-    #[arg(long, value_name = "E", value_parser = not_negative, default_value = "0")]
+    #[arg(long, value_name = "E", value_parser = not_negative, default_value = "0",
+          help_heading = "Packing")]
     value_error: f64,
     /// Layers of points in a .wvm, the most important first: --level 1 reads it without the last layer, a
     /// quarter of the points, and so on. One layer makes the smallest file.
-    #[arg(long, value_name = "N", default_value = "1",
+    #[arg(long, value_name = "N", default_value = "1", help_heading = "Packing",
           value_parser = clap::value_parser!(u8).range(1..=i64::from(Packing::MOST_LAYERS)))]
     layers: u8,
-    #[command(flatten)]
-    pipeline: PipelineArgs,
 }
 
 impl Points {

@@ -26,7 +26,7 @@ pub struct ModelFacts {
     pub alpha: Option<Alpha>,
     /// The values that were gray 0 and 255.
     pub range: Option<GrayRange>,
-    /// The points by their indices, the most important first.
+    /// All points by their indices, the most important first.
     pub order: Option<Vec<u32>>,
 }
 

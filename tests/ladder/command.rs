@@ -99,6 +99,26 @@ fn the_command_makes_levels_of_detail() {
     assert!(epsilon(0) <= 100.0 && epsilon(1) > 100.0 && epsilon(1) <= 1000.0);
 }
 
+/// They tell what `interpolate` tells of as many points, whatever the values of the file are.
+#[test]
+fn levels_of_detail_tell_the_error_of_the_interpolant() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = ["haar", "sample:phantom@20", "--rms", "0", "-o", "a.npy"];
+    common::ok(folder.path(), &scan);
+    let told = |args: &[&str]| common::json(folder.path(), args);
+    let levels =
+        told(&["ladder", "a.npy", "--counts", "300,900", "--gray", "-50..300", "-o", "out"]);
+    for (level, count) in ["300", "900"].iter().enumerate() {
+        let options = ["--count", count, "--gray", "-50..300", "--fill"];
+        let alone = told(&[&["interpolate", "a.npy"][..], &options].concat());
+        for (ours, theirs) in [("rmse_inside", "inside"), ("rmse_filled", "filled")] {
+            let expected = &alone["interpolation"][theirs]["rmse"];
+            assert!(expected.as_f64().unwrap() > 1.0);
+            assert_eq!(&levels["levels"][level][ours], expected, "{ours} of {count}");
+        }
+    }
+}
+
 /// A level of more points than those of full detail has them in the region, too.
 #[test]
 fn a_region_is_not_coarser_than_its_level() {

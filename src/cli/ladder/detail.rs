@@ -24,6 +24,7 @@ use super::super::output::{name, tell};
 use super::super::pipeline::{Domain, Grays, Input, read};
 use super::super::progress::Progress;
 use super::super::report::SCHEMA_VERSION;
+use super::errors::Errors;
 use super::{Ladder, Mesh, short};
 
 /// What `walpha ladder` did over detail.
@@ -55,6 +56,9 @@ struct Row {
     #[serde(flatten)]
     measures: Measures,
     coverage: f64,
+    /// How far F is from the volume, in gray levels: on the samples of the shape, and on all.
+    #[serde(flatten)]
+    errors: Errors,
     /// Of all meshes of this level.
     bytes: u64,
     files: Vec<String>,
@@ -62,8 +66,9 @@ struct Row {
 
 impl Row {
     /// Of a level's shape, before its meshes are written.
-    fn of(shape: &AlphaShape, truncation: &Truncation, domain: &Domain) -> Self {
+    fn of(shape: &AlphaShape, truncation: &Truncation, domain: &Domain, errors: Errors) -> Self {
         Self {
+            errors,
             points: shape.points().len(),
             kept: truncation.kept,
             epsilon: truncation.epsilon,
@@ -118,6 +123,7 @@ impl Ladder {
                 Some((full, region)) => focus(full, &coarse, region),
                 None => coarse,
             };
+            let grays = points.values.clone().unwrap_or_default();
             if let Some(values) = &mut points.values {
                 values.iter_mut().for_each(|value| *value = written.value(*value));
             }
@@ -125,7 +131,9 @@ impl Ladder {
             let options = ShapeOptions { refuse_flat: true, ..ShapeOptions::new(alpha) };
             let shape = progress.stage(Stage::Shape, || alpha_shape(weighted, &options))?;
             let shape = shape.meaning(coordinates);
-            let mut row = Row::of(&shape, &truncation, &domain);
+            let errors = progress
+                .stage(Stage::Interpolate, || Errors::of(&shape, &grays, &volume, units))?;
+            let mut row = Row::of(&shape, &truncation, &domain, errors);
             progress.stage(Stage::Write, || -> anyhow::Result<()> {
                 for mesh in meshes {
                     let name = format!("detail-{}.{}", wanted.name, mesh.extension);
@@ -227,15 +235,25 @@ impl Display for Facts {
         }
         writeln!(
             f,
-            "{:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>10}  files",
-            "points", "rms", "cells", "boundary", "volume", "coverage", "bytes"
+            "{:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>10}  files",
+            "points",
+            "rms",
+            "F inside",
+            "F filled",
+            "cells",
+            "boundary",
+            "volume",
+            "coverage",
+            "bytes"
         )?;
         for row in &self.levels {
             writeln!(
                 f,
-                "{:>9} {:>9.4} {:>9} {:>9} {:>12.1} {:>8.2}% {:>10}  {}",
+                "{:>9} {:>9.4} {:>9} {:>9.4} {:>9} {:>9} {:>12.1} {:>8.2}% {:>10}  {}",
                 row.points,
                 row.rms,
+                row.errors.inside.map_or("–".into(), |rmse| format!("{rmse:.4}")),
+                row.errors.filled,
                 row.cells,
                 row.boundary_facets,
                 row.measures.volume,
@@ -244,7 +262,11 @@ impl Display for Facts {
                 row.files.join(", ")
             )?;
         }
-        writeln!(f, "rms: the error of the wavelet stage, in gray levels")
+        writeln!(
+            f,
+            "rms: the error of the wavelet stage; F: RMSE of the interpolant, on the samples of the \
+             shape, and filled, on all; in gray levels"
+        )
     }
 }
 
@@ -264,6 +286,8 @@ fn write_rows(rows: &[Row], out: &mut dyn io::Write) -> io::Result<()> {
         "volume",
         "area",
         "coverage",
+        "rmse_inside",
+        "rmse_filled",
         "bytes",
     ])?;
     for row in rows {
@@ -283,6 +307,8 @@ fn write_rows(rows: &[Row], out: &mut dyn io::Write) -> io::Result<()> {
             row.measures.volume.to_string(),
             row.measures.area.to_string(),
             row.coverage.to_string(),
+            row.errors.inside.map_or(String::new(), |rmse| rmse.to_string()),
+            row.errors.filled.to_string(),
             row.bytes.to_string(),
         ])?;
     }

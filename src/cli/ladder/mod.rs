@@ -1,6 +1,7 @@
 //! `walpha ladder`: many α, or many levels of detail.
 
 mod detail;
+mod errors;
 mod facts;
 
 use std::fmt::{Display, LowerExp};

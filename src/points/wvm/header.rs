@@ -2,7 +2,8 @@
 
 use super::super::formats::MODEL;
 use super::super::{ModelFacts, SampleGrid, Units};
-use crate::volume::{Coordinates, Dims, Frame, GrayRange, LengthUnit, Reason, Space};
+use super::fields::{In, Out};
+use crate::volume::{Coordinates, Dims, Frame, GrayRange, Reason};
 use walpha_check::Alpha;
 
 /// The version that is written, and the only one that is read.
@@ -13,6 +14,9 @@ pub(super) const POINTS_PER_BYTE: u64 = 64;
 
 /// Bytes of a checksum.
 pub(super) const CHECKSUM: usize = 4;
+
+/// Bytes of the length of the head.
+const LENGTH: usize = 2;
 
 /// What a file holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,19 +76,6 @@ const EXACT_WEIGHTS: u8 = 32;
 const ALPHA: u8 = 64;
 const RANGE: u8 = 128;
 
-const SPACES: [Space; 4] = [Space::Unknown, Space::Lps, Space::Ras, Space::Las];
-
-const UNITS: [LengthUnit; 8] = [
-    LengthUnit::Unstated,
-    LengthUnit::Voxel,
-    LengthUnit::Metre,
-    LengthUnit::Centimetre,
-    LengthUnit::Millimetre,
-    LengthUnit::Micrometre,
-    LengthUnit::Nanometre,
-    LengthUnit::Angstrom,
-];
-
 impl Header {
     /// What is told besides the points.
     pub fn facts(&self) -> ModelFacts {
@@ -114,8 +105,12 @@ impl Header {
         ];
         let flags = flags.iter().filter(|(_, set)| *set).map(|(flag, _)| flag).sum();
         let mut out = Out(MODEL.to_vec());
-        out.0.extend([VERSION, flags, code(&SPACES, self.coordinates.space)]);
-        out.0.extend([code(&UNITS, self.coordinates.unit), self.layers.len() as u8]);
+        out.0.push(VERSION);
+        let length = out.0.len();
+        out.0.extend([0; LENGTH]);
+        out.0.push(flags);
+        out.coordinates(self.coordinates);
+        out.0.push(self.layers.len() as u8);
         for Layer { count, bytes } in &self.layers {
             out.whole(*count);
             bytes.iter().for_each(|&part| out.whole(part));
@@ -138,13 +133,15 @@ impl Header {
         if let Some(range) = self.range {
             out.doubles(&[range.low, range.high]);
         }
+        let whole = u16::try_from(out.0.len() + CHECKSUM).expect("a few hundred bytes");
+        out.0[length..][..LENGTH].copy_from_slice(&whole.to_le_bytes());
         let checksum = crc32fast::hash(&out.0);
         out.0.extend(checksum.to_le_bytes());
         out.0
     }
 
     /// Reads the head of a file, and says how long it is. Nothing is believed of it beyond that; what is
-    /// allocated is a few hundred bytes.
+    /// allocated is a few kilobytes.
     pub fn of_bytes(file: &[u8]) -> Result<(Self, usize), Reason> {
         let Some(rest) = file.strip_prefix(MODEL) else {
             return Err(Reason::other("is no .wvm: it does not begin as one"));
@@ -155,21 +152,27 @@ impl Header {
             let what = format!("is of version {version} of the format: version {VERSION} is read");
             return Err(Reason::unsupported(what, "update walpha"));
         }
-        let header = Self::of_fields(&mut fields);
-        let length = file.len() - fields.rest.len();
-        // Fields that cannot be are told of a head that is whole, and damage of one that is not.
-        let claimed = fields.checksum()?;
-        if !fits(&file[..length], claimed) {
+        let length = usize::from(u16::from_le_bytes(fields.bytes()?));
+        let whole = file.get(..length).and_then(|head| head.split_last_chunk::<CHECKSUM>());
+        let Some((head, checksum)) = whole else {
+            return Err(Reason::truncated("is truncated: it ends within its header"));
+        };
+        if !fits(head, u32::from_le_bytes(*checksum)) {
             return Err(damaged("its header"));
         }
-        Ok((header?, length + CHECKSUM))
+        let mut fields =
+            In { rest: head.get(file.len() - fields.rest.len()..).unwrap_or_default() };
+        let header = Self::of_fields(&mut fields)?;
+        if !fields.rest.is_empty() {
+            return Err(Reason::header("its header is longer than its fields"));
+        }
+        Ok((header, length))
     }
 
     fn of_fields(fields: &mut In<'_>) -> Result<Self, Reason> {
         let flags = fields.byte()?;
         let has = |flag: u8| flags & flag != 0;
-        let space = fields.one_of(&SPACES, "space")?;
-        let coordinates = Coordinates { space, unit: fields.one_of(&UNITS, "unit of length")? };
+        let coordinates = fields.coordinates()?;
         let count = fields.byte()?;
         let layers = (0..count).map(|_| fields.layer()).collect::<Result<Vec<_>, _>>()?;
         let grid = if has(GRID) {
@@ -231,103 +234,4 @@ pub(super) fn fits(bytes: &[u8], checksum: u32) -> bool {
 /// The error for damaged bytes.
 pub(super) fn damaged(what: &str) -> Reason {
     Reason::damaged(format!("is damaged: the checksum of {what} does not fit"))
-}
-
-/// The number of one of several.
-fn code<T: PartialEq>(all: &[T], one: T) -> u8 {
-    all.iter().position(|other| *other == one).expect("all are in the list") as u8
-}
-
-/// Bytes to be.
-struct Out(Vec<u8>);
-
-impl Out {
-    /// A whole number: seven bits to a byte, the lowest first, the eighth bit set on all but the last.
-    fn whole(&mut self, mut number: u64) {
-        while number >= 128 {
-            self.0.push(number as u8 | 128);
-            number >>= 7;
-        }
-        self.0.push(number as u8);
-    }
-
-    fn doubles(&mut self, numbers: &[f64]) {
-        numbers.iter().for_each(|number| self.0.extend(number.to_le_bytes()));
-    }
-
-    fn frame(&mut self, frame: &Frame) {
-        let Coordinates { space, unit } = frame.coordinates;
-        self.0.extend([code(&SPACES, space), code(&UNITS, unit)]);
-        self.doubles(&frame.origin);
-        self.doubles(&frame.spacing);
-        self.doubles(frame.direction.as_flattened());
-    }
-}
-
-/// Bytes that are left.
-struct In<'a> {
-    rest: &'a [u8],
-}
-
-impl In<'_> {
-    fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
-        let Some((first, rest)) = self.rest.split_first_chunk::<N>() else {
-            return Err(Reason::truncated("ends within its header"));
-        };
-        self.rest = rest;
-        Ok(*first)
-    }
-
-    fn byte(&mut self) -> Result<u8, Reason> {
-        Ok(self.bytes::<1>()?[0])
-    }
-
-    fn checksum(&mut self) -> Result<u32, Reason> {
-        Ok(u32::from_le_bytes(self.bytes()?))
-    }
-
-    fn whole(&mut self) -> Result<u64, Reason> {
-        let mut number = 0;
-        for shift in (0..64).step_by(7) {
-            let byte = self.byte()?;
-            number |= u64::from(byte & 127) << shift;
-            if byte < 128 {
-                return Ok(number);
-            }
-        }
-        Err(Reason::header("its header has a whole number of more than 64 bits"))
-    }
-
-    fn double(&mut self) -> Result<f64, Reason> {
-        let number = f64::from_le_bytes(self.bytes()?);
-        if number.is_finite() {
-            return Ok(number);
-        }
-        Err(Reason::header(format!("its header has the number {number}, which must be finite")))
-    }
-
-    fn alpha(&mut self) -> Result<Alpha, Reason> {
-        let number = f64::from_le_bytes(self.bytes()?);
-        Alpha::from_squared(number).map_err(|error| Reason::header(error.to_string()))
-    }
-
-    fn one_of<T: Copy>(&mut self, all: &[T], what: &str) -> Result<T, Reason> {
-        let code = self.byte()?;
-        let unknown = || Reason::header(format!("its header names a {what} {code}, which is none"));
-        all.get(usize::from(code)).copied().ok_or_else(unknown)
-    }
-
-    fn layer(&mut self) -> Result<Layer, Reason> {
-        let count = self.whole()?;
-        Ok(Layer { count, bytes: [self.whole()?, self.whole()?, self.whole()?] })
-    }
-
-    fn frame(&mut self) -> Result<Frame, Reason> {
-        let space = self.one_of(&SPACES, "space")?;
-        let coordinates = Coordinates { space, unit: self.one_of(&UNITS, "unit of length")? };
-        let mut three = || Ok([self.double()?, self.double()?, self.double()?]);
-        let (origin, spacing) = (three()?, three()?);
-        let direction = [three()?, three()?, three()?];
-        Ok(Frame { origin, spacing, direction, coordinates })
-    }
 }

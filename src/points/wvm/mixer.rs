@@ -79,4 +79,22 @@ impl Mixer {
         }
         bit
     }
+
+    /// Codes a whole number of a kind, in a mixer of one kind of contexts: of the number plus 1, as many ones
+    /// as it has binary digits behind the first, and a zero; then these, each as likely 0 as 1. `None` of
+    /// more digits than any number coded here has.
+    pub fn number(&mut self, coder: &mut impl Coder, kind: usize, number: u64) -> Option<u64> {
+        const MOST: u32 = 40;
+        let (digits, mut length) = ((number + 1).ilog2(), 0);
+        while self.code(coder, &[64 * kind + length as usize], 0, length < digits) {
+            length += 1;
+            if length > MOST {
+                return None;
+            }
+        }
+        let digit = |so_far: u64, k: u32| {
+            2 * so_far + u64::from(coder.bit(WHOLE / 2, (number + 1) >> k & 1 == 1))
+        };
+        Some((0..length).rev().fold(1, digit) - 1)
+    }
 }

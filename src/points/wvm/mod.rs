@@ -4,9 +4,11 @@
 //! probability that is learnt on the way ([`mixer`]); what does not fit that is kept bit for bit
 //! ([`column`]). The tetrahedra are not kept: they are a function of the points.
 
+mod around;
 mod blocks;
 mod coder;
 mod column;
+mod fields;
 mod header;
 mod mixer;
 mod places;

@@ -2,11 +2,11 @@
 
 use std::collections::HashSet;
 
-use super::blocks::{
-    Blocks, Cell, MIDDLE, SIDE, Shape, Window, bit_of, is_earlier, reached, squared, steps,
-};
-use super::coder::{Coder, WHOLE};
+use super::around::{Windows, earlier_steps};
+use super::blocks::{Blocks, Cell, MIDDLE, SIDE, Shape, bit_of};
+use super::coder::Coder;
 use super::mixer::Mixer;
+use crate::progress::report;
 
 /// Blocks along the side of a superblock.
 const SUPER: u32 = 8;
@@ -21,64 +21,6 @@ pub(super) struct Places {
     voxels: Mixer,
     earlier_blocks: Vec<[i32; 3]>,
     windows: Windows,
-}
-
-/// Where points are counted around a voxel.
-struct Windows {
-    /// Earlier voxels, the nearest, farther ones, and so on.
-    earlier: [Window; 4],
-    /// Later ones, where only points of earlier layers are known.
-    later: [Window; 3],
-    /// The nine nearest earlier ones.
-    nearest: Vec<[i32; 3]>,
-}
-
-/// How many points there are around a voxel.
-struct Counts {
-    earlier: [usize; 4],
-    later: [usize; 3],
-    /// One bit for each of the nine nearest.
-    pattern: usize,
-}
-
-/// The nearest earlier steps first; of equal ones in the order of z, then y, then x.
-fn earlier_steps(reach: i32) -> Vec<[i32; 3]> {
-    let mut earlier: Vec<[i32; 3]> = steps(reach).filter(|&step| is_earlier(step)).collect();
-    earlier.sort_by_key(|&step| squared(step));
-    earlier
-}
-
-impl Windows {
-    fn new() -> Self {
-        let shell = |earlier: bool, low: i32, high: i32| {
-            Window::new(move |step| {
-                is_earlier(step) == earlier && squared(step) > low && squared(step) <= high
-            })
-        };
-        Self {
-            earlier: [(0, 3), (3, 6), (6, 12), (12, 48)].map(|(a, b)| shell(true, a, b)),
-            later: [(0, 3), (3, 9), (9, 48)].map(|(a, b)| shell(false, a, b)),
-            nearest: earlier_steps(1)[..9].to_vec(),
-        }
-    }
-
-    fn count(&self, around: &[u64; 27], bit: u32) -> Counts {
-        let mut pattern = 0;
-        for (k, &step) in self.nearest.iter().enumerate() {
-            let (block, there) = reached(bit, step);
-            pattern |= usize::from(around[block] >> there & 1 == 1) << k;
-        }
-        Counts {
-            earlier: self.earlier.each_ref().map(|window| window.count(around, bit)),
-            later: self.later.each_ref().map(|window| window.count(around, bit)),
-            pattern,
-        }
-    }
-}
-
-/// 0 for 0, else one more than the number of the highest bit.
-fn size(count: usize) -> usize {
-    (usize::BITS - count.leading_zeros()) as usize
 }
 
 impl Places {
@@ -132,14 +74,14 @@ impl Places {
     ) -> Option<Vec<Cell>> {
         let [nx, ny, nz] = self.shape.blocks.map(|n| u64::from(n.div_ceil(SUPER)));
         let number = |[x, y, z]: Cell| u64::from(x) + nx * (u64::from(y) + ny * u64::from(z));
-        let many = self.number(coder, 0, wanted.len() as u64)?;
+        let many = self.gaps.number(coder, 0, wanted.len() as u64)?;
         if many > count as u64 {
             return None;
         }
         let (mut supers, mut next) = (Vec::new(), 0);
         for k in 0..many as usize {
             let gap = wanted.get(k).map_or(0, |&cell| number(cell) - next);
-            let at = next + self.number(coder, 1, gap)?;
+            let at = next + self.gaps.number(coder, 1, gap)?;
             if at >= nx * ny * nz {
                 return None;
             }
@@ -147,22 +89,6 @@ impl Places {
             next = at + 1;
         }
         Some(supers)
-    }
-
-    /// A number: that of its binary digits by as many ones, then these.
-    fn number(&mut self, coder: &mut impl Coder, kind: usize, number: u64) -> Option<u64> {
-        let digits = (number + 1).ilog2();
-        let mut length = 0;
-        while self.gaps.code(coder, &[64 * kind + length as usize], 0, length < digits) {
-            length += 1;
-            if length > 40 {
-                return None;
-            }
-        }
-        let digit = |so_far: u64, k: u32| {
-            2 * so_far + u64::from(coder.bit(WHOLE / 2, (number + 1) >> k & 1 == 1))
-        };
-        Some((0..length).rev().fold(1, digit) - 1)
     }
 
     fn code_blocks(
@@ -252,6 +178,9 @@ impl Places {
                     voxels.push(voxel);
                 }
             }
+            if y % SIDE == 0 && z % SIDE == 0 {
+                report(voxels.len() as u64, count as u64);
+            }
             (voxels.len() <= count).then_some(())
         })?;
         (voxels.len() == count).then_some(voxels)
@@ -268,25 +197,6 @@ impl Places {
             sides |= usize::from(has) << k;
         }
         sides
-    }
-}
-
-impl Counts {
-    fn contexts(&self, sides: usize, left: usize, edge: usize) -> [usize; 8] {
-        let ([a, b, c, d], [e, f, g]) = (self.earlier, self.later);
-        let left = if left == 0 { 0 } else { left.min(63) / 4 + 1 };
-        let few = |count: usize| count.min(3);
-        [
-            self.pattern + 512 * (few(e) + 4 * left),
-            a + 14 * (b + 28 * (size(c).min(6) + 7 * few(e))),
-            a + 14
-                * ((b / 2).min(9) + 10 * ((c / 4).min(9) + 10 * ((d / 8).min(15) + 16 * e.min(1)))),
-            2 * a + 2 * b + c + 130 * ((d / 4).min(31) + 32 * (e + f / 2).min(7)),
-            e + 14 * ((f / 2).min(15) + 16 * (few(a) + 4 * (edge + 2 * left))),
-            sides + 8 * (few(a) + 4 * (left + 17 * size(d).min(8))),
-            a + e + 27 * (((b + c + f) / 2).min(63) + 64 * ((d + g) / 8).min(31)),
-            d.min(127) + 128 * (edge + 2 * (few(a) + 4 * left)),
-        ]
     }
 }
 

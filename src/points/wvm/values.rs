@@ -1,9 +1,10 @@
 //! Whole numbers at the voxels of points, as differences from what is to be expected there.
 
 use super::blocks::{Blocks, Cell, SIDE, Shape, Window, bit_of, squared};
-use super::coder::{Coder, WHOLE};
+use super::coder::Coder;
 use super::mixer::Mixer;
 use super::predict::{Guess, Known};
+use crate::progress::report;
 
 /// Differences up to this are counted one by one.
 const COUNTED: u64 = 12;
@@ -54,6 +55,9 @@ impl Values {
     ) -> Option<Vec<u32>> {
         let mut coded = Vec::new();
         for (k, &voxel) in voxels.iter().enumerate() {
+            if k % 1024 == 0 {
+                report(k as u64, voxels.len() as u64);
+            }
             let around = self.around(voxel, occupied);
             let value = self.value(coder, &around, values.get(k).map_or(0, |&v| v.into()))?;
             self.known.add(&self.shape, voxel, value);
@@ -98,29 +102,15 @@ impl Values {
             }
             counted += 1;
             if counted > COUNTED {
-                counted += self.rest(coder, around.spread, size.saturating_sub(counted))?;
+                // What is above those counted.
+                let rest = size.saturating_sub(counted);
+                counted += self.large.number(coder, around.spread, rest)?;
                 break;
             }
         }
         let value =
             if above { expected.checked_add(counted) } else { expected.checked_sub(counted) };
         u32::try_from(value?).ok()
-    }
-
-    /// What a large difference has above those counted: the number of its binary digits, then these.
-    fn rest(&mut self, coder: &mut impl Coder, spread: usize, rest: u64) -> Option<u64> {
-        let digits = (rest + 1).ilog2();
-        let mut length = 0;
-        while self.large.code(coder, &[64 * spread + length as usize], 0, length < digits) {
-            length += 1;
-            if length > 33 {
-                return None;
-            }
-        }
-        let digit = |so_far: u64, k: u32| {
-            2 * so_far + u64::from(coder.bit(WHOLE / 2, (rest + 1) >> k & 1 == 1))
-        };
-        Some((0..length).rev().fold(1, digit) - 1)
     }
 }
 

@@ -71,19 +71,20 @@ fn on_grid(points: &WeightedPoints, facts: &ModelFacts) -> Option<(SampleGrid, V
     apart.then_some((grid, cells))
 }
 
-/// The points of each layer, in the order of their samples.
+/// The points of each layer, in the order of their samples: all in one where no order is known.
 fn in_layers(cells: &[Cell], facts: &ModelFacts, packing: &Packing) -> Vec<Vec<usize>> {
     let all = cells.len();
-    let order: Vec<usize> = match &facts.order {
-        Some(order) if packing.layers > 1 => order.iter().map(|&point| point as usize).collect(),
-        _ => (0..all).collect(),
+    let order = facts.order.as_ref().filter(|order| order.len() == all);
+    let count = match order {
+        Some(_) => usize::from(packing.layers.clamp(1, Packing::MOST_LAYERS)),
+        None => 1,
     };
-    let known = packing.layers.min(Packing::MOST_LAYERS);
-    let count = if facts.order.is_some() { usize::from(known.max(1)) } else { 1 };
+    let place = |k: usize| order.map_or(k, |order| order[k] as usize);
+    // Where a layer ends: each level has a quarter of the points of the next.
     let end = |layer: usize| if layer == 0 { 0 } else { all >> (2 * (count - layer)) };
     let mut layers = Vec::new();
     for layer in 0..count {
-        let mut points = order[end(layer)..end(layer + 1)].to_vec();
+        let mut points: Vec<usize> = (end(layer)..end(layer + 1)).map(place).collect();
         points.sort_unstable_by_key(|&point| in_order(cells[point]));
         if !points.is_empty() {
             layers.push(points);

@@ -1,0 +1,71 @@
+//! Files of points.
+
+use std::path::PathBuf;
+
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use walpha::export::Target;
+use walpha::points::{ModelFacts, Packing, PointWriter, PointsError, read_model};
+use walpha::progress::Stage;
+use walpha::{Alpha, WeightedPoints};
+
+use crate::errors::{Told, wrong};
+use crate::shape::{json, weighted};
+use crate::work::run;
+
+/// Places, weights, values, samples along (x, y, z), α, and the unit of lengths as JSON.
+type Read<'py> = (
+    Bound<'py, PyArray2<f64>>,
+    Option<Bound<'py, PyArray1<f64>>>,
+    Option<Bound<'py, PyArray1<f64>>>,
+    Option<[usize; 3]>,
+    Option<f64>,
+    String,
+);
+
+/// A file of points, without so many of its last layers.
+#[pyfunction]
+pub fn read_points<'py>(py: Python<'py>, path: PathBuf, level: Option<u32>) -> PyResult<Read<'py>> {
+    let (points, facts) = run(py, None, move |call| {
+        call.begin(Stage::Read);
+        read_model(&path, None, level)
+    })?;
+    let rows = points.positions.len();
+    let places = points.positions.into_flattened().into_pyarray(py).reshape([rows, 3])?;
+    Ok((
+        places,
+        points.weights.map(|weights| weights.into_pyarray(py)),
+        points.values.map(|values| values.into_pyarray(py)),
+        facts.grid.map(|grid| grid.dims.xyz()),
+        facts.alpha.map(Alpha::squared),
+        json(&facts.coordinates),
+    ))
+}
+
+/// Writes points under an extension of points.
+#[pyfunction]
+pub fn write_points(
+    py: Python<'_>,
+    path: PathBuf,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    values: Option<PyReadonlyArray1<'_, f64>>,
+    alpha: Option<f64>,
+    value_error: f64,
+) -> PyResult<()> {
+    let writer = PointWriter::of(&path).map_err(Told::told)?;
+    if !writer.packs && (alpha.is_some() || value_error != 0.0) {
+        return Err(wrong("alpha and value_error are for .wvm; omit them"));
+    }
+    if value_error.is_nan() || value_error < 0.0 {
+        return Err(wrong("value_error must be a number from 0 up"));
+    }
+    let alpha = alpha.map(Alpha::from_squared).transpose().map_err(Told::told)?;
+    let points = weighted(&points, weights.as_ref(), values.as_ref())?;
+    let weights = points.weights.unwrap_or_else(|| vec![0.0; points.positions.len()]);
+    let points = WeightedPoints { positions: points.positions, weights, values: points.values };
+    let facts = ModelFacts { alpha, ..ModelFacts::default() };
+    let packing = Packing { value_error, ..Packing::default() };
+    let target = Target::open(&path).map_err(Told::told)?;
+    run(py, None, move |_| target.write(|out| writer.write_model(&points, &facts, &packing, out)))
+}

@@ -1,0 +1,420 @@
+//! Points as `.wvm`: what is written comes back, in few bytes; what is damaged is told.
+
+mod common;
+#[path = "common/told.rs"]
+mod told;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use common::{json, ok, run};
+use proptest::prelude::*;
+use told::Told;
+use walpha::points::{ModelFacts, Packing, PointWriter, SampleGrid, read_model, read_points};
+use walpha::volume::{self, VolumeWriter};
+use walpha::{
+    Alpha, Coordinates, Dims, Frame, GrayRange, LengthUnit, Space, Units, WeightedPoints,
+};
+
+fn written(points: &WeightedPoints, facts: &ModelFacts, packing: Packing) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let writer = PointWriter::of("m.wvm".as_ref()).unwrap();
+    writer.write_model(points, facts, &packing, &mut bytes).unwrap();
+    bytes
+}
+
+fn save(folder: &Path, bytes: &[u8]) -> PathBuf {
+    let path = folder.join("m.wvm");
+    fs::write(&path, bytes).unwrap();
+    path
+}
+
+/// What a file gives back, without so many layers.
+fn back(bytes: &[u8], level: u32) -> (WeightedPoints, ModelFacts) {
+    let folder = tempfile::tempdir().unwrap();
+    let (points, facts) = read_model(&save(folder.path(), bytes), None, Some(level)).unwrap();
+    let weights = points.weights.unwrap();
+    (WeightedPoints { positions: points.positions, weights, values: points.values }, facts)
+}
+
+fn refused(bytes: &[u8]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    read_points(&save(folder.path(), bytes), None).unwrap_err().told()
+}
+
+/// Numbers that look like chance.
+struct Chance(u64);
+
+impl Chance {
+    fn below(&mut self, end: u64) -> u64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % end
+    }
+}
+
+/// Points on about one in `one_in` samples, in the order of the samples.
+fn scattered(dims: [u32; 3], one_in: u64, value: impl Fn(&mut Chance) -> f64) -> WeightedPoints {
+    let mut chance = Chance(7);
+    let mut points = WeightedPoints { values: Some(Vec::new()), ..WeightedPoints::default() };
+    for z in 0..dims[2] {
+        for y in 0..dims[1] {
+            for x in 0..dims[0] {
+                if chance.below(one_in) == 0 {
+                    points.positions.push([x, y, z].map(f64::from));
+                    points.weights.push(0.0);
+                    points.values.as_mut().unwrap().push(value(&mut chance));
+                }
+            }
+        }
+    }
+    points
+}
+
+fn grid(dims: [u64; 3]) -> SampleGrid {
+    let [x, y, z] = dims;
+    let dims = Dims::new(x, y, z).unwrap();
+    SampleGrid { dims, frame: Frame::VOXEL, units: Units::Voxel }
+}
+
+/// CRC-32 of IEEE 802.3, bit by bit.
+fn checksum(bytes: &[u8]) -> [u8; 4] {
+    let mut register = u32::MAX;
+    for byte in bytes {
+        register ^= u32::from(*byte);
+        for _ in 0..8 {
+            register = (register >> 1) ^ (0xEDB8_8320 * (register & 1));
+        }
+    }
+    (!register).to_le_bytes()
+}
+
+#[test]
+fn whole_values_come_back_bit_for_bit() {
+    for (dims, one_in) in [([13, 9, 21], 3), ([40, 40, 40], 16), ([1, 1, 97], 5), ([5, 70, 1], 2)] {
+        let points = scattered(dims, one_in, |chance| chance.below(256) as f64 - 20.0);
+        assert!(points.len() > 10);
+        let facts = ModelFacts { grid: Some(grid(dims.map(u64::from))), ..ModelFacts::default() };
+        let bytes = written(&points, &facts, Packing::default());
+        assert_eq!(back(&bytes, 0), (points.clone(), facts.clone()), "{dims:?}");
+        assert!(bytes.len() < 2 * points.len() + 200, "{} of {}", bytes.len(), points.len());
+        // Points at whole numbers need no grid that is told.
+        let (again, told) = back(&written(&points, &ModelFacts::default(), Packing::default()), 0);
+        assert_eq!(again, points);
+        assert!(told.grid.is_some());
+    }
+}
+
+#[test]
+fn everything_that_is_known_comes_back() {
+    let mut points = scattered([9, 8, 7], 4, |chance| chance.below(1 << 40) as f64 / 7.0);
+    let turned = [[0.0, -1.0, 0.0], [0.6, 0.0, 0.8], [0.8, 0.0, -0.6]];
+    let coordinates = Coordinates { space: Space::Lps, unit: LengthUnit::Millimetre };
+    let frame = Frame {
+        origin: [-31.7, 0.1, 1e4],
+        spacing: [0.3, 0.7, 1.1],
+        direction: turned,
+        coordinates,
+    };
+    let grid = SampleGrid { frame, units: Units::World, ..grid([9, 8, 7]) };
+    for position in &mut points.positions {
+        *position = grid.position(position.map(|x| x as u32));
+    }
+    for (k, weight) in points.weights.iter_mut().enumerate() {
+        *weight = (k as f64).sqrt() - 3.0;
+    }
+    let facts = ModelFacts {
+        grid: Some(grid),
+        coordinates,
+        alpha: Some(Alpha::from_squared(2.1).unwrap()),
+        range: Some(GrayRange { low: -1024.0, high: 3071.5 }),
+        order: None,
+    };
+    let on_grid = written(&points, &facts, Packing::default());
+    assert_eq!(back(&on_grid, 0), (points.clone(), facts.clone()));
+    // Off the grid, or twice at one place: in their order, and larger.
+    for other in [[0.25, 0.0, 0.0], points.positions[3]] {
+        let mut moved = points.clone();
+        moved.positions[0] = other;
+        let bytes = written(&moved, &facts, Packing { value_error: 0.5, layers: 3 });
+        let (again, told) = back(&bytes, 0);
+        assert_eq!((again, told.alpha, told.grid), (moved, facts.alpha, None));
+        assert!(bytes.len() > on_grid.len());
+    }
+    points.values = None;
+    assert_eq!(back(&written(&points, &facts, Packing::default()), 0).0, points);
+}
+
+#[test]
+fn values_are_within_the_error_asked_for() {
+    let points = scattered([30, 30, 30], 9, |chance| chance.below(1 << 20) as f64 / 4099.0 - 99.0);
+    let mut last = usize::MAX;
+    for error in [0.01, 0.5, 3.0, 40.0] {
+        let packing = Packing { value_error: error, ..Packing::default() };
+        let bytes = written(&points, &ModelFacts::default(), packing);
+        let (again, _) = back(&bytes, 0);
+        assert_eq!(again.positions, points.positions);
+        let pairs = points.values.iter().flatten().zip(again.values.iter().flatten());
+        let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(worst <= error * (1.0 + 1e-12) && worst > error / 2.0, "{worst} for {error}");
+        assert!(bytes.len() < last);
+        last = bytes.len();
+    }
+}
+
+#[test]
+fn degenerate_sets_come_back() {
+    let full = |dims: [u32; 3], value: f64| scattered(dims, 1, |_| value);
+    let mut far = WeightedPoints {
+        positions: vec![[0.0; 3], [1624.0; 3], [1624.0, 0.0, 1.0], [3.0, 1500.0, 1000.0]],
+        weights: vec![2.5; 4],
+        values: Some(vec![0.0, 4e9, 1.0, 4e9]),
+    };
+    far.positions.sort_by(|a, b| [a[2], a[1], a[0]].partial_cmp(&[b[2], b[1], b[0]]).unwrap());
+    let long = WeightedPoints {
+        positions: vec![[7.0, 0.0, 0.0], [3_999_999_999.0, 0.0, 0.0]],
+        weights: vec![0.0; 2],
+        values: None,
+    };
+    let one = full([1, 1, 1], -5.0);
+    for points in [full([31, 17, 12], 3.0), full([64, 64, 64], 255.0), one, far, long] {
+        let bytes = written(&points, &ModelFacts::default(), Packing::default());
+        assert_eq!(back(&bytes, 0).0, points);
+        assert!(64 * bytes.len() >= points.len(), "a byte holds 64 points at most");
+    }
+    let empty = WeightedPoints::default();
+    assert!(
+        refused(&written(&empty, &ModelFacts::default(), Packing::default())).contains("no point")
+    );
+}
+
+#[test]
+fn the_first_layers_are_the_most_important_points() {
+    let points = scattered([20, 21, 22], 7, |chance| chance.below(100) as f64);
+    let count = points.len();
+    // Every third point first, then the others.
+    let mut order: Vec<u32> = (0..count as u32).collect();
+    order.sort_by_key(|&k| (k % 3, k));
+    let facts = ModelFacts { order: Some(order.clone()), ..ModelFacts::default() };
+    let bytes = written(&points, &facts, Packing { layers: 3, ..Packing::default() });
+    assert_eq!(back(&bytes, 0).0, points);
+    for (level, part) in [(1, 4), (2, 16)] {
+        let mut wanted = order[..count / part].to_vec();
+        wanted.sort_unstable();
+        let of = |column: &[f64]| wanted.iter().map(|&k| column[k as usize]).collect();
+        let expected = WeightedPoints {
+            positions: wanted.iter().map(|&k| points.positions[k as usize]).collect(),
+            weights: of(&points.weights),
+            values: points.values.as_deref().map(of),
+        };
+        assert_eq!(back(&bytes, level).0, expected);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = save(folder.path(), &bytes);
+    let error = read_model(&path, None, Some(3)).unwrap_err().told();
+    assert!(error.contains("has 3 levels") && error.contains("from 0 to 2"), "{error}");
+    // A file that ends within its last layer still has the others.
+    let path = save(folder.path(), &bytes[..bytes.len() - 3]);
+    let error = read_points(&path, None).unwrap_err().told();
+    assert!(
+        error.contains("2 of its 3 layers are whole") && error.contains("`level` 1"),
+        "{error}"
+    );
+    assert_eq!(read_model(&path, None, Some(1)).unwrap().0.len(), count / 4);
+    fs::write(folder.path().join("m.csv"), "x,y,z\n0,0,0\n").unwrap();
+    let error = read_model(&folder.path().join("m.csv"), None, Some(1)).unwrap_err().told();
+    assert!(error.contains("no layers") && error.contains("omit `level`"), "{error}");
+}
+
+fn small() -> Vec<u8> {
+    let points = scattered([6, 6, 6], 5, |chance| chance.below(50) as f64);
+    let order = (0..points.len() as u32).rev().collect();
+    let facts =
+        ModelFacts { order: Some(order), grid: Some(grid([6, 6, 6])), ..ModelFacts::default() };
+    written(&points, &facts, Packing { layers: 2, ..Packing::default() })
+}
+
+#[test]
+fn each_damaged_byte_and_each_early_end_is_told() {
+    let bytes = small();
+    for place in 8..bytes.len() {
+        for bit in [1, 16, 128] {
+            let mut damaged = bytes.clone();
+            damaged[place] ^= bit;
+            let error = refused(&damaged);
+            assert!(
+                ["damaged", "version", "truncated", "header", "too long"]
+                    .iter()
+                    .any(|w| error.contains(w)),
+                "byte {place}: {error}"
+            );
+        }
+    }
+    for end in 8..bytes.len() {
+        let error = refused(&bytes[..end]);
+        assert!(error.contains("truncated") || error.contains("ends within"), "{end}: {error}");
+    }
+    let longer = refused(&[&bytes[..], b"."].concat());
+    assert!(longer.contains("too long"), "{longer}");
+}
+
+/// A file whose checksums are right: a head with these fields behind the version, then a layer.
+fn forged(fields: &[u8], layer: &[u8]) -> Vec<u8> {
+    let length = (8 + 1 + 2 + fields.len() + 4) as u16;
+    let mut bytes = [b"\x89wvm\r\n\x1a\n\x01", &length.to_le_bytes()[..], fields].concat();
+    bytes.extend(checksum(&bytes));
+    bytes.extend(layer);
+    bytes.extend(checksum(layer));
+    bytes
+}
+
+#[test]
+fn headers_are_not_believed() {
+    let weight = [0; 8];
+    let head = |flags: u8, layer: &[u8], rest: &[u8]| {
+        [&[flags, 0, 0, 1][..], layer, rest, &weight].concat()
+    };
+    let side = [0xd9, 0x0c]; // 1625
+    let large = [side, side, side].concat();
+    let refuses = |fields: &[u8], layer: &[u8], part: &str| {
+        let error = refused(&forged(fields, layer));
+        assert!(error.contains(part), "{part:?} is missing in: {error}");
+    };
+    let billion = [0x80, 0x94, 0xeb, 0xdc, 0x03];
+    let claims = |count: &[u8], places: u8| [count, &[places, 0, 0]].concat();
+    refuses(&head(1, &claims(&billion, 8), &large), &[0; 8], "more points than its bytes");
+    refuses(&head(1, &claims(&[9], 8), &[2, 2, 2]), &[0; 8], "more points than samples");
+    refuses(&head(1, &claims(&[9], 8), &[0, 2, 2]), &[0; 8], "empty");
+    refuses(&head(8, &claims(&[9], 8), &[0; 16]), &[0; 8], "without a grid");
+    refuses(&head(24, &claims(&[9], 8), &[0; 16]), &[0; 8], "two ways");
+    refuses(&head(0, &claims(&[9], 8), &[]), &[0; 8], "does not hold");
+    refuses(&head(1, &[0xff; 10], &large), &[0; 8], "64 bits");
+    refuses(&[0, 9, 0, 0], &[], "space 9");
+    refuses(&[0, 0, 8, 0], &[], "unit of length 8");
+    refuses(&[&[0, 0, 0, 0][..], &f64::NAN.to_le_bytes()].concat(), &[], "NaN");
+    // As many points as these bytes may claim, on the largest grid: the bytes decide what is there.
+    for filler in [0, 0x55, 0xff] {
+        let count = [0x80, 0x80, 0x01]; // 64·256
+        let layer = [&count[..], &[0x80, 0x02, 0, 0]].concat();
+        refuses(&head(1, &layer, &large), &[filler; 256], "does not hold");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+
+    /// Whatever stands in a layer whose checksum is right, nothing panics, and what is read is whole.
+    #[test]
+    fn forged_layers_are_read_or_refused(
+        layer in prop::collection::vec(any::<u8>(), 1..60),
+        count in 1u8..120,
+        side in 1u8..40,
+        steps in any::<bool>(),
+    ) {
+        let values = if steps { layer.len() as u8 / 2 } else { 0 };
+        let lengths = [count, layer.len() as u8 - values, values, 0];
+        let numbers = if steps { vec![0; 16] } else { Vec::new() };
+        let flags = if steps { 9 } else { 1 };
+        let fields =
+            [&[flags, 0, 0, 1][..], &lengths, &[side, side, 2], &numbers, &[0; 8]].concat();
+        let folder = tempfile::tempdir().unwrap();
+        if let Ok(points) = read_points(&save(folder.path(), &forged(&fields, &layer)), None) {
+            prop_assert_eq!(points.len(), usize::from(count));
+            let mut places = points.positions.clone();
+            places.dedup();
+            prop_assert_eq!(places.len(), points.len());
+        }
+    }
+
+    #[test]
+    fn any_set_on_a_grid_comes_back(
+        cells in prop::collection::btree_map([0u32..9, 0u32..13, 0u32..40], 0u32..3000, 1..200),
+        layers in 1u8..4,
+    ) {
+        // A map sorts by its keys: z first.
+        let positions = cells.keys().map(|&[z, y, x]| [x, y, z].map(f64::from)).collect();
+        let values = cells.values().map(|&value| f64::from(value)).collect();
+        let points = WeightedPoints { positions, weights: vec![1.0; cells.len()], values: Some(values) };
+        let order = (0..cells.len() as u32).rev().collect();
+        let facts = ModelFacts { order: Some(order), ..ModelFacts::default() };
+        let bytes = written(&points, &facts, Packing { layers, ..Packing::default() });
+        prop_assert_eq!(back(&bytes, 0).0, points);
+    }
+}
+
+/// A scan of 12 bits in the world: what `interpolate` makes of its points directly and of the file is the
+/// same, and so are the points.
+#[test]
+fn the_command_makes_the_same_of_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let phantom = volume::phantom(20).unwrap();
+    let samples = phantom.samples().mapv(|gray| (16.0 * gray).round() - 1024.0);
+    let coordinates = Coordinates { space: Space::Ras, unit: LengthUnit::Millimetre };
+    let frame =
+        Frame { origin: [3.0, -7.5, 0.1], spacing: [0.5, 0.5, 2.0], coordinates, ..Frame::VOXEL };
+    let scan = walpha::Volume::new(samples, frame).unwrap();
+    let mut bytes = Vec::new();
+    VolumeWriter::of("v.nrrd".as_ref()).unwrap().write(&scan, &mut bytes).unwrap();
+    fs::write(folder.path().join("v.nrrd"), bytes).unwrap();
+    let run_it = |args: &str| ok(folder.path(), &args.split(' ').collect::<Vec<_>>());
+    let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
+
+    let select = "--select adaptive --count 700 --alpha 3";
+    run_it(&format!("points v.nrrd {select} -o m.wvm"));
+    run_it(&format!("points v.nrrd {select} -o direct.csv"));
+    run_it("points m.wvm -o through.csv");
+    assert_eq!(read("direct.csv"), read("through.csv"));
+    for fill in ["", " --fill"] {
+        run_it(&format!("interpolate v.nrrd {select} -o direct.nrrd{fill}"));
+        run_it(&format!("interpolate m.wvm -o through.nrrd{fill}"));
+        assert_eq!(read("direct.nrrd"), read("through.nrrd"), "{fill}");
+    }
+    run_it(&format!("interpolate v.nrrd {select} -o direct.nrrd --gray-out"));
+    run_it("interpolate m.wvm -o through.nrrd --gray-out");
+    assert_eq!(read("direct.nrrd"), read("through.nrrd"));
+    run_it(&format!("shape v.nrrd {select} -o direct.ply"));
+    run_it("shape m.wvm -o through.ply");
+    assert_eq!(read("direct.ply"), read("through.ply"));
+
+    let told = json(folder.path(), &["info", "m.wvm"]);
+    assert_eq!(told["grid"], serde_json::json!([20, 20, 20]));
+    assert_eq!(told["coordinates"], serde_json::json!({"space": "LPS", "unit": "mm"}));
+    assert_eq!(told["alpha"], 3.0);
+    let told = json(folder.path(), &["shape", "m.wvm"]);
+    assert_eq!(told["alpha"]["origin"], "stored");
+}
+
+#[test]
+fn options_without_effect_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    ok(
+        folder.path(),
+        &["points", "sample:phantom@8", "--count", "40", "--layers", "2", "-o", "m.wvm"],
+    );
+    let refuses = |args: &[&str], part: &str| {
+        let (code, _, error) = run(folder.path(), args);
+        assert!(code != 0 && error.contains(part), "{args:?}: {error}");
+    };
+    refuses(&["points", "m.wvm", "--layers", "2", "-o", "n.wvm"], "--layers has no effect");
+    refuses(&["points", "m.wvm", "--value-error", "2", "-o", "n.csv"], "no .wvm is written");
+    refuses(&["points", "m.wvm", "--level", "2"], "has 2 levels");
+    refuses(&["points", "m.wvm", "--count", "9"], "--count has no effect");
+    fs::write(folder.path().join("p.csv"), "x,y,z\n0,0,0\n").unwrap();
+    refuses(&["points", "p.csv", "--gray-out"], "--gray-out has no effect");
+    let told = json(folder.path(), &["points", "m.wvm", "--level", "1"]);
+    assert_eq!(told["points"]["selected"], 10);
+}
+
+/// Points of a volume lie in clusters, and near values are alike: that is what the model knows.
+#[test]
+fn points_of_a_volume_take_less_than_chance_would() {
+    let folder = tempfile::tempdir().unwrap();
+    let select = ["--select", "adaptive", "--count", "3000", "--value-error", "3"];
+    ok(folder.path(), &[&["points", "sample:phantom@48", "-o", "m.wvm"][..], &select].concat());
+    let bytes = fs::metadata(folder.path().join("m.wvm")).unwrap().len() as f64;
+    let share: f64 = 3000.0 / 48f64.powi(3);
+    let chance = -(share * share.log2() + (1.0 - share) * (1.0 - share).log2()) / share;
+    // Of 43 steps of 6 in 0..255, any would take 5.4 bits.
+    let bits = 8.0 * bytes / 3000.0;
+    assert!(bits < 0.8 * (chance + 5.4), "{bits} bits a point, {chance} for places by chance");
+}
