@@ -140,9 +140,8 @@ fn rayon_pool(threads: usize) -> rayon::ThreadPool {
 fn nothing_is_exchanged_where_nothing_is_gained() {
     let samples = Array3::from_shape_fn((6, 7, 8), |(z, y, x)| (x + 2 * y + 4 * z) as f32);
     let volume = Volume::new(samples, Frame::VOXEL).unwrap();
-    let corners: Vec<u32> = (0..8)
-        .map(|i| (7 * (i & 1) + 8 * 6 * (i >> 1 & 1) + 56 * 5 * (i >> 2)) as u32)
-        .collect();
+    let corners: Vec<u32> =
+        (0..8).map(|i| (7 * (i & 1) + 8 * 6 * (i >> 1 & 1) + 56 * 5 * (i >> 2)) as u32).collect();
     assert_eq!(exchange(&volume, &corners, Units::Voxel).unwrap(), corners);
     let all: Vec<u32> = (0..336).collect();
     assert_eq!(exchange(&volume, &all, Units::Voxel).unwrap(), all);
@@ -170,7 +169,10 @@ fn a_bound_on_the_error_is_kept() {
         ("points sample:phantom@9 --exchange", "--select adaptive"),
         ("points sample:phantom@9 --select adaptive --max-error=-1", "from 0 up"),
         ("points sample:phantom@9 --select adaptive --max-error 9 --exchange", "--exchange"),
-        ("points sample:phantom@9 --select adaptive --max-error 9 --target-rmse 1", "--target-rmse"),
+        (
+            "points sample:phantom@9 --select adaptive --max-error 9 --target-rmse 1",
+            "--target-rmse",
+        ),
     ] {
         let (code, _, stderr) = run(f, &args.split(' ').collect::<Vec<_>>());
         assert!(code == 2 && stderr.contains(word), "{args}: {code}\n{stderr}");
