@@ -27,6 +27,8 @@ pub struct Adaptive {
 /// Points of a batch, over those there are: a batch is large enough for few triangulations, and
 /// small enough that its points are chosen for what is there and not for each other.
 const BATCH: f64 = 0.2;
+/// Samples looked at as one piece of work.
+const CHUNK: usize = 1 << 14;
 /// While there are few points, batches are of this size.
 const FIRST_BATCH: usize = 32;
 
@@ -112,17 +114,34 @@ pub(super) fn worst(
     let key = |error: f32, voxel: u32| u64::from(error.to_bits()) << 32 | u64::from(!voxel);
     let zeros = || (0..sampled.cells()).map(|_| AtomicU64::new(0)).collect::<Vec<_>>();
     let (sums, worst) = (zeros(), zeros());
-    let pairs = volume.as_slice().par_iter().zip(sampled.f());
-    pairs.zip(sampled.owners()).enumerate().for_each(|(voxel, ((f, g), &owner))| {
-        let error = (f - g).abs();
-        if owner != NOTHING && error > 0.0 {
-            if bound.is_none() {
-                sums[owner as usize].fetch_add(units(error.into()), Relaxed);
+    let pairs = volume.as_slice().par_chunks(CHUNK).zip(sampled.f().par_chunks(CHUNK));
+    let chunks = pairs.zip(sampled.owners().par_chunks(CHUNK)).enumerate();
+    chunks.for_each(|(chunk, ((theirs, ours), owners))| {
+        // Samples side by side are often in one cell: these are written together.
+        let write = |owner: u32, sum: u64, most: u64| {
+            if most != 0 {
+                sums[owner as usize].fetch_add(sum, Relaxed);
+                worst[owner as usize].fetch_max(most, Relaxed);
             }
-            if may_join(voxel as u32) && bound.is_none_or(|bound| f64::from(error) > bound) {
-                worst[owner as usize].fetch_max(key(error, voxel as u32), Relaxed);
+        };
+        let (mut last, mut sum, mut most) = (NOTHING, 0, 0);
+        for (i, ((f, g), &owner)) in theirs.iter().zip(ours).zip(owners).enumerate() {
+            let (error, voxel) = ((f - g).abs(), (chunk * CHUNK + i) as u32);
+            if owner == NOTHING || error == 0.0 {
+                continue;
+            }
+            if owner != last {
+                write(last, sum, most);
+                (last, sum, most) = (owner, 0, 0);
+            }
+            if bound.is_none() {
+                sum += units(error.into());
+            }
+            if bound.is_none_or(|bound| f64::from(error) > bound) && may_join(voxel) {
+                most = most.max(key(error, voxel));
             }
         }
+        write(last, sum, most);
     });
     let pairs = sums.into_iter().zip(worst).map(|(s, w)| (s.into_inner(), w.into_inner()));
     let mut ranked: Vec<(u64, u64)> = pairs.filter(|&(_, worst)| worst != 0).collect();

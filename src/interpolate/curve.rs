@@ -10,7 +10,7 @@ use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, points_at, select, weigh,
 };
 use crate::progress::{self, Share};
-use crate::shape::{Alpha, ShapeError, ShapeOptions, alpha_shape};
+use crate::shape::{Alpha, Engine, ShapeError, ShapeOptions, alpha_shape};
 use crate::triangulation::TriangulationError;
 use crate::volume::Volume;
 
@@ -199,7 +199,8 @@ impl Bench<'_> {
     ) -> Result<Option<CurvePoint>, InterpolateError> {
         let Self { volume, options: &CurveOptions { alpha, units, .. }, .. } = *self;
         let weighted = weigh(points, weighting, alpha)?;
-        let solid = ShapeOptions { refuse_flat: true, ..ShapeOptions::new(alpha) };
+        let solid =
+            ShapeOptions { refuse_flat: true, engine: Engine::Native, ..ShapeOptions::new(alpha) };
         let shape = match alpha_shape(weighted, &solid) {
             Err(ShapeError::Triangulation(TriangulationError::Sites(_))) => return Ok(None),
             other => other?,

@@ -166,7 +166,11 @@ pub(super) fn combine(shares: &[f64; 4], values: [f64; 4]) -> f64 {
         return values[vertex];
     }
     let mut terms = [0, 1, 2, 3].map(|k| shares[k] * values[k]);
-    terms.sort_unstable_by(f64::total_cmp);
+    for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+        if terms[i].total_cmp(&terms[j]).is_gt() {
+            terms.swap(i, j);
+        }
+    }
     terms.iter().sum()
 }
 

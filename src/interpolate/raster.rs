@@ -57,22 +57,25 @@ const FEW: usize = 24;
 
 /// Visits the samples in a simplex, and some beside it.
 pub(super) fn for_each_near(grid: &Grid, corners: &[[f64; 3]], mut visit: impl FnMut([usize; 3])) {
-    let corners: Vec<[f64; 3]> = corners.iter().map(|&p| grid.index(p)).collect();
+    let mut indices = [[0.0; 3]; 4];
+    let indices = &mut indices[..corners.len()];
+    indices.iter_mut().zip(corners).for_each(|(index, &p)| *index = grid.index(p));
     let ends = |k: usize| {
-        let along = corners.iter().map(|p| p[k]);
+        let along = indices.iter().map(|p| p[k]);
         let low = along.clone().fold(f64::INFINITY, f64::min);
         grid.range(k, low - MARGIN, along.fold(f64::NEG_INFINITY, f64::max) + MARGIN)
     };
     let ranges = [0, 1, 2].map(ends);
-    let planes = match corners[..] {
+    let planes = match *indices {
         [a, b, c, d] if ranges.iter().map(Range::len).product::<usize>() > FEW => {
-            [[a, b, c, d], [b, c, d, a], [c, d, a, b], [d, a, b, c]].map(Plane::beyond).into()
+            Some([[a, b, c, d], [b, c, d, a], [c, d, a, b], [d, a, b, c]].map(Plane::beyond))
         }
-        _ => Vec::new(),
+        _ => None,
     };
+    let planes = planes.as_ref().map_or(&[][..], |planes| &planes[..]);
     for k in ranges[2].clone() {
         for j in ranges[1].clone() {
-            for i in within(&planes, grid, ranges[0].clone(), [j as f64, k as f64]) {
+            for i in within(planes, grid, ranges[0].clone(), [j as f64, k as f64]) {
                 visit([i, j, k]);
             }
         }

@@ -267,14 +267,22 @@ impl<'a> Cells<'a> {
     /// Gives a sample in a new cell to the first of the cells that hold it.
     #[inline(always)]
     fn claim(&self, cell: u32, row: [u32; 4], shares: &[f64; 4], owner: &AtomicU32) {
-        if !shares.contains(&0.0) {
-            owner.store(cell, Relaxed);
-        } else if shares.contains(&1.0) {
+        match shares.iter().filter(|share| **share == 0.0).count() {
+            0 => owner.store(cell, Relaxed),
+            1 => owner.store(self.first_across(cell, row, shares), Relaxed),
+            2 => owner.store(self.first_at(cell, row, shares), Relaxed),
             // At a vertex F is its value, whichever cell the sample belongs to.
-            owner.fetch_min(cell, Relaxed);
-        } else {
-            owner.store(self.first_at(cell, row, shares), Relaxed);
+            _ => drop(owner.fetch_min(cell, Relaxed)),
         }
+    }
+
+    /// The first in canonical order of two cells, one of them across the facet that a place lies on.
+    fn first_across(&self, cell: u32, row: [u32; 4], shares: &[f64; 4]) -> u32 {
+        let off = (0..4).find(|&k| shares[k] == 0.0).map_or(row[0], |k| row[k]);
+        let Cell { corners, beside } = self.growing.cells()[cell as usize];
+        let corner = corners.iter().position(|&v| v == off).unwrap_or(0);
+        let next = beside[corner] / 4;
+        if self.growing.is_cell(next) && self.row(next) < row { next } else { cell }
     }
 
     /// The first in canonical order of the cells at the face that a place lies on within one of them. They
