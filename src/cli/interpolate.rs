@@ -9,7 +9,7 @@ use crate::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
 use crate::progress::Stage;
 use crate::shape::number_or_null_or_name;
 use crate::volume::VolumeWriter;
-use crate::{AlphaShape, GrayRange, Units, Volume};
+use crate::{AlphaShape, Dims, GrayRange, Units, Volume};
 use clap::Args;
 use serde::Serialize;
 
@@ -201,6 +201,7 @@ impl Interpolate {
     /// The grid asked for.
     fn grid(&self, original: Option<Original>, positions: &[[f64; 3]]) -> anyhow::Result<Grid> {
         let asked = self.pipeline.input.raw.grid();
+        asked.map(Dims::bounded).transpose()?;
         match (original, asked) {
             (Some(Original { volume, units, .. }), None) => Ok(Grid::of(volume, units)),
             (Some(Original { volume, units, .. }), Some(dims)) => {

@@ -18,6 +18,7 @@
 //! # Ok::<(), walpha::haar::HaarError>(())
 //! ```
 
+mod bricks;
 mod coefficients;
 mod nonstandard;
 mod standard;
@@ -25,6 +26,7 @@ mod support;
 mod truncate;
 mod unnormalised;
 
+pub(crate) use bricks::Bricks;
 pub use coefficients::{Coefficients, Decomposition, forward};
 pub use truncate::{HaarError, Tolerance, Truncation};
 pub use unnormalised::Unnormalised;

@@ -140,6 +140,12 @@ pub enum ShapeError {
         /// What asks for the whole triangulation.
         by: Whole,
     },
+    /// Two points at one place, of a set that is never in one place.
+    #[error("two points are at one place, {at:?}, which is not sorted out in separate blocks")]
+    Coincident {
+        /// The place.
+        at: [f64; 3],
+    },
     /// Exterior simplices are known to the whole triangulation only.
     #[error(
         "simplices outside the shape are not local: they need the whole triangulation, and \
@@ -190,6 +196,9 @@ impl ShapeError {
             Self::Unbounded { by: Whole::Reference } => {
                 let (memory, engine) = (Setting::Memory, Setting::Engine);
                 advice!["omit ", memory, ", or use ", engine, " native or ", engine, " cgal"]
+            }
+            Self::Coincident { .. } => {
+                "correct the spacing and directions of the grid, or use voxels as units".into()
             }
             Self::Exterior { .. } => {
                 advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Exterior]

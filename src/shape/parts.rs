@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::blocks::Answer;
 use super::union_find::UnionFind;
-use super::{AlphaShape, Class, Complex, facet_area, six_volumes};
+use super::{AlphaShape, Class, Complex, Measures, facet_area, six_volumes};
+use crate::math::Sum;
 
 /// The sheets of a shape's boundary: the connected pieces of its outside seen closely. A component
 /// has one around it and one for each of its voids. They are numbered from 0 in the order in which
@@ -123,63 +124,41 @@ impl AlphaShape {
         numbers
     }
 
-    /// The components of the shape by their numbers, as many as b0. Rounded sums in a fixed order.
-    /// O(n).
+    /// The components of the shape by their numbers, as many as b0. Sums are exact, and rounded once. O(n).
     pub fn components(&self) -> Vec<Component> {
         let numbers = self.component_numbers();
         let positions = &self.points().positions;
         let at = |v: u32| positions[v as usize];
         let number = |v: u32| numbers[v as usize] as usize;
-        let mut components: Vec<Component> = Vec::new();
+        let mut components: Vec<ComponentSums> = Vec::new();
         for &[v] in self.complex().vertices.rows() {
-            let point = at(v);
             match number(v) {
                 n if n == NO_COMPONENT as usize => {}
-                n if n == components.len() => components.push(Component::at(point)),
-                n => components[n].reach(point),
+                n if n == components.len() => components.push(ComponentSums::at(at(v))),
+                n => components[n].reach(at(v)),
             }
         }
         for cell in self.complex().cells.of(Class::Interior) {
-            let component = &mut components[number(cell[0])];
-            component.cells += 1;
-            component.volume += six_volumes(cell.map(at));
+            components[number(cell[0])].add_cell(cell.map(at));
         }
         for (facet, class) in self.complex().facets.iter() {
-            let area = || facet_area(facet.map(at));
-            match class {
-                Class::Regular => components[number(facet[0])].area += area(),
-                Class::Singular => components[number(facet[0])].singular_area += area(),
-                _ => {}
-            }
+            components[number(facet[0])].add_facet(facet.map(at), class);
         }
-        // Divided last: sums of determinants on a lattice are whole numbers.
-        for component in &mut components {
-            component.volume /= 6.0;
-        }
-        if let Some(sheets) = self.sheets() {
-            components.iter_mut().for_each(|component| component.voids = Some(Vec::new()));
-            for (component, void) in self.enclosed(sheets, &numbers) {
-                components[component].voids.get_or_insert_default().push(void);
-            }
-        }
-        components
+        let sheets = self.sheets().map(|sheets| self.sheet_sums(sheets, &numbers));
+        told(components, sheets)
     }
 
-    /// Sheets that shut something in, with their components, largest first.
-    fn enclosed(&self, sheets: &Sheets, numbers: &[u32]) -> Vec<(usize, Enclosed)> {
+    /// Each sheet that has facets, with its component.
+    fn sheet_sums(&self, sheets: &Sheets, numbers: &[u32]) -> Vec<(u32, usize, SheetSums)> {
         let positions = &self.points().positions;
         let complex = self.complex();
-        let mut found: Vec<Option<(usize, Enclosed)>> = vec![None; sheets.count as usize];
-        // A side of a facet turns counter-clockwise seen from outside the shape.
+        let mut found: Vec<Option<(usize, SheetSums)>> = vec![None; sheets.count as usize];
         let mut add = |sheet: u32, side: [u32; 3]| {
             let corners = side.map(|v| positions[v as usize]);
-            let (_, void) = found[sheet as usize].get_or_insert_with(|| {
-                let component = numbers[side[0] as usize] as usize;
-                (component, Enclosed { sheet, volume: 0.0, low: corners[0], high: corners[0] })
+            let (_, sums) = found[sheet as usize].get_or_insert_with(|| {
+                (numbers[side[0] as usize] as usize, SheetSums::default())
             });
-            // Of all cones over the sides of a sheet from one apex, signed, its inside remains.
-            void.volume -= six_volumes([positions[0], corners[0], corners[1], corners[2]]);
-            corners.iter().for_each(|&corner| widen(&mut void.low, &mut void.high, corner));
+            sums.add(positions[0], corners);
         };
         for (&sheet, &side) in sheets.regular.iter().zip(complex.facets.of(Class::Regular)) {
             add(sheet, side);
@@ -190,35 +169,157 @@ impl AlphaShape {
             add(clockwise, [a, c, b]);
             add(counter, [a, b, c]);
         }
-        let mut found: Vec<(usize, Enclosed)> = found.into_iter().flatten().collect();
-        found.iter_mut().for_each(|(_, void)| void.volume /= 6.0);
-        // The sheet around a component has what it encloses behind it: least, and first.
-        found.sort_by(|(a, first), (b, second)| {
-            a.cmp(b).then(first.volume.total_cmp(&second.volume))
-        });
-        let voids = found.chunk_by(|a, b| a.0 == b.0).flat_map(|of_one| of_one[1..].iter().rev());
-        voids.copied().collect()
+        let numbered = (0..).zip(found);
+        numbered.filter_map(|(sheet, found)| found.map(|(c, sums)| (sheet, c, sums))).collect()
     }
 }
 
-impl Component {
-    fn at(point: [f64; 3]) -> Self {
+/// What is summed over a component, or over a part of one: parts [join](Self::join) in any order.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ComponentSums {
+    pub vertices: usize,
+    pub cells: usize,
+    six_volumes: Sum,
+    area: Sum,
+    singular_area: Sum,
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl ComponentSums {
+    /// One of its vertices.
+    pub fn at(point: [f64; 3]) -> Self {
         Self {
             vertices: 1,
             cells: 0,
-            volume: 0.0,
-            area: 0.0,
-            singular_area: 0.0,
+            six_volumes: Sum::default(),
+            area: Sum::default(),
+            singular_area: Sum::default(),
             low: point,
             high: point,
-            voids: None,
         }
     }
 
-    fn reach(&mut self, point: [f64; 3]) {
+    /// Another vertex.
+    pub fn reach(&mut self, point: [f64; 3]) {
         self.vertices += 1;
         widen(&mut self.low, &mut self.high, point);
     }
+
+    /// A cell that is in the shape.
+    pub fn add_cell(&mut self, corners: [[f64; 3]; 4]) {
+        self.cells += 1;
+        self.six_volumes.add(six_volumes(corners));
+    }
+
+    /// A facet of some class.
+    pub fn add_facet(&mut self, corners: [[f64; 3]; 3], class: Class) {
+        match class {
+            Class::Regular => self.area.add(facet_area(corners)),
+            Class::Singular => self.singular_area.add(facet_area(corners)),
+            _ => {}
+        }
+    }
+
+    /// Takes in another part.
+    pub fn join(&mut self, other: &Self) {
+        self.vertices += other.vertices;
+        self.cells += other.cells;
+        self.six_volumes.join(&other.six_volumes);
+        self.area.join(&other.area);
+        self.singular_area.join(&other.singular_area);
+        widen(&mut self.low, &mut self.high, other.low);
+        widen(&mut self.low, &mut self.high, other.high);
+    }
+
+    /// What all of these have, which is what the shape has.
+    pub fn measures<'a>(all: impl Iterator<Item = &'a Self> + Clone) -> Measures {
+        let sum = |of: fn(&Self) -> &Sum| {
+            let mut sum = Sum::default();
+            all.clone().for_each(|sums| sum.join(of(sums)));
+            sum.value()
+        };
+        Measures {
+            volume: sum(|sums| &sums.six_volumes) / 6.0,
+            area: sum(|sums| &sums.area),
+            singular_area: sum(|sums| &sums.singular_area),
+        }
+    }
+
+    fn told(self) -> Component {
+        let Self { vertices, cells, low, high, .. } = self;
+        Component {
+            vertices,
+            cells,
+            // Divided last: sums of determinants on a lattice are whole numbers.
+            volume: self.six_volumes.value() / 6.0,
+            area: self.area.value(),
+            singular_area: self.singular_area.value(),
+            low,
+            high,
+            voids: None,
+        }
+    }
+}
+
+/// What is summed over the sides of facets that are on one sheet, or over some of them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SheetSums {
+    six_volumes: Sum,
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Default for SheetSums {
+    fn default() -> Self {
+        let (low, high) = ([f64::MAX; 3], [f64::MIN; 3]);
+        Self { six_volumes: Sum::default(), low, high }
+    }
+}
+
+impl SheetSums {
+    /// A side of a facet, whose corners turn counter-clockwise seen from outside the shape. `apex` is one
+    /// place for all: of the cones over the sides of a sheet from it, signed, the sheet's inside remains.
+    pub fn add(&mut self, apex: [f64; 3], corners: [[f64; 3]; 3]) {
+        let [a, b, c] = corners;
+        self.six_volumes.add(-six_volumes([apex, a, b, c]));
+        corners.iter().for_each(|&corner| widen(&mut self.low, &mut self.high, corner));
+    }
+
+    /// Takes in other sides.
+    pub fn join(&mut self, other: &Self) {
+        self.six_volumes.join(&other.six_volumes);
+        widen(&mut self.low, &mut self.high, other.low);
+        widen(&mut self.low, &mut self.high, other.high);
+    }
+
+    fn told(self, sheet: u32) -> Enclosed {
+        let Self { six_volumes, low, high } = self;
+        Enclosed { sheet, volume: six_volumes.value() / 6.0, low, high }
+    }
+}
+
+/// Components by their numbers, with the voids that their sheets enclose; sheets ascend by number, each
+/// with its component.
+pub(crate) fn told(
+    components: Vec<ComponentSums>,
+    sheets: Option<Vec<(u32, usize, SheetSums)>>,
+) -> Vec<Component> {
+    let mut components: Vec<Component> =
+        components.into_iter().map(ComponentSums::told).collect();
+    let Some(sheets) = sheets else { return components };
+    components.iter_mut().for_each(|component| component.voids = Some(Vec::new()));
+    let told = |(sheet, component, sums): (u32, usize, SheetSums)| (component, sums.told(sheet));
+    let mut found: Vec<(usize, Enclosed)> = sheets.into_iter().map(told).collect();
+    // The sheet around a component has what it encloses behind it: least, and first.
+    found.sort_by(|(a, first), (b, second)| {
+        a.cmp(b).then(first.volume.total_cmp(&second.volume))
+    });
+    let voids = found.chunk_by(|a, b| a.0 == b.0).flat_map(|of_one| of_one[1..].iter().rev());
+    for &(component, void) in voids {
+        components[component].voids.get_or_insert_default().push(void);
+    }
+    components
 }
 
 /// The vertices of a shape, united by its edges.

@@ -17,6 +17,7 @@
 mod classify;
 mod merge;
 mod partition;
+mod piece;
 mod plan;
 
 use rayon::prelude::*;
@@ -29,8 +30,10 @@ use crate::triangulation::{Maker, Sites, SitesError, Triangulation, Triangulatio
 use classify::{Owned, Shelves, classify};
 use merge::merge;
 pub(super) use partition::Partition;
+pub(crate) use piece::{BlockShape, Own, Side, block_shape};
 pub use plan::PlanError;
 pub(super) use plan::{Limits, Plan};
+pub(crate) use plan::at_work;
 
 /// What is asked about all blocks of a set.
 #[derive(Clone, Copy)]

@@ -23,6 +23,7 @@ pub(super) mod npz;
 pub(super) mod nrrd;
 mod payload;
 pub(super) mod raw;
+mod rows;
 pub(super) mod series;
 #[cfg(feature = "formats")]
 pub(super) mod slices;
@@ -55,6 +56,7 @@ pub(crate) use payload::Element;
 pub(crate) use payload::Length;
 use payload::PayloadError;
 pub use raw::RawLayout;
+pub(super) use rows::CONVERT;
 pub use series::Series;
 #[cfg(feature = "formats")]
 pub(crate) use vtk_xml::VtkXml;

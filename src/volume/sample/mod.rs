@@ -6,6 +6,7 @@ mod skull;
 use std::path::Path;
 
 pub use phantom::phantom;
+pub(super) use phantom::PhantomParts;
 
 use super::{Frame, ReadOptions, Volume, VolumeError, read};
 use crate::advice::Advice;

@@ -18,6 +18,7 @@ use crate::triangulation::{Predicates, Triangulation};
 
 use around::Walker;
 use cells::{Boundary, State};
+pub(crate) use rows::Side;
 pub(super) use rows::{Dimension, Owned, Rows, Shelf, Shelves};
 use sheets::Sheets;
 use stars::Stars;

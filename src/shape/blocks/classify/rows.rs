@@ -18,6 +18,9 @@ pub(in super::super) struct Owned {
     pub shared: Vec<Side>,
     /// Points, each with another one of its component.
     pub joined: Vec<[u32; 2]>,
+    /// The ends of edges of the shape between points of this block and of others, some of them several
+    /// times.
+    pub border: Vec<u32>,
 }
 
 /// Input indices in runs of about equal length, so that the rows of one run can be merged, and given
@@ -107,7 +110,7 @@ impl<const M: usize> Rows<M> {
 }
 
 /// One side of a facet, or a singular edge, that several blocks know.
-pub(in super::super) struct Side {
+pub(crate) struct Side {
     /// Sorted input indices; an edge repeats its last.
     pub simplex: [u32; 3],
     pub side: u32,
