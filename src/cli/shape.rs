@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use crate::blocks::Pieces;
 use crate::export::{Content, ExportOptions, Exporter, FORMATS, Format, Target, write_all};
 use crate::progress::Stage;
 use crate::shape::{ShapeOptions, Surface};
@@ -17,6 +18,7 @@ use super::picture::PictureArgs;
 use super::progress::Progress;
 use super::report::Report;
 use super::said::{misused, option};
+use super::blocks::{self, Outputs};
 use super::{Global, pipeline};
 
 /// Compute the weighted alpha shape of a volume or of points.
@@ -109,12 +111,18 @@ impl Shape {
             groups: self.groups,
             input: Some(self.pipeline.input.input.clone()),
         };
+        let mut pieces = Vec::new();
         for path in &self.output {
             let name = self.pipeline.input.output(path)?;
+            if let Some(of_path) = Pieces::of(&name) {
+                pieces.push((of_path, path.clone()));
+                continue;
+            }
             let exporter: Box<dyn Exporter> = if PictureArgs::wanted(&name) {
                 self.picture.exporter()
             } else {
-                let known = FORMATS.iter().map(|format| format.extension);
+                let pieces = Pieces::ALL.map(|(_, extension)| extension);
+                let known = FORMATS.iter().map(|format| format.extension).chain(pieces);
                 let unknown =
                     |_| UnknownFormat::new(path, "a shape", known.chain(PictureArgs::EXTENSIONS));
                 Format::of(&name).map_err(unknown)?.exporter(&export)
@@ -123,6 +131,14 @@ impl Shape {
         }
 
         let mut progress = Progress::new(global);
+        let files = self.output.iter().map(|path| path.display().to_string()).collect();
+        if !pieces.is_empty() {
+            unused("--solid", self.solid, "it takes the whole boundary, and there are blocks")?;
+            let outputs = Outputs { pieces, whole: targets };
+            let mut report = blocks::shape(&self.pipeline, &self.shape, outputs, &mut progress)?;
+            report.finish(progress.finish(), files);
+            return tell(global, &report);
+        }
         let (weighed, volume) = pipeline::weighted_points(&self.pipeline, &mut progress)?;
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
         let refuse_flat = self.dimension.is_some();
@@ -145,7 +161,6 @@ impl Shape {
                 (target, Box::new(content) as Content<'_>)
             }))
         })?;
-        let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         if !global.quiet {
             remarks.iter().for_each(|remark| eprintln!("walpha: {remark}"));

@@ -31,11 +31,13 @@ pub use coefficients::{Coefficients, Decomposition, forward};
 pub use truncate::{HaarError, Tolerance, Truncation};
 pub use unnormalised::Unnormalised;
 
+use serde::{Deserialize, Serialize};
+
 use crate::volume::Volume;
 use crate::{memory, progress};
 
 /// How a volume is transformed and truncated.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HaarOptions {
     /// Which of the two three-dimensional decompositions.
     pub decomposition: Decomposition,

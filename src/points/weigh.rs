@@ -39,7 +39,7 @@ pub struct WeightedPoints {
 }
 
 /// The range of weights.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WeightSummary {
     /// The smallest.
     pub min: f64,

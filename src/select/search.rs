@@ -45,6 +45,11 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
+    /// How many values were counted.
+    pub fn total(&self) -> u64 {
+        self.bins.values().map(|bin| bin.count).sum::<u64>() + self.list.len() as u64
+    }
+
     /// Takes in what another piece has.
     pub fn join(&mut self, other: Self) {
         for (digit, bin) in other.bins {
@@ -60,6 +65,11 @@ impl Search {
     pub fn new(budget: Budget, few: u64) -> Self {
         let stage = Stage::Magnitude { known: 0, shift: MAGNITUDE };
         Self { spent: Spent::of(budget), few, stage }
+    }
+
+    /// Whether it was told nothing yet.
+    pub fn is_new(&self) -> bool {
+        self.stage == Stage::Magnitude { known: 0, shift: MAGNITUDE }
     }
 
     /// The cut and what it drops, when it is found.

@@ -31,6 +31,7 @@ mod topology;
 mod union_find;
 mod voids;
 
+pub(crate) use alpha_shape::Assembled;
 pub use alpha_shape::{AlphaShape, Engine, ShapeError, ShapeOptions, alpha_shape};
 pub use balls::Balls;
 pub use blocks::PlanError;

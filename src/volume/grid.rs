@@ -27,7 +27,7 @@ impl TryFrom<Unchecked> for Dims {
     type Error = VolumeError;
 
     fn try_from(Unchecked { x, y, z }: Unchecked) -> Result<Self, VolumeError> {
-        Self::new(x, y, z)
+        Self::unbounded(x, y, z)
     }
 }
 

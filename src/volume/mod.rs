@@ -46,4 +46,6 @@ pub use read::{RawLayout, ReadOptions, Series};
 pub use reason::Reason;
 pub use sample::{SAMPLES, open, phantom, sample};
 pub use source::Source;
+#[cfg(feature = "zarr")]
+pub use source::convert;
 pub use volume::{Nan, Volume};

@@ -23,6 +23,8 @@ pub struct Source {
     dtype: Dtype,
     grain: [usize; 3],
     parts: Box<dyn Parts>,
+    /// Whether samples are gray levels as they are.
+    gray_levels: bool,
     /// Where the volume begins in what is read.
     first: [usize; 3],
 }
@@ -52,7 +54,13 @@ impl Source {
         grain: [usize; 3],
         parts: Box<dyn Parts>,
     ) -> Self {
-        Self { dims, frame, dtype, grain, parts, first: [0; 3] }
+        let gray_levels = dtype == Dtype::U8;
+        Self { dims, frame, dtype, grain, parts, gray_levels, first: [0; 3] }
+    }
+
+    /// Says whether samples are gray levels, whatever their type.
+    pub(crate) fn with_gray_levels(self, gray_levels: bool) -> Self {
+        Self { gray_levels, ..self }
     }
 
     /// Opens what a user names, a sample or a file: uncompressed NRRD, MetaImage, NIfTI, NPY and raw samples,
@@ -86,10 +94,10 @@ impl Source {
     }
 
     /// A volume in memory.
-    fn of_volume(volume: Volume) -> Self {
+    pub fn of_volume(volume: Volume) -> Self {
         let (dims, frame, dtype) = (volume.dims(), *volume.frame(), volume.dtype());
-        let dtype = if volume.has_gray_levels() { Dtype::U8 } else { dtype };
-        Self::new(dims, frame, dtype, [1; 3], Box::new(volume))
+        let gray_levels = volume.has_gray_levels();
+        Self::new(dims, frame, dtype, [1; 3], Box::new(volume)).with_gray_levels(gray_levels)
     }
 
     /// Samples along x, y and z.
@@ -107,9 +115,9 @@ impl Source {
         self.dtype
     }
 
-    /// Whether the samples are gray levels 0..255 as they are: unsigned bytes.
+    /// Whether the samples are gray levels 0..255 as they are, as unsigned bytes are.
     pub fn has_gray_levels(&self) -> bool {
-        self.dtype == Dtype::U8
+        self.gray_levels
     }
 
     /// The box of samples, along x, y and z, that is read as quickly as a single one: boxes made of such are
@@ -137,6 +145,17 @@ impl Parts for Volume {
         let [x, y, z] = [0, 1, 2].map(|k| first[k]..first[k] + size[k]);
         Ok(self.samples().slice(ndarray::s![z, y, x]).iter().copied().collect())
     }
+}
+
+/// Writes a volume as Zarr (feature `zarr`), part by part: OME-Zarr 0.5 with one level, in chunks of 64³
+/// samples, or an array alone where nothing is known of the grid. Bytes and 16-bit integers keep their type,
+/// others become `f32`; spacing, origin and unit are kept, directions are not.
+///
+/// # Errors
+/// `folder` is there already or cannot be made; the volume cannot be read. Nothing is left behind then.
+#[cfg(feature = "zarr")]
+pub fn convert(source: &Source, folder: &Path) -> Result<(), VolumeError> {
+    super::write::zarr(source, folder)
 }
 
 /// The error for a format that is not read in parts.

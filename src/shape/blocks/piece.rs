@@ -35,8 +35,8 @@ pub(crate) struct BlockShape {
     pub components: Vec<u32>,
     /// The ends of the edges between points of this block and of others, ascending.
     pub border: Vec<u32>,
-    /// Own points that are not vertices of the triangulation.
-    pub hidden: u64,
+    /// Own points that are not vertices of the triangulation, ascending: hidden, if there is no other block.
+    pub hidden: Vec<u32>,
     /// How many points were in the halo.
     pub halo: u64,
 }
@@ -154,7 +154,7 @@ fn ordered(owned: Owned, block: &Block, points: usize) -> BlockShape {
         piece.facet_sheets.extend(&shelf.facet_sheets[rows(Dimension::FacetSheets)]);
         piece.edge_sheets.extend(&shelf.edge_sheets[rows(Dimension::EdgeSheets)]);
         match shelf.vertices[v as usize] {
-            None => piece.hidden += 1,
+            None => piece.hidden.push(a),
             Some(Class::Exterior) => {}
             Some(class) => vertices.push([a], class),
         }

@@ -3,6 +3,7 @@ use std::io::{Seek, SeekFrom};
 use std::path::Path;
 
 use ndarray::Array3;
+use serde::{Deserialize, Serialize};
 
 use super::payload::{Length, Payload, PayloadError};
 use super::rows::Rows;
@@ -11,7 +12,7 @@ use crate::advice::{Setting, advice};
 use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// What a file of bare samples does not say of itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RawLayout {
     /// Samples along x (fastest), y and z (slowest).
     pub dims: Dims,

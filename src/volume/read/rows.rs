@@ -44,7 +44,7 @@ impl Rows {
     /// Samples behind a header of so many bytes, of which further ones are skipped: `None` where the samples
     /// stand at the end of the file.
     #[cfg(feature = "formats")]
-    pub fn behind(
+    pub(super) fn behind(
         header: &Path,
         described: Described,
         after: u64,
@@ -55,7 +55,7 @@ impl Rows {
 
     /// Samples in a file of their own.
     #[cfg(feature = "formats")]
-    pub fn beside(
+    pub(super) fn beside(
         header: &Path,
         described: Described,
         files: &[PathBuf],

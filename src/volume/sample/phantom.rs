@@ -52,8 +52,8 @@ pub(in super::super) struct PhantomParts(usize);
 impl PhantomParts {
     pub fn source(size: u64) -> Result<Source, VolumeError> {
         let dims = Dims::unbounded(size, size, size)?;
-        // Its samples are gray levels, as those of unsigned bytes are.
-        Ok(Source::new(dims, Frame::VOXEL, Dtype::U8, [1; 3], Box::new(Self(dims.x()))))
+        let parts = Box::new(Self(dims.x()));
+        Ok(Source::new(dims, Frame::VOXEL, Dtype::F32, [1; 3], parts).with_gray_levels(true))
     }
 }
 
