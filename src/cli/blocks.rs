@@ -279,14 +279,15 @@ pub fn shape(
     let job = job(pipeline, shape)?;
     let (_, first) = outputs.pieces.first().expect("an output with pieces");
     let folder = first.with_extension("blocks");
-    NewFolder::make(&folder)
-        .map_err(|error| {
-            let path = shown(&folder);
-            said!("cannot make the folder {path}: {error}" => "choose another place for the output")
-        })?
-        .map(NewFolder::keep);
+    let new = NewFolder::make(&folder).map_err(|error| {
+        let path = shown(&folder);
+        said!("cannot make the folder {path}: {error}" => "choose another place for the output")
+    })?;
     let cutting = cutting(shape);
     let plan = progress.stage(Stage::Points, || Plan::resume(job, cutting, &folder))?;
+    if let Some(new) = new {
+        new.keep();
+    }
     progress.stage(Stage::Shape, || run_all(&plan, &plan.missing()?))?;
     let merged = progress.stage(Stage::Shape, || merge(&plan))?;
     let report = Report::of_blocks(&plan, &merged);
