@@ -199,8 +199,7 @@ fn world_coordinates_and_regions_are_the_same_in_blocks() {
     let volume = volume.with_frame(frame);
     let writer = walpha::volume::VolumeWriter::of(&path).unwrap();
     writer.write(&volume, &mut File::create(&path).unwrap()).unwrap();
-    let region =
-        walpha::volume::Region { first: [3, 0, 5], end: [Some(37), None, Some(33)] };
+    let region = walpha::volume::Region { first: [3, 0, 5], end: [Some(37), None, Some(33)] };
     for region in [None, Some(region)] {
         let read = ReadOptions { region, ..ReadOptions::default() };
         let mut job = Job::new(path.to_str().unwrap(), read).unwrap();

@@ -53,7 +53,8 @@ fn blocks_write_the_bytes_that_one_piece_writes() {
 /// The numbers of cells that the pieces of a file have, by its index.
 fn in_pieces(index: &Path, attribute: &str) -> Vec<usize> {
     let text = fs::read_to_string(index).unwrap();
-    let sources = text.split("<Piece Source=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
+    let sources =
+        text.split("<Piece Source=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
     let cells = sources.map(|name| {
         let bytes = fs::read(index.parent().unwrap().join(name)).unwrap();
         let head = String::from_utf8_lossy(&bytes[..4000.min(bytes.len())]).into_owned();

@@ -160,7 +160,8 @@ impl Field {
         for z in part.first[2]..part.first[2] + part.size[2] {
             for y in part.first[1]..part.first[1] + part.size[1] {
                 let row = self.voxel([part.first[0], y, z]);
-                let bricks = (y % side == 0 && z % side == 0).then(|| (z / side * cy + y / side) * cx);
+                let bricks =
+                    (y % side == 0 && z % side == 0).then(|| (z / side * cy + y / side) * cx);
                 for (i, x) in (part.first[0]..part.first[0] + part.size[0]).enumerate() {
                     let brick = bricks.filter(|_| x % side == 0).map(|row| row + x / side);
                     visit(place, row + i as u64, brick);

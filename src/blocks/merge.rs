@@ -235,7 +235,8 @@ fn number_sheets(
     let mut numbers = vec![0; sets.len()];
     order.iter().zip(0..).for_each(|(&(_, root, ..), number)| numbers[root as usize] = number);
     let numbers = (0..sets.len() as u32).map(|i| numbers[sets.find(i) as usize]).collect();
-    let sheets = (0..).zip(order).map(|(number, (_, _, component, sums))| (number, component, sums));
+    let sheets =
+        (0..).zip(order).map(|(number, (_, _, component, sums))| (number, component, sums));
     (numbers, sheets.collect())
 }
 
@@ -267,9 +268,10 @@ impl Totals {
             add(&mut totals.facets, facts.facets);
             add(&mut totals.edges, facts.edges);
             add(&mut totals.vertices, facts.vertices);
-            let Weights { min: least, max: most, sum: more } = &facts.weights;
-            (min, max) = (min.min(*least), max.max(*most));
-            sum.join(more);
+            if let Some(Weights { min: least, max: most, sum: more }) = &facts.weights {
+                (min, max) = (min.min(*least), max.max(*most));
+                sum.join(more);
+            }
         }
         if totals.points > 0 {
             totals.weights = WeightSummary { min, mean: sum.value() / totals.points as f64, max };

@@ -1,6 +1,6 @@
 use serde::Serialize;
 
-use super::plan::{SILENT, TILE_SAMPLE};
+use super::cut::{SILENT, TILE_SAMPLE};
 use super::{BlocksError, Cutting, Field, Job};
 use crate::points::SelectionRule;
 use crate::shape::{Balls, at_work};

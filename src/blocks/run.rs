@@ -5,7 +5,7 @@ use super::file::Arrays;
 use super::{BlocksError, Plan};
 use crate::math::Sum;
 use crate::shape::{
-    Balls, BlockShape, ByClass, Class, ComponentSums, Own, SheetSums, ShapeError, Side, block_shape,
+    Balls, BlockShape, ByClass, Class, ComponentSums, Own, ShapeError, SheetSums, Side, block_shape,
 };
 use crate::volume::GrayRange;
 
@@ -19,7 +19,8 @@ pub(super) struct Facts {
     pub facets: [usize; 3],
     pub edges: [usize; 3],
     pub vertices: [usize; 3],
-    pub weights: Weights,
+    /// `None` where there is no point.
+    pub weights: Option<Weights>,
     pub components: Vec<BlockComponent>,
     pub sheets: Vec<BlockSheet>,
 }
@@ -200,11 +201,11 @@ fn write(plan: &Plan, block: usize, points: &Points, shape: BlockShape) -> Resul
         facets: counts(complex.facets.counts()),
         edges: counts(complex.edges.counts()),
         vertices: counts(complex.vertices.counts()),
-        weights: Weights {
+        weights: own().next().map(|_| Weights {
             min: own().fold(f64::INFINITY, f64::min),
             max: own().fold(f64::NEG_INFINITY, f64::max),
             sum: own().collect(),
-        },
+        }),
         components,
         sheets,
     };

@@ -48,7 +48,8 @@ enum Rule {
 impl Chosen {
     /// The difference of a sample that takes part, else NaN.
     fn masked(gray_min: Option<f64>, sample: &Sample) -> f64 {
-        let out = sample.missing || gray_min.is_some_and(|least| f64::from(sample.smoothed) < least);
+        let out =
+            sample.missing || gray_min.is_some_and(|least| f64::from(sample.smoothed) < least);
         if out { f64::NAN } else { sample.difference }
     }
 
@@ -226,8 +227,7 @@ fn choose(
     truncated: Option<Truncated<'_>>,
     passes: &mut Passes,
 ) -> Result<Chosen, BlocksError> {
-    let gray_min =
-        job.selection.gray_min.or(job.value_min.map(|value| field.range.gray(value)));
+    let gray_min = job.selection.gray_min.or(job.value_min.map(|value| field.range.gray(value)));
     if gray_min.is_some_and(f64::is_nan) {
         let (what, given, need) = ("a least gray level of", f64::NAN, "a number");
         return Err(PointsError::Number { what, given, need }.into());

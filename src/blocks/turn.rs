@@ -45,9 +45,8 @@ impl Plan {
 /// # Errors
 /// As [`run()`], of the first block that fails; those that are done stay.
 pub fn run_all(plan: &Plan, blocks: &[usize]) -> Result<(), BlocksError> {
-    let size = |&block: &usize| {
-        plan.blocks.get(block).map_or(0, |planned| planned.points + planned.halo)
-    };
+    let size =
+        |&block: &usize| plan.blocks.get(block).map_or(0, |planned| planned.points + planned.halo);
     let work = Piece::new(blocks.iter().map(size).sum());
     let next = AtomicUsize::new(0);
     let failed = Mutex::new(None);

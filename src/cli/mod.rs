@@ -1,6 +1,7 @@
 //! Floor 7: the command. It parses, calls the library, prints, and chooses an exit code.
 
 mod args;
+mod block_facts;
 mod blocks;
 mod check;
 mod check_filtration;

@@ -12,13 +12,13 @@ use crate::volume::UnknownFormat;
 use clap::Args;
 
 use super::args::{PipelineArgs, ShapeArgs};
+use super::blocks::{self, Outputs};
 use super::formats::shape_output;
 use super::output::tell;
 use super::picture::PictureArgs;
 use super::progress::Progress;
 use super::report::Report;
 use super::said::{misused, option};
-use super::blocks::{self, Outputs};
 use super::{Global, pipeline};
 
 /// Compute the weighted alpha shape of a volume or of points.

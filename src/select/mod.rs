@@ -7,8 +7,8 @@ mod search;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-pub(crate) use budget::{Bin, Budget, Dropped};
 use budget::Spent;
+pub(crate) use budget::{Bin, Budget, Dropped};
 pub(crate) use search::{Counts, Search};
 
 /// Values counted into one histogram. Fixed, so that sums are the same on any number of threads.

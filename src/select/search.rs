@@ -22,11 +22,22 @@ pub(crate) struct Search {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Stage {
     /// The bits of the magnitude at the cut above `shift`.
-    Magnitude { known: u64, shift: u32 },
+    Magnitude {
+        known: u64,
+        shift: u32,
+    },
     /// The magnitude, of which so many stay; the bits of the first index that goes above `shift`.
-    Index { magnitude: u64, stay: u64, known: u64, shift: u32 },
+    Index {
+        magnitude: u64,
+        stay: u64,
+        known: u64,
+        shift: u32,
+    },
     /// There are few values left that agree with these bits of the magnitude.
-    Few { known: u64, shift: u32 },
+    Few {
+        known: u64,
+        shift: u32,
+    },
     Found(Cut),
 }
 
@@ -98,9 +109,9 @@ impl Search {
             }
             Stage::Index { magnitude, known, shift, .. } => {
                 let next = shift.saturating_sub(DIGIT);
-                for (_, index) in values.filter(|&(bits, index)| {
-                    bits == magnitude && agrees(index, known, shift)
-                }) {
+                for (_, index) in
+                    values.filter(|&(bits, index)| bits == magnitude && agrees(index, known, shift))
+                {
                     let digit = index >> next & ((1 << (shift - next)) - 1);
                     counts.bins.entry(digit).or_default().count += 1;
                 }
@@ -226,8 +237,7 @@ mod tests {
         };
         let reals: Vec<f64> = (0..200).map(|_| random(1 << 30) as f64 / 7.0).collect();
         let ties: Vec<f64> = (0..200).map(|_| random(5) as f64 - 2.0).collect();
-        let masked: Vec<f64> =
-            reals.iter().map(|&v| if v < 5e7 { f64::NAN } else { -v }).collect();
+        let masked: Vec<f64> = reals.iter().map(|&v| if v < 5e7 { f64::NAN } else { -v }).collect();
         for values in [&reals, &ties, &masked, &vec![0.1; 60], &vec![0.0; 9], &vec![]] {
             let all = values.iter().filter(|v| !v.is_nan());
             let energy: f64 = all.clone().map(|v| v * v).sum();

@@ -52,10 +52,7 @@ pub(crate) fn six_volumes([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
 }
 
 /// Σ `term(i, row)`, exact and rounded once.
-fn sum<const N: usize>(
-    rows: &[[u32; N]],
-    term: impl Fn(usize, [u32; N]) -> f64 + Sync,
-) -> f64 {
+fn sum<const N: usize>(rows: &[[u32; N]], term: impl Fn(usize, [u32; N]) -> f64 + Sync) -> f64 {
     const CHUNK: usize = 1 << 14;
     let of_chunk = |(chunk, rows): (usize, &[[u32; N]])| {
         (chunk * CHUNK..).zip(rows).map(|(i, &row)| term(i, row)).collect::<Sum>()

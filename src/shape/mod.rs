@@ -26,6 +26,7 @@ mod manifold;
 mod measure;
 mod parts;
 mod solid;
+mod sums;
 mod surface;
 mod topology;
 mod union_find;
@@ -43,8 +44,9 @@ pub use manifold::ManifoldDefects;
 pub use measure::Measures;
 pub(crate) use measure::{facet_area, six_volumes};
 pub use parts::{Component, Enclosed, NO_COMPONENT, Sheets};
-pub(crate) use parts::{ComponentSums, SheetSums, told};
+
 pub use solid::Cuts;
+pub(crate) use sums::{ComponentSums, SheetSums, told};
 pub use surface::Surface;
 pub use topology::{Betti, direct_betti};
 pub(crate) use union_find::UnionFind;

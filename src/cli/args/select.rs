@@ -6,8 +6,8 @@ use crate::cli::said::{misused, refused};
 use crate::interpolate::Adaptive;
 use crate::pipeline::Choice;
 use crate::{
-    Coordinates, Decomposition, Frame, GrayRange, HaarOptions, LengthUnit, Selection, SelectionRule,
-    Space, Tolerance, Units, Volume,
+    Coordinates, Decomposition, Frame, GrayRange, HaarOptions, LengthUnit, Selection,
+    SelectionRule, Space, Tolerance, Units, Volume,
 };
 
 use super::values::{count, not_nan, not_negative, share};

@@ -32,8 +32,8 @@ use merge::merge;
 pub(super) use partition::Partition;
 pub(crate) use piece::{BlockShape, Own, Side, block_shape};
 pub use plan::PlanError;
-pub(super) use plan::{Limits, Plan};
 pub(crate) use plan::at_work;
+pub(super) use plan::{Limits, Plan};
 
 /// What is asked about all blocks of a set.
 #[derive(Clone, Copy)]

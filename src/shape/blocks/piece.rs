@@ -50,7 +50,11 @@ pub(crate) use super::classify::Side;
 ///
 /// # Errors
 /// Numbers that are none, two points at one place, no memory.
-pub(crate) fn block_shape(points: Own<'_>, alpha: f64, maker: Maker) -> Result<BlockShape, ShapeError> {
+pub(crate) fn block_shape(
+    points: Own<'_>,
+    alpha: f64,
+    maker: Maker,
+) -> Result<BlockShape, ShapeError> {
     let Own { positions, weights, own } = points;
     if !own.contains(&true) {
         return Ok(BlockShape::default());
@@ -80,7 +84,8 @@ fn block(points: Own<'_>, alpha: f64) -> Result<Block, ShapeError> {
     let at = |i: usize| (positions[i], weights[i]);
     let owned = (0..own.len()).filter(|&i| own[i]).map(at);
     let around = Neighbourhood::of(owned, alpha);
-    let is_near = |&i: &u32| own[i as usize] || around.holds(positions[i as usize], weights[i as usize]);
+    let is_near =
+        |&i: &u32| own[i as usize] || around.holds(positions[i as usize], weights[i as usize]);
     let near: Vec<u32> = (0..positions.len() as u32).filter(is_near).collect();
     let positions: Vec<_> = near.iter().map(|&i| positions[i as usize]).collect();
     let weights: Vec<_> = near.iter().map(|&i| weights[i as usize]).collect();

@@ -158,7 +158,9 @@ impl Found {
         match format.parts {
             Some(parts) if !gzip => parts(path, options),
             // It says what is missing where the format was left out.
-            _ if !format.is_built_in() => Err(self.read(path, options).err().unwrap_or_else(|| whole_only(path, format.name))),
+            _ if !format.is_built_in() => {
+                Err(self.read(path, options).err().unwrap_or_else(|| whole_only(path, format.name)))
+            }
             _ => Err(whole_only(path, format.name)),
         }
     }

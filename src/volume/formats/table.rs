@@ -128,7 +128,10 @@ pub static FORMATS: [VolumeFormat; 13] = [
         writers: writers!["mha": write::metaimage],
         begins: is_metaimage,
         read: built!("formats", |path, options| metaimage::read(path, options.frame)),
-        parts: built!("formats", |path, options| Ok(metaimage::rows(path, options.frame)?.source())),
+        parts: built!(
+            "formats",
+            |path, options| Ok(metaimage::rows(path, options.frame)?.source())
+        ),
         data_files: built!("formats", metaimage::data_files),
         ..PLAIN
     },

@@ -44,9 +44,7 @@ pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError>
     let described = header.described(path, frame)?;
     match header.names(path, &mut lines)? {
         None => Rows::behind(path, described, lines.bytes(), Some(0)),
-        Some(names) => {
-            Rows::beside(path, described, &beside(path, &names), header.skip(path)?)
-        }
+        Some(names) => Rows::beside(path, described, &beside(path, &names), header.skip(path)?),
     }
 }
 

@@ -66,7 +66,10 @@ impl Rows {
             _ => Err(format_error(
                 header,
                 Reason::unsupported(
-                    format!("has its samples in {} files, which are not read in parts", files.len()),
+                    format!(
+                        "has its samples in {} files, which are not read in parts",
+                        files.len()
+                    ),
                     CONVERT,
                 ),
             )),

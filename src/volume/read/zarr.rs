@@ -65,11 +65,7 @@ struct Stored {
     frame: Frame,
 }
 
-fn open(
-    path: &Path,
-    level: Option<u32>,
-    frame_index: Option<u64>,
-) -> Result<Stored, VolumeError> {
+fn open(path: &Path, level: Option<u32>, frame_index: Option<u64>) -> Result<Stored, VolumeError> {
     let said = |reason: Reason| format_error(path, reason);
     let damaged = |error: &dyn std::fmt::Display| damaged(path, error);
     let store = Arc::new(FilesystemStore::new(path).map_err(|error| damaged(&error))?);

@@ -5,8 +5,8 @@ mod skull;
 
 use std::path::Path;
 
-pub use phantom::phantom;
 pub(super) use phantom::PhantomParts;
+pub use phantom::phantom;
 
 use super::{Frame, ReadOptions, Volume, VolumeError, read};
 use crate::advice::Advice;

@@ -68,8 +68,7 @@ fn fill(source: &Source, folder: &Path) -> Result<(), VolumeError> {
     array.store_metadata().map_err(|error| failed(&error))?;
     let [nx, ny, nz] = sizes;
     let starts = |n: usize| (0..n).step_by(CHUNK);
-    let rows: Vec<[usize; 2]> =
-        starts(nz).flat_map(|z| starts(ny).map(move |y| [y, z])).collect();
+    let rows: Vec<[usize; 2]> = starts(nz).flat_map(|z| starts(ny).map(move |y| [y, z])).collect();
     for (done, batch) in rows.chunks(rayon::current_num_threads()).enumerate() {
         batch.par_iter().try_for_each(|&[y, z]| {
             let size = [nx, CHUNK.min(ny - y), CHUNK.min(nz - z)];
