@@ -30,6 +30,7 @@
 pub use ndarray;
 
 pub mod advice;
+pub mod blocks;
 #[cfg_attr(not(feature = "cgal"), path = "cgal/absent.rs")]
 mod cgal;
 #[cfg(feature = "cli")]

@@ -1,5 +1,6 @@
 //! What help says of formats, from the library's tables.
 
+use crate::blocks::Pieces;
 use crate::{export, points, volume};
 
 /// What INPUT may be.
@@ -53,10 +54,12 @@ pub fn shape_output() -> String {
         dotted(formats.map(|format| format.extension))
     };
     format!(
-        "Files to write: {} (boundary), {} (all simplices), .png (a picture); or - (standard output, \
-         with --format). Files that are there are replaced",
+        "Files to write: {} (boundary), {} (all simplices), .png (a picture); {} (a file for each block: the \
+         shape is made in blocks that are never in memory together, of a volume that is read in parts); or \
+         - (standard output, with --format). Files that are there are replaced",
         of(true),
-        of(false)
+        of(false),
+        dotted(Pieces::ALL.map(|(_, extension)| extension))
     )
 }
 

@@ -13,7 +13,7 @@ use crate::pipeline::Weighed;
 use crate::progress::Stage;
 use crate::shape::number_or_null_or_name;
 use crate::volume::VolumeWriter;
-use crate::{AlphaShape, GrayRange, Units, Volume};
+use crate::{AlphaShape, Dims, GrayRange, Units, Volume};
 
 use super::args::{PipelineArgs, ShapeArgs};
 use super::formats::volume_output;
@@ -205,6 +205,7 @@ impl Interpolate {
     /// The grid asked for.
     fn grid(&self, original: Option<Original>, weighed: &Weighed) -> anyhow::Result<Grid> {
         let asked = self.pipeline.input.raw.grid();
+        asked.map(Dims::bounded).transpose()?;
         match (original, weighed.origin.grid, asked) {
             (Some(Original { volume, units, .. }), _, None) => Ok(Grid::of(volume, units)),
             (Some(Original { volume, units, .. }), _, Some(dims)) => {

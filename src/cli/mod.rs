@@ -1,11 +1,15 @@
 //! Floor 7: the command. It parses, calls the library, prints, and chooses an exit code.
 
 mod args;
+mod block_facts;
+mod blocks;
 mod check;
 mod compare;
 mod complaint;
 mod completions;
 mod config;
+#[cfg(feature = "zarr")]
+mod convert;
 mod curve;
 mod filtration;
 mod folder;
@@ -94,9 +98,12 @@ enum Command {
     #[cfg(feature = "paper")]
     Reproduce(reproduce::Reproduce),
     Shape(shape::Shape),
+    Blocks(blocks::Blocks),
     Points(points::Points),
     Haar(haar::Haar),
     Interpolate(interpolate::Interpolate),
+    #[cfg(feature = "zarr")]
+    Convert(convert::Convert),
     Info(info::Info),
     Check(check::Check),
     Compare(compare::Compare),
@@ -233,9 +240,12 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
         #[cfg(feature = "paper")]
         Command::Reproduce(reproduce) => reproduce.run(global)?,
         Command::Shape(shape) => shape.run(global)?,
+        Command::Blocks(blocks) => blocks.run(global)?,
         Command::Points(points) => points.run(global)?,
         Command::Haar(haar) => haar.run(global)?,
         Command::Interpolate(interpolate) => interpolate.run(global)?,
+        #[cfg(feature = "zarr")]
+        Command::Convert(convert) => convert.run(global)?,
         Command::Info(info) => info.run(global)?,
         Command::Completions(completions) => completions.run(global)?,
         Command::Man(man) => man.run(global)?,

@@ -5,6 +5,7 @@ use std::fmt::{self, Display};
 
 use serde::Serialize;
 
+use crate::blocks::{Merged, Plan};
 use crate::interpolate::{Adaptive, Fit, Refit};
 use crate::pipeline::{Model, Parameter, Weighed};
 use crate::points::WeightSummary;
@@ -252,6 +253,57 @@ impl Report {
         });
     }
 
+    /// What is known of a shape that was made in blocks.
+    pub fn of_blocks(plan: &Plan, merged: &Merged) -> Self {
+        let (job, survey) = (&plan.job, &plan.survey);
+        let GrayRange { low, high } = survey.range;
+        let WeightSummary { min, mean, max } = merged.weights;
+        let parameter = job.parameter();
+        Self {
+            schema_version: SCHEMA_VERSION,
+            input: InputReport {
+                name: job.input.clone(),
+                dims: Some(job.dims.xyz()),
+                gray_range: Some([low, high]),
+            },
+            coordinates: job.units.coordinates_of(&job.frame),
+            haar: Some(HaarReport::new(&survey.truncation, &survey.range)),
+            points: PointsReport {
+                selected: merged.points as usize,
+                duplicates: Some(0),
+                hidden: merged.hidden.map(|hidden| hidden as usize),
+                in_shape: Some(merged.vertices.in_shape()),
+                ended_early: None,
+            },
+            alpha: Some(parameter),
+            weights: WeightsReport {
+                kind: job.weighting.to_string(),
+                min,
+                mean,
+                max,
+                unit: parameter.unit,
+            },
+            fit: None,
+            shape: Some(ShapeReport {
+                cells: Cells { interior: merged.cells },
+                facets: merged.facets,
+                edges: merged.edges,
+                vertices: merged.vertices,
+                betti: Some(merged.betti),
+                volume: merged.measures.volume,
+                area: merged.measures.area,
+                singular_area: merged.measures.singular_area,
+                components: largest_of(merged.components.clone()),
+                voids: None,
+            }),
+            engine: Some(job.engine),
+            solid: None,
+            files: Vec::new(),
+            seconds: BTreeMap::new(),
+            peak_memory_bytes: None,
+        }
+    }
+
     /// Adds where the boundary was cut apart.
     pub fn add_solid(&mut self, cuts: Cuts) {
         self.solid = Some(cuts);
@@ -269,7 +321,10 @@ impl Report {
 const TOLD: usize = 20;
 
 fn largest_components(shape: &AlphaShape) -> Vec<Component> {
-    let mut components = shape.components();
+    largest_of(shape.components())
+}
+
+fn largest_of(mut components: Vec<Component>) -> Vec<Component> {
     components.sort_by(|a, b| b.volume.total_cmp(&a.volume).then(b.vertices.cmp(&a.vertices)));
     components.truncate(TOLD);
     components

@@ -3,6 +3,7 @@
 use std::error::Error;
 
 use crate::advice::{Advice, Setting};
+use crate::blocks::BlocksError;
 use crate::export::TargetError;
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
@@ -84,6 +85,7 @@ macro_rules! advising {
     };
 }
 advising![
+    BlocksError,
     HaarError,
     InterpolateError,
     NoMemory,

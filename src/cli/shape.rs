@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::blocks::Pieces;
 use crate::export::{Content, ExportOptions, Exporter, FORMATS, Format, Target, write_all};
 use crate::progress::Stage;
 use crate::shape::{ShapeOptions, Surface};
@@ -12,6 +13,7 @@ use crate::shown::shown;
 use crate::volume::UnknownFormat;
 
 use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
+use super::blocks::{self, Outputs};
 use super::formats::shape_output;
 use super::output::tell;
 use super::picture::PictureArgs;
@@ -102,6 +104,8 @@ impl Shape {
             unused("--groups", self.groups, &why)?;
         }
         if !written(|format| format.boundary) {
+            let by_itself = "blocks tell of flat points by themselves";
+            unused("--dimension", self.dimension.is_some(), by_itself)?;
             unused("--solid", self.solid, "no output holds a boundary alone")?;
         }
         Ok(())
@@ -117,12 +121,18 @@ impl Shape {
             groups: self.groups,
             input: Some(self.pipeline.input.input.clone()),
         };
+        let mut pieces = Vec::new();
         for path in &self.output {
             let name = self.pipeline.input.output(path)?;
+            if let Some(of_path) = Pieces::of(&name) {
+                pieces.push((of_path, path.clone()));
+                continue;
+            }
             let exporter: Box<dyn Exporter> = if PictureArgs::wanted(&name) {
                 self.picture.exporter()
             } else {
-                let known = FORMATS.iter().map(|format| format.extension);
+                let pieces = Pieces::ALL.map(|(_, extension)| extension);
+                let known = FORMATS.iter().map(|format| format.extension).chain(pieces);
                 let unknown =
                     |_| UnknownFormat::new(path, "a shape", known.chain(PictureArgs::EXTENSIONS));
                 Format::of(&name).map_err(unknown)?.exporter(&export)
@@ -131,6 +141,16 @@ impl Shape {
         }
 
         let mut progress = Progress::new(global);
+        let files = self.output.iter().map(|path| path.display().to_string()).collect();
+        if !pieces.is_empty() {
+            unused("--solid", self.solid, "it takes the whole boundary, and there are blocks")?;
+            let given = &self.pipeline.input.given;
+            given.refuse(&["refit", "periodic", "dimension"], "there are blocks")?;
+            let outputs = Outputs { pieces, whole: targets };
+            let mut report = blocks::shape(&self.pipeline, &self.shape, outputs, &mut progress)?;
+            report.finish(progress.finish(), files);
+            return tell(global, &report);
+        }
         let refuse_flat = self.dimension.is_some();
         let periodic = self.periodic.periodic;
         let options = ShapeOptions { refuse_flat, periodic, ..self.shape.options() };
@@ -155,7 +175,6 @@ impl Shape {
                 (target, Box::new(content) as Content<'_>)
             }))
         })?;
-        let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         if !global.quiet {
             remarks.iter().for_each(|remark| eprintln!("walpha: {remark}"));

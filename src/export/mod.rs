@@ -58,4 +58,6 @@ pub use target::{Content, Filled, Target, TargetError, put_all, write_all};
 pub(crate) use unfinished::abandon;
 pub use unfinished::{NewFolder, sweep};
 pub use vtp::Vtp;
+pub(crate) use vtp::{Parts, write_surface};
 pub use vtu::Vtu;
+pub(crate) use vtu::{Corners, Made, write_grid};

@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::vtu::{Appended, bytes};
+use super::vtu::{Appended, Corners, Made, bytes};
 use super::{ExportOptions, Exporter};
 use crate::shape::{AlphaShape, Class, Sheets, Surface};
 use crate::volume::stated;
@@ -16,57 +16,73 @@ pub struct Vtp(pub ExportOptions);
 
 impl Exporter for Vtp {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let surface = self.0.surface(shape);
-        let points = shape.points();
-        let vertices: Vec<u32> = surface.indices().collect();
-        let facets = surface.regular.len() + surface.singular.len();
-        let mut file = Appended::default();
-        write!(
-            file.xml,
-            "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
-             <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-             <PolyData>\n",
-            stated::alpha(shape.options().alpha),
-        )?;
-        file.field_data(shape, &self.0, true)?;
-        write!(
-            file.xml,
-            "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" \
-             NumberOfStrips=\"0\" NumberOfPolys=\"{facets}\">\n<PointData>\n",
-            vertices.len(),
-            surface.points.len(),
-            surface.edges.len(),
-        )?;
-        let of = |column: &[f64]| bytes(surface.numbers(column).map(f64::to_le_bytes));
-        file.array("Float64", "weight", 1, of(&points.weights))?;
-        if let Some(values) = &points.values {
-            file.array("Float64", "value", 1, of(values))?;
-        }
-        file.array("UInt32", "input_index", 1, bytes(vertices.iter().map(|v| v.to_le_bytes())))?;
-        write!(file.xml, "</PointData>\n<CellData>\n")?;
-        cell_data(&mut file, shape, &surface, self.0.solid)?;
-        write!(file.xml, "</CellData>\n<Points>\n")?;
-        let positions = surface.positions(&points.positions).flatten();
-        file.array("Float64", "Points", 3, bytes(positions.map(f64::to_le_bytes)))?;
-        writeln!(file.xml, "</Points>")?;
-        cells(&mut file, "Verts", 1, &surface.points)?;
-        cells(&mut file, "Lines", 2, surface.edges.as_flattened())?;
-        let facets: Vec<u32> = surface.facets().flatten().copied().collect();
-        cells(&mut file, "Polys", 3, &facets)?;
-        write!(file.xml, "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_")?;
-        out.write_all(&file.xml)?;
-        out.write_all(&file.data)?;
-        write!(out, "\n</AppendedData>\n</VTKFile>\n")
+        let parts = Parts {
+            components: &shape.component_numbers(),
+            sheets: shape.sheets().filter(|_| !self.0.solid),
+        };
+        let made = Made::of(shape, &self.0);
+        write_surface(&self.0.surface(shape), &Corners::of(shape), &parts, &made, out)
     }
 }
 
-/// Class, component and sheets of each cell.
-fn cell_data(
-    file: &mut Appended,
-    shape: &AlphaShape,
+/// What a surface is part of.
+pub(crate) struct Parts<'a> {
+    /// The component of each point, by its number.
+    pub components: &'a [u32],
+    /// The sheets of its facets and edges.
+    pub sheets: Option<&'a Sheets>,
+}
+
+/// Writes a surface.
+pub(crate) fn write_surface(
     surface: &Surface,
-    solid: bool,
+    corners: &Corners<'_>,
+    parts: &Parts<'_>,
+    made: &Made<'_>,
+    out: &mut dyn Write,
 ) -> io::Result<()> {
+    let facets = surface.regular.len() + surface.singular.len();
+    let mut file = Appended::default();
+    write!(
+        file.xml,
+        "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
+         <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
+         <PolyData>\n",
+        stated::alpha(made.alpha),
+    )?;
+    file.field_data(made, true)?;
+    write!(
+        file.xml,
+        "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" \
+         NumberOfStrips=\"0\" NumberOfPolys=\"{facets}\">\n<PointData>\n",
+        surface.vertex_count(),
+        surface.points.len(),
+        surface.edges.len(),
+    )?;
+    let of = |column: &[f64]| bytes(surface.numbers(column).map(f64::to_le_bytes));
+    file.array("Float64", "weight", 1, of(corners.weights))?;
+    if let Some(values) = corners.values {
+        file.array("Float64", "value", 1, of(values))?;
+    }
+    corners.names(&mut file, surface.indices())?;
+    write!(file.xml, "</PointData>\n<CellData>\n")?;
+    cell_data(&mut file, surface, parts)?;
+    write!(file.xml, "</CellData>\n<Points>\n")?;
+    let positions = surface.positions(corners.positions).flatten();
+    file.array("Float64", "Points", 3, bytes(positions.map(f64::to_le_bytes)))?;
+    writeln!(file.xml, "</Points>")?;
+    cells(&mut file, "Verts", 1, &surface.points)?;
+    cells(&mut file, "Lines", 2, surface.edges.as_flattened())?;
+    let facets: Vec<u32> = surface.facets().flatten().copied().collect();
+    cells(&mut file, "Polys", 3, &facets)?;
+    write!(file.xml, "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_")?;
+    out.write_all(&file.xml)?;
+    out.write_all(&file.data)?;
+    write!(out, "\n</AppendedData>\n</VTKFile>\n")
+}
+
+/// Class, component and sheets of each cell.
+fn cell_data(file: &mut Appended, surface: &Surface, parts: &Parts<'_>) -> io::Result<()> {
     let vertices: Vec<u32> = surface.indices().collect();
     let facets = surface.regular.len() + surface.singular.len();
     // VTK counts cells in this order: vertices, lines, polygons.
@@ -78,10 +94,9 @@ fn cell_data(
     let firsts = (surface.points.iter().copied())
         .chain(surface.edges.iter().map(|edge| edge[0]))
         .chain(surface.facets().map(|facet| facet[0]));
-    let components = shape.component_numbers();
-    let component = |v: u32| components[vertices[v as usize] as usize].to_le_bytes();
+    let component = |v: u32| parts.components[vertices[v as usize] as usize].to_le_bytes();
     file.array("UInt32", "component", 1, bytes(firsts.map(component)))?;
-    if let Some(sheets) = shape.sheets().filter(|_| !solid) {
+    if let Some(sheets) = parts.sheets {
         let none = surface.points.iter().map(|_| [Sheets::NONE; 2]);
         let edges = sheets.edges.iter().map(|&sheet| [sheet as i32, Sheets::NONE]);
         let sides: Vec<_> = none.chain(edges).chain(sheets.sides()).collect();

@@ -1,8 +1,8 @@
 use std::io::{self, Write};
 
 use super::{ExportOptions, Exporter};
-use crate::shape::{AlphaShape, Simplices};
-use crate::volume::stated;
+use crate::shape::{Alpha, AlphaShape, Complex, Simplices};
+use crate::volume::{Coordinates, stated};
 
 /// VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as
 /// cell data (1 interior, 2 regular, 3 singular); `weight`, `value` and `input_index` as point
@@ -16,62 +16,118 @@ pub struct Vtu(pub ExportOptions);
 
 impl Exporter for Vtu {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let complex = shape.complex();
-        let points = shape.points();
-        let vertices: Vec<u32> = complex.vertices.rows().iter().map(|&[v]| v).collect();
-        let number = |v: u32| vertices.binary_search(&v).expect("faces are closed") as i64;
-
-        let mut grid = Grid::default();
-        grid.push(&complex.vertices, VTK_VERTEX, number);
-        grid.push(&complex.edges, VTK_LINE, number);
-        grid.push(&complex.facets, VTK_TRIANGLE, number);
-        grid.push(&complex.cells, VTK_TETRA, number);
-
-        let of = |per_point: &[f64]| {
-            bytes(vertices.iter().map(|&v| per_point[v as usize].to_le_bytes()))
-        };
-        let mut file = Appended::default();
-        write!(
-            file.xml,
-            "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
-             <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-             <UnstructuredGrid>\n",
-            shape.options().alpha,
-        )?;
-        file.field_data(shape, &self.0, false)?;
-        write!(
-            file.xml,
-            "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
-            vertices.len(),
-            grid.types.len(),
-        )?;
-        file.array("Float64", "weight", 1, of(&points.weights))?;
-        if let Some(values) = &points.values {
-            file.array("Float64", "value", 1, of(values))?;
-        }
-        file.array("UInt32", "input_index", 1, bytes(vertices.iter().map(|v| v.to_le_bytes())))?;
-        write!(file.xml, "</PointData>\n<CellData>\n")?;
-        file.array("UInt8", "class", 1, grid.classes)?;
-        write!(file.xml, "</CellData>\n<Points>\n")?;
-        let positions = vertices.iter().flat_map(|&v| points.positions[v as usize]);
-        file.array("Float64", "Points", 3, bytes(positions.map(f64::to_le_bytes)))?;
-        write!(file.xml, "</Points>\n<Cells>\n")?;
-        file.array(
-            "Int64",
-            "connectivity",
-            1,
-            bytes(grid.connectivity.iter().map(|i| i.to_le_bytes())),
-        )?;
-        file.array("Int64", "offsets", 1, bytes(grid.offsets.iter().map(|i| i.to_le_bytes())))?;
-        file.array("UInt8", "types", 1, grid.types)?;
-        write!(
-            file.xml,
-            "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
-        )?;
-        out.write_all(&file.xml)?;
-        out.write_all(&file.data)?;
-        write!(out, "\n</AppendedData>\n</VTKFile>\n")
+        let vertices: Vec<u32> = shape.complex().vertices.rows().iter().map(|&[v]| v).collect();
+        let made = Made::of(shape, &self.0);
+        write_grid(shape.complex(), &vertices, &Corners::of(shape), &made, out)
     }
+}
+
+/// How a shape was made, as far as files tell.
+pub(crate) struct Made<'a> {
+    pub alpha: Alpha,
+    pub coordinates: Coordinates,
+    pub input: Option<&'a str>,
+}
+
+impl<'a> Made<'a> {
+    /// How a shape was made of an input.
+    pub fn of(shape: &AlphaShape, options: &'a ExportOptions) -> Self {
+        let (alpha, coordinates) = (shape.options().alpha, shape.coordinates());
+        Self { alpha, coordinates, input: options.input.as_deref() }
+    }
+}
+
+/// What is known of the points that simplices have as corners, by their numbers.
+pub(crate) struct Corners<'a> {
+    pub positions: &'a [[f64; 3]],
+    pub weights: &'a [f64],
+    pub values: Option<&'a [f64]>,
+    /// Their indices in a volume, where they are numbered within a block; else their numbers are indices
+    /// of the input.
+    pub voxels: Option<&'a [u64]>,
+}
+
+impl<'a> Corners<'a> {
+    /// The points of a shape.
+    pub fn of(shape: &'a AlphaShape) -> Self {
+        let points = shape.points();
+        Self {
+            positions: &points.positions,
+            weights: &points.weights,
+            values: points.values.as_deref(),
+            voxels: None,
+        }
+    }
+
+    /// What names the points.
+    pub(super) fn names(
+        &self,
+        file: &mut Appended,
+        vertices: impl Iterator<Item = u32>,
+    ) -> io::Result<()> {
+        let Some(voxels) = self.voxels else {
+            let indices = bytes(vertices.map(u32::to_le_bytes));
+            return file.array("UInt32", "input_index", 1, indices);
+        };
+        let voxels = bytes(vertices.map(|v| voxels[v as usize].to_le_bytes()));
+        file.array("Int64", "voxel", 1, voxels)
+    }
+}
+
+/// Writes simplices of all dimensions, whose corners are these vertices, ascending.
+pub(crate) fn write_grid(
+    complex: &Complex,
+    vertices: &[u32],
+    corners: &Corners<'_>,
+    made: &Made<'_>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let number = |v: u32| vertices.binary_search(&v).expect("all corners are there") as i64;
+    let mut grid = Grid::default();
+    grid.push(&complex.vertices, VTK_VERTEX, number);
+    grid.push(&complex.edges, VTK_LINE, number);
+    grid.push(&complex.facets, VTK_TRIANGLE, number);
+    grid.push(&complex.cells, VTK_TETRA, number);
+
+    let of =
+        |per_point: &[f64]| bytes(vertices.iter().map(|&v| per_point[v as usize].to_le_bytes()));
+    let mut file = Appended::default();
+    write!(
+        file.xml,
+        "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
+         <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
+         <UnstructuredGrid>\n",
+        made.alpha,
+    )?;
+    file.field_data(made, false)?;
+    write!(
+        file.xml,
+        "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
+        vertices.len(),
+        grid.types.len(),
+    )?;
+    file.array("Float64", "weight", 1, of(corners.weights))?;
+    if let Some(values) = corners.values {
+        file.array("Float64", "value", 1, of(values))?;
+    }
+    corners.names(&mut file, vertices.iter().copied())?;
+    write!(file.xml, "</PointData>\n<CellData>\n")?;
+    file.array("UInt8", "class", 1, grid.classes)?;
+    write!(file.xml, "</CellData>\n<Points>\n")?;
+    let positions = vertices.iter().flat_map(|&v| corners.positions[v as usize]);
+    file.array("Float64", "Points", 3, bytes(positions.map(f64::to_le_bytes)))?;
+    write!(file.xml, "</Points>\n<Cells>\n")?;
+    let connectivity = bytes(grid.connectivity.iter().map(|i| i.to_le_bytes()));
+    file.array("Int64", "connectivity", 1, connectivity)?;
+    file.array("Int64", "offsets", 1, bytes(grid.offsets.iter().map(|i| i.to_le_bytes())))?;
+    file.array("UInt8", "types", 1, grid.types)?;
+    write!(
+        file.xml,
+        "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
+    )?;
+    out.write_all(&file.xml)?;
+    out.write_all(&file.data)?;
+    write!(out, "\n</AppendedData>\n</VTKFile>\n")
 }
 
 const VTK_VERTEX: u8 = 1;
@@ -115,13 +171,8 @@ const LEGEND: &str = "0 exterior, 1 interior, 2 regular, 3 singular";
 
 impl Appended {
     /// How the shape was made, for whoever finds the file later; texts as such, or as numbers.
-    pub fn field_data(
-        &mut self,
-        shape: &AlphaShape,
-        options: &ExportOptions,
-        texts_as_such: bool,
-    ) -> io::Result<()> {
-        let alpha = shape.options().alpha;
+    pub fn field_data(&mut self, made: &Made<'_>, texts_as_such: bool) -> io::Result<()> {
+        let alpha = made.alpha;
         writeln!(self.xml, "<FieldData>")?;
         for (name, number) in [("alpha", Some(alpha.squared())), ("alpha_radius", alpha.radius())] {
             if let Some(number) = number {
@@ -133,10 +184,10 @@ impl Appended {
         let texts = [
             ("made_by", Some(made_by.as_str())),
             ("class_legend", Some(LEGEND)),
-            ("input", options.input.as_deref()),
+            ("input", made.input),
         ];
         let texts = texts.into_iter().filter_map(|(name, text)| Some((name, text?)));
-        for (name, text) in texts.chain(stated::pairs(shape.coordinates())) {
+        for (name, text) in texts.chain(stated::pairs(made.coordinates)) {
             // A zero ends it, so there is none in it.
             let text = text.replace('\0', " ");
             if texts_as_such {

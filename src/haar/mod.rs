@@ -18,6 +18,7 @@
 //! # Ok::<(), walpha::haar::HaarError>(())
 //! ```
 
+mod bricks;
 mod coefficients;
 mod nonstandard;
 mod standard;
@@ -25,15 +26,18 @@ mod support;
 mod truncate;
 mod unnormalised;
 
+pub(crate) use bricks::Bricks;
 pub use coefficients::{Coefficients, Decomposition, forward};
 pub use truncate::{HaarError, Tolerance, Truncation};
 pub use unnormalised::Unnormalised;
+
+use serde::{Deserialize, Serialize};
 
 use crate::volume::Volume;
 use crate::{memory, progress};
 
 /// How a volume is transformed and truncated.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HaarOptions {
     /// Which of the two three-dimensional decompositions.
     pub decomposition: Decomposition,

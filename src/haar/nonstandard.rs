@@ -1,7 +1,7 @@
 use ndarray::Array3;
 use rayon::prelude::*;
 
-use super::support::{Step, forward_row, forward_rows, inverse_row, inverse_rows, square, strides};
+use super::support::{Axis, forward_row, forward_rows, inverse_row, inverse_rows, strides};
 
 /// Pairs of rows handed to a thread at once, at least.
 const PAIRS: usize = 8;
@@ -10,10 +10,8 @@ const PAIRS: usize = 8;
 pub(super) fn forward(values: &mut Array3<f64>) {
     let (z, y, x) = values.dim();
     let flat = values.as_slice_mut().expect("standard layout");
-    for stride in strides(x.max(y).max(z)) {
-        let level = Level::new([x, y, z], stride);
-        level.each_bundle(flat, |bundle| level.forward(bundle));
-    }
+    let sums = Sums::of_samples([x, y, z]);
+    strides(x.max(y).max(z)).for_each(|stride| sums.forward(flat, stride));
     flat[0] /= whole_norm([x, y, z]);
 }
 
@@ -22,19 +20,55 @@ pub(super) fn inverse(values: &mut Array3<f64>) {
     let (z, y, x) = values.dim();
     let flat = values.as_slice_mut().expect("standard layout");
     flat[0] *= whole_norm([x, y, z]);
-    for stride in strides(x.max(y).max(z)).rev() {
-        let level = Level::new([x, y, z], stride);
-        level.each_bundle(flat, |bundle| level.inverse(bundle));
-    }
+    let sums = Sums::of_samples([x, y, z]);
+    strides(x.max(y).max(z)).rev().for_each(|stride| sums.inverse(flat, stride));
 }
 
 /// The norm of the function 1, by which a sum of all is more than its coefficient.
-fn whole_norm(dims: [usize; 3]) -> f64 {
+pub(super) fn whole_norm(dims: [usize; 3]) -> f64 {
     dims.map(|n| n as f64).iter().product::<f64>().sqrt()
+}
+
+/// A grid of sums over cubes of samples; of samples, where the cubes are of one.
+pub(super) struct Sums {
+    axes: [Axis; 3],
+    dims: [usize; 3],
+}
+
+impl Sums {
+    /// So many samples.
+    pub fn of_samples(dims: [usize; 3]) -> Self {
+        Self { axes: dims.map(Axis::of_samples), dims }
+    }
+
+    /// The sums over cubes of `unit` samples a side, of so many samples.
+    pub fn of_cubes(samples: [usize; 3], unit: usize) -> Self {
+        let dims = samples.map(|n| n.div_ceil(unit));
+        Self { axes: samples.map(|n| Axis { n, unit }), dims }
+    }
+
+    /// One level, of a stride counted in sums of the grid.
+    pub fn forward(&self, flat: &mut [f64], stride: usize) {
+        let level = self.level(stride);
+        level.each_bundle(flat, |bundle| level.forward(bundle));
+    }
+
+    /// The same back.
+    pub fn inverse(&self, flat: &mut [f64], stride: usize) {
+        let level = self.level(stride);
+        level.each_bundle(flat, |bundle| level.inverse(bundle));
+    }
+
+    fn level(&self, stride: usize) -> Level {
+        let Self { axes, dims } = *self;
+        let squares = (0..dims[0]).step_by(stride).map(|i| axes[0].square(stride, i)).collect();
+        Level { axes, dims, stride, squares }
+    }
 }
 
 /// One level of the transform: sums at multiples of the stride in each axis.
 struct Level {
+    axes: [Axis; 3],
     dims: [usize; 3],
     stride: usize,
     /// The factor along x of the square that belongs to the raw value at each multiple of the stride.
@@ -49,11 +83,6 @@ struct Bundle<'a> {
 }
 
 impl Level {
-    fn new(dims: [usize; 3], stride: usize) -> Self {
-        let squares = (0..dims[0]).step_by(stride).map(|i| square(dims[0], stride, i)).collect();
-        Self { dims, stride, squares }
-    }
-
     /// Calls `work` on each bundle, in parallel.
     fn each_bundle(&self, flat: &mut [f64], work: impl Fn(Bundle<'_>) + Sync) {
         let ([x, y, _], s) = (self.dims, self.stride);
@@ -75,16 +104,16 @@ impl Level {
 
     fn forward(&self, Bundle { y, z, mut rows }: Bundle<'_>) {
         let s = self.stride;
-        rows.iter_mut().flatten().flatten().for_each(|row| forward_row(row, s));
+        rows.iter_mut().flatten().flatten().for_each(|row| forward_row(row, self.axes[0], s));
         let [near, far] = &mut rows;
         for slice in [&mut *near, &mut *far] {
             if let [Some(first), Some(second)] = slice {
-                forward_rows(first, second, s, Step::of(self.dims[1], s, y + s));
+                forward_rows(first, second, s, self.axes[1].step(s, y + s));
             }
         }
         for (first, second) in near.iter_mut().zip(far) {
             if let (Some(first), Some(second)) = (first, second) {
-                forward_rows(first, second, s, Step::of(self.dims[2], s, z + s));
+                forward_rows(first, second, s, self.axes[2].step(s, z + s));
             }
         }
         self.scale(y, z, &mut rows, |square| 1.0 / square.sqrt());
@@ -96,15 +125,15 @@ impl Level {
         let [near, far] = &mut rows;
         for (first, second) in near.iter_mut().zip(&mut *far) {
             if let (Some(first), Some(second)) = (first, second) {
-                inverse_rows(first, second, s, Step::of(self.dims[2], s, z + s));
+                inverse_rows(first, second, s, self.axes[2].step(s, z + s));
             }
         }
         for slice in [near, far] {
             if let [Some(first), Some(second)] = slice {
-                inverse_rows(first, second, s, Step::of(self.dims[1], s, y + s));
+                inverse_rows(first, second, s, self.axes[1].step(s, y + s));
             }
         }
-        rows.iter_mut().flatten().flatten().for_each(|row| inverse_row(row, s));
+        rows.iter_mut().flatten().flatten().for_each(|row| inverse_row(row, self.axes[0], s));
     }
 
     /// Multiplies each detail by a function of its square. Sums stay for the next level.
@@ -115,16 +144,17 @@ impl Level {
         rows: &mut [[Option<&mut [f64]>; 2]; 2],
         of: impl Fn(f64) -> f64,
     ) {
-        let ([x, ny, nz], s) = (self.dims, self.stride);
+        let ([x, ..], s) = (self.dims, self.stride);
+        let [along_x, along_y, along_z] = self.axes;
         for (dz, slice) in rows.iter_mut().enumerate() {
             for (dy, row) in slice.iter_mut().enumerate() {
                 let Some(row) = row else { continue };
-                let square_yz = square(ny, s, y + dy * s) * square(nz, s, z + dz * s);
+                let square_yz = along_y.square(s, y + dy * s) * along_z.square(s, z + dz * s);
                 let factor = |k: usize| of(square_yz * self.squares[k]);
                 // All pairs along x but the last have the same two squares.
                 let (sum, detail) = (factor(0), factor(self.squares.len().min(2) - 1));
                 let sum = if dy == 0 && dz == 0 { 1.0 } else { sum };
-                let full = x / (2 * s) * (2 * s);
+                let full = along_x.n / (2 * s * along_x.unit) * (2 * s);
                 if s == 1 {
                     let (pairs, _) = row[..full].as_chunks_mut::<2>();
                     for [p, q] in pairs {

@@ -1,13 +1,16 @@
 use ndarray::Array3;
 use rayon::prelude::*;
 
-use super::support::{Step, forward_row, forward_rows, inverse_row, inverse_rows, square, strides};
+use super::support::{
+    Axis, Step, forward_row, forward_rows, inverse_row, inverse_rows, square, strides,
+};
 
 /// Each axis in full, x first, from samples to coefficients.
 pub(super) fn forward(values: &mut Array3<f64>) {
     let (z, y, x) = values.dim();
     let flat = values.as_slice_mut().expect("standard layout");
-    flat.par_chunks_mut(x).for_each(|row| strides(x).for_each(|s| forward_row(row, s)));
+    flat.par_chunks_mut(x)
+        .for_each(|row| strides(x).for_each(|s| forward_row(row, Axis::of_samples(x), s)));
     flat.par_chunks_mut(x * y).for_each(|slice| along(slice, y, false));
     along(flat, z, false);
     scale(flat, [x, y, z], |square| 1.0 / square.sqrt());
@@ -20,7 +23,8 @@ pub(super) fn inverse(values: &mut Array3<f64>) {
     scale(flat, [x, y, z], f64::sqrt);
     along(flat, z, true);
     flat.par_chunks_mut(x * y).for_each(|slice| along(slice, y, true));
-    flat.par_chunks_mut(x).for_each(|row| strides(x).rev().for_each(|s| inverse_row(row, s)));
+    flat.par_chunks_mut(x)
+        .for_each(|row| strides(x).rev().for_each(|s| inverse_row(row, Axis::of_samples(x), s)));
 }
 
 /// All levels along the slowest of the axes of `flat`, which has n lines.

@@ -57,28 +57,51 @@ pub(super) fn strides(n: usize) -> impl DoubleEndedIterator<Item = usize> {
     (0..n.next_power_of_two().trailing_zeros()).map(|level| 1 << level)
 }
 
+/// A row of sums: each of `unit` of `n` samples, but for the last, which has those that are left.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axis {
+    pub n: usize,
+    pub unit: usize,
+}
+
+impl Axis {
+    /// A row of samples.
+    pub fn of_samples(n: usize) -> Self {
+        Self { n, unit: 1 }
+    }
+
+    /// The step at `stride` whose second sum is at `second`, both counted in sums of the row.
+    pub fn step(self, stride: usize, second: usize) -> Step {
+        Step::of(self.n, stride * self.unit, second * self.unit)
+    }
+
+    /// [`square`] at `i`, counted in sums of the row.
+    pub fn square(self, stride: usize, i: usize) -> f64 {
+        square(self.n, stride * self.unit, i * self.unit)
+    }
+}
+
 /// Steps a row forward.
-pub(super) fn forward_row(row: &mut [f64], stride: usize) {
-    each_step(row, stride, join);
+pub(super) fn forward_row(row: &mut [f64], axis: Axis, stride: usize) {
+    each_step(row, axis, stride, join);
 }
 
 /// Steps a row back.
-pub(super) fn inverse_row(row: &mut [f64], stride: usize) {
-    each_step(row, stride, part);
+pub(super) fn inverse_row(row: &mut [f64], axis: Axis, stride: usize) {
+    each_step(row, axis, stride, part);
 }
 
 #[inline(always)]
-fn each_step(row: &mut [f64], stride: usize, work: impl Fn(&mut f64, &mut f64, Step)) {
-    let n = row.len();
-    if stride == 1 {
+fn each_step(row: &mut [f64], axis: Axis, stride: usize, work: impl Fn(&mut f64, &mut f64, Step)) {
+    if stride * axis.unit == 1 {
         let (pairs, _) = row.as_chunks_mut::<2>();
         for [p, q] in pairs {
             work(p, q, Step::EVEN);
         }
     } else {
-        for i in (0..n.saturating_sub(stride)).step_by(2 * stride) {
+        for i in (0..row.len().saturating_sub(stride)).step_by(2 * stride) {
             let (mut p, mut q) = (row[i], row[i + stride]);
-            work(&mut p, &mut q, Step::of(n, stride, i + stride));
+            work(&mut p, &mut q, axis.step(stride, i + stride));
             (row[i], row[i + stride]) = (p, q);
         }
     }

@@ -4,14 +4,13 @@ use serde::{Deserialize, Serialize};
 
 use super::Coefficients;
 use crate::memory::NoMemory;
-use crate::select::{Budget, Cut};
+use crate::select::{Budget, Cut, Dropped};
 use crate::volume::VolumeError;
 
-/// Coefficients summed at a time. Fixed, so that sums are the same on any number of threads.
+/// Coefficients cut by a thread at a time.
 const CHUNK: usize = 1 << 16;
 
-/// Sums are made of chunks of 2¹⁷ squares, fewer than 2¹⁵ of them, each square off by less than 2⁻⁴⁹
-/// of itself: in all by less than 2⁻³⁵. ε² is rounded, too.
+/// Each square is off by less than 2⁻⁴⁹ of itself, and so is their sum, which is exact. ε² is rounded, too.
 const SLACK: f64 = 1.0 + 1.0 / (1u64 << 34) as f64;
 
 /// How much of a volume may be lost, one of three ways to say it.
@@ -80,7 +79,7 @@ impl HaarError {
 }
 
 impl Tolerance {
-    pub(super) fn check(self) -> Result<(), HaarError> {
+    pub(crate) fn check(self) -> Result<(), HaarError> {
         let (given, what) = match self {
             Self::Rms(given) => (given, "the RMS error in gray levels"),
             Self::Epsilon(given) => (given, "ε, the L² norm of the error,"),
@@ -92,7 +91,7 @@ impl Tolerance {
         Ok(())
     }
 
-    fn budget(self, total: u64) -> Budget {
+    pub(crate) fn budget(self, total: u64) -> Budget {
         match self {
             Self::Rms(rms) => Budget::Energy(rms * rms * total as f64 * SLACK),
             Self::Epsilon(epsilon) => Budget::Energy(epsilon * epsilon * SLACK),
@@ -106,7 +105,7 @@ impl Coefficients {
     /// of their index, the fewest stay for which the squares of the dropped ones sum to at most
     /// ε²; to 2⁻³⁴ of ε², so that rounding does not decide about sums of just ε².
     ///
-    /// O(n), sums in f64, the same on any number of threads. Zeros are always dropped when an error
+    /// O(n), the same on any number of threads. Zeros are always dropped when an error
     /// is asked for, so `Rms(0.0)` keeps the coefficients that are not 0.
     ///
     /// # Errors
@@ -116,29 +115,26 @@ impl Coefficients {
         asked.check()?;
         let values = self.values.as_slice_mut().expect("standard layout");
         let total = values.len() as u64;
-        let cut = Cut::new(values, asked.budget(total));
-        let drop_from = |(chunk, values): (usize, &mut [f64])| {
-            let (mut dropped, mut energy) = (0, 0.0);
-            for (i, value) in values.iter_mut().enumerate() {
+        let (cut, dropped) = Cut::new(values, asked.budget(total));
+        values.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, values)| {
+            for (value, i) in values.iter_mut().zip((chunk * CHUNK) as u64..) {
                 // Without branches: which coefficients stay cannot be foretold.
-                let keeps = cut.keeps(*value, chunk * CHUNK + i);
-                let lost = if keeps { 0.0 } else { *value };
-                dropped += u64::from(!keeps);
-                energy += lost * lost;
-                *value = if keeps { *value } else { 0.0 };
+                *value = if cut.keeps(*value, i) { *value } else { 0.0 };
             }
-            (dropped, energy)
-        };
-        let parts: Vec<(u64, f64)> =
-            values.par_chunks_mut(CHUNK).enumerate().map(drop_from).collect();
-        let dropped: u64 = parts.iter().map(|part| part.0).sum();
-        let energy: f64 = parts.iter().map(|part| part.1).sum();
-        Ok(Truncation {
+        });
+        Ok(Truncation::new(asked, total, dropped))
+    }
+}
+
+impl Truncation {
+    /// Of so many coefficients these were dropped.
+    pub(crate) fn new(asked: Tolerance, total: u64, dropped: Dropped) -> Self {
+        Self {
             asked,
-            kept: total - dropped,
+            kept: total - dropped.count,
             total,
-            epsilon: energy.sqrt(),
-            rms: (energy / total as f64).sqrt(),
-        })
+            epsilon: dropped.energy.sqrt(),
+            rms: (dropped.energy / total as f64).sqrt(),
+        }
     }
 }

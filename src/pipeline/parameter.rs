@@ -1,14 +1,14 @@
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::PipelineError;
 use crate::ladder::Filtration;
 use crate::points::{Points, Units, WeightedPoints, Weighting, weigh};
 use crate::shape::{Alpha, AlphaError, ShapeError, Torus, flat_region, number_or_null_or_name};
 use crate::shown::{number, six_digits};
-use crate::volume::{LengthUnit, Volume};
+use crate::volume::{Frame, LengthUnit, Volume};
 
 /// Which α a shape is made at.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,7 +53,7 @@ pub struct Parameter {
 }
 
 /// Where an α comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ParameterOrigin {
@@ -92,11 +92,20 @@ impl AlphaRule {
         volume: &Volume,
         units: Units,
     ) -> Result<Option<Parameter>, PipelineError> {
-        let unit = units.coordinates(volume).unit;
+        self.of_frame(volume.frame(), units)
+    }
+
+    /// The same of the points of a grid.
+    pub(crate) fn of_frame(
+        self,
+        frame: &Frame,
+        units: Units,
+    ) -> Result<Option<Parameter>, PipelineError> {
+        let unit = units.coordinates_of(frame).unit;
         if self != Self::Default {
             return Ok(self.given(unit));
         }
-        let h = units.voxel_volume(volume).cbrt();
+        let h = units.cell(frame).cbrt();
         let alpha = Alpha::from_squared(SQUARED_VOXELS * h * h)?;
         Ok(Some(Parameter { alpha, unit, origin: ParameterOrigin::Default }))
     }

@@ -37,4 +37,5 @@ pub use model::{ModelFacts, Packing, SampleGrid};
 pub use read::{Columns, UnknownColumns, is_point_file, read_model, read_points};
 pub use scattered::scattered_difference;
 pub use select::{Points, Selection, SelectionRule, Units, points_at, select};
+pub(crate) use weigh::{Differences, Shares};
 pub use weigh::{UnknownWeighting, WeightSummary, WeightedPoints, Weighting, weigh};

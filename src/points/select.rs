@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::PointsError;
 use crate::memory;
 use crate::select::{Budget, Cut};
-use crate::volume::{Coordinates, Volume};
+use crate::volume::{Coordinates, Dims, Frame, Volume};
 
 /// Voxels looked at as one piece of work.
 const CHUNK: usize = 1 << 16;
@@ -68,28 +68,43 @@ pub struct Points {
 impl Units {
     /// What coordinates of this volume's points mean in these units.
     pub fn coordinates(self, volume: &Volume) -> Coordinates {
+        self.coordinates_of(volume.frame())
+    }
+
+    /// What coordinates of the points of a grid mean in these units.
+    pub fn coordinates_of(self, frame: &Frame) -> Coordinates {
         match self {
             Self::Voxel => Coordinates::VOXEL,
-            Self::World => volume.frame().coordinates,
+            Self::World => frame.coordinates,
         }
     }
 
     /// The volume of a voxel in these units.
     pub fn voxel_volume(self, volume: &Volume) -> f64 {
+        self.cell(volume.frame())
+    }
+
+    /// The same, of a voxel of a grid.
+    pub fn cell(self, frame: &Frame) -> f64 {
         match self {
             Self::Voxel => 1.0,
-            Self::World => volume.frame().cell(),
+            Self::World => frame.cell(),
         }
     }
 
     /// The position of a voxel, by its index x + X·(y + Y·z), in these units.
     pub fn position(self, volume: &Volume, voxel: u32) -> [f64; 3] {
-        let [nx, ny, _] = volume.dims().xyz();
+        self.place(volume.frame(), volume.dims(), voxel.into())
+    }
+
+    /// The same, of a voxel of a grid of so many samples.
+    pub fn place(self, frame: &Frame, dims: Dims, voxel: u64) -> [f64; 3] {
+        let [nx, ny, _] = dims.xyz();
         let voxel = voxel as usize;
         let index = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)].map(|i| i as f64);
         match self {
             Self::Voxel => index,
-            Self::World => volume.frame().to_world(index),
+            Self::World => frame.to_world(index),
         }
     }
 }
@@ -195,8 +210,8 @@ fn chosen(
         if count == 0 || count > available {
             return Err(PointsError::Count { asked: count, available });
         }
-        let cut = Cut::new(differences, Budget::Count(available - count));
-        Ok(collect(differences, |l, i| cut.keeps(l, i)))
+        let (cut, _) = Cut::new(differences, Budget::Count(available - count));
+        Ok(collect(differences, |l, i| cut.keeps(l, i as u64)))
     };
     match *rule {
         SelectionRule::Count(count) => largest(count),

@@ -8,6 +8,7 @@ use super::{Points, PointsError};
 use walpha_check::Alpha;
 
 use crate::advice::Advice;
+use crate::math::Sum;
 
 /// Where the weights ω of points come from. Weights are **squared** lengths, as α is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,7 +39,7 @@ pub struct WeightedPoints {
 }
 
 /// The range of weights.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WeightSummary {
     /// The smallest.
     pub min: f64,
@@ -72,7 +73,9 @@ impl WeightedPoints {
             return WeightSummary { min: 0.0, mean: 0.0, max: 0.0 };
         }
         let (min, max) = range(&self.weights);
-        let mean = self.weights.iter().sum::<f64>() / self.weights.len() as f64;
+        // Summed exactly, so that it does not matter in what order, or how many at a time.
+        let sum: Sum = self.weights.iter().copied().collect();
+        let mean = sum.value() / self.weights.len() as f64;
         WeightSummary { min, mean, max }
     }
 }
@@ -92,13 +95,11 @@ pub fn weigh(
     let weights = match (&weighting.kind().rule, weighting) {
         (Rule::Common, Weighting::Common(weight)) => vec![weight; points.len()],
         (Rule::Common | Rule::Column, _) => points.weights.clone().ok_or(PointsError::NoColumn)?,
-        (Rule::Proportional(rule), _) => {
-            let squared = alpha.squared();
-            if !squared.is_finite() {
-                return Err(PointsError::UnboundedAlpha { weighting, alpha });
-            }
-            let differences = points.differences.as_deref();
-            rule(differences.ok_or(PointsError::NoDifferences { weighting })?, squared)
+        (Rule::Proportional(_), _) => {
+            let differences =
+                points.differences.as_deref().ok_or(PointsError::NoDifferences { weighting })?;
+            let shares = weighting.shares(&Differences::of(differences), alpha)?;
+            differences.iter().map(|&l| shares.of(l)).collect()
         }
     };
     if let Some(index) = weights.iter().position(|weight| !weight.is_finite()) {
@@ -111,10 +112,55 @@ pub fn weigh(
     })
 }
 
-/// factor·((L − base)/whole), or all 0 where the whole is.
-fn shares(differences: &[f64], factor: f64, base: f64, whole: f64) -> Vec<f64> {
-    let share = |l: &f64| if whole == 0.0 { 0.0 } else { factor * ((l - base) / whole) };
-    differences.iter().map(share).collect()
+/// What weights in proportion to differences need to know of all of them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Differences {
+    /// How many there are.
+    pub count: u64,
+    /// The smallest.
+    pub min: f64,
+    /// The largest.
+    pub max: f64,
+    /// Their sum, which does not depend on an order.
+    pub sum: Sum,
+}
+
+impl Default for Differences {
+    fn default() -> Self {
+        Self { count: 0, min: f64::INFINITY, max: f64::NEG_INFINITY, sum: Sum::default() }
+    }
+}
+
+impl Differences {
+    /// Those of some points. O(n).
+    pub fn of(differences: &[f64]) -> Self {
+        let (min, max) = range(differences);
+        let sum = differences.iter().copied().collect();
+        Self { count: differences.len() as u64, min, max, sum }
+    }
+
+    /// Takes in those of other points.
+    pub fn join(&mut self, other: &Self) {
+        self.count += other.count;
+        (self.min, self.max) = (self.min.min(other.min), self.max.max(other.max));
+        self.sum.join(&other.sum);
+    }
+}
+
+/// Weights factor·((L − base)/whole), or all 0 where the whole is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shares {
+    factor: f64,
+    base: f64,
+    whole: f64,
+}
+
+impl Shares {
+    /// The weight of a difference.
+    pub fn of(self, l: f64) -> f64 {
+        let Self { factor, base, whole } = self;
+        if whole == 0.0 { 0.0 } else { factor * ((l - base) / whole) }
+    }
 }
 
 fn range(numbers: &[f64]) -> (f64, f64) {
@@ -129,7 +175,7 @@ enum Rule {
     /// As the input has them.
     Column,
     /// Of the differences L and α.
-    Proportional(fn(&[f64], f64) -> Vec<f64>),
+    Proportional(fn(&Differences, f64) -> Shares),
 }
 
 /// A kind of weights: all that is known of it.
@@ -159,8 +205,8 @@ const KINDS: [WeightKind; 5] = [
         parameter: None,
         about: "eq. 4.1",
         rule: Rule::Proportional(|differences, alpha| {
-            let (min, max) = range(differences);
-            shares(differences, alpha, min, max - min)
+            let Differences { min, max, .. } = *differences;
+            Shares { factor: alpha, base: min, whole: max - min }
         }),
     },
     WeightKind {
@@ -176,7 +222,7 @@ const KINDS: [WeightKind; 5] = [
         parameter: None,
         about: "N times that",
         rule: Rule::Proportional(|differences, alpha| {
-            barycentric(differences, alpha * differences.len() as f64)
+            barycentric(differences, alpha * differences.count as f64)
         }),
     },
     WeightKind {
@@ -188,8 +234,26 @@ const KINDS: [WeightKind; 5] = [
     },
 ];
 
-fn barycentric(differences: &[f64], factor: f64) -> Vec<f64> {
-    shares(differences, factor, 0.0, differences.iter().sum())
+fn barycentric(differences: &Differences, factor: f64) -> Shares {
+    Shares { factor, base: 0.0, whole: differences.sum.value() }
+}
+
+impl Weighting {
+    /// How weights in proportion to differences come from these.
+    ///
+    /// # Errors
+    /// α is infinite or NaN; the weights are of another kind.
+    pub(crate) fn shares(
+        self,
+        differences: &Differences,
+        alpha: Alpha,
+    ) -> Result<Shares, PointsError> {
+        let Rule::Proportional(rule) = self.kind().rule else { return Err(PointsError::NoColumn) };
+        if !alpha.squared().is_finite() {
+            return Err(PointsError::UnboundedAlpha { weighting: self, alpha });
+        }
+        Ok(rule(differences, alpha.squared()))
+    }
 }
 
 impl Weighting {

@@ -152,6 +152,12 @@ pub enum ShapeError {
         /// What asks for the whole triangulation.
         by: Whole,
     },
+    /// Two points at one place, of a set that is never in one place.
+    #[error("two points are at one place, {at:?}, which is not sorted out in separate blocks")]
+    Coincident {
+        /// The place.
+        at: [f64; 3],
+    },
     /// Exterior simplices are known to the whole triangulation only.
     #[error(
         "simplices outside the shape are not local: they need the whole triangulation, and \
@@ -234,6 +240,9 @@ impl ShapeError {
                     ", or repeat the points along {axis}, and make the box as many times as long"
                 )
             ],
+            Self::Coincident { .. } => {
+                "correct the spacing and directions of the grid, or use voxels as units".into()
+            }
             Self::Exterior { .. } => {
                 advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Exterior]
             }
@@ -424,7 +433,44 @@ fn hidden(sites: &[u32], vertices: &Simplices<1>) -> Vec<u32> {
     sites.iter().copied().filter(|&site| vertices.next_if(|v| v[0] == site).is_none()).collect()
 }
 
+/// A shape as others found it, in canonical order.
+pub(crate) struct Assembled {
+    pub points: WeightedPoints,
+    pub coordinates: Coordinates,
+    pub options: ShapeOptions,
+    pub complex: Complex,
+    pub hidden: Option<Vec<u32>>,
+    pub betti: Betti,
+    pub sheets: Sheets,
+    pub measures: Measures,
+}
+
 impl AlphaShape {
+    /// A shape that is all known already, of points no two of which are at one place.
+    ///
+    /// # Errors
+    /// A negative radius.
+    pub(crate) fn assembled(parts: Assembled) -> Result<Self, ShapeError> {
+        let Assembled { points, coordinates, options, complex, hidden, .. } = parts;
+        let squared = match options.balls {
+            Balls::Power => None,
+            Balls::Radius => Some(squared_radii(&points.weights, options.alpha)?),
+        };
+        Ok(Self {
+            points,
+            coordinates,
+            options,
+            squared,
+            complex,
+            copies: Vec::new(),
+            duplicates: Vec::new(),
+            hidden,
+            betti: Some(parts.betti),
+            sheets: Some(parts.sheets),
+            measures: parts.measures,
+        })
+    }
+
     /// The shape of the same points with the same power weights at another α, which the caller has
     /// found within this one's triangulation.
     pub(crate) fn at(&self, alpha: Alpha, exterior: bool, complex: Complex, betti: Betti) -> Self {

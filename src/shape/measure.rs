@@ -2,10 +2,12 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{Class, Complex};
+use crate::math::Sum;
 use crate::math::vector::{cross, dot, length, sub};
 use crate::triangulation::Torus;
 
-/// Sizes of a shape in the units of its points, summed in double precision in a fixed order.
+/// Sizes of a shape in the units of its points, summed exactly and
+/// rounded once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measures {
     /// Volume of the interior cells.
@@ -17,11 +19,12 @@ pub struct Measures {
 }
 
 impl Measures {
-    /// Measures a shape, of a torus perhaps. Rounded sums; the same on any number of threads. O(n).
+    /// Measures a shape, of a torus perhaps. The terms are rounded, their sums exact: the same on any
+    /// number of threads, and for shapes made in pieces. O(n).
     pub fn of(complex: &Complex, positions: &[[f64; 3]], torus: Option<Torus>) -> Self {
         let at = |v: u32| positions[v as usize];
         let area = |class| {
-            fixed_order_sum(complex.facets.rows(), |i, facet| {
+            sum(complex.facets.rows(), |i, facet| {
                 if complex.facets.classes()[i] != class {
                     return 0.0;
                 }
@@ -29,7 +32,7 @@ impl Measures {
             })
         };
         // Divided last: sums of determinants on a lattice are whole numbers.
-        let volume = fixed_order_sum(complex.cells.rows(), |i, cell| {
+        let volume = sum(complex.cells.rows(), |i, cell| {
             if complex.cells.classes()[i] != Class::Interior {
                 return 0.0;
             }
@@ -58,19 +61,15 @@ pub(crate) fn six_volumes([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
     dot(cross(sub(b, a), sub(c, a)), sub(d, a))
 }
 
-/// Σ `term(i, row)` by chunks whose size does not depend on the number of threads.
-fn fixed_order_sum<const N: usize>(
-    rows: &[[u32; N]],
-    term: impl Fn(usize, [u32; N]) -> f64 + Sync,
-) -> f64 {
+/// Σ `term(i, row)`, exact and rounded once.
+fn sum<const N: usize>(rows: &[[u32; N]], term: impl Fn(usize, [u32; N]) -> f64 + Sync) -> f64 {
     const CHUNK: usize = 1 << 14;
-    let sums: Vec<f64> = rows
-        .par_chunks(CHUNK)
-        .enumerate()
-        .map(|(chunk, rows)| {
-            let rows = rows.iter().enumerate();
-            rows.fold(0.0, |sum, (i, &row)| sum + term(chunk * CHUNK + i, row))
-        })
-        .collect();
-    sums.iter().fold(0.0, |sum, part| sum + part)
+    let of_chunk = |(chunk, rows): (usize, &[[u32; N]])| {
+        (chunk * CHUNK..).zip(rows).map(|(i, &row)| term(i, row)).collect::<Sum>()
+    };
+    let join = |mut a: Sum, b: Sum| {
+        a.join(&b);
+        a
+    };
+    rows.par_chunks(CHUNK).enumerate().map(of_chunk).reduce(Sum::default, join).value()
 }

@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::blocks::Answer;
+use super::sums::{ComponentSums, SheetSums, told};
 use super::union_find::UnionFind;
 use super::winding::WindingSets;
-use super::{AlphaShape, Class, Complex, facet_area, six_volumes};
+use super::{AlphaShape, Class, Complex};
 use crate::triangulation::Torus;
 
 /// The sheets of a shape's boundary: the connected pieces of its outside seen closely. A component
@@ -135,15 +136,14 @@ impl AlphaShape {
         numbers
     }
 
-    /// The components of the shape by their numbers, as many as b0. Rounded sums in a fixed order.
-    /// O(n).
+    /// The components of the shape by their numbers, as many as b0. Sums are exact, and rounded once. O(n).
     pub fn components(&self) -> Vec<Component> {
         let numbers = self.component_numbers();
         let positions = &self.points().positions;
         let torus = self.options().periodic;
         let mut wound = torus.map(|torus| (torus, wound(self.complex(), positions, torus)));
         let number = |v: u32| numbers[v as usize] as usize;
-        let mut components: Vec<Component> = Vec::new();
+        let mut components: Vec<ComponentSums> = Vec::new();
         for &[v] in self.complex().vertices.rows() {
             let mut point = positions[v as usize];
             if let Some((torus, wound)) = &mut wound {
@@ -151,34 +151,22 @@ impl AlphaShape {
             }
             match number(v) {
                 n if n == NO_COMPONENT as usize => {}
-                n if n == components.len() => components.push(Component::at(point)),
+                n if n == components.len() => components.push(ComponentSums::at(point)),
                 n => components[n].reach(point),
             }
         }
         for cell in self.complex().cells.of(Class::Interior) {
-            let component = &mut components[number(cell[0])];
-            component.cells += 1;
-            component.volume += six_volumes(self.corners(*cell));
+            components[number(cell[0])].add_cell(self.corners(*cell));
         }
         for (facet, class) in self.complex().facets.iter() {
-            let area = || facet_area(self.corners(*facet));
-            match class {
-                Class::Regular => components[number(facet[0])].area += area(),
-                Class::Singular => components[number(facet[0])].singular_area += area(),
-                _ => {}
-            }
+            components[number(facet[0])].add_facet(self.corners(*facet), class);
         }
-        // Divided last: sums of determinants on a lattice are whole numbers.
-        for component in &mut components {
-            component.volume /= 6.0;
-        }
+        // What a surface of a torus encloses is not its sheets' to say.
+        let sheets = self.sheets().filter(|_| torus.is_none());
+        let sheets = sheets.map(|sheets| self.sheet_sums(sheets, &numbers));
+        let mut components = told(components, sheets);
         if let Some((torus, wound)) = wound {
             self.go_round(&mut components, &numbers, torus, wound);
-        } else if let Some(sheets) = self.sheets() {
-            components.iter_mut().for_each(|component| component.voids = Some(Vec::new()));
-            for (component, void) in self.enclosed(sheets, &numbers) {
-                components[component].voids.get_or_insert_default().push(void);
-            }
         }
         components
     }
@@ -203,21 +191,16 @@ impl AlphaShape {
         }
     }
 
-    /// Sheets that enclose a void, with their components, largest first.
-    fn enclosed(&self, sheets: &Sheets, numbers: &[u32]) -> Vec<(usize, Enclosed)> {
+    /// Each sheet that has facets, with its component.
+    fn sheet_sums(&self, sheets: &Sheets, numbers: &[u32]) -> Vec<(u32, usize, SheetSums)> {
         let positions = &self.points().positions;
         let complex = self.complex();
-        let mut found: Vec<Option<(usize, Enclosed)>> = vec![None; sheets.count as usize];
-        // A side of a facet turns counter-clockwise seen from outside the shape.
+        let mut found: Vec<Option<(usize, SheetSums)>> = vec![None; sheets.count as usize];
         let mut add = |sheet: u32, side: [u32; 3]| {
             let corners = side.map(|v| positions[v as usize]);
-            let (_, void) = found[sheet as usize].get_or_insert_with(|| {
-                let component = numbers[side[0] as usize] as usize;
-                (component, Enclosed { sheet, volume: 0.0, low: corners[0], high: corners[0] })
-            });
-            // Of all cones over the sides of a sheet from one apex, signed, its inside remains.
-            void.volume -= six_volumes([positions[0], corners[0], corners[1], corners[2]]);
-            corners.iter().for_each(|&corner| widen(&mut void.low, &mut void.high, corner));
+            let (_, sums) = found[sheet as usize]
+                .get_or_insert_with(|| (numbers[side[0] as usize] as usize, SheetSums::default()));
+            sums.add(positions[0], corners);
         };
         for (&sheet, &side) in sheets.regular.iter().zip(complex.facets.of(Class::Regular)) {
             add(sheet, side);
@@ -228,35 +211,8 @@ impl AlphaShape {
             add(clockwise, [a, c, b]);
             add(counter, [a, b, c]);
         }
-        let mut found: Vec<(usize, Enclosed)> = found.into_iter().flatten().collect();
-        found.iter_mut().for_each(|(_, void)| void.volume /= 6.0);
-        // The sheet around a component has what it encloses behind it: least, and first.
-        found.sort_by(|(a, first), (b, second)| {
-            a.cmp(b).then(first.volume.total_cmp(&second.volume))
-        });
-        let voids = found.chunk_by(|a, b| a.0 == b.0).flat_map(|of_one| of_one[1..].iter().rev());
-        voids.copied().collect()
-    }
-}
-
-impl Component {
-    fn at(point: [f64; 3]) -> Self {
-        Self {
-            vertices: 1,
-            cells: 0,
-            volume: 0.0,
-            area: 0.0,
-            singular_area: 0.0,
-            low: point,
-            high: point,
-            voids: None,
-            rounds: None,
-        }
-    }
-
-    fn reach(&mut self, point: [f64; 3]) {
-        self.vertices += 1;
-        widen(&mut self.low, &mut self.high, point);
+        let numbered = (0..).zip(found);
+        numbered.filter_map(|(sheet, found)| found.map(|(c, sums)| (sheet, c, sums))).collect()
     }
 }
 
@@ -283,11 +239,4 @@ pub(super) fn connected(complex: &Complex) -> UnionFind {
         }
     }
     sets
-}
-
-fn widen(low: &mut [f64; 3], high: &mut [f64; 3], point: [f64; 3]) {
-    for k in 0..3 {
-        low[k] = low[k].min(point[k]);
-        high[k] = high[k].max(point[k]);
-    }
 }

@@ -1,6 +1,6 @@
 use std::collections::BTreeSet;
 
-use super::{AlphaShape, Class};
+use super::{AlphaShape, Class, Complex};
 
 /// What can be seen of a shape: boundary facets and everything thinner, with its own compact
 /// numbering of vertices.
@@ -25,9 +25,12 @@ pub struct Surface {
 
 impl Surface {
     /// The surface of a shape. O(n log n).
-    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn of(shape: &AlphaShape) -> Self {
-        let complex = shape.complex();
+        Self::of_complex(shape.complex())
+    }
+
+    /// The surface of a complex, or of some of its simplices. O(n log n).
+    pub(crate) fn of_complex(complex: &Complex) -> Self {
         let regular: Vec<_> = complex.facets.of(Class::Regular).copied().collect();
         let singular: Vec<_> = complex.facets.of(Class::Singular).copied().collect();
         let edges: Vec<_> = complex.edges.of(Class::Singular).copied().collect();

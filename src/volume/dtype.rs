@@ -1,6 +1,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
+
 use crate::advice::Advice;
 
 /// How a file stores one sample.
@@ -8,7 +10,8 @@ use crate::advice::Advice;
 /// Samples become `f32`. 8-bit and 16-bit integers and `f32` keep their exact value; `u32`, `i32`,
 /// `u64`, `i64` and `f64` are rounded to the nearest `f32` (24 significant bits), and an `f64`
 /// beyond its range becomes infinite, which [`Volume::new`](super::Volume::new) refuses.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 #[allow(missing_docs, reason = "the names say all")]
 pub enum Dtype {
     U8,
@@ -24,7 +27,8 @@ pub enum Dtype {
 }
 
 /// The order of the bytes of a sample in a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Endian {
     /// Least significant byte first, as x86 and ARM machines write.
     #[default]

@@ -67,6 +67,14 @@ pub enum VolumeError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// A folder of parts cannot be written.
+    #[error("cannot write {}: {source}", shown(path))]
+    Written {
+        /// The folder.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
     /// The file is not what its name or header says.
     #[error("{}: {reason}", shown(path))]
     Format {
@@ -126,6 +134,12 @@ impl VolumeError {
                 " 20:40,20:40,10:30"
             ],
             Self::Io { path, source } => return next_step(path, source.kind()),
+            Self::Written { source, .. } if source.kind() == ErrorKind::AlreadyExists => {
+                "remove it, or choose another name".into()
+            }
+            Self::Written { .. } => {
+                "nothing was left behind, choose a place with room that you may write to".into()
+            }
             Self::Format { reason, .. } => reason.advice(),
             Self::InFile { source, .. } => return source.advice(),
             Self::Memory(lack) => lack.advice(),

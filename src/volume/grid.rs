@@ -3,7 +3,8 @@ use serde::{Deserialize, Serialize};
 use super::{Conversion, Coordinates, VolumeError};
 
 /// The number of samples along each axis of a volume, checked once: none is zero, and the volume
-/// has at most [`Dims::MAX_SAMPLES`] samples, so a voxel index fits `u32` and a byte count `u64`.
+/// has at most [`Dims::MAX_SAMPLES`] samples, so a voxel index fits `u32` and a byte count `u64`; more where it
+/// is read [part by part](Dims::unbounded).
 ///
 /// Written (x, y, z), as points are; the underlying array is `[z, y, x]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -26,7 +27,7 @@ impl TryFrom<Unchecked> for Dims {
     type Error = VolumeError;
 
     fn try_from(Unchecked { x, y, z }: Unchecked) -> Result<Self, VolumeError> {
-        Self::new(x, y, z)
+        Self::unbounded(x, y, z)
     }
 }
 
@@ -51,6 +52,28 @@ impl Dims {
             }
             _ => Err(VolumeError::TooManySamples { x, y, z }),
         }
+    }
+
+    /// The same without a limit to what can be read at once: for volumes that are read part by part.
+    ///
+    /// # Errors
+    /// [`VolumeError::EmptyAxis`]; [`VolumeError::TooManySamples`] when the bytes of the samples pass 2⁶³.
+    pub fn unbounded(x: u64, y: u64, z: u64) -> Result<Self, VolumeError> {
+        /// No sample has more bytes.
+        const WIDEST: u64 = 8;
+        if x == 0 || y == 0 || z == 0 {
+            return Err(VolumeError::EmptyAxis { x, y, z });
+        }
+        let bytes = x.checked_mul(y).and_then(|xy| xy.checked_mul(z)?.checked_mul(WIDEST));
+        match bytes.map(i64::try_from) {
+            Some(Ok(_)) => Ok(Self { x: x as usize, y: y as usize, z: z as usize }),
+            _ => Err(VolumeError::TooManySamples { x, y, z }),
+        }
+    }
+
+    /// The same sizes, if they are within [`Dims::MAX_SAMPLES`].
+    pub(crate) fn bounded(self) -> Result<Self, VolumeError> {
+        Self::new(self.x as u64, self.y as u64, self.z as u64)
     }
 
     /// Samples along x, the fastest axis in memory.

@@ -22,6 +22,7 @@ mod part;
 mod read;
 mod reason;
 mod sample;
+mod source;
 pub(crate) mod stated;
 #[expect(clippy::module_inception, reason = "the type gives the floor its name")]
 mod volume;
@@ -45,4 +46,7 @@ pub(crate) use read::{Element, Lines, VtkXml, io_error};
 pub use read::{RawLayout, ReadOptions, Series};
 pub use reason::Reason;
 pub use sample::{SAMPLES, open, phantom, sample};
+pub use source::Source;
+#[cfg(feature = "zarr")]
+pub use source::convert;
 pub use volume::{Nan, Volume};

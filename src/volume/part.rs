@@ -5,12 +5,17 @@ use std::ops::Range;
 
 use ndarray::{Array3, s};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::{Volume, VolumeError};
 
 /// Samples from one index up to, and without, another along each axis (x, y, z); an end that is left
 /// away is that of the volume.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(
+    clippy::unsafe_derive_deserialize,
+    reason = "the unsafe code is that of a macro of ndarray"
+)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Region {
     /// The first of each axis.
     pub first: [usize; 3],

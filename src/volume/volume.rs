@@ -1,5 +1,6 @@
 use ndarray::{Array3, ArrayView3};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::{Dims, Dtype, Frame, Gray, GrayRange, VolumeError};
 
@@ -29,7 +30,8 @@ pub struct Volume {
 }
 
 /// What becomes of samples that are NaN.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Nan {
     /// This value replaces them.
     Value(f32),

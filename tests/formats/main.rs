@@ -9,6 +9,7 @@ mod parts;
 mod places;
 mod points;
 mod shapes;
+mod sources;
 mod tables;
 #[path = "../common/told.rs"]
 mod told;

@@ -101,6 +101,16 @@ impl InputArgs {
         self.gray.map_or(Gray::Automatic, Gray::Range)
     }
 
+    /// The values that become gray 0 and 255, if they were given.
+    pub fn gray_range(&self) -> Option<GrayRange> {
+        self.gray
+    }
+
+    /// Whether gray levels are written.
+    pub fn gray_out(&self) -> bool {
+        self.gray_out
+    }
+
     /// The values that gray levels stand for in what is written, where `range` became 0..255.
     pub fn written(&self, range: GrayRange) -> GrayRange {
         if self.gray_out { GrayRange::IDENTITY } else { range }

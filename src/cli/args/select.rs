@@ -6,8 +6,8 @@ use crate::cli::said::{misused, refused};
 use crate::interpolate::{Adaptive, Refit};
 use crate::pipeline::Choice;
 use crate::{
-    Coordinates, Decomposition, GrayRange, HaarOptions, LengthUnit, Selection, SelectionRule,
-    Space, Tolerance, Units, Volume,
+    Coordinates, Decomposition, Frame, GrayRange, HaarOptions, LengthUnit, Selection,
+    SelectionRule, Space, Tolerance, Units, Volume,
 };
 
 use super::values::{count, not_nan, not_negative, share};
@@ -114,7 +114,13 @@ impl PlaceArgs {
     /// What the coordinates of this volume's points are measured in, and the volume in the space that
     /// they are in.
     pub fn place(self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
-        let Coordinates { space, unit } = volume.frame().coordinates;
+        let (frame, units) = self.place_frame(*volume.frame())?;
+        Ok((volume.with_frame(frame), units))
+    }
+
+    /// The same of a grid.
+    pub fn place_frame(self, frame: Frame) -> anyhow::Result<(Frame, Units)> {
+        let Coordinates { space, unit } = frame.coordinates;
         let silent = if unit == LengthUnit::Voxel { Units::Voxel } else { Units::World };
         let units = self.units.unwrap_or(silent);
         let asked = match self.space {
@@ -126,8 +132,7 @@ impl PlaceArgs {
             }
             asked => asked.unwrap_or(Space::Lps),
         };
-        let frame = volume.frame().to(Coordinates { space: asked, unit });
-        Ok((volume.with_frame(frame), units))
+        Ok((frame.to(Coordinates { space: asked, unit }), units))
     }
 }
 
@@ -181,6 +186,19 @@ impl SelectArgs {
         };
         let goal = Adaptive { count, rmse, max_error: self.max_error };
         Ok(if self.exchange { Choice::Exchanged(goal) } else { Choice::Adaptive(goal) })
+    }
+
+    /// Which samples become points where that is decided in blocks, and the least value of the input.
+    pub fn in_blocks(&self) -> anyhow::Result<(Selection, Option<f64>)> {
+        if self.select == SelectArg::Adaptive || self.target_rmse.is_some() {
+            misused!("--select adaptive looks at all points at once, which blocks do not" => "omit it");
+        }
+        Ok((Selection { rule: self.rule(), gray_min: self.gray_min }, self.value_min))
+    }
+
+    /// In what coordinates the points of a grid are.
+    pub fn place_frame(&self, frame: Frame) -> anyhow::Result<(Frame, Units)> {
+        self.place.place_frame(frame)
     }
 
     /// In what coordinates the points are.

@@ -13,7 +13,7 @@ pub(super) fn dims(text: &str) -> Result<Dims, Said> {
     let [x, y, z] = sizes[..] else {
         refused!("three sizes are needed" => "give those along x, y and z, as in 64,64,64");
     };
-    Ok(Dims::new(x, y, z)?)
+    Ok(Dims::unbounded(x, y, z)?)
 }
 
 pub(super) fn nan(text: &str) -> Result<Nan, Said> {

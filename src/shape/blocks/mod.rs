@@ -17,6 +17,7 @@
 mod classify;
 mod merge;
 mod partition;
+mod piece;
 mod plan;
 mod reach;
 
@@ -32,7 +33,9 @@ use crate::triangulation::{
 use classify::{Long, Owned, Shelves, classify};
 use merge::merge;
 pub(super) use partition::Partition;
+pub(crate) use piece::{BlockShape, Own, Side, block_shape};
 pub use plan::PlanError;
+pub(crate) use plan::at_work;
 pub(super) use plan::{Limits, Plan};
 pub(crate) use reach::Reach;
 

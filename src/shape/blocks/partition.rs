@@ -172,6 +172,33 @@ impl Partition {
     }
 }
 
+/// The ball of points around some points of their own: what reaches it is their halo.
+pub(crate) struct Neighbourhood {
+    own: Node,
+    reach: Reach,
+}
+
+impl Neighbourhood {
+    /// Of points with their weights.
+    pub fn of(points: impl Iterator<Item = ([f64; 3], f64)>, alpha: f64) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        let mut heaviest = f64::NEG_INFINITY;
+        for (at, weight) in points {
+            for k in 0..3 {
+                (low[k], high[k]) = (low[k].min(at[k]), high[k].max(at[k]));
+            }
+            heaviest = heaviest.max(weight);
+        }
+        let own = Node { members: 0..0, low, high, heaviest, halves: None };
+        Self { reach: Reach::Balls(alpha), own }
+    }
+
+    /// Whether a point is in the halo.
+    pub fn holds(&self, at: [f64; 3], weight: f64) -> bool {
+        self.own.reaches(at, at, self.reach.from(self.own.heaviest, weight))
+    }
+}
+
 /// The lowest and highest corner of a box, and the largest weight in it.
 type Extent = ([f64; 3], [f64; 3], f64);
 

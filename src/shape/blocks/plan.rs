@@ -68,7 +68,7 @@ const WORTHWHILE: usize = 2000;
 const MOST: usize = 1 << 12;
 
 /// Bytes for each point of a block at work, its halo's included.
-fn at_work(maker: Maker) -> u64 {
+pub(crate) fn at_work(maker: Maker) -> u64 {
     match maker {
         // 6 to 7 cells of 36 bytes while they are made; then of 32, with stars and rows.
         Maker::Native => 600,

@@ -10,7 +10,8 @@ use super::{FORMATS, VolumeFormat};
 use crate::advice::Setting;
 use crate::near::nearest;
 use crate::volume::read::{format_error, io_error, raw};
-use crate::volume::{ReadOptions, Reason, Series, Volume, VolumeError};
+use crate::volume::source::whole_only;
+use crate::volume::{ReadOptions, Reason, Series, Source, Volume, VolumeError};
 
 /// Bytes looked at.
 const BYTES: u64 = 1024;
@@ -52,6 +53,14 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
         VolumeError::Io { .. } | VolumeError::Format { .. } | VolumeError::InFile { .. } => error,
         other => VolumeError::InFile { path: path.into(), source: Box::new(other) },
     })
+}
+
+/// Opens a volume to be read part by part.
+pub(crate) fn source(path: &Path, options: &ReadOptions) -> Result<Source, VolumeError> {
+    match &options.raw {
+        Some(layout) => Ok(raw::rows(path, layout)?.source()),
+        None => found(path)?.source(path, options),
+    }
 }
 
 /// What a file or folder is, as `NRRD` or `NIfTI, gzip`.
@@ -133,6 +142,32 @@ struct Found {
 impl Found {
     fn read(&self, path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
         let Self { format, .. } = self;
+        self.accepts(path, options)?;
+        match (format.read, format.feature) {
+            (Some(read), _) => read(path, options),
+            (None, feature) => {
+                let (what, feature) = (format.name, feature.unwrap_or_default());
+                Err(format_error(path, Reason::Without { what, feature }))
+            }
+        }
+    }
+
+    fn source(&self, path: &Path, options: &ReadOptions) -> Result<Source, VolumeError> {
+        let Self { format, gzip } = self;
+        self.accepts(path, options)?;
+        match format.parts {
+            Some(parts) if !gzip => parts(path, options),
+            // It says what is missing where the format was left out.
+            _ if !format.is_built_in() => {
+                Err(self.read(path, options).err().unwrap_or_else(|| whole_only(path, format.name)))
+            }
+            _ => Err(whole_only(path, format.name)),
+        }
+    }
+
+    /// Refuses settings that the format has no use for.
+    fn accepts(&self, path: &Path, options: &ReadOptions) -> Result<(), VolumeError> {
+        let Self { format, .. } = self;
         for (setting, given) in [
             (Setting::Level, options.level.is_some()),
             (Setting::Array, options.array.is_some()),
@@ -149,13 +184,7 @@ impl Found {
                 return Err(format_error(path, Reason::needless(setting, what)));
             }
         }
-        match (format.read, format.feature) {
-            (Some(read), _) => read(path, options),
-            (None, feature) => {
-                let (what, feature) = (format.name, feature.unwrap_or_default());
-                Err(format_error(path, Reason::Without { what, feature }))
-            }
-        }
+        Ok(())
     }
 }
 

@@ -19,13 +19,15 @@ pub(crate) use begins::is_vtk_xml;
 #[cfg(feature = "formats")]
 pub(crate) use begins::{NIFTI_HEADERS, nifti_version};
 pub(crate) use built::built;
-pub(crate) use detect::start_of;
+pub(crate) use detect::{source, start_of};
 
-use super::{ReadOptions, Volume, VolumeError};
+use super::{ReadOptions, Source, Volume, VolumeError};
 use crate::advice::Setting;
 
 /// Reads a file or folder.
 type Read = fn(&Path, &ReadOptions) -> Result<Volume, VolumeError>;
+/// Opens a file or folder to be read part by part.
+type PartsOf = fn(&Path, &ReadOptions) -> Result<Source, VolumeError>;
 /// Names the files that hold the samples.
 type DataFiles = fn(&Path) -> Result<Vec<PathBuf>, VolumeError>;
 
@@ -55,6 +57,8 @@ pub struct VolumeFormat {
     is_folder: fn(&Path) -> Result<bool, VolumeError>,
     /// Reads a file or folder; `None` where it was left out of the build.
     read: Option<Read>,
+    /// Opens a file or folder to be read part by part, where its format lends itself to that.
+    parts: Option<PartsOf>,
     /// The files that hold the samples, where a header does not.
     data_files: Option<DataFiles>,
 }

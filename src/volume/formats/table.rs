@@ -41,6 +41,7 @@ const PLAIN: VolumeFormat = VolumeFormat {
     folder_name: "",
     is_folder: |_| Ok(false),
     read: None,
+    parts: None,
     data_files: None,
 };
 
@@ -70,6 +71,9 @@ pub static FORMATS: [VolumeFormat; 13] = [
         read: built!("zarr", |path, options| {
             crate::volume::read::zarr::read(path, options.level, options.frame)
         }),
+        parts: built!("zarr", |path, options| {
+            crate::volume::read::zarr::source(path, options.level, options.frame)
+        }),
         ..PLAIN
     },
     VolumeFormat {
@@ -82,6 +86,7 @@ pub static FORMATS: [VolumeFormat; 13] = [
         writers: writers!["nrrd": write::nrrd],
         begins: |start| start.starts_with(b"NRRD000"),
         read: built!("formats", |path, options| nrrd::read(path, options.frame)),
+        parts: built!("formats", |path, options| Ok(nrrd::rows(path, options.frame)?.source())),
         data_files: built!("formats", nrrd::data_files),
         ..PLAIN
     },
@@ -96,6 +101,7 @@ pub static FORMATS: [VolumeFormat; 13] = [
         gzip: true,
         begins: is_nifti,
         read: built!("formats", |path, options| nifti::read(path, options.frame)),
+        parts: built!("formats", |path, options| Ok(nifti::rows(path, options.frame)?.source())),
         data_files: built!("formats", nifti::data_files),
         ..PLAIN
     },
@@ -109,6 +115,10 @@ pub static FORMATS: [VolumeFormat; 13] = [
         writers: writers!["mha": write::metaimage],
         begins: is_metaimage,
         read: built!("formats", |path, options| metaimage::read(path, options.frame)),
+        parts: built!(
+            "formats",
+            |path, options| Ok(metaimage::rows(path, options.frame)?.source())
+        ),
         data_files: built!("formats", metaimage::data_files),
         ..PLAIN
     },
@@ -165,6 +175,7 @@ pub static FORMATS: [VolumeFormat; 13] = [
         writers: &[VolumeWriter { extension: "npy", write: write::npy }],
         begins: NpyFile::begins,
         read: Some(|path, options| npy::read(path, options.frame)),
+        parts: Some(|path, options| Ok(npy::rows(path, options.frame)?.source())),
         ..PLAIN
     },
     VolumeFormat {

@@ -43,12 +43,13 @@ impl Described {
     }
 
     /// Bytes of one volume.
-    fn each(&self) -> u64 {
+    pub fn each(&self) -> u64 {
         (self.dims.samples() * self.dtype.size()) as u64
     }
 
     /// Reads the samples, which are all there is in `bytes` bytes.
     pub fn read(self, path: &Path, source: impl Read, bytes: u64) -> Result<Volume, VolumeError> {
+        self.dims.bounded()?;
         let compressed = BufReader::new(source);
         match self.encoding {
             Encoding::Raw => self.decode(path, compressed, Length::Exactly(bytes)),

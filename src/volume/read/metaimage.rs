@@ -7,6 +7,7 @@ use super::detached::{self, beside};
 use super::frames::Frames;
 use super::lines::Lines;
 use super::nrrd::numbered;
+use super::rows::Rows;
 use super::{format_error, io_error};
 use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Reason, Volume, VolumeError};
 
@@ -34,6 +35,17 @@ pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
     let skip = header.skip(path)?;
     let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
     detached::read(path, described, &beside(path, &names), skip)
+}
+
+/// Where the samples of a volume lie, to be read part by part.
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+    let header = Header::read(path, &mut lines)?;
+    let described = header.described(path, frame)?;
+    match header.names(path, &mut lines)? {
+        None => Rows::behind(path, described, lines.bytes(), Some(0)),
+        Some(names) => Rows::beside(path, described, &beside(path, &names), header.skip(path)?),
+    }
 }
 
 /// The files that hold the samples, where the header does not.
@@ -162,9 +174,9 @@ impl Header {
         let sizes = needed("DimSize")?;
         let size: Option<Vec<u64>> = sizes.split_whitespace().map(|n| n.parse().ok()).collect();
         let (dims, volumes) = match size.as_deref() {
-            Some(&[x, y]) if count == 2 => (Dims::new(x, y, 1)?, 1),
-            Some(&[x, y, z]) if count == 3 => (Dims::new(x, y, z)?, 1),
-            Some(&[x, y, z, t]) if count == 4 => (Dims::new(x, y, z)?, t),
+            Some(&[x, y]) if count == 2 => (Dims::unbounded(x, y, 1)?, 1),
+            Some(&[x, y, z]) if count == 3 => (Dims::unbounded(x, y, z)?, 1),
+            Some(&[x, y, z, t]) if count == 4 => (Dims::unbounded(x, y, z)?, t),
             _ => {
                 return Err(said(Reason::header(format!(
                     "DimSize = {sizes} is not {count} sizes"

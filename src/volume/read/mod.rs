@@ -23,6 +23,7 @@ pub(super) mod npz;
 pub(super) mod nrrd;
 mod payload;
 pub(super) mod raw;
+mod rows;
 pub(super) mod series;
 #[cfg(feature = "formats")]
 pub(super) mod slices;
@@ -45,6 +46,7 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
+use serde::{Deserialize, Serialize};
 
 pub(crate) use inr::read as read_inr;
 #[cfg(feature = "formats")]
@@ -55,6 +57,7 @@ pub(crate) use payload::Element;
 pub(crate) use payload::Length;
 use payload::PayloadError;
 pub use raw::RawLayout;
+pub(super) use rows::CONVERT;
 pub use series::Series;
 #[cfg(feature = "formats")]
 pub(crate) use vtk_xml::VtkXml;
@@ -62,7 +65,7 @@ pub(crate) use vtk_xml::VtkXml;
 use super::{Dims, Dtype, Nan, Reason, Region, Volume, VolumeError, downsample};
 
 /// What a user says about a file beyond its name.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ReadOptions {
     /// Reads the file as bare samples in this layout, whatever it looks like.
     pub raw: Option<RawLayout>,

@@ -6,6 +6,7 @@ use super::described::{Described, Encoding, diagonal, frame};
 use super::detached::naming;
 use super::frames::Frames;
 use super::payload::{Length, Payload};
+use super::rows::Rows;
 use super::{format_error, io_error, payload_error, unpacked};
 use crate::volume::formats::{NIFTI_HEADERS, nifti_version, start_of};
 use crate::volume::{
@@ -19,29 +20,7 @@ use crate::volume::{
 /// the third count volumes, of which `frame` is read; colours and complex numbers are refused.
 pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
     let (mut reader, length) = unpacked(path)?;
-    let mut header = Vec::new();
-    let mut fill = |size: usize, header: &mut Vec<u8>| -> Result<(), VolumeError> {
-        let left = (size - header.len()) as u64;
-        (&mut reader).take(left).read_to_end(header).map_err(io_error(path))?;
-        if header.len() < size {
-            return Err(format_error(
-                path,
-                Reason::truncated("ends inside its NIfTI header: it is truncated"),
-            ));
-        }
-        Ok(())
-    };
-    fill(NIFTI_HEADERS[0], &mut header)?;
-    let Some((version, endian)) = nifti_version(&header) else {
-        let reason = Reason::other(
-            "is no NIfTI file: it begins with neither 348 nor 540, the length of its header",
-        );
-        return Err(format_error(path, reason));
-    };
-    if version == 2 {
-        fill(NIFTI_HEADERS[1], &mut header)?;
-    }
-    let header = Header { bytes: header, version, endian };
+    let header = Header::read(path, &mut reader)?;
     let described = header.described(path, frame)?;
     let (slope, inter) = header.scaling();
     if header.is_pair(path)? {
@@ -66,6 +45,20 @@ pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
     samples(path, described, slope, inter, reader, length.minus(offset))
 }
 
+/// Where the samples of a volume lie, to be read part by part.
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+    let header = Header::read(path, &mut File::open(path).map_err(io_error(path))?)?;
+    let described = header.described(path, frame)?;
+    let scaling = header.scaling();
+    let rows = if header.is_pair(path)? {
+        let offset = header.vox_offset().max(0.0) as u64;
+        Rows::beside(path, described, &[path.with_extension("img")], Some(offset))?
+    } else {
+        Rows::behind(path, described, header.offset(path)?, Some(0))?
+    };
+    Ok(rows.scaled(scaling))
+}
+
 /// The file that holds the samples, where the header has one of its own.
 pub(crate) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
     let start = start_of(path)?;
@@ -84,6 +77,7 @@ fn samples(
     length: Length,
 ) -> Result<Volume, VolumeError> {
     let Described { dims, dtype, endian, frames, .. } = described;
+    dims.bounded()?;
     let each = (dims.samples() * dtype.size()) as u64;
     let (reader, length) = frames.one(path, reader, length, each)?;
     let payload = Payload { reader, length };
@@ -113,6 +107,33 @@ struct Header {
 }
 
 impl Header {
+    /// Reads a header, and nothing behind it.
+    fn read(path: &Path, reader: &mut dyn Read) -> Result<Self, VolumeError> {
+        let mut bytes = Vec::new();
+        let mut fill = |size: usize, bytes: &mut Vec<u8>| -> Result<(), VolumeError> {
+            let left = (size - bytes.len()) as u64;
+            reader.take(left).read_to_end(bytes).map_err(io_error(path))?;
+            if bytes.len() < size {
+                return Err(format_error(
+                    path,
+                    Reason::truncated("ends inside its NIfTI header: it is truncated"),
+                ));
+            }
+            Ok(())
+        };
+        fill(NIFTI_HEADERS[0], &mut bytes)?;
+        let Some((version, endian)) = nifti_version(&bytes) else {
+            let reason = Reason::other(
+                "is no NIfTI file: it begins with neither 348 nor 540, the length of its header",
+            );
+            return Err(format_error(path, reason));
+        };
+        if version == 2 {
+            fill(NIFTI_HEADERS[1], &mut bytes)?;
+        }
+        Ok(Self { bytes, version, endian })
+    }
+
     /// As many bytes as asked for, least significant first.
     fn at<const N: usize>(&self, one: usize, two: usize) -> [u8; N] {
         let place = if self.version == 1 { one } else { two };
@@ -214,7 +235,7 @@ impl Header {
         let sizes = sizes.map(|size| size as u64);
         let frames = Frames::choose(path, &sizes[3..], frame)?;
         let [x, y, z, ..] = sizes;
-        let dims = Dims::new(x, y, z)?;
+        let dims = Dims::unbounded(x, y, z)?;
         let dtype = match self.short(70, 12) {
             2 => Dtype::U8,
             4 => Dtype::I16,

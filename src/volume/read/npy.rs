@@ -7,6 +7,7 @@ use walpha_check::npy::{Header, MAGIC, NpyError};
 
 use super::frames::Frames;
 use super::payload::{Element, Length, Payload};
+use super::rows::Rows;
 use super::{io_error, payload_error_of};
 use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
@@ -42,6 +43,33 @@ pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
     }
     Frames::choose(path, &[], frame)?;
     volume(path, file)
+}
+
+/// Where the samples of a volume lie, to be read part by part: in C order.
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+    let said = |reason: Reason| VolumeError::Format { path: path.into(), reason };
+    let length = std::fs::metadata(path).map_err(io_error(path))?.len();
+    let file = NpyFile::open(path)?;
+    let (beyond, axes) = file.shape.split_at(file.shape.len().saturating_sub(3));
+    let (&[z, y, x], false) = (axes, file.fortran || beyond.len() > 1) else {
+        return Err(said(Reason::unsupported(
+            format!("holds an array of shape {:?} that is not read part by part", file.shape),
+            "save numpy.ascontiguousarray(a), of the axes [z, y, x]",
+        )));
+    };
+    let dims = Dims::unbounded(x, y, z)?;
+    let frames = Frames::choose(path, beyond, frame)?;
+    let each = (dims.samples() * file.dtype.size()) as u64;
+    let all = each.saturating_mul(frames.count);
+    let Length::Exactly(found) = file.payload.length else { unreachable!("of a file") };
+    if found != all {
+        let claim = format!("an array of shape {:?} and type {}", file.shape, file.dtype);
+        return Err(said(Reason::Length { claim, needed: all, found, bound: "" }));
+    }
+    let offset = length - found + frames.index * each;
+    // Booleans are bytes, and no gray levels.
+    let dtype = if file.boolean { Dtype::I8 } else { file.dtype };
+    Ok(Rows::new(path, dims, Frame::VOXEL, dtype, file.endian, offset))
 }
 
 /// The volume an array is.

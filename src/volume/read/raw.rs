@@ -3,14 +3,16 @@ use std::io::{Seek, SeekFrom};
 use std::path::Path;
 
 use ndarray::Array3;
+use serde::{Deserialize, Serialize};
 
 use super::payload::{Length, Payload, PayloadError};
+use super::rows::Rows;
 use super::{io_error, payload_error};
 use crate::advice::{Setting, advice};
 use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// What a file of bare samples does not say of itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RawLayout {
     /// Samples along x (fastest), y and z (slowest).
     pub dims: Dims,
@@ -25,6 +27,7 @@ pub struct RawLayout {
 /// Reads a file that holds `offset` bytes and then exactly the samples of the layout.
 pub(crate) fn read(path: &Path, layout: &RawLayout) -> Result<Volume, VolumeError> {
     let RawLayout { dims, dtype, endian, offset } = *layout;
+    dims.bounded()?;
     let mut reader = File::open(path).map_err(io_error(path))?;
     let length = reader.metadata().map_err(io_error(path))?.len();
     reader.seek(SeekFrom::Start(offset.min(length))).map_err(io_error(path))?;
@@ -39,6 +42,18 @@ pub(crate) fn read(path: &Path, layout: &RawLayout) -> Result<Volume, VolumeErro
         })?;
     let samples = Array3::from_shape_vec(dims.shape(), samples).expect("count was checked");
     Ok(Volume::of_file(samples, Frame::VOXEL)?.with_dtype(dtype))
+}
+
+/// Where the samples of a volume lie, to be read part by part.
+pub(crate) fn rows(path: &Path, layout: &RawLayout) -> Result<Rows, VolumeError> {
+    let RawLayout { dims, dtype, endian, offset } = *layout;
+    let length = std::fs::metadata(path).map_err(io_error(path))?.len();
+    let needed = (dims.samples() * dtype.size()) as u64;
+    if length != offset.saturating_add(needed) {
+        let reason = wrong_length(layout, needed, length);
+        return Err(VolumeError::Format { path: path.into(), reason });
+    }
+    Ok(Rows::new(path, dims, Frame::VOXEL, dtype, endian, offset))
 }
 
 fn wrong_length(layout: &RawLayout, needed: u64, length: u64) -> Reason {

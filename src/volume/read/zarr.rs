@@ -1,6 +1,7 @@
 //! Zarr arrays, and pyramids of them as OME-Zarr lays them out.
 
-use std::path::{Component, Path};
+use std::num::NonZeroU64;
+use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -17,7 +18,10 @@ use super::series::is_zarr;
 use crate::advice::{Setting, advice};
 use crate::progress;
 use crate::shown::shown;
-use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Reason, Volume, VolumeError};
+use crate::volume::source::{Parts, Source};
+use crate::volume::{
+    Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume, VolumeError,
+};
 
 /// Reads a Zarr array of version 2 or 3 in a folder, or a level of an OME-Zarr pyramid (0, the finest,
 /// unless `level` says otherwise).
@@ -30,10 +34,40 @@ pub(crate) fn read(
     level: Option<u32>,
     frame_index: Option<u64>,
 ) -> Result<Volume, VolumeError> {
+    let Stored { array, leading, dims, frame } = open(path, level, frame_index)?;
+    let (dtype, samples) = samples(path, &array, dims.bounded()?, &leading)?;
+    let (endian, encoding) = (Endian::Little, Encoding::Raw);
+    Described { dims, dtype, endian, frame, encoding, frames: Frames::ONE }.volume(samples)
+}
+
+/// The same, to be read part by part.
+pub(crate) fn source(
+    path: &Path,
+    level: Option<u32>,
+    frame_index: Option<u64>,
+) -> Result<Source, VolumeError> {
+    let Stored { array, leading, dims, frame } = open(path, level, frame_index)?;
+    let dtype = dtype(path, array.data_type())?;
+    let axes = array.dimensionality();
+    let chunk = array.chunk_shape(&vec![0; axes]).map_err(|error| damaged(path, &error))?;
+    let grain = [1, 2, 3].map(|axis| chunk[axes - axis].get() as usize);
+    check_chunk(path, &chunk, dims)?;
+    let parts = ZarrParts { path: path.into(), array, leading };
+    Ok(Source::new(dims, frame, dtype, grain, Box::new(parts)))
+}
+
+/// An array of a store, and where the volume in it is.
+struct Stored {
+    array: Array<FilesystemStore>,
+    /// Indices along the axes before the last three.
+    leading: Vec<u64>,
+    dims: Dims,
+    frame: Frame,
+}
+
+fn open(path: &Path, level: Option<u32>, frame_index: Option<u64>) -> Result<Stored, VolumeError> {
     let said = |reason: Reason| format_error(path, reason);
-    let damaged = |error: &dyn std::fmt::Display| {
-        said(Reason::damaged(format!("is a Zarr store that cannot be read ({error})")))
-    };
+    let damaged = |error: &dyn std::fmt::Display| damaged(path, error);
     let store = Arc::new(FilesystemStore::new(path).map_err(|error| damaged(&error))?);
     if is_array(path) {
         if let Some(level) = level {
@@ -43,7 +77,7 @@ pub(crate) fn read(
             )));
         }
         let array = Array::open(store, "/").map_err(|error| damaged(&error))?;
-        return volume(path, &array, &[], Coordinates::VOXEL, frame_index);
+        return stored(path, array, &[], Coordinates::VOXEL, frame_index);
     }
     let group = Group::open(Arc::clone(&store), "/").map_err(|error| damaged(&error))?;
     let attributes = Value::Object(group.attributes().clone());
@@ -87,7 +121,7 @@ pub(crate) fn read(
         transforms.into_iter().filter_map(Value::as_array).flatten().collect();
     let unit = unit(&pyramid["axes"]).map_err(said)?;
     let coordinates = Coordinates { unit, ..Coordinates::default() };
-    volume(path, &array, &transforms, coordinates, frame_index)
+    stored(path, array, &transforms, coordinates, frame_index)
 }
 
 /// The unit of the axes of space, which must have one in common.
@@ -124,14 +158,19 @@ fn children(folder: &Path) -> String {
     if names.is_empty() { "nothing".to_owned() } else { names.join(", ") }
 }
 
+fn damaged(path: &Path, error: &dyn std::fmt::Display) -> VolumeError {
+    let what = format!("is a Zarr store that cannot be read ({error})");
+    format_error(path, Reason::damaged(what))
+}
+
 /// A volume of an array, placed by the transformations of OME-Zarr, the first first.
-fn volume(
+fn stored(
     path: &Path,
-    array: &Array<FilesystemStore>,
+    array: Array<FilesystemStore>,
     transforms: &[&Value],
     coordinates: Coordinates,
     frame_index: Option<u64>,
-) -> Result<Volume, VolumeError> {
+) -> Result<Stored, VolumeError> {
     let said = |reason: Reason| format_error(path, reason);
     let shape = array.shape().to_vec();
     let [before @ .., z, y, x] = &shape[..] else {
@@ -144,7 +183,7 @@ fn volume(
     for (index, &size) in leading.iter_mut().zip(before).rev() {
         (*index, left) = (left % size, left / size);
     }
-    let dims = Dims::new(*x, *y, *z)?;
+    let dims = Dims::unbounded(*x, *y, *z)?;
     let (mut scale, mut origin) = ([1.0; 3], [0.0; 3]);
     for transform in transforms {
         let numbers = |name: &str| -> Option<[f64; 3]> {
@@ -172,9 +211,25 @@ fn volume(
         }
     }
     let frame = frame(path, origin, diagonal(scale), coordinates)?;
-    let (dtype, samples) = samples(path, array, dims, &leading)?;
-    let (endian, encoding) = (Endian::Little, Encoding::Raw);
-    Described { dims, dtype, endian, frame, encoding, frames: Frames::ONE }.volume(samples)
+    Ok(Stored { array, leading, dims, frame })
+}
+
+/// Calls a method with what turns samples of this type into `f32`.
+macro_rules! by_type {
+    ($dtype:expr, $object:ident.$read:ident $(, $argument:expr)*) => {
+        match $dtype {
+            Dtype::U8 => $object.$read($($argument,)* |v: u8| v.into()),
+            Dtype::I8 => $object.$read($($argument,)* |v: i8| v.into()),
+            Dtype::U16 => $object.$read($($argument,)* |v: u16| v.into()),
+            Dtype::I16 => $object.$read($($argument,)* |v: i16| v.into()),
+            Dtype::U32 => $object.$read($($argument,)* |v: u32| v as f32),
+            Dtype::I32 => $object.$read($($argument,)* |v: i32| v as f32),
+            Dtype::U64 => $object.$read($($argument,)* |v: u64| v as f32),
+            Dtype::I64 => $object.$read($($argument,)* |v: i64| v as f32),
+            Dtype::F32 => $object.$read($($argument,)* |v: f32| v),
+            Dtype::F64 => $object.$read($($argument,)* |v: f64| v as f32),
+        }
+    };
 }
 
 fn samples(
@@ -183,18 +238,24 @@ fn samples(
     dims: Dims,
     leading: &[u64],
 ) -> Result<(Dtype, Vec<f32>), VolumeError> {
+    let dtype = dtype(path, array.data_type())?;
     let read = Read { path, array, dims, leading };
-    Ok(match array.data_type() {
-        DataType::UInt8 => (Dtype::U8, read.all(|v: u8| v.into())?),
-        DataType::Int8 => (Dtype::I8, read.all(|v: i8| v.into())?),
-        DataType::UInt16 => (Dtype::U16, read.all(|v: u16| v.into())?),
-        DataType::Int16 => (Dtype::I16, read.all(|v: i16| v.into())?),
-        DataType::UInt32 => (Dtype::U32, read.all(|v: u32| v as f32)?),
-        DataType::Int32 => (Dtype::I32, read.all(|v: i32| v as f32)?),
-        DataType::UInt64 => (Dtype::U64, read.all(|v: u64| v as f32)?),
-        DataType::Int64 => (Dtype::I64, read.all(|v: i64| v as f32)?),
-        DataType::Float32 => (Dtype::F32, read.all(|v: f32| v)?),
-        DataType::Float64 => (Dtype::F64, read.all(|v: f64| v as f32)?),
+    Ok((dtype, by_type!(dtype, read.all)?))
+}
+
+/// The type of samples.
+fn dtype(path: &Path, stored: &DataType) -> Result<Dtype, VolumeError> {
+    Ok(match stored {
+        DataType::UInt8 => Dtype::U8,
+        DataType::Int8 => Dtype::I8,
+        DataType::UInt16 => Dtype::U16,
+        DataType::Int16 => Dtype::I16,
+        DataType::UInt32 => Dtype::U32,
+        DataType::Int32 => Dtype::I32,
+        DataType::UInt64 => Dtype::U64,
+        DataType::Int64 => Dtype::I64,
+        DataType::Float32 => Dtype::F32,
+        DataType::Float64 => Dtype::F64,
         other => {
             let reason = Reason::unsupported(
                 format!(
@@ -212,6 +273,48 @@ fn samples(
 const PIECE: u64 = 1 << 22;
 /// A chunk is decoded as a whole; larger ones must be of an array of their size.
 const MOST_IN_CHUNK: u64 = 1 << 26;
+
+fn check_chunk(path: &Path, chunk: &[NonZeroU64], dims: Dims) -> Result<(), VolumeError> {
+    let in_chunk = chunk.iter().fold(1u64, |product, size| product.saturating_mul(size.get()));
+    if in_chunk > MOST_IN_CHUNK.max(8 * dims.samples() as u64) {
+        let what = format!(
+            "has chunks of {in_chunk} samples, far more than the array: it is damaged, or store it \
+             in smaller chunks"
+        );
+        return Err(format_error(path, Reason::damaged(what)));
+    }
+    Ok(())
+}
+
+/// An array that is read part by part.
+struct ZarrParts {
+    path: PathBuf,
+    array: Array<FilesystemStore>,
+    /// Indices along the axes before the last three.
+    leading: Vec<u64>,
+}
+
+impl Parts for ZarrParts {
+    fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
+        let dtype = dtype(&self.path, self.array.data_type())?;
+        let mut ranges: Vec<_> = self.leading.iter().map(|&i| i..i + 1).collect();
+        ranges.extend([2, 1, 0].map(|k| first[k] as u64..(first[k] + size[k]) as u64));
+        let part = ArraySubset::new_with_ranges(&ranges);
+        by_type!(dtype, self.part, &part)
+    }
+}
+
+impl ZarrParts {
+    fn part<T: ElementOwned + Copy>(
+        &self,
+        part: &ArraySubset,
+        convert: impl Fn(T) -> f32,
+    ) -> Result<Vec<f32>, VolumeError> {
+        let read = self.array.retrieve_array_subset_elements::<T>(part);
+        let samples = read.map_err(|error| damaged(&self.path, &error))?;
+        Ok(samples.into_iter().map(convert).collect())
+    }
+}
 
 struct Read<'a> {
     path: &'a Path,
@@ -234,13 +337,7 @@ impl Read<'_> {
             said(Reason::damaged(format!("is a Zarr array that cannot be read ({error})")))
         };
         let chunk = array.chunk_shape(&vec![0; axes]).map_err(|error| damaged(&error))?;
-        let in_chunk = chunk.iter().fold(1u64, |product, size| product.saturating_mul(size.get()));
-        if in_chunk > MOST_IN_CHUNK.max(8 * dims.samples() as u64) {
-            return Err(said(Reason::damaged(format!(
-                "has chunks of {in_chunk} samples, far more than the array: it is damaged, \
-                     or store it in smaller chunks"
-            ))));
-        }
+        check_chunk(path, &chunk, *dims)?;
         let [thick, high] = [3, 2].map(|axis| chunk[axes - axis].get());
         let mut samples = Vec::new();
         samples.try_reserve_exact(dims.samples()).map_err(|_| {

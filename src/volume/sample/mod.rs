@@ -5,6 +5,7 @@ mod skull;
 
 use std::path::Path;
 
+pub(super) use phantom::PhantomParts;
 pub use phantom::phantom;
 
 use super::{Frame, ReadOptions, Volume, VolumeError, read};

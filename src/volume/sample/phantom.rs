@@ -2,7 +2,8 @@ use ndarray::Array3;
 use rayon::prelude::*;
 
 use crate::memory::room;
-use crate::volume::{Dims, Frame, Volume, VolumeError};
+use crate::volume::source::{Parts, Source};
+use crate::volume::{Dims, Dtype, Frame, Volume, VolumeError};
 
 /// Half the head's box is 1; an edge fades over this much, one voxel of a 64³ phantom.
 const SOFTNESS: f64 = 1.0 / 32.0;
@@ -28,17 +29,44 @@ const TEETH: f64 = 245.0;
 pub fn phantom(size: u64) -> Result<Volume, VolumeError> {
     let dims = Dims::new(size, size, size)?;
     let n = dims.x();
-    let at = |i: usize| (2 * i + 1) as f64 / n as f64 - 1.0;
     let mut samples = room(dims.samples(), || format!("a phantom of {dims} samples"))?;
     samples.resize(dims.samples(), 0f32);
     samples.par_chunks_mut(n).enumerate().for_each(|(row, samples)| {
-        let (y, z) = (at(row % n), at(row / n));
-        for (x, sample) in samples.iter_mut().enumerate() {
-            *sample = gray([at(x), y, z]) as f32;
-        }
+        fill(n, [0, row % n, row / n], samples);
     });
     let samples = Array3::from_shape_vec(dims.shape(), samples).expect("as many as dims say");
     Ok(Volume::new(samples, Frame::VOXEL)?.with_gray_levels())
+}
+
+/// A piece of a row of the phantom of `n` samples along each axis, from a voxel on.
+fn fill(n: usize, [x, y, z]: [usize; 3], samples: &mut [f32]) {
+    let at = |i: usize| (2 * i + 1) as f64 / n as f64 - 1.0;
+    let (y, z) = (at(y), at(z));
+    for (x, sample) in (x..).zip(samples) {
+        *sample = gray([at(x), y, z]) as f32;
+    }
+}
+
+/// The phantom part by part, of any size.
+pub(in super::super) struct PhantomParts(usize);
+
+impl PhantomParts {
+    pub fn source(size: u64) -> Result<Source, VolumeError> {
+        let dims = Dims::unbounded(size, size, size)?;
+        let parts = Box::new(Self(dims.x()));
+        Ok(Source::new(dims, Frame::VOXEL, Dtype::F32, [1; 3], parts).with_gray_levels(true))
+    }
+}
+
+impl Parts for PhantomParts {
+    fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
+        let mut samples = vec![0.0; size.iter().product()];
+        samples.par_chunks_mut(size[0]).enumerate().for_each(|(row, samples)| {
+            let [x, y, z] = first;
+            fill(self.0, [x, y + row % size[1], z + row / size[1]], samples);
+        });
+        Ok(samples)
+    }
 }
 
 /// The gray level at a point of the box −1..1 in each axis.

@@ -12,6 +12,8 @@ mod raw;
 mod tiff;
 #[cfg(feature = "formats")]
 mod vti;
+#[cfg(feature = "zarr")]
+mod zarr;
 
 #[cfg(feature = "formats")]
 pub(super) use metaimage::metaimage;
@@ -25,3 +27,5 @@ pub(super) use raw::raw;
 pub(super) use tiff::tiff;
 #[cfg(feature = "formats")]
 pub(super) use vti::vti;
+#[cfg(feature = "zarr")]
+pub(super) use zarr::zarr;

@@ -242,8 +242,11 @@ impl<'a> Walker<'a> {
             }
             if to > smallest && (class != Class::Exterior || self.local.exterior) {
                 self.edges.push(EdgeRow { to, class, corner });
-                if class != Class::Exterior {
-                    self.components.unite(v, neighbour);
+            }
+            if class != Class::Exterior {
+                self.components.unite(v, neighbour);
+                if !self.local.owned(neighbour) {
+                    self.owned.border.extend([to, smallest]);
                 }
             }
         }

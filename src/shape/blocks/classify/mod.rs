@@ -18,7 +18,8 @@ use crate::triangulation::{Predicates, Triangulation};
 
 use around::Walker;
 use cells::{Boundary, State};
-pub(super) use rows::{Dimension, Long, Owned, Rows, Shelf, Shelves, Side};
+pub(crate) use rows::Side;
+pub(super) use rows::{Dimension, Long, Owned, Rows, Shelf, Shelves};
 use sheets::Sheets;
 use stars::Stars;
 

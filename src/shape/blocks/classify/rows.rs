@@ -18,6 +18,9 @@ pub(in super::super) struct Owned {
     pub shared: Vec<Side>,
     /// Points, each with another one of its component.
     pub joined: Vec<[u32; 2]>,
+    /// The ends of edges of the shape between points of this block and of others, some of them several
+    /// times.
+    pub border: Vec<u32>,
     /// On a torus: an edge that spans half of the box or more.
     pub long: Option<Long>,
 }
@@ -116,7 +119,7 @@ impl<const M: usize> Rows<M> {
 }
 
 /// One side of a facet, or a singular edge, that several blocks know.
-pub(in super::super) struct Side {
+pub(crate) struct Side {
     /// Sorted input indices; an edge repeats its last.
     pub simplex: [u32; 3],
     pub side: u32,

@@ -10,6 +10,7 @@ use super::described::{Described, Encoding};
 use super::detached::{self, beside};
 use super::frames::Frames;
 use super::lines::Lines;
+use super::rows::Rows;
 use super::{format_error, io_error};
 use crate::volume::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
 use files::named;
@@ -50,6 +51,18 @@ pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
             let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
             detached::read(path, described, &beside(path, names), skip)
         }
+    }
+}
+
+/// Where the samples of a volume lie, to be read part by part.
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+    let header = Header::read(path, &mut lines)?;
+    let described = header.described(path, frame)?;
+    let skip = header.skip(path, &described)?;
+    match &header.files {
+        None => Rows::behind(path, described, lines.bytes(), skip),
+        Some(names) => Rows::beside(path, described, &beside(path, names), skip),
     }
 }
 
@@ -157,7 +170,7 @@ impl Header {
         let beyond: Vec<u64> = axes.iter().skip(3).map(|&(_, size)| size).collect();
         axes.truncate(3);
         let size = |axis: usize| axes.get(axis).map_or(1, |&(_, size)| size);
-        let dims = Dims::new(size(0), size(1), size(2))?;
+        let dims = Dims::unbounded(size(0), size(1), size(2))?;
         let kept: Vec<usize> = axes.iter().map(|&(axis, _)| axis).collect();
 
         let name = self.needed(path, "type")?;

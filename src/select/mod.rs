@@ -1,6 +1,15 @@
-//! Floor 0: the largest of many values, as few or as many as a budget allows.
+//! Floor 0: the largest of many values, as few or as many as a budget allows; of values in memory at once
+//! ([`Cut::new`]), or piece by piece ([`Search`]). Energies are summed exactly, so both find the same.
+
+mod budget;
+mod search;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use budget::Spent;
+pub(crate) use budget::{Bin, Budget, Dropped};
+pub(crate) use search::{Counts, Search};
 
 /// Values counted into one histogram. Fixed, so that sums are the same on any number of threads.
 const CHUNK: usize = 1 << 17;
@@ -8,56 +17,48 @@ const CHUNK: usize = 1 << 17;
 /// and a bit of the mantissa first.
 const DIGITS: [(u32, u32); 6] = [(51, 12), (41, 10), (31, 10), (21, 10), (11, 10), (0, 11)];
 
-/// What may be dropped, smallest magnitudes first.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Budget {
-    /// This many values.
-    Count(u64),
-    /// Values whose squares sum to no more than this.
-    Energy(f64),
-}
-
 /// Where values in order of decreasing magnitude, equal ones in order of their index, are cut into
 /// those that stay and those that are dropped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Cut {
     /// The bits of the magnitude at the cut: larger ones stay, smaller ones are dropped.
     magnitude: u64,
     /// Values of just this magnitude stay below this index.
-    ties_end: usize,
+    ties_end: u64,
 }
 
 impl Cut {
-    /// Cuts values so that as many are dropped as the budget allows. NaN takes no part, and does
-    /// not stay; infinities must not occur.
+    /// Cuts values so that as many are dropped as the budget allows; says what is dropped. NaN takes no part,
+    /// and does not stay; infinities must not occur.
     ///
     /// Magnitudes are ordered as their bits are, so this is a radix selection: a histogram of
     /// counts and energies by the leading digit, then of what agrees with it by the next. O(n).
-    pub fn new(values: &[f64], mut budget: Budget) -> Self {
+    pub fn new(values: &[f64], budget: Budget) -> (Self, Dropped) {
+        let mut spent = Spent::of(budget);
         let (mut magnitude, mut ties) = (0, 0);
         for (shift, width) in DIGITS {
             let bins = histogram(values, magnitude, shift, width);
-            let Some(digit) = bins.iter().position(|bin| !budget.take(bin)) else {
-                // All values, or (sums of parts are rounded otherwise than the sum of all) all of
-                // the last digit: the cut is above them.
+            let exponent = |digit: usize| (magnitude | (digit as u64) << shift) >> EXPONENT;
+            let found = bins.iter().enumerate().position(|(i, bin)| !spent.take(bin, exponent(i)));
+            let Some(digit) = found else {
                 let below = (1 << (shift + width)) - 1;
-                return Self { magnitude: magnitude | below, ties_end: 0 };
+                return (Self { magnitude: magnitude | below, ties_end: 0 }, spent.dropped());
             };
             magnitude |= (digit as u64) << shift;
             ties = bins[digit].count;
         }
-        let stay = ties - budget.equal(f64::from_bits(magnitude).powi(2), ties);
+        let stay = ties - spent.equal(magnitude, ties);
         let ties_end = match stay {
             0 => 0,
-            _ if stay == ties => values.len(),
-            _ => place_after(stay, values, magnitude),
+            _ if stay == ties => u64::MAX,
+            _ => place_after(stay, values, magnitude) as u64,
         };
-        Self { magnitude, ties_end }
+        (Self { magnitude, ties_end }, spent.dropped())
     }
 
     /// Whether the value at this index stays.
     #[inline]
-    pub fn keeps(self, value: f64, index: usize) -> bool {
+    pub fn keeps(self, value: f64, index: u64) -> bool {
         let bits = magnitude(value);
         let above = bits > self.magnitude && bits < INFINITY;
         above || (bits == self.magnitude && index < self.ties_end)
@@ -66,25 +67,12 @@ impl Cut {
 
 /// The bits of an infinite magnitude. Those of NaN are larger.
 const INFINITY: u64 = f64::INFINITY.to_bits();
+/// Bits of a magnitude below its exponent.
+const EXPONENT: u32 = 52;
 
 #[inline(always)]
 fn magnitude(value: f64) -> u64 {
     value.to_bits() & (u64::MAX >> 1)
-}
-
-#[derive(Clone, Copy, Default)]
-struct Bin {
-    count: u64,
-    energy: f64,
-}
-
-impl Bin {
-    #[inline(always)]
-    fn add(&mut self, bits: u64) {
-        let value = f64::from_bits(bits);
-        self.count += 1;
-        self.energy += value * value;
-    }
 }
 
 /// Sorts values that agree with `prefix` above the digit at `shift` by this digit.
@@ -99,7 +87,7 @@ fn histogram(values: &[f64], prefix: u64, shift: u32, width: u32) -> Vec<Bin> {
     for chunk in chunks {
         for (total, bin) in total.iter_mut().zip(chunk) {
             total.count += bin.count;
-            total.energy += bin.energy;
+            total.units += bin.units;
         }
     }
     if above == 63 {
@@ -124,7 +112,7 @@ fn leading_digits(chunk: &[f64], shift: u32, width: u32) -> Vec<Bin> {
     }
     for (bin, other) in bins.iter_mut().zip(others) {
         bin.count += other.count;
-        bin.energy += other.energy;
+        bin.units += other.units;
     }
     bins
 }
@@ -159,31 +147,4 @@ fn place_after(nth: u64, values: &[f64], wanted: u64) -> usize {
         left -= count;
     }
     values.len()
-}
-
-impl Budget {
-    /// Drops a whole bin, if the budget allows.
-    fn take(&mut self, bin: &Bin) -> bool {
-        match self {
-            Self::Count(left) if bin.count <= *left => *left -= bin.count,
-            Self::Energy(left) if bin.energy <= *left => *left -= bin.energy,
-            _ => return false,
-        }
-        true
-    }
-
-    /// How many of `count` values, all of this square, the budget allows to drop.
-    fn equal(self, square: f64, count: u64) -> u64 {
-        match self {
-            Self::Count(left) => left.min(count),
-            Self::Energy(_) if square == 0.0 => count,
-            // The quotient is rounded, so the answer is it or a neighbour.
-            Self::Energy(left) => {
-                let quotient = ((left / square) as u64).min(count);
-                let fits = |drop: &u64| *drop as f64 * square <= left;
-                let around = quotient.saturating_sub(1)..=count.min(quotient + 1);
-                around.rev().find(fits).unwrap_or(0)
-            }
-        }
-    }
 }

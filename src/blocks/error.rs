@@ -1,0 +1,138 @@
+use std::path::PathBuf;
+
+use crate::advice::Advice;
+use crate::export::TargetError;
+use crate::haar::HaarError;
+use crate::memory::NoMemory;
+use crate::pipeline::PipelineError;
+use crate::points::PointsError;
+use crate::shape::ShapeError;
+use crate::shown::shown;
+use crate::volume::VolumeError;
+
+/// Why work in blocks cannot be done.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BlocksError {
+    /// The volume cannot be read.
+    #[error(transparent)]
+    Volume(#[from] VolumeError),
+    /// The wavelet stage.
+    #[error(transparent)]
+    Haar(#[from] HaarError),
+    /// Selection or weights.
+    #[error(transparent)]
+    Points(#[from] PointsError),
+    /// α.
+    #[error(transparent)]
+    Pipeline(#[from] PipelineError),
+    /// The shape.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Target(#[from] TargetError),
+    /// Memory cannot be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
+    /// A file of the plan's folder cannot be read.
+    #[error("cannot read {}: {source}", shown(path))]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file of the plan's folder is not what it should be.
+    #[error("{}: {what}", shown(path))]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        what: String,
+    },
+    /// A block was made by another plan.
+    #[error("{} belongs to another plan", shown(path))]
+    OtherPlan {
+        /// Its file.
+        path: PathBuf,
+    },
+    /// Blocks are not there yet.
+    #[error("{} of {all} blocks are missing: {}", missing.len(), first(missing))]
+    Missing {
+        /// Which.
+        missing: Vec<usize>,
+        /// How many there should be.
+        all: usize,
+    },
+    /// There is no such block.
+    #[error("there is no block {index}: the plan has {count}, from 0 to {}", count - 1)]
+    NoBlock {
+        /// The one asked for.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// The input is not what it was when the plan was made.
+    #[error(
+        "block {index} has {found} points where the plan counted {planned}: the input has changed \
+         since it was planned"
+    )]
+    Changed {
+        /// The block.
+        index: usize,
+        /// Its points.
+        found: u64,
+        /// Those planned.
+        planned: u64,
+    },
+    /// What takes the whole volume or all points at once.
+    #[error("{what} is not local, so that it cannot be computed in blocks")]
+    NotLocal {
+        /// What was asked for.
+        what: String,
+        /// What to do.
+        next: &'static str,
+    },
+    /// More than one file can hold.
+    #[error("{what} pass 32-bit indices, so that they fit no single file")]
+    TooLarge {
+        /// What.
+        what: String,
+    },
+}
+
+/// The first few of a list.
+fn first(numbers: &[usize]) -> String {
+    const SHOWN: usize = 20;
+    let shown: Vec<String> = numbers.iter().take(SHOWN).map(usize::to_string).collect();
+    let more = if numbers.len() > SHOWN { ", …" } else { "" };
+    shown.join(", ") + more
+}
+
+impl BlocksError {
+    pub(super) fn not_local(what: &str, next: &'static str) -> Self {
+        Self::NotLocal { what: what.to_owned(), next }
+    }
+
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::Volume(error) => error.advice(),
+            Self::Haar(error) => error.advice(),
+            Self::Points(error) => error.advice(),
+            Self::Pipeline(error) => error.advice(),
+            Self::Shape(error) => error.advice(),
+            Self::Target(error) => Some(error.advice()),
+            Self::Memory(lack) => Some(lack.advice()),
+            Self::Io { .. } => Some("name a folder that `walpha blocks plan` made".into()),
+            Self::Damaged { .. } => Some("remove it, and run its block again".into()),
+            Self::OtherPlan { .. } => Some("remove it, or use a folder for each plan".into()),
+            Self::Missing { .. } => Some("run these, then merge again".into()),
+            Self::NoBlock { .. } => None,
+            Self::Changed { .. } => Some("plan again".into()),
+            Self::NotLocal { next, .. } => Some((*next).into()),
+            Self::TooLarge { .. } => Some("write .pvtu or .pvtp".into()),
+        }
+    }
+}

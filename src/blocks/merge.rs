@@ -1,0 +1,281 @@
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use super::file::BlockFile;
+use super::run::{BlockComponent, BlockSheet, Facts, Met, Weights};
+use super::{BlocksError, Plan};
+use crate::math::Sum;
+use crate::points::WeightSummary;
+use crate::shape::{
+    Betti, ByClass, Component, ComponentSums, Measures, SheetSums, UnionFind, told,
+};
+
+/// What a shape in blocks is as a whole.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Merged {
+    /// How many points were selected.
+    pub points: u64,
+    /// Points that are not vertices of the triangulation; `None` where there are several blocks, which do
+    /// not know.
+    pub hidden: Option<u64>,
+    /// The weights ω.
+    pub weights: WeightSummary,
+    /// Cells in the shape.
+    pub cells: usize,
+    /// Facets by class; those outside are not counted.
+    pub facets: ByClass<usize>,
+    /// Edges by class.
+    pub edges: ByClass<usize>,
+    /// Vertices by class.
+    pub vertices: ByClass<usize>,
+    /// Betti numbers.
+    pub betti: Betti,
+    /// Volume and areas.
+    pub measures: Measures,
+    /// The components, in the order of their smallest vertices.
+    pub components: Vec<Component>,
+    /// How many points of other blocks were looked at, all blocks together.
+    pub halo: u64,
+    /// For each block the common numbers of its components and of its sheets.
+    pub(super) numbers: Vec<Numbers>,
+    /// How many sheets there are.
+    pub(super) sheets: u32,
+}
+
+/// The common numbers of a block's components and sheets.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Numbers {
+    pub components: Vec<u32>,
+    pub sheets: Vec<u32>,
+}
+
+/// Merges the blocks of a plan: unites components and sheets over the borders, and adds up the rest. Rows
+/// of simplices are not read.
+///
+/// Memory for what the blocks tell about their borders, some 50 bytes for each point there.
+///
+/// # Errors
+/// Blocks are missing or belong to another plan.
+pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
+    let all = plan.blocks.len();
+    let mut missing = Vec::new();
+    let mut union = Union::default();
+    for block in 0..all {
+        match BlockFile::open(plan, block) {
+            Ok(file) if missing.is_empty() => union.take(&file)?,
+            Ok(_) => {}
+            Err(BlocksError::Io { source, .. })
+                if source.kind() == std::io::ErrorKind::NotFound =>
+            {
+                missing.push(block);
+            }
+            Err(error) => return Err(error),
+        }
+        crate::progress::report(block as u64 + 1, all as u64);
+    }
+    if !missing.is_empty() {
+        return Err(BlocksError::Missing { missing, all });
+    }
+    let hidden = match all {
+        1 => Some(BlockFile::open(plan, 0)?.read::<u64>("hidden")?.len() as u64),
+        _ => None,
+    };
+    Ok(union.merged(hidden))
+}
+
+/// What blocks tell, side by side.
+#[derive(Default)]
+struct Union {
+    facts: Vec<Facts>,
+    /// The components of all blocks, and pairs that are one.
+    components: u32,
+    sheets: u32,
+    same_components: Vec<[u32; 2]>,
+    same_sheets: Vec<[u32; 2]>,
+    /// Who was first to tell of a point, and of a side of a facet or an edge.
+    points: HashMap<u64, u32>,
+    sides: HashMap<([u64; 3], u32), u32>,
+}
+
+impl Union {
+    fn take(&mut self, file: &BlockFile) -> Result<(), BlocksError> {
+        let points = file.read::<u64>("border_points")?;
+        for (point, component) in points.into_iter().zip(file.read::<u32>("border_components")?) {
+            let component = self.components + component;
+            same(self.points.entry(point), component, &mut self.same_components);
+        }
+        let simplices = file.read::<[u64; 3]>("shared_simplices")?;
+        let sides = simplices.into_iter().zip(file.read::<u32>("shared_sides")?);
+        for (side, sheet) in sides.zip(file.read::<u32>("shared_sheets")?) {
+            same(self.sides.entry(side), self.sheets + sheet, &mut self.same_sheets);
+        }
+        self.components += file.facts.components.len() as u32;
+        self.sheets += file.facts.sheets.len() as u32;
+        self.facts.push(file.facts.clone());
+        Ok(())
+    }
+
+    fn merged(self, hidden: Option<u64>) -> Merged {
+        let Self { facts, components: all_components, sheets: all_sheets, .. } = &self;
+        let components = united(*all_components, &self.same_components);
+        let sheets = united(*all_sheets, &self.same_sheets);
+        let parts = facts.iter().flat_map(|facts| &facts.components);
+        let (component_numbers, components) = number_components(parts, components);
+        // The components of a block's sheets are counted within it.
+        let mut offset = 0;
+        let mut parts = Vec::new();
+        for facts in facts {
+            parts.extend(facts.sheets.iter().map(|sheet| (sheet, offset)));
+            offset += facts.components.len();
+        }
+        let (sheet_numbers, sheets) = number_sheets(&parts, sheets, &component_numbers);
+        let count = sheets.len() as u32;
+        let mut numbers = Vec::new();
+        let (mut a, mut b) = (component_numbers.into_iter(), sheet_numbers.into_iter());
+        for facts in facts {
+            let components = a.by_ref().take(facts.components.len()).collect();
+            let sheets = b.by_ref().take(facts.sheets.len()).collect();
+            numbers.push(Numbers { components, sheets });
+        }
+        let totals = Totals::of(facts);
+        let measures = ComponentSums::measures(components.iter());
+        let lone = totals.vertices.singular as u64;
+        let b0 = components.len() as u64;
+        let b2 = u64::from(count) + lone - b0;
+        let euler = totals.vertices.in_shape() as i64 - totals.edges.in_shape() as i64
+            + totals.facets.in_shape() as i64
+            - totals.cells as i64;
+        let b1 = ((b0 + b2) as i64 - euler) as u64;
+        let with_facets = sheets.into_iter().filter(|(_, _, sums)| *sums != SheetSums::default());
+        Merged {
+            points: totals.points,
+            hidden,
+            weights: totals.weights,
+            cells: totals.cells,
+            facets: totals.facets,
+            edges: totals.edges,
+            vertices: totals.vertices,
+            betti: Betti::in_space(b0, b1, b2),
+            measures,
+            components: told(components, Some(with_facets.collect())),
+            halo: totals.halo,
+            numbers,
+            sheets: count,
+        }
+    }
+}
+
+/// Notes that what is told now is what was told before.
+fn same<K>(entry: Entry<'_, K, u32>, now: u32, pairs: &mut Vec<[u32; 2]>) {
+    match entry {
+        Entry::Vacant(vacant) => _ = vacant.insert(now),
+        Entry::Occupied(before) => pairs.push([*before.get(), now]),
+    }
+}
+
+fn united(count: u32, pairs: &[[u32; 2]]) -> UnionFind {
+    let mut sets = UnionFind::new(count as usize);
+    pairs.iter().for_each(|&[a, b]| _ = sets.unite(a, b));
+    sets
+}
+
+/// Numbers components in the order of their smallest vertices: for each part its number, and the
+/// components. A part without vertices has none of its own.
+fn number_components<'a>(
+    parts: impl Iterator<Item = &'a BlockComponent>,
+    mut sets: UnionFind,
+) -> (Vec<u32>, Vec<ComponentSums>) {
+    let mut whole: Vec<Option<BlockComponent>> = vec![None; sets.len()];
+    for (part, i) in parts.zip(0..) {
+        match &mut whole[sets.find(i) as usize] {
+            Some(whole) => {
+                whole.first = whole.first.min(part.first);
+                whole.sums.join(&part.sums);
+            }
+            none => *none = Some(part.clone()),
+        }
+    }
+    let mut order: Vec<(u64, u32, ComponentSums)> = (0..)
+        .zip(whole)
+        .filter_map(|(root, whole)| whole.map(|whole| (whole.first, root, whole.sums)))
+        .collect();
+    order.sort_unstable_by_key(|&(first, ..)| first);
+    let mut numbers = vec![0; sets.len()];
+    order.iter().zip(0..).for_each(|(&(_, root, _), number)| numbers[root as usize] = number);
+    let numbers = (0..sets.len() as u32).map(|i| numbers[sets.find(i) as usize]).collect();
+    (numbers, order.into_iter().map(|(_, _, sums)| sums).collect())
+}
+
+/// Numbers sheets in the order in which they are met: for each part its number, and the sheets with their
+/// components. A part comes with the number of the first component of its block.
+fn number_sheets(
+    parts: &[(&BlockSheet, usize)],
+    mut sets: UnionFind,
+    components: &[u32],
+) -> (Vec<u32>, Vec<(u32, usize, SheetSums)>) {
+    let mut whole: Vec<Option<(Met, usize, SheetSums)>> = vec![None; sets.len()];
+    for (&(part, offset), i) in parts.iter().zip(0..) {
+        // A part without rows of its own has been told of by a neighbour, which has some.
+        let Some(met) = part.met else { continue };
+        let component = components[offset + met.component as usize] as usize;
+        match &mut whole[sets.find(i) as usize] {
+            Some((first, _, sums)) => {
+                *first = (*first).min(met);
+                sums.join(&part.sums);
+            }
+            none => *none = Some((met, component, part.sums.clone())),
+        }
+    }
+    let mut order: Vec<(Met, u32, usize, SheetSums)> = (0..)
+        .zip(whole)
+        .filter_map(|(root, whole)| whole.map(|(met, c, sums)| (met, root, c, sums)))
+        .collect();
+    order.sort_unstable_by_key(|&(met, ..)| met);
+    let mut numbers = vec![0; sets.len()];
+    order.iter().zip(0..).for_each(|(&(_, root, ..), number)| numbers[root as usize] = number);
+    let numbers = (0..sets.len() as u32).map(|i| numbers[sets.find(i) as usize]).collect();
+    let sheets =
+        (0..).zip(order).map(|(number, (_, _, component, sums))| (number, component, sums));
+    (numbers, sheets.collect())
+}
+
+/// What is added up.
+#[derive(Default)]
+struct Totals {
+    points: u64,
+    halo: u64,
+    cells: usize,
+    facets: ByClass<usize>,
+    edges: ByClass<usize>,
+    vertices: ByClass<usize>,
+    weights: WeightSummary,
+}
+
+impl Totals {
+    fn of(all: &[Facts]) -> Self {
+        let mut totals = Self::default();
+        let (mut min, mut max, mut sum) = (f64::INFINITY, f64::NEG_INFINITY, Sum::default());
+        let add = |to: &mut ByClass<usize>, [interior, regular, singular]: [usize; 3]| {
+            to.interior += interior;
+            to.regular += regular;
+            to.singular += singular;
+        };
+        for facts in all {
+            totals.points += facts.points;
+            totals.halo += facts.halo;
+            totals.cells += facts.cells;
+            add(&mut totals.facets, facts.facets);
+            add(&mut totals.edges, facts.edges);
+            add(&mut totals.vertices, facts.vertices);
+            if let Some(Weights { min: least, max: most, sum: more }) = &facts.weights {
+                (min, max) = (min.min(*least), max.max(*most));
+                sum.join(more);
+            }
+        }
+        if totals.points > 0 {
+            totals.weights = WeightSummary { min, mean: sum.value() / totals.points as f64, max };
+        }
+        totals
+    }
+}

@@ -1,0 +1,53 @@
+//! Floor 6: one shape in blocks that need not know each other, on one machine in turn or on many.
+//!
+//! Everything from a volume to its shape is local once a few numbers are known, so the work is three
+//! functions on files. [`Plan::make`] surveys the volume, cuts it into boxes and writes a plan into a folder. [`run`]
+//! computes one block from its own samples and those around it, with no other block. [`merge`] joins what blocks
+//! tell about their borders. What comes out is the shape that [`alpha_shape`](crate::alpha_shape)
+//! computes of the points that a [`Pipeline`](crate::Pipeline) selects, simplex by simplex and number by number:
+//! sums are exact, and ties are broken by indices of the volume.
+//!
+//! ```
+//! use walpha::blocks::{Cutting, Job, Plan, merge, run};
+//! use walpha::volume::ReadOptions;
+//!
+//! let folder = tempfile::tempdir()?;
+//! let job = Job::new("sample:phantom@40", ReadOptions::default())?;
+//! let plan = Plan::make(job, Cutting { blocks: Some(4), ..Cutting::default() }, folder.path())?;
+//! // In any order, anywhere, as long as all see the folder; again, if one fails.
+//! for block in 0..plan.blocks.len() {
+//!     run(&plan, block)?;
+//! }
+//! let merged = merge(&plan)?;
+//! assert_eq!(merged.betti.b0, 1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod cut;
+mod error;
+mod field;
+mod file;
+mod job;
+mod merge;
+mod part;
+mod pieces;
+mod plan;
+mod price;
+mod run;
+mod survey;
+mod turn;
+mod whole;
+
+pub use error::BlocksError;
+use field::Field;
+pub use job::Job;
+pub use merge::{Merged, merge};
+pub use part::Part;
+pub use pieces::Pieces;
+pub use plan::{BlockPlan, Cutting, Plan};
+pub use price::{Price, price};
+use run::Facts;
+pub use run::run;
+pub use survey::Survey;
+pub use turn::run_all;
+pub use whole::whole;

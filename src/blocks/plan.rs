@@ -1,0 +1,211 @@
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::cut::Boxes;
+use super::file::{numbers, read_file};
+use super::survey::{Survey, Surveyed, survey};
+use super::{BlocksError, Field, Job, Part};
+use crate::Weighting;
+use crate::export::Target;
+use crate::points::{PointsError, Shares};
+use crate::shape::{Alpha, Balls};
+
+/// How a job is cut into blocks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cutting {
+    /// Into so many blocks; fewer where there are fewer bricks with points.
+    pub blocks: Option<usize>,
+    /// Bytes of memory that all blocks at work keep to, as many as there are threads.
+    pub memory: Option<u64>,
+}
+
+/// All that a block needs to know of the others: the job, the numbers of the whole volume, and where the
+/// blocks are. It stands in a folder, where the blocks come, too.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Plan {
+    /// What made it.
+    version: String,
+    /// What is to be computed.
+    pub job: Job,
+    /// How it was to be cut.
+    pub cutting: Cutting,
+    /// The numbers of the whole volume.
+    pub survey: Survey,
+    /// The blocks.
+    pub blocks: Vec<BlockPlan>,
+    #[serde(skip)]
+    pub(super) folder: PathBuf,
+    #[serde(skip)]
+    pub(super) digest: String,
+}
+
+/// A block: a box of the volume, whose points are its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct BlockPlan {
+    /// Its samples.
+    pub part: Part,
+    /// Its points.
+    pub points: u64,
+    /// The points around it that it may need, counted by bricks.
+    pub halo: u64,
+}
+
+impl Plan {
+    pub(super) const FILE: &str = "plan.json";
+    pub(super) const SUMS: &str = "sums.f64";
+
+    /// Surveys the volume of a job, cuts it, and writes the plan into a folder, which is there. Reads
+    /// the volume five or six times, a tile for each thread in memory.
+    ///
+    /// # Errors
+    /// What a stage refuses; what is not local ([`Job::check`]); a folder that cannot be written to.
+    pub fn make(job: Job, cutting: Cutting, folder: &Path) -> Result<Self, BlocksError> {
+        job.check()?;
+        let mut field = Field::open(&job)?;
+        let Surveyed { survey, sums, counts } = survey(&job, &mut field)?;
+        let boxes = Boxes { counts: &counts, bricks: field.bricks.count() };
+        let side = field.bricks.side();
+        let tile = field.tile().iter().product::<usize>() as u64;
+        let mut plan = Self {
+            version: env!("CARGO_PKG_VERSION").into(),
+            job,
+            cutting,
+            survey,
+            blocks: Vec::new(),
+            folder: folder.into(),
+            digest: String::new(),
+        };
+        let margin = plan.margin()?.map(|samples| samples.div_ceil(side));
+        let cut = boxes.planned(cutting, &plan.job, margin, tile)?;
+        let of_bricks = |(part, halo): (Part, u64)| {
+            let points = boxes.points(&part);
+            let whole = Part::whole(field.dims);
+            let part =
+                Part { first: part.first.map(|i| i * side), size: part.size.map(|n| n * side) };
+            BlockPlan { part: part.common(&whole), points, halo: halo - points }
+        };
+        plan.blocks = cut.into_iter().map(of_bricks).collect();
+        plan.digest = plan.computed_digest();
+        plan.write(&sums)?;
+        Ok(plan)
+    }
+
+    fn write(&self, sums: &[f64]) -> Result<(), BlocksError> {
+        let put = |name: &str, bytes: &[u8]| {
+            Target::open(&self.folder.join(name))?.write(|out| out.write_all(bytes))
+        };
+        let bytes: Vec<u8> = sums.iter().flat_map(|sum| sum.to_le_bytes()).collect();
+        put(Self::SUMS, &bytes)?;
+        let text = serde_json::to_string_pretty(self).expect("it has no maps");
+        put(Self::FILE, text.as_bytes())?;
+        Ok(())
+    }
+
+    /// Opens the plan in a folder.
+    ///
+    /// # Errors
+    /// There is none, or it cannot be read.
+    pub fn open(folder: &Path) -> Result<Self, BlocksError> {
+        let path = folder.join(Self::FILE);
+        let read: Result<Self, _> = serde_json::from_slice(&read_file(&path)?);
+        let damaged = |error: serde_json::Error| BlocksError::Damaged {
+            path: path.clone(),
+            what: format!("is no plan of this version of walpha ({error})"),
+        };
+        let plan = Self { folder: folder.into(), ..read.map_err(damaged)? };
+        Ok(Self { digest: plan.computed_digest(), ..plan })
+    }
+
+    /// Where it stands.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// What tells this plan from others.
+    pub fn digest(&self) -> &str {
+        &self.digest
+    }
+
+    /// FNV-1a of its text (Fowler, Noll and Vo, RFC 9923), 64 bits.
+    fn computed_digest(&self) -> String {
+        let text = serde_json::to_vec(self).expect("it has no maps");
+        let hash = text.iter().fold(0xcbf2_9ce4_8422_2325u64, |hash, &byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        });
+        format!("{hash:016x}")
+    }
+
+    /// The file of a block.
+    pub fn block_file(&self, block: usize) -> PathBuf {
+        self.folder.join(format!("block-{block:05}.walpha"))
+    }
+
+    /// The sums of the bricks of the truncated volume.
+    pub(super) fn sums(&self) -> Result<Vec<f64>, BlocksError> {
+        let path = self.folder.join(Self::SUMS);
+        let bytes = read_file(&path)?;
+        numbers(&bytes).ok_or_else(|| BlocksError::Damaged { path, what: "is cut off".into() })
+    }
+
+    /// How weights come from differences, where they do.
+    pub(super) fn shares(&self) -> Result<Option<Shares>, PointsError> {
+        let weighting = self.job.weighting;
+        if !weighting.needs_differences() {
+            return Ok(None);
+        }
+        weighting.shares(&self.survey.differences, self.job.squared()).map(Some)
+    }
+
+    /// The weight ω of a point.
+    pub(super) fn weight(&self, shares: Option<Shares>, difference: f64) -> f64 {
+        match (shares, self.job.weighting) {
+            (Some(shares), _) => shares.of(difference),
+            (None, Weighting::Common(weight)) => weight,
+            (None, _) => 0.0,
+        }
+    }
+
+    /// How far, in samples along x, y and z, what decides a simplex is from its vertices.
+    pub(super) fn margin(&self) -> Result<[usize; 3], BlocksError> {
+        let (shares, differences) = (self.shares()?, &self.survey.differences);
+        let weights = [differences.min, differences.max].map(|l| self.weight(shares, l));
+        let radius = |weight: f64| match self.job.balls {
+            Balls::Power => (self.job.alpha + weight).max(0.0).sqrt(),
+            Balls::Radius => (self.job.alpha + weight).abs(),
+        };
+        let largest = weights.map(radius).into_iter().fold(0.0, f64::max);
+        // Rounded up by more than all roundings on the way.
+        Ok(self.job.reach(2.0 * largest * (1.0 + 1e-9)).map(|samples| samples + 1))
+    }
+
+    /// α, for weights and reports.
+    pub fn alpha(&self) -> Alpha {
+        self.job.squared()
+    }
+
+    /// The blocks that are not there, or belong to another plan.
+    ///
+    /// # Errors
+    /// A file cannot be read.
+    pub fn missing(&self) -> Result<Vec<usize>, BlocksError> {
+        let mut missing = Vec::new();
+        for block in 0..self.blocks.len() {
+            match super::file::BlockFile::open(self, block) {
+                Ok(_) => {}
+                Err(BlocksError::OtherPlan { .. } | BlocksError::Damaged { .. }) => {
+                    missing.push(block);
+                }
+                Err(BlocksError::Io { source, .. })
+                    if source.kind() == std::io::ErrorKind::NotFound =>
+                {
+                    missing.push(block);
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(missing)
+    }
+}

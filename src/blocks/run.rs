@@ -1,0 +1,296 @@
+use serde::{Deserialize, Serialize};
+
+use super::field::{Field, Truncated};
+use super::file::Arrays;
+use super::{BlocksError, Plan};
+use crate::math::Sum;
+use crate::shape::{
+    Balls, BlockShape, ByClass, Class, ComponentSums, Own, ShapeError, SheetSums, Side, block_shape,
+};
+use crate::volume::GrayRange;
+
+/// What is told of a block: all that merging needs but for keys and rows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Facts {
+    pub points: u64,
+    pub halo: u64,
+    pub cells: usize,
+    /// By class: interior, regular, singular.
+    pub facets: [usize; 3],
+    pub edges: [usize; 3],
+    pub vertices: [usize; 3],
+    /// `None` where there is no point.
+    pub weights: Option<Weights>,
+    pub components: Vec<BlockComponent>,
+    pub sheets: Vec<BlockSheet>,
+}
+
+/// The weights ω of some points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Weights {
+    pub min: f64,
+    pub max: f64,
+    pub sum: Sum,
+}
+
+/// What a block has of a component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct BlockComponent {
+    /// The smallest vertex, by its index in the volume.
+    pub first: u64,
+    pub sums: ComponentSums,
+}
+
+/// What a block has of a sheet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct BlockSheet {
+    /// Where it is met first in the order of the rows; `None` where the block has no row of it.
+    pub met: Option<Met>,
+    pub sums: SheetSums,
+}
+
+/// A place in the order in which sheets are met: along the facets of the boundary, then the singular edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub(super) struct Met {
+    is_edge: bool,
+    row: [u64; 3],
+    /// Of a singular facet: its second side.
+    is_second: bool,
+    /// The component, within the block.
+    pub component: u32,
+}
+
+/// The points of a block and those around it, in order of their index in the volume.
+#[derive(Default)]
+struct Points {
+    voxels: Vec<u64>,
+    positions: Vec<[f64; 3]>,
+    values: Vec<f64>,
+    weights: Vec<f64>,
+    own: Vec<bool>,
+}
+
+/// Computes what a block owns of the shape, and writes it into the folder of the plan. A block that is
+/// there is left alone, unless it belongs to another plan. Needs no other block.
+///
+/// # Errors
+/// What a stage refuses, an input that has changed since, a folder that cannot be written to.
+pub fn run(plan: &Plan, block: usize) -> Result<(), BlocksError> {
+    let count = plan.blocks.len();
+    let Some(planned) = plan.blocks.get(block) else {
+        return Err(BlocksError::NoBlock { index: block, count });
+    };
+    if super::file::BlockFile::open(plan, block).is_ok() {
+        return Ok(());
+    }
+    let points = points(plan, block)?;
+    let found = points.own.iter().filter(|&&own| own).count() as u64;
+    if found != planned.points {
+        return Err(BlocksError::Changed { index: block, found, planned: planned.points });
+    }
+    let job = &plan.job;
+    let squared = match job.balls {
+        Balls::Power => None,
+        Balls::Radius => Some(squared_radii(plan, &points)?),
+    };
+    let weights = squared.as_deref().unwrap_or(&points.weights);
+    let own = Own { positions: &points.positions, weights, own: &points.own };
+    let shape = block_shape(own, job.power_alpha(), job.maker())?;
+    write(plan, block, &points, shape)
+}
+
+/// Selects the points of a block and those that may be in its halo, from the samples there.
+fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
+    let (job, survey) = (&plan.job, &plan.survey);
+    let mut field = Field::open(job)?;
+    (field.range, field.least) = (survey.range, survey.least);
+    let sums = plan.sums()?;
+    let truncated = survey.cut.map(|cut| Truncated { cut, sums: &sums });
+    let part = plan.blocks[block].part;
+    let around = part.grown(plan.margin()?, field.dims);
+    let mut found = Vec::new();
+    for tile in around.tiles(field.tile()) {
+        field.samples(&tile, truncated, |sample| {
+            if survey.choice.is_point(&sample) {
+                found.push((sample.voxel, sample.difference, sample.gray));
+            }
+        })?;
+    }
+    found.sort_unstable_by_key(|&(voxel, ..)| voxel);
+    let shares = plan.shares()?;
+    let written = if job.gray_out { GrayRange::IDENTITY } else { survey.range };
+    let [nx, ny, _] = field.dims;
+    let mut points = Points::default();
+    for (voxel, difference, gray) in found {
+        let i = voxel as usize;
+        points.voxels.push(voxel);
+        points.positions.push(job.units.place(&job.frame, job.dims, voxel));
+        points.values.push(written.value(gray.into()));
+        points.weights.push(plan.weight(shares, difference));
+        points.own.push(part.holds([i % nx, i / nx % ny, i / (nx * ny)]));
+    }
+    Ok(points)
+}
+
+/// Weights (α + ω)², for balls of radius α + ω.
+fn squared_radii(plan: &Plan, points: &Points) -> Result<Vec<f64>, ShapeError> {
+    let radius = |(&voxel, weight): (&u64, &f64)| {
+        let radius = plan.job.alpha + weight;
+        // NaN compares false: it is refused too.
+        if radius >= 0.0 && radius.is_finite() {
+            Ok(radius * radius)
+        } else {
+            Err(ShapeError::Radius { index: voxel as usize, radius })
+        }
+    };
+    points.voxels.iter().zip(&points.weights).map(radius).collect()
+}
+
+/// Numbers from 0 in the order in which keys are met first.
+struct Numbering(Vec<u32>, u32);
+
+const NONE: u32 = u32::MAX;
+
+impl Numbering {
+    fn of(&mut self, key: u32) -> u32 {
+        let number = &mut self.0[key as usize];
+        if *number == NONE {
+            *number = self.1;
+            self.1 += 1;
+        }
+        *number
+    }
+}
+
+fn write(plan: &Plan, block: usize, points: &Points, shape: BlockShape) -> Result<(), BlocksError> {
+    let complex = &shape.complex;
+    let position = |v: u32| points.positions[v as usize];
+    let voxel = |v: u32| points.voxels[v as usize];
+    let mut numbers = Numbering(vec![NONE; points.voxels.len()], 0);
+    let mut number = |v: u32| numbers.of(shape.components[v as usize]);
+    let mut components: Vec<BlockComponent> = Vec::new();
+    let mut component_of = vec![NONE; points.voxels.len()];
+    // Own points come first in each component: they are its vertices.
+    for &[v] in complex.vertices.rows() {
+        let component = number(v);
+        component_of[v as usize] = component;
+        match components.get_mut(component as usize) {
+            Some(known) => known.sums.reach(position(v)),
+            None => components
+                .push(BlockComponent { first: voxel(v), sums: ComponentSums::at(position(v)) }),
+        }
+    }
+    for cell in complex.cells.rows() {
+        let component = component_of[cell[0] as usize] as usize;
+        components[component].sums.add_cell(cell.map(position));
+    }
+    for (facet, class) in complex.facets.iter() {
+        let component = component_of[facet[0] as usize] as usize;
+        components[component].sums.add_facet(facet.map(position), class);
+    }
+    let border: Vec<(u64, u32)> = shape.border.iter().map(|&v| (voxel(v), number(v))).collect();
+    let sheets = sheets(plan, points, &shape, &component_of);
+    let counts = |counts: ByClass<usize>| {
+        [Class::Interior, Class::Regular, Class::Singular].map(|class| counts[class])
+    };
+    let own = || points.own.iter().zip(&points.weights).filter(|(own, _)| **own).map(|(_, w)| *w);
+    let facts = Facts {
+        points: own().count() as u64,
+        halo: shape.halo,
+        cells: complex.cells.len(),
+        facets: counts(complex.facets.counts()),
+        edges: counts(complex.edges.counts()),
+        vertices: counts(complex.vertices.counts()),
+        weights: own().next().map(|_| Weights {
+            min: own().fold(f64::INFINITY, f64::min),
+            max: own().fold(f64::NEG_INFINITY, f64::max),
+            sum: own().collect(),
+        }),
+        components,
+        sheets,
+    };
+    arrays(points, &shape, &component_of, &border).write(plan, block, facts)
+}
+
+/// What is known of each sheet.
+fn sheets(
+    plan: &Plan,
+    points: &Points,
+    shape: &BlockShape,
+    component_of: &[u32],
+) -> Vec<BlockSheet> {
+    let apex = plan.job.units.place(&plan.job.frame, plan.job.dims, plan.survey.first);
+    let empty = BlockSheet { met: None, sums: SheetSums::default() };
+    let mut sheets = vec![empty; shape.sheets as usize];
+    let mut names = shape.facet_sheets.iter();
+    let mut add = |row: [u32; 3], side: [u32; 3], is_second: bool| {
+        let sheet = &mut sheets[*names.next().expect("one for each side") as usize];
+        let component = component_of[row[0] as usize];
+        let row = row.map(|v| points.voxels[v as usize]);
+        sheet.met.get_or_insert(Met { is_edge: false, row, is_second, component });
+        sheet.sums.add(apex, side.map(|v| points.positions[v as usize]));
+    };
+    for (&row, class) in shape.complex.facets.iter() {
+        let [a, b, c] = row;
+        match class {
+            Class::Regular => add(row, row, false),
+            Class::Singular => {
+                // First the side on which the sorted row turns clockwise.
+                add(row, [a, c, b], false);
+                add(row, row, true);
+            }
+            _ => {}
+        }
+    }
+    for (&[a, b], &name) in shape.complex.edges.of(Class::Singular).zip(&shape.edge_sheets) {
+        let component = component_of[a as usize];
+        let row = [points.voxels[a as usize], points.voxels[b as usize], 0];
+        let met = Met { is_edge: true, row, is_second: false, component };
+        sheets[name as usize].met.get_or_insert(met);
+    }
+    sheets
+}
+
+/// Points that are the block's own or corners of its rows, the rows, and the keys that blocks share.
+fn arrays(
+    points: &Points,
+    shape: &BlockShape,
+    component_of: &[u32],
+    border: &[(u64, u32)],
+) -> Arrays {
+    let complex = &shape.complex;
+    let mut used = points.own.clone();
+    let corners = (complex.cells.rows().as_flattened().iter())
+        .chain(complex.facets.rows().as_flattened())
+        .chain(complex.edges.rows().as_flattened());
+    corners.for_each(|&v| used[v as usize] = true);
+    let kept: Vec<usize> = (0..used.len()).filter(|&v| used[v]).collect();
+    let mut numbers = vec![NONE; used.len()];
+    kept.iter().zip(0..).for_each(|(&v, number)| numbers[v] = number);
+    let number = |v: u32| numbers[v as usize];
+    let voxel = |v: u32| points.voxels[v as usize];
+    let class = |class: &Class| *class as u8;
+
+    let mut arrays = Arrays::default();
+    arrays.add("voxels", kept.iter().map(|&v| points.voxels[v]));
+    arrays.add("own", kept.iter().map(|&v| u8::from(points.own[v])));
+    arrays.add("values", kept.iter().map(|&v| points.values[v]));
+    arrays.add("weights", kept.iter().map(|&v| points.weights[v]));
+    arrays.add("components", kept.iter().map(|&v| component_of[v]));
+    arrays.add("cells", complex.cells.rows().iter().map(|row| row.map(number)));
+    arrays.add("facets", complex.facets.rows().iter().map(|row| row.map(number)));
+    arrays.add("facet_classes", complex.facets.classes().iter().map(class));
+    arrays.add("facet_sheets", shape.facet_sheets.iter().copied());
+    arrays.add("edges", complex.edges.rows().iter().map(|row| row.map(number)));
+    arrays.add("edge_classes", complex.edges.classes().iter().map(class));
+    arrays.add("edge_sheets", shape.edge_sheets.iter().copied());
+    arrays.add("vertices", complex.vertices.rows().iter().map(|row| row.map(number)));
+    arrays.add("vertex_classes", complex.vertices.classes().iter().map(class));
+    arrays.add("hidden", shape.hidden.iter().map(|&v| voxel(v)));
+    arrays.add("border_points", border.iter().map(|&(voxel, _)| voxel));
+    arrays.add("border_components", border.iter().map(|&(_, component)| component));
+    arrays.add("shared_simplices", shape.shared.iter().map(|side| side.simplex.map(voxel)));
+    arrays.add("shared_sides", shape.shared.iter().map(|side: &Side| side.side));
+    arrays.add("shared_sheets", shape.shared.iter().map(|side| side.sheet));
+    arrays
+}

@@ -1,0 +1,135 @@
+use super::file::BlockFile;
+use super::{BlocksError, Merged, Plan};
+use crate::points::WeightedPoints;
+use crate::shape::{AlphaShape, Assembled, Class, Complex, ShapeOptions, Sheets, Simplices};
+
+/// The shape of all blocks in one piece, as [`alpha_shape`](crate::alpha_shape) gives it: for results
+/// that fit the memory.
+///
+/// # Errors
+/// A file cannot be read; more points than 32-bit indices name.
+#[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
+pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
+    if merged.points > u64::from(u32::MAX) {
+        return Err(BlocksError::TooLarge { what: format!("{} points", merged.points) });
+    }
+    let mut rows = Gathered::default();
+    let mut points: Vec<(u64, f64, f64)> = Vec::new();
+    for block in 0..plan.blocks.len() {
+        let file = BlockFile::open(plan, block)?;
+        let own = file.read::<u8>("own")?;
+        let numbers = file.read::<f64>("values")?.into_iter().zip(file.read::<f64>("weights")?);
+        let all = file.read::<u64>("voxels")?.into_iter().zip(numbers).zip(own);
+        points.extend(all.filter(|(_, own)| *own == 1).map(|((voxel, (f, w)), _)| (voxel, f, w)));
+    }
+    points.sort_unstable_by_key(|&(voxel, ..)| voxel);
+    let index = |voxel: u64| {
+        let found = points.binary_search_by_key(&voxel, |&(voxel, ..)| voxel);
+        found.expect("each corner is some block's own") as u32
+    };
+    let mut hidden = Vec::new();
+    for (block, numbers) in merged.numbers.iter().enumerate() {
+        let file = BlockFile::open(plan, block)?;
+        let indices: Vec<u32> = file.read::<u64>("voxels")?.into_iter().map(index).collect();
+        rows.take(&file, &indices, &numbers.sheets)?;
+        hidden.extend(file.read::<u64>("hidden")?.into_iter().map(index));
+    }
+    let (complex, sheets) = rows.finish(merged.sheets);
+    let job = &plan.job;
+    let place = |voxel: u64| job.units.place(&job.frame, job.dims, voxel);
+    let assembled = Assembled {
+        points: WeightedPoints {
+            positions: points.iter().map(|&(voxel, ..)| place(voxel)).collect(),
+            weights: points.iter().map(|&(.., weight)| weight).collect(),
+            values: Some(points.iter().map(|&(_, value, _)| value).collect()),
+        },
+        coordinates: job.units.coordinates_of(&job.frame),
+        options: ShapeOptions {
+            balls: job.balls,
+            engine: job.engine,
+            refuse_flat: true,
+            ..ShapeOptions::new(plan.alpha())
+        },
+        complex,
+        hidden: (plan.blocks.len() == 1).then_some(hidden),
+        betti: merged.betti,
+        sheets,
+        measures: merged.measures,
+    };
+    Ok(AlphaShape::assembled(assembled)?)
+}
+
+/// The rows of all blocks.
+#[derive(Default)]
+struct Gathered {
+    cells: Vec<[u32; 4]>,
+    /// With the sheets of their sides.
+    facets: Vec<([u32; 3], Class, [u32; 2])>,
+    edges: Vec<([u32; 2], Class, u32)>,
+    vertices: Vec<([u32; 1], Class)>,
+}
+
+impl Gathered {
+    fn take(
+        &mut self,
+        file: &BlockFile,
+        indices: &[u32],
+        sheets: &[u32],
+    ) -> Result<(), BlocksError> {
+        let index = |v: u32| indices[v as usize];
+        let class = |class: u8| Class::from_number(class).unwrap_or(Class::Exterior);
+        self.cells.extend(file.read::<[u32; 4]>("cells")?.into_iter().map(|row| row.map(index)));
+        let facets = file.read::<[u32; 3]>("facets")?;
+        let mut names = file.read::<u32>("facet_sheets")?.into_iter();
+        let mut next = || names.next().map_or(0, |name| sheets[name as usize]);
+        for (row, number) in facets.into_iter().zip(file.read::<u8>("facet_classes")?) {
+            let class = class(number);
+            let sides = match class {
+                Class::Regular => [next(), 0],
+                Class::Singular => [next(), next()],
+                _ => [0; 2],
+            };
+            self.facets.push((row.map(index), class, sides));
+        }
+        let edges = file.read::<[u32; 2]>("edges")?;
+        let mut names = file.read::<u32>("edge_sheets")?.into_iter();
+        for (row, number) in edges.into_iter().zip(file.read::<u8>("edge_classes")?) {
+            let class = class(number);
+            let name = if class == Class::Singular { names.next() } else { None };
+            self.edges.push((row.map(index), class, name.map_or(0, |name| sheets[name as usize])));
+        }
+        let vertices = file.read::<[u32; 1]>("vertices")?;
+        let classes = file.read::<u8>("vertex_classes")?.into_iter().map(class);
+        self.vertices.extend(vertices.into_iter().map(|row| row.map(index)).zip(classes));
+        Ok(())
+    }
+
+    /// In canonical order.
+    fn finish(mut self, count: u32) -> (Complex, Sheets) {
+        self.cells.sort_unstable();
+        self.facets.sort_unstable_by_key(|facet| facet.0);
+        self.edges.sort_unstable_by_key(|edge| edge.0);
+        self.vertices.sort_unstable_by_key(|vertex| vertex.0);
+        let mut complex = Complex::default();
+        let mut sheets = Sheets { count, ..Sheets::default() };
+        self.cells.into_iter().for_each(|row| complex.cells.push(row, Class::Interior));
+        for (row, class, sides) in self.facets {
+            complex.facets.push(row, class);
+            match class {
+                Class::Regular => sheets.regular.push(sides[0]),
+                Class::Singular => sheets.singular.push(sides),
+                _ => {}
+            }
+        }
+        for (row, class, sheet) in self.edges {
+            complex.edges.push(row, class);
+            if class == Class::Singular {
+                sheets.edges.push(sheet);
+            }
+        }
+        let mut vertices = Simplices::default();
+        self.vertices.into_iter().for_each(|(row, class)| vertices.push(row, class));
+        complex.vertices = vertices;
+        (complex, sheets)
+    }
+}

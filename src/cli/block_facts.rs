@@ -1,0 +1,101 @@
+//! What `walpha blocks` tells of its steps.
+
+use std::fmt::{self, Display};
+
+use crate::blocks::{Plan, Price};
+use crate::memory::readable;
+use serde::Serialize;
+
+use super::output::name;
+
+/// What a plan is.
+#[derive(Serialize)]
+pub(super) struct PlanFacts {
+    folder: String,
+    plan: String,
+    input: String,
+    samples: usize,
+    points: u64,
+    blocks: usize,
+    largest_block: u64,
+    /// Points that are looked at by more than one block, as a share of all.
+    halo_share: f64,
+    seconds: f64,
+}
+
+impl PlanFacts {
+    pub fn of(plan: &Plan, seconds: f64) -> Self {
+        let points = plan.blocks.iter().map(|block| block.points).sum::<u64>();
+        let halo = plan.blocks.iter().map(|block| block.halo).sum::<u64>();
+        Self {
+            folder: plan.folder().display().to_string(),
+            plan: plan.digest().to_owned(),
+            input: plan.job.input.clone(),
+            samples: plan.job.dims.samples(),
+            points,
+            blocks: plan.blocks.len(),
+            largest_block: plan.blocks.iter().map(|block| block.points).max().unwrap_or(0),
+            halo_share: halo as f64 / points.max(1) as f64,
+            seconds,
+        }
+    }
+}
+
+impl Display for PlanFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "plan      {} of {}", self.plan, self.input)?;
+        writeln!(f, "points    {} of {} samples", self.points, self.samples)?;
+        writeln!(
+            f,
+            "blocks    {} of up to {} points, and at most {:.0} % of all points again around them",
+            self.blocks,
+            self.largest_block,
+            100.0 * self.halo_share
+        )?;
+        writeln!(f, "wrote     {}", name(&self.folder))
+    }
+}
+
+/// What work will cost.
+#[derive(Serialize)]
+#[serde(transparent)]
+pub(super) struct PriceFacts(pub Price);
+
+impl Display for PriceFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Price { samples, points, blocks, halo_share, memory_per_block, .. } = self.0;
+        let [by_plan, by_blocks] = self.0.bytes_read.map(readable);
+        let [by_rows, by_keys] = self.0.bytes_written.map(readable);
+        let [plan, run, merge] = self.0.core_seconds;
+        writeln!(f, "points    {points} of {samples} samples")?;
+        writeln!(
+            f,
+            "blocks    {blocks}, and {:.1} % of all points again around them",
+            100.0 * halo_share
+        )?;
+        writeln!(f, "memory    {} for each block at work", readable(memory_per_block))?;
+        writeln!(f, "reads     {by_plan} to plan, {by_blocks} by all blocks")?;
+        writeln!(f, "writes    {by_rows}, of which merging reads {by_keys}")?;
+        let hours = (plan + run + merge) / 3600.0;
+        writeln!(
+            f,
+            "time      {hours:.3} core-hours: plan {plan:.0} s, blocks {run:.0} s, merge {merge:.0} s of one core"
+        )
+    }
+}
+
+/// What was run.
+#[derive(Serialize)]
+pub(super) struct RunFacts {
+    pub folder: String,
+    pub blocks: Vec<usize>,
+    pub seconds: f64,
+}
+
+impl Display for RunFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { folder, blocks, seconds } = self;
+        let folder = name(folder);
+        writeln!(f, "blocks    {} done in {folder}, {seconds:.2} s", blocks.len())
+    }
+}

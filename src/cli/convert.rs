@@ -1,0 +1,75 @@
+//! `walpha convert`: a volume as Zarr.
+
+use std::path::PathBuf;
+
+use crate::progress::Stage;
+use crate::shown::shown;
+use crate::volume::{Source, convert, open};
+use clap::Args;
+use serde::Serialize;
+
+use super::Global;
+use super::args::InputArgs;
+use super::output::{name, tell};
+use super::pipeline::{with_file, with_points};
+use super::progress::Progress;
+use super::said::misused;
+
+/// Convert a volume to Zarr, which can be read in parts.
+///
+/// Formats that can be read in parts are converted so, of any size; others are read at once. Values stay as they
+/// are.
+///
+/// Example:
+///
+/// walpha convert scan.nrrd -o scan.zarr
+#[derive(Args)]
+pub struct Convert {
+    /// Folder to write, .zarr; it must not be there yet.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    #[command(flatten)]
+    input: InputArgs,
+}
+
+#[derive(Serialize)]
+struct Facts {
+    input: String,
+    dims: [usize; 3],
+    file: String,
+    seconds: f64,
+}
+
+impl std::fmt::Display for Facts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [x, y, z] = self.dims;
+        writeln!(f, "input     {}  {x}×{y}×{z} samples", name(&self.input))?;
+        writeln!(f, "wrote     {} in {:.2} s", name(&self.file), self.seconds)
+    }
+}
+
+impl Convert {
+    pub fn run(self, global: Global) -> anyhow::Result<()> {
+        if self.output.extension().is_none_or(|extension| extension != "zarr") {
+            let path = shown(&self.output);
+            misused!("{path} does not end with .zarr, the one format written" => "name it so");
+        }
+        let meaningless = ["gray", "gray_out", "columns", "nan"];
+        self.input.given.refuse(&meaningless, "values are converted as they are")?;
+        let mut progress = Progress::new(global);
+        let options = self.input.options();
+        let dims = with_file(&self.input, |input| {
+            let source = match Source::open(input, &options) {
+                Ok(source) => source,
+                Err(_) => Source::of_volume(
+                    progress.stage(Stage::Read, || open(input, &options)).map_err(with_points)?,
+                ),
+            };
+            progress.stage(Stage::Write, || convert(&source, &self.output))?;
+            Ok(source.dims().xyz())
+        })?;
+        let seconds = progress.finish().last().map_or(0.0, |(_, seconds)| *seconds);
+        let (input, file) = (self.input.input, self.output.display().to_string());
+        tell(global, &Facts { input, dims, file, seconds })
+    }
+}

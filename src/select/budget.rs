@@ -1,0 +1,172 @@
+use serde::{Deserialize, Serialize};
+
+use super::EXPONENT;
+use crate::math::Sum;
+
+/// What may be dropped, smallest magnitudes first.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Budget {
+    /// This many values.
+    Count(u64),
+    /// Values whose squares sum to no more than this.
+    Energy(f64),
+}
+
+/// What a cut drops.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Dropped {
+    /// How many values.
+    pub count: u64,
+    /// The sum of their squares, each rounded, the sum exact and rounded once.
+    pub energy: f64,
+}
+
+/// Values whose magnitudes have the same exponent: how many, and the exact sum of their squares, in units of
+/// the last place that squares of this exponent have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Bin {
+    pub count: u64,
+    pub units: u128,
+}
+
+impl Bin {
+    #[inline(always)]
+    pub fn add(&mut self, bits: u64) {
+        self.count += 1;
+        self.units += u128::from(units(bits));
+    }
+
+    pub fn join(&mut self, other: &Self) {
+        self.count += other.count;
+        self.units += other.units;
+    }
+}
+
+const FRACTION: u64 = (1 << EXPONENT) - 1;
+
+/// The biased exponent of the least square of magnitudes of a biased exponent.
+#[inline(always)]
+fn least(exponent: u64) -> u64 {
+    // 2⁵¹¹ and more, whose squares pass the range of doubles, count as if they were of its end.
+    (2 * exponent).saturating_sub(1023).clamp(1, 2046)
+}
+
+/// The square of a magnitude, rounded, in units of its exponent: below 2⁵⁴.
+#[inline(always)]
+fn units(bits: u64) -> u64 {
+    let value = f64::from_bits(bits);
+    let square = (value * value).to_bits();
+    let exponent = square >> EXPONENT;
+    let hidden = u64::from(exponent != 0) << EXPONENT;
+    (square & FRACTION | hidden) << (exponent.max(1) - least(bits >> EXPONENT))
+}
+
+/// What was dropped so far.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Spent {
+    budget: Budget,
+    count: u64,
+    energy: Sum,
+}
+
+impl Spent {
+    pub fn of(budget: Budget) -> Self {
+        Self { budget, count: 0, energy: Sum::default() }
+    }
+
+    /// Drops a whole bin of values of an exponent, if the budget allows.
+    pub fn take(&mut self, bin: &Bin, exponent: u64) -> bool {
+        if bin.count == 0 {
+            return true;
+        }
+        let energy = self.with(bin.units, exponent);
+        let allowed = match self.budget {
+            Budget::Count(most) => self.count + bin.count <= most,
+            Budget::Energy(most) => energy.is_at_most(most),
+        };
+        if allowed {
+            (self.count, self.energy) = (self.count + bin.count, energy);
+        }
+        allowed
+    }
+
+    /// Drops as many of `count` values of one magnitude as the budget allows, and says how many.
+    pub fn equal(&mut self, magnitude: u64, count: u64) -> u64 {
+        let (each, exponent) = (u128::from(units(magnitude)), magnitude >> EXPONENT);
+        let with = |drop: u64| self.with(each * u128::from(drop), exponent);
+        let dropped = match self.budget {
+            Budget::Count(most) => count.min(most - self.count),
+            Budget::Energy(most) => {
+                let (mut fit, mut too_many) = (0, count + 1);
+                while too_many - fit > 1 {
+                    let middle = fit + (too_many - fit) / 2;
+                    let allowed = with(middle).is_at_most(most);
+                    *(if allowed { &mut fit } else { &mut too_many }) = middle;
+                }
+                fit
+            }
+        };
+        (self.count, self.energy) = (self.count + dropped, with(dropped));
+        dropped
+    }
+
+    pub fn dropped(&self) -> Dropped {
+        Dropped { count: self.count, energy: self.energy.value() }
+    }
+
+    /// The energy so far and more of it.
+    fn with(&self, units: u128, exponent: u64) -> Sum {
+        /// Bits that a double holds with ease.
+        const PIECE: u32 = 48;
+        let mut energy = self.energy.clone();
+        let mut unit = last_place(least(exponent));
+        let mut left = units;
+        while left != 0 {
+            energy.add((left & ((1 << PIECE) - 1)) as f64 * unit);
+            (left, unit) = (left >> PIECE, unit * (1u64 << PIECE) as f64);
+        }
+        energy
+    }
+}
+
+/// The last place of doubles of a biased exponent.
+fn last_place(exponent: u64) -> f64 {
+    match exponent {
+        0..=52 => f64::from_bits(1 << (exponent.max(1) - 1)),
+        _ => f64::from_bits((exponent - 52) << EXPONENT),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn squares_are_whole_numbers_of_units() {
+        for value in [0.0, 1.0, 1.5, 3.7, 1e-200, 5e-324, 1e100, 2.2e-162, 1e-154, 1.3e154] {
+            let bits = f64::to_bits(value);
+            let mut spent = Spent::of(Budget::Energy(f64::INFINITY));
+            let mut bin = Bin::default();
+            (0..3).for_each(|_| bin.add(bits));
+            assert!(spent.take(&bin, bits >> EXPONENT));
+            let expected: Sum = (0..3).map(|_| value * value).collect();
+            assert_eq!(spent.dropped(), Dropped { count: 3, energy: expected.value() }, "{value}");
+            assert_eq!(spent.equal(bits, 2), 2);
+            let expected: Sum = (0..5).map(|_| value * value).collect();
+            assert_eq!(spent.dropped().energy, expected.value(), "{value}");
+        }
+    }
+
+    #[test]
+    fn the_budget_is_kept_to_the_last_bit() {
+        let square: f64 = 0.1 * 0.1;
+        let mut spent = Spent::of(Budget::Energy((0..7).map(|_| square).collect::<Sum>().value()));
+        // The sum of seven is not a double: whether seven fit depends on how it was rounded.
+        let dropped = spent.equal(0.1f64.to_bits(), 100);
+        let exact: Sum = (0..7).map(|_| square).collect();
+        assert_eq!(dropped, if exact.is_at_most(exact.value()) { 7 } else { 6 });
+        let mut spent = Spent::of(Budget::Count(3));
+        assert_eq!(spent.equal(0.1f64.to_bits(), 100), 3);
+        assert!(!spent.take(&Bin { count: 1, units: 0 }, 1));
+    }
+}

@@ -1,0 +1,261 @@
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::budget::{Bin, Budget, Dropped, Spent};
+use super::{Cut, EXPONENT, INFINITY, magnitude};
+
+/// The same cut as [`Cut::new`] finds, of values that are never in one place: rounds of
+/// [counting](Self::count), piece by piece, of which [`Search::learn`] is told the joined counts.
+///
+/// Values are ordered by their magnitude, equal ones by descending index, as one number of 63 + 64 bits. A
+/// round counts what agrees with the digits known by the next one; when few are left they are listed.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Search {
+    spent: Spent,
+    /// Values listed rather than counted.
+    few: u64,
+    stage: Stage,
+}
+
+/// What is known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+enum Stage {
+    /// The bits of the magnitude at the cut above `shift`.
+    Magnitude {
+        known: u64,
+        shift: u32,
+    },
+    /// The magnitude, of which so many stay; the bits of the first index that goes above `shift`.
+    Index {
+        magnitude: u64,
+        stay: u64,
+        known: u64,
+        shift: u32,
+    },
+    /// There are few values left that agree with these bits of the magnitude.
+    Few {
+        known: u64,
+        shift: u32,
+    },
+    Found(Cut),
+}
+
+/// Bits told apart in one round.
+const DIGIT: u32 = 18;
+/// Bits of a magnitude.
+const MAGNITUDE: u32 = 63;
+
+/// What a piece of the values has.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Counts {
+    /// By digit.
+    bins: BTreeMap<u64, Bin>,
+    /// The magnitude and index of the few that are left.
+    list: Vec<(u64, u64)>,
+}
+
+impl Counts {
+    /// How many values were counted.
+    pub fn total(&self) -> u64 {
+        self.bins.values().map(|bin| bin.count).sum::<u64>() + self.list.len() as u64
+    }
+
+    /// Takes in what another piece has.
+    pub fn join(&mut self, other: Self) {
+        for (digit, bin) in other.bins {
+            self.bins.entry(digit).or_default().join(&bin);
+        }
+        self.list.extend(other.list);
+    }
+}
+
+impl Search {
+    /// Looks for the cut that drops as many values as the budget allows. Where no more than `few` values
+    /// are in question, 16 bytes each, they are listed.
+    pub fn new(budget: Budget, few: u64) -> Self {
+        let stage = Stage::Magnitude { known: 0, shift: MAGNITUDE };
+        Self { spent: Spent::of(budget), few, stage }
+    }
+
+    /// Whether it was told nothing yet.
+    pub fn is_new(&self) -> bool {
+        self.stage == Stage::Magnitude { known: 0, shift: MAGNITUDE }
+    }
+
+    /// The cut and what it drops, when it is found.
+    pub fn found(&self) -> Option<(Cut, Dropped)> {
+        match self.stage {
+            Stage::Found(cut) => Some((cut, self.spent.dropped())),
+            _ => None,
+        }
+    }
+
+    /// Counts values, each with its index, for the round at hand. NaN takes no part. O(n).
+    pub fn count(&self, values: impl Iterator<Item = (f64, u64)>) -> Counts {
+        let mut counts = Counts::default();
+        let values = values.map(|(value, index)| (magnitude(value), index));
+        let values = values.filter(|&(bits, _)| bits < INFINITY);
+        match self.stage {
+            Stage::Magnitude { known, shift } => {
+                let next = shift.saturating_sub(DIGIT);
+                let mut dense = vec![Bin::default(); 1 << (shift - next)];
+                let mask = dense.len() as u64 - 1;
+                for (bits, _) in values.filter(|(bits, _)| agrees(*bits, known, shift)) {
+                    dense[(bits >> next & mask) as usize].add(bits);
+                }
+                let there = (0..).zip(dense).filter(|(_, bin)| bin.count > 0);
+                counts.bins = there.collect();
+            }
+            Stage::Index { magnitude, known, shift, .. } => {
+                let next = shift.saturating_sub(DIGIT);
+                for (_, index) in
+                    values.filter(|&(bits, index)| bits == magnitude && agrees(index, known, shift))
+                {
+                    let digit = index >> next & ((1 << (shift - next)) - 1);
+                    counts.bins.entry(digit).or_default().count += 1;
+                }
+            }
+            Stage::Few { known, shift } => {
+                counts.list = values.filter(|(bits, _)| agrees(*bits, known, shift)).collect();
+            }
+            Stage::Found(_) => {}
+        }
+        counts
+    }
+
+    /// Goes on to the next round with what all pieces have.
+    pub fn learn(&mut self, counts: Counts) {
+        self.stage = match self.stage {
+            Stage::Magnitude { known, shift } => self.by_magnitude(counts, known, shift),
+            Stage::Index { magnitude, stay, known, shift } => {
+                by_index(counts, magnitude, stay, known, shift)
+            }
+            Stage::Few { known, shift } => self.by_list(counts.list, known, shift),
+            found @ Stage::Found(_) => found,
+        }
+    }
+
+    fn by_magnitude(&mut self, counts: Counts, known: u64, shift: u32) -> Stage {
+        let next = shift.saturating_sub(DIGIT);
+        for (digit, bin) in counts.bins {
+            let here = known | digit << next;
+            if next == 0 {
+                if let Some(stage) = self.ties(here, bin.count) {
+                    return stage;
+                }
+            } else if !self.spent.take(&bin, here >> EXPONENT) {
+                let few = bin.count <= self.few;
+                return if few {
+                    Stage::Few { known: here, shift: next }
+                } else {
+                    Stage::Magnitude { known: here, shift: next }
+                };
+            }
+        }
+        above(known, shift)
+    }
+
+    fn by_list(&mut self, mut list: Vec<(u64, u64)>, known: u64, shift: u32) -> Stage {
+        list.sort_unstable();
+        for equal in list.chunk_by(|a, b| a.0 == b.0) {
+            let (magnitude, count) = (equal[0].0, equal.len() as u64);
+            let stay = count - self.spent.equal(magnitude, count);
+            if stay > 0 {
+                let ties_end = if stay == count { u64::MAX } else { equal[stay as usize].1 };
+                return Stage::Found(Cut { magnitude, ties_end });
+            }
+        }
+        above(known, shift)
+    }
+
+    /// Drops what it can of equal magnitudes; `None` if that is all of them.
+    fn ties(&mut self, magnitude: u64, count: u64) -> Option<Stage> {
+        let stay = count - self.spent.equal(magnitude, count);
+        match stay {
+            0 => None,
+            _ if stay == count => Some(Stage::Found(Cut { magnitude, ties_end: u64::MAX })),
+            _ => Some(Stage::Index { magnitude, stay, known: 0, shift: 64 }),
+        }
+    }
+}
+
+/// The cut above all values that agree with these bits.
+fn above(known: u64, shift: u32) -> Stage {
+    Stage::Found(Cut { magnitude: known | ((1 << shift) - 1), ties_end: 0 })
+}
+
+fn by_index(counts: Counts, magnitude: u64, mut stay: u64, known: u64, shift: u32) -> Stage {
+    let next = shift.saturating_sub(DIGIT);
+    for (digit, bin) in counts.bins {
+        // The first that goes is the one behind those that stay.
+        if stay < bin.count {
+            let known = known | digit << next;
+            return match next {
+                0 => Stage::Found(Cut { magnitude, ties_end: known }),
+                shift => Stage::Index { magnitude, stay, known, shift },
+            };
+        }
+        stay -= bin.count;
+    }
+    unreachable!("fewer stay than there are")
+}
+
+/// Whether the bits from `shift` on are those known.
+#[inline(always)]
+fn agrees(bits: u64, known: u64, shift: u32) -> bool {
+    shift >= 63 && known == 0 || (bits ^ known) >> shift == 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A search over pieces of the values, in as many rounds as it takes.
+    fn searched(values: &[f64], budget: Budget, few: u64) -> (Cut, Dropped) {
+        let mut search = Search::new(budget, few);
+        for _ in 0..20 {
+            if let Some(found) = search.found() {
+                return found;
+            }
+            let mut counts = Counts::default();
+            let indexed: Vec<(f64, u64)> = values.iter().copied().zip(0..).collect();
+            for piece in indexed.chunks(7) {
+                let text = serde_json::to_string(&search.count(piece.iter().copied())).unwrap();
+                counts.join(serde_json::from_str(&text).unwrap());
+            }
+            search.learn(counts);
+        }
+        panic!("no end")
+    }
+
+    #[test]
+    fn pieces_are_cut_as_the_whole_is() {
+        let mut state = 7u64;
+        let mut random = |n: u64| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 33) % n
+        };
+        let reals: Vec<f64> = (0..200).map(|_| random(1 << 30) as f64 / 7.0).collect();
+        let ties: Vec<f64> = (0..200).map(|_| random(5) as f64 - 2.0).collect();
+        let masked: Vec<f64> = reals.iter().map(|&v| if v < 5e7 { f64::NAN } else { -v }).collect();
+        for values in [&reals, &ties, &masked, &vec![0.1; 60], &vec![0.0; 9], &vec![]] {
+            let all = values.iter().filter(|v| !v.is_nan());
+            let energy: f64 = all.clone().map(|v| v * v).sum();
+            let count = all.count() as u64;
+            let counts = [0, 1, count / 3, count.saturating_sub(1), count].map(Budget::Count);
+            let energies = [0.0, 1e-9, 0.3, 0.9, 1.0, 2.0].map(|k| Budget::Energy(k * energy));
+            for budget in counts.into_iter().chain(energies) {
+                let (whole, dropped) = Cut::new(values, budget);
+                for few in [0, 10, 1000] {
+                    let (cut, also_dropped) = searched(values, budget, few);
+                    let kept = |cut: Cut| -> Vec<bool> {
+                        values.iter().zip(0..).map(|(&v, i)| cut.keeps(v, i)).collect()
+                    };
+                    assert_eq!(kept(cut), kept(whole), "{budget:?} {few}");
+                    assert_eq!(also_dropped, dropped, "{budget:?} {few}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,286 @@
+//! A shape in blocks that do not know each other, against the same shape in one piece.
+
+mod common;
+
+use std::fs::File;
+use std::path::Path;
+
+use common::has_skull;
+use walpha::blocks::{BlocksError, Cutting, Job, Merged, Plan, merge, run, whole};
+use walpha::pipeline::{Choice, Model};
+use walpha::shape::{Component, Engine, ShapeOptions};
+use walpha::volume::{Nan, ReadOptions, open};
+use walpha::{
+    Alpha, AlphaShape, Balls, Gray, GrayRange, HaarOptions, Pipeline, Selection, SelectionRule,
+    Tolerance, Units, Weighting,
+};
+
+/// The job in one piece, in as many blocks of a k-d tree as asked for.
+fn in_one_piece(job: &Job, blocks: usize) -> Model {
+    let volume = open(&job.input, &job.read).unwrap();
+    let gray = job.gray.map_or(Gray::Automatic, Gray::Range);
+    let (volume, range) = volume.into_gray(gray).unwrap();
+    let options = ShapeOptions {
+        balls: job.balls,
+        engine: job.engine,
+        blocks: Some(blocks.try_into().unwrap()),
+        refuse_flat: true,
+        ..ShapeOptions::new(Alpha::from_squared(job.alpha).unwrap())
+    };
+    let pipeline = Pipeline::new()
+        .haar(job.haar)
+        .choice(Choice::Difference(job.selection))
+        .units(job.units)
+        .values(range)
+        .weighting(job.weighting)
+        .alpha(options.alpha)
+        .shape(options);
+    pipeline.run(&volume).unwrap()
+}
+
+fn planned(job: &Job, blocks: usize, folder: &Path) -> Plan {
+    let cutting = Cutting { blocks: Some(blocks), ..Cutting::default() };
+    Plan::make(job.clone(), cutting, folder).unwrap()
+}
+
+fn in_blocks(job: &Job, blocks: usize) -> (Plan, Merged, AlphaShape) {
+    let folder = tempfile::tempdir().unwrap();
+    let made = planned(job, blocks, folder.path());
+    let plan = Plan::open(folder.path()).unwrap();
+    assert_eq!((&plan, plan.digest()), (&made, made.digest()));
+    // In any order.
+    (0..plan.blocks.len()).rev().for_each(|block| run(&plan, block).unwrap());
+    let merged = merge(&plan).unwrap();
+    let shape = whole(&plan, &merged).unwrap();
+    (plan, merged, shape)
+}
+
+/// Sizes first, then every number, bit by bit.
+fn compare(job: &Job, cuts: &[usize]) -> Model {
+    let one = in_one_piece(job, 3);
+    let expected = &one.shape;
+    for &blocks in cuts {
+        let what = format!("{} in {blocks} blocks, {}", job.input, job.weighting);
+        let (plan, merged, shape) = in_blocks(job, blocks);
+        assert!(plan.blocks.len() <= blocks && (blocks == 1) == (plan.blocks.len() == 1), "{what}");
+        assert_eq!(plan.survey.truncation, one.origin.truncation.unwrap(), "{what}");
+        assert_eq!(shape.points().len(), expected.points().len(), "{what}");
+        assert_eq!(shape.points(), expected.points(), "{what}");
+        for (a, b) in [
+            (shape.complex().cells.len(), expected.complex().cells.len()),
+            (shape.complex().facets.len(), expected.complex().facets.len()),
+            (shape.complex().edges.len(), expected.complex().edges.len()),
+            (shape.complex().vertices.len(), expected.complex().vertices.len()),
+        ] {
+            assert_eq!(a, b, "{what}");
+        }
+        assert_eq!(shape.complex(), expected.complex(), "{what}");
+        assert_eq!(shape.sheets(), expected.sheets(), "{what}");
+        assert_eq!(shape.coordinates(), expected.coordinates(), "{what}");
+        assert_eq!(Some(merged.betti), expected.betti(), "{what}");
+        assert_eq!(merged.measures, *expected.measures(), "{what}");
+        assert_eq!(merged.weights, expected.points().summary(), "{what}");
+        assert_eq!(merged.facets.regular, expected.complex().facets.counts().regular, "{what}");
+        let components: Vec<Component> = expected.components();
+        assert_eq!(merged.components, components, "{what}");
+        assert_eq!(shape.components(), components, "{what}");
+    }
+    one
+}
+
+fn job(input: &str) -> Job {
+    Job::new(input, ReadOptions::default()).unwrap()
+}
+
+const WEIGHTS: [Weighting; 4] =
+    [Weighting::Common(0.0), Weighting::MinMax, Weighting::Barycentric, Weighting::BarycentricN];
+
+#[test]
+fn the_phantom_in_blocks_is_the_phantom() {
+    let mut job = job("sample:phantom@50");
+    for weighting in WEIGHTS {
+        job.weighting = weighting;
+        compare(&job, &[1, 5, 64]);
+    }
+    job.engine = Engine::Native;
+    compare(&job, &[2]);
+}
+
+#[test]
+fn the_skull_in_blocks_is_the_skull() {
+    if !has_skull() {
+        return;
+    }
+    let mut job = job("sample:skull");
+    for (weighting, blocks) in WEIGHTS.into_iter().zip([[5, 64], [1, 7], [2, 3], [4, 30]]) {
+        job.weighting = weighting;
+        let one = compare(&job, &blocks);
+        let betti = one.shape.betti().unwrap();
+        assert!(betti.b1 > 0 && betti.b2 > 0, "there is something to cut through: {betti:?}");
+    }
+}
+
+/// Noise in a file: singular simplices of all kinds and thousands of components.
+fn noise(folder: &Path, [x, y, z]: [usize; 3], levels: u32) -> String {
+    let path = folder.join("noise.npy");
+    let mut state = 12345u32;
+    let samples = ndarray::Array3::from_shape_simple_fn((z, y, x), || {
+        state = state.wrapping_mul(1664525).wrapping_add(1013904223);
+        ((state >> 8) % levels) as f32 * 1.3 - 200.0
+    });
+    ndarray_npy::WriteNpyExt::write_npy(&samples, File::create(&path).unwrap()).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn noise_in_blocks_is_noise() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = noise(folder.path(), [37, 22, 29], 1 << 24);
+    let mut job = job(&input);
+    for alpha in [0.3, 1.0, 2.25] {
+        job.alpha = alpha;
+        job.selection.rule = SelectionRule::Ratio(0.1);
+        let one = compare(&job, &[5, 40]);
+        assert!(one.shape.betti().unwrap().b0 > 1);
+    }
+    job.balls = Balls::Radius;
+    job.weighting = Weighting::MinMax;
+    compare(&job, &[6]);
+}
+
+/// Nothing but ties: four levels, so that coefficients, differences and spheres are equal by the thousand.
+#[test]
+fn ties_across_blocks_are_broken_as_in_one_piece() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = noise(folder.path(), [33, 20, 24], 4);
+    let mut job = job(&input);
+    job.haar = HaarOptions { tolerance: Tolerance::Coefficients(5001), ..job.haar };
+    for count in [777, 3000, 15840] {
+        job.selection.rule = SelectionRule::Count(count);
+        job.alpha = 3.0;
+        compare(&job, &[4, 25]);
+    }
+    job.selection = Selection { rule: SelectionRule::Threshold(60.0), gray_min: Some(80.0) };
+    compare(&job, &[4]);
+    job.selection = Selection { rule: SelectionRule::Count(500), gray_min: Some(170.0) };
+    compare(&job, &[3]);
+}
+
+#[test]
+fn missing_samples_and_given_ranges_are_the_same_in_blocks() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("holes.npy");
+    let samples = ndarray::Array3::from_shape_fn((20, 30, 25), |(z, y, x)| {
+        let hole = (x as i32 - 12).pow(2) + (y as i32 - 10).pow(2) < 9;
+        if hole { f32::NAN } else { ((x * 7 + y * y * 3 + z * z * z) % 251) as f32 * 3.7 }
+    });
+    ndarray_npy::WriteNpyExt::write_npy(&samples, File::create(&path).unwrap()).unwrap();
+    let input = path.to_str().unwrap();
+    for nan in [Nan::Mask, Nan::Value(50.0)] {
+        let read = ReadOptions { nan: Some(nan), ..ReadOptions::default() };
+        let mut job = Job::new(input, read).unwrap();
+        compare(&job, &[5]);
+        job.gray = Some(GrayRange { low: 100.0, high: 700.0 });
+        compare(&job, &[3]);
+    }
+    let error = Plan::make(job(input), Cutting::default(), folder.path()).unwrap_err();
+    assert!(error.to_string().contains("is NaN"), "{error}");
+}
+
+/// A rotated, stretched grid with an origin, in millimetres, in an MHA; and a part of it.
+#[test]
+fn world_coordinates_and_regions_are_the_same_in_blocks() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("turned.mha");
+    let volume = walpha::volume::phantom(40).unwrap();
+    let axes = [[0.42, 0.56, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.3]];
+    let frame = walpha::Frame::from_axes([-31.7, 12.25, 100.0], axes).unwrap();
+    let frame = frame.meaning(walpha::Coordinates::PATIENT);
+    let volume = volume.with_frame(frame);
+    let writer = walpha::volume::VolumeWriter::of(&path).unwrap();
+    writer.write(&volume, &mut File::create(&path).unwrap()).unwrap();
+    let region = walpha::volume::Region { first: [3, 0, 5], end: [Some(37), None, Some(33)] };
+    for region in [None, Some(region)] {
+        let read = ReadOptions { region, ..ReadOptions::default() };
+        let mut job = Job::new(path.to_str().unwrap(), read).unwrap();
+        job.units = Units::World;
+        job.set_alpha(walpha::pipeline::AlphaRule::Default).unwrap();
+        job.weighting = Weighting::MinMax;
+        compare(&job, &[1, 6]);
+    }
+}
+
+/// A single slice: every block is flat.
+#[test]
+fn flat_volumes_are_the_same_in_blocks() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = noise(folder.path(), [60, 50, 1], 1000);
+    let job = job(&input);
+    let (_, merged, shape) = in_blocks(&job, 6);
+    let mut pipeline = Pipeline::new();
+    pipeline = pipeline.alpha(Alpha::from_squared(job.alpha).unwrap());
+    let volume = open(&input, &job.read).unwrap();
+    let (volume, range) = volume.into_gray(Gray::Automatic).unwrap();
+    let one = pipeline.values(range).run(&volume).unwrap();
+    assert_eq!(shape.points(), one.shape.points());
+    assert_eq!(shape.complex().facets.len(), {
+        let mut complex = one.shape.complex().clone();
+        complex.retain_shape();
+        assert_eq!(*shape.complex(), complex);
+        complex.facets.len()
+    });
+    assert_eq!(Some(merged.betti), one.shape.betti());
+}
+
+#[test]
+fn what_is_not_local_is_refused() {
+    let mut job = job("sample:phantom@20");
+    job.haar.decomposition = walpha::Decomposition::Standard;
+    let refused = |job: &Job| {
+        let error = job.check().unwrap_err();
+        assert!(matches!(error, BlocksError::NotLocal { .. }), "{error}");
+        assert!(error.advice().is_some());
+    };
+    refused(&job);
+    let fresh = Job::new("sample:phantom@20", ReadOptions::default()).unwrap();
+    let (mut hull, mut reference, mut auto) = (fresh.clone(), fresh.clone(), fresh);
+    hull.alpha = f64::INFINITY;
+    refused(&hull);
+    reference.engine = Engine::Reference;
+    refused(&reference);
+    let error = auto.set_alpha(walpha::pipeline::AlphaRule::Auto).unwrap_err();
+    assert!(matches!(error, BlocksError::NotLocal { .. }), "{error}");
+}
+
+#[test]
+fn blocks_that_are_missing_or_of_another_plan_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut job = job("sample:phantom@30");
+    let plan = planned(&job, 4, folder.path());
+    run(&plan, 1).unwrap();
+    run(&plan, 3).unwrap();
+    let error = merge(&plan).unwrap_err();
+    assert_eq!(error.to_string(), "2 of 4 blocks are missing: 0, 2");
+    assert_eq!(plan.missing().unwrap(), [0, 2]);
+    // A block that is there stays as it is.
+    let written = || std::fs::metadata(plan.block_file(1)).unwrap().modified().unwrap();
+    let before = written();
+    (0..4).for_each(|block| run(&plan, block).unwrap());
+    assert_eq!(written(), before);
+    merge(&plan).unwrap();
+    assert!(matches!(run(&plan, 4), Err(BlocksError::NoBlock { index: 4, count: 4 })));
+
+    // The same folder, another α: what is there does not belong to it.
+    job.alpha = 5.0;
+    let other = planned(&job, 4, folder.path());
+    assert_ne!(other.digest(), plan.digest());
+    assert!(matches!(merge(&other), Err(BlocksError::OtherPlan { .. })));
+    (0..4).for_each(|block| run(&other, block).unwrap());
+    merge(&other).unwrap();
+
+    // Cut off.
+    let file = File::options().write(true).open(other.block_file(2)).unwrap();
+    file.set_len(file.metadata().unwrap().len() - 1).unwrap();
+    assert!(matches!(merge(&other), Err(BlocksError::Damaged { .. })));
+    assert_eq!(other.missing().unwrap(), [2]);
+}
