@@ -127,9 +127,11 @@ impl Check {
         let mut options = ShapeOptions { periodic, ..self.shape.options() };
         let stages = pipeline::stages(&self.pipeline);
         let (weighed, _) = pipeline::weighted_points(&self.pipeline, stages, progress)?;
-        // The whole triangulation can be judged wholly. Several blocks are judged as they are.
-        options.exterior |=
-            options.blocks.is_none_or(|blocks| blocks.get() == 1) && options.memory.is_none();
+        // The whole triangulation can be judged wholly. Several blocks are judged as they are; and of a
+        // torus the shape may have no long edge where the whole has one.
+        options.exterior |= options.blocks.is_none_or(|blocks| blocks.get() == 1)
+            && options.memory.is_none()
+            && periodic.is_none();
         let model = pipeline::shape(weighed, options, progress)?;
         let sides = periodic.map(|torus| torus.sides());
         Ok(PlacedComplex::from(model.shape.claim()).with_periodic(sides))

@@ -533,7 +533,8 @@ impl AlphaShape {
         power_alpha(&self.options)
     }
 
-    /// What the shape claims to be, for the checker to judge.
+    /// What the shape claims to be, for the checker to judge; of a torus, as a part of a
+    /// [`PlacedComplex`](walpha_check::schema::PlacedComplex) that says so.
     pub fn claim(&self) -> Claim<'_> {
         let (positions, weights) = (&self.points.positions, self.power_weights());
         Claim::new(Placed::new(positions, weights, self.power_alpha(), &self.complex))

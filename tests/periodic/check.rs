@@ -28,7 +28,7 @@ fn shapes_of_a_torus_are_certified() {
     }
     for seed in 0..6 {
         let (points, sides) = dense(seed);
-        for squared in [0.25, f64::INFINITY] {
+        for squared in [0.2, f64::INFINITY] {
             let whole = ShapeOptions { exterior: true, ..options(sides, squared) };
             let shape = alpha_shape(points.clone(), &whole).unwrap();
             let (found, certificate) = placed(&shape).findings().unwrap();
