@@ -87,7 +87,7 @@ impl SampleGrid {
         for position in positions {
             for k in 0..3 {
                 let x = position[k];
-                if !(x.fract() == 0.0 && (0.0..4e9).contains(&x)) {
+                if x.fract() != 0.0 || !(0.0..4e9).contains(&x) {
                     return None;
                 }
                 end[k] = end[k].max(x as u64 + 1);

@@ -125,9 +125,8 @@ fn plane(near: &[Neighbour], mean: f64) -> f64 {
             }
         }
     }
-    rows[0][0] += 0.05;
-    for (k, row) in rows.iter_mut().enumerate().skip(1) {
-        row[k] += 1.0;
+    for (k, row) in rows.iter_mut().enumerate() {
+        row[k] += if k == 0 { 0.05 } else { 1.0 };
     }
     for k in 0..4 {
         let pivot = rows[k][k];

@@ -117,7 +117,7 @@ impl Values {
 /// Twice the binary logarithm, rounded down, plus 4, from 0 to 23.
 fn logarithm(number: f64) -> usize {
     let exponent = (number.to_bits() >> 52) as i64 - 1023;
-    let mantissa = f64::from_bits(number.to_bits() & ((1 << 52) - 1) | 1023 << 52);
+    let mantissa = f64::from_bits((number.to_bits() & ((1 << 52) - 1)) | (1023 << 52));
     let half = i64::from(mantissa * mantissa >= 2.0);
     (2 * exponent + half + 4).clamp(0, 23) as usize
 }
