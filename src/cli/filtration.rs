@@ -101,14 +101,9 @@ impl Filtration {
         let weights = WeightArgs::from(self.weights);
         let read = pipeline::read(&self.input, &mut progress)?;
         read.accepts(&self.input)?;
-        let (haar, select) = (&self.haar, &self.select);
-        let (weighed, _) = pipeline::weigh_input(
-            read,
-            pipeline::stages(haar, &weights),
-            select,
-            Values::Written,
-            &mut progress,
-        )?;
+        let stages = pipeline::stages(&self.haar, &weights);
+        let (weighed, _) =
+            pipeline::weigh_input(read, stages, &self.select, Values::Written, &mut progress)?;
         let filtration = progress
             .stage(Stage::Filtration, || ladder::Filtration::new(weighed.points.clone()))?;
         let ordered = progress.stage(Stage::Order, || filtration.simplices())?;

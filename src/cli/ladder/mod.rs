@@ -123,14 +123,9 @@ impl Ladder {
         let weights = WeightArgs::from(self.weights);
         let read = pipeline::read(&self.input, &mut progress)?;
         read.accepts(&self.input)?;
-        let (haar, select) = (&self.haar, &self.select);
-        let (weighed, source) = pipeline::weigh_input(
-            read,
-            pipeline::stages(haar, &weights),
-            select,
-            Values::Written,
-            &mut progress,
-        )?;
+        let stages = pipeline::stages(&self.haar, &weights);
+        let (weighed, source) =
+            pipeline::weigh_input(read, stages, &self.select, Values::Written, &mut progress)?;
         let volume = source.map(|source| source.facts);
         let domain = pipeline::domain(&weighed, volume.as_ref());
         let filtration =
