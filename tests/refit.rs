@@ -146,12 +146,12 @@ fn fitted_values_are_written_the_same_by_any_number_of_threads() {
     let told = json(f, &[&args[..6], &["-o", "own.csv"]].concat());
     assert!(told["fit"].is_null());
     assert!(fs::read(f.join("own.csv")).unwrap() != one);
-    // Values of the file, not gray levels, go out: of a volume 1000 times as high, values 1000 times as high.
-    let high = volume::phantom(20).unwrap().samples().mapv(|gray| 1000.0 * gray);
+    // Values of the file, not gray levels, go out: of a volume 1024 times as high, values as much higher.
+    let high = volume::phantom(20).unwrap().samples().mapv(|gray| 1024.0 * gray);
     let mut npy = Vec::new();
     high.write_npy(&mut npy).unwrap();
     fs::write(f.join("high.npy"), npy).unwrap();
-    let told = json(f, &["points", "high.npy", "--gray", "0..255000", "--refit", "-o", "high.csv"]);
+    let told = json(f, &["points", "high.npy", "--gray", "0..261120", "--refit", "-o", "high.csv"]);
     assert_eq!(told["fit"]["to"], "whole");
     json(f, &["points", "sample:phantom@20", "--refit", "-o", "low.csv"]);
     let mean = |name: &str| {
@@ -159,7 +159,7 @@ fn fitted_values_are_written_the_same_by_any_number_of_threads() {
         let values = text.lines().skip(1).map(|line| line.split(',').nth(4).unwrap());
         values.map(|value| value.parse::<f64>().unwrap()).sum::<f64>()
     };
-    assert!((mean("high.csv") / mean("low.csv") - 1000.0).abs() < 1e-3);
+    assert!((mean("high.csv") / mean("low.csv") - 1024.0).abs() < 1e-6);
     ok(f, &["view", "sample:phantom@12", "--refit", "-o", "page.html"]);
 }
 

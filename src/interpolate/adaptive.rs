@@ -49,9 +49,9 @@ const FIRST_BATCH: usize = 32;
 ///
 /// Error is measured from `volume` itself, so give the original, not a truncated one. It is looked
 /// at between batches: when that ends the selection, the last batch may have overshot the target.
-/// Fewer voxels than asked for suffice where their interpolant is perfect. Each batch costs one
-/// triangulation and one pass over the volume, in all a few times the last. The same on any number
-/// of threads.
+/// Fewer voxels than asked for suffice where their interpolant is perfect. A batch costs its
+/// insertions, samples in the cells that these make, and one pass over all errors; memory, 16 bytes a
+/// sample. The same on any number of threads.
 ///
 /// # Errors
 /// A count below 8 or above the samples, a target or bound that is negative or NaN, missing samples, or
@@ -119,7 +119,7 @@ pub(super) fn worst(
     chunks.for_each(|(chunk, ((theirs, ours), owners))| {
         // Samples side by side are often in one cell: these are written together.
         let write = |owner: u32, sum: u64, most: u64| {
-            if most != 0 {
+            if owner != NOTHING {
                 sums[owner as usize].fetch_add(sum, Relaxed);
                 worst[owner as usize].fetch_max(most, Relaxed);
             }

@@ -176,8 +176,10 @@ impl<'a> Sampled<'a> {
         fresh.par_iter().with_min_len(CHUNK).for_each(|&cell| {
             let row = cells.row(cell);
             for_each_near(&self.grid, &cells.corners(row), |index| {
-                if let Some(shares) = cells.coordinates(row, self.grid.position(index)) {
-                    cells.claim(cell, row, &shares, &owners[self.sample(index)]);
+                let place = self.grid.position(index);
+                if let Some(shares) = cells.coordinates(row, place) {
+                    let holds = |row| cells.coordinates(row, place).is_some();
+                    cells.claim(cell, &shares, holds, &owners[self.sample(index)]);
                 }
             });
         });
@@ -200,7 +202,7 @@ impl<'a> Sampled<'a> {
             for_each_near(&self.grid, &corners, |index| {
                 if let Some(shares) = planes.shares(self.grid.position(index)) {
                     let sample = self.sample(index);
-                    cells.claim(cell, row, &shares, &owners[sample]);
+                    cells.claim(cell, &shares, |_| true, &owners[sample]);
                     let value = combine(&shares, row.map(|v| self.values[v as usize])) as f32;
                     f[sample].store(value.to_bits(), Relaxed);
                 }
@@ -264,42 +266,44 @@ impl<'a> Cells<'a> {
         row.map(|v| self.growing.positions()[v as usize])
     }
 
-    /// Gives a sample in a new cell to the first of the cells that hold it.
+    /// Gives a sample in a new cell to the first of the cells that hold it. Shares that are 0 may be so by
+    /// rounding; then `holds` says which of the cells beside hold the sample, too.
     #[inline(always)]
-    fn claim(&self, cell: u32, row: [u32; 4], shares: &[f64; 4], owner: &AtomicU32) {
+    fn claim(
+        &self,
+        cell: u32,
+        shares: &[f64; 4],
+        holds: impl Fn([u32; 4]) -> bool,
+        owner: &AtomicU32,
+    ) {
         match shares.iter().filter(|share| **share == 0.0).count() {
             0 => owner.store(cell, Relaxed),
-            1 => owner.store(self.first_across(cell, row, shares), Relaxed),
-            2 => owner.store(self.first_at(cell, row, shares), Relaxed),
+            1 | 2 => owner.store(self.first_at(cell, shares, holds), Relaxed),
             // At a vertex F is its value, whichever cell the sample belongs to.
             _ => drop(owner.fetch_min(cell, Relaxed)),
         }
     }
 
-    /// The first in canonical order of two cells, one of them across the facet that a place lies on.
-    fn first_across(&self, cell: u32, row: [u32; 4], shares: &[f64; 4]) -> u32 {
-        let off = (0..4).find(|&k| shares[k] == 0.0).map_or(row[0], |k| row[k]);
-        let Cell { corners, beside } = self.growing.cells()[cell as usize];
-        let corner = corners.iter().position(|&v| v == off).unwrap_or(0);
-        let next = beside[corner] / 4;
-        if self.growing.is_cell(next) && self.row(next) < row { next } else { cell }
-    }
-
     /// The first in canonical order of the cells at the face that a place lies on within one of them. They
     /// are those with all vertices of the face, and from one to the next the way leads through facets
     /// that have all of them, too.
-    fn first_at(&self, cell: u32, row: [u32; 4], shares: &[f64; 4]) -> u32 {
+    fn first_at(&self, cell: u32, shares: &[f64; 4], holds: impl Fn([u32; 4]) -> bool) -> u32 {
+        let row = self.row(cell);
         let on = |v: u32| (0..4).any(|k| row[k] == v && shares[k] != 0.0);
         let mut seen = vec![cell];
         let mut first = (row, cell);
         let mut at = 0;
         while let Some(&cell) = seen.get(at) {
             at += 1;
-            first = first.min((self.row(cell), cell));
             let Cell { corners, beside } = self.growing.cells()[cell as usize];
             for k in 0..4 {
                 let next = beside[k] / 4;
-                if !on(corners[k]) && self.growing.is_cell(next) && !seen.contains(&next) {
+                if on(corners[k]) || !self.growing.is_cell(next) || seen.contains(&next) {
+                    continue;
+                }
+                let row = self.row(next);
+                if holds(row) {
+                    first = first.min((row, next));
                     seen.push(next);
                 }
             }

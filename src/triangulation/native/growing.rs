@@ -113,6 +113,7 @@ impl Growing {
                 left += 1;
             }
         }
+        body.mark_gone();
         Ok(left)
     }
 
@@ -173,7 +174,7 @@ impl Growing {
         &self.body.native.mesh.cells
     }
 
-    /// Whether there is a finite cell of this number, as of the last [`Self::take_fresh`].
+    /// Whether there is a finite cell of this number.
     pub fn is_cell(&self, cell: u32) -> bool {
         let [a, b, c, d] = self.cells()[cell as usize].corners;
         a != GONE && a != GHOST && b != GHOST && c != GHOST && d != GHOST
@@ -181,11 +182,7 @@ impl Growing {
 
     /// The finite cells made since this was last asked, ascending.
     pub fn take_fresh(&mut self) -> Vec<u32> {
-        let Body { native, fresh, .. } = &mut self.body;
-        for &place in &native.free {
-            native.mesh.cells[place as usize].corners[0] = GONE;
-        }
-        let mut fresh = std::mem::take(fresh);
+        let mut fresh = std::mem::take(&mut self.body.fresh);
         fresh.sort_unstable();
         fresh.dedup();
         fresh.retain(|&cell| self.is_cell(cell));
@@ -215,7 +212,14 @@ impl Body {
                 }
             }
         }
+        self.mark_gone();
         Ok(())
+    }
+
+    /// Marks the places of cells that are gone.
+    fn mark_gone(&mut self) {
+        let Native { free, mesh, .. } = &mut self.native;
+        free.iter().for_each(|&place| mesh.cells[place as usize].corners[0] = GONE);
     }
 
     /// Takes note of a new cell.
@@ -258,16 +262,14 @@ mod tests {
         cells(finite.copied(), positions)
     }
 
-    fn agree(growing: &mut Growing) {
-        // Marks what is gone.
-        growing.take_fresh();
+    fn agree(growing: &Growing, when: &str) {
         let there: Vec<[f64; 3]> = (Growing::FIRST..growing.positions().len() as u32)
             .filter(|&v| growing.is_vertex(v))
             .map(|v| growing.positions()[v as usize])
             .collect();
         let finite = (0..growing.cells().len() as u32).filter(|&cell| growing.is_cell(cell));
         let rows = finite.map(|cell| growing.cells()[cell as usize].corners);
-        assert_eq!(cells(rows, growing.positions()), from_the_start(&there));
+        assert!(cells(rows, growing.positions()) == from_the_start(&there), "{when}: {there:?}");
     }
 
     /// The corners of a box, and points in it, on its sides and on its edges.
@@ -290,10 +292,10 @@ mod tests {
             leave in prop::collection::vec(any::<prop::sample::Index>(), 1..30),
         ) {
             let mut growing = Growing::new(&points[..cut]).unwrap();
-            agree(&mut growing);
+            agree(&growing, "of the first");
             let rest: Vec<u32> = growing.name(&points[cut..]).collect();
             growing.insert(&rest).unwrap();
-            agree(&mut growing);
+            agree(&growing, "with more");
             let inner = points.len() - 8;
             let mut leave: Vec<u32> =
                 leave.iter().map(|i| Growing::FIRST + 8 + i.index(inner) as u32).collect();
@@ -302,10 +304,10 @@ mod tests {
             let left = growing.remove(&leave).unwrap();
             // Rounded places may lie outside the box of the others.
             prop_assert!(left == leave.len() || step != 1.0);
-            agree(&mut growing);
+            agree(&growing, "without some");
             let gone: Vec<u32> = leave.into_iter().filter(|&v| !growing.is_vertex(v)).collect();
             growing.insert(&gone).unwrap();
-            agree(&mut growing);
+            agree(&growing, "with them again");
         }
 
         #[test]
