@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, Price, merge, price, run, run_all, whole};
+use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, merge, price, run, run_all, whole};
 use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target, write_all};
 use crate::progress::Stage;
 use crate::shown::shown;
