@@ -104,8 +104,6 @@ impl Shape {
             unused("--groups", self.groups, &why)?;
         }
         if !written(|format| format.boundary) {
-            let by_itself = "blocks tell of flat points by themselves";
-            unused("--dimension", self.dimension.is_some(), by_itself)?;
             unused("--solid", self.solid, "no output holds a boundary alone")?;
         }
         Ok(())

@@ -159,7 +159,10 @@ impl AlphaShape {
             components[number(cell[0])].add_cell(self.corners(*cell));
         }
         for (facet, class) in self.complex().facets.iter() {
-            components[number(facet[0])].add_facet(self.corners(*facet), class);
+            // The ends of others may be in no component.
+            if let Class::Regular | Class::Singular = class {
+                components[number(facet[0])].add_facet(self.corners(*facet), class);
+            }
         }
         // What a surface of a torus encloses is not its sheets' to say.
         let sheets = self.sheets().filter(|_| torus.is_none());
