@@ -37,7 +37,8 @@ const LEAST: f64 = 2e-3;
 ///    half as large.
 ///
 /// The corners of the volume stay. `voxels` are samples of the volume, its corners among them, in any
-/// order; those that stay come first in the result, in that order. The same on any number of threads.
+/// order; those that were never exchanged come first in the result, in that order. The same on any number
+/// of threads. For n points a round takes about n removals and n/2 insertions, each of a few dozen cells.
 ///
 /// # Errors
 /// Missing samples; samples that span no volume; no memory.
