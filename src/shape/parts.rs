@@ -142,7 +142,9 @@ impl AlphaShape {
             components[number(cell[0])].add_cell(cell.map(at));
         }
         for (facet, class) in self.complex().facets.iter() {
-            components[number(facet[0])].add_facet(facet.map(at), class);
+            if matches!(class, Class::Regular | Class::Singular) {
+                components[number(facet[0])].add_facet(facet.map(at), class);
+            }
         }
         let sheets = self.sheets().map(|sheets| self.sheet_sums(sheets, &numbers));
         told(components, sheets)
