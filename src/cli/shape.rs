@@ -96,8 +96,6 @@ impl Shape {
             unused("--groups", self.groups, &why)?;
         }
         if !written(|format| format.boundary) {
-            let by_itself = "blocks tell of flat points by themselves";
-            unused("--dimension", self.dimension.is_some(), by_itself)?;
             unused("--solid", self.solid, "no output holds a boundary alone")?;
         }
         Ok(())
@@ -135,6 +133,11 @@ impl Shape {
         let mut progress = Progress::new(global);
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         if !pieces.is_empty() {
+            unused(
+                "--dimension",
+                self.dimension.is_some(),
+                "a block may be flat where the whole is not",
+            )?;
             unused("--solid", self.solid, "it takes the whole boundary, and there are blocks")?;
             let outputs = Outputs { pieces, whole: targets };
             let mut report = blocks::shape(&self.pipeline, &self.shape, outputs, &mut progress)?;
