@@ -141,9 +141,14 @@ impl Shape {
         let mut progress = Progress::new(global);
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         if !pieces.is_empty() {
+            unused(
+                "--dimension",
+                self.dimension.is_some(),
+                "a block may be flat where the whole is not",
+            )?;
             unused("--solid", self.solid, "it takes the whole boundary, and there are blocks")?;
             let given = &self.pipeline.input.given;
-            given.refuse(&["refit", "periodic", "dimension"], "there are blocks")?;
+            given.refuse(&["refit", "periodic"], "there are blocks")?;
             let outputs = Outputs { pieces, whole: targets };
             let mut report = blocks::shape(&self.pipeline, &self.shape, outputs, &mut progress)?;
             report.finish(progress.finish(), files);
