@@ -98,21 +98,20 @@ fn kill_when(at: &Path, command: &str, is_time: impl Fn() -> bool) -> bool {
         .spawn()
         .unwrap();
     let begun = Instant::now();
-    while begun.elapsed() < Duration::from_secs(300) {
+    let killed = loop {
+        assert!(begun.elapsed() < Duration::from_secs(300), "{command} does not end");
         if is_time() {
             // SIGKILL: nothing is cleaned up.
             child.kill().unwrap();
-            child.wait().unwrap();
-            return true;
+            break true;
         }
         if child.try_wait().unwrap().is_some() {
-            return false;
+            break false;
         }
         std::thread::sleep(Duration::from_millis(1));
-    }
-    child.kill().unwrap();
+    };
     child.wait().unwrap();
-    panic!("{command} does not end")
+    killed
 }
 
 fn blocks_in(folder: &Path) -> usize {
