@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::export::Target;
-use walpha::points::{ModelFacts, Packing, PointWriter, PointsError, read_model};
+use walpha::points::{ModelFacts, Packing, PointWriter, read_model};
 use walpha::progress::Stage;
 use walpha::{Alpha, WeightedPoints};
 
