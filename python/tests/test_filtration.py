@@ -87,7 +87,8 @@ def test_gudhi_agrees(cloud, weights):
     values = dict((tuple(s), v) for s, v in ours.get_filtration())
     other = dict((tuple(s), v) for s, v in theirs.get_filtration())
     assert values.keys() == other.keys()
-    assert max(abs(values[s] - other[s]) for s in values) < 1e-12
+    # GUDHI rounds its exact values within a share of them; those of flat cells are large.
+    assert all(values[s] == pytest.approx(other[s], rel=1e-9, abs=1e-12) for s in values)
     assert not ours.make_filtration_non_decreasing()
     ours.compute_persistence(persistence_dim_max=True)
     for dimension in (0, 2):
