@@ -289,7 +289,7 @@ def chart(volumes):
         low, up = (math.log(v) for v in span)
         return (math.log(value) - low) / (up - low) * length
 
-    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{len(volumes) * (wide + 40) + 40}" height="{high + 120}" font-family="sans-serif" font-size="12">']
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{max(len(volumes) * (wide + 40) + 40, left + 4 * 220 + 10)}" height="{high + 120}" font-family="sans-serif" font-size="12">']
     out.append('<rect width="100%" height="100%" fill="white"/>')
     for k, (volume, rows) in enumerate(volumes.items()):
         x0, y0 = left + k * (wide + 40), top
