@@ -37,6 +37,7 @@ pub use formats::{
 };
 pub(crate) use formats::{is_vtk_xml, start_of};
 pub use gray::{Gray, GrayRange};
+pub(crate) use grid::any_size;
 pub use grid::{Dims, Frame};
 pub use part::{Region, downsample};
 pub(crate) use read::NpyFile;
