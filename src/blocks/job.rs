@@ -6,7 +6,7 @@ use crate::pipeline::{AlphaRule, Parameter, ParameterOrigin};
 use crate::points::{Selection, Units, Weighting};
 use crate::shape::{Alpha, Balls, Engine};
 use crate::triangulation::Maker;
-use crate::volume::{Dims, Frame, GrayRange, ReadOptions, Source};
+use crate::volume::{Dims, Frame, GrayRange, ReadOptions, Source, any_size};
 
 /// What is to be computed: an input and the options of every stage. Plans hold it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,6 +22,7 @@ pub struct Job {
     /// Whether points get gray levels rather than the values of the input.
     pub gray_out: bool,
     /// Samples along x, y and z.
+    #[serde(deserialize_with = "any_size")]
     pub dims: Dims,
     /// Where the grid lies.
     pub frame: Frame,

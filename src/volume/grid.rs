@@ -1,4 +1,4 @@
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::{Conversion, Coordinates, VolumeError};
 
@@ -27,8 +27,14 @@ impl TryFrom<Unchecked> for Dims {
     type Error = VolumeError;
 
     fn try_from(Unchecked { x, y, z }: Unchecked) -> Result<Self, VolumeError> {
-        Self::unbounded(x, y, z)
+        Self::new(x, y, z)
     }
+}
+
+/// Reads sizes of a volume that is read part by part. For `#[serde(deserialize_with)]`.
+pub(crate) fn any_size<'de, D: Deserializer<'de>>(reader: D) -> Result<Dims, D::Error> {
+    let Unchecked { x, y, z } = Unchecked::deserialize(reader)?;
+    Dims::unbounded(x, y, z).map_err(serde::de::Error::custom)
 }
 
 impl Dims {

@@ -37,8 +37,8 @@ pub use formats::{
 };
 pub(crate) use formats::{built, is_vtk_xml, start_of};
 pub use gray::{Gray, GrayRange};
-pub(crate) use grid::inverse;
 pub use grid::{Dims, Frame};
+pub(crate) use grid::{any_size, inverse};
 pub use part::{Region, downsample};
 pub(crate) use read::NpyFile;
 #[cfg(feature = "formats")]

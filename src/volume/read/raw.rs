@@ -9,12 +9,13 @@ use super::payload::{Length, Payload, PayloadError};
 use super::rows::Rows;
 use super::{io_error, payload_error};
 use crate::advice::{Setting, advice};
-use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
+use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError, any_size};
 
 /// What a file of bare samples does not say of itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RawLayout {
     /// Samples along x (fastest), y and z (slowest).
+    #[serde(deserialize_with = "any_size")]
     pub dims: Dims,
     /// The type of each.
     pub dtype: Dtype,
