@@ -100,8 +100,7 @@ fn npy_of(header: &str, payload: &[u8]) -> Vec<u8> {
 fn sizes_are_checked_when_they_are_read() {
     let dims: Dims = serde_json::from_str(r#"{"x":2,"y":3,"z":4}"#).unwrap();
     assert_eq!((dims.samples(), serde_json::to_value(dims).unwrap()["z"].as_u64()), (24, Some(4)));
-    // More than can be read at once is read part by part.
-    for sizes in [r#"{"x":0,"y":3,"z":4}"#, r#"{"x":4294967296,"y":4294967296,"z":1}"#] {
+    for sizes in [r#"{"x":0,"y":3,"z":4}"#, r#"{"x":65536,"y":65536,"z":1}"#] {
         assert!(serde_json::from_str::<Dims>(sizes).is_err(), "{sizes}");
     }
 }
