@@ -82,6 +82,7 @@ impl SampleGrid {
 
     /// The grid in voxels that reaches from 0 to the last of some positions, all of them whole numbers
     /// from 0 up.
+    #[cfg(feature = "formats")]
     pub(super) fn spanned(positions: &[[f64; 3]], coordinates: Coordinates) -> Option<Self> {
         let mut end = [0u64; 3];
         for position in positions {

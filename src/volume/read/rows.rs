@@ -4,10 +4,14 @@ use std::path::{Path, PathBuf};
 
 #[cfg(feature = "formats")]
 use super::described::{Described, Encoding};
+#[cfg(feature = "formats")]
+use super::format_error;
+use super::io_error;
 use super::payload::Element;
-use super::{format_error, io_error};
+#[cfg(feature = "formats")]
+use crate::volume::Reason;
 use crate::volume::source::{Parts, Source};
-use crate::volume::{Dims, Dtype, Endian, Frame, Reason, VolumeError};
+use crate::volume::{Dims, Dtype, Endian, Frame, VolumeError};
 
 /// The samples of a volume as they lie in a file, x fastest, not compressed: any box of them can be read
 /// alone.
