@@ -1,0 +1,93 @@
+use std::num::NonZeroUsize;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Alpha, Balls, ShapeError, Torus, Whole};
+
+/// Which program computes the shape; all give the same answer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Engine {
+    /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper.
+    Reference,
+    /// CGAL's `Regular_triangulation_3` in blocks, in parallel or in bounded memory, classified by
+    /// exact predicates of our own.
+    #[cfg_attr(feature = "cgal", default)]
+    Cgal,
+    /// The same with our own triangulation: no C++, and the fastest.
+    #[cfg_attr(not(feature = "cgal"), default)]
+    Native,
+}
+
+/// How to make a shape of weighted points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeOptions {
+    /// The parameter α.
+    pub alpha: Alpha,
+    /// What α + ω means.
+    pub balls: Balls,
+    /// Which program computes it.
+    pub engine: Engine,
+    /// Whether the simplices outside the shape are wanted too: the whole triangulation, which
+    /// takes one block.
+    pub exterior: bool,
+    /// How many blocks the points are cut into, at most one for each; by default, as few as keep the
+    /// threads at work and the memory bounded. One block is the whole triangulation.
+    pub blocks: Option<NonZeroUsize>,
+    /// Bytes of memory that the plan for the blocks keeps to.
+    pub memory: Option<u64>,
+    /// Whether points in one plane, on one line, or fewer than four are an error. Otherwise their shape
+    /// is the one in their plane or on their line, without cells.
+    pub refuse_flat: bool,
+    /// The box that repeats, if one does: the points are those of a torus, of which the shape is.
+    pub periodic: Option<Torus>,
+}
+
+impl ShapeOptions {
+    /// The shape at α, with power balls, by the default engine, without exterior simplices.
+    pub fn new(alpha: Alpha) -> Self {
+        Self {
+            alpha,
+            balls: Balls::default(),
+            engine: Engine::default(),
+            exterior: false,
+            blocks: None,
+            memory: None,
+            refuse_flat: false,
+            periodic: None,
+        }
+    }
+
+    /// Whether they go together, which [`alpha_shape`](super::alpha_shape()) looks at first.
+    ///
+    /// # Errors
+    /// [`ShapeError::Unbounded`] and [`ShapeError::Exterior`]: blocks, or a bound on memory, for what
+    /// takes the whole triangulation; [`ShapeError::Unrepeated`].
+    pub fn check(&self) -> Result<(), ShapeError> {
+        if self.periodic.is_some() && self.engine == Engine::Reference {
+            return Err(ShapeError::Unrepeated);
+        }
+        if let Some(blocks) = self.blocks.map(NonZeroUsize::get)
+            && self.exterior
+            && blocks > 1
+        {
+            return Err(ShapeError::Exterior { blocks });
+        }
+        let unbounded = |by| Err(ShapeError::Unbounded { by });
+        match self.memory {
+            Some(_) if self.engine == Engine::Reference => unbounded(Whole::Reference),
+            Some(_) if self.exterior => unbounded(Whole::Exterior),
+            Some(_) if power_alpha(self) == Alpha::INFINITE => unbounded(Whole::Hull),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The parameter at which the power weights are judged.
+pub(super) fn power_alpha(options: &ShapeOptions) -> Alpha {
+    match options.balls {
+        Balls::Power => options.alpha,
+        Balls::Radius => Alpha::ZERO,
+    }
+}
