@@ -767,19 +767,24 @@ PARTS = [read_nrrd, read_itk, read_nifti, read_vtk, read_tiff, read_slices, read
 PARTS += [read_points, scattered, write_shapes, read_dicom, read_zarr]
 
 if "--inside" in sys.argv:
-    import check_exports
-    import nibabel as nib
-    import nrrd
-    import numpy as np
-    import pydicom
-    import SimpleITK as sitk
-    import tifffile
-    import trimesh
-    import vtk
-    import zarr
-    from PIL import Image
-    from scipy.spatial import Delaunay
-    from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    try:
+        import check_exports
+        import nibabel as nib
+        import nrrd
+        import numpy as np
+        import pydicom
+        import SimpleITK as sitk
+        import tifffile
+        import trimesh
+        import vtk
+        import zarr
+        from PIL import Image
+        from scipy.spatial import Delaunay
+        from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    except ImportError as error:
+        # Wheels need libraries that a system may lack.
+        print(f"skipped: a Python package cannot be used ({error})")
+        sys.exit(77)
 
     PARTS += check_exports.PARTS
 
