@@ -40,7 +40,7 @@ mod bridge {
         "cpp/regular.h",
     ];
 
-    pub fn build() {
+    pub(crate) fn build() {
         for file in SOURCES.iter().chain(HEADERS).chain(BRIDGES) {
             println!("cargo::rerun-if-changed={file}");
         }

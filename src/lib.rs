@@ -27,6 +27,9 @@
 //! α and ω are squared lengths. Points are (x, y, z); volumes are stored `[z, y, x]`. Results are
 //! the same on any number of threads.
 
+// Not in Cargo.toml: the modules that tests share are `pub` in each of them.
+#![warn(unreachable_pub)]
+
 pub use ndarray;
 
 pub mod advice;

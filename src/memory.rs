@@ -5,12 +5,12 @@ use crate::advice::Advice;
 /// The most memory this process ever held, in bytes; `None` where the system does not say (only
 /// Linux does).
 #[cfg(feature = "cli")]
-pub fn peak_bytes() -> Option<u64> {
+pub(crate) fn peak_bytes() -> Option<u64> {
     status("VmHWM:")
 }
 
 /// The memory this process holds now, in bytes; `None` where the system does not say.
-pub fn resident_bytes() -> Option<u64> {
+pub(crate) fn resident_bytes() -> Option<u64> {
     status("VmRSS:")
 }
 

@@ -103,7 +103,7 @@ const STEPS: u64 = 1000;
 
 impl Share {
     /// No part of the scale, as what the work is a part of says itself how far it is.
-    pub const NONE: Self = Self { from: 0, to: 0, of: 1 };
+    pub(crate) const NONE: Self = Self { from: 0, to: 0, of: 1 };
 
     fn report(self, done: u64, total: u64) {
         let Self { from, to, of } = self;
@@ -137,13 +137,13 @@ pub(crate) struct Piece {
 
 impl Piece {
     /// So many units of work, which are the share that this thread works [within].
-    pub fn new(total: u64) -> Self {
+    pub(crate) fn new(total: u64) -> Self {
         let share = SHARE.get().unwrap_or(Share { from: 0, to: 1, of: 1 });
         Self { share, total, done: Mutex::default() }
     }
 
     /// Counts units that are done.
-    pub fn add(&self, units: u64) {
+    pub(crate) fn add(&self, units: u64) {
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         let [all, reported] = &mut *done;
         *all = self.total.min(*all + units);

@@ -19,7 +19,7 @@ pub(super) struct Boxes<'a> {
 
 impl Boxes<'_> {
     /// The points of a box.
-    pub fn points(&self, part: &Part) -> u64 {
+    pub(super) fn points(&self, part: &Part) -> u64 {
         let mut points = 0;
         self.rows(part, |_, row| points += row.iter().map(|&n| u64::from(n)).sum::<u64>());
         points
@@ -71,7 +71,7 @@ impl Boxes<'_> {
     }
 
     /// The boxes asked for, or as few as keep to the memory, each with the points in it and around it.
-    pub fn planned(
+    pub(super) fn planned(
         &self,
         cutting: Cutting,
         job: &Job,

@@ -57,7 +57,7 @@ pub(super) struct Sample {
 
 impl Field {
     /// Opens the input of a job.
-    pub fn open(job: &Job) -> Result<Self, BlocksError> {
+    pub(super) fn open(job: &Job) -> Result<Self, BlocksError> {
         let source = Source::open(&job.input, &job.read)?;
         let dims = source.dims().xyz();
         let (bricks, nan) = (Self::bricks_of(dims), job.read.nan);
@@ -65,18 +65,18 @@ impl Field {
     }
 
     /// Whether values are gray levels as they are, and all numbers.
-    pub fn is_gray(&self) -> bool {
+    pub(super) fn is_gray(&self) -> bool {
         self.source.has_gray_levels()
     }
 
     /// The size of what is handled at a time: whole bricks, and whole pieces of the file as far as these are
     /// no larger.
-    pub fn tile(&self) -> [usize; 3] {
+    pub(super) fn tile(&self) -> [usize; 3] {
         Self::tile_of(&self.source)
     }
 
     /// The same for a volume that is not looked at otherwise.
-    pub fn tile_of(source: &Source) -> [usize; 3] {
+    pub(super) fn tile_of(source: &Source) -> [usize; 3] {
         let dims = source.dims().xyz();
         let side = Self::bricks_of(dims).side();
         let whole = dims.map(|n| n.next_multiple_of(side));
@@ -103,13 +103,13 @@ impl Field {
     }
 
     /// The index of a sample in the volume.
-    pub fn voxel(&self, [x, y, z]: [usize; 3]) -> u64 {
+    pub(super) fn voxel(&self, [x, y, z]: [usize; 3]) -> u64 {
         let [nx, ny, _] = self.dims;
         ((z * ny + y) * nx + x) as u64
     }
 
     /// The values of a part, where NaN are values or [missing](Nan::Mask).
-    pub fn values(&self, part: &Part) -> Result<Grays, BlocksError> {
+    pub(super) fn values(&self, part: &Part) -> Result<Grays, BlocksError> {
         let mut values = self.source.read(part.first, part.size)?;
         let mut missing = None;
         if !self.is_gray() {
@@ -135,7 +135,7 @@ impl Field {
     }
 
     /// The gray levels of a part.
-    pub fn grays(&self, part: &Part) -> Result<Grays, BlocksError> {
+    pub(super) fn grays(&self, part: &Part) -> Result<Grays, BlocksError> {
         let mut grays = self.values(part)?;
         if !self.range.is_identity() {
             let range = self.range;
@@ -145,7 +145,7 @@ impl Field {
     }
 
     /// Coefficients of a part of whole bricks, with the sum of each brick at its first place.
-    pub fn coefficients(&self, part: &Part, grays: &[f32]) -> Vec<f64> {
+    pub(super) fn coefficients(&self, part: &Part, grays: &[f32]) -> Vec<f64> {
         let mut values: Vec<f64> = grays.par_iter().map(|&v| f64::from(v)).collect();
         self.bricks.fine(&mut values, part.size);
         values
@@ -153,7 +153,7 @@ impl Field {
 
     /// Visits the places of a part of whole bricks: the place in the part, the index in the volume, and
     /// the number of the brick whose first place it is, if it is one.
-    pub fn places(&self, part: &Part, mut visit: impl FnMut(usize, u64, Option<usize>)) {
+    pub(super) fn places(&self, part: &Part, mut visit: impl FnMut(usize, u64, Option<usize>)) {
         let side = self.bricks.side();
         let [cx, cy, _] = self.bricks.count();
         let mut place = 0;
@@ -200,7 +200,7 @@ impl Field {
     }
 
     /// Visits the samples of a part in order of their index. Bricks around it are computed, too.
-    pub fn samples(
+    pub(super) fn samples(
         &self,
         part: &Part,
         truncated: Option<Truncated<'_>>,

@@ -70,7 +70,11 @@ struct Header {
 pub(super) struct Arrays(Vec<(&'static str, Vec<u8>)>);
 
 impl Arrays {
-    pub fn add<T: Number>(&mut self, name: &'static str, numbers: impl IntoIterator<Item = T>) {
+    pub(super) fn add<T: Number>(
+        &mut self,
+        name: &'static str,
+        numbers: impl IntoIterator<Item = T>,
+    ) {
         let numbers = numbers.into_iter();
         let mut bytes = Vec::with_capacity(T::SIZE * numbers.size_hint().0);
         numbers.for_each(|number| number.put(&mut bytes));
@@ -78,7 +82,7 @@ impl Arrays {
     }
 
     /// Writes the file of a block, which appears when it is whole.
-    pub fn write(self, plan: &Plan, block: usize, facts: Facts) -> Result<(), BlocksError> {
+    pub(super) fn write(self, plan: &Plan, block: usize, facts: Facts) -> Result<(), BlocksError> {
         let arrays = self.0.iter().map(|(name, bytes)| ((*name).into(), bytes.len() as u64));
         let arrays = arrays.collect();
         let header = Header { plan: plan.digest.clone(), facts, arrays };
@@ -106,7 +110,7 @@ impl BlockFile {
     ///
     /// # Errors
     /// It is not there, damaged, or of another plan.
-    pub fn open(plan: &Plan, block: usize) -> Result<Self, BlocksError> {
+    pub(super) fn open(plan: &Plan, block: usize) -> Result<Self, BlocksError> {
         let path = plan.block_file(block);
         let read = || -> io::Result<Option<(Header, u64, u64)>> {
             let mut file = File::open(&path)?;
@@ -143,7 +147,7 @@ impl BlockFile {
     }
 
     /// An array.
-    pub fn read<T: Number>(&self, name: &str) -> Result<Vec<T>, BlocksError> {
+    pub(super) fn read<T: Number>(&self, name: &str) -> Result<Vec<T>, BlocksError> {
         let damaged =
             || BlocksError::Damaged { path: self.path.clone(), what: format!("has no {name}") };
         let (_, at, bytes) =

@@ -54,7 +54,7 @@ impl Chosen {
     }
 
     /// Whether a sample is a point.
-    pub fn is_point(&self, sample: &Sample) -> bool {
+    pub(super) fn is_point(&self, sample: &Sample) -> bool {
         let difference = Self::masked(self.gray_min, sample);
         match self.rule {
             Rule::Largest(cut) => cut.keeps(difference, sample.voxel),

@@ -20,29 +20,33 @@ pub(crate) fn regular(_: &[[f64; 3]], _: &[f64]) -> Result<Regular, Triangulatio
 }
 
 impl RawComplex {
-    pub fn cells(&self) -> (&[[u32; 4]], &[u8]) {
+    pub(crate) fn cells(&self) -> (&[[u32; 4]], &[u8]) {
         match *self {}
     }
 
-    pub fn facets(&self) -> (&[[u32; 3]], &[u8]) {
+    pub(crate) fn facets(&self) -> (&[[u32; 3]], &[u8]) {
         match *self {}
     }
 
-    pub fn edges(&self) -> (&[[u32; 2]], &[u8]) {
+    pub(crate) fn edges(&self) -> (&[[u32; 2]], &[u8]) {
         match *self {}
     }
 
-    pub fn vertices(&self) -> (&[[u32; 1]], &[u8]) {
+    pub(crate) fn vertices(&self) -> (&[[u32; 1]], &[u8]) {
         match *self {}
     }
 }
 
 impl Regular {
-    pub fn cells(&self) -> usize {
+    pub(crate) fn cells(&self) -> usize {
         match *self {}
     }
 
-    pub fn copy(&self, _: &mut [[u32; 4]], _: &mut [[u32; 4]]) -> Result<(), TriangulationError> {
+    pub(crate) fn copy(
+        &self,
+        _: &mut [[u32; 4]],
+        _: &mut [[u32; 4]],
+    ) -> Result<(), TriangulationError> {
         match *self {}
     }
 }

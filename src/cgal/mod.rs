@@ -8,8 +8,10 @@
 //! rounding mode while it works.
 
 #[allow(unused_qualifications, reason = "in what the macro writes")]
+#[expect(unreachable_pub, reason = "cxx writes `pub`")]
 mod ffi;
 #[cfg(feature = "paper")]
+#[expect(unreachable_pub, reason = "cxx writes `pub`")]
 mod plane;
 mod reference;
 mod regular;

@@ -27,22 +27,22 @@ pub(crate) fn reference(sites: &Sites<'_>, alpha: f64) -> Result<RawComplex, Tri
 
 impl RawComplex {
     /// Tetrahedra and their classes.
-    pub fn cells(&self) -> (&[[u32; 4]], &[u8]) {
+    pub(crate) fn cells(&self) -> (&[[u32; 4]], &[u8]) {
         (self.0.cells().as_chunks().0, self.0.cell_classes())
     }
 
     /// Triangles and their classes.
-    pub fn facets(&self) -> (&[[u32; 3]], &[u8]) {
+    pub(crate) fn facets(&self) -> (&[[u32; 3]], &[u8]) {
         (self.0.facets().as_chunks().0, self.0.facet_classes())
     }
 
     /// Edges and their classes.
-    pub fn edges(&self) -> (&[[u32; 2]], &[u8]) {
+    pub(crate) fn edges(&self) -> (&[[u32; 2]], &[u8]) {
         (self.0.edges().as_chunks().0, self.0.edge_classes())
     }
 
     /// Vertices and their classes.
-    pub fn vertices(&self) -> (&[[u32; 1]], &[u8]) {
+    pub(crate) fn vertices(&self) -> (&[[u32; 1]], &[u8]) {
         (self.0.vertices().as_chunks().0, self.0.vertex_classes())
     }
 }

@@ -25,13 +25,13 @@ pub(crate) fn regular(
 
 impl Regular {
     /// The number of cells, infinite ones included.
-    pub fn cells(&self) -> usize {
+    pub(crate) fn cells(&self) -> usize {
         self.0.cells()
     }
 
     /// Writes the corners of each cell, the ghost being one past the last point, and what lies across
     /// its facets, as [`Triangulation`](crate::triangulation::Triangulation) has them.
-    pub fn copy(
+    pub(crate) fn copy(
         &self,
         cells: &mut [[u32; 4]],
         beside: &mut [[u32; 4]],

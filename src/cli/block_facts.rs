@@ -24,7 +24,7 @@ pub(super) struct PlanFacts {
 }
 
 impl PlanFacts {
-    pub fn of(plan: &Plan, seconds: f64) -> Self {
+    pub(super) fn of(plan: &Plan, seconds: f64) -> Self {
         let points = plan.blocks.iter().map(|block| block.points).sum::<u64>();
         let halo = plan.blocks.iter().map(|block| block.halo).sum::<u64>();
         Self {

@@ -26,7 +26,7 @@ use super::{Global, pipeline};
 ///
 /// walpha blocks merge work -o bone.pvtp bone.ply
 #[derive(Args)]
-pub struct Blocks {
+pub(super) struct Blocks {
     #[command(subcommand)]
     step: Step,
 }
@@ -77,7 +77,7 @@ struct MergeStep {
 }
 
 impl Blocks {
-    pub fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         match self.step {
             Step::Plan(step) => step.run(global),
             Step::Run(step) => step.run(global),
@@ -149,7 +149,7 @@ impl MergeStep {
 
 /// Where merged blocks go.
 #[derive(Default)]
-pub struct Outputs {
+pub(super) struct Outputs {
     /// With a file for each block.
     pub pieces: Vec<(Pieces, PathBuf)>,
     /// In one file.
@@ -157,7 +157,7 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    pub fn write(self, plan: &Plan, merged: &Merged) -> anyhow::Result<()> {
+    pub(super) fn write(self, plan: &Plan, merged: &Merged) -> anyhow::Result<()> {
         for (pieces, path) in &self.pieces {
             pieces.write(plan, merged, path)?;
         }
@@ -177,7 +177,7 @@ impl Outputs {
 /// `walpha shape` in blocks, from file to file: where an output has a file for each of them. What is not
 /// done yet stands in a folder beside the first of these, `bone.blocks` for `bone.pvtp`; it goes at the end, and
 /// after an interruption the same command goes on with it.
-pub fn shape(
+pub(super) fn shape(
     pipeline: &PipelineArgs,
     shape: &ShapeArgs,
     outputs: Outputs,

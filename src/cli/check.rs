@@ -36,7 +36,7 @@ use super::{DIFFERENT, Global, pipeline};
 ///
 /// walpha check theirs.json --points skull.csv
 #[derive(Args)]
-pub struct Check {
+pub(super) struct Check {
     /// Points of the complex or filtration, where its file lists none: .csv or .npy.
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
@@ -83,7 +83,7 @@ struct Facts<F, C> {
 }
 
 impl Check {
-    pub fn run(self, global: Global) -> anyhow::Result<ExitCode> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
         let path = Path::new(&self.pipeline.input.input);
         let mut progress = Progress::new(global);
         if !judged::is_named(path) {

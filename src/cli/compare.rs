@@ -29,7 +29,7 @@ use super::{DIFFERENT, Global};
 ///
 /// walpha compare skull.json theirs.json --json
 #[derive(Args)]
-pub struct Compare {
+pub(super) struct Compare {
     /// A complex or a filtration: .json or .npz, as docs/cross-checking.md describes.
     #[arg(value_name = "A")]
     a: PathBuf,
@@ -49,7 +49,7 @@ struct Facts<C> {
 }
 
 impl Compare {
-    pub fn run(self, global: Global) -> anyhow::Result<ExitCode> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
         let read = |path: &Path| judged::read(path, None);
         match (read(&self.a)?, read(&self.b)?) {
             (Judged::Complex(a), Judged::Complex(b)) => {

@@ -12,7 +12,7 @@ use super::progress;
 use super::said::{Said, advice};
 
 /// Whether standard error takes colours: a terminal, and `NO_COLOR` is not set (<https://no-color.org>).
-pub fn coloured() -> bool {
+pub(super) fn coloured() -> bool {
     let forbidden = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     std::io::stderr().is_terminal() && !forbidden
 }
@@ -25,7 +25,7 @@ struct Complaint {
 }
 
 /// Tells why a command failed. The work that was going on is the one last announced.
-pub fn tell(command: &str, error: &anyhow::Error) {
+pub(super) fn tell(command: &str, error: &anyhow::Error) {
     let what = match progress::current().as_str() {
         _ if is_usage(error) => "cannot do this".to_owned(),
         "" => "could not start".into(),
@@ -42,12 +42,12 @@ pub fn tell(command: &str, error: &anyhow::Error) {
 }
 
 /// Whether the command line makes no sense, whatever is in the files.
-pub fn is_usage(error: &anyhow::Error) -> bool {
+pub(super) fn is_usage(error: &anyhow::Error) -> bool {
     error.is::<UnknownFormat>() || error.downcast_ref::<Said>().is_some_and(|said| said.usage)
 }
 
 /// Tells what is wrong with a command line; `configured` if some of it comes from a file.
-pub fn tell_usage(command: &str, error: &clap::Error, configured: bool) {
+pub(super) fn tell_usage(command: &str, error: &clap::Error, configured: bool) {
     if matches!(error.kind(), ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand) {
         let _ = error.print();
         return;
@@ -110,7 +110,7 @@ fn help(command: &str) -> String {
 }
 
 /// The reason in an error and its causes, each said once, and the advice of the last that has some.
-pub fn reasons(error: &anyhow::Error) -> (String, Option<String>) {
+pub(super) fn reasons(error: &anyhow::Error) -> (String, Option<String>) {
     let (mut why, mut next) = (String::new(), None);
     for cause in error.chain() {
         let text = cause.to_string().replace('\n', " ");

@@ -10,14 +10,14 @@ use super::{Global, described};
 ///
 /// Example: walpha completions bash > ~/.local/share/bash-completion/completions/walpha
 #[derive(Args)]
-pub struct Completions {
+pub(super) struct Completions {
     /// The shell.
     #[arg(value_enum, value_name = "SHELL")]
     shell: Shell,
 }
 
 impl Completions {
-    pub fn run(self, _: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, _: Global) -> anyhow::Result<()> {
         let mut script = Vec::new();
         generate(self.shell, &mut described(), "walpha", &mut script);
         Ok(print(&String::from_utf8(script)?)?)

@@ -20,12 +20,12 @@ use super::said::{Said, refused, said};
 /// The option that names the file.
 const FILE: &str = "config";
 /// The option that prints one.
-pub const PRINT: &str = "print-config";
+pub(super) const PRINT: &str = "print-config";
 /// Options that speak of the configuration itself, or of nothing but this call.
 const NOT_CONFIGURED: [&str; 4] = [FILE, PRINT, "help", "version"];
 
 /// The two options, for every command.
-pub fn options_of_it() -> [Arg; 2] {
+pub(super) fn options_of_it() -> [Arg; 2] {
     let option = |name| Arg::new(name).long(name).global(true).help_heading(super::EVERY_COMMAND);
     let file = option(FILE).value_name("FILE");
     let print = option(PRINT).action(ArgAction::SetTrue);
@@ -42,7 +42,10 @@ pub fn options_of_it() -> [Arg; 2] {
 /// Keys are the long names of options. Those at the top are for every command that has such an option;
 /// a table named like a command is for that command, and wins. The command line wins over both, and
 /// silences what it excludes.
-pub fn with_file(command: &Command, mut args: Vec<OsString>) -> anyhow::Result<Vec<OsString>> {
+pub(super) fn with_file(
+    command: &Command,
+    mut args: Vec<OsString>,
+) -> anyhow::Result<Vec<OsString>> {
     // What is wrong with the arguments is told when all of them are parsed.
     let lenient = command.clone().ignore_errors(true).try_get_matches_from(&args);
     let Some((given, (name, of_command))) =
@@ -83,12 +86,12 @@ pub fn with_file(command: &Command, mut args: Vec<OsString>) -> anyhow::Result<V
 static SET: OnceLock<Vec<String>> = OnceLock::new();
 
 /// Whether the file set this option.
-pub fn has_set(name: &str) -> bool {
+pub(super) fn has_set(name: &str) -> bool {
     SET.get().is_some_and(|set| set.iter().any(|known| known == name))
 }
 
 /// The options in force as a file for `--config`: what was given, and defaults.
-pub fn print(subcommand: &Command, matches: &ArgMatches) -> String {
+pub(super) fn print(subcommand: &Command, matches: &ArgMatches) -> String {
     let mut text = format!("# walpha {}\n", subcommand.get_name());
     let is_default =
         |arg: &Arg| matches.value_source(arg.get_id().as_str()) == Some(ValueSource::DefaultValue);

@@ -24,7 +24,7 @@ use super::said::misused;
 ///
 /// walpha convert scan.nrrd -o scan.zarr
 #[derive(Args)]
-pub struct Convert {
+pub(super) struct Convert {
     /// Folder to write, .zarr; it must not be there yet.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -49,7 +49,7 @@ impl std::fmt::Display for Facts {
 }
 
 impl Convert {
-    pub fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         if self.output.extension().is_none_or(|extension| extension != "zarr") {
             let path = shown(&self.output);
             misused!("{path} does not end with .zarr, the one format written" => "name it so");

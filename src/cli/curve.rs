@@ -35,7 +35,7 @@ struct Facts {
 }
 
 /// Measures the curve and writes it as CSV, PNG and SVG.
-pub fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Result<()> {
+pub(super) fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Result<()> {
     let PipelineArgs { input, haar, select, weights, .. } = pipeline;
     let (new, paths) = paths(base)?;
     let targets = paths.iter().map(|path| Target::open(path)).collect::<Result<Vec<_>, _>>()?;

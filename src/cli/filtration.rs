@@ -37,7 +37,7 @@ use super::{Global, pipeline};
 ///
 /// walpha check skull.json
 #[derive(Args)]
-pub struct Filtration {
+pub(super) struct Filtration {
     #[arg(short, long, value_name = "FILE", num_args = 1.., help = filtration_output())]
     output: Vec<PathBuf>,
     #[command(flatten)]
@@ -86,7 +86,7 @@ struct Persistence {
 }
 
 impl Filtration {
-    pub fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         let input = &self.pipeline.input;
         input.check_format(self.output.iter())?;
         let mut targets = Vec::new();

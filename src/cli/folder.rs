@@ -10,7 +10,7 @@ use super::said::said;
 
 /// The folder results go to: found writable before the long work. All files appear in it at the end,
 /// or none.
-pub struct Folder {
+pub(super) struct Folder {
     path: PathBuf,
     files: Vec<Filled>,
     written: Vec<String>,
@@ -21,7 +21,7 @@ pub struct Folder {
 impl Folder {
     /// Makes the folder if it is not there; `option` names the option it was given by, `names` files
     /// that will be written for certain.
-    pub fn open(path: &Path, option: &str, names: &[&str]) -> anyhow::Result<Self> {
+    pub(super) fn open(path: &Path, option: &str, names: &[&str]) -> anyhow::Result<Self> {
         let new = NewFolder::make(path).map_err(|error| {
             let path = shown(path);
             said!("cannot make the folder {path}: {error}" => "choose another with {option}")
@@ -34,7 +34,7 @@ impl Folder {
     }
 
     /// Writes a file, which appears when all are finished; says how many bytes it has.
-    pub fn write(
+    pub(super) fn write(
         &mut self,
         name: &str,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -48,12 +48,12 @@ impl Folder {
     }
 
     /// The paths of the files written so far.
-    pub fn written(&self) -> &[String] {
+    pub(super) fn written(&self) -> &[String] {
         &self.written
     }
 
     /// Puts all files in their places.
-    pub fn finish(self) -> anyhow::Result<()> {
+    pub(super) fn finish(self) -> anyhow::Result<()> {
         put_all(self.files)?;
         if let Some(new) = self.new {
             new.keep();

@@ -17,7 +17,7 @@ fn inputs() -> String {
 }
 
 /// The long help of the command.
-pub fn about() -> String {
+pub(super) fn about() -> String {
     format!(
         "Volume modelling of scattered data with wavelet-weighted alpha shapes.\n\n\
          A volume is Haar-transformed, small coefficients are dropped, the samples of largest gray \
@@ -40,7 +40,7 @@ fn dotted<'a>(extensions: impl IntoIterator<Item = &'a str>) -> String {
 }
 
 /// The help of an output of a volume of `what`.
-pub fn volume_output(what: &str) -> String {
+pub(super) fn volume_output(what: &str) -> String {
     format!(
         "{what}, as f32, replaced if it is there: {}; or - (standard output, with --format)",
         dotted(volume::VolumeWriter::all().map(|writer| writer.extension))
@@ -48,7 +48,7 @@ pub fn volume_output(what: &str) -> String {
 }
 
 /// The help of the outputs of a shape.
-pub fn shape_output() -> String {
+pub(super) fn shape_output() -> String {
     let of = |boundary: bool| {
         let formats = export::FORMATS.iter().filter(move |format| format.boundary == boundary);
         dotted(formats.map(|format| format.extension))
@@ -64,7 +64,7 @@ pub fn shape_output() -> String {
 }
 
 /// The help of the outputs of a filtration.
-pub fn filtration_output() -> String {
+pub(super) fn filtration_output() -> String {
     format!(
         "Files to write: {}; or - (standard output, with --format). Files that are there are replaced",
         dotted(export::FILTRATION_FORMATS.iter().map(|format| format.extension))
@@ -72,7 +72,7 @@ pub fn filtration_output() -> String {
 }
 
 /// The help of an output of points.
-pub fn points_output() -> String {
+pub(super) fn points_output() -> String {
     format!(
         "File to write, replaced if it is there: {} (columns x, y, z, weight and value); or - (standard \
          output, with --format)",

@@ -13,11 +13,15 @@ use super::said::{Said, misused};
 ///
 /// It must be the first field that a command parses: others take their values out of the matches.
 #[derive(Clone, Debug, Default)]
-pub struct Given(Vec<String>);
+pub(super) struct Given(Vec<String>);
 
 impl Given {
     /// Refuses options that would have no effect; `why` follows their names.
-    pub fn refuse(&self, names: &[impl AsRef<str>], why: impl fmt::Display) -> Result<(), Said> {
+    pub(super) fn refuse(
+        &self,
+        names: &[impl AsRef<str>],
+        why: impl fmt::Display,
+    ) -> Result<(), Said> {
         let wanted = self.0.iter().filter(|given| names.iter().any(|name| name.as_ref() == *given));
         let options: Vec<String> =
             wanted.map(|name| format!("--{}", name.replace('_', "-"))).collect();

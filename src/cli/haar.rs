@@ -27,7 +27,7 @@ use super::said::refused;
 ///
 /// walpha haar sample:skull --coefficients 20000 -o smooth.npy
 #[derive(Args)]
-pub struct Haar {
+pub(super) struct Haar {
     #[arg(short, long, value_name = "FILE", help = volume_output("File to write the restored values to"))]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -44,7 +44,7 @@ struct Facts {
 }
 
 impl Haar {
-    pub fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         self.input.check_format(self.output.iter())?;
         let target = match &self.output {
             None => None,

@@ -27,7 +27,7 @@ use super::{Global, pipeline};
 ///
 /// walpha info sample:skull --json
 #[derive(Args)]
-pub struct Info {
+pub(super) struct Info {
     #[command(flatten)]
     input: InputArgs,
 }
@@ -80,7 +80,7 @@ enum Content {
 }
 
 impl Info {
-    pub fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         let look = || pipeline::with_file(&self.input, |input| self.look(input));
         let content = Progress::new(global).stage(Stage::Read, look)?;
         tell(global, &Facts { schema_version: SCHEMA_VERSION, input: self.input.input, content })

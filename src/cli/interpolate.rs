@@ -50,7 +50,7 @@ use super::{Global, curve, pipeline};
         .help("Sample F at so many places along x, y and z; with --dtype: read bare samples")
         .help_heading("Grid")
 }))]
-pub struct Interpolate {
+pub(super) struct Interpolate {
     #[arg(short, long, value_name = "FILE", help = output_help())]
     output: Option<PathBuf>,
     /// Mask to write: 1 where a sample is on the shape, otherwise 0; formats as for the output.
@@ -140,7 +140,7 @@ fn output_help() -> String {
 }
 
 impl Interpolate {
-    pub fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         if self.curve {
             if self.pipeline.input.raw.grid().is_some() {
                 misused!("--curve measures on the samples of INPUT" => "omit --dims");

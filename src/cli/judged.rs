@@ -13,7 +13,7 @@ use super::said::{Said, refused, said};
 
 /// What a file holds, to be judged or compared.
 #[expect(clippy::large_enum_variant, reason = "there are one or two, moved a few times")]
-pub enum Judged {
+pub(super) enum Judged {
     /// A complex, whose fields fit together.
     Complex(PlacedComplex),
     /// A filtration, whose fields fit together.
@@ -21,13 +21,13 @@ pub enum Judged {
 }
 
 /// Whether a file is a complex or filtration by its name: `.json` or `.npz`.
-pub fn is_named(path: &Path) -> bool {
+pub(super) fn is_named(path: &Path) -> bool {
     ComplexFile::is_named(path)
 }
 
 /// Reads a complex or filtration, with points (and weights, if it has some) from a file of their own
 /// if one is given.
-pub fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<Judged> {
+pub(super) fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<Judged> {
     let mut file = opened(path)?;
     if let Some(points) = points {
         let points = read_points(points, None)?;

@@ -15,7 +15,7 @@ use super::{Global, described};
 ///
 /// Example: walpha man -o ~/.local/share/man/man1
 #[derive(Args)]
-pub struct Man {
+pub(super) struct Man {
     /// Folder to write walpha.1, walpha-shape.1 and so on to, replaced if they are there [default:
     /// walpha.1 to standard output].
     #[arg(short, long, value_name = "DIR")]
@@ -23,7 +23,7 @@ pub struct Man {
 }
 
 impl Man {
-    pub fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         // The long form names the licence, too, which has its place elsewhere in a page.
         let command = described().version(env!("CARGO_PKG_VERSION"));
         let Some(folder) = self.output else {

@@ -11,7 +11,7 @@ use super::Global;
 
 /// Prints facts as the user wants them: as JSON, as text, or not at all; to standard error when
 /// standard output has a file (`-o -`).
-pub fn tell<T: Serialize + Display>(global: Global, facts: &T) -> anyhow::Result<()> {
+pub(super) fn tell<T: Serialize + Display>(global: Global, facts: &T) -> anyhow::Result<()> {
     if global.json {
         say(global, &json(facts)?)?;
     } else if !global.quiet {
@@ -21,7 +21,7 @@ pub fn tell<T: Serialize + Display>(global: Global, facts: &T) -> anyhow::Result
 }
 
 /// A name within a text, where it must not begin a line.
-pub fn name(name: &str) -> String {
+pub(super) fn name(name: &str) -> String {
     escaped(name, |_| false)
 }
 
@@ -30,7 +30,7 @@ fn say(global: Global, text: &str) -> io::Result<()> {
 }
 
 /// Prints text without the panic of `println!` when nobody reads on.
-pub fn print(text: &str) -> io::Result<()> {
+pub(super) fn print(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes())?;
     out.flush()
@@ -41,7 +41,7 @@ fn json(value: &impl Serialize) -> serde_json::Result<String> {
 }
 
 /// Whether an error means that our reader has gone.
-pub fn is_broken_pipe(error: &anyhow::Error) -> bool {
+pub(super) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     let broken = |cause: &(dyn std::error::Error + 'static)| {
         cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe)
     };

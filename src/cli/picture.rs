@@ -18,7 +18,7 @@ use super::said::refused;
 /// How a shape is drawn.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Pictures (.png)")]
-pub struct PictureArgs {
+pub(super) struct PictureArgs {
     /// Viewpoint, for a subject whose face is turned to −y and whose crown to +z [default:
     /// three-quarter].
     #[arg(long, value_enum, value_name = "VIEW", group = "eye")]
@@ -70,19 +70,19 @@ enum ColourArg {
 
 impl PictureArgs {
     /// The names of these options.
-    pub const NAMES: [&str; 4] = ["view", "camera", "colour", "size"];
+    pub(super) const NAMES: [&str; 4] = ["view", "camera", "colour", "size"];
 
     /// Extensions of pictures.
-    pub const EXTENSIONS: [&str; 1] = ["png"];
+    pub(super) const EXTENSIONS: [&str; 1] = ["png"];
 
     /// Whether a path asks for a picture.
-    pub fn wanted(path: &Path) -> bool {
+    pub(super) fn wanted(path: &Path) -> bool {
         let extension = path.extension().and_then(OsStr::to_str);
         extension.is_some_and(|e| Self::EXTENSIONS.iter().any(|png| e.eq_ignore_ascii_case(png)))
     }
 
     /// What writes the picture.
-    pub fn exporter(self) -> Box<dyn Exporter> {
+    pub(super) fn exporter(self) -> Box<dyn Exporter> {
         Box::new(self)
     }
 

@@ -22,7 +22,7 @@ use super::progress::Progress;
 use super::said::{Said, misused, said};
 
 /// What INPUT turned out to be.
-pub enum Input {
+pub(super) enum Input {
     /// A grid of gray levels.
     Volume(Grays),
     /// Points, with weights and values perhaps, and what their file tells of them besides.
@@ -30,7 +30,7 @@ pub enum Input {
 }
 
 /// A volume in gray levels, and what they stand for.
-pub struct Grays {
+pub(super) struct Grays {
     pub volume: Volume,
     /// The values that became gray 0 and 255.
     pub range: GrayRange,
@@ -39,7 +39,7 @@ pub struct Grays {
 }
 
 /// Reads INPUT.
-pub fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> {
+pub(super) fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> {
     progress.stage(Stage::Read, || {
         with_file(args, |input| {
             if is_points(args, input)? {
@@ -68,7 +68,7 @@ fn to_gray(points: &mut Points, range: &GrayRange) {
 }
 
 /// Adds the formats of points to the error for a file of no format known.
-pub fn with_points(error: VolumeError) -> anyhow::Error {
+pub(super) fn with_points(error: VolumeError) -> anyhow::Error {
     if !matches!(error, VolumeError::Format { reason: Reason::Unknown { .. }, .. }) {
         return error.into();
     }
@@ -79,7 +79,7 @@ pub fn with_points(error: VolumeError) -> anyhow::Error {
 
 /// Does something with INPUT as a file or the name of a sample. Standard input becomes a file for that
 /// time: formats are read in several passes.
-pub fn with_file<T>(
+pub(super) fn with_file<T>(
     args: &InputArgs,
     work: impl FnOnce(&str) -> anyhow::Result<T>,
 ) -> anyhow::Result<T> {
@@ -100,7 +100,7 @@ pub fn with_file<T>(
 
 impl Input {
     /// Refuses options that have no effect on what INPUT is.
-    pub fn accepts(&self, args: &InputArgs) -> Result<(), Said> {
+    pub(super) fn accepts(&self, args: &InputArgs) -> Result<(), Said> {
         let holds = |what| format!("{} holds {what}", args.input);
         match self {
             Self::Volume(..) => args.given.refuse(&["columns"], holds("a volume")),
@@ -116,13 +116,13 @@ impl Input {
 }
 
 /// Whether an input is a point file.
-pub fn is_points(args: &InputArgs, input: &str) -> anyhow::Result<bool> {
+pub(super) fn is_points(args: &InputArgs, input: &str) -> anyhow::Result<bool> {
     let volume = input.starts_with("sample:") || args.options().raw.is_some();
     Ok(!volume && is_point_file(Path::new(input))?)
 }
 
 /// The volume that points come from.
-pub struct Source {
+pub(super) struct Source {
     /// Gray levels, in the space that the points are in.
     pub volume: Volume,
     pub facts: VolumeFacts,
@@ -130,7 +130,7 @@ pub struct Source {
 
 /// What is to be told about a volume.
 #[derive(Clone, Copy)]
-pub struct VolumeFacts {
+pub(super) struct VolumeFacts {
     pub dims: [usize; 3],
     /// What coordinates are measured in.
     pub units: Units,
@@ -142,7 +142,7 @@ pub struct VolumeFacts {
 
 /// What the values of points are.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Values {
+pub(super) enum Values {
     /// Gray levels, where they come from a volume.
     Gray,
     /// Those that are written: of the file, unless gray levels were asked for.
@@ -150,7 +150,7 @@ pub enum Values {
 }
 
 /// Steps 1 to 7: reads INPUT and makes weighted points of it, with the values that are written.
-pub fn weighted_points<W: Args>(
+pub(super) fn weighted_points<W: Args>(
     args: &PipelineArgs<W>,
     stages: Pipeline,
     progress: &mut Progress,
@@ -160,7 +160,7 @@ pub fn weighted_points<W: Args>(
 }
 
 /// The same, and the volume they come from.
-pub fn points_and_volume<W: Args>(
+pub(super) fn points_and_volume<W: Args>(
     args: &PipelineArgs<W>,
     stages: Pipeline,
     values: Values,
@@ -172,7 +172,7 @@ pub fn points_and_volume<W: Args>(
 }
 
 /// The stages that do not depend on what INPUT is.
-pub fn stages<W: Args + Copy + Into<WeightArgs>>(args: &PipelineArgs<W>) -> Pipeline {
+pub(super) fn stages<W: Args + Copy + Into<WeightArgs>>(args: &PipelineArgs<W>) -> Pipeline {
     let weights: WeightArgs = args.weights.into();
     let mut stages = Pipeline::new().haar(args.haar.options()).alpha(weights.alpha());
     if let Some(kind) = weights.weights {
@@ -185,7 +185,7 @@ pub fn stages<W: Args + Copy + Into<WeightArgs>>(args: &PipelineArgs<W>) -> Pipe
 }
 
 /// The same up to a shape.
-pub fn stages_to(args: &PipelineArgs, shape: ShapeOptions) -> Result<Pipeline, Said> {
+pub(super) fn stages_to(args: &PipelineArgs, shape: ShapeOptions) -> Result<Pipeline, Said> {
     if shape.periodic.is_some() {
         args.input.given.refuse(&["refit"], "a periodic box repeats, and F is fitted in space")?;
     }
@@ -196,7 +196,7 @@ pub fn stages_to(args: &PipelineArgs, shape: ShapeOptions) -> Result<Pipeline, S
 }
 
 /// The same from what was read already.
-pub fn weigh_input(
+pub(super) fn weigh_input(
     input: Input,
     mut pipeline: Pipeline,
     select: &SelectArgs,
@@ -225,7 +225,7 @@ pub fn weigh_input(
 }
 
 /// The shape of weighted points.
-pub fn shape(
+pub(super) fn shape(
     weighed: Weighed,
     options: ShapeOptions,
     progress: &mut Progress,
@@ -239,7 +239,7 @@ pub fn shape(
 
 /// The volume that coverage is a share of.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Domain {
+pub(super) struct Domain {
     pub volume: f64,
     /// Of length; the volume is in its cube.
     pub unit: LengthUnit,
@@ -249,7 +249,7 @@ pub struct Domain {
 
 impl Domain {
     /// The box between the outermost samples of a grid.
-    pub fn of_grid(volume: &Volume, units: Units) -> Self {
+    pub(super) fn of_grid(volume: &Volume, units: Units) -> Self {
         let unit = units.coordinates(volume).unit;
         Self { volume: box_volume(volume, units), unit, of: "the box of the samples" }
     }
@@ -262,7 +262,7 @@ impl Display for Domain {
 }
 
 /// The domain of weighted points: that of the grid they come from, or their own box.
-pub fn domain(weighed: &Weighed, volume: Option<&VolumeFacts>) -> Domain {
+pub(super) fn domain(weighed: &Weighed, volume: Option<&VolumeFacts>) -> Domain {
     let unit = weighed.origin.coordinates.unit;
     if let Some(volume) = volume {
         return Domain { volume: volume.extent, unit, of: "the box of the samples" };
@@ -282,7 +282,7 @@ fn box_volume(volume: &Volume, units: Units) -> f64 {
 }
 
 /// Readable critical values, those suggested, and the α that the weights are meant for.
-pub fn readable(
+pub(super) fn readable(
     filtration: &Filtration,
     curve: &Curve,
     count: usize,
@@ -295,7 +295,7 @@ pub fn readable(
 }
 
 /// The suggested values of α that are finite.
-pub fn suggested(filtration: &Filtration, curve: &Curve) -> Vec<Alpha> {
+pub(super) fn suggested(filtration: &Filtration, curve: &Curve) -> Vec<Alpha> {
     let suggested = filtration.suggest(curve);
     let [low, high] = suggested.plateau;
     let also = [suggested.all_points, suggested.one_region, suggested.no_void, low, high];

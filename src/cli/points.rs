@@ -28,7 +28,7 @@ use super::{Global, pipeline};
 ///
 /// walpha points sample:skull --select adaptive --target-rmse 2 --value-error 3 -o skull.wvm
 #[derive(Args)]
-pub struct Points {
+pub(super) struct Points {
     #[arg(short, long, value_name = "FILE", help = points_output())]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -47,7 +47,7 @@ pub struct Points {
 }
 
 impl Points {
-    pub fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         self.pipeline.input.check_format(self.output.iter())?;
         let target = match &self.output {
             None => None,

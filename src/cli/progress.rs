@@ -23,7 +23,7 @@ const STAGE: &str = "{spinner} {msg} {elapsed}";
 const PART: &str = "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left, {rate}";
 
 /// Times stages by name and shows the running one on a terminal.
-pub struct Progress {
+pub(super) struct Progress {
     started: Instant,
     stages: Vec<(&'static str, f64)>,
     /// What is at work, and since when.
@@ -31,18 +31,18 @@ pub struct Progress {
 }
 
 /// The stage that was announced last, or "".
-pub fn current() -> String {
+pub(super) fn current() -> String {
     BAR.message()
 }
 
 /// Takes the bar away, so that something can be said.
-pub fn clear() {
+pub(super) fn clear() {
     BAR.finish_and_clear();
 }
 
 impl Progress {
     /// Draws on standard error if that is a terminal and nobody asked for quiet.
-    pub fn new(global: Global) -> Self {
+    pub(super) fn new(global: Global) -> Self {
         if !global.quiet && !global.verbose {
             BAR.set_draw_target(ProgressDrawTarget::stderr());
             BAR.enable_steady_tick(Duration::from_millis(100));
@@ -51,7 +51,7 @@ impl Progress {
     }
 
     /// Runs a stage. Calls with the same stage add up.
-    pub fn stage<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
+    pub(super) fn stage<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
         self.watch(|hear| {
             hear(stage);
             work()
@@ -59,7 +59,7 @@ impl Progress {
     }
 
     /// Runs work that says which stage begins.
-    pub fn watch<T>(&mut self, work: impl FnOnce(&mut dyn FnMut(Stage)) -> T) -> T {
+    pub(super) fn watch<T>(&mut self, work: impl FnOnce(&mut dyn FnMut(Stage)) -> T) -> T {
         let result = work(&mut |stage| self.begin(stage));
         self.end();
         result
@@ -86,12 +86,12 @@ impl Progress {
     }
 
     /// Shows what is at work, without timing it: a step of the stage before.
-    pub fn show(name: &'static str) {
+    pub(super) fn show(name: &'static str) {
         BAR.set_message(name);
     }
 
     /// Ends the show: seconds per stage, and in all.
-    pub fn finish(self) -> Vec<(&'static str, f64)> {
+    pub(super) fn finish(self) -> Vec<(&'static str, f64)> {
         clear();
         let mut stages = self.stages;
         stages.push(("total", self.started.elapsed().as_secs_f64()));
@@ -114,7 +114,7 @@ fn style(template: &str) -> ProgressStyle {
 }
 
 /// Hears how far the library is: events of the target [`crate::progress::TARGET`].
-pub struct Listener;
+pub(super) struct Listener;
 
 impl<S: tracing::Subscriber> tracing_subscriber::Layer<S> for Listener {
     fn on_event(&self, event: &tracing::Event<'_>, _: Context<'_, S>) {

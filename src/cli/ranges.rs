@@ -22,7 +22,7 @@ fn ends(text: &str) -> Result<[[&str; 2]; 3], Said> {
 }
 
 /// Samples from one index up to, and without, another; ends may be omitted.
-pub fn samples(text: &str) -> Result<Region, Said> {
+pub(super) fn samples(text: &str) -> Result<Region, Said> {
     let mut region = Region::default();
     for (k, [first, end]) in ends(text)?.into_iter().enumerate() {
         let index = |text: &str| match text {
@@ -37,7 +37,7 @@ pub fn samples(text: &str) -> Result<Region, Said> {
 }
 
 /// A box in the units of the points, borders included.
-pub fn places(text: &str) -> Result<ladder::Region, Said> {
+pub(super) fn places(text: &str) -> Result<ladder::Region, Said> {
     let mut region = ladder::Region { low: [0.0; 3], high: [0.0; 3] };
     for (k, [low, high]) in ends(text)?.into_iter().enumerate() {
         let finite = |text: &str| match text.parse() {

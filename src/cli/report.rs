@@ -17,7 +17,7 @@ use super::output::name;
 use super::pipeline::VolumeFacts;
 
 /// Counted up when a field changes its meaning or goes; new fields may come at any time.
-pub const SCHEMA_VERSION: u32 = 1;
+pub(super) const SCHEMA_VERSION: u32 = 1;
 
 /// The stages whose times are told, in the order of the work.
 const STAGES: [&str; 10] =
@@ -25,7 +25,7 @@ const STAGES: [&str; 10] =
 
 /// What `walpha shape` and `walpha points` did. A fact that is not known is null.
 #[derive(Serialize)]
-pub struct Report {
+pub(super) struct Report {
     schema_version: u32,
     input: InputReport,
     /// Of points and all lengths: areas are in the square of this unit, volumes in its cube, α and
@@ -60,7 +60,7 @@ struct InputReport {
 }
 
 #[derive(Serialize)]
-pub struct HaarReport {
+pub(super) struct HaarReport {
     kept: u64,
     total: u64,
     /// Gray levels.
@@ -110,7 +110,7 @@ impl Display for Ended {
 
 /// What the weights are.
 #[derive(Serialize)]
-pub struct WeightsReport {
+pub(super) struct WeightsReport {
     kind: String,
     min: f64,
     mean: f64,
@@ -155,7 +155,7 @@ impl Display for Line<'_> {
 
 impl WeightsReport {
     /// The weights of some points.
-    pub fn of(weighed: &Weighed) -> Self {
+    pub(super) fn of(weighed: &Weighed) -> Self {
         let WeightSummary { min, mean, max } = weighed.points.summary();
         let origin = weighed.origin;
         let (kind, unit) = (origin.weighting.to_string(), origin.coordinates.unit);
@@ -172,7 +172,7 @@ impl Display for WeightsReport {
 
 impl HaarReport {
     /// What was truncated, of values `range` that became gray 0..255.
-    pub fn new(t: &Truncation, range: &GrayRange) -> Self {
+    pub(super) fn new(t: &Truncation, range: &GrayRange) -> Self {
         let rms_in_values = (!range.is_identity()).then(|| t.rms * range.step());
         Self { kept: t.kept, total: t.total, epsilon: t.epsilon, rms: t.rms, rms_in_values }
     }
@@ -194,7 +194,7 @@ impl Display for HaarReport {
 
 impl Report {
     /// What is known before there is a shape.
-    pub fn of_points(name: &str, weighed: &Weighed, volume: Option<&VolumeFacts>) -> Self {
+    pub(super) fn of_points(name: &str, weighed: &Weighed, volume: Option<&VolumeFacts>) -> Self {
         let origin = weighed.origin;
         let truncation = origin.truncation.as_ref().zip(volume);
         Self {
@@ -231,7 +231,7 @@ impl Report {
     }
 
     /// Adds what the shape is.
-    pub fn add_model(&mut self, model: &Model) {
+    pub(super) fn add_model(&mut self, model: &Model) {
         let shape = &model.shape;
         self.alpha = Some(model.parameter);
         let complex = shape.complex();
@@ -254,7 +254,7 @@ impl Report {
     }
 
     /// What is known of a shape that was made in blocks.
-    pub fn of_blocks(plan: &Plan, merged: &Merged) -> Self {
+    pub(super) fn of_blocks(plan: &Plan, merged: &Merged) -> Self {
         let (job, survey) = (&plan.job, &plan.survey);
         let GrayRange { low, high } = survey.range;
         let WeightSummary { min, mean, max } = merged.weights;
@@ -305,12 +305,12 @@ impl Report {
     }
 
     /// Adds where the boundary was cut apart.
-    pub fn add_solid(&mut self, cuts: Cuts) {
+    pub(super) fn add_solid(&mut self, cuts: Cuts) {
         self.solid = Some(cuts);
     }
 
     /// Adds what it cost and what it left.
-    pub fn finish(&mut self, seconds: Vec<(&'static str, f64)>, files: Vec<String>) {
+    pub(super) fn finish(&mut self, seconds: Vec<(&'static str, f64)>, files: Vec<String>) {
         self.seconds = seconds.into_iter().collect();
         self.files = files;
         self.peak_memory_bytes = memory::peak_bytes();
@@ -445,7 +445,7 @@ impl ShapeReport {
 }
 
 /// The last lines of a report: the files written, and how long each stage took.
-pub fn ending(
+pub(super) fn ending(
     f: &mut fmt::Formatter<'_>,
     files: &[String],
     stages: &[&str],

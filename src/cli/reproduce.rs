@@ -26,7 +26,7 @@ use super::progress::Progress;
 ///
 /// walpha reproduce --input ct.nii.gz --out paper
 #[derive(Args)]
-pub struct Reproduce {
+pub(super) struct Reproduce {
     /// Volume or sample [default: sample:skull, or sample:phantom where CGAL's data is not
     /// installed].
     #[arg(long, value_name = "INPUT")]
@@ -41,7 +41,7 @@ const SKULL: &str = "sample:skull";
 const PHANTOM: &str = "sample:phantom";
 
 impl Reproduce {
-    pub fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
         // Before the long work.
         let mut folder = Folder::open(&self.out, "--out", &["report.html", "report.json"])?;

@@ -20,7 +20,7 @@ use crate::{PointsError, VolumeError};
 /// Why a command cannot do something, and what to do next.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{why}")]
-pub struct Said {
+pub(crate) struct Said {
     pub why: String,
     pub next: Option<String>,
     /// Whether the command line makes no sense, whatever is in the files: exit code 2.
@@ -29,7 +29,7 @@ pub struct Said {
 
 impl Said {
     /// An error of the library that the command line is to blame for.
-    pub fn usage_of(error: &(impl Error + 'static)) -> Self {
+    pub(super) fn usage_of(error: &(impl Error + 'static)) -> Self {
         Self { why: error.to_string(), next: advice(error), usage: true }
     }
 }
@@ -113,7 +113,7 @@ impl From<AlphaError> for Said {
 }
 
 /// What an error knows about what to do, in the words of the command.
-pub fn advice(error: &(dyn Error + 'static)) -> Option<String> {
+pub(super) fn advice(error: &(dyn Error + 'static)) -> Option<String> {
     match error.downcast_ref::<Said>() {
         Some(said) => said.next.clone(),
         None => match error.downcast_ref::<AlphaError>() {
@@ -124,7 +124,7 @@ pub fn advice(error: &(dyn Error + 'static)) -> Option<String> {
 }
 
 /// What the command calls a setting.
-pub fn option(setting: Setting) -> String {
+pub(super) fn option(setting: Setting) -> String {
     match setting {
         Setting::Region => "--roi".into(),
         other => format!("--{}", other.name().replace('_', "-")),

@@ -34,7 +34,7 @@ use super::{Global, pipeline};
 ///
 /// walpha shape foam.xyz --periodic 20,20,20 --alpha 1.5 -o foam.npz foam.vtu
 #[derive(Args)]
-pub struct Shape {
+pub(super) struct Shape {
     #[arg(short, long, value_name = "FILE", num_args = 1.., help = shape_output())]
     output: Vec<PathBuf>,
     /// Write PLY as text instead of binary.
@@ -109,7 +109,7 @@ impl Shape {
         Ok(())
     }
 
-    pub fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         // Before the long work: a bad option, extension or place costs nothing yet.
         self.check()?;
         let mut targets = Vec::new();

@@ -10,7 +10,7 @@ use super::{INTERRUPTED, progress};
 /// back in stable form: it says how many bytes were wanted and aborts, and so does C++ where it cannot
 /// throw. An allocator of our own could not tell those from the allocations that return errors, so
 /// the abort itself is caught.
-pub fn prepare() {
+pub(super) fn prepare() {
     // A handler that cannot be set leaves the system's own.
     let _ = ctrlc::set_handler(|| {
         progress::clear();
@@ -32,7 +32,7 @@ error: walpha stopped in the middle of its work
  next: give it more memory, or a smaller input; if that was not it, please report this with the input
 ";
 
-    pub fn prepare() {
+    pub(super) fn prepare() {
         // SAFETY: `aborted` does only what a handler may do.
         let _ = unsafe { signal(Signal::SIGABRT, SigHandler::Handler(aborted)) };
         // So that writing beyond the limit (`ulimit -f`) is an error like that of a full disk.

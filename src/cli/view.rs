@@ -39,7 +39,7 @@ use super::said::misused;
 ///
 /// walpha view scan.xyz -o scan.html
 #[derive(Args)]
-pub struct View {
+pub(super) struct View {
     /// Page to write (.html); an existing file is replaced.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -118,7 +118,7 @@ struct Facts {
 }
 
 impl View {
-    pub fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         let html = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("html"));
         if !html {
             bail!(UnknownFormat::new(&self.output, "a page", ["html"]));

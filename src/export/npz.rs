@@ -63,7 +63,7 @@ pub(super) struct Archive<W: Write + Seek> {
 }
 
 impl<W: Write + Seek> Archive<W> {
-    pub fn new(zip: ZipWriter<W>) -> Self {
+    pub(super) fn new(zip: ZipWriter<W>) -> Self {
         // Without the time of writing, so that the same shape gives the same bytes.
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Stored)
@@ -73,14 +73,14 @@ impl<W: Write + Seek> Archive<W> {
     }
 
     /// With arrays that are compressed, quickly rather than well.
-    pub fn compressed(zip: ZipWriter<W>) -> Self {
+    pub(super) fn compressed(zip: ZipWriter<W>) -> Self {
         let Self { zip, options } = Self::new(zip);
         let options =
             options.compression_method(CompressionMethod::Deflated).compression_level(Some(1));
         Self { zip, options }
     }
 
-    pub fn finish(self) -> io::Result<W> {
+    pub(super) fn finish(self) -> io::Result<W> {
         self.zip.finish().map_err(io::Error::other)
     }
 
@@ -89,11 +89,11 @@ impl<W: Write + Seek> Archive<W> {
         array.write_npy(&mut self.zip).map_err(io::Error::other)
     }
 
-    pub fn list<T: WritableElement>(&mut self, name: &str, list: &[T]) -> io::Result<()> {
+    pub(super) fn list<T: WritableElement>(&mut self, name: &str, list: &[T]) -> io::Result<()> {
         self.array(name, ArrayView1::from(list))
     }
 
-    pub fn rows<T: WritableElement, const N: usize>(
+    pub(super) fn rows<T: WritableElement, const N: usize>(
         &mut self,
         name: &str,
         rows: &[[T; N]],

@@ -34,7 +34,7 @@ enum Way {
 }
 
 impl Part {
-    pub fn beside(place: Place) -> io::Result<Self> {
+    pub(super) fn beside(place: Place) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(".walpha-").suffix(".part");
         let private = place.existing.is_some();
@@ -48,7 +48,7 @@ impl Part {
     }
 
     /// Fills the file and closes it; says how many bytes it has.
-    pub fn fill(
+    pub(super) fn fill(
         self,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> io::Result<(Whole, u64)> {
@@ -64,7 +64,7 @@ impl Part {
 
 impl Whole {
     /// Gives the file its name. The gate is held, so that an interrupt waits.
-    pub fn put(&mut self, gate: &Gate) -> io::Result<()> {
+    pub(super) fn put(&mut self, gate: &Gate) -> io::Result<()> {
         let Some(temporary) = self.temporary.take() else { return Ok(()) };
         match self.way {
             Way::Renamed => temporary.persist(&self.place.path).map_err(|refused| refused.error)?,

@@ -17,7 +17,7 @@ pub(super) struct Place {
 impl Place {
     /// Refuses at once what can be known to fail later: a missing folder, a name that is too long, a
     /// folder or a write-protected file of this name.
-    pub fn of(path: &Path) -> io::Result<Self> {
+    pub(super) fn of(path: &Path) -> io::Result<Self> {
         let existing = match fs::metadata(path) {
             Ok(existing) => Some(existing),
             Err(error) if error.kind() == ErrorKind::NotFound => None,
@@ -47,11 +47,11 @@ impl Place {
     }
 
     /// Whether it is a pipe, a device or the like, which is written to directly.
-    pub fn is_stream(&self) -> bool {
+    pub(super) fn is_stream(&self) -> bool {
         self.existing.as_ref().is_some_and(|existing| !existing.is_file())
     }
 
-    pub fn folder(&self) -> &Path {
+    pub(super) fn folder(&self) -> &Path {
         folder(&self.path)
     }
 }
@@ -89,14 +89,14 @@ pub(super) struct Claim(Key);
 
 impl Claim {
     /// Refuses a place that another target is open for: one of the two files would be lost.
-    pub fn of(place: &Place) -> io::Result<Self> {
+    pub(super) fn of(place: &Place) -> io::Result<Self> {
         let name = place.path.file_name().ok_or(ErrorKind::InvalidFilename)?;
         let path = fs::canonicalize(place.folder())?.join(name);
         Self::new(Key { path, file: place.existing.as_ref().and_then(number) })
     }
 
     /// The same for standard output.
-    pub fn of_stdout() -> io::Result<Self> {
+    pub(super) fn of_stdout() -> io::Result<Self> {
         Self::new(Key { path: super::Target::STDOUT.into(), file: None })
     }
 

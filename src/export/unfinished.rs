@@ -41,7 +41,7 @@ pub(super) fn gate() -> MutexGuard<'static, Gate> {
 
 impl Gate {
     /// Enters a path before something is made there.
-    pub fn enter(&mut self, path: &Path, folder: bool) -> io::Result<&'static Entry> {
+    pub(super) fn enter(&mut self, path: &Path, folder: bool) -> io::Result<&'static Entry> {
         let (there, next) = (AtomicBool::new(true), OnceLock::new());
         let entry: &Entry = Box::leak(Box::new(Entry { name: name(path)?, folder, there, next }));
         let place = self.last.map_or(&FIRST, |last| &last.next);
@@ -53,7 +53,7 @@ impl Gate {
 
 impl Entry {
     /// It is complete, or gone.
-    pub fn strike(&self) {
+    pub(super) fn strike(&self) {
         self.there.store(false, Ordering::Release);
     }
 
@@ -118,7 +118,7 @@ pub(super) struct Temporary {
 
 impl Temporary {
     /// Makes one in a folder, as `create` does. Errors do not name it: its name means nothing to anybody.
-    pub fn make(
+    pub(super) fn make(
         names: &tempfile::Builder<'_, '_>,
         folder: &Path,
         create: impl Fn(&Path) -> io::Result<fs::File>,
@@ -138,17 +138,17 @@ impl Temporary {
     }
 
     /// Where it is, until it is taken.
-    pub fn path(&self) -> Option<&Path> {
+    pub(super) fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
 
     /// The path, to be renamed or dropped under the gate.
-    pub fn take(&mut self) -> Option<TempPath> {
+    pub(super) fn take(&mut self) -> Option<TempPath> {
         self.path.take()
     }
 
     /// The file is under its final name, or removed.
-    pub fn settle(&self, _: &Gate) {
+    pub(super) fn settle(&self, _: &Gate) {
         self.entry.strike();
     }
 }

@@ -31,7 +31,7 @@ pub(crate) struct Made<'a> {
 
 impl<'a> Made<'a> {
     /// How a shape was made of an input.
-    pub fn of(shape: &AlphaShape, options: &'a ExportOptions) -> Self {
+    pub(crate) fn of(shape: &AlphaShape, options: &'a ExportOptions) -> Self {
         let (alpha, coordinates) = (shape.options().alpha, shape.coordinates());
         Self { alpha, coordinates, input: options.input.as_deref() }
     }
@@ -49,7 +49,7 @@ pub(crate) struct Corners<'a> {
 
 impl<'a> Corners<'a> {
     /// The points of a shape.
-    pub fn of(shape: &'a AlphaShape) -> Self {
+    pub(crate) fn of(shape: &'a AlphaShape) -> Self {
         let points = shape.points();
         Self {
             positions: &points.positions,
@@ -171,7 +171,7 @@ const LEGEND: &str = "0 exterior, 1 interior, 2 regular, 3 singular";
 
 impl Appended {
     /// How the shape was made, for whoever finds the file later; texts as such, or as numbers.
-    pub fn field_data(&mut self, made: &Made<'_>, texts_as_such: bool) -> io::Result<()> {
+    pub(super) fn field_data(&mut self, made: &Made<'_>, texts_as_such: bool) -> io::Result<()> {
         let alpha = made.alpha;
         writeln!(self.xml, "<FieldData>")?;
         for (name, number) in [("alpha", Some(alpha.squared())), ("alpha_radius", alpha.radius())] {
@@ -223,7 +223,7 @@ impl Appended {
         self.data.extend(bytes);
     }
 
-    pub fn array(
+    pub(super) fn array(
         &mut self,
         kind: &str,
         name: &str,

@@ -16,36 +16,36 @@ pub(crate) struct Bricks {
 
 impl Bricks {
     /// The bricks of a volume of so many samples along x, y and z.
-    pub fn new(dims: [usize; 3], k: u32) -> Self {
+    pub(crate) fn new(dims: [usize; 3], k: u32) -> Self {
         Self { dims, k }
     }
 
     /// Samples along a side of a brick.
-    pub fn side(self) -> usize {
+    pub(crate) fn side(self) -> usize {
         1 << self.k
     }
 
     /// How many bricks there are along x, y and z.
-    pub fn count(self) -> [usize; 3] {
+    pub(crate) fn count(self) -> [usize; 3] {
         self.dims.map(|n| n.div_ceil(self.side()))
     }
 
     /// From the samples of some bricks, a box of `dims` of them, to coefficients, with the sum of each brick
     /// at its first place. O(n).
-    pub fn fine(self, values: &mut [f64], dims: [usize; 3]) {
+    pub(crate) fn fine(self, values: &mut [f64], dims: [usize; 3]) {
         let sums = Sums::of_samples(dims);
         self.strides().take(self.k as usize).for_each(|stride| sums.forward(values, stride));
     }
 
     /// Back from that.
-    pub fn inverse_fine(self, values: &mut [f64], dims: [usize; 3]) {
+    pub(crate) fn inverse_fine(self, values: &mut [f64], dims: [usize; 3]) {
         let sums = Sums::of_samples(dims);
         let strides = self.strides().rev().filter(|&stride| stride < self.side());
         strides.for_each(|stride| sums.inverse(values, stride));
     }
 
     /// From the sums of all bricks to the coefficients at their first places. O(bricks).
-    pub fn coarse(self, sums: &mut [f64]) {
+    pub(crate) fn coarse(self, sums: &mut [f64]) {
         let grid = Sums::of_cubes(self.dims, self.side());
         let strides = self.strides().skip(self.k as usize);
         strides.for_each(|stride| grid.forward(sums, stride / self.side()));
@@ -53,7 +53,7 @@ impl Bricks {
     }
 
     /// Back from that.
-    pub fn inverse_coarse(self, sums: &mut [f64]) {
+    pub(crate) fn inverse_coarse(self, sums: &mut [f64]) {
         let grid = Sums::of_cubes(self.dims, self.side());
         sums[0] *= whole_norm(self.dims);
         let strides = self.strides().rev().filter(|&stride| stride >= self.side());

@@ -37,24 +37,24 @@ pub(super) struct Sums {
 
 impl Sums {
     /// So many samples.
-    pub fn of_samples(dims: [usize; 3]) -> Self {
+    pub(super) fn of_samples(dims: [usize; 3]) -> Self {
         Self { axes: dims.map(Axis::of_samples), dims }
     }
 
     /// The sums over cubes of `unit` samples a side, of so many samples.
-    pub fn of_cubes(samples: [usize; 3], unit: usize) -> Self {
+    pub(super) fn of_cubes(samples: [usize; 3], unit: usize) -> Self {
         let dims = samples.map(|n| n.div_ceil(unit));
         Self { axes: samples.map(|n| Axis { n, unit }), dims }
     }
 
     /// One level, of a stride counted in sums of the grid.
-    pub fn forward(&self, flat: &mut [f64], stride: usize) {
+    pub(super) fn forward(&self, flat: &mut [f64], stride: usize) {
         let level = self.level(stride);
         level.each_bundle(flat, |bundle| level.forward(bundle));
     }
 
     /// The same back.
-    pub fn inverse(&self, flat: &mut [f64], stride: usize) {
+    pub(super) fn inverse(&self, flat: &mut [f64], stride: usize) {
         let level = self.level(stride);
         level.each_bundle(flat, |bundle| level.inverse(bundle));
     }

@@ -27,7 +27,7 @@ impl Step {
     const EVEN: Self = Self { of_first: 1.0, of_second: 1.0 };
 
     /// The step at `stride` of a row of n samples whose second sum is at `second`.
-    pub fn of(n: usize, stride: usize, second: usize) -> Self {
+    pub(super) fn of(n: usize, stride: usize, second: usize) -> Self {
         let (a, b) = (stride, stride.min(n - second));
         let g = common_divisor(a, b);
         Self { of_first: (b / g) as f64, of_second: (a / g) as f64 }
@@ -66,17 +66,17 @@ pub(super) struct Axis {
 
 impl Axis {
     /// A row of samples.
-    pub fn of_samples(n: usize) -> Self {
+    pub(super) fn of_samples(n: usize) -> Self {
         Self { n, unit: 1 }
     }
 
     /// The step at `stride` whose second sum is at `second`, both counted in sums of the row.
-    pub fn step(self, stride: usize, second: usize) -> Step {
+    pub(super) fn step(self, stride: usize, second: usize) -> Step {
         Step::of(self.n, stride * self.unit, second * self.unit)
     }
 
     /// [`square`] at `i`, counted in sums of the row.
-    pub fn square(self, stride: usize, i: usize) -> f64 {
+    pub(super) fn square(self, stride: usize, i: usize) -> f64 {
         square(self.n, stride * self.unit, i * self.unit)
     }
 }

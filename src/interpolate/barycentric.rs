@@ -43,7 +43,7 @@ pub(super) struct Planes {
 
 impl Planes {
     /// For corners that turn positively. `None` where they span no volume.
-    pub fn of([a, b, c, d]: [[f64; 3]; 4]) -> Option<Self> {
+    pub(super) fn of([a, b, c, d]: [[f64; 3]; 4]) -> Option<Self> {
         let normal = |p, q, r| cross(&minus(q, p), &minus(r, p));
         let inward = |n: [f64; 3]| n.map(|x| -x);
         // The volume with the place instead of a corner, as it turns.
@@ -57,7 +57,7 @@ impl Planes {
 
     /// The coordinates of a place in the cell, or `None` where it lies outside.
     #[inline(always)]
-    pub fn shares(&self, place: [f64; 3]) -> Option<[f64; 4]> {
+    pub(super) fn shares(&self, place: [f64; 3]) -> Option<[f64; 4]> {
         let part = |k: usize| dot(&self.normals[k], &place) + self.offsets[k];
         let parts = [part(0), part(1), part(2), part(3)];
         let outside = parts.iter().any(|&part| part < 0.0);

@@ -57,7 +57,7 @@ struct Row {
 impl Normal {
     /// The equations for the values of the first `free` points; those of the others stay. Each row is
     /// summed by one thread, over the simplices at its point in their order.
-    pub fn assemble(
+    pub(super) fn assemble(
         pieces: &impl Pieces,
         owners: &[u32],
         grid: &Grid,
@@ -114,7 +114,7 @@ impl Normal {
     }
 
     /// Conjugate gradients with the diagonal as preconditioner, from 0.
-    pub fn solve(&self) -> Result<Solved, InterpolateError> {
+    pub(super) fn solve(&self) -> Result<Solved, InterpolateError> {
         let n = self.diagonal.len();
         let scaled = |r: &[f64]| -> Vec<f64> {
             let one = |(r, d): (&f64, &f64)| if *d > 0.0 { r / d } else { 0.0 };

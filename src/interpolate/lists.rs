@@ -28,7 +28,10 @@ pub(super) struct Lists {
 
 impl Lists {
     /// `visit` names all pairs of a key and an item, in the same order each time it is called.
-    pub fn new(keys: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Result<Self, NoMemory> {
+    pub(super) fn new(
+        keys: usize,
+        visit: impl Fn(&mut dyn FnMut(u32, u32)),
+    ) -> Result<Self, NoMemory> {
         let mut starts = room(keys + 2, || "lists of samples".into())?;
         starts.resize(keys + 2, 0u32);
         visit(&mut |key, _| starts[key as usize + 2] += 1);
@@ -47,7 +50,7 @@ impl Lists {
     }
 
     /// The items of a key, in the order in which they were named.
-    pub fn of(&self, key: u32) -> &[u32] {
+    pub(super) fn of(&self, key: u32) -> &[u32] {
         let [start, end] = [0, 1].map(|k| self.starts[key as usize + k] as usize);
         &self.items[start..end]
     }

@@ -43,7 +43,11 @@ impl<'a> Sampled<'a> {
     ///
     /// # Errors
     /// Samples that span no volume; no memory.
-    pub fn new(volume: &'a Volume, units: Units, voxels: &[u32]) -> Result<Self, InterpolateError> {
+    pub(super) fn new(
+        volume: &'a Volume,
+        units: Units,
+        voxels: &[u32],
+    ) -> Result<Self, InterpolateError> {
         let samples = volume.dims().samples();
         let grid = Grid::of(volume, units);
         let growing = Growing::new(&positions(volume, units, voxels)).map_err(ShapeError::from)?;
@@ -67,7 +71,7 @@ impl<'a> Sampled<'a> {
     ///
     /// # Errors
     /// No memory.
-    pub fn add(&mut self, voxels: &[u32]) -> Result<(), InterpolateError> {
+    pub(super) fn add(&mut self, voxels: &[u32]) -> Result<(), InterpolateError> {
         let named: Vec<u32> = self.name(voxels).collect();
         self.growing.insert(&named).map_err(ShapeError::from)?;
         self.follow();
@@ -75,7 +79,7 @@ impl<'a> Sampled<'a> {
     }
 
     /// Gives samples numbers of points, which they are not yet.
-    pub fn name(&mut self, voxels: &[u32]) -> Range<u32> {
+    pub(super) fn name(&mut self, voxels: &[u32]) -> Range<u32> {
         self.describe(voxels);
         self.growing.name(&positions(self.volume, self.units, voxels))
     }
@@ -84,7 +88,7 @@ impl<'a> Sampled<'a> {
     ///
     /// # Errors
     /// No memory.
-    pub fn change(&mut self, leave: &[u32], join: &[u32]) -> Result<(), InterpolateError> {
+    pub(super) fn change(&mut self, leave: &[u32], join: &[u32]) -> Result<(), InterpolateError> {
         self.growing.remove(leave).map_err(ShapeError::from)?;
         self.growing.insert(join).map_err(ShapeError::from)?;
         self.follow();
@@ -95,7 +99,7 @@ impl<'a> Sampled<'a> {
     ///
     /// # Errors
     /// No memory.
-    pub fn refit(&mut self) -> Result<(), InterpolateError> {
+    pub(super) fn refit(&mut self) -> Result<(), InterpolateError> {
         let pieces = Cells::of(&self.growing, &self.values);
         let free = self.values.len();
         let normal = Normal::assemble(&pieces, &self.owners, &self.grid, self.volume, free)?;
@@ -106,48 +110,48 @@ impl<'a> Sampled<'a> {
     }
 
     /// How far F is from the volume.
-    pub fn deviation(&self) -> Deviation {
+    pub(super) fn deviation(&self) -> Deviation {
         Deviation::at(self.volume, &self.f, |sample| self.owners[sample] != NOTHING)
     }
 
     /// F at each sample, 0 where no cell is.
-    pub fn f(&self) -> &[f32] {
+    pub(super) fn f(&self) -> &[f32] {
         &self.f
     }
 
     /// The triangulation.
-    pub fn growing(&self) -> &Growing {
+    pub(super) fn growing(&self) -> &Growing {
         &self.growing
     }
 
     /// The values of points, by their numbers.
-    pub fn values(&self) -> &[f64] {
+    pub(super) fn values(&self) -> &[f64] {
         &self.values
     }
 
     /// The samples that points are, by their numbers.
-    pub fn voxels(&self) -> &[u32] {
+    pub(super) fn voxels(&self) -> &[u32] {
         &self.voxels
     }
 
     /// The numbers of the points there are.
-    pub fn vertices(&self) -> Vec<u32> {
+    pub(super) fn vertices(&self) -> Vec<u32> {
         let all = Growing::FIRST..self.voxels.len() as u32;
         all.filter(|&v| self.growing.is_vertex(v)).collect()
     }
 
     /// Where a sample is, in the units of points.
-    pub fn place(&self, sample: u32) -> [f64; 3] {
+    pub(super) fn place(&self, sample: u32) -> [f64; 3] {
         self.units.position(self.volume, sample)
     }
 
     /// The cell of each sample, or [`NOTHING`].
-    pub fn owners(&self) -> &[u32] {
+    pub(super) fn owners(&self) -> &[u32] {
         &self.owners
     }
 
     /// One more than the largest number of a cell.
-    pub fn cells(&self) -> usize {
+    pub(super) fn cells(&self) -> usize {
         self.growing.cells().len()
     }
 

@@ -30,7 +30,7 @@ const LEAF: usize = 4;
 impl Tree {
     /// Halves the boxes by their middles along the axis in which these are farthest apart, again
     /// and again. O(n log n).
-    pub fn new(boxes: &[Bounds]) -> Self {
+    pub(super) fn new(boxes: &[Bounds]) -> Self {
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut nodes = Vec::with_capacity(boxes.len());
         if !order.is_empty() {
@@ -40,7 +40,7 @@ impl Tree {
     }
 
     /// The least number for which `holds`, among the boxes that hold a place.
-    pub fn first(&self, place: [f64; 3], holds: impl Fn(u32) -> bool) -> Option<u32> {
+    pub(super) fn first(&self, place: [f64; 3], holds: impl Fn(u32) -> bool) -> Option<u32> {
         let mut first = None;
         let mut at = 0;
         while let Some(node) = self.nodes.get(at) {

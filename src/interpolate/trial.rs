@@ -40,7 +40,7 @@ pub(super) struct Trial<'a> {
 
 impl<'a> Trial<'a> {
     /// Looks up which samples each cell has. O(samples).
-    pub fn new(
+    pub(super) fn new(
         volume: &'a Volume,
         sampled: &'a Sampled<'a>,
         screen: &'a Screen<'a>,
@@ -50,12 +50,12 @@ impl<'a> Trial<'a> {
     }
 
     /// What [`Self::loss`] works with.
-    pub fn digger(&self) -> Result<Digger, ShapeError> {
+    pub(super) fn digger(&self) -> Result<Digger, ShapeError> {
         Ok(Digger::new(self.sampled.voxels().len())?)
     }
 
     /// What the removal of a vertex costs, where it can be removed.
-    pub fn loss(
+    pub(super) fn loss(
         &self,
         point: u32,
         digger: &mut Result<Digger, ShapeError>,
@@ -76,7 +76,7 @@ impl<'a> Trial<'a> {
     }
 
     /// What a point gains that is a sample and no vertex, with the value that gains most.
-    pub fn gain(&self, point: u32) -> Option<Gain> {
+    pub(super) fn gain(&self, point: u32) -> Option<Gain> {
         let cell = self.sampled.owners()[self.sampled.voxels()[point as usize] as usize];
         let crown = self.growing().crown(self.screen, point, cell);
         let cells = Pieces::of(crown.cells.iter().copied(), self);

@@ -18,10 +18,10 @@ pub(super) struct Incidence {
 
 impl Incidence {
     /// Where a hull facet has no cell.
-    pub const OUTSIDE: u32 = u32::MAX;
+    pub(super) const OUTSIDE: u32 = u32::MAX;
 
     /// Looks everything up. Expected O(n log n).
-    pub fn of(whole: &Complex, points: usize) -> Self {
+    pub(super) fn of(whole: &Complex, points: usize) -> Self {
         let mut facets = whole.facets.rows().to_vec();
         // Only hull facets, which are oriented, are not sorted.
         facets.par_iter_mut().for_each(|row| row.sort_unstable());

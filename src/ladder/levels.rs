@@ -186,7 +186,7 @@ pub(super) struct ByLevel {
 }
 
 impl ByLevel {
-    pub fn new(levels: usize, first: impl ExactSizeIterator<Item = u32> + Clone) -> Self {
+    pub(super) fn new(levels: usize, first: impl ExactSizeIterator<Item = u32> + Clone) -> Self {
         let mut starts = vec![0; levels + 2];
         first.clone().for_each(|level| starts[level as usize + 1] += 1);
         for level in 0..=levels {
@@ -202,7 +202,7 @@ impl ByLevel {
     }
 
     /// What comes at a level.
-    pub fn at(&self, level: usize) -> &[u32] {
+    pub(super) fn at(&self, level: usize) -> &[u32] {
         &self.rows[self.starts[level]..self.starts[level + 1]]
     }
 }

@@ -30,7 +30,7 @@ pub(super) enum Row {
 
 impl Value {
     /// A double at or above the value, and below the next.
-    pub fn above(self) -> f64 {
+    pub(super) fn above(self) -> f64 {
         match self {
             Self::First(alpha) | Self::Of(_, alpha) => alpha,
         }

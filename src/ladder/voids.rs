@@ -142,7 +142,7 @@ impl Hollows<'_> {
     /// The Betti numbers that the number of components determines, and on a torus the directions in which they
     /// go round: b2 and b3 (Alexander duality, and on a torus the exact sequence of the pair of it and the
     /// complement: H₁(complement) → H₁(torus) → H²(shape) → H₀(complement) → H₀(torus) → H³(shape)).
-    pub fn closed(&self) -> Closed {
+    pub(super) fn closed(&self) -> Closed {
         match &self.sets {
             Sets::InSpace(_) => Closed { b2: self.count - 1, b3: None },
             Sets::OnTorus(.., rounds) => {
@@ -161,7 +161,7 @@ impl Hollows<'_> {
         }
     }
 
-    pub fn voids(&mut self) -> Vec<Void> {
+    pub(super) fn voids(&mut self) -> Vec<Void> {
         let mut roots = std::mem::take(&mut self.roots);
         // What goes round once always will.
         roots.retain(|&root| self.sets.find(root) == root && self.is_bounded(root));

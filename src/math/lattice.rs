@@ -22,7 +22,7 @@ impl Lattice {
     const FINEST: i32 = -100;
 
     /// The lattice of some points. O(n).
-    pub fn of(positions: &[[f64; 3]], weights: &[f64]) -> Self {
+    pub(crate) fn of(positions: &[[f64; 3]], weights: &[f64]) -> Self {
         let lowest = |numbers: &mut dyn Iterator<Item = f64>| numbers.filter_map(lowest_bit).min();
         let coordinates = lowest(&mut positions.as_flattened().iter().copied()).unwrap_or(0);
         // Where all weights are alike their differences are 0, but α + ω is still rounded.
@@ -55,17 +55,17 @@ impl Reach {
     const RANGE: i32 = 300;
 
     /// The reach of some places. O(n).
-    pub fn of(places: &[[f64; 3]]) -> Self {
+    pub(crate) fn of(places: &[[f64; 3]]) -> Self {
         Self::of_all(places.iter().copied())
     }
 
     /// The same of places that are not in memory.
-    pub fn of_all(places: impl Iterator<Item = [f64; 3]>) -> Self {
+    pub(crate) fn of_all(places: impl Iterator<Item = [f64; 3]>) -> Self {
         places.flatten().fold(Self { unit: i32::MAX, reach: i32::MIN }, Self::with)
     }
 
     /// The reach of places of both.
-    pub fn with_all(self, other: Self) -> Self {
+    pub(crate) fn with_all(self, other: Self) -> Self {
         Self { unit: self.unit.min(other.unit), reach: self.reach.max(other.reach) }
     }
 
@@ -79,12 +79,12 @@ impl Reach {
     }
 
     /// Whether formulas over these places and one more are exact in doubles.
-    pub fn is_exact_with(self, place: [f64; 3]) -> bool {
+    pub(crate) fn is_exact_with(self, place: [f64; 3]) -> bool {
         place.into_iter().fold(self, Self::with).is_exact()
     }
 
     /// Whether formulas over these places are exact in doubles.
-    pub fn is_exact(self) -> bool {
+    pub(crate) fn is_exact(self) -> bool {
         let Self { unit, reach } = self;
         reach <= unit.saturating_add(Self::BITS) && unit.abs() <= Self::RANGE || reach == i32::MIN
     }

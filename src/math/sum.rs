@@ -16,7 +16,7 @@ pub(crate) struct Sum {
 
 impl Sum {
     /// Adds a term. O(parts).
-    pub fn add(&mut self, term: f64) {
+    pub(crate) fn add(&mut self, term: f64) {
         if !term.is_finite() {
             self.beyond += term;
             return;
@@ -46,13 +46,13 @@ impl Sum {
     }
 
     /// Adds all that another sum has.
-    pub fn join(&mut self, other: &Self) {
+    pub(crate) fn join(&mut self, other: &Self) {
         other.parts.iter().for_each(|&part| self.add(part));
         self.beyond += other.beyond;
     }
 
     /// The double nearest to the sum, of two the even one.
-    pub fn value(&self) -> f64 {
+    pub(crate) fn value(&self) -> f64 {
         if self.beyond != 0.0 {
             return self.beyond;
         }
@@ -79,7 +79,7 @@ impl Sum {
     }
 
     /// Whether the sum is at most this, exactly.
-    pub fn is_at_most(&self, limit: f64) -> bool {
+    pub(crate) fn is_at_most(&self, limit: f64) -> bool {
         if self.beyond != 0.0 || limit.is_infinite() {
             return self.beyond <= limit;
         }

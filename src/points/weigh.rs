@@ -133,14 +133,14 @@ impl Default for Differences {
 
 impl Differences {
     /// Those of some points. O(n).
-    pub fn of(differences: &[f64]) -> Self {
+    pub(crate) fn of(differences: &[f64]) -> Self {
         let (min, max) = range(differences);
         let sum = differences.iter().copied().collect();
         Self { count: differences.len() as u64, min, max, sum }
     }
 
     /// Takes in those of other points.
-    pub fn join(&mut self, other: &Self) {
+    pub(crate) fn join(&mut self, other: &Self) {
         self.count += other.count;
         (self.min, self.max) = (self.min.min(other.min), self.max.max(other.max));
         self.sum.join(&other.sum);
@@ -157,7 +157,7 @@ pub(crate) struct Shares {
 
 impl Shares {
     /// The weight of a difference.
-    pub fn of(self, l: f64) -> f64 {
+    pub(crate) fn of(self, l: f64) -> f64 {
         let Self { factor, base, whole } = self;
         if whole == 0.0 { 0.0 } else { factor * ((l - base) / whole) }
     }

@@ -15,7 +15,7 @@ pub(super) struct Difference {
 }
 
 impl Difference {
-    pub fn between(a: &Complex, b: &Complex) -> Self {
+    pub(super) fn between(a: &Complex, b: &Complex) -> Self {
         let boundary = [Class::Regular, Class::Singular];
         Self {
             cells: not_shared(&a.cells, &b.cells, &[Class::Interior]),
@@ -103,7 +103,7 @@ pub(super) struct PixelDifference {
 }
 
 impl PixelDifference {
-    pub fn between(a: &Picture, b: &Picture) -> Self {
+    pub(super) fn between(a: &Picture, b: &Picture) -> Self {
         let pairs = a.pixels().iter().zip(b.pixels());
         pairs.filter(|(a, b)| a != b).fold(Self::default(), |difference, (a, b)| {
             let largest = (0..4).map(|k| a[k].abs_diff(b[k])).max().unwrap_or(0);

@@ -17,7 +17,7 @@ pub(super) struct Hull {
 impl Hull {
     /// Judges the regular facets of a shape. Each point is held against each plane; signs are
     /// exact for coordinates that are whole numbers below 10⁵, as those of voxels are.
-    pub fn of(shape: &AlphaShape) -> Self {
+    pub(super) fn of(shape: &AlphaShape) -> Self {
         let positions = &shape.points().positions;
         let mut planes: Vec<([f64; 3], f64)> = Vec::new();
         let mut sixfold = 0.0;

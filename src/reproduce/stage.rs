@@ -33,7 +33,7 @@ pub(super) fn panel_size() -> Size {
 }
 
 impl Stage {
-    pub fn of(dims: Dims) -> Self {
+    pub(super) fn of(dims: Dims) -> Self {
         let scales = dims.xyz().map(|n| n as f64 / 64.0);
         Self {
             target: [32.0 * scales[0], 32.0 * scales[1], 30.0 * scales[2]],
@@ -52,20 +52,24 @@ impl Stage {
     }
 
     /// The options of `walpha shape` that draw a shape as the portrait panels do.
-    pub fn options(&self) -> String {
+    pub(super) fn options(&self) -> String {
         let all = [self.place(Eye::Portrait), self.target].concat();
         let numbers: Vec<String> = all.iter().map(f64::to_string).collect();
         let size = panel_size();
         format!("--camera={} --size {}x{}", numbers.join(","), size.width(), size.height())
     }
 
-    pub fn render(&self, scene: &Scene, eye: Eye) -> Result<Picture, ReproduceError> {
+    pub(super) fn render(&self, scene: &Scene, eye: Eye) -> Result<Picture, ReproduceError> {
         let camera = Camera::portrait(self.place(eye), self.target);
         Ok(scene.render(&camera, panel_size(), Background::White)?)
     }
 
     /// The picture of a scene within the whole box of the volume, in the portrait's direction.
-    pub fn render_box(&self, mut scene: Scene, size: Size) -> Result<Picture, ReproduceError> {
+    pub(super) fn render_box(
+        &self,
+        mut scene: Scene,
+        size: Size,
+    ) -> Result<Picture, ReproduceError> {
         let bounds = [[0.0; 3], self.high];
         let tube = 0.12 * self.scale;
         scene.add_box(bounds, tube, crate::render::Rgb([110, 110, 110]));
@@ -74,7 +78,7 @@ impl Stage {
     }
 
     /// The picture of a shape, in the colour of bone.
-    pub fn shape(&self, shape: &AlphaShape, eye: Eye) -> Result<Picture, ReproduceError> {
+    pub(super) fn shape(&self, shape: &AlphaShape, eye: Eye) -> Result<Picture, ReproduceError> {
         let style = ShapeStyle { colouring: Colouring::Plain, ..ShapeStyle::default() };
         self.render(&Scene::of_shape(&shape.points().positions, shape.complex(), &style)?, eye)
     }

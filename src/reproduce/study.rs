@@ -30,7 +30,7 @@ pub(super) struct Study<'a> {
 }
 
 impl<'a> Study<'a> {
-    pub fn new(subject: &'a Subject<'a>) -> Result<Self, ReproduceError> {
+    pub(super) fn new(subject: &'a Subject<'a>) -> Result<Self, ReproduceError> {
         let volume = subject.volume;
         let (smoothed, truncation) = smooth(volume, &HaarOptions::default())?;
         let (rule, select_option) = if volume.dims().samples() == PAPER_SAMPLES {
@@ -48,7 +48,7 @@ impl<'a> Study<'a> {
         Ok(Self { subject, smoothed, truncation, points, select: select_option, stage })
     }
 
-    pub fn input(&self) -> Input {
+    pub(super) fn input(&self) -> Input {
         let dims = self.subject.volume.dims();
         Input {
             name: self.subject.name.to_owned(),
@@ -62,7 +62,7 @@ impl<'a> Study<'a> {
     }
 
     /// `walpha COMMAND INPUT` with the options that select our points.
-    pub fn command(&self, command: &str) -> String {
+    pub(super) fn command(&self, command: &str) -> String {
         let (input, select) = (text::shell(self.subject.name), &self.select);
         // The paper's lengths are voxels, whatever the file says.
         match self.subject.volume.frame().coordinates.unit {
@@ -72,7 +72,7 @@ impl<'a> Study<'a> {
     }
 
     /// The shape with these weights at this α, in its whole triangulation.
-    pub fn shape(&self, recipe: Recipe) -> Result<Shaped, ReproduceError> {
+    pub(super) fn shape(&self, recipe: Recipe) -> Result<Shaped, ReproduceError> {
         let Recipe { weighting, alpha, balls } = recipe;
         let alpha = Alpha::from_squared(alpha).expect("a recipe's α is a number");
         let weighted = weigh(&self.points, weighting, alpha)?;
@@ -107,11 +107,11 @@ pub(super) struct Recipe {
 }
 
 impl Recipe {
-    pub fn plain(alpha: f64) -> Self {
+    pub(super) fn plain(alpha: f64) -> Self {
         Self { weighting: Weighting::Common(0.0), alpha, balls: Balls::Power }
     }
 
-    pub fn weighted(weighting: Weighting) -> Self {
+    pub(super) fn weighted(weighting: Weighting) -> Self {
         Self { weighting, alpha: ALPHA, balls: Balls::Power }
     }
 
@@ -161,7 +161,7 @@ pub(super) struct Shapes {
 const LADDER: [f64; 5] = [1.0, 3.0, 50.0, 200.0, f64::INFINITY];
 
 impl Shapes {
-    pub fn new(study: &Study<'_>, clock: &mut Clock<'_>) -> Result<Self, ReproduceError> {
+    pub(super) fn new(study: &Study<'_>, clock: &mut Clock<'_>) -> Result<Self, ReproduceError> {
         let mut make = |name, recipe| {
             clock.enter(name);
             study.shape(recipe)
@@ -189,7 +189,7 @@ impl Shapes {
     }
 
     /// The unweighted shapes, by ascending α.
-    pub fn by_alpha(&self) -> Vec<&Shaped> {
+    pub(super) fn by_alpha(&self) -> Vec<&Shaped> {
         let mut shapes: Vec<&Shaped> = [&self.plain, &self.shifted].into();
         shapes.extend(&self.ladder);
         shapes.sort_by(|a, b| a.numbers.alpha.squared().total_cmp(&b.numbers.alpha.squared()));

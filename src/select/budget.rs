@@ -31,12 +31,12 @@ pub(crate) struct Bin {
 
 impl Bin {
     #[inline(always)]
-    pub fn add(&mut self, bits: u64) {
+    pub(crate) fn add(&mut self, bits: u64) {
         self.count += 1;
         self.units += u128::from(units(bits));
     }
 
-    pub fn join(&mut self, other: &Self) {
+    pub(crate) fn join(&mut self, other: &Self) {
         self.count += other.count;
         self.units += other.units;
     }
@@ -70,12 +70,12 @@ pub(super) struct Spent {
 }
 
 impl Spent {
-    pub fn of(budget: Budget) -> Self {
+    pub(super) fn of(budget: Budget) -> Self {
         Self { budget, count: 0, energy: Sum::default() }
     }
 
     /// Drops a whole bin of values of an exponent, if the budget allows.
-    pub fn take(&mut self, bin: &Bin, exponent: u64) -> bool {
+    pub(super) fn take(&mut self, bin: &Bin, exponent: u64) -> bool {
         if bin.count == 0 {
             return true;
         }
@@ -91,7 +91,7 @@ impl Spent {
     }
 
     /// Drops as many of `count` values of one magnitude as the budget allows, and says how many.
-    pub fn equal(&mut self, magnitude: u64, count: u64) -> u64 {
+    pub(super) fn equal(&mut self, magnitude: u64, count: u64) -> u64 {
         let (each, exponent) = (u128::from(units(magnitude)), magnitude >> EXPONENT);
         let with = |drop: u64| self.with(each * u128::from(drop), exponent);
         let dropped = match self.budget {
@@ -110,7 +110,7 @@ impl Spent {
         dropped
     }
 
-    pub fn dropped(&self) -> Dropped {
+    pub(super) fn dropped(&self) -> Dropped {
         Dropped { count: self.count, energy: self.energy.value() }
     }
 

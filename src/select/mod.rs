@@ -33,7 +33,7 @@ impl Cut {
     ///
     /// Magnitudes are ordered as their bits are, so this is a radix selection: a histogram of
     /// counts and energies by the leading digit, then of what agrees with it by the next. O(n).
-    pub fn new(values: &[f64], budget: Budget) -> (Self, Dropped) {
+    pub(crate) fn new(values: &[f64], budget: Budget) -> (Self, Dropped) {
         let mut spent = Spent::of(budget);
         let (mut magnitude, mut ties) = (0, 0);
         for (shift, width) in DIGITS {
@@ -58,7 +58,7 @@ impl Cut {
 
     /// Whether the value at this index stays.
     #[inline]
-    pub fn keeps(self, value: f64, index: u64) -> bool {
+    pub(crate) fn keeps(self, value: f64, index: u64) -> bool {
         let bits = magnitude(value);
         let above = bits > self.magnitude && bits < INFINITY;
         above || (bits == self.magnitude && index < self.ties_end)

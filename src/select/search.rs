@@ -57,12 +57,12 @@ pub(crate) struct Counts {
 
 impl Counts {
     /// How many values were counted.
-    pub fn total(&self) -> u64 {
+    pub(crate) fn total(&self) -> u64 {
         self.bins.values().map(|bin| bin.count).sum::<u64>() + self.list.len() as u64
     }
 
     /// Takes in what another piece has.
-    pub fn join(&mut self, other: Self) {
+    pub(crate) fn join(&mut self, other: Self) {
         for (digit, bin) in other.bins {
             self.bins.entry(digit).or_default().join(&bin);
         }
@@ -73,18 +73,18 @@ impl Counts {
 impl Search {
     /// Looks for the cut that drops as many values as the budget allows. Where no more than `few` values
     /// are in question, 16 bytes each, they are listed.
-    pub fn new(budget: Budget, few: u64) -> Self {
+    pub(crate) fn new(budget: Budget, few: u64) -> Self {
         let stage = Stage::Magnitude { known: 0, shift: MAGNITUDE };
         Self { spent: Spent::of(budget), few, stage }
     }
 
     /// Whether it was told nothing yet.
-    pub fn is_new(&self) -> bool {
+    pub(crate) fn is_new(&self) -> bool {
         self.stage == Stage::Magnitude { known: 0, shift: MAGNITUDE }
     }
 
     /// The cut and what it drops, when it is found.
-    pub fn found(&self) -> Option<(Cut, Dropped)> {
+    pub(crate) fn found(&self) -> Option<(Cut, Dropped)> {
         match self.stage {
             Stage::Found(cut) => Some((cut, self.spent.dropped())),
             _ => None,
@@ -92,7 +92,7 @@ impl Search {
     }
 
     /// Counts values, each with its index, for the round at hand. NaN takes no part. O(n).
-    pub fn count(&self, values: impl Iterator<Item = (f64, u64)>) -> Counts {
+    pub(crate) fn count(&self, values: impl Iterator<Item = (f64, u64)>) -> Counts {
         let mut counts = Counts::default();
         let values = values.map(|(value, index)| (magnitude(value), index));
         let values = values.filter(|&(bits, _)| bits < INFINITY);
@@ -125,7 +125,7 @@ impl Search {
     }
 
     /// Goes on to the next round with what all pieces have.
-    pub fn learn(&mut self, counts: Counts) {
+    pub(crate) fn learn(&mut self, counts: Counts) {
         self.stage = match self.stage {
             Stage::Magnitude { known, shift } => self.by_magnitude(counts, known, shift),
             Stage::Index { magnitude, stay, known, shift } => {

@@ -19,7 +19,7 @@ pub(crate) struct ComponentSums {
 
 impl ComponentSums {
     /// One of its vertices.
-    pub fn at(point: [f64; 3]) -> Self {
+    pub(crate) fn at(point: [f64; 3]) -> Self {
         Self {
             vertices: 1,
             cells: 0,
@@ -32,19 +32,19 @@ impl ComponentSums {
     }
 
     /// Another vertex.
-    pub fn reach(&mut self, point: [f64; 3]) {
+    pub(crate) fn reach(&mut self, point: [f64; 3]) {
         self.vertices += 1;
         widen(&mut self.low, &mut self.high, point);
     }
 
     /// A cell that is in the shape.
-    pub fn add_cell(&mut self, corners: [[f64; 3]; 4]) {
+    pub(crate) fn add_cell(&mut self, corners: [[f64; 3]; 4]) {
         self.cells += 1;
         self.six_volumes.add(six_volumes(corners));
     }
 
     /// A facet of some class.
-    pub fn add_facet(&mut self, corners: [[f64; 3]; 3], class: Class) {
+    pub(crate) fn add_facet(&mut self, corners: [[f64; 3]; 3], class: Class) {
         match class {
             Class::Regular => self.area.add(facet_area(corners)),
             Class::Singular => self.singular_area.add(facet_area(corners)),
@@ -53,7 +53,7 @@ impl ComponentSums {
     }
 
     /// Takes in another part.
-    pub fn join(&mut self, other: &Self) {
+    pub(crate) fn join(&mut self, other: &Self) {
         self.vertices += other.vertices;
         self.cells += other.cells;
         self.six_volumes.join(&other.six_volumes);
@@ -64,7 +64,7 @@ impl ComponentSums {
     }
 
     /// What all of these have, which is what the shape has.
-    pub fn measures<'a>(all: impl Iterator<Item = &'a Self> + Clone) -> Measures {
+    pub(crate) fn measures<'a>(all: impl Iterator<Item = &'a Self> + Clone) -> Measures {
         let sum = |of: fn(&Self) -> &Sum| {
             let mut sum = Sum::default();
             all.clone().for_each(|sums| sum.join(of(sums)));
@@ -112,14 +112,14 @@ impl Default for SheetSums {
 impl SheetSums {
     /// A side of a facet, whose corners turn counter-clockwise seen from outside the shape. `apex` is one
     /// place for all: of the cones over the sides of a sheet from it, signed, the sheet's inside remains.
-    pub fn add(&mut self, apex: [f64; 3], corners: [[f64; 3]; 3]) {
+    pub(crate) fn add(&mut self, apex: [f64; 3], corners: [[f64; 3]; 3]) {
         let [a, b, c] = corners;
         self.six_volumes.add(-six_volumes([apex, a, b, c]));
         corners.iter().for_each(|&corner| widen(&mut self.low, &mut self.high, corner));
     }
 
     /// Takes in other sides.
-    pub fn join(&mut self, other: &Self) {
+    pub(crate) fn join(&mut self, other: &Self) {
         self.six_volumes.join(&other.six_volumes);
         widen(&mut self.low, &mut self.high, other.low);
         widen(&mut self.low, &mut self.high, other.high);

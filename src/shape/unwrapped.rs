@@ -17,13 +17,13 @@ pub(super) struct Layout<'a> {
 }
 
 impl<'a> Layout<'a> {
-    pub fn new(torus: Torus, positions: &'a [[f64; 3]]) -> Self {
+    pub(super) fn new(torus: Torus, positions: &'a [[f64; 3]]) -> Self {
         Self { torus, positions, numbers: BTreeMap::new(), copied: Vec::new() }
     }
 
     /// Rows laid out: each simplex where its lowest coordinates are in the box, so that only the upper sides
     /// of the box have something beyond them.
-    pub fn lay_out<const N: usize>(&mut self, simplices: &Simplices<N>) -> Simplices<N> {
+    pub(super) fn lay_out<const N: usize>(&mut self, simplices: &Simplices<N>) -> Simplices<N> {
         simplices.iter().map(|(&row, class)| (self.row(row), class)).collect()
     }
 

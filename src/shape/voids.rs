@@ -48,7 +48,7 @@ pub(crate) struct Hollow {
 
 impl Hollow {
     /// One cell, with its squared radius.
-    pub fn of(radius: Interval, corners: [[f64; 3]; 4]) -> Self {
+    pub(crate) fn of(radius: Interval, corners: [[f64; 3]; 4]) -> Self {
         let end = |choose: fn(f64, f64) -> f64| {
             [0, 1, 2]
                 .map(|k| corners[1..].iter().fold(corners[0][k], |so_far, p| choose(so_far, p[k])))
@@ -58,12 +58,12 @@ impl Hollow {
     }
 
     /// The same at another copy of it on a torus.
-    pub fn moved(&mut self, torus: Torus, way: Winding) {
+    pub(crate) fn moved(&mut self, torus: Torus, way: Winding) {
         (self.low, self.high) = (torus.moved(self.low, way), torus.moved(self.high, way));
     }
 
     /// Takes in another.
-    pub fn join(&mut self, other: &Self) {
+    pub(crate) fn join(&mut self, other: &Self) {
         self.cells += other.cells;
         self.six_volumes += other.six_volumes;
         for k in 0..3 {
@@ -75,12 +75,12 @@ impl Hollow {
     }
 
     /// How many cells there are.
-    pub fn cells(&self) -> usize {
+    pub(crate) fn cells(&self) -> usize {
         self.cells
     }
 
     /// Raises α to the first double at which one of the cells fits.
-    pub fn raise(
+    pub(crate) fn raise(
         &self,
         alpha: &mut f64,
         spheres: &Predicates<'_>,
@@ -94,7 +94,7 @@ impl Hollow {
     }
 
     /// As a void that is filled at this α.
-    pub fn void(&self, filling_alpha: f64) -> Void {
+    pub(crate) fn void(&self, filling_alpha: f64) -> Void {
         let Self { cells, six_volumes, low, high, .. } = *self;
         let filling_alpha = Alpha::from_squared(filling_alpha).expect("radii are numbers");
         Void { cells, volume: six_volumes / 6.0, low, high, filling_alpha }

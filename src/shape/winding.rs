@@ -11,12 +11,12 @@ pub(crate) struct Directions(Vec<Winding>);
 
 impl Directions {
     /// How many there are.
-    pub fn rank(&self) -> usize {
+    pub(crate) fn rank(&self) -> usize {
         self.0.len()
     }
 
     /// Adds a direction if it is independent of those that are there; says whether it was.
-    pub fn add(&mut self, way: Winding) -> bool {
+    pub(crate) fn add(&mut self, way: Winding) -> bool {
         let independent = match self.0[..] {
             [] => way != [0; 3],
             [a] => cross(a, way) != [0; 3],
@@ -33,12 +33,12 @@ impl Directions {
     }
 
     /// Adds all of others.
-    pub fn extend(&mut self, others: &Self) {
+    pub(crate) fn extend(&mut self, others: &Self) {
         others.0.iter().for_each(|&way| _ = self.add(way));
     }
 
     /// Whether one of them has a part along an axis.
-    pub fn has(&self, axis: usize) -> bool {
+    pub(crate) fn has(&self, axis: usize) -> bool {
         self.0.iter().any(|way| way[axis] != 0)
     }
 }
@@ -60,13 +60,13 @@ pub(crate) struct WindingSets {
 
 impl WindingSets {
     /// `n` sets of one member each.
-    pub fn new(n: usize) -> Self {
+    pub(crate) fn new(n: usize) -> Self {
         Self { parents: (0..n as u32).map(|v| (v, [0; 3])).collect(), rounds: BTreeMap::new() }
     }
 
     /// The smallest member of the set that holds `member`, and by how many sides `member` is moved
     /// where that is not.
-    pub fn find(&mut self, member: u32) -> (u32, Winding) {
+    pub(crate) fn find(&mut self, member: u32) -> (u32, Winding) {
         let mut at = member;
         let mut moved = [0; 3];
         loop {
@@ -84,7 +84,7 @@ impl WindingSets {
 
     /// Makes one set of two, in which `b` moved by so many sides meets `a`. Says whether they were two, or
     /// else, which new direction this goes round in, if it is one.
-    pub fn unite(&mut self, a: u32, b: u32, moved: Winding) -> United {
+    pub(crate) fn unite(&mut self, a: u32, b: u32, moved: Winding) -> United {
         let ((root, to_a), (other, to_b)) = (self.find(a), self.find(b));
         // How the root of b is moved where that of a is not.
         let way = minus(plus(to_a, moved), to_b);
@@ -102,12 +102,12 @@ impl WindingSets {
     }
 
     /// The directions in which the set of a root goes round, if it does.
-    pub fn rounds(&self, root: u32) -> Option<&Directions> {
+    pub(crate) fn rounds(&self, root: u32) -> Option<&Directions> {
         self.rounds.get(&root)
     }
 
     /// The directions in which all sets together go round.
-    pub fn directions(&self) -> Directions {
+    pub(crate) fn directions(&self) -> Directions {
         let mut all = Directions::default();
         self.rounds.values().for_each(|directions| all.extend(directions));
         all

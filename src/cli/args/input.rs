@@ -18,7 +18,7 @@ use super::values::{dims, gray_range, nan};
 /// What to read.
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Input")]
-pub struct InputArgs {
+pub(crate) struct InputArgs {
     /// What was given, the command's own options aside.
     #[command(flatten)]
     pub given: Given,
@@ -47,7 +47,7 @@ pub struct InputArgs {
 
 impl InputArgs {
     /// How to read a volume.
-    pub fn options(&self) -> ReadOptions {
+    pub(crate) fn options(&self) -> ReadOptions {
         let PartArgs { level, array, frame, series, nan, roi, downsample } = self.part.clone();
         ReadOptions {
             raw: self.raw.layout(),
@@ -62,13 +62,13 @@ impl InputArgs {
     }
 
     /// What the name of standard input would end with.
-    pub fn extension(&self) -> String {
+    pub(crate) fn extension(&self) -> String {
         let dotted = |format: &String| format!(".{}", format.trim_start_matches('.'));
         self.format.as_ref().map(dotted).unwrap_or_default()
     }
 
     /// A path for an output whose extension names the format: its own path, if it has one.
-    pub fn output(&self, path: &Path) -> anyhow::Result<PathBuf> {
+    pub(crate) fn output(&self, path: &Path) -> anyhow::Result<PathBuf> {
         match &self.format {
             _ if path.extension().is_some() => Ok(path.to_owned()),
             Some(_) => Ok(format!("output{}", self.extension()).into()),
@@ -80,7 +80,7 @@ impl InputArgs {
     }
 
     /// Refuses --format where nothing needs it.
-    pub fn check_format<'a>(
+    pub(crate) fn check_format<'a>(
         &self,
         mut outputs: impl Iterator<Item = &'a PathBuf>,
     ) -> anyhow::Result<()> {
@@ -92,27 +92,27 @@ impl InputArgs {
     }
 
     /// What the columns of a table of points are.
-    pub fn columns(&self) -> Option<&Columns> {
+    pub(crate) fn columns(&self) -> Option<&Columns> {
         self.columns.as_ref()
     }
 
     /// How values become gray levels.
-    pub fn gray(&self) -> Gray {
+    pub(crate) fn gray(&self) -> Gray {
         self.gray.map_or(Gray::Automatic, Gray::Range)
     }
 
     /// The values that become gray 0 and 255, if they were given.
-    pub fn gray_range(&self) -> Option<GrayRange> {
+    pub(crate) fn gray_range(&self) -> Option<GrayRange> {
         self.gray
     }
 
     /// Whether gray levels are written.
-    pub fn gray_out(&self) -> bool {
+    pub(crate) fn gray_out(&self) -> bool {
         self.gray_out
     }
 
     /// The values that gray levels stand for in what is written, where `range` became 0..255.
-    pub fn written(&self, range: GrayRange) -> GrayRange {
+    pub(crate) fn written(&self, range: GrayRange) -> GrayRange {
         if self.gray_out { GrayRange::IDENTITY } else { range }
     }
 }
@@ -150,7 +150,7 @@ pub(super) struct PartArgs {
 /// The layout of a raw file.
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Raw volumes")]
-pub struct RawArgs {
+pub(crate) struct RawArgs {
     /// Sizes of a raw file along x, y and z (x fastest).
     #[arg(long, value_name = "X,Y,Z", value_parser = dims, requires = "dtype")]
     dims: Option<Dims>,
@@ -166,7 +166,7 @@ pub struct RawArgs {
 
 impl RawArgs {
     /// The grid that `--dims` asks for where it does not describe a raw file.
-    pub fn grid(&self) -> Option<Dims> {
+    pub(crate) fn grid(&self) -> Option<Dims> {
         self.dims.filter(|_| self.dtype.is_none())
     }
 

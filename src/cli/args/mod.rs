@@ -9,19 +9,19 @@ mod weights;
 
 use clap::{Args, Command};
 
-pub use input::InputArgs;
+pub(super) use input::InputArgs;
 use input::PartArgs;
-pub use periodic::PeriodicArgs;
-pub use select::{HaarArgs, RefitArgs, SelectArgs};
-pub use shape::ShapeArgs;
-pub use values::not_negative;
+pub(super) use periodic::PeriodicArgs;
+pub(super) use select::{HaarArgs, RefitArgs, SelectArgs};
+pub(super) use shape::ShapeArgs;
+pub(super) use values::not_negative;
 #[cfg(feature = "render")]
-pub use values::number;
-pub use weights::{Alphas, FrozenArgs, WeightArgs};
+pub(super) use values::number;
+pub(super) use weights::{Alphas, FrozenArgs, WeightArgs};
 
 /// From an input to weighted points.
 #[derive(Args, Clone)]
-pub struct PipelineArgs<W: Args = WeightArgs> {
+pub(super) struct PipelineArgs<W: Args = WeightArgs> {
     #[command(flatten)]
     pub input: InputArgs,
     #[command(flatten)]
@@ -35,10 +35,10 @@ pub struct PipelineArgs<W: Args = WeightArgs> {
 }
 
 /// The same with weights that stay as they are while α varies.
-pub type FrozenPipelineArgs = PipelineArgs<FrozenArgs>;
+pub(super) type FrozenPipelineArgs = PipelineArgs<FrozenArgs>;
 
 /// The names of the options that only a volume has: points may have levels, too, and gray levels.
-pub fn of_volumes() -> Vec<String> {
+pub(super) fn of_volumes() -> Vec<String> {
     let part = PartArgs::augment_args(Command::new("volume"));
     let points = SelectArgs::augment_args(HaarArgs::augment_args(part));
     let all = RefitArgs::augment_args(points);

@@ -9,7 +9,7 @@ use crate::shape::Torus;
 /// Points of a torus.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Shape")]
-pub struct PeriodicArgs {
+pub(crate) struct PeriodicArgs {
     /// Sides of a box that repeats along x, y and z, in the unit of the points: these are those of a torus.
     /// No edge may span half of the box; with 4·√(α + largest weight) less than each side none does.
     #[arg(long, value_name = "X,Y,Z", value_parser = torus)]

@@ -15,7 +15,7 @@ use super::values::{count, not_nan, not_negative, share};
 /// The wavelet stage.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Wavelet stage")]
-pub struct HaarArgs {
+pub(crate) struct HaarArgs {
     /// Decomposition: all axes once per level, or each axis fully.
     #[arg(long, value_enum, default_value_t, value_name = "KIND")]
     haar: Decomposition,
@@ -33,7 +33,7 @@ pub struct HaarArgs {
 
 impl HaarArgs {
     /// The stage's options.
-    pub fn options(&self) -> HaarOptions {
+    pub(crate) fn options(&self) -> HaarOptions {
         let tolerance = match (self.epsilon, self.coefficients) {
             (Some(epsilon), _) => Tolerance::Epsilon(epsilon),
             (_, Some(count)) => Tolerance::Coefficients(count),
@@ -46,7 +46,7 @@ impl HaarArgs {
 /// Which samples become points.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Points")]
-pub struct SelectArgs {
+pub(crate) struct SelectArgs {
     /// Select the samples of largest gray difference, or adaptively: starting from the corners of the
     /// volume, those where the interpolant of the previous ones is worst.
     #[arg(long, value_enum, default_value_t, value_name = "HOW")]
@@ -87,7 +87,7 @@ pub struct SelectArgs {
 /// Which values points get.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Points")]
-pub struct RefitArgs {
+pub(crate) struct RefitArgs {
     /// Fit the values of points to the volume by least squares: to all its samples, on the triangulation
     /// that `interpolate --fill` uses, or to those that the shape covers. Otherwise points have the
     /// values of their samples.
@@ -99,7 +99,7 @@ pub struct RefitArgs {
 /// In what coordinates points, shapes and all lengths are.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Coordinates")]
-pub struct PlaceArgs {
+pub(super) struct PlaceArgs {
     /// Coordinates, α, weights and sizes in voxels, or in the unit of the file [default: world where the
     /// file states a spacing or an origin, otherwise voxel].
     #[arg(long, value_enum, value_name = "UNITS")]
@@ -113,13 +113,13 @@ pub struct PlaceArgs {
 impl PlaceArgs {
     /// What the coordinates of this volume's points are measured in, and the volume in the space that
     /// they are in.
-    pub fn place(self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
+    pub(super) fn place(self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
         let (frame, units) = self.place_frame(*volume.frame())?;
         Ok((volume.with_frame(frame), units))
     }
 
     /// The same of a grid.
-    pub fn place_frame(self, frame: Frame) -> anyhow::Result<(Frame, Units)> {
+    pub(super) fn place_frame(self, frame: Frame) -> anyhow::Result<(Frame, Units)> {
         let Coordinates { space, unit } = frame.coordinates;
         let silent = if unit == LengthUnit::Voxel { Units::Voxel } else { Units::World };
         let units = self.units.unwrap_or(silent);
@@ -145,13 +145,13 @@ enum SelectArg {
 
 impl SelectArgs {
     /// The stage's options, for a volume whose values `range` are gray 0..255.
-    pub fn selection(&self, range: &GrayRange) -> Selection {
+    pub(crate) fn selection(&self, range: &GrayRange) -> Selection {
         let gray_min = self.gray_min.or(self.value_min.map(|value| range.gray(value)));
         Selection { rule: self.rule(), gray_min }
     }
 
     /// By what rule samples are chosen.
-    pub fn rule(&self) -> SelectionRule {
+    pub(crate) fn rule(&self) -> SelectionRule {
         match (self.count, self.threshold) {
             (Some(count), _) => SelectionRule::Count(count),
             (_, Some(threshold)) => SelectionRule::Threshold(threshold),
@@ -160,7 +160,7 @@ impl SelectArgs {
     }
 
     /// Which samples, of so many, become points.
-    pub fn choice(&self, range: &GrayRange, samples: usize) -> anyhow::Result<Choice> {
+    pub(crate) fn choice(&self, range: &GrayRange, samples: usize) -> anyhow::Result<Choice> {
         if self.select != SelectArg::Adaptive {
             if self.target_rmse.is_some() {
                 misused!("--target-rmse belongs to --select adaptive" => "add it, or use --count");
@@ -189,7 +189,7 @@ impl SelectArgs {
     }
 
     /// Which samples become points where that is decided in blocks, and the least value of the input.
-    pub fn in_blocks(&self) -> anyhow::Result<(Selection, Option<f64>)> {
+    pub(crate) fn in_blocks(&self) -> anyhow::Result<(Selection, Option<f64>)> {
         if self.select == SelectArg::Adaptive || self.target_rmse.is_some() {
             misused!("--select adaptive looks at all points at once, which blocks do not" => "omit it");
         }
@@ -197,12 +197,12 @@ impl SelectArgs {
     }
 
     /// In what coordinates the points of a grid are.
-    pub fn place_frame(&self, frame: Frame) -> anyhow::Result<(Frame, Units)> {
+    pub(crate) fn place_frame(&self, frame: Frame) -> anyhow::Result<(Frame, Units)> {
         self.place.place_frame(frame)
     }
 
     /// In what coordinates the points are.
-    pub fn place(&self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
+    pub(crate) fn place(&self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
         self.place.place(volume)
     }
 }

@@ -14,7 +14,7 @@ use super::values::bytes;
 /// How the shape is computed.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Shape")]
-pub struct ShapeArgs {
+pub(crate) struct ShapeArgs {
     /// A point is a ball of squared radius α + ω (power) or of radius α + ω (radius).
     #[arg(long, value_enum, default_value_t, value_name = "READING")]
     balls: Balls,
@@ -36,7 +36,7 @@ pub struct ShapeArgs {
 
 impl ShapeArgs {
     /// Refuses options that have no use for each other, before the work.
-    pub fn check(&self, alpha: AlphaRule, periodic: Option<Torus>) -> anyhow::Result<()> {
+    pub(crate) fn check(&self, alpha: AlphaRule, periodic: Option<Torus>) -> anyhow::Result<()> {
         if self.engine == Engine::Reference && self.blocks.is_some_and(|blocks| blocks.get() > 1) {
             misused!("--blocks has no effect: the reference engine knows no blocks" => "omit it, or take --engine native");
         }
@@ -50,7 +50,7 @@ impl ShapeArgs {
     }
 
     /// The stage's options, at α = ∞.
-    pub fn options(&self) -> ShapeOptions {
+    pub(crate) fn options(&self) -> ShapeOptions {
         let Self { balls, engine, exterior, blocks, memory } = *self;
         ShapeOptions {
             alpha: Alpha::INFINITE,

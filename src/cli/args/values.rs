@@ -48,7 +48,7 @@ pub(super) fn bytes(text: &str) -> Result<u64, Said> {
     Ok(bytes)
 }
 
-pub fn number(text: &str) -> Result<f64, Said> {
+pub(crate) fn number(text: &str) -> Result<f64, Said> {
     text.trim().parse().map_err(|_| said!("{text:?} is not a number" => "give one as in 10 or 2.5"))
 }
 
@@ -75,7 +75,7 @@ pub(super) fn not_nan(text: &str) -> Result<f64, Said> {
     Ok(number)
 }
 
-pub fn not_negative(text: &str) -> Result<f64, Said> {
+pub(crate) fn not_negative(text: &str) -> Result<f64, Said> {
     let number = number(text)?;
     if number.is_nan() || number < 0.0 {
         refused!("a number from 0 up is needed" => "give it as in 1 or 2.5");

@@ -13,7 +13,7 @@ use super::values::alpha_radius;
 /// α and the weights in proportion to it.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Weights and α")]
-pub struct WeightArgs {
+pub(crate) struct WeightArgs {
     /// The parameter α, a squared length in the units of the points; `inf` gives the convex hull,
     /// `auto` the smallest α at which all points lie in one solid component [default: auto for
     /// scattered points; 10·h² for a volume, where h³ is the volume of a voxel].
@@ -29,12 +29,12 @@ pub struct WeightArgs {
 
 impl WeightArgs {
     /// α as it is asked for.
-    pub fn alpha(&self) -> AlphaRule {
+    pub(crate) fn alpha(&self) -> AlphaRule {
         self.alpha_radius.map(AlphaRule::Given).or(self.alpha).unwrap_or_default()
     }
 
     /// α for work on a volume that makes several sets of points.
-    pub fn of_volume(&self, volume: &Volume, units: Units) -> anyhow::Result<Parameter> {
+    pub(crate) fn of_volume(&self, volume: &Volume, units: Units) -> anyhow::Result<Parameter> {
         self.alpha().of_volume(volume, units)?.ok_or_else(|| {
             said!(
                 "there are several sets of points, each with an `auto` of its own" => "give α as a \
@@ -48,7 +48,7 @@ impl WeightArgs {
 /// Weights in proportion to an α at which they are frozen.
 #[derive(Args, Clone, Copy)]
 #[command(next_help_heading = "Weights, frozen")]
-pub struct FrozenArgs {
+pub(crate) struct FrozenArgs {
     /// The α, a squared length, for which weights are computed; they are the same at every level, so
     /// that levels are nested [default: as --alpha of `walpha shape`].
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
@@ -65,7 +65,7 @@ impl From<FrozenArgs> for WeightArgs {
 
 /// The α of a ladder.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Alphas {
+pub(crate) enum Alphas {
     /// Critical values, chosen to be readable.
     Auto,
     /// These.

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// Root mean square differences of F from a volume, in gray levels.
 #[derive(Clone, Copy, Serialize)]
-pub struct Errors {
+pub(super) struct Errors {
     /// On the samples that the shape covers; null where there are none.
     #[serde(rename = "rmse_inside")]
     pub inside: Option<f64>,
@@ -18,7 +18,7 @@ pub struct Errors {
 impl Errors {
     /// Of the shape of a volume's points, whose gray levels are given: its own values may be others. One
     /// triangulation, and two passes over the volume.
-    pub fn of(
+    pub(super) fn of(
         shape: &AlphaShape,
         grays: &[f64],
         volume: &Volume,

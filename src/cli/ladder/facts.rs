@@ -17,7 +17,7 @@ use super::super::report::{SCHEMA_VERSION, WeightsReport, ending};
 
 /// What `walpha ladder` did over α.
 #[derive(Serialize)]
-pub struct Facts {
+pub(super) struct Facts {
     schema_version: u32,
     input: String,
     points: usize,
@@ -59,7 +59,12 @@ struct Row {
 }
 
 impl Facts {
-    pub fn new(input: &str, weighed: &Weighed, alpha_ref: Parameter, domain: Domain) -> Self {
+    pub(super) fn new(
+        input: &str,
+        weighed: &Weighed,
+        alpha_ref: Parameter,
+        domain: Domain,
+    ) -> Self {
         Self {
             schema_version: SCHEMA_VERSION,
             input: input.to_owned(),
@@ -80,7 +85,7 @@ impl Facts {
     }
 
     /// Adds what was found.
-    pub fn add(
+    pub(super) fn add(
         &mut self,
         filtration: &Filtration,
         curve: &Curve,
@@ -116,7 +121,7 @@ impl Facts {
     }
 
     /// Adds what it cost and what it left.
-    pub fn finish(&mut self, seconds: Vec<(&'static str, f64)>, files: Vec<String>) {
+    pub(super) fn finish(&mut self, seconds: Vec<(&'static str, f64)>, files: Vec<String>) {
         self.seconds = seconds.into_iter().collect();
         self.files = files;
     }
@@ -208,7 +213,7 @@ impl Facts {
 
 /// `ladder.csv`: a row for each level. α, volumes and areas are in the units of the points, squared
 /// and cubed.
-pub fn write_levels(ladder: &Ladder, out: &mut dyn io::Write) -> io::Result<()> {
+pub(super) fn write_levels(ladder: &Ladder, out: &mut dyn io::Write) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(out);
     csv.write_record([
         "alpha",
@@ -255,7 +260,7 @@ pub fn write_levels(ladder: &Ladder, out: &mut dyn io::Write) -> io::Result<()> 
 }
 
 /// `voids.csv`, the hole ledger: a row for each void of each level, largest first.
-pub fn write_voids(ladder: &Ladder, out: &mut dyn io::Write) -> io::Result<()> {
+pub(super) fn write_voids(ladder: &Ladder, out: &mut dyn io::Write) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(out);
     csv.write_record([
         "alpha",

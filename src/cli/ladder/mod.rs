@@ -45,7 +45,7 @@ use facts::{Facts, write_levels, write_voids};
 ///
 /// walpha ladder sample:skull --counts 1000,4000,16000 --focus 20:40,20:40,20:40 -o detail
 #[derive(Args)]
-pub struct Ladder {
+pub(super) struct Ladder {
     /// Folder to write to, created if needed; existing files in it are replaced, all at the end.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -82,7 +82,7 @@ pub struct Ladder {
 const READABLE: usize = 24;
 
 impl Ladder {
-    pub fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         let detail = !(self.counts.is_empty() && self.epsilons.is_empty());
         if self.focus.is_some() && !detail {
             misused!("--focus belongs to levels of detail" => "give --counts or --epsilons too");

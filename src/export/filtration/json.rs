@@ -6,7 +6,7 @@ use crate::ladder::{Entry, Ordered};
 use crate::memory;
 use crate::shape::Alpha;
 
-pub fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
     // Rows, four numbers each, and a place in the order.
     let bytes = ordered.len() * (size_of::<[u32; 4]>() + size_of::<[f64; 3]>() + size_of::<u32>());
     memory::afford(bytes, || format!("the JSON of {} simplices", ordered.len()))

@@ -10,7 +10,7 @@ use crate::progress;
 /// Arrays of each dimension, by their names.
 const DIMENSIONS: [&str; 4] = ["vertex", "edge", "facet", "cell"];
 
-pub fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
     let pairs = ordered.pairs();
     let mut archive = Archive::compressed(ZipWriter::new_stream(out));
     let whole = ordered.filtration().whole();

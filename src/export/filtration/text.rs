@@ -6,7 +6,7 @@ use crate::progress;
 /// Lines between two words on how far it is.
 const STEP: usize = 1 << 16;
 
-pub fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "# value gabriel regular interior vertices")?;
     for (at, simplex) in ordered.iter().enumerate() {
         if at % STEP == 0 {

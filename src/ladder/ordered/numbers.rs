@@ -11,7 +11,7 @@ pub(in crate::ladder) struct Numbers {
 impl Numbers {
     /// Those of a complex; none if there are more simplices than numbers of 32 bits, of which the last
     /// names no simplex.
-    pub fn of(complex: &Complex) -> Option<Self> {
+    pub(crate) fn of(complex: &Complex) -> Option<Self> {
         let counts = [
             complex.vertices.len(),
             complex.edges.len(),
@@ -28,19 +28,19 @@ impl Numbers {
     }
 
     /// How many there are.
-    pub fn all(self) -> usize {
+    pub(crate) fn all(self) -> usize {
         self.all as usize
     }
 
     /// How many there are of a dimension.
-    pub fn count(self, dimension: usize) -> usize {
+    pub(crate) fn count(self, dimension: usize) -> usize {
         let end = self.first.get(dimension + 1).copied().unwrap_or(self.all);
         (end - self.first[dimension]) as usize
     }
 
     /// The dimension of a simplex, and its row among those.
     #[inline]
-    pub fn row(self, simplex: u32) -> (usize, usize) {
+    pub(crate) fn row(self, simplex: u32) -> (usize, usize) {
         let [_, edges, facets, cells] = self.first;
         let dimension = usize::from(simplex >= edges)
             + usize::from(simplex >= facets)

@@ -30,11 +30,11 @@ type Radius = (u64, u32);
 
 impl Ranks {
     /// Bytes that are needed at once, for so many simplices.
-    pub fn bytes(simplices: usize) -> usize {
+    pub(super) fn bytes(simplices: usize) -> usize {
         simplices * (size_of::<Radius>() + size_of::<u32>() + size_of::<f64>())
     }
 
-    pub fn of(filtration: &Filtration, numbers: Numbers) -> Result<Self, NoMemory> {
+    pub(super) fn of(filtration: &Filtration, numbers: Numbers) -> Result<Self, NoMemory> {
         let spheres = filtration.spheres();
         let mut radii =
             memory::room(numbers.all(), || format!("the order of {} simplices", numbers.all()))?;

@@ -56,17 +56,17 @@ pub(super) struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    pub fn new(path: &'a Path, columns: Option<Columns>) -> Self {
+    pub(super) fn new(path: &'a Path, columns: Option<Columns>) -> Self {
         Self { path, columns, waiting: Vec::new(), decimal_comma: false, points: Points::default() }
     }
 
     /// Says what the columns are, unless the user has.
-    pub fn are(&mut self, columns: Columns) {
+    pub(super) fn are(&mut self, columns: Columns) {
         self.columns.get_or_insert(columns);
     }
 
     /// Adds the words of a line.
-    pub fn push(&mut self, line: u64, words: &[&str]) -> Result<(), PointsError> {
+    pub(super) fn push(&mut self, line: u64, words: &[&str]) -> Result<(), PointsError> {
         if self.columns.is_some() {
             return self.add(line, words);
         }
@@ -77,7 +77,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The points.
-    pub fn finish(mut self) -> Result<Points, PointsError> {
+    pub(super) fn finish(mut self) -> Result<Points, PointsError> {
         self.look()?;
         Ok(self.points)
     }

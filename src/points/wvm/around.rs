@@ -28,7 +28,7 @@ pub(super) fn earlier_steps(reach: i32) -> Vec<[i32; 3]> {
 }
 
 impl Windows {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         let shell = |earlier: bool, low: i32, high: i32| {
             Window::new(move |step| {
                 is_earlier(step) == earlier && squared(step) > low && squared(step) <= high
@@ -41,7 +41,7 @@ impl Windows {
         }
     }
 
-    pub fn count(&self, around: &[u64; AROUND], bit: u32) -> Counts {
+    pub(super) fn count(&self, around: &[u64; AROUND], bit: u32) -> Counts {
         let mut pattern = 0;
         for (k, &step) in self.nearest.iter().enumerate() {
             let (block, there) = reached(bit, step);
@@ -63,7 +63,7 @@ fn size(count: usize) -> usize {
 impl Counts {
     /// The contexts of a voxel: besides the counts, which blocks nearby have points of this layer, how many
     /// voxels are left of a block that has none yet (0 where it has), and whether it is at an end of the grid.
-    pub fn contexts(&self, sides: usize, left: usize, edge: usize) -> [usize; 8] {
+    pub(super) fn contexts(&self, sides: usize, left: usize, edge: usize) -> [usize; 8] {
         let ([a, b, c, d], [e, f, g]) = (self.earlier, self.later);
         let left = if left == 0 { 0 } else { left.min(63) / 4 + 1 };
         let few = |count: usize| count.min(3);

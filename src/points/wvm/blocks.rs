@@ -24,18 +24,18 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    pub fn new(voxels: Cell) -> Self {
+    pub(super) fn new(voxels: Cell) -> Self {
         Self { voxels, blocks: voxels.map(|n| n.div_ceil(SIDE)) }
     }
 
     /// The number of a block. There are no more blocks than voxels, and of these less than 2³².
-    pub fn number(&self, [x, y, z]: Cell) -> u32 {
+    pub(super) fn number(&self, [x, y, z]: Cell) -> u32 {
         let [nx, ny, _] = self.blocks;
         x + nx * (y + ny * z)
     }
 
     /// A cell beside another, by the step to it, if it is within `end`.
-    pub fn beside(cell: Cell, step: [i32; 3], end: Cell) -> Option<Cell> {
+    pub(super) fn beside(cell: Cell, step: [i32; 3], end: Cell) -> Option<Cell> {
         let mut there = cell;
         for k in 0..3 {
             there[k] = cell[k].checked_add_signed(step[k]).filter(|&x| x < end[k])?;
@@ -44,7 +44,7 @@ impl Shape {
     }
 
     /// The voxels of a block that are within the grid.
-    pub fn within(&self, block: Cell) -> u64 {
+    pub(super) fn within(&self, block: Cell) -> u64 {
         let ends = [0, 1, 2].map(|k| (self.voxels[k] - SIDE * block[k]).min(SIDE));
         let inside = |bit: &u32| (0..3).all(|k| place_in_block(*bit)[k] < ends[k]);
         (0..64).filter(inside).map(|bit| 1 << bit).sum()
@@ -68,17 +68,17 @@ pub(super) struct Blocks(HashMap<u32, u64>);
 
 impl Blocks {
     /// The voxels of a block, by its number.
-    pub fn of(&self, number: u32) -> u64 {
+    pub(super) fn of(&self, number: u32) -> u64 {
         self.0.get(&number).copied().unwrap_or_default()
     }
 
     /// Adds a voxel of a block.
-    pub fn add(&mut self, number: u32, bit: u32) {
+    pub(super) fn add(&mut self, number: u32, bit: u32) {
         *self.0.entry(number).or_default() |= 1 << bit;
     }
 
     /// The voxels of the blocks around a block.
-    pub fn around(&self, shape: &Shape, block: Cell) -> [u64; AROUND] {
+    pub(super) fn around(&self, shape: &Shape, block: Cell) -> [u64; AROUND] {
         let mut around = [0; AROUND];
         for (voxels, step) in around.iter_mut().zip(steps(1)) {
             if let Some(there) = Shape::beside(block, step, shape.blocks) {
@@ -100,7 +100,7 @@ pub(super) struct Window(Vec<[u64; AROUND]>);
 
 impl Window {
     /// Of the steps, up to 4 along each axis, that are wanted.
-    pub fn new(wanted: impl Fn([i32; 3]) -> bool) -> Self {
+    pub(super) fn new(wanted: impl Fn([i32; 3]) -> bool) -> Self {
         let steps: Vec<[i32; 3]> =
             steps(SIDE as i32).filter(|&step| step != [0; 3] && wanted(step)).collect();
         let of = |bit: u32| {
@@ -115,7 +115,7 @@ impl Window {
     }
 
     /// How many of the voxels around are in the window of the voxel of a bit.
-    pub fn count(&self, around: &[u64; AROUND], bit: u32) -> usize {
+    pub(super) fn count(&self, around: &[u64; AROUND], bit: u32) -> usize {
         let pairs = self.0[bit as usize].iter().zip(around);
         pairs.map(|(window, voxels)| (window & voxels).count_ones() as usize).sum()
     }

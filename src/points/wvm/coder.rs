@@ -72,7 +72,7 @@ impl Coder for Encoder {
 
 impl Encoder {
     /// The stream: words of 32 bits, little-endian.
-    pub fn finish(self) -> Vec<u8> {
+    pub(super) fn finish(self) -> Vec<u8> {
         let words = self.0.into_compressed().expect("memory takes what is written to it");
         words.iter().flat_map(|word| word.to_le_bytes()).collect()
     }
@@ -86,7 +86,7 @@ impl Coder for Decoder {
 
 impl Decoder {
     /// Reads a stream; bytes behind its last whole word are not looked at.
-    pub fn new(bytes: &[u8]) -> Self {
+    pub(super) fn new(bytes: &[u8]) -> Self {
         let words = bytes.chunks_exact(4);
         let words = words.map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
         let Ok(decoder) = DefaultRangeDecoder::from_compressed(words.collect::<Vec<_>>());

@@ -27,7 +27,7 @@ pub(super) struct Out(pub Vec<u8>);
 
 impl Out {
     /// A whole number: seven bits to a byte, the lowest first, the eighth bit set on all but the last.
-    pub fn whole(&mut self, mut number: u64) {
+    pub(super) fn whole(&mut self, mut number: u64) {
         while number >= 128 {
             self.0.push(number as u8 | 128);
             number >>= 7;
@@ -35,15 +35,15 @@ impl Out {
         self.0.push(number as u8);
     }
 
-    pub fn doubles(&mut self, numbers: &[f64]) {
+    pub(super) fn doubles(&mut self, numbers: &[f64]) {
         numbers.iter().for_each(|number| self.0.extend(number.to_le_bytes()));
     }
 
-    pub fn coordinates(&mut self, Coordinates { space, unit }: Coordinates) {
+    pub(super) fn coordinates(&mut self, Coordinates { space, unit }: Coordinates) {
         self.0.extend([code(&SPACES, space), code(&UNITS, unit)]);
     }
 
-    pub fn frame(&mut self, frame: &Frame) {
+    pub(super) fn frame(&mut self, frame: &Frame) {
         self.coordinates(frame.coordinates);
         self.doubles(&frame.origin);
         self.doubles(&frame.spacing);
@@ -57,7 +57,7 @@ pub(super) struct In<'a> {
 }
 
 impl In<'_> {
-    pub fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
+    pub(super) fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
         let Some((first, rest)) = self.rest.split_first_chunk::<N>() else {
             return Err(Reason::truncated("is truncated: it ends within its header"));
         };
@@ -65,11 +65,11 @@ impl In<'_> {
         Ok(*first)
     }
 
-    pub fn byte(&mut self) -> Result<u8, Reason> {
+    pub(super) fn byte(&mut self) -> Result<u8, Reason> {
         Ok(self.bytes::<1>()?[0])
     }
 
-    pub fn whole(&mut self) -> Result<u64, Reason> {
+    pub(super) fn whole(&mut self) -> Result<u64, Reason> {
         let mut number = 0;
         for shift in (0..64).step_by(7) {
             let byte = self.byte()?;
@@ -81,7 +81,7 @@ impl In<'_> {
         Err(Reason::header("its header has a whole number of more than 64 bits"))
     }
 
-    pub fn double(&mut self) -> Result<f64, Reason> {
+    pub(super) fn double(&mut self) -> Result<f64, Reason> {
         let number = f64::from_le_bytes(self.bytes()?);
         if number.is_finite() {
             return Ok(number);
@@ -89,7 +89,7 @@ impl In<'_> {
         Err(Reason::header(format!("its header has the number {number}, which must be finite")))
     }
 
-    pub fn alpha(&mut self) -> Result<Alpha, Reason> {
+    pub(super) fn alpha(&mut self) -> Result<Alpha, Reason> {
         let number = f64::from_le_bytes(self.bytes()?);
         Alpha::from_squared(number).map_err(|error| Reason::header(error.to_string()))
     }
@@ -100,17 +100,17 @@ impl In<'_> {
         all.get(usize::from(code)).copied().ok_or_else(unknown)
     }
 
-    pub fn layer(&mut self) -> Result<Layer, Reason> {
+    pub(super) fn layer(&mut self) -> Result<Layer, Reason> {
         let count = self.whole()?;
         Ok(Layer { count, bytes: [self.whole()?, self.whole()?, self.whole()?] })
     }
 
-    pub fn coordinates(&mut self) -> Result<Coordinates, Reason> {
+    pub(super) fn coordinates(&mut self) -> Result<Coordinates, Reason> {
         let space = self.one_of(&SPACES, "space")?;
         Ok(Coordinates { space, unit: self.one_of(&UNITS, "unit of length")? })
     }
 
-    pub fn frame(&mut self) -> Result<Frame, Reason> {
+    pub(super) fn frame(&mut self) -> Result<Frame, Reason> {
         let coordinates = self.coordinates()?;
         let mut three = || Ok([self.double()?, self.double()?, self.double()?]);
         let (origin, spacing) = (three()?, three()?);

@@ -61,7 +61,7 @@ pub(super) struct Layer {
 
 impl Layer {
     /// Bytes of all its parts; `None` where they are more than can be.
-    pub fn length(&self) -> Option<u64> {
+    pub(super) fn length(&self) -> Option<u64> {
         self.bytes.iter().try_fold(0u64, |sum, &part| sum.checked_add(part))
     }
 }
@@ -78,7 +78,7 @@ const RANGE: u8 = 128;
 
 impl Header {
     /// What is told besides the points.
-    pub fn facts(&self) -> ModelFacts {
+    pub(super) fn facts(&self) -> ModelFacts {
         let Self { grid, coordinates, alpha, range, .. } = *self;
         ModelFacts { grid, coordinates, alpha, range, order: None }
     }
@@ -90,7 +90,7 @@ impl Header {
     }
 
     /// The bytes of the head, with its checksum.
-    pub fn to_bytes(&self) -> Vec<u8> {
+    pub(super) fn to_bytes(&self) -> Vec<u8> {
         let frame = self.frame();
         let world = self.grid.is_some_and(|grid| grid.units == Units::World);
         let flags = [
@@ -142,7 +142,7 @@ impl Header {
 
     /// Reads the head of a file, and says how long it is. Nothing is believed of it beyond that; what is
     /// allocated is a few kilobytes.
-    pub fn of_bytes(file: &[u8]) -> Result<(Self, usize), Reason> {
+    pub(super) fn of_bytes(file: &[u8]) -> Result<(Self, usize), Reason> {
         let Some(rest) = file.strip_prefix(MODEL) else {
             return Err(Reason::other("is no .wvm: it does not begin as one"));
         };

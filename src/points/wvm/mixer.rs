@@ -30,7 +30,7 @@ pub(super) struct Mixer {
 
 impl Mixer {
     /// A mixer of so many kinds of contexts, with so many sets of weights.
-    pub fn new(kinds: usize, sets: usize, memory: f64, rate: f64) -> Self {
+    pub(super) fn new(kinds: usize, sets: usize, memory: f64, rate: f64) -> Self {
         let inputs = 2 * kinds + 1;
         Self {
             slots: vec![[0.0; 2]; kinds * CONTEXTS],
@@ -43,7 +43,7 @@ impl Mixer {
     }
 
     /// Codes a bit under one context of each kind, with a set of weights, and learns from it.
-    pub fn code(
+    pub(super) fn code(
         &mut self,
         coder: &mut impl Coder,
         contexts: &[usize],
@@ -83,7 +83,12 @@ impl Mixer {
     /// Codes a whole number of a kind, in a mixer of one kind of contexts: of the number plus 1, as many ones
     /// as it has binary digits behind the first, and a zero; then these, each as likely 0 as 1. `None` of
     /// more digits than any number coded here has.
-    pub fn number(&mut self, coder: &mut impl Coder, kind: usize, number: u64) -> Option<u64> {
+    pub(super) fn number(
+        &mut self,
+        coder: &mut impl Coder,
+        kind: usize,
+        number: u64,
+    ) -> Option<u64> {
         const MOST: u32 = 40;
         let (digits, mut length) = ((number + 1).ilog2(), 0);
         while self.code(coder, &[64 * kind + length as usize], 0, length < digits) {

@@ -25,7 +25,7 @@ pub(super) struct Places {
 
 impl Places {
     /// Of a grid of which no point is known.
-    pub fn new(voxels: Cell) -> Self {
+    pub(super) fn new(voxels: Cell) -> Self {
         Self {
             shape: Shape::new(voxels),
             known: Blocks::default(),
@@ -38,14 +38,14 @@ impl Places {
     }
 
     /// The voxels that are known to have points.
-    pub fn known(&self) -> &Blocks {
+    pub(super) fn known(&self) -> &Blocks {
         &self.known
     }
 
     /// Codes a layer of so many voxels, and returns them in order. `fresh` are those that an encoder
     /// adds, in order, and none of them known before; a decoder has none. `None` where a stream does
     /// not hold as many.
-    pub fn code(
+    pub(super) fn code(
         &mut self,
         coder: &mut impl Coder,
         fresh: &[Cell],

@@ -42,7 +42,7 @@ pub(super) struct Guess {
 
 impl Known {
     /// Adds a value.
-    pub fn add(&mut self, shape: &Shape, voxel: Cell, value: u32) {
+    pub(super) fn add(&mut self, shape: &Shape, voxel: Cell, value: u32) {
         let block = shape.number(voxel.map(|v| v / SIDE));
         self.0.entry(block).or_default().push((bit_of(voxel) as u8, value));
     }
@@ -78,7 +78,7 @@ impl Known {
     }
 
     /// What the value at a voxel may be.
-    pub fn guess(&self, shape: &Shape, voxel: Cell) -> Guess {
+    pub(super) fn guess(&self, shape: &Shape, voxel: Cell) -> Guess {
         let all = self.near(shape, voxel);
         let Some(nearest) = all.first() else {
             return Guess { value: 0.0, spread: 64.0, squared: 99.0, others: [0.0; 4] };

@@ -34,7 +34,7 @@ struct Around {
 
 impl Values {
     /// Of a grid of which no value is known.
-    pub fn new(voxels: Cell) -> Self {
+    pub(super) fn new(voxels: Cell) -> Self {
         Self {
             shape: Shape::new(voxels),
             known: Known::default(),
@@ -46,7 +46,7 @@ impl Values {
 
     /// Codes the values at some voxels, in order, and returns them. `occupied` are all voxels that have
     /// points. A decoder has no `values`. `None` where a stream holds none that can be.
-    pub fn code(
+    pub(super) fn code(
         &mut self,
         coder: &mut impl Coder,
         voxels: &[Cell],

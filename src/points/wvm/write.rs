@@ -152,7 +152,7 @@ pub(super) struct Coders {
 }
 
 impl Coders {
-    pub fn new(grid: &SampleGrid) -> Self {
+    pub(super) fn new(grid: &SampleGrid) -> Self {
         // Each is below 2³², as their product is.
         let voxels = grid.dims.xyz().map(|n| n as u32);
         Self { places: Places::new(voxels), values: values::Values::new(voxels) }

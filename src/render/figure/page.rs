@@ -22,7 +22,7 @@ pub(super) struct Page {
 }
 
 impl Page {
-    pub fn new(panels: f64, columns: usize) -> Self {
+    pub(super) fn new(panels: f64, columns: usize) -> Self {
         // Readable still at half size: 1600 pixels give letters of 27.
         let letters = panels / 58.0;
         let (margin, gap) = (letters, letters * 1.2);
@@ -34,7 +34,7 @@ impl Page {
         self.width - 2.0 * self.margin
     }
 
-    pub fn paragraph(&mut self, text: &str, size: f64, colour: &str) {
+    pub(super) fn paragraph(&mut self, text: &str, size: f64, colour: &str) {
         let lines = wrap(text, self.inner(), size);
         write_lines(&mut self.svg, &lines, [self.margin, self.y], size, colour);
         if !lines.is_empty() {
@@ -42,7 +42,7 @@ impl Page {
         }
     }
 
-    pub fn colour_bar(&mut self, bar: &ColourBar) {
+    pub(super) fn colour_bar(&mut self, bar: &ColourBar) {
         let size = self.letters * 0.85;
         let width = self.inner() * 0.5;
         let (left, height) = ((self.width - width) / 2.0, size * 0.9);
@@ -88,7 +88,7 @@ impl Page {
         self.y = y + height + size * 2.0;
     }
 
-    pub fn legend(&mut self, entries: &[(String, Rgb)]) {
+    pub(super) fn legend(&mut self, entries: &[(String, Rgb)]) {
         let size = self.letters * 0.85;
         let advance = |text: &str| text_width(text, size) + size * 2.4;
         let mut rest = entries;
@@ -125,7 +125,7 @@ impl Page {
         }
     }
 
-    pub fn finish(self) -> (String, [f64; 2]) {
+    pub(super) fn finish(self) -> (String, [f64; 2]) {
         let size = [self.width.ceil(), (self.y + self.margin * 0.6).ceil()];
         let [w, h] = size.map(num);
         let svg = format!(

@@ -18,7 +18,7 @@ pub(super) struct Space {
 
 impl Space {
     /// `None` when there is nothing that could hide anything.
-    pub fn around(scene: &Scene) -> Option<Self> {
+    pub(super) fn around(scene: &Scene) -> Option<Self> {
         let [low, high] = scene.bounds()?;
         let radius = length(sub(high, low)) / 2.0;
         let centre = scale(add(low, high), 0.5);
@@ -39,7 +39,7 @@ impl DepthMap {
     /// Texels along each side.
     const SIDE: usize = 512;
 
-    pub fn new(scene: &Scene, space: &Space, direction: V3) -> Self {
+    pub(super) fn new(scene: &Scene, space: &Space, direction: V3) -> Self {
         let (u, v) = across(direction);
         let texel = 2.0 * space.radius / (Self::SIDE - 4) as f64;
         let axes = [scale(u, 1.0 / texel), scale(v, 1.0 / texel), direction];
@@ -106,7 +106,7 @@ impl DepthMap {
     }
 
     /// How much of a receiver is not hidden in this direction, 0 to 1: the four texels around it.
-    pub fn openness(&self, receiver: &Receiver) -> f64 {
+    pub(super) fn openness(&self, receiver: &Receiver) -> f64 {
         let [x, y, height] = self.place(along(receiver.place, 1.5 * self.texel, receiver.normal));
         let height = height + receiver.radius + 1.5 * self.texel;
         let (x, y) = (x - 0.5, y - 0.5);

@@ -44,7 +44,7 @@ impl Array {
 const ISOSURFACE_SAMPLES: usize = 64;
 
 impl Packed {
-    pub fn of(subject: &Subject<'_>, most_facets: usize) -> Result<Self, RenderError> {
+    pub(super) fn of(subject: &Subject<'_>, most_facets: usize) -> Result<Self, RenderError> {
         let points = subject.levels.points();
         let mut facets = subject.levels.facets();
         let mut edges = subject.levels.singular_edges();

@@ -53,7 +53,7 @@ pub(super) struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    pub fn new(study: &'a Study<'a>, shapes: &'a Shapes) -> Self {
+    pub(super) fn new(study: &'a Study<'a>, shapes: &'a Shapes) -> Self {
         Self { study, shapes, files: Vec::new(), views: BTreeMap::new() }
     }
 

@@ -91,7 +91,7 @@ pub(super) struct Copies {
 
 impl Block {
     /// By how many sides a point is moved.
-    pub fn windings(&self, v: u32) -> [i32; 3] {
+    pub(super) fn windings(&self, v: u32) -> [i32; 3] {
         let beyond = v.checked_sub(self.own).zip(self.copies.as_ref());
         beyond.map_or([0; 3], |(at, copies)| copies.windings[at as usize])
     }

@@ -29,7 +29,7 @@ struct Node {
 
 impl Partition {
     /// Cuts sites into so many blocks, but no more than there are sites. O(n log blocks).
-    pub fn new(sites: &Sites<'_>, blocks: usize) -> Self {
+    pub(crate) fn new(sites: &Sites<'_>, blocks: usize) -> Self {
         let count = sites.curve().len();
         let mut members: Vec<u32> = (0..count as u32).collect();
         let mut nodes = vec![Node::around(sites, &members, 0)];
@@ -63,18 +63,22 @@ impl Partition {
     }
 
     /// The number of blocks.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.leaves.len()
     }
 
     /// The sites of a block, along the curve.
-    pub fn own<'a>(&'a self, sites: &'a Sites<'_>, block: usize) -> impl Iterator<Item = u32> + 'a {
+    pub(crate) fn own<'a>(
+        &'a self,
+        sites: &'a Sites<'_>,
+        block: usize,
+    ) -> impl Iterator<Item = u32> + 'a {
         let members = &self.members[self.nodes[self.leaves[block]].members.clone()];
         members.iter().map(|&place| sites.curve()[place as usize])
     }
 
     /// How many points the largest block has, those around it included.
-    pub fn largest(&self, sites: &Sites<'_>, reach: Reach) -> usize {
+    pub(crate) fn largest(&self, sites: &Sites<'_>, reach: Reach) -> usize {
         let size = |block: usize| {
             let mut count = self.nodes[self.leaves[block]].members.len();
             self.halo(sites, reach, block, |_, _| count += 1);
@@ -84,7 +88,7 @@ impl Partition {
     }
 
     /// The points of a block and of its halo. Copies of points come copy by copy, each along the curve.
-    pub fn block(&self, sites: &Sites<'_>, reach: Reach, block: usize) -> Block {
+    pub(crate) fn block(&self, sites: &Sites<'_>, reach: Reach, block: usize) -> Block {
         let own = self.nodes[self.leaves[block]].members.clone();
         let mut halo = Vec::new();
         self.halo(sites, reach, block, |place, windings| halo.push((windings, place)));
@@ -180,7 +184,7 @@ pub(crate) struct Neighbourhood {
 
 impl Neighbourhood {
     /// Of points with their weights.
-    pub fn of(points: impl Iterator<Item = ([f64; 3], f64)>, alpha: f64) -> Self {
+    pub(super) fn of(points: impl Iterator<Item = ([f64; 3], f64)>, alpha: f64) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         let mut heaviest = f64::NEG_INFINITY;
         for (at, weight) in points {
@@ -194,7 +198,7 @@ impl Neighbourhood {
     }
 
     /// Whether a point is in the halo.
-    pub fn holds(&self, at: [f64; 3], weight: f64) -> bool {
+    pub(super) fn holds(&self, at: [f64; 3], weight: f64) -> bool {
         self.own.reaches(at, at, self.reach.from(self.own.heaviest, weight))
     }
 }

@@ -79,7 +79,7 @@ pub(crate) fn at_work(maker: Maker) -> u64 {
 
 impl Plan {
     /// All sites as one block.
-    pub fn whole(sites: &Sites<'_>) -> Self {
+    pub(crate) fn whole(sites: &Sites<'_>) -> Self {
         Self { partition: Partition::new(sites, 1), at_once: 1, bound: None }
     }
 
@@ -88,7 +88,7 @@ impl Plan {
     ///
     /// # Errors
     /// [`PlanError`] when the bound cannot be kept.
-    pub fn new(
+    pub(crate) fn new(
         sites: &Sites<'_>,
         reach: Reach,
         maker: Maker,
@@ -148,7 +148,7 @@ impl Plan {
     }
 
     /// In how many steps the rows of blocks are merged.
-    pub fn shelves(&self) -> usize {
+    pub(crate) fn shelves(&self) -> usize {
         if self.bound.is_some() { SHELVES } else { 1 }
     }
 
@@ -156,7 +156,7 @@ impl Plan {
     ///
     /// # Errors
     /// [`PlanError`] when not.
-    pub fn keeps(&self, bytes: u64, points: usize, all: usize) -> Result<(), PlanError> {
+    pub(crate) fn keeps(&self, bytes: u64, points: usize, all: usize) -> Result<(), PlanError> {
         let Some(Bound { asked, resident }) = self.bound else { return Ok(()) };
         let rows = (bytes as f64 * all as f64 / points as f64) as u64;
         let needed = resident + rows + PLACES * all as u64;
@@ -166,7 +166,7 @@ impl Plan {
 
     /// Gives freed memory back to the system, where memory matters more than time and the allocator
     /// would keep it for itself (glibc).
-    pub fn give_back(&self) {
+    pub(crate) fn give_back(&self) {
         if self.bound.is_some() {
             crate::cgal::give_back();
         }

@@ -17,12 +17,12 @@ impl Reach {
     /// Of the copies of the heaviest point, one is within half a diagonal of any place z, so the
     /// largest empty orthogonal sphere has R² + max ω ≤ (diagonal / 2)². A vertex v of it is at √(R² + ω(v))
     /// from its centre, no more than half a diagonal, and so is any point that could refute it.
-    pub fn whole(sites: &Sites<'_>) -> Self {
+    pub(crate) fn whole(sites: &Sites<'_>) -> Self {
         Self::Distance(sites.torus().map_or(f64::INFINITY, |torus| torus.diagonal()))
     }
 
     /// What decides the shape at α.
-    pub fn at(sites: &Sites<'_>, alpha: f64, heaviest: f64) -> Self {
+    pub(crate) fn at(sites: &Sites<'_>, alpha: f64, heaviest: f64) -> Self {
         let whole = Self::whole(sites);
         match whole {
             Self::Distance(most) if 2.0 * (alpha + heaviest).max(0.0).sqrt() >= most => whole,
@@ -32,7 +32,7 @@ impl Reach {
 
     /// How far from a point of a weight those of another weight matter; NaN if they never do.
     #[inline]
-    pub fn from(self, weight: f64, other: f64) -> f64 {
+    pub(crate) fn from(self, weight: f64, other: f64) -> f64 {
         match self {
             Self::Balls(alpha) => (alpha + weight).max(0.0).sqrt() + (alpha + other).sqrt(),
             Self::Distance(distance) => distance,

@@ -41,7 +41,7 @@ const APEX: u32 = 3;
 
 impl Cavity {
     /// For points with numbers below one.
-    pub fn new(below: usize) -> Result<Self, TriangulationError> {
+    pub(super) fn new(below: usize) -> Result<Self, TriangulationError> {
         let names = filled(below, 0)?;
         Ok(Self {
             cells: Vec::new(),
@@ -56,12 +56,12 @@ impl Cavity {
     }
 
     /// Makes room for points of larger numbers.
-    pub fn admit(&mut self, below: usize) {
+    pub(super) fn admit(&mut self, below: usize) {
         self.names.resize(self.names.len().max(below), 0);
     }
 
     /// The cells that the last insertion made.
-    pub fn made(&self) -> &[u32] {
+    pub(super) fn made(&self) -> &[u32] {
         &self.cells[..self.facets]
     }
 

@@ -45,13 +45,13 @@ pub(super) const NONE: u32 = u32::MAX;
 
 impl Growing {
     /// The number of the first point.
-    pub const FIRST: u32 = GHOST + 1;
+    pub(crate) const FIRST: u32 = GHOST + 1;
 
     /// The triangulation of some points.
     ///
     /// # Errors
     /// Points that are no sites or span no volume; no memory.
-    pub fn new(positions: &[[f64; 3]]) -> Result<Self, TriangulationError> {
+    pub(crate) fn new(positions: &[[f64; 3]]) -> Result<Self, TriangulationError> {
         Sites::new(positions, &vec![0.0; positions.len()])?;
         let native = Native::empty(positions.len(), positions.len() + 1, GHOST)?;
         let (taken, at, fresh) = (HashSet::new(), vec![NONE], Vec::new());
@@ -75,7 +75,7 @@ impl Growing {
     }
 
     /// Gives points numbers; they are no vertices yet.
-    pub fn name(&mut self, positions: &[[f64; 3]]) -> Range<u32> {
+    pub(crate) fn name(&mut self, positions: &[[f64; 3]]) -> Range<u32> {
         let first = self.positions.len() as u32;
         self.positions.extend_from_slice(positions);
         let count = self.positions.len();
@@ -89,7 +89,7 @@ impl Growing {
     ///
     /// # Errors
     /// Too many cells, no memory.
-    pub fn insert(&mut self, points: &[u32]) -> Result<(), TriangulationError> {
+    pub(crate) fn insert(&mut self, points: &[u32]) -> Result<(), TriangulationError> {
         let Self { positions, weights, body } = self;
         let predicates = Predicates::new(positions, weights);
         body.insert_all(positions, &Screen::haunted(&predicates, GHOST)?, points)
@@ -100,7 +100,7 @@ impl Growing {
     ///
     /// # Errors
     /// Too many cells, no memory.
-    pub fn remove(&mut self, points: &[u32]) -> Result<usize, TriangulationError> {
+    pub(crate) fn remove(&mut self, points: &[u32]) -> Result<usize, TriangulationError> {
         let Self { positions, weights, body } = self;
         let predicates = Predicates::new(positions, weights);
         let screen = Screen::haunted(&predicates, GHOST)?;
@@ -118,17 +118,19 @@ impl Growing {
     }
 
     /// What the [`Screen`](Self::screen) of all points with numbers begins with.
-    pub fn predicates(&self) -> Predicates<'_> {
+    pub(crate) fn predicates(&self) -> Predicates<'_> {
         Predicates::new(&self.positions, &self.weights)
     }
 
     /// Tests for [`Self::hole`] and [`Self::crown`].
-    pub fn screen<'a>(predicates: &'a Predicates<'a>) -> Result<Screen<'a>, TriangulationError> {
+    pub(crate) fn screen<'a>(
+        predicates: &'a Predicates<'a>,
+    ) -> Result<Screen<'a>, TriangulationError> {
         Screen::haunted(predicates, GHOST)
     }
 
     /// What would come in the place of a vertex; `None` where no triangulation would be left.
-    pub fn hole(
+    pub(crate) fn hole(
         &self,
         screen: &Screen<'_>,
         v: u32,
@@ -138,7 +140,7 @@ impl Growing {
     }
 
     /// What would come with a point that lies in a cell, and is no vertex.
-    pub fn crown(&self, screen: &Screen<'_>, v: u32, cell: u32) -> Crown {
+    pub(crate) fn crown(&self, screen: &Screen<'_>, v: u32, cell: u32) -> Crown {
         let mesh = &self.body.native.mesh;
         let (mut goes, mut stays, mut cells) = (vec![cell], Vec::new(), Vec::new());
         let mut at = 0;
@@ -165,23 +167,23 @@ impl Growing {
     }
 
     /// Whether a point is a vertex.
-    pub fn is_vertex(&self, v: u32) -> bool {
+    pub(crate) fn is_vertex(&self, v: u32) -> bool {
         self.body.at[v as usize] != NONE
     }
 
     /// The corners of each cell and 4·cell + corner across each facet. Some are gone.
-    pub fn cells(&self) -> &[Cell] {
+    pub(crate) fn cells(&self) -> &[Cell] {
         &self.body.native.mesh.cells
     }
 
     /// Whether there is a finite cell of this number.
-    pub fn is_cell(&self, cell: u32) -> bool {
+    pub(crate) fn is_cell(&self, cell: u32) -> bool {
         let [a, b, c, d] = self.cells()[cell as usize].corners;
         a != GONE && a != GHOST && b != GHOST && c != GHOST && d != GHOST
     }
 
     /// The finite cells made since this was last asked, ascending.
-    pub fn take_fresh(&mut self) -> Vec<u32> {
+    pub(crate) fn take_fresh(&mut self) -> Vec<u32> {
         let mut fresh = std::mem::take(&mut self.body.fresh);
         fresh.sort_unstable();
         fresh.dedup();
@@ -190,7 +192,7 @@ impl Growing {
     }
 
     /// Where points stand, by number.
-    pub fn positions(&self) -> &[[f64; 3]] {
+    pub(crate) fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }
 }
@@ -223,7 +225,7 @@ impl Body {
     }
 
     /// Takes note of a new cell.
-    pub fn note(&mut self, cell: u32) {
+    pub(super) fn note(&mut self, cell: u32) {
         self.fresh.push(cell);
         for v in self.native.mesh.cells[cell as usize].corners {
             self.at[v as usize] = cell;

@@ -35,7 +35,7 @@ impl Digger {
     ///
     /// # Errors
     /// No memory.
-    pub fn new(below: usize) -> Result<Self, TriangulationError> {
+    pub(crate) fn new(below: usize) -> Result<Self, TriangulationError> {
         let native = Native::empty(AROUND, below, GHOST)?;
         Ok(Self { native, facets: Vec::new(), beyond: Vec::new(), places: Vec::new() })
     }
@@ -111,7 +111,7 @@ impl Body {
     ///
     /// A cell in the hole has no other point in its sphere, so none of those around the hole: it is one of
     /// their own triangulation, of which the part between the walls is taken.
-    pub fn hole(
+    pub(super) fn hole(
         &self,
         screen: &Screen<'_>,
         v: u32,
@@ -146,7 +146,7 @@ impl Body {
     }
 
     /// Puts the filling of a hole in the place of a vertex.
-    pub fn close(&mut self, v: u32, hole: &Hole) -> Result<(), TriangulationError> {
+    pub(super) fn close(&mut self, v: u32, hole: &Hole) -> Result<(), TriangulationError> {
         let Hole { star, filling, walls } = hole;
         let mut places = star.clone();
         let native = &mut self.native;

@@ -56,12 +56,12 @@ const ROUNDING: f64 = 1.0 / (1u64 << 48) as f64;
 
 impl<'a> Predicates<'a> {
     /// Looks for what the numbers have in common. O(n).
-    pub fn new(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Self {
+    pub(crate) fn new(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Self {
         Self::on(Lattice::of(positions, weights), positions, weights)
     }
 
     /// The same, where a lattice of all numbers is known.
-    pub fn on(lattice: Lattice, positions: &'a [[f64; 3]], weights: &'a [f64]) -> Self {
+    pub(crate) fn on(lattice: Lattice, positions: &'a [[f64; 3]], weights: &'a [f64]) -> Self {
         let most = (1u64 << 53) as f64;
         let exact = [1, 2, 3, 4, 5, 6, 7, 8].map(|degree| most * lattice.step.powi(degree));
         Self { positions, weights, lattice, exact, torus: None }
@@ -69,7 +69,11 @@ impl<'a> Predicates<'a> {
 
     /// Looks for what the numbers of points of a torus have in common. Corners of a simplex, and what is
     /// asked about beside it, must each be nearer to its first corner than half a side. O(n).
-    pub fn on_torus(positions: &'a [[f64; 3]], weights: &'a [f64], torus: Option<Torus>) -> Self {
+    pub(crate) fn on_torus(
+        positions: &'a [[f64; 3]],
+        weights: &'a [f64],
+        torus: Option<Torus>,
+    ) -> Self {
         let lattice = lattice(positions, weights, torus);
         Self { torus, ..Self::on(lattice, positions, weights) }
     }
@@ -104,7 +108,7 @@ impl<'a> Predicates<'a> {
 
     /// The squared radius of the smallest orthogonal sphere of a simplex: α at which it fits.
     #[inline]
-    pub fn squared_radius<const N: usize>(&self, simplex: [u32; N]) -> Interval {
+    pub(crate) fn squared_radius<const N: usize>(&self, simplex: [u32; N]) -> Interval {
         let p = self.site(simplex[0]);
         if N == 1 {
             return Interval { low: -p.weight, high: -p.weight };
@@ -133,7 +137,12 @@ impl<'a> Predicates<'a> {
     /// Whether a simplex fits α: the squared radius of its smallest orthogonal sphere, of which the
     /// interval is known, is at most α. Exact.
     #[inline]
-    pub fn fits_by<const N: usize>(&self, simplex: [u32; N], radius: Interval, alpha: f64) -> bool {
+    pub(crate) fn fits_by<const N: usize>(
+        &self,
+        simplex: [u32; N],
+        radius: Interval,
+        alpha: f64,
+    ) -> bool {
         if radius.high <= alpha || alpha == f64::INFINITY {
             return true;
         }
@@ -145,7 +154,7 @@ impl<'a> Predicates<'a> {
 
     /// The smallest double that is not below the squared radius: the first α at which it fits. By
     /// division of integers; some microseconds.
-    pub fn first_alpha<const N: usize>(&self, simplex: [u32; N]) -> f64 {
+    pub(crate) fn first_alpha<const N: usize>(&self, simplex: [u32; N]) -> f64 {
         let sites = self.sites(simplex);
         if N == 1 { -sites[0].weight } else { exact::squared_radius(sites).rounded_up() }
     }
@@ -153,7 +162,7 @@ impl<'a> Predicates<'a> {
     /// Whether a point lies strictly inside the smallest orthogonal sphere of a vertex, an edge or
     /// a facet. Exact.
     #[inline]
-    pub fn inside<const N: usize>(&self, simplex: [u32; N], x: u32) -> bool {
+    pub(crate) fn inside<const N: usize>(&self, simplex: [u32; N], x: u32) -> bool {
         let sites = self.sites(simplex);
         let p = sites[0];
         let x = self.beside(p, x);
@@ -171,7 +180,7 @@ impl<'a> Predicates<'a> {
     }
 
     /// The sign of the determinant of b − a, c − a, d − a. Exact.
-    pub fn orientation(&self, corners: [u32; 4]) -> Ordering {
+    pub(crate) fn orientation(&self, corners: [u32; 4]) -> Ordering {
         let sites = self.sites(corners);
         let View { rays: [_, b, c, d], size } = View::of(sites[0], sites);
         let value = determinant([&b.vector, &c.vector, &d.vector]);
@@ -184,13 +193,13 @@ impl<'a> Predicates<'a> {
     }
 
     /// Whether three points lie on one line. Exact, by integers.
-    pub fn collinear(&self, corners: [u32; 3]) -> bool {
+    pub(crate) fn collinear(&self, corners: [u32; 3]) -> bool {
         exact::collinear(self.sites(corners))
     }
 
     /// Whether a point lies inside (`Less`), on (`Equal`) or outside the orthogonal sphere of a
     /// positively oriented cell. Exact.
-    pub fn power(&self, cell: [u32; 4], t: u32) -> Ordering {
+    pub(crate) fn power(&self, cell: [u32; 4], t: u32) -> Ordering {
         let sites = self.sites(cell);
         let t = self.beside(sites[0], t);
         let View { rays, size } = View::of(t, sites);
@@ -208,7 +217,7 @@ impl<'a> Predicates<'a> {
     /// Whether a simplex fits a finite α: the squared radius of its smallest orthogonal sphere is at
     /// most α. Exact.
     #[inline]
-    pub fn fits<const N: usize>(&self, simplex: [u32; N], alpha: f64) -> bool {
+    pub(crate) fn fits<const N: usize>(&self, simplex: [u32; N], alpha: f64) -> bool {
         let sites = self.sites(simplex);
         let p = sites[0];
         if N == 1 {

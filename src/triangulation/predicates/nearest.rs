@@ -18,7 +18,7 @@ pub(crate) struct Small {
 impl Small {
     /// Whether two are surely the same number. Two that are the same may say no where they have
     /// different weights.
-    pub fn equals(self, other: Self) -> bool {
+    pub(crate) fn equals(self, other: Self) -> bool {
         let product = |a: i64, b: i64| i128::from(a) * i128::from(b);
         self.weight == other.weight
             && product(self.numerator, other.denominator)
@@ -33,7 +33,7 @@ impl Predicates<'_> {
     /// By one division where a lattice makes numerator and denominator exact, else by
     /// twice the digits of doubles; what lies too near to the middle of two doubles for that, by
     /// integers.
-    pub fn nearest_radius<const N: usize>(&self, simplex: [u32; N]) -> f64 {
+    pub(crate) fn nearest_radius<const N: usize>(&self, simplex: [u32; N]) -> f64 {
         let sites = self.sites(simplex);
         if N == 1 {
             return 0.0 - sites[0].weight;
@@ -69,12 +69,12 @@ impl Predicates<'_> {
     }
 
     /// The squared radius of the smallest orthogonal sphere, exactly. By integers of any length.
-    pub fn exact_radius<const N: usize>(&self, simplex: [u32; N]) -> Ratio {
+    pub(crate) fn exact_radius<const N: usize>(&self, simplex: [u32; N]) -> Ratio {
         exact::squared_radius(self.sites(simplex))
     }
 
     /// The same in small integers, where a lattice has them.
-    pub fn small_radius<const N: usize>(&self, simplex: [u32; N]) -> Option<Small> {
+    pub(crate) fn small_radius<const N: usize>(&self, simplex: [u32; N]) -> Option<Small> {
         let sites = self.sites(simplex);
         let weight = sites[0].weight;
         if N == 1 {

@@ -29,7 +29,7 @@ impl<'a> Screen<'a> {
     ///
     /// # Errors
     /// No memory for 32 bytes a point.
-    pub fn new(predicates: &'a Predicates<'a>) -> Result<Self, TriangulationError> {
+    pub(crate) fn new(predicates: &'a Predicates<'a>) -> Result<Self, TriangulationError> {
         let (positions, weights) = (predicates.positions, predicates.weights);
         let (low, high) = super::extent(positions);
         let alike = weights.windows(2).all(|pair| pair[0] == pair[1]);
@@ -77,21 +77,24 @@ impl<'a> Screen<'a> {
     ///
     /// # Errors
     /// No memory for 32 bytes a point.
-    pub fn haunted(predicates: &'a Predicates<'a>, ghost: u32) -> Result<Self, TriangulationError> {
+    pub(crate) fn haunted(
+        predicates: &'a Predicates<'a>,
+        ghost: u32,
+    ) -> Result<Self, TriangulationError> {
         let mut screen = Self::new(predicates)?;
         screen.points[ghost as usize] = [f64::NAN; 4];
         Ok(screen)
     }
 
     /// The number of points.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.points.len() - 1
     }
 
     /// The sign of the determinant of b − a, c − a, d − a: positive if a, b, c turn
     /// counter-clockwise seen from d.
     #[inline(always)]
-    pub fn orientation(&self, corners: [u32; 4]) -> Ordering {
+    pub(crate) fn orientation(&self, corners: [u32; 4]) -> Ordering {
         let a = &self.points[corners[0] as usize];
         let ray = |v: u32| {
             let q = &self.points[v as usize];
@@ -110,14 +113,14 @@ impl<'a> Screen<'a> {
     }
 
     /// Whether three points lie on one line.
-    pub fn collinear(&self, [a, b, c]: [u32; 3]) -> bool {
+    pub(crate) fn collinear(&self, [a, b, c]: [u32; 3]) -> bool {
         self.predicates.collinear([a, b, c])
     }
 
     /// Whether a point lies inside the orthogonal sphere of a positively oriented cell; `None` if
     /// that needs a closer look, or if the cell is infinite.
     #[inline(always)]
-    pub fn conflicts(&self, cell: [u32; 4], t: u32) -> Option<bool> {
+    pub(crate) fn conflicts(&self, cell: [u32; 4], t: u32) -> Option<bool> {
         let x = &self.points[t as usize];
         let ray = |v: u32| {
             let p = &self.points[v as usize];
@@ -131,7 +134,7 @@ impl<'a> Screen<'a> {
     /// were raised by an infinitely small height, the larger the later it comes in the order of
     /// (x, y, z) (Devillers and Teillaud 2011, doi:10.1016/j.comgeo.2010.08.002; CGAL's
     /// `Regular_triangulation_3` does the same).
-    pub fn conflicts_closely(&self, cell: [u32; 4], t: u32) -> bool {
+    pub(crate) fn conflicts_closely(&self, cell: [u32; 4], t: u32) -> bool {
         // With a bound of 0 the first look has seen a true 0.
         let sign = match self.power {
             0.0 => Ordering::Equal,

@@ -12,7 +12,7 @@ pub(super) struct View<const N: usize> {
 
 impl<const N: usize> View<N> {
     #[inline(always)]
-    pub fn of(p: Site, sites: [Site; N]) -> Self {
+    pub(super) fn of(p: Site, sites: [Site; N]) -> Self {
         let mut size = Size { length: 0.0, power: 0.0 };
         let mut rays = [Ray { vector: [0.0; 3], power: 0.0 }; N];
         for (to, q) in rays.iter_mut().zip(sites) {
@@ -46,21 +46,21 @@ pub(super) struct Bounds {
 }
 
 impl Size {
-    pub const LARGEST_SQUARE: f64 = 1e60;
+    pub(super) const LARGEST_SQUARE: f64 = 1e60;
 
     #[inline(always)]
-    pub fn larger(self, other: Self) -> Self {
+    pub(super) fn larger(self, other: Self) -> Self {
         Self { length: self.length.max(other.length), power: self.power.max(other.power) }
     }
 
     /// Whether nothing overflows or loses digits to underflow; degrees go up to 8.
-    pub fn is_sane(self) -> bool {
+    pub(super) fn is_sane(self) -> bool {
         self.length > 1e-30 && self.length < 1e30 && self.power < Self::LARGEST_SQUARE
     }
 
     /// The terms of the two polynomials behind a radius, for so many vertices.
     #[inline(always)]
-    pub fn bounds(self, vertices: usize) -> Bounds {
+    pub(super) fn bounds(self, vertices: usize) -> Bounds {
         let square = self.length * self.length;
         let powers = self.power * self.power;
         match vertices {
@@ -75,7 +75,7 @@ impl Size {
 
     /// The terms of the polynomial that separates inside from outside.
     #[inline(always)]
-    pub fn side_bound(self, vertices: usize) -> f64 {
+    pub(super) fn side_bound(self, vertices: usize) -> f64 {
         let square = self.length * self.length;
         match vertices {
             1 => self.power,

@@ -15,11 +15,11 @@ pub(super) struct Twofold {
 
 impl Twofold {
     /// What [`Number`] operations are off by, of the magnitudes of their terms, after fewer than 32.
-    pub const ROUNDING: f64 = 1.0 / (1u128 << 97) as f64;
+    pub(super) const ROUNDING: f64 = 1.0 / (1u128 << 97) as f64;
 
     /// The sum of two doubles, exactly (Knuth).
     #[inline(always)]
-    pub fn sum(a: f64, b: f64) -> Self {
+    pub(super) fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let of_b = high - a;
         Self { high, low: (a - (high - of_b)) + (b - of_b) }
@@ -27,7 +27,7 @@ impl Twofold {
 
     /// The product of two doubles, exactly (Dekker): fused multiplication is not there everywhere.
     #[inline(always)]
-    pub fn product(a: f64, b: f64) -> Self {
+    pub(super) fn product(a: f64, b: f64) -> Self {
         let high = a * b;
         let ((a, a_low), (b, b_low)) = (halves(a), halves(b));
         let low = a_low * b_low - (((high - a * b) - a_low * b) - a * b_low);
@@ -36,7 +36,7 @@ impl Twofold {
 
     /// The quotient, off by less than 2⁻⁹⁸ of itself.
     #[inline(always)]
-    pub fn over(self, other: Self) -> Self {
+    pub(super) fn over(self, other: Self) -> Self {
         let quotient = self.high / other.high;
         let product = Self::product(quotient, other.high);
         let rest = ((self.high - product.high) - product.low) + (self.low - quotient * other.low);
@@ -46,7 +46,7 @@ impl Twofold {
     /// The nearest double of a number that is off by at most so much from this one; none if there
     /// are several.
     #[inline(always)]
-    pub fn nearest(self, error: f64) -> Option<f64> {
+    pub(super) fn nearest(self, error: f64) -> Option<f64> {
         let error = error * (1.0 + 1e-9) + self.low.abs() * f64::EPSILON;
         let [low, high] = [self.low - error, self.low + error].map(|rest| self.high + rest);
         (low == high).then_some(low)

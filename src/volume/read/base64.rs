@@ -11,7 +11,7 @@ pub(super) struct Base64<R> {
 }
 
 impl<R: BufRead> Base64<R> {
-    pub fn new(text: R) -> Self {
+    pub(super) fn new(text: R) -> Self {
         Self { text, ready: [0; 3], length: 0, given: 0 }
     }
 

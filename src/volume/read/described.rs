@@ -38,17 +38,22 @@ pub(super) enum Encoding {
 
 impl Described {
     /// Bytes of all volumes of the file where they are not compressed.
-    pub fn bytes(&self) -> u64 {
+    pub(super) fn bytes(&self) -> u64 {
         self.each().saturating_mul(self.frames.count)
     }
 
     /// Bytes of one volume.
-    pub fn each(&self) -> u64 {
+    pub(super) fn each(&self) -> u64 {
         (self.dims.samples() * self.dtype.size()) as u64
     }
 
     /// Reads the samples, which are all there is in `bytes` bytes.
-    pub fn read(self, path: &Path, source: impl Read, bytes: u64) -> Result<Volume, VolumeError> {
+    pub(super) fn read(
+        self,
+        path: &Path,
+        source: impl Read,
+        bytes: u64,
+    ) -> Result<Volume, VolumeError> {
         self.dims.bounded()?;
         let compressed = BufReader::new(source);
         match self.encoding {
@@ -83,7 +88,7 @@ impl Described {
     }
 
     /// The volume of as many samples as were claimed.
-    pub fn volume(self, samples: Vec<f32>) -> Result<Volume, VolumeError> {
+    pub(super) fn volume(self, samples: Vec<f32>) -> Result<Volume, VolumeError> {
         let samples =
             Array3::from_shape_vec(self.dims.shape(), samples).expect("count was checked");
         let volume = Volume::of_file(samples, self.frame)?.with_dtype(self.dtype);

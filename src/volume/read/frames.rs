@@ -16,10 +16,14 @@ pub(super) struct Frames {
 
 impl Frames {
     /// The only one.
-    pub const ONE: Self = Self { index: 0, count: 1 };
+    pub(super) const ONE: Self = Self { index: 0, count: 1 };
 
     /// The one asked for, where the axes beyond the third have these sizes.
-    pub fn choose(path: &Path, beyond: &[u64], asked: Option<u64>) -> Result<Self, VolumeError> {
+    pub(super) fn choose(
+        path: &Path,
+        beyond: &[u64],
+        asked: Option<u64>,
+    ) -> Result<Self, VolumeError> {
         let count = beyond.iter().try_fold(1u64, |product, &size| product.checked_mul(size));
         let count = count.unwrap_or(u64::MAX);
         match asked {
@@ -41,7 +45,7 @@ impl Frames {
     }
 
     /// From a reader of all volumes, of so many bytes each, to the one.
-    pub fn one<R: Read>(
+    pub(super) fn one<R: Read>(
         self,
         path: &Path,
         mut reader: R,

@@ -11,13 +11,13 @@ pub(crate) struct Lines<R> {
 
 impl<R: BufRead> Lines<R> {
     /// Stands at the first line.
-    pub fn new(reader: R) -> Self {
+    pub(crate) fn new(reader: R) -> Self {
         Self { reader, bytes: 0 }
     }
 
     /// The next line without its end (LF or CR LF); `None` at the end of the file. Bytes that are
     /// no UTF-8 are replaced.
-    pub fn next(&mut self) -> io::Result<Option<String>> {
+    pub(crate) fn next(&mut self) -> io::Result<Option<String>> {
         let mut line = Vec::new();
         let found = (&mut self.reader).take(MAX_LINE).read_until(b'\n', &mut line)? as u64;
         if found == MAX_LINE {
@@ -35,24 +35,24 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// Skips bytes that are not lines.
-    pub fn skip(&mut self, bytes: u64) -> io::Result<()> {
+    pub(crate) fn skip(&mut self, bytes: u64) -> io::Result<()> {
         let passed = io::copy(&mut (&mut self.reader).take(bytes), &mut io::sink())?;
         self.bytes += passed;
         Ok(())
     }
 
     /// Whether nothing follows.
-    pub fn at_end(&mut self) -> io::Result<bool> {
+    pub(crate) fn at_end(&mut self) -> io::Result<bool> {
         Ok(self.reader.fill_buf()?.is_empty())
     }
 
     /// Bytes of the lines so far.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         self.bytes
     }
 
     /// The reader, positioned after the last line.
-    pub fn into_inner(self) -> R {
+    pub(crate) fn into_inner(self) -> R {
         self.reader
     }
 }

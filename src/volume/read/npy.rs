@@ -98,12 +98,12 @@ pub(super) fn volume<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Volume, V
 
 impl NpyFile {
     /// Whether a file begins as NPY does.
-    pub fn begins(start: &[u8]) -> bool {
+    pub(crate) fn begins(start: &[u8]) -> bool {
         start.starts_with(MAGIC)
     }
 
     /// Reads and checks the header.
-    pub fn open(path: &Path) -> Result<Self, VolumeError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, VolumeError> {
         let file = File::open(path).map_err(io_error(path))?;
         let length = file.metadata().map_err(io_error(path))?.len();
         Self::of(path, BufReader::new(file), length)
@@ -112,7 +112,7 @@ impl NpyFile {
 
 impl<R: Read> NpyFile<R> {
     /// Reads and checks the header of an array of so many bytes in a file.
-    pub fn of(path: &Path, mut reader: R, length: u64) -> Result<Self, VolumeError> {
+    pub(crate) fn of(path: &Path, mut reader: R, length: u64) -> Result<Self, VolumeError> {
         let said = |reason: Reason| VolumeError::Format { path: path.into(), reason };
         let header = Header::read(&mut reader).map_err(|error| match error {
             NpyError::Io(error) => io_error(path)(error),
@@ -138,7 +138,7 @@ impl<R: Read> NpyFile<R> {
     }
 
     /// All elements in the order of the file, which must hold exactly as many as it claims.
-    pub fn values<T: Element>(self, path: &Path) -> Result<Vec<T>, VolumeError> {
+    pub(crate) fn values<T: Element>(self, path: &Path) -> Result<Vec<T>, VolumeError> {
         let count = self.shape.iter().fold(1u64, |product, &n| product.saturating_mul(n));
         let claim = format!("an array of shape {:?} and type {}", self.shape, self.dtype);
         self.payload

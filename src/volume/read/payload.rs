@@ -31,18 +31,18 @@ pub(crate) enum Length {
 
 impl Length {
     /// A small gzip file that claims a huge volume is refused before anything is allocated.
-    pub fn of_gzip(compressed: u64) -> Self {
+    pub(crate) fn of_gzip(compressed: u64) -> Self {
         Self::AtMost(compressed.saturating_mul(MOST_EXPANSION))
     }
 
     /// The same for bzip2, which packs 900 kB of runs, each of 255 bytes in 5, into as few as 40 bytes.
     #[cfg(feature = "formats")]
-    pub fn of_bzip2(compressed: u64) -> Self {
+    pub(crate) fn of_bzip2(compressed: u64) -> Self {
         Self::AtMost(compressed.saturating_mul(1 << 21))
     }
 
     /// What is left after a header.
-    pub fn minus(self, header: u64) -> Self {
+    pub(crate) fn minus(self, header: u64) -> Self {
         match self {
             Self::Exactly(bytes) => Self::Exactly(bytes.saturating_sub(header)),
             Self::AtMost(bytes) => Self::AtMost(bytes.saturating_sub(header)),
@@ -64,7 +64,7 @@ pub(crate) enum PayloadError {
 impl<R: Read> Payload<R> {
     /// Reads exactly `count` samples, which must be all there is. The length is compared with the
     /// claim before anything is allocated; decoding runs in parallel, a few MB at a time.
-    pub fn samples<T: Element>(
+    pub(super) fn samples<T: Element>(
         mut self,
         dtype: Dtype,
         endian: Endian,

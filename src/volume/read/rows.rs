@@ -28,7 +28,7 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
-    pub fn new(
+    pub(crate) fn new(
         path: &Path,
         dims: Dims,
         frame: Frame,
@@ -41,7 +41,7 @@ impl Rows {
 
     /// Scales samples, in doubles. Scaled bytes are no gray levels.
     #[cfg(feature = "formats")]
-    pub fn scaled(self, (slope, inter): (f64, f64)) -> Self {
+    pub(crate) fn scaled(self, (slope, inter): (f64, f64)) -> Self {
         Self { scaling: ((slope, inter) != (1.0, 0.0)).then_some((slope, inter)), ..self }
     }
 
@@ -107,7 +107,7 @@ impl Rows {
     }
 
     /// The volume they are.
-    pub fn source(self) -> Source {
+    pub(crate) fn source(self) -> Source {
         let dtype = if self.scaling.is_some() { Dtype::F32 } else { self.dtype };
         // Rows lie one behind the other: whole ones are read in one piece.
         let grain = [self.dims.x(), 1, 1];

@@ -51,7 +51,7 @@ fn fill(n: usize, [x, y, z]: [usize; 3], samples: &mut [f32]) {
 pub(in super::super) struct PhantomParts(usize);
 
 impl PhantomParts {
-    pub fn source(size: u64) -> Result<Source, VolumeError> {
+    pub(crate) fn source(size: u64) -> Result<Source, VolumeError> {
         let dims = Dims::unbounded(size, size, size)?;
         let parts = Box::new(Self(dims.x()));
         Ok(Source::new(dims, Frame::VOXEL, Dtype::F32, [1; 3], parts).with_gray_levels(true))

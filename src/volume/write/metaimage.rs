@@ -8,7 +8,7 @@ use crate::volume::{Coordinates, Frame, Volume};
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub fn metaimage(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn metaimage(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let [x, y, z] = volume.dims().xyz();
     write!(
         out,

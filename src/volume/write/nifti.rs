@@ -9,7 +9,7 @@ use crate::volume::{Coordinates, Frame, LengthUnit, Space, Volume};
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub fn nifti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn nifti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let long = volume.dims().xyz().iter().any(|&size| size > i16::MAX as usize);
     let frame = volume.frame().to(convention(volume.frame().coordinates));
     let header = if long { version_2(volume, &frame) } else { version_1(volume, &frame) };
@@ -23,7 +23,7 @@ pub fn nifti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub fn nifti_gzip(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn nifti_gzip(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let mut packed = flate2::write::GzEncoder::new(out, flate2::Compression::default());
     nifti(volume, &mut packed)?;
     packed.finish().map(drop)

@@ -8,7 +8,7 @@ use crate::volume::Volume;
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub fn npy(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn npy(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     volume.samples().write_npy(out).map_err(|error| match error {
         WriteNpyError::Io(error) => error,
         other => io::Error::other(other),

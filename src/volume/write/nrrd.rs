@@ -9,7 +9,7 @@ use crate::volume::{Coordinates, Frame, Space, Volume};
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub fn nrrd(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn nrrd(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let [x, y, z] = volume.dims().xyz();
     write!(
         out,

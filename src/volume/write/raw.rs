@@ -9,7 +9,7 @@ const CHUNK: usize = 1 << 16;
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub fn raw(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn raw(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let mut bytes = Vec::with_capacity(CHUNK * 4);
     for samples in volume.as_slice().chunks(CHUNK) {
         bytes.clear();

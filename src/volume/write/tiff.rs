@@ -12,7 +12,7 @@ use crate::volume::{LengthUnit, Volume};
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub fn tiff(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn tiff(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     /// For the directories of the pages.
     const BESIDE: usize = 1 << 29;
     let mut bytes = Cursor::new(Vec::new());

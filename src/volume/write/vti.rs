@@ -9,7 +9,7 @@ use crate::volume::{Coordinates, Space, Volume};
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub fn vti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn vti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let [x, y, z] = volume.dims().xyz().map(|size| size - 1);
     let extent = format!("0 {x} 0 {y} 0 {z}");
     let lps = Coordinates { space: Space::Lps, unit: volume.frame().coordinates.unit };

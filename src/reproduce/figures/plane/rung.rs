@@ -14,13 +14,13 @@ pub(super) struct Rung {
 }
 
 impl Rung {
-    pub fn at(alpha: f64) -> Result<Self, ReproduceError> {
+    pub(super) fn at(alpha: f64) -> Result<Self, ReproduceError> {
         let shape = eks_shape(&sample_points(), Curvature::new(alpha)?)?;
         let hull = shape.hull();
         Ok(Self { alpha, shape, hull })
     }
 
-    pub fn hull_area(&self) -> f64 {
+    pub(super) fn hull_area(&self) -> f64 {
         area(&self.hull.outline)
     }
 }

@@ -59,7 +59,7 @@ struct EdgeRow {
 const NOWHERE: u32 = u32::MAX;
 
 impl<'a> Walker<'a> {
-    pub fn new(
+    pub(super) fn new(
         local: &'a Local<'a>,
         states: &'a [State],
         stars: &'a Stars,
@@ -87,7 +87,7 @@ impl<'a> Walker<'a> {
     }
 
     /// The point's class, and the simplices it is the smallest vertex of.
-    pub fn visit(&mut self, v: u32) {
+    pub(super) fn visit(&mut self, v: u32) {
         self.owned.rows.begin();
         let star = self.stars.of(v);
         if star.is_empty() {
@@ -107,7 +107,7 @@ impl<'a> Walker<'a> {
     }
 
     /// Ends the rows of the last point; gives the components.
-    pub fn finish(self) -> UnionFind {
+    pub(super) fn finish(self) -> UnionFind {
         self.owned.rows.begin();
         self.components
     }

@@ -13,47 +13,47 @@ impl State {
     const GIVES: usize = 12;
 
     #[inline(always)]
-    pub fn is_inside(self) -> bool {
+    pub(super) fn is_inside(self) -> bool {
         self.0 & Self::INSIDE != 0
     }
 
     #[inline(always)]
-    pub fn is_infinite(self) -> bool {
+    pub(super) fn is_infinite(self) -> bool {
         self.0 & Self::INFINITE != 0
     }
 
     /// Whether none of its corners is the block's own, so that it does not matter.
     #[inline(always)]
-    pub fn is_far(self) -> bool {
+    pub(super) fn is_far(self) -> bool {
         self.0 & Self::FAR != 0
     }
 
     /// The class of the facet opposite a corner.
     #[inline(always)]
-    pub fn facet(self, opposite: usize) -> Class {
+    pub(super) fn facet(self, opposite: usize) -> Class {
         Class::ALL[usize::from(self.0 >> (2 * opposite) & 3)]
     }
 
     /// Bits 2·opposite for the facets that are in the shape.
     #[inline(always)]
-    pub fn covered(self) -> u16 {
+    pub(super) fn covered(self) -> u16 {
         (self.0 | self.0 >> 1) & 0x55
     }
 
     /// Bits 2·opposite for the facets that are not interior.
     #[inline(always)]
-    pub fn open(self) -> u16 {
+    pub(super) fn open(self) -> u16 {
         (self.0 >> 1 | !self.0) & 0x55
     }
 
     /// Whether it is this cell, of the two beside a facet, whose row the facet becomes.
     #[inline(always)]
-    pub fn gives(self, opposite: usize) -> bool {
+    pub(super) fn gives(self, opposite: usize) -> bool {
         self.0 >> (Self::GIVES + opposite) & 1 != 0
     }
 
     /// How many rows it gives out.
-    pub fn given(self) -> usize {
+    pub(super) fn given(self) -> usize {
         (self.0 >> Self::GIVES).count_ones() as usize
     }
 
@@ -73,7 +73,7 @@ pub(super) struct Boundary(Vec<(u32, u32)>);
 
 impl Boundary {
     /// The other side of a facet that is given out.
-    pub fn beyond(&self, side: u32) -> u32 {
+    pub(super) fn beyond(&self, side: u32) -> u32 {
         let found = self.0.binary_search_by_key(&side, |facet| facet.0);
         self.0[found.expect("a facet on the boundary")].1
     }

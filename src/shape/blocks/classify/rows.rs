@@ -42,18 +42,18 @@ pub(in super::super) struct Shelves {
 
 impl Shelves {
     /// So many for these input indices, which ascend.
-    pub fn new(input: &[u32], count: usize) -> Self {
+    pub(crate) fn new(input: &[u32], count: usize) -> Self {
         let end = input.last().map_or(0, |&last| last as usize + 1);
         Self { count, length: end.div_ceil(count).max(1) as u32 }
     }
 
     /// The shelf of the point with an input index.
-    pub fn at(self, input: u32) -> usize {
+    pub(crate) fn at(self, input: u32) -> usize {
         (input / self.length) as usize
     }
 
     /// Which of these input indices, which ascend, are on each shelf.
-    pub fn ranges(self, input: &[u32]) -> Vec<Range<usize>> {
+    pub(crate) fn ranges(self, input: &[u32]) -> Vec<Range<usize>> {
         let start = |shelf| input.partition_point(|&i| self.at(i) < shelf);
         (0..self.count).map(|shelf| start(shelf)..start(shelf + 1)).collect()
     }
@@ -107,7 +107,7 @@ impl<const M: usize> Rows<M> {
         self.classes.reserve_exact(most);
     }
 
-    pub fn push(&mut self, row: [u32; M], class: Class) {
+    pub(crate) fn push(&mut self, row: [u32; M], class: Class) {
         self.vertices.push(row);
         self.classes.push(class);
     }
@@ -146,12 +146,12 @@ impl Owned {
     }
 
     /// The number of points.
-    pub fn points(&self) -> usize {
+    pub(crate) fn points(&self) -> usize {
         self.shelves.iter().map(|shelf| shelf.vertices.len()).sum()
     }
 
     /// What the rows, classes and sheets will take when they are whole.
-    pub fn merged_bytes(&self) -> u64 {
+    pub(crate) fn merged_bytes(&self) -> u64 {
         let bytes = |shelf: &Shelf| {
             let rows = 17 * shelf.cells.classes.len()
                 + 13 * shelf.facets.classes.len()

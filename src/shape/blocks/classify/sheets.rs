@@ -16,7 +16,7 @@ pub(super) struct Sheets {
 }
 
 impl Sheets {
-    pub fn new(states: &[State]) -> Self {
+    pub(super) fn new(states: &[State]) -> Self {
         let mut count = 0;
         let number = |state: &State| {
             let number = count;
@@ -31,12 +31,12 @@ impl Sheets {
         4 * self.number[corner as usize / 4] + corner % 4
     }
 
-    pub fn unite(&mut self, a: u32, b: u32) {
+    pub(super) fn unite(&mut self, a: u32, b: u32) {
         self.sets.unite(self.at(a), self.at(b));
     }
 
     /// Replaces corners by the numbers of their sheets, from 0 in order of appearance.
-    pub fn number(mut self, owned: &mut Owned) {
+    pub(super) fn number(mut self, owned: &mut Owned) {
         const NONE: u32 = u32::MAX;
         let mut names = vec![NONE; self.sets.len()];
         let mut count = 0;

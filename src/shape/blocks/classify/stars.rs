@@ -8,7 +8,7 @@ pub(super) struct Stars {
 
 impl Stars {
     /// Looks for the vertices below `own`. O(cells).
-    pub fn new(cells: &[[u32; 4]], own: u32, states: &[State]) -> Self {
+    pub(super) fn new(cells: &[[u32; 4]], own: u32, states: &[State]) -> Self {
         let near = || {
             let all = (0u32..).step_by(4).zip(cells).zip(states);
             all.filter(|(_, state)| !state.is_far()).map(|(cell, _)| cell)
@@ -35,7 +35,7 @@ impl Stars {
     }
 
     /// The star of a vertex, ascending; empty if the point is hidden.
-    pub fn of(&self, v: u32) -> &[u32] {
+    pub(super) fn of(&self, v: u32) -> &[u32] {
         let v = v as usize;
         &self.corners[self.starts[v] as usize..self.starts[v + 1] as usize]
     }

@@ -20,12 +20,12 @@ pub(super) struct Header<'a> {
 
 impl<'a> Header<'a> {
     /// Of a file.
-    pub fn new(path: &'a Path, object: &'a InMemDicomObject) -> Self {
+    pub(super) fn new(path: &'a Path, object: &'a InMemDicomObject) -> Self {
         Self { path, object, frame: None }
     }
 
     /// As the frame has it that is counted from 0.
-    pub fn of_frame(self, frame: u32) -> Self {
+    pub(super) fn of_frame(self, frame: u32) -> Self {
         Self { frame: Some(frame), ..self }
     }
 
@@ -47,7 +47,7 @@ impl<'a> Header<'a> {
     }
 
     /// A number, if it is there.
-    pub fn number(
+    pub(super) fn number(
         &self,
         group: impl Into<Option<Tag>>,
         tag: Tag,
@@ -66,7 +66,7 @@ impl<'a> Header<'a> {
     }
 
     /// `N` numbers, called `name`, which a volume needs because of `why`.
-    pub fn vector<const N: usize>(
+    pub(super) fn vector<const N: usize>(
         &self,
         group: Tag,
         tag: Tag,

@@ -72,7 +72,7 @@ pub(super) struct Found {
 
 impl Found {
     /// Reads the header.
-    pub fn open(path: &Path) -> Result<Self, VolumeError> {
+    pub(super) fn open(path: &Path) -> Result<Self, VolumeError> {
         claims::check(path)?;
         let object = OpenFileOptions::new()
             .read_until(PIXEL_DATA)
@@ -171,7 +171,7 @@ impl Slice {
     }
 
     /// Its file, for people, and which frame it is of several.
-    pub fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         let file = shown(&self.path);
         if self.frames == 1 { file } else { format!("frame {} of {file}", self.frame + 1) }
     }

@@ -30,7 +30,7 @@ pub(super) fn named(
 }
 
 /// The files of a numbered sequence; `None` if the words do not describe one.
-pub fn numbered(words: &[&str]) -> Option<Result<Vec<String>, Reason>> {
+pub(crate) fn numbered(words: &[&str]) -> Option<Result<Vec<String>, Reason>> {
     /// A row has a file a slice, at most.
     const MAX_FILES: i64 = 1 << 20;
     let &[pattern, first, last, step, ..] = words else { return None };

@@ -42,7 +42,10 @@ pub(super) struct Wanted {
 
 impl About {
     /// Looks at the description of the first page.
-    pub fn of(path: &Path, decoder: &mut Decoder<BufReader<File>>) -> Result<Self, VolumeError> {
+    pub(super) fn of(
+        path: &Path,
+        decoder: &mut Decoder<BufReader<File>>,
+    ) -> Result<Self, VolumeError> {
         let text = match decoder.find_tag(Tag::ImageDescription) {
             Ok(Some(Value::Ascii(text))) => text,
             _ => String::new(),
@@ -124,7 +127,7 @@ impl About {
 
     /// The pages of the volume asked for. Where pages run along one axis only, they are slices,
     /// whatever the program called them: a stack of many channels and one slice is common.
-    pub fn wanted(&self, path: &Path, asked: Option<u64>) -> Result<Wanted, VolumeError> {
+    pub(super) fn wanted(&self, path: &Path, asked: Option<u64>) -> Result<Wanted, VolumeError> {
         let of = |axis: Axis| {
             let faster = self.axes.iter().take_while(|(other, _)| *other != axis);
             let step = faster.fold(1, |step: u64, (_, size)| step.saturating_mul(*size));
@@ -145,7 +148,7 @@ impl About {
     }
 
     /// The grid of a volume.
-    pub fn described(
+    pub(super) fn described(
         &self,
         path: &Path,
         dims: Dims,

@@ -13,7 +13,7 @@ use crate::volume::{Endian, Reason, VolumeError};
 
 impl VtkXml {
     /// Reads an array, which must have exactly `count` numbers.
-    pub fn values<T: Element + FromStr + Into<f64>>(
+    pub(crate) fn values<T: Element + FromStr + Into<f64>>(
         &self,
         array: usize,
         count: u64,
@@ -62,7 +62,11 @@ impl VtkXml {
 
     /// A text of the field data of a dataset: the first string of an array of strings, which VTK writes
     /// as the numbers of its characters, up to a 0.
-    pub fn field_text(&self, dataset: usize, name: &str) -> Result<Option<String>, VolumeError> {
+    pub(crate) fn field_text(
+        &self,
+        dataset: usize,
+        name: &str,
+    ) -> Result<Option<String>, VolumeError> {
         /// Nothing that is looked for is longer.
         const LONGEST: u64 = 1000;
         let Some(fields) = self.children(dataset, "FieldData").next() else { return Ok(None) };

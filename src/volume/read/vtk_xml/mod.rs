@@ -53,7 +53,7 @@ struct Appended {
 
 impl VtkXml {
     /// Reads all but the arrays. The root must be `VTKFile`.
-    pub fn open(path: &Path) -> Result<Self, VolumeError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, VolumeError> {
         let file = File::open(path).map_err(io_error(path))?;
         let metadata = file.metadata().map_err(io_error(path))?;
         if !metadata.is_file() {

@@ -5,17 +5,17 @@ use crate::volume::{Dtype, Reason, VolumeError};
 
 impl VtkXml {
     /// What the file holds, such as `ImageData`.
-    pub fn kind(&self) -> &str {
+    pub(crate) fn kind(&self) -> &str {
         self.attribute(0, "type").unwrap_or("(nothing)")
     }
 
     /// An attribute of an element.
-    pub fn attribute(&self, element: usize, name: &str) -> Option<&str> {
+    pub(crate) fn attribute(&self, element: usize, name: &str) -> Option<&str> {
         self.elements[element].attributes.get(name).map(String::as_str)
     }
 
     /// As many numbers as an attribute should have, or the default where it is missing.
-    pub fn numbers<const N: usize>(
+    pub(crate) fn numbers<const N: usize>(
         &self,
         element: usize,
         name: &str,
@@ -37,7 +37,7 @@ impl VtkXml {
     }
 
     /// The elements of this name right inside another.
-    pub fn children(&self, parent: usize, name: &str) -> impl Iterator<Item = usize> {
+    pub(crate) fn children(&self, parent: usize, name: &str) -> impl Iterator<Item = usize> {
         let is_child = move |i: &usize| {
             self.elements[*i].parent == Some(parent) && self.elements[*i].name == name
         };
@@ -45,7 +45,7 @@ impl VtkXml {
     }
 
     /// The element `Piece` of the dataset, of which there must be one.
-    pub fn piece(&self) -> Result<(usize, usize), VolumeError> {
+    pub(crate) fn piece(&self) -> Result<(usize, usize), VolumeError> {
         let kind = self.kind();
         let dataset = self.children(0, kind).next().ok_or_else(|| {
             self.said(Reason::damaged(format!("has no element {kind}: it is damaged")))
@@ -61,7 +61,7 @@ impl VtkXml {
     }
 
     /// The type of an array's numbers.
-    pub fn dtype(&self, array: usize) -> Result<Dtype, VolumeError> {
+    pub(crate) fn dtype(&self, array: usize) -> Result<Dtype, VolumeError> {
         Ok(match self.attribute(array, "type") {
             Some("Int8") => Dtype::I8,
             Some("UInt8") => Dtype::U8,
@@ -84,7 +84,7 @@ impl VtkXml {
     }
 
     /// How many numbers an array has for each point or cell.
-    pub fn components(&self, array: usize) -> &str {
+    pub(crate) fn components(&self, array: usize) -> &str {
         self.attribute(array, "NumberOfComponents").unwrap_or("1")
     }
 
