@@ -1,8 +1,8 @@
-use crate::advice::Advice;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::Coefficients;
+use crate::advice::Advice;
 use crate::memory::NoMemory;
 use crate::select::{Budget, Cut, Dropped};
 use crate::volume::VolumeError;
