@@ -120,7 +120,7 @@ class AlphaShape:
     def hidden(self):
         """ndarray of uint32, (n,), or None.
 
-        Points that are no vertices of the regular triangulation, as heavier ones near them make
+        Points that are not vertices of the regular triangulation, as heavier ones near them make
         them redundant. None where the shape was made in several blocks, none of which sees the
         whole triangulation: ask with ``exterior=True``.
         """
@@ -444,7 +444,7 @@ def squared(alpha, alpha_radius):
             raise ValueError("alpha is the square of alpha_radius: give one of them")
         radius = float(alpha_radius)
         if not radius >= 0:
-            raise ValueError(f"alpha_radius={radius} is no radius: give a number from 0 up")
+            raise ValueError(f"alpha_radius={radius} is not a radius: give a number from 0 up")
         return radius * radius
     if alpha is None:
         return None

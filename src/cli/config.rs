@@ -205,7 +205,7 @@ fn texts(arg: &Arg, value: &Value) -> anyhow::Result<Vec<String>> {
     let one = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
         Value::Integer(_) | Value::Float(_) => Ok(value.to_string()),
-        _ => refused!("a list or table is no value" => "give a text or a number"),
+        _ => refused!("a list or table is not a value" => "give a text or a number"),
     };
     if !arg.get_action().takes_values() {
         return match value {

@@ -153,7 +153,7 @@ impl Header {
                 let word = words[field.offset];
                 *slot = Some(
                     word.parse()
-                        .map_err(|_| Reason::value(format!("has {word:?}, which is no number")))?,
+                        .map_err(|_| Reason::value(format!("has {word:?}, which is not a number")))?,
                 );
             }
             rows.push(row);

@@ -9,7 +9,7 @@ use crate::volume::{Lines, Reason, io_error};
 /// line may name the columns.
 pub(crate) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
     let said =
-        |error: csv::Error| format(path, Reason::header(format!("is no table of points: {error}")));
+        |error: csv::Error| format(path, Reason::header(format!("is not a table of points: {error}")));
     let delimiter = delimiter(path)?;
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(delimiter)

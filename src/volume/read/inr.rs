@@ -109,7 +109,7 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
     };
     let size = |key: &str, text: String| {
         text.parse::<u64>().map_err(|_| {
-            said(Reason::header(format!("{key}={text} in its header is no number of samples")))
+            said(Reason::header(format!("{key}={text} in its header is not a number of samples")))
         })
     };
     let number = |key: &str, default: f64| match value(key) {
@@ -117,7 +117,7 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
         Some(text) => match text.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
             _ => {
-                Err(said(Reason::value(format!("{key}={text} in its header is no finite number"))))
+                Err(said(Reason::value(format!("{key}={text} in its header is not a finite number"))))
             }
         },
     };

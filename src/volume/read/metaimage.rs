@@ -248,7 +248,7 @@ impl Header {
             Ok(skip) if skip >= 0 => Ok(Some(skip as u64)),
             _ => Err(format_error(
                 path,
-                Reason::header(format!("HeaderSize = {text} is no number of bytes")),
+                Reason::header(format!("HeaderSize = {text} is not a number of bytes")),
             )),
         }
     }

@@ -39,7 +39,7 @@ impl Rows {
         Self { path: path.into(), dims, frame, dtype, endian, offset, scaling: None }
     }
 
-    /// Scales samples, in doubles. Scaled bytes are no gray levels.
+    /// Scales samples, in doubles. Scaled bytes are not gray levels.
     #[cfg(feature = "formats")]
     pub(crate) fn scaled(self, (slope, inter): (f64, f64)) -> Self {
         Self { scaling: ((slope, inter) != (1.0, 0.0)).then_some((slope, inter)), ..self }

@@ -80,7 +80,7 @@ fn page(path: &Path) -> Result<Page, VolumeError> {
             io_error(path)(error)
         }
         other => {
-            format_error(path, Reason::damaged(format!("is no image that can be read: {other}")))
+            format_error(path, Reason::damaged(format!("is not an image that can be read: {other}")))
         }
     };
     let length = std::fs::metadata(path).map_err(io_error(path))?.len();

@@ -98,7 +98,7 @@ impl Header {
             }
             let Some((name, value)) = line.split_once(':') else {
                 return Err(said(Reason::header(format!(
-                    "has a header line {line:?}, which is no field"
+                    "has a header line {line:?}, which is not a field"
                 ))));
             };
             let (name, value) = (name.trim().to_lowercase(), value.trim());
@@ -138,7 +138,7 @@ impl Header {
             .split_whitespace()
             .map(|size| {
                 size.parse()
-                    .map_err(|_| said(Reason::header(format!("sizes: {sizes} are no numbers"))))
+                    .map_err(|_| said(Reason::header(format!("sizes: {sizes} are not numbers"))))
             })
             .collect::<Result<Vec<u64>, _>>()?
             .into_iter()
@@ -202,7 +202,7 @@ impl Header {
             other => {
                 let given = other.unwrap_or("(missing)");
                 return Err(said(Reason::unsupported(
-                    format!("endian: {given} is no byte order"),
+                    format!("endian: {given} is not a byte order"),
                     "give little or big",
                 )));
             }
@@ -232,7 +232,7 @@ impl Header {
             Ok(skip) => Ok(Some(skip)),
             Err(_) if bytes == "-1" => Ok(None),
             Err(_) => {
-                Err(said(Reason::header(format!("byte skip: {bytes} is no number of bytes"))))
+                Err(said(Reason::header(format!("byte skip: {bytes} is not a number of bytes"))))
             }
         }
     }
