@@ -265,7 +265,7 @@ class Filtration:
         ----------
         ranks : bool
             Give each simplex the rank of its value instead (:attr:`Simplices.ranks`): a whole number, so that
-            values which differ by less than doubles can tell stay apart. ``Simplices.values`` of one
+            values which differ by less than doubles can resolve stay apart. ``Simplices.values`` of one
             simplex of a rank is its value.
 
         Returns

@@ -24,7 +24,7 @@ struct Complaint {
     next: String,
 }
 
-/// Tells why a command failed. The work that was going on is the one last announced.
+/// Prints why a command failed. The work that was going on is the one last announced.
 pub(super) fn tell(command: &str, error: &anyhow::Error) {
     let what = match progress::current().as_str() {
         _ if is_usage(error) => "cannot do this".to_owned(),
@@ -46,7 +46,7 @@ pub(super) fn is_usage(error: &anyhow::Error) -> bool {
     error.is::<UnknownFormat>() || error.downcast_ref::<Said>().is_some_and(|said| said.usage)
 }
 
-/// Tells what is wrong with a command line; `configured` if some of it comes from a file.
+/// Prints what is wrong with a command line; `configured` if some of it comes from a file.
 pub(super) fn tell_usage(command: &str, error: &clap::Error, configured: bool) {
     if matches!(error.kind(), ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand) {
         let _ = error.print();
@@ -106,7 +106,7 @@ impl Complaint {
 }
 
 fn help(command: &str) -> String {
-    format!("`{command} --help` tells what it takes")
+    format!("`{command} --help` lists its options")
 }
 
 /// The reason in an error and its causes, each said once, and the advice of the last that has some.
