@@ -1,4 +1,4 @@
-"""Whatever stands for an array, as the library takes it."""
+"""Array-likes as the library takes them."""
 
 from __future__ import annotations
 

@@ -149,7 +149,7 @@ class Boundary(NamedTuple):
     indices : ndarray of uint32, (m,)
         The input index of each vertex; of a midpoint, that of one end of its edge.
     cuts : tuple of int
-        Edges at which parts of the solid touched, vertices that stand there more than once, and
+        Edges at which parts of the solid touched, vertices that occur there more than once, and
         midpoints added; all 0 unless the boundary was cut apart into a manifold.
     """
 

@@ -66,7 +66,7 @@ def write_points(path, points, weights=None, values=None, *, alpha=None, value_e
     Parameters
     ----------
     path : str or path-like
-        Its extension says the format: ``.csv``, ``.npy``, or ``.wvm``, which is small where points stand at
+        Its extension says the format: ``.csv``, ``.npy``, or ``.wvm``, which is small where points lie at
         whole numbers.
     points : array_like, (n, 3)
         x, y, z.

@@ -201,7 +201,7 @@ class AlphaShape:
     def unwrapped(self):
         """A shape of a torus laid out in space.
 
-        Each simplex stands where its lowest coordinates are in the box; beyond the upper sides it has
+        Each simplex is placed where its lowest coordinates are in the box; beyond the upper sides it has
         copies of points, which come after all others (:attr:`copies`).
 
         Returns
@@ -263,7 +263,7 @@ class AlphaShape:
         shape : tuple of int
             Samples along z, y and x, as numpy orders them.
         low, high : array_like, (3,), optional
-            Corners of the box (x, y, z), on which the first and last samples stand; by default
+            Corners of the box (x, y, z), where the first and last samples are; by default
             those of the points.
         values : array_like, (n,), optional
             As in :meth:`at`.

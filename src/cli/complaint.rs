@@ -96,7 +96,7 @@ impl Complaint {
     fn print(&self) {
         let (red, bold, plain) =
             if coloured() { ("\x1b[1;31m", "\x1b[1m", "\x1b[0m") } else { ("", "", "") };
-        // Names of files and arguments stand in them.
+        // They contain names of files and arguments.
         let [what, why, next] =
             [&self.what, &self.why, &self.next].map(|text| escaped(text, |_| false));
         eprintln!("{red}error:{plain} {what}");

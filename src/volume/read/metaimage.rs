@@ -240,7 +240,7 @@ impl Header {
         }
     }
 
-    /// Bytes before the samples of each data file; `None` where they stand at its end.
+    /// Bytes before the samples of each data file; `None` where they are at its end.
     fn skip(&self, path: &Path) -> Result<Option<u64>, VolumeError> {
         let text = self.field(&["HeaderSize"]).unwrap_or("0");
         match text.parse::<i64>() {

@@ -187,7 +187,7 @@ impl Header {
             magic => Err(format_error(
                 path,
                 Reason::other(format!(
-                    "is no NIfTI file: {:?} stands for n+1",
+                    "is not a NIfTI file: its magic is {:?}, and not n+1",
                     String::from_utf8_lossy(magic)
                 )),
             )),

@@ -46,7 +46,7 @@ impl Rows {
     }
 
     /// Samples behind a header of so many bytes, of which further ones are skipped: `None` where the samples
-    /// stand at the end of the file.
+    /// are at the end of the file.
     #[cfg(feature = "formats")]
     pub(super) fn behind(
         header: &Path,

@@ -212,7 +212,7 @@ impl Header {
         Ok(Described { dims, dtype, endian, frame, encoding, frames })
     }
 
-    /// Bytes before the samples; `None` where they stand at the end of the file.
+    /// Bytes before the samples; `None` where they are at the end of the file.
     fn skip(&self, path: &Path, described: &Described) -> Result<Option<u64>, VolumeError> {
         let said = |reason: Reason| format_error(path, reason);
         let lines = self.field("line skip").or(self.field("lineskip")).unwrap_or("0");
