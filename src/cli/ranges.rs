@@ -25,11 +25,13 @@ fn ends(text: &str) -> Result<[[&str; 2]; 3], Said> {
 pub(super) fn samples(text: &str) -> Result<Region, Said> {
     let mut region = Region::default();
     for (k, [first, end]) in ends(text)?.into_iter().enumerate() {
-        let index = |text: &str| match text {
+        let index = |text: &str| {
+            match text {
             "" => Ok(None),
             text => text.parse().map(Some).map_err(
                 |_| said!("`{text}` is not an index of a sample" => "give whole numbers, as in 20:40"),
             ),
+        }
         };
         (region.first[k], region.end[k]) = (index(first)?.unwrap_or(0), index(end)?);
     }

@@ -55,7 +55,9 @@ pub(crate) fn number(text: &str) -> Result<f64, Said> {
 pub(super) fn count(text: &str) -> Result<u64, Said> {
     match text.trim().parse() {
         Ok(0) => refused!("a count from 1 up is needed" => "give it as in 15956"),
-        count => count.map_err(|_| said!("{text:?} is not a whole number" => "give one as in 15956")),
+        count => {
+            count.map_err(|_| said!("{text:?} is not a whole number" => "give one as in 15956"))
+        }
     }
 }
 
