@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use ndarray::Array3;
 use walpha::Volume;
 use walpha::volume::{ReadOptions, read};
 
