@@ -4,7 +4,7 @@ mod exact;
 mod truncation;
 
 use ndarray::{Array3, ArrayView3};
-use walpha::haar::{Decomposition, forward};
+use walpha::haar::{Decomposition, Tolerance, forward};
 
 const BOTH: [Decomposition; 2] = [Decomposition::NonStandard, Decomposition::Standard];
 

@@ -3,7 +3,6 @@
 use ndarray::Array3;
 use walpha::interpolate::{Adaptive, Deviation, Grid, Interpolant, adaptive_voxels, fill};
 use walpha::points::{difference, points_at, weigh};
-use walpha::volume;
 use walpha::{Alpha, Frame, Units, Volume, Weighting};
 
 use crate::common::{has_skull, json};

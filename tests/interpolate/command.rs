@@ -8,6 +8,7 @@ use walpha::Volume;
 use walpha::volume::{ReadOptions, read};
 
 use crate::common::{has_skull, json, ok, run};
+use crate::{linear, phantom};
 
 fn volume_at(path: &Path) -> Volume {
     read(path, &ReadOptions::default()).unwrap()

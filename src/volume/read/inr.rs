@@ -94,9 +94,9 @@ fn header(path: &Path, reader: &mut impl Read) -> Result<Vec<u8>, VolumeError> {
 fn parse(text: &[u8]) -> Result<Header, HeaderError> {
     let text = String::from_utf8_lossy(text);
     let fields = Fields(&text);
-    let [x, y, z] = ["XDIM", "YDIM", "ZDIM"].map(|key| fields.size(key, fields.needed(key)?));
+    let [x, y, z] = ["XDIM", "YDIM", "ZDIM"].map(|key| size(key, fields.needed(key)?));
     let dims = Dims::new(x?, y?, z?).map_err(HeaderError::Volume)?;
-    let values = fields.size("VDIM", fields.value("VDIM").unwrap_or("1"))?;
+    let values = size("VDIM", fields.value("VDIM").unwrap_or("1"))?;
     if values != 1 {
         return Err(HeaderError::Said(Reason::not_scalar(format!(
             "{values} values a voxel (VDIM)"
@@ -104,6 +104,13 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
     }
     let dtype = fields.dtype()?;
     Ok(Header { dims, dtype, endian: fields.endian(dtype)?, frame: fields.frame()? })
+}
+
+fn size(key: &str, text: &str) -> Result<u64, HeaderError> {
+    text.parse().map_err(|_| {
+        let what = format!("{key}={text} in its header is not a number of samples");
+        HeaderError::Said(Reason::header(what))
+    })
 }
 
 /// The text of a header: lines KEY=value, and comments.
@@ -121,13 +128,6 @@ impl<'a> Fields<'a> {
         self.value(key).ok_or_else(|| {
             let what = format!("its INRIMAGE header has no {key}: it is damaged");
             HeaderError::Said(Reason::damaged(what))
-        })
-    }
-
-    fn size(&self, key: &str, text: &str) -> Result<u64, HeaderError> {
-        text.parse().map_err(|_| {
-            let what = format!("{key}={text} in its header is not a number of samples");
-            HeaderError::Said(Reason::header(what))
         })
     }
 
