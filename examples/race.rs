@@ -235,7 +235,7 @@ fn run(engine: &str, points: &str, alpha: &str, threads: usize, memory: Option<u
     let rows = bytes.as_chunks::<8>().0.as_chunks::<4>().0;
     let positions = rows.iter().map(|[x, y, z, _]| [x, y, z].map(number)).collect();
     let weights = rows.iter().map(|[.., w]| number(w)).collect();
-    let points = WeightedPoints { positions, weights, values: None };
+    let points = WeightedPoints::new(positions, weights).unwrap();
     drop(bytes);
     let started = Instant::now();
     let engine = match engine {
@@ -251,7 +251,7 @@ fn run(engine: &str, points: &str, alpha: &str, threads: usize, memory: Option<u
         }
     };
     let alpha = Alpha::from_squared(alpha.parse()?)?;
-    let options = ShapeOptions { engine, memory, ..ShapeOptions::new(alpha) };
+    let options = ShapeOptions::new(alpha).engine(engine).memory(memory);
     let shape = alpha_shape(points, &options)?;
     assert!(shape.betti().is_some());
     let seconds = started.elapsed().as_secs_f64();
@@ -323,7 +323,7 @@ fn random(count: usize) -> Points {
         (state >> 11) as f64 / (1u64 << 53) as f64 * side
     };
     let positions = (0..count).map(|_| [next(), next(), next()]).collect();
-    Points { positions, ..Points::default() }
+    Points::new(positions)
 }
 
 /// The most memory this process ever held, in KiB; 0 where the system does not say.

@@ -35,15 +35,17 @@ def measured(command, **options):
     return out, time.monotonic() - begun, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
 
 
-def key_bytes(folder):
-    """Bytes of the arrays that merging reads: see `A block's file` in docs/clusters.md."""
-    total = 0
+def told(folder):
+    """Bytes of the arrays that merging reads, and the points looked at around blocks, as headers tell them: see `A block's
+    file` in docs/clusters.md."""
+    keys = halo = 0
     for path in folder.glob("block-*.walpha"):
         with open(path, "rb") as file:
             (length,) = struct.unpack("<16xQ", file.read(24))
             header = json.loads(file.read(length))
-        total += sum(size for name, size in header["arrays"] if name.startswith(("border_", "shared_")))
-    return total
+        keys += sum(size for name, size in header["arrays"] if name.startswith(("border_", "shared_")))
+        halo += header["facts"]["halo"]
+    return keys, halo
 
 
 def steps(args, volume):
@@ -55,7 +57,8 @@ def steps(args, volume):
     plan, plan_wall, plan_cpu, plan_peak = measured([args.walpha, "blocks", "plan", volume, *job, "-o", work, *common])
     _, run_wall, run_cpu, run_peak = measured([args.walpha, "blocks", "run", work, *common])
     _, merge_wall, merge_cpu, merge_peak = measured([args.walpha, "blocks", "merge", work, *common])
-    rows, keys = sum(path.stat().st_size for path in work.glob("block-*")), key_bytes(work)
+    rows = sum(path.stat().st_size for path in work.glob("block-*"))
+    keys, halo = told(work)
     write_cpu = pieces = 0.0
     if not args.no_pieces:
         _, _, write_cpu, _ = measured([args.walpha, "blocks", "merge", work, "-o", out, *common])
@@ -67,7 +70,7 @@ def steps(args, volume):
     plan = json.loads(plan)
     found = {
         "points": plan["points"],
-        "halo share": plan["halo_share"],
+        "halo share": halo / plan["points"],
         "memory of a block, MB": run_peak / 1e6,
         "written by blocks, MB": rows / 1e6,
         "keys, MB": keys / 1e6,

@@ -26,8 +26,8 @@ fn phantom(size: u64) -> Volume {
 }
 
 fn points(positions: Vec<Place>, weights: Vec<f64>, f: impl Fn(Place) -> f64) -> WeightedPoints {
-    let values = Some(positions.iter().map(|&p| f(p)).collect());
-    WeightedPoints { positions, weights, values }
+    let values = positions.iter().map(|&p| f(p)).collect();
+    WeightedPoints::new(positions, weights).unwrap().with_values(values).unwrap()
 }
 
 fn shape(points: WeightedPoints, alpha: f64) -> AlphaShape {
@@ -302,7 +302,7 @@ fn what_has_no_values_has_no_interpolant() {
 
 /// The samples of largest difference, unweighted.
 fn phantom_points(volume: &Volume, count: u64) -> WeightedPoints {
-    let selection = Selection { rule: SelectionRule::Count(count), gray_min: None };
+    let selection = Selection::default().rule(SelectionRule::Count(count));
     let points = select(volume, volume, &difference(volume), &selection, Units::Voxel).unwrap();
     weigh(&points, Weighting::Common(0.0), Alpha::from_squared(1.0).unwrap()).unwrap()
 }
@@ -311,7 +311,7 @@ fn phantom_points(volume: &Volume, count: u64) -> WeightedPoints {
 fn filling_covers_the_grid_and_keeps_the_points() {
     let volume = phantom(16);
     let differences = difference(&volume);
-    let selection = Selection { rule: SelectionRule::Count(300), gray_min: None };
+    let selection = Selection::default().rule(SelectionRule::Count(300));
     let selected = select(&volume, &volume, &differences, &selection, Units::Voxel).unwrap();
     for weighting in [Weighting::Common(0.0), Weighting::MinMax, Weighting::BarycentricN] {
         let shape =
@@ -350,7 +350,7 @@ fn rmse_of(volume: &Volume, voxels: &[u32]) -> f64 {
 fn adaptive_points_are_better_and_the_first_are_those_of_fewer() {
     let volume = phantom(24);
     let choose = |count, rmse| {
-        let goal = Adaptive { count, rmse, max_error: None };
+        let goal = Adaptive::new(count).rmse(rmse);
         adaptive_voxels(&volume, &goal, Units::Voxel)
     };
     let many = choose(800, 0.0).unwrap();
@@ -385,7 +385,7 @@ fn adaptive_points_are_better_and_the_first_are_those_of_fewer() {
 fn a_perfect_interpolant_needs_no_more_points() {
     let samples = Array3::from_shape_fn((6, 7, 8), |(z, y, x)| (x + 2 * y + 4 * z) as f32);
     let volume = Volume::new(samples, Frame::VOXEL).unwrap();
-    let goal = Adaptive { count: 200, rmse: 0.0, max_error: None };
+    let goal = Adaptive::new(200);
     assert_eq!(adaptive_voxels(&volume, &goal, Units::Voxel).unwrap().len(), 8);
 }
 

@@ -33,8 +33,9 @@ fn save(folder: &Path, bytes: &[u8]) -> PathBuf {
 fn back(bytes: &[u8], level: u32) -> (WeightedPoints, ModelFacts) {
     let folder = tempfile::tempdir().unwrap();
     let (points, facts) = read_model(&save(folder.path(), bytes), None, Some(level)).unwrap();
-    let weights = points.weights.unwrap();
-    (WeightedPoints { positions: points.positions, weights, values: points.values }, facts)
+    let mut weighted = WeightedPoints::new(points.positions, points.weights.unwrap()).unwrap();
+    weighted.values = points.values;
+    (weighted, facts)
 }
 
 fn refused(bytes: &[u8]) -> String {
@@ -56,19 +57,18 @@ impl Chance {
 /// Points on about one in `one_in` samples, in the order of the samples.
 fn scattered(dims: [u32; 3], one_in: u64, value: impl Fn(&mut Chance) -> f64) -> WeightedPoints {
     let mut chance = Chance(7);
-    let mut points = WeightedPoints { values: Some(Vec::new()), ..WeightedPoints::default() };
+    let (mut positions, mut values) = (Vec::new(), Vec::new());
     for z in 0..dims[2] {
         for y in 0..dims[1] {
             for x in 0..dims[0] {
                 if chance.below(one_in) == 0 {
-                    points.positions.push([x, y, z].map(f64::from));
-                    points.weights.push(0.0);
-                    points.values.as_mut().unwrap().push(value(&mut chance));
+                    positions.push([x, y, z].map(f64::from));
+                    values.push(value(&mut chance));
                 }
             }
         }
     }
-    points
+    WeightedPoints::unweighted(positions).with_values(values).unwrap()
 }
 
 fn grid(dims: [u64; 3]) -> SampleGrid {
@@ -94,7 +94,7 @@ fn whole_values_come_back_bit_for_bit() {
     for (dims, one_in) in [([13, 9, 21], 3), ([40, 40, 40], 16), ([1, 1, 97], 5), ([5, 70, 1], 2)] {
         let points = scattered(dims, one_in, |chance| chance.below(256) as f64 - 20.0);
         assert!(points.len() > 10);
-        let facts = ModelFacts { grid: Some(grid(dims.map(u64::from))), ..ModelFacts::default() };
+        let facts = ModelFacts::default().grid(grid(dims.map(u64::from)));
         let bytes = written(&points, &facts, Packing::default());
         assert_eq!(back(&bytes, 0), (points.clone(), facts.clone()), "{dims:?}");
         assert!(bytes.len() < 2 * points.len() + 200, "{} of {}", bytes.len(), points.len());
@@ -123,20 +123,19 @@ fn everything_that_is_known_comes_back() {
     for (k, weight) in points.weights.iter_mut().enumerate() {
         *weight = (k as f64).sqrt() - 3.0;
     }
-    let facts = ModelFacts {
-        grid: Some(grid),
-        coordinates,
-        alpha: Some(Alpha::from_squared(2.1).unwrap()),
-        range: Some(GrayRange { low: -1024.0, high: 3071.5 }),
-        order: None,
-    };
+    let facts = ModelFacts::default()
+        .grid(grid)
+        .coordinates(coordinates)
+        .alpha(Alpha::from_squared(2.1).unwrap())
+        .range(GrayRange { low: -1024.0, high: 3071.5 })
+        .order(None);
     let on_grid = written(&points, &facts, Packing::default());
     assert_eq!(back(&on_grid, 0), (points.clone(), facts.clone()));
     // Off the grid, or twice at one place: in their order, and larger.
     for other in [[0.25, 0.0, 0.0], points.positions[3]] {
         let mut moved = points.clone();
         moved.positions[0] = other;
-        let bytes = written(&moved, &facts, Packing { value_error: 0.5, layers: 3 });
+        let bytes = written(&moved, &facts, Packing::default().value_error(0.5).layers(3));
         let (again, told) = back(&bytes, 0);
         assert_eq!((again, told.alpha, told.grid), (moved, facts.alpha, None));
         assert!(bytes.len() > on_grid.len());
@@ -150,7 +149,7 @@ fn values_are_within_the_error_asked_for() {
     let points = scattered([30, 30, 30], 9, |chance| chance.below(1 << 20) as f64 / 4099.0 - 99.0);
     let mut last = usize::MAX;
     for error in [0.01, 0.5, 3.0, 40.0] {
-        let packing = Packing { value_error: error, ..Packing::default() };
+        let packing = Packing::default().value_error(error);
         let bytes = written(&points, &ModelFacts::default(), packing);
         let (again, _) = back(&bytes, 0);
         assert_eq!(again.positions, points.positions);
@@ -165,17 +164,11 @@ fn values_are_within_the_error_asked_for() {
 #[test]
 fn degenerate_sets_come_back() {
     let full = |dims: [u32; 3], value: f64| scattered(dims, 1, |_| value);
-    let mut far = WeightedPoints {
-        positions: vec![[0.0; 3], [1624.0; 3], [1624.0, 0.0, 1.0], [3.0, 1500.0, 1000.0]],
-        weights: vec![2.5; 4],
-        values: Some(vec![0.0, 4e9, 1.0, 4e9]),
-    };
-    far.positions.sort_by(|a, b| [a[2], a[1], a[0]].partial_cmp(&[b[2], b[1], b[0]]).unwrap());
-    let long = WeightedPoints {
-        positions: vec![[7.0, 0.0, 0.0], [3_999_999_999.0, 0.0, 0.0]],
-        weights: vec![0.0; 2],
-        values: None,
-    };
+    let mut far = vec![[0.0; 3], [1624.0; 3], [1624.0, 0.0, 1.0], [3.0, 1500.0, 1000.0]];
+    far.sort_by(|a, b| [a[2], a[1], a[0]].partial_cmp(&[b[2], b[1], b[0]]).unwrap());
+    let far = WeightedPoints::new(far, vec![2.5; 4]).unwrap();
+    let far = far.with_values(vec![0.0, 4e9, 1.0, 4e9]).unwrap();
+    let long = WeightedPoints::unweighted(vec![[7.0, 0.0, 0.0], [3_999_999_999.0, 0.0, 0.0]]);
     let one = full([1, 1, 1], -5.0);
     for points in [full([31, 17, 12], 3.0), full([64, 64, 64], 255.0), one, far, long] {
         let bytes = written(&points, &ModelFacts::default(), Packing::default());
@@ -195,18 +188,16 @@ fn the_first_layers_are_the_most_important_points() {
     // Every third point first, then the others.
     let mut order: Vec<u32> = (0..count as u32).collect();
     order.sort_by_key(|&k| (k % 3, k));
-    let facts = ModelFacts { order: Some(order.clone()), ..ModelFacts::default() };
-    let bytes = written(&points, &facts, Packing { layers: 3, ..Packing::default() });
+    let facts = ModelFacts::default().order(order.clone());
+    let bytes = written(&points, &facts, Packing::default().layers(3));
     assert_eq!(back(&bytes, 0).0, points);
     for (level, part) in [(1, 4), (2, 16)] {
         let mut wanted = order[..count / part].to_vec();
         wanted.sort_unstable();
         let of = |column: &[f64]| wanted.iter().map(|&k| column[k as usize]).collect();
-        let expected = WeightedPoints {
-            positions: wanted.iter().map(|&k| points.positions[k as usize]).collect(),
-            weights: of(&points.weights),
-            values: points.values.as_deref().map(of),
-        };
+        let positions = wanted.iter().map(|&k| points.positions[k as usize]).collect();
+        let expected = WeightedPoints::new(positions, of(&points.weights)).unwrap();
+        let expected = expected.with_values(of(points.values.as_deref().unwrap())).unwrap();
         assert_eq!(back(&bytes, level).0, expected);
     }
     let folder = tempfile::tempdir().unwrap();
@@ -228,10 +219,9 @@ fn the_first_layers_are_the_most_important_points() {
 
 fn small() -> Vec<u8> {
     let points = scattered([6, 6, 6], 5, |chance| chance.below(50) as f64);
-    let order = (0..points.len() as u32).rev().collect();
-    let facts =
-        ModelFacts { order: Some(order), grid: Some(grid([6, 6, 6])), ..ModelFacts::default() };
-    written(&points, &facts, Packing { layers: 2, ..Packing::default() })
+    let order: Vec<u32> = (0..points.len() as u32).rev().collect();
+    let facts = ModelFacts::default().order(order).grid(grid([6, 6, 6]));
+    written(&points, &facts, Packing::default().layers(2))
 }
 
 #[test]
@@ -334,10 +324,11 @@ proptest! {
         // A map sorts by its keys: z first.
         let positions = cells.keys().map(|&[z, y, x]| [x, y, z].map(f64::from)).collect();
         let values = cells.values().map(|&value| f64::from(value)).collect();
-        let points = WeightedPoints { positions, weights: vec![1.0; cells.len()], values: Some(values) };
-        let order = (0..cells.len() as u32).rev().collect();
-        let facts = ModelFacts { order: Some(order), ..ModelFacts::default() };
-        let bytes = written(&points, &facts, Packing { layers, ..Packing::default() });
+        let points = WeightedPoints::new(positions, vec![1.0; cells.len()]).unwrap();
+        let points = points.with_values(values).unwrap();
+        let order: Vec<u32> = (0..cells.len() as u32).rev().collect();
+        let facts = ModelFacts::default().order(order);
+        let bytes = written(&points, &facts, Packing::default().layers(layers));
         prop_assert_eq!(back(&bytes, 0).0, points);
     }
 }

@@ -89,7 +89,7 @@ pub fn select<'py>(
         )));
     }
     let (frame, units) = place(frame)?;
-    let selection = Selection { rule: selection_rule(&rule)?, gray_min };
+    let selection = Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min);
     let found = run(py, None, move |call| {
         call.begin(Stage::Points);
         let (volume, smoothed) = (Volume::new(samples, frame)?, Volume::new(smoothed, frame)?);
@@ -116,7 +116,7 @@ pub fn weigh<'py>(
     let differences = numbers(&differences);
     // Places do not count here.
     let positions = vec![[0.0; 3]; differences.len()];
-    let points = Points { positions, differences: Some(differences), ..Points::default() };
+    let points = Points::new(positions).with_differences(differences).map_err(Told::told)?;
     let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
     let weighed = points::weigh(&points, weighting, alpha).map_err(Told::told)?;
     Ok(weighed.weights.into_pyarray(py))
@@ -147,7 +147,7 @@ pub fn pipeline(
     let rule = selection_rule(&rule)?;
     let mut pipeline = Pipeline::new()
         .haar(haar_options(&haar.0, &haar.1)?)
-        .choice(Choice::Difference(Selection { rule, gray_min }))
+        .choice(Choice::Difference(Selection::default().rule(rule).gray_min(gray_min)))
         .units(units)
         .weighting(weighting.parse().map_err(Told::told)?)
         .alpha(alpha_rule(alpha))
@@ -203,7 +203,7 @@ fn haar_options(tolerance: &(String, f64), decomposition: &str) -> PyResult<Haar
         "standard" => Decomposition::Standard,
         other => return Err(unknown("decomposition", other, "'nonstandard' and 'standard'")),
     };
-    Ok(HaarOptions { decomposition, tolerance })
+    Ok(HaarOptions::default().decomposition(decomposition).tolerance(tolerance))
 }
 
 fn selection_rule(rule: &(String, f64)) -> PyResult<SelectionRule> {

@@ -15,7 +15,7 @@
 //!
 //! let folder = tempfile::tempdir()?;
 //! let job = Job::new("sample:phantom@40", ReadOptions::default())?;
-//! let plan = Plan::make(job, Cutting { blocks: Some(4), ..Cutting::default() }, folder.path())?;
+//! let plan = Plan::make(job, Cutting::default().blocks(4), folder.path())?;
 //! // In any order, anywhere, as long as all see the folder; again, if one fails.
 //! for block in 0..plan.blocks.len() {
 //!     run(&plan, block)?;

@@ -14,6 +14,7 @@ use crate::shape::{Class, Complex, NO_COMPONENT, Sheets, Simplices, Surface};
 
 /// A format of a file for each block, which VTK's programs open by the file that names them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Pieces {
     /// `.pvtu`: all simplices, as [`Vtu`](crate::export::Vtu) has them.
     Grid,

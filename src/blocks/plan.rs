@@ -9,15 +9,21 @@ use super::{Alone, BlocksError, Field, Job, Part, Team};
 use crate::Weighting;
 use crate::export::Target;
 use crate::points::{PointsError, Shares};
+use crate::setters::setters;
 use crate::shape::{Alpha, Balls};
 
 /// How a job is cut into blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Cutting {
     /// Into so many blocks; fewer where there are fewer bricks with points.
     pub blocks: Option<usize>,
     /// Bytes of memory that all blocks at work keep to, as many as there are threads.
     pub memory: Option<u64>,
+}
+
+impl Cutting {
+    setters! { blocks: Option<usize>, memory: Option<u64> }
 }
 
 /// All that a block needs to know of the others: the job, the numbers of the whole volume, and where the

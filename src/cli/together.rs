@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use serde::{Deserialize, Serialize};
+
 use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, Team, merge, run_missing};
 use crate::export::NewFolder;
 use crate::memory;
 use crate::progress::Stage;
 use crate::shown::shown;
-use serde::{Deserialize, Serialize};
 
 use super::args::{PipelineArgs, ShapeArgs};
 use super::blocks::{Outputs, cutting, job};

@@ -23,9 +23,9 @@ fn written_volumes_are_read_back() {
         writer.write(&volume, &mut bytes).unwrap();
         fs::write(&path, bytes).unwrap();
         let (dims, dtype, endian) = (volume.dims(), Dtype::F32, Endian::Little);
-        let layout = RawLayout { dims, dtype, endian, offset: 0 };
+        let layout = RawLayout::new(dims, dtype).endian(endian);
         let raw = (!format.keeps.dtype).then_some(layout);
-        let options = ReadOptions { raw, ..ReadOptions::default() };
+        let options = ReadOptions::default().raw(raw);
         let back = read(&path, &options).unwrap();
         assert_eq!(back.as_slice(), volume.as_slice(), "{extension}");
         let frame = match (format.keeps.spacing, format.keeps.directions) {

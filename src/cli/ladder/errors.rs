@@ -1,8 +1,9 @@
 //! What a level of detail misses of the volume.
 
+use serde::Serialize;
+
 use crate::interpolate::{Deviation, Grid, Interpolant, InterpolateError, fill};
 use crate::{AlphaShape, Units, Volume};
-use serde::Serialize;
 
 /// Root mean square differences of F from a volume, in gray levels.
 #[derive(Clone, Copy, Serialize)]

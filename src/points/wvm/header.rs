@@ -1,10 +1,11 @@
 //! The head of a file: what it holds, and the length of everything behind it.
 
+use walpha_check::Alpha;
+
 use super::super::formats::MODEL;
 use super::super::{ModelFacts, SampleGrid, Units};
 use super::fields::{In, Out};
 use crate::volume::{Coordinates, Dims, Frame, GrayRange, Reason};
-use walpha_check::Alpha;
 
 /// The version that is written, and the only one that is read.
 const VERSION: u8 = 1;
