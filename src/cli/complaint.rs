@@ -8,8 +8,8 @@ use clap::error::ErrorKind;
 use crate::shown::escaped;
 use crate::volume::UnknownFormat;
 
-use super::progress;
 use super::said::{Said, advice};
+use super::{FAILURE, USAGE, progress};
 
 /// Whether standard error takes colours: a terminal, and `NO_COLOR` is not set (<https://no-color.org>).
 pub(super) fn coloured() -> bool {
@@ -44,6 +44,11 @@ pub(super) fn tell(command: &str, error: &anyhow::Error) {
 /// Whether the command line makes no sense, whatever is in the files.
 pub(super) fn is_usage(error: &anyhow::Error) -> bool {
     error.is::<UnknownFormat>() || error.downcast_ref::<Said>().is_some_and(|said| said.usage)
+}
+
+/// The exit code after an error.
+pub(super) fn code(error: &anyhow::Error) -> u8 {
+    if is_usage(error) { USAGE } else { FAILURE }
 }
 
 /// Prints what is wrong with a command line; `configured` if some of it comes from a file.

@@ -47,7 +47,7 @@ pub(super) struct Report {
     solid: Option<Cuts>,
     files: Vec<String>,
     seconds: BTreeMap<&'static str, f64>,
-    peak_memory_bytes: Option<u64>,
+    pub(super) peak_memory_bytes: Option<u64>,
 }
 
 #[derive(Serialize)]

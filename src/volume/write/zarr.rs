@@ -31,6 +31,8 @@ pub(in crate::volume) fn zarr(source: &Source, folder: &Path) -> Result<(), Volu
     }
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let part: PathBuf = folder.with_file_name(format!(".walpha-{name}.part"));
+    // Of a run that was killed.
+    let _ = std::fs::remove_dir_all(&part);
     let done = fill(source, &part).and_then(|()| std::fs::rename(&part, folder).map_err(failed));
     if done.is_err() {
         // The error reported is the first one.
