@@ -10,7 +10,7 @@ use walpha::{Alpha, AlphaShape, Simplices, WeightedPoints, alpha_shape};
 use super::Result;
 
 /// One engine on points from a file: prints what plain CGAL prints.
-pub fn run(
+pub(super) fn run(
     what: &str,
     points: &str,
     alpha: &str,

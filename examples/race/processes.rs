@@ -5,7 +5,7 @@ use std::process::Command;
 use super::{RUNS, Result};
 
 /// What one process says.
-pub struct Run {
+pub(super) struct Run {
     pub seconds: f64,
     /// The most memory it ever held, in bytes.
     pub peak: u64,
@@ -14,7 +14,7 @@ pub struct Run {
 }
 
 /// Runs everything in turn, several times; gives the medians of times and peaks.
-pub fn medians(runs: &[&dyn Fn() -> Result<Run>]) -> Result<Vec<Run>> {
+pub(super) fn medians(runs: &[&dyn Fn() -> Result<Run>]) -> Result<Vec<Run>> {
     let mut done: Vec<Vec<Run>> = runs.iter().map(|_| Vec::new()).collect();
     for _ in 0..RUNS {
         for (run, done) in runs.iter().zip(&mut done) {
@@ -32,7 +32,7 @@ pub fn medians(runs: &[&dyn Fn() -> Result<Run>]) -> Result<Vec<Run>> {
 }
 
 /// Seconds, peak KiB, counts.
-pub fn output(command: &mut Command) -> Result<Run> {
+pub(super) fn output(command: &mut Command) -> Result<Run> {
     let output = command.output()?;
     if !output.status.success() {
         return Err(String::from_utf8_lossy(&output.stderr).into());

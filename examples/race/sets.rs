@@ -6,7 +6,7 @@ use walpha::{Alpha, Gray, Volume, WeightedPoints, Weighting, volume};
 use super::Result;
 
 /// A set by name: `skull@N` (the skull upsampled to N³ samples) or `random@N` (N random points).
-pub fn weighted(set: &str, weighting: &str, alpha: f64) -> Result<WeightedPoints> {
+pub(super) fn weighted(set: &str, weighting: &str, alpha: f64) -> Result<WeightedPoints> {
     let weighting: Weighting = weighting.parse()?;
     let points = match set.split_once('@') {
         Some(("skull", size)) => skull(size.parse()?)?,
