@@ -220,6 +220,6 @@ fn whole(name: &str, number: f64) -> PyResult<u64> {
     if number >= 0.0 && number.fract() == 0.0 && number < 2f64.powi(53) {
         Ok(number as u64)
     } else {
-        Err(wrong(format!("{name}={number} is no count: give a whole number from 0 up")))
+        Err(wrong(format!("{name}={number} is not a count: give a whole number from 0 up")))
     }
 }

@@ -166,7 +166,7 @@ impl Plan {
         let read: Result<Self, _> = serde_json::from_slice(text);
         let damaged = |error: serde_json::Error| BlocksError::Damaged {
             path: folder.join(Self::FILE),
-            what: format!("is no plan of this version of walpha ({error})"),
+            what: format!("is not a plan of this version of walpha ({error})"),
         };
         let plan = Self { folder: folder.into(), ..read.map_err(damaged)? };
         Ok(Self { digest: plan.computed_digest(), ..plan })

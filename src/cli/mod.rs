@@ -165,7 +165,7 @@ fn lead(
         }
     };
     if typed.iter().any(|arg| arg == "--print-config") {
-        // What to work on is no option.
+        // What to work on is not an option.
         command = command.mut_subcommands(|sub| {
             sub.mut_args(|arg| if arg.is_positional() { arg.required(false) } else { arg })
         });
@@ -181,7 +181,7 @@ fn lead(
             execute(Global { piped, ..global }, command, ranks)
         }
         Ok(Err(matches)) => print_config(&command, &matches),
-        // Help and version are no errors.
+        // Help and version are not errors.
         Err(error) if !error.use_stderr() => {
             error.print().map(|()| ExitCode::SUCCESS).map_err(Into::into)
         }

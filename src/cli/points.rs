@@ -77,7 +77,7 @@ impl Points {
         report.finish(progress.finish(), files);
         tell(global, &report)
     }
-    /// What a .wvm is told besides the points, and how it is packed.
+    /// What a .wvm holds besides the points, and how it is packed.
     fn packed(&self, weighed: &Weighed, volume: Option<&VolumeFacts>) -> (ModelFacts, Packing) {
         let origin = weighed.origin;
         let range = volume.map(|volume| volume.written).or(origin.range);

@@ -101,7 +101,8 @@ impl Shape {
             unused("--ascii", self.ascii, &why)?;
         }
         if !written(|format| format.groups) {
-            let why = format!("only {} can tell facets apart", known(|f| f.groups));
+            let why =
+                format!("only {} can separate regular and singular facets", known(|f| f.groups));
             unused("--groups", self.groups, &why)?;
         }
         if !written(|format| format.boundary) {

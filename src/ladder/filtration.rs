@@ -7,7 +7,7 @@ use crate::memory;
 use crate::points::WeightedPoints;
 use crate::progress::{Share, report, within};
 use crate::shape::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape};
-use crate::triangulation::{Interval, Predicates, Torus};
+use crate::triangulation::{Predicates, Torus};
 
 /// All alpha shapes of a set of points at once: the regular triangulation, and for each simplex
 /// when it comes.
@@ -16,18 +16,33 @@ use crate::triangulation::{Interval, Predicates, Torus};
 /// be nested. A simplex comes at the squared radius of its smallest orthogonal sphere if no point
 /// lies strictly inside (it is *Gabriel*), else with the first simplex it is a face of
 /// (Edelsbrunner and Mücke 1994, doi:10.1145/174462.156635; CGAL's `Alpha_shape_3` keeps the same
-/// intervals, in rounded numbers). Here a radius is an interval of doubles, and where an α lies in
-/// one, exact arithmetic decides: a shape taken from a filtration is the one
+/// intervals, in rounded numbers). Here a radius is the nearest double, and where an α is as near to the
+/// exact number, exact arithmetic decides: a shape taken from a filtration is the one
 /// [`alpha_shape`] makes.
 pub struct Filtration {
     pub(super) whole: AlphaShape,
     pub(super) incidence: Incidence,
-    /// Squared radii of the smallest orthogonal spheres, by row; of all cells, …
-    pub(super) cells: Vec<Interval>,
+    /// Squared radii of the smallest orthogonal spheres, each the nearest double, by row; of all cells, …
+    pub(super) cells: Vec<f64>,
     /// … and of what is Gabriel among lower simplices.
-    pub(super) facets: Vec<Option<Interval>>,
-    pub(super) edges: Vec<Option<Interval>>,
-    pub(super) vertices: Vec<Option<Interval>>,
+    pub(super) facets: Vec<Radius>,
+    pub(super) edges: Vec<Radius>,
+    pub(super) vertices: Vec<Radius>,
+}
+
+/// The double nearest to the squared radius of the smallest orthogonal sphere of a simplex, if that is
+/// empty; otherwise no number.
+#[derive(Clone, Copy)]
+pub(super) struct Radius(f64);
+
+impl Radius {
+    fn of(nearest: Option<f64>) -> Self {
+        Self(nearest.unwrap_or(f64::NAN))
+    }
+
+    pub(super) fn known(self) -> Option<f64> {
+        (!self.0.is_nan()).then_some(self.0)
+    }
 }
 
 impl Filtration {
@@ -60,12 +75,12 @@ impl Filtration {
             format!("the filtration of {} cells", complex.cells.len())
         })?;
         let done = |parts| within(share(4, 8), || report(parts, 4));
-        let incidence = Incidence::of(complex, whole.points().len());
-        done(1);
         let WeightedPoints { positions, weights, .. } = whole.points();
         let spheres = Predicates::on_torus(positions, weights, torus);
-        let cells =
-            complex.cells.rows().par_iter().map(|&cell| spheres.squared_radius(cell)).collect();
+        let (incidence, cells) = rayon::join(
+            || Incidence::of(complex, positions.len()),
+            || complex.cells.rows().par_iter().map(|&cell| spheres.nearest_radius(cell)).collect(),
+        );
         done(2);
         let facets = gabriel_facets(complex, &incidence, &spheres);
         done(3);
@@ -77,8 +92,8 @@ impl Filtration {
 
     /// What a filtration of these simplices takes besides them, without its levels.
     fn bytes(whole: &Complex) -> usize {
-        let radius = size_of::<Option<Interval>>();
-        let cell = size_of::<Interval>() + size_of::<[u32; 4]>();
+        let radius = size_of::<Radius>();
+        let cell = radius + size_of::<[u32; 4]>();
         let facet = radius + 2 * size_of::<[u32; 3]>() + size_of::<[u32; 2]>();
         cell * whole.cells.len()
             + facet * whole.facets.len()
@@ -113,11 +128,7 @@ impl Filtration {
     }
 }
 
-fn gabriel_facets(
-    whole: &Complex,
-    incidence: &Incidence,
-    spheres: &Predicates<'_>,
-) -> Vec<Option<Interval>> {
+fn gabriel_facets(whole: &Complex, incidence: &Incidence, spheres: &Predicates<'_>) -> Vec<Radius> {
     let facets = incidence.facets.par_iter().zip(&incidence.facet_cells);
     // In a regular triangulation a sphere that holds a point holds one of the two beside it.
     let radius = |(&facet, sides): (&[u32; 3], &[u32; 2])| {
@@ -126,16 +137,12 @@ fn gabriel_facets(
             let apex = cell.into_iter().find(|v| !facet.contains(v)).expect("a fourth corner");
             spheres.inside(facet, apex)
         });
-        (!held).then(|| spheres.squared_radius(facet))
+        Radius::of((!held).then(|| spheres.nearest_radius(facet)))
     };
     facets.map(radius).collect()
 }
 
-fn gabriel_edges(
-    whole: &Complex,
-    incidence: &Incidence,
-    spheres: &Predicates<'_>,
-) -> Vec<Option<Interval>> {
+fn gabriel_edges(whole: &Complex, incidence: &Incidence, spheres: &Predicates<'_>) -> Vec<Radius> {
     let held = flags(whole.edges.len());
     incidence.facets.par_iter().zip(&incidence.facet_edges).for_each(|(facet, edges)| {
         for (&apex, &edge) in facet.iter().zip(edges) {
@@ -150,7 +157,7 @@ fn gabriel_vertices(
     whole: &Complex,
     incidence: &Incidence,
     spheres: &Predicates<'_>,
-) -> Vec<Option<Interval>> {
+) -> Vec<Radius> {
     let held = flags(whole.vertices.len());
     whole.edges.rows().par_iter().for_each(|&[a, b]| {
         for (v, neighbour) in [(a, b), (b, a)] {
@@ -176,9 +183,9 @@ fn radii<const N: usize>(
     rows: &[[u32; N]],
     held: &[AtomicBool],
     spheres: &Predicates<'_>,
-) -> Vec<Option<Interval>> {
+) -> Vec<Radius> {
     let radius = |(&row, held): (&[u32; N], &AtomicBool)| {
-        (!held.load(Ordering::Relaxed)).then(|| spheres.squared_radius(row))
+        Radius::of((!held.load(Ordering::Relaxed)).then(|| spheres.nearest_radius(row)))
     };
     rows.par_iter().zip(held).map(radius).collect()
 }

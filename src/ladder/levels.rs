@@ -80,15 +80,15 @@ impl Filtration {
         let own = Own {
             facets: |row: usize| {
                 let facet = self.incidence.facets[row];
-                self.facets[row].map(|radius| level(&spheres, facet, radius, &alphas))
+                self.facets[row].known().map(|radius| level(&spheres, facet, radius, &alphas))
             },
             edges: |row: usize| {
                 let edge = complex.edges.rows()[row];
-                self.edges[row].map(|radius| level(&spheres, edge, radius, &alphas))
+                self.edges[row].known().map(|radius| level(&spheres, edge, radius, &alphas))
             },
             vertices: |row: usize| {
                 let vertex = complex.vertices.rows()[row];
-                self.vertices[row].map(|radius| level(&spheres, vertex, radius, &alphas))
+                self.vertices[row].known().map(|radius| level(&spheres, vertex, radius, &alphas))
             },
         };
         let (facets, edges, vertices) = self.spans(never, &cells, own);
@@ -165,13 +165,15 @@ impl Levels<'_> {
     }
 }
 
-/// How many of the α, which ascend, a simplex does not fit.
+/// How many of the α, which ascend, a simplex does not fit, of whose squared radius this is the nearest
+/// double.
 fn level<const N: usize>(
     spheres: &Predicates<'_>,
     simplex: [u32; N],
-    radius: Interval,
+    radius: f64,
     alphas: &[Alpha],
 ) -> u32 {
+    let radius = Interval::around(radius);
     let out = alphas.partition_point(|alpha| alpha.squared() < radius.low);
     let doubtful = &alphas[out..];
     let unfit = |alpha: &Alpha| !spheres.fits_by(simplex, radius, alpha.squared());

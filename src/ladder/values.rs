@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use super::Filtration;
+use super::filtration::Radius;
 use crate::math::number::lowest_bit;
 use crate::points::WeightedPoints;
 use crate::shape::Alpha;
@@ -39,16 +40,19 @@ impl Value {
 
 impl Filtration {
     /// All critical values, ascending; those between the same two doubles are one. Radii whose
-    /// intervals meet no other are told apart by these, all others by exact arithmetic.
+    /// intervals meet no other are ordered by these, all others by exact arithmetic.
     pub(super) fn values(&self) -> Vec<Value> {
-        let own = |radii: &[Option<Interval>], row: fn(u32) -> Row| -> Vec<(Interval, Row)> {
+        let own = |radii: &[Radius], row: fn(u32) -> Row| -> Vec<(Interval, Row)> {
             let known = radii.par_iter().enumerate();
-            known.filter_map(|(i, radius)| Some(((*radius)?, row(i as u32)))).collect()
+            known
+                .filter_map(|(i, radius)| Some((Interval::around(radius.known()?), row(i as u32))))
+                .collect()
         };
         let mut radii = own(&self.facets, Row::Facet);
         radii.extend(own(&self.edges, Row::Edge));
         radii.extend(own(&self.vertices, Row::Vertex));
-        radii.extend((0..).zip(&self.cells).map(|(i, &radius)| (radius, Row::Cell(i))));
+        let cells = (0..).zip(&self.cells);
+        radii.extend(cells.map(|(i, &radius)| (Interval::around(radius), Row::Cell(i))));
         radii.par_sort_unstable_by(|(a, i), (b, j)| {
             a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)).then(i.cmp(j))
         });

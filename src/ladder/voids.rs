@@ -7,7 +7,7 @@ use super::Levels;
 use super::incidence::Incidence;
 use super::levels::ByLevel;
 use crate::shape::{Directions, Hollow, UnionFind, United, Void, WindingSets, between};
-use crate::triangulation::{Predicates, Torus};
+use crate::triangulation::{Interval, Predicates, Torus};
 
 /// What a level leaves empty: the components of its complement.
 pub(super) struct Hollows<'a> {
@@ -66,7 +66,8 @@ impl Levels<'_> {
         let facets = ByLevel::new(self.len(), self.facets.iter().map(|span| span.first));
         let whole = &self.filtration.whole;
         let hollow = |(row, &cell): (usize, &[u32; 4])| {
-            Hollow::of(self.filtration.cells[row], whole.corners(cell))
+            let radius = Interval::around(self.filtration.cells[row]);
+            Hollow::of(radius, whole.corners(cell))
         };
         let outside = self.cells.len() as u32;
         let (sets, count) = match self.filtration.torus() {
@@ -186,7 +187,8 @@ impl Hollows<'_> {
         let cells = filtration.whole.complex().cells.rows();
         let (mut alpha, mut at) = (f64::NEG_INFINITY, root as usize);
         loop {
-            hollow.raise(&mut alpha, &self.spheres, cells[at], filtration.cells[at]);
+            let radius = Interval::around(filtration.cells[at]);
+            hollow.raise(&mut alpha, &self.spheres, cells[at], radius);
             at = self.next[at] as usize;
             if at == root as usize {
                 break;

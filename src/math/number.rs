@@ -31,6 +31,18 @@ macro_rules! number {
 
 number!(f64 i128 IBig);
 
+/// A number that another, which may be of a simpler kind, multiplies.
+pub(crate) trait Scale<V>: Number {
+    fn scaled(&self, factor: &V) -> Self;
+}
+
+impl<T: Number> Scale<T> for T {
+    #[inline(always)]
+    fn scaled(&self, factor: &T) -> T {
+        self.times(factor)
+    }
+}
+
 /// Integers that doubles are turned into: of 128 bits where these suffice, else of any length.
 pub(crate) trait Integer: Number + Ord {
     const ZERO: Self;

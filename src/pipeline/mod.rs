@@ -169,7 +169,7 @@ impl Pipeline {
         self.weighed_model(points, &ModelFacts::default(), hear)
     }
 
-    /// The points of a file, with what it tells of them: α by default is the one there. `hear` is called
+    /// The points of a file, with what it states about them: α by default is the one there. `hear` is called
     /// with each stage as it begins.
     ///
     /// # Errors

@@ -44,7 +44,7 @@ pub struct Origin {
     pub truncation: Option<Truncation>,
     /// The grid that they are samples of, where that is known.
     pub grid: Option<SampleGrid>,
-    /// The values that were gray 0 and 255, where a file of points tells them.
+    /// The values that were gray 0 and 255, where a file of points states them.
     pub range: Option<GrayRange>,
     /// Adaptive selection ended before it had as many points as asked for.
     pub ended: Option<Adaptive>,

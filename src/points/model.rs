@@ -77,7 +77,7 @@ impl SampleGrid {
         }
     }
 
-    /// The sample that stands exactly at a position.
+    /// The sample exactly at a position.
     pub fn sample_at(&self, position: [f64; 3]) -> Option<[u32; 3]> {
         let index = match self.units {
             Units::Voxel => position,

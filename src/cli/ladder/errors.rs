@@ -31,7 +31,7 @@ impl Errors {
         };
         let inside = rmse(Interpolant::with_values(shape, grays)?)?;
         let whole = fill(shape, Some(volume), units)?;
-        // Behind the points stand the corners, in gray levels already.
+        // The corners follow the points, in gray levels already.
         let corners = whole.points().values.iter().flatten().skip(grays.len());
         let all: Vec<f64> = grays.iter().chain(corners).copied().collect();
         let filled = rmse(Interpolant::with_values(&whole, &all)?)?;

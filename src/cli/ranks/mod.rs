@@ -115,16 +115,19 @@ impl Ranks {
         serve: impl FnOnce() -> anyhow::Result<()>,
     ) -> ExitCode {
         let is_first = self.team().rank() == 0;
-        let done = match self {
-            Self::Mute(Launched { rank: 1.., .. }) => return ExitCode::SUCCESS,
-            Self::Mute(launched) => {
-                complaint::tell(command, &launched.refusal(command).into());
-                return ExitCode::from(USAGE);
+        if let Self::Mute(launched) = self {
+            if launched.rank > 0 {
+                return ExitCode::SUCCESS;
             }
-            _ if is_first => catch_unwind(AssertUnwindSafe(lead)),
-            _ => catch_unwind(AssertUnwindSafe(|| {
+            complaint::tell(command, &launched.refusal(command).into());
+            return ExitCode::from(USAGE);
+        }
+        let done = if is_first {
+            catch_unwind(AssertUnwindSafe(lead))
+        } else {
+            catch_unwind(AssertUnwindSafe(|| {
                 serve().map(|()| ExitCode::SUCCESS).map_err(|error| self.tell(command, &error))
-            })),
+            }))
         };
         match done {
             Ok(Ok(code)) => code,

@@ -3,28 +3,31 @@
 mod numbers;
 mod pairs;
 mod rank;
+mod sort;
 
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
+use super::filtration::Radius;
 use super::levels::Own;
 use super::{Filtration, Levels};
 use crate::memory;
 use crate::progress;
 use crate::shape::{Alpha, Betti, ShapeError};
-use crate::triangulation::{Interval, TriangulationError};
+use crate::triangulation::TriangulationError;
 pub(super) use numbers::Numbers;
 pub use pairs::Pairs;
 use rank::{NONE, Ranks};
+use sort::by_rank;
 
 /// Every simplex of a regular triangulation, and the α from which on it is in the shape, on its
 /// boundary, inside.
 ///
-/// A *value* is a squared radius, told as the nearest double of the exact number (of two, the one
+/// A *value* is a squared radius, given as the nearest double of the exact number (of two, the one
 /// whose last digit is even). The order is by the exact number, then by dimension, then by vertices;
 /// so faces come before what they are faces of, and simplices whose values differ by less than
-/// doubles can tell are in the right order all the same.
+/// doubles can resolve are in the right order all the same.
 ///
 /// A double nearest to a value may be below it: the shape at this very α, [`Filtration::shape`], may
 /// have the simplex or not. [`Filtration::curve`] has doubles that are not below.
@@ -73,12 +76,16 @@ impl Filtration {
             format!("the order of {} simplices", numbers.all())
         })?;
         let done = |parts| progress::report(parts, 4);
-        let Ranks { values, of } = Ranks::of(self, numbers)?;
-        done(2);
-        let levels = self.levels_by_rank(&values, &of, numbers);
-        drop(of);
+        let (levels, (cells, cell_rows)) = rayon::join(
+            || {
+                let Ranks { values, of } = Ranks::of(self, numbers)?;
+                done(2);
+                Ok::<_, ShapeError>(self.levels_by_rank(&values, &of, numbers))
+            },
+            || sorted_cells(complex.cells.rows()),
+        );
+        let levels = levels?;
         done(3);
-        let (cells, cell_rows) = sorted_cells(complex.cells.rows());
         let mut ordered = Ordered {
             levels,
             numbers,
@@ -87,7 +94,8 @@ impl Filtration {
             order: Vec::new(),
             pairs: OnceLock::new(),
         };
-        ordered.order = ordered.by_rank();
+        ordered.order =
+            by_rank(numbers.all(), ordered.levels.len(), |simplex| ordered.rank(simplex));
         done(4);
         Ok(ordered)
     }
@@ -131,29 +139,6 @@ impl Ordered<'_> {
             + numbers.count(3) * 2 * (size_of::<[u32; 4]>() + size_of::<u32>())
     }
 
-    /// The numbers of all simplices, by rank, then as they are.
-    fn by_rank(&self) -> Vec<u32> {
-        let mut next = vec![0; self.levels.len() + 1];
-        self.ranks().for_each(|rank| next[rank as usize + 1] += 1);
-        for rank in 1..next.len() {
-            next[rank] += next[rank - 1];
-        }
-        let mut order = vec![0; self.numbers.all()];
-        self.ranks().zip(0..).for_each(|(rank, simplex)| {
-            let place: &mut u32 = &mut next[rank as usize];
-            order[*place as usize] = simplex;
-            *place += 1;
-        });
-        order
-    }
-
-    /// The ranks of all simplices, by their numbers.
-    fn ranks(&self) -> impl Iterator<Item = u32> + '_ {
-        let Levels { vertices, edges, facets, cells, .. } = &self.levels;
-        let below = vertices.iter().chain(edges).chain(facets).map(|span| span.first);
-        below.chain(self.cell_rows.iter().map(|&row| cells[row as usize]))
-    }
-
     /// The filtration.
     pub fn filtration(&self) -> &Filtration {
         self.levels.filtration
@@ -183,7 +168,7 @@ impl Ordered<'_> {
     /// When it is above 3.
     pub fn gabriel(&self, dimension: usize) -> usize {
         let Filtration { vertices, edges, facets, .. } = self.filtration();
-        let own = |known: &[Option<Interval>]| known.iter().flatten().count();
+        let own = |radii: &[Radius]| radii.iter().filter(|radius| radius.known().is_some()).count();
         match dimension {
             0 => own(vertices),
             1 => own(edges),
@@ -233,15 +218,19 @@ impl Ordered<'_> {
         };
         let (vertices, span, gabriel) = match self.numbers.row(number) {
             (0, row) => {
-                let gabriel = filtration.vertices[row].is_some();
+                let gabriel = filtration.vertices[row].known().is_some();
                 (&self.vertices()[row][..], self.levels.vertices[row], gabriel)
             }
-            (1, row) => {
-                (&self.edges()[row][..], self.levels.edges[row], filtration.edges[row].is_some())
-            }
-            (2, row) => {
-                (&self.facets()[row][..], self.levels.facets[row], filtration.facets[row].is_some())
-            }
+            (1, row) => (
+                &self.edges()[row][..],
+                self.levels.edges[row],
+                filtration.edges[row].known().is_some(),
+            ),
+            (2, row) => (
+                &self.facets()[row][..],
+                self.levels.facets[row],
+                filtration.facets[row].known().is_some(),
+            ),
             (_, row) => {
                 let first = self.levels.cells[self.cell_rows[row] as usize];
                 let (value, vertices) = (value(first), &self.cells[row]);

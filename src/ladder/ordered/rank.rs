@@ -38,7 +38,7 @@ impl Ranks {
         let spheres = filtration.spheres();
         let mut radii =
             memory::room(numbers.all(), || format!("the order of {} simplices", numbers.all()))?;
-        collect(filtration, numbers, &spheres, &mut radii);
+        collect(filtration, numbers, &mut radii);
         radii.par_sort_unstable();
         let lattice = is_small_lattice(filtration.points(), filtration.torus());
         let exact = Exactly { filtration, numbers, spheres, lattice };
@@ -64,27 +64,14 @@ impl Ranks {
 }
 
 /// The nearest doubles of all radii, by number of the simplex.
-fn collect(
-    filtration: &Filtration,
-    numbers: Numbers,
-    spheres: &Predicates<'_>,
-    radii: &mut Vec<Radius>,
-) {
-    let Filtration { whole, incidence, facets, edges, vertices, .. } = filtration;
-    let complex = whole.complex();
-    let of = |from: u32| move |row: usize, radius: f64| (to_bits(radius), from + row as u32);
-    let [of_vertices, of_edges, of_facets, of_cells] = numbers.first.map(of);
-    radii.par_extend(vertices.par_iter().enumerate().filter_map(|(row, known)| {
-        known.map(|_| of_vertices(row, spheres.nearest_radius(complex.vertices.rows()[row])))
-    }));
-    radii.par_extend(edges.par_iter().enumerate().filter_map(|(row, known)| {
-        known.map(|_| of_edges(row, spheres.nearest_radius(complex.edges.rows()[row])))
-    }));
-    radii.par_extend(facets.par_iter().enumerate().filter_map(|(row, known)| {
-        known.map(|_| of_facets(row, spheres.nearest_radius(incidence.facets[row])))
-    }));
-    let cells = complex.cells.rows().par_iter().enumerate();
-    radii.par_extend(cells.map(|(row, &cell)| of_cells(row, spheres.nearest_radius(cell))));
+fn collect(filtration: &Filtration, numbers: Numbers, radii: &mut Vec<Radius>) {
+    let Filtration { cells, facets, edges, vertices, .. } = filtration;
+    for (from, lower) in numbers.first.into_iter().zip([vertices, edges, facets]) {
+        let known = (from..).zip(lower);
+        radii.extend(known.filter_map(|(simplex, own)| Some((to_bits(own.known()?), simplex))));
+    }
+    let cells = (numbers.first[3]..).zip(cells);
+    radii.extend(cells.map(|(simplex, &radius)| (to_bits(radius), simplex)));
 }
 
 /// Integers in the order of doubles that are no −0.
@@ -97,7 +84,7 @@ fn from_bits(key: u64) -> f64 {
     f64::from_bits(if key >> 63 == 1 { key & !(1 << 63) } else { !key })
 }
 
-/// Tells radii apart that have one nearest double.
+/// Distinguishes radii that have one nearest double.
 struct Exactly<'a> {
     filtration: &'a Filtration,
     numbers: Numbers,

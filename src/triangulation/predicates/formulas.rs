@@ -6,12 +6,13 @@
 //! the others, the centre is p + c where 2c·a = t for each ray and c lies in the span of the rays;
 //! the squared radius is |c|² − ω(p). A point at the ray e is inside if its power < 2c·e.
 
-use crate::math::number::{Number, cross, dot};
+use crate::math::number::{Number, Scale, cross, dot};
 
-/// From the first vertex to another.
+/// From the first vertex to another. Where a lattice makes vectors exact in doubles, only powers
+/// need more digits.
 #[derive(Clone, Copy)]
-pub(super) struct Ray<T> {
-    pub vector: [T; 3],
+pub(super) struct Ray<T, V = T> {
+    pub vector: [V; 3],
     pub power: T,
 }
 
@@ -55,7 +56,7 @@ fn products<T: Number>([u, v]: [T; 2], [x, y]: [T; 2]) -> [T; 2] {
 /// 4 d·|c|² and d, where d ≥ 0 depends on the rays alone: of degree 2 for one ray, 4 for two, 6
 /// for three.
 #[inline(always)]
-pub(super) fn quotient<T: Number>(rays: &[Ray<T>]) -> (T, T) {
+pub(super) fn quotient<T: Scale<V>, V: Number>(rays: &[Ray<T, V>]) -> (T, V) {
     match rays {
         [a] => (a.power.times(&a.power), dot(&a.vector, &a.vector)),
         [a, b] => {
@@ -63,10 +64,10 @@ pub(super) fn quotient<T: Number>(rays: &[Ray<T>]) -> (T, T) {
             (u.times(&a.power).plus(&v.times(&b.power)), d)
         }
         [a, b, c] => {
-            let normal = |u: &Ray<T>, v: &Ray<T>| cross(&u.vector, &v.vector);
+            let normal = |u: &Ray<T, V>, v: &Ray<T, V>| cross(&u.vector, &v.vector);
             let normals = [normal(b, c), normal(c, a), normal(a, b)];
             let component = |k: usize| {
-                let [x, y, z] = [0, 1, 2].map(|i| rays[i].power.times(&normals[i][k]));
+                let [x, y, z] = [0, 1, 2].map(|i| rays[i].power.scaled(&normals[i][k]));
                 x.plus(&y).plus(&z)
             };
             let twice = [component(0), component(1), component(2)];
@@ -98,11 +99,11 @@ pub(super) fn side<T: Number>(rays: &[Ray<T>], e: &Ray<T>) -> T {
 
 /// The Gram determinant d of two rays, and d times the coordinates of 2c in them.
 #[inline(always)]
-fn gram<T: Number>(a: &Ray<T>, b: &Ray<T>) -> ([T; 2], T) {
+fn gram<T: Scale<V>, V: Number>(a: &Ray<T, V>, b: &Ray<T, V>) -> ([T; 2], V) {
     let aa = dot(&a.vector, &a.vector);
     let bb = dot(&b.vector, &b.vector);
     let ab = dot(&a.vector, &b.vector);
-    let u = bb.times(&a.power).minus(&ab.times(&b.power));
-    let v = aa.times(&b.power).minus(&ab.times(&a.power));
+    let u = a.power.scaled(&bb).minus(&b.power.scaled(&ab));
+    let v = b.power.scaled(&aa).minus(&a.power.scaled(&ab));
     ([u, v], aa.times(&bb).minus(&ab.times(&ab)))
 }

@@ -38,6 +38,13 @@ pub(crate) struct Interval {
     pub high: f64,
 }
 
+impl Interval {
+    /// Around a number of which this is the nearest double.
+    pub(crate) fn around(nearest: f64) -> Self {
+        Self { low: nearest.next_down(), high: nearest.next_up() }
+    }
+}
+
 /// Weighted points, asked about by index.
 pub(crate) struct Predicates<'a> {
     positions: &'a [[f64; 3]],

@@ -2,7 +2,7 @@
 //! apart.
 
 use super::formulas::{Ray, quotient};
-use super::size::View;
+use super::size::{Size, View};
 use super::twofold::Twofold;
 use super::{Predicates, Ratio, Site, exact};
 use crate::math::number::{Number, dot};
@@ -30,9 +30,9 @@ impl Predicates<'_> {
     /// The double nearest to the squared radius of the smallest orthogonal sphere, of two the one
     /// whose last digit is even. Never −0.
     ///
-    /// By one division where a lattice makes numerator and denominator exact, else by
-    /// twice the digits of doubles; what lies too near to the middle of two doubles for that, by
-    /// integers.
+    /// By one division where a lattice makes numerator and denominator exact, else by twice the digits
+    /// of doubles, of powers alone where a lattice makes vectors exact; what lies too near to the middle
+    /// of two doubles for that, by integers.
     pub(crate) fn nearest_radius<const N: usize>(&self, simplex: [u32; N]) -> f64 {
         let sites = self.sites(simplex);
         if N == 1 {
@@ -47,25 +47,27 @@ impl Predicates<'_> {
             // A face of a lattice's triangulation is not flat: its denominator is not 0.
             return (numerator - 4.0 * weight * denominator) / (4.0 * denominator) + 0.0;
         }
-        let by_integers = || self.exact_radius(simplex).nearest();
-        if !(size.is_sane() && weight.abs() < 1e60) {
-            return by_integers();
-        }
-        let (numerator, denominator) = quotient(&twofold_rays(sites)[1..]);
-        let (above, below) =
-            (bounds.numerator * Twofold::ROUNDING, bounds.denominator * Twofold::ROUNDING);
-        let d = denominator.high;
-        if d <= 4.0 * below {
-            return by_integers();
-        }
-        let fourth = numerator.over(denominator);
-        let quotient = Twofold { high: fourth.high / 4.0, low: fourth.low / 4.0 };
-        let radius = Twofold::sum(quotient.high, -weight);
-        let radius = Twofold::sum(radius.high, radius.low + quotient.low);
-        // |n/d − ñ/d̃| ≤ (e_n + (ñ/d̃) e_d) / (d̃ − e_d); then the division and the difference.
-        let error = (above + 4.0 * quotient.high.abs() * below) / (4.0 * (d - 2.0 * below))
-            + Twofold::ROUNDING * (quotient.high.abs() + weight.abs());
-        radius.nearest(error).map_or_else(by_integers, |radius| radius + 0.0)
+        let rounded = if !(size.is_sane() && weight.abs() < 1e60) {
+            None
+        } else if self.holds_vectors(size, N) {
+            let (numerator, denominator) = quotient(&lattice_rays(sites, rays)[1..]);
+            let denominator = Twofold { high: denominator, low: 0.0 };
+            rounded(numerator, denominator, bounds.numerator, 0.0, weight)
+        } else {
+            let (numerator, denominator) = quotient(&twofold_rays(sites)[1..]);
+            rounded(numerator, denominator, bounds.numerator, bounds.denominator, weight)
+        };
+        rounded.unwrap_or_else(|| self.exact_radius(simplex).nearest())
+    }
+
+    /// Whether the vectors of so many vertices, and what a radius needs of them without weights, are exact
+    /// in doubles, and products of two lengths have at most 26 digits.
+    #[inline(always)]
+    fn holds_vectors(&self, size: Size, vertices: usize) -> bool {
+        const DIGITS: f64 = (1u64 << 26) as f64;
+        let step = self.lattice.step;
+        3.0 * size.length * size.length <= DIGITS * (step * step)
+            && self.holds(size.bounds(vertices).denominator, 2 * vertices - 2)
     }
 
     /// The squared radius of the smallest orthogonal sphere, exactly. By integers of any length.
@@ -109,6 +111,44 @@ impl Predicates<'_> {
     }
 }
 
+/// The double nearest to numerator / 4 denominator − weight, if it is certain, from the sums of magnitudes
+/// of the terms of both.
+#[inline(always)]
+fn rounded(
+    numerator: Twofold,
+    denominator: Twofold,
+    above: f64,
+    below: f64,
+    weight: f64,
+) -> Option<f64> {
+    let (above, below) = (above * Twofold::ROUNDING, below * Twofold::ROUNDING);
+    let d = denominator.high;
+    if d <= 4.0 * below {
+        return None;
+    }
+    let fourth = numerator.over(denominator);
+    let quotient = Twofold { high: fourth.high / 4.0, low: fourth.low / 4.0 };
+    let radius = Twofold::sum(quotient.high, -weight);
+    let radius = Twofold::sum(radius.high, radius.low + quotient.low);
+    // |n/d − ñ/d̃| ≤ (e_n + (ñ/d̃) e_d) / (d̃ − e_d); then the division and the difference.
+    let error = (above + 4.0 * quotient.high.abs() * below) / (4.0 * (d - 2.0 * below))
+        + Twofold::ROUNDING * (quotient.high.abs() + weight.abs());
+    radius.nearest(error).map(|radius| radius + 0.0)
+}
+
+/// Of the rays in doubles, whose vectors are exact, those with exact powers, too.
+#[inline(always)]
+fn lattice_rays<const N: usize>(sites: [Site; N], rays: [Ray<f64>; N]) -> [Ray<Twofold, f64>; N] {
+    let mut exact = [Ray { power: Twofold::sum(0.0, 0.0), vector: [0.0; 3] }; N];
+    for ((to, ray), q) in exact.iter_mut().zip(&rays).zip(sites) {
+        let heavier = Twofold::sum(sites[0].weight, -q.weight);
+        let square = Twofold { high: dot(&ray.vector, &ray.vector), low: 0.0 };
+        *to = Ray { power: square.plus(&heavier), vector: ray.vector };
+    }
+    exact
+}
+
+#[inline(always)]
 fn twofold_rays<const N: usize>(sites: [Site; N]) -> [Ray<Twofold>; N] {
     let p = sites[0];
     sites.map(|q| {

@@ -1,7 +1,7 @@
 //! Numbers of two doubles: twice the digits, at some twenty operations each (Dekker 1971,
 //! doi:10.1007/BF01397083; bounds by Joldes, Muller and Popescu 2017, doi:10.1145/3121432).
 
-use crate::math::number::Number;
+use crate::math::number::{Number, Scale};
 
 /// The unevaluated sum of two doubles, the second at most half a unit in the last place of the first.
 ///
@@ -82,6 +82,17 @@ impl Number for Twofold {
     }
 }
 
+/// By a double of at most 26 digits, which need not be taken apart.
+impl Scale<f64> for Twofold {
+    #[inline(always)]
+    fn scaled(&self, factor: &f64) -> Self {
+        let high = self.high * factor;
+        let (upper, lower) = halves(self.high);
+        let low = (upper * factor - high) + lower * factor;
+        Self::sum(high, low + self.low * factor)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use dashu_int::IBig;
@@ -109,6 +120,9 @@ mod tests {
             close(exactly(a.minus(&b)), &x - &y, size(&x) + size(&y));
             let product = (&x * &y) >> 200;
             close(exactly(a.times(&b)), product.clone(), size(&product));
+            let short = (b.high * 2f64.powi(20)).round() / 2f64.powi(20);
+            let product = (&x * integer(short, -200)) >> 200;
+            close(exactly(a.scaled(&short)), product.clone(), size(&product));
             let quotient = (&x << 200) / &y;
             close(exactly(a.over(b)) >> 6, quotient.clone() >> 6, size(&quotient));
         }

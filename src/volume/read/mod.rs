@@ -78,7 +78,7 @@ pub struct ReadOptions {
     /// The volume to read of a file of several (a fourth axis), from 0.
     pub frame: Option<u64>,
     /// The series to read of a folder of several (DICOM): its number, from 1, or the end of its UID, if
-    /// that is no number.
+    /// that is not a number.
     pub series: Option<String>,
     /// What becomes of samples that are NaN; without a word they are refused.
     pub nan: Option<Nan>,

@@ -36,7 +36,7 @@ pub(in crate::volume) fn zarr(source: &Source, folder: &Path) -> Result<(), Volu
     std::fs::create_dir(&part).map_err(failed)?;
     let done = fill(source, &part).and_then(|()| std::fs::rename(&part, folder).map_err(failed));
     if done.is_err() {
-        // What cannot be removed either has been told of.
+        // The error reported is the first one.
         let _ = std::fs::remove_dir_all(&part);
     }
     done

@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release --example race` (about half an hour); `-- quick` for sets of up to 128 k points,
 //! `-- large` for the others; `-- alpha` raises α instead; `-- triangulation` races triangulations
-//! alone, against that of Gmsh (HXT), too, where `GMSH_PYTHON` names a Python that has it.
+//! alone, against that of Gmsh (HXT), too, where `GMSH_PYTHON` names a Python that has it; `-- filtration`
+//! races filtrations against whole shapes of our own (add `quick` for the small sets).
 //!
 //! *Plain CGAL* is `benches/plain_cgal.cc`, which this program compiles with `c++ -O3 -DNDEBUG`
 //! (`CXX` names another compiler). Our engines are timed with everything they give: classes, canonical
@@ -10,15 +11,16 @@
 //! a file, and counts must agree. Runs are interleaved, times are medians of five, ratios those of the
 //! medians, and peaks the largest memory of the process, its input included.
 
+mod engine;
+mod processes;
+mod sets;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Instant;
 
-use walpha::points::{Points, Selection, Units, difference, select, weigh};
-use walpha::shape::{Engine, ShapeOptions};
-use walpha::triangulation::{Maker, Sites, triangulate};
-use walpha::{Alpha, Gray, Simplices, Volume, WeightedPoints, Weighting};
-use walpha::{alpha_shape, volume};
+use engine::run;
+use processes::{Run, medians, output};
+use sets::weighted;
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
@@ -38,7 +40,9 @@ fn main() -> Result<()> {
         ["large"] => shapes(&LARGE),
         ["alpha"] => sweep(),
         ["triangulation"] => triangulations(),
-        _ => Err("usage: race [quick|large|alpha|triangulation]".into()),
+        ["filtration"] => filtrations(&[&SMALL[..], &LARGE].concat()),
+        ["filtration", "quick"] => filtrations(&SMALL),
+        _ => Err("usage: race [quick|large|alpha|triangulation|filtration [quick]]".into()),
     }
 }
 
@@ -90,11 +94,32 @@ fn triangulations() -> Result<()> {
     Ok(())
 }
 
-/// What one process says.
-struct Run {
-    seconds: f64,
-    peak: u64,
-    counts: String,
+/// A filtration, and with it the order of all simplices, against the shape of the whole triangulation.
+fn filtrations(sets: &[&str]) -> Result<()> {
+    let race = Race::new()?;
+    println!("| set | weights | whole shape | filtration | in order | peak: whole | in order |");
+    println!("|---|---|--:|--:|--:|--:|--:|");
+    for set in sets {
+        let weighting = if set.starts_with("skull") { "min-max" } else { "common=0" };
+        let points = race.points(set, weighting, 10.0)?;
+        let by = |what: &'static str| {
+            let points = &points;
+            move || run_engine(what, points, f64::INFINITY, THREADS, None)
+        };
+        let runs = medians(&[&by("whole"), &by("filtration"), &by("order")])?;
+        let [whole, filtration, order] = &runs[..] else { unreachable!("three were run") };
+        let time =
+            |run: &Run| format!("{:.2} s ({:.2}×)", run.seconds, run.seconds / whole.seconds);
+        println!(
+            "| {set} | {weighting} | {:.2} s | {} | {} | {} MiB | {} MiB |",
+            whole.seconds,
+            time(filtration),
+            time(order),
+            whole.peak >> 20,
+            order.peak >> 20,
+        );
+    }
+    Ok(())
 }
 
 /// Where the runners are.
@@ -194,141 +219,4 @@ fn hxt(points: &Path) -> Result<Run> {
     let python = std::env::var_os("GMSH_PYTHON").ok_or("GMSH_PYTHON is not set")?;
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/race_gmsh.py");
     output(Command::new(python).arg(script).arg(points))
-}
-
-/// Runs everything in turn, several times; gives the medians of times and peaks.
-fn medians(runs: &[&dyn Fn() -> Result<Run>]) -> Result<Vec<Run>> {
-    let mut done: Vec<Vec<Run>> = runs.iter().map(|_| Vec::new()).collect();
-    for _ in 0..RUNS {
-        for (run, done) in runs.iter().zip(&mut done) {
-            done.push(run()?);
-        }
-    }
-    let counts = done[0][0].counts.clone();
-    let median = |mut of: Vec<Run>| {
-        assert!(of.iter().all(|run| run.counts == counts), "counts differ");
-        of.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
-        let peak = of.iter().map(|run| run.peak).max().unwrap_or(0);
-        Run { peak, ..of.swap_remove(RUNS / 2) }
-    };
-    Ok(done.into_iter().map(median).collect())
-}
-
-/// Seconds, peak KiB, counts.
-fn output(command: &mut Command) -> Result<Run> {
-    let output = command.output()?;
-    if !output.status.success() {
-        return Err(String::from_utf8_lossy(&output.stderr).into());
-    }
-    let text = String::from_utf8(output.stdout)?;
-    let mut words = text.split_whitespace();
-    let mut word = || words.next().ok_or("seconds and a peak");
-    let (seconds, peak) = (word()?.parse()?, word()?.parse::<u64>()? << 10);
-    Ok(Run { seconds, peak, counts: words.collect::<Vec<_>>().join(" ") })
-}
-
-/// One engine on points from a file: prints what plain CGAL prints.
-fn run(engine: &str, points: &str, alpha: &str, threads: usize, memory: Option<u64>) -> Result<()> {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
-    let bytes = std::fs::read(points)?;
-    let number = |bytes: &[u8; 8]| f64::from_le_bytes(*bytes);
-    let rows = bytes.as_chunks::<8>().0.as_chunks::<4>().0;
-    let positions = rows.iter().map(|[x, y, z, _]| [x, y, z].map(number)).collect();
-    let weights = rows.iter().map(|[.., w]| number(w)).collect();
-    let points = WeightedPoints::new(positions, weights).unwrap();
-    drop(bytes);
-    let started = Instant::now();
-    let engine = match engine {
-        "cgal" => Engine::Cgal,
-        "native" => Engine::Native,
-        _ => {
-            let sites = Sites::new(&points.positions, &points.weights)?;
-            let made = triangulate(&sites, Maker::Native)?;
-            assert!(!made.cells().is_empty());
-            let seconds = started.elapsed().as_secs_f64();
-            println!("{seconds} {} 0 0 0 0 0 0 0 0 0 0", peak());
-            return Ok(());
-        }
-    };
-    let alpha = Alpha::from_squared(alpha.parse()?)?;
-    let options = ShapeOptions::new(alpha).engine(engine).memory(memory);
-    let shape = alpha_shape(points, &options)?;
-    assert!(shape.betti().is_some());
-    let seconds = started.elapsed().as_secs_f64();
-    let complex = shape.complex();
-    println!(
-        "{seconds} {} {} {} {} {}",
-        peak(),
-        complex.cells.len(),
-        by_class(&complex.facets),
-        by_class(&complex.edges),
-        by_class(&complex.vertices)
-    );
-    Ok(())
-}
-
-fn by_class<const N: usize>(simplices: &Simplices<N>) -> String {
-    let counts = simplices.counts();
-    format!("{} {} {}", counts.interior, counts.regular, counts.singular)
-}
-
-/// A set by name: `skull@N` (the skull upsampled to N³ samples) or `random@N` (N random points).
-fn weighted(set: &str, weighting: &str, alpha: f64) -> Result<WeightedPoints> {
-    let weighting: Weighting = weighting.parse()?;
-    let points = match set.split_once('@') {
-        Some(("skull", size)) => skull(size.parse()?)?,
-        Some((_, count)) => random(count.parse()?),
-        None => return Err("no such set".into()),
-    };
-    Ok(weigh(&points, weighting, Alpha::from_squared(alpha)?)?)
-}
-
-fn skull(size: usize) -> Result<Points> {
-    let (skull, _) = volume::sample("sample:skull")?.into_gray(Gray::Automatic)?;
-    let skull = upsampled(&skull, size)?;
-    let selection = Selection::default();
-    Ok(select(&skull, &skull, &difference(&skull), &selection, Units::Voxel)?)
-}
-
-/// Trilinear, the first and last samples of each axis staying where they are.
-fn upsampled(volume: &Volume, size: usize) -> Result<Volume> {
-    let samples = volume.samples();
-    let place = |i: usize, n: usize| {
-        let at = i as f64 * (n - 1) as f64 / (size - 1) as f64;
-        let low = (at as usize).min(n - 2);
-        (low, at - low as f64)
-    };
-    let [nx, ny, nz] = volume.dims().xyz();
-    let upsampled = ndarray::Array3::from_shape_fn((size, size, size), |(z, y, x)| {
-        let ((z, fz), (y, fy), (x, fx)) = (place(z, nz), place(y, ny), place(x, nx));
-        let mut sum = 0.0;
-        for (dz, wz) in [(0, 1.0 - fz), (1, fz)] {
-            for (dy, wy) in [(0, 1.0 - fy), (1, fy)] {
-                for (dx, wx) in [(0, 1.0 - fx), (1, fx)] {
-                    sum += wz * wy * wx * f64::from(samples[[z + dz, y + dy, x + dx]]);
-                }
-            }
-        }
-        sum as f32
-    });
-    Ok(Volume::new(upsampled, *volume.frame())?.with_gray_levels())
-}
-
-/// Points in a cube, one in each unit of volume on average, from a fixed linear congruence.
-fn random(count: usize) -> Points {
-    let side = (count as f64).cbrt();
-    let mut state = 1u64;
-    let mut next = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64 * side
-    };
-    let positions = (0..count).map(|_| [next(), next(), next()]).collect();
-    Points::new(positions)
-}
-
-/// The most memory this process ever held, in KiB; 0 where the system does not say.
-fn peak() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    line.and_then(|line| line.trim().strip_suffix("kB")?.trim().parse().ok()).unwrap_or(0)
 }

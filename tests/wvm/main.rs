@@ -1,17 +1,18 @@
-//! Points as `.wvm`: what is written comes back, in few bytes; what is damaged is told.
+//! Points as `.wvm`: what is written comes back.
 
+mod command;
+#[path = "../common/mod.rs"]
 mod common;
-#[path = "common/told.rs"]
+mod damaged;
+#[path = "../common/told.rs"]
 mod told;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::{json, ok, run};
 use proptest::prelude::*;
 use told::Told;
 use walpha::points::{ModelFacts, Packing, PointWriter, SampleGrid, read_model, read_points};
-use walpha::volume::{self, VolumeWriter};
 use walpha::{
     Alpha, Coordinates, Dims, Frame, GrayRange, LengthUnit, Space, Units, WeightedPoints,
 };
@@ -216,105 +217,8 @@ fn the_first_layers_are_the_most_important_points() {
     let error = read_model(&folder.path().join("m.csv"), None, Some(1)).unwrap_err().told();
     assert!(error.contains("no layers") && error.contains("omit `level`"), "{error}");
 }
-
-fn small() -> Vec<u8> {
-    let points = scattered([6, 6, 6], 5, |chance| chance.below(50) as f64);
-    let order: Vec<u32> = (0..points.len() as u32).rev().collect();
-    let facts = ModelFacts::default().order(order).grid(grid([6, 6, 6]));
-    written(&points, &facts, Packing::default().layers(2))
-}
-
-#[test]
-fn each_damaged_byte_and_each_early_end_is_told() {
-    let bytes = small();
-    for place in 8..bytes.len() {
-        for bit in [1, 16, 128] {
-            let mut damaged = bytes.clone();
-            damaged[place] ^= bit;
-            let error = refused(&damaged);
-            assert!(
-                ["damaged", "version", "truncated", "header", "too long"]
-                    .iter()
-                    .any(|w| error.contains(w)),
-                "byte {place}: {error}"
-            );
-        }
-    }
-    for end in 8..bytes.len() {
-        let error = refused(&bytes[..end]);
-        assert!(error.contains("truncated") || error.contains("ends within"), "{end}: {error}");
-    }
-    let longer = refused(&[&bytes[..], b"."].concat());
-    assert!(longer.contains("too long"), "{longer}");
-}
-
-/// A file whose checksums are right: a head with these fields behind the version, then a layer.
-fn forged(fields: &[u8], layer: &[u8]) -> Vec<u8> {
-    let length = (8 + 1 + 2 + fields.len() + 4) as u16;
-    let mut bytes = [b"\x89wvm\r\n\x1a\n\x01", &length.to_le_bytes()[..], fields].concat();
-    bytes.extend(checksum(&bytes));
-    bytes.extend(layer);
-    bytes.extend(checksum(layer));
-    bytes
-}
-
-#[test]
-fn headers_are_not_believed() {
-    let weight = [0; 8];
-    let head = |flags: u8, layer: &[u8], rest: &[u8]| {
-        [&[flags, 0, 0, 1][..], layer, rest, &weight].concat()
-    };
-    let side = [0xd9, 0x0c]; // 1625
-    let large = [side, side, side].concat();
-    let refuses = |fields: &[u8], layer: &[u8], part: &str| {
-        let error = refused(&forged(fields, layer));
-        assert!(error.contains(part), "{part:?} is missing in: {error}");
-    };
-    let billion = [0x80, 0x94, 0xeb, 0xdc, 0x03];
-    let claims = |count: &[u8], places: u8| [count, &[places, 0, 0]].concat();
-    refuses(&head(1, &claims(&billion, 8), &large), &[0; 8], "more points than its bytes");
-    refuses(&head(1, &claims(&[9], 8), &[2, 2, 2]), &[0; 8], "more points than samples");
-    refuses(&head(1, &claims(&[9], 8), &[0, 2, 2]), &[0; 8], "empty");
-    refuses(&head(8, &claims(&[9], 8), &[0; 16]), &[0; 8], "without a grid");
-    refuses(&head(24, &claims(&[9], 8), &[0; 16]), &[0; 8], "two ways");
-    refuses(&head(0, &claims(&[9], 8), &[]), &[0; 8], "does not hold");
-    refuses(&head(1, &[0xff; 10], &large), &[0; 8], "64 bits");
-    refuses(&[0, 9, 0, 0], &[], "space 9");
-    refuses(&[0, 0, 8, 0], &[], "unit of length 8");
-    refuses(&[&[0, 0, 0, 0][..], &f64::NAN.to_le_bytes()].concat(), &[], "NaN");
-    // As many points as these bytes may claim, on the largest grid: the bytes decide what is there.
-    for filler in [0, 0x55, 0xff] {
-        let count = [0x80, 0x80, 0x01]; // 64·256
-        let layer = [&count[..], &[0x80, 0x02, 0, 0]].concat();
-        refuses(&head(1, &layer, &large), &[filler; 256], "does not hold");
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
-
-    /// Whatever stands in a layer whose checksum is right, nothing panics, and what is read is whole.
-    #[test]
-    fn forged_layers_are_read_or_refused(
-        layer in prop::collection::vec(any::<u8>(), 1..60),
-        count in 1u8..120,
-        side in 1u8..40,
-        steps in any::<bool>(),
-    ) {
-        let values = if steps { layer.len() as u8 / 2 } else { 0 };
-        let lengths = [count, layer.len() as u8 - values, values, 0];
-        let numbers = if steps { vec![0; 16] } else { Vec::new() };
-        let flags = if steps { 9 } else { 1 };
-        let fields =
-            [&[flags, 0, 0, 1][..], &lengths, &[side, side, 2], &numbers, &[0; 8]].concat();
-        let folder = tempfile::tempdir().unwrap();
-        if let Ok(points) = read_points(&save(folder.path(), &forged(&fields, &layer)), None) {
-            prop_assert_eq!(points.len(), usize::from(count));
-            let mut places = points.positions.clone();
-            places.dedup();
-            prop_assert_eq!(places.len(), points.len());
-        }
-    }
 
     #[test]
     fn any_set_on_a_grid_comes_back(
@@ -331,81 +235,4 @@ proptest! {
         let bytes = written(&points, &facts, Packing::default().layers(layers));
         prop_assert_eq!(back(&bytes, 0).0, points);
     }
-}
-
-/// A scan of 12 bits in the world: what `interpolate` makes of its points directly and of the file is the
-/// same, and so are the points.
-#[test]
-fn the_command_makes_the_same_of_a_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let phantom = volume::phantom(20).unwrap();
-    let samples = phantom.samples().mapv(|gray| (16.0 * gray).round() - 1024.0);
-    let coordinates = Coordinates { space: Space::Ras, unit: LengthUnit::Millimetre };
-    let frame =
-        Frame { origin: [3.0, -7.5, 0.1], spacing: [0.5, 0.5, 2.0], coordinates, ..Frame::VOXEL };
-    let scan = walpha::Volume::new(samples, frame).unwrap();
-    let mut bytes = Vec::new();
-    VolumeWriter::of("v.nrrd".as_ref()).unwrap().write(&scan, &mut bytes).unwrap();
-    fs::write(folder.path().join("v.nrrd"), bytes).unwrap();
-    let run_it = |args: &str| ok(folder.path(), &args.split(' ').collect::<Vec<_>>());
-    let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
-
-    let select = "--select adaptive --count 700 --alpha 3";
-    run_it(&format!("points v.nrrd {select} -o m.wvm"));
-    run_it(&format!("points v.nrrd {select} -o direct.csv"));
-    run_it("points m.wvm -o through.csv");
-    assert_eq!(read("direct.csv"), read("through.csv"));
-    for fill in ["", " --fill"] {
-        run_it(&format!("interpolate v.nrrd {select} -o direct.nrrd{fill}"));
-        run_it(&format!("interpolate m.wvm -o through.nrrd{fill}"));
-        assert_eq!(read("direct.nrrd"), read("through.nrrd"), "{fill}");
-    }
-    run_it(&format!("interpolate v.nrrd {select} -o direct.nrrd --gray-out"));
-    run_it("interpolate m.wvm -o through.nrrd --gray-out");
-    assert_eq!(read("direct.nrrd"), read("through.nrrd"));
-    run_it(&format!("shape v.nrrd {select} -o direct.ply"));
-    run_it("shape m.wvm -o through.ply");
-    assert_eq!(read("direct.ply"), read("through.ply"));
-
-    let told = json(folder.path(), &["info", "m.wvm"]);
-    assert_eq!(told["grid"], serde_json::json!([20, 20, 20]));
-    assert_eq!(told["coordinates"], serde_json::json!({"space": "LPS", "unit": "mm"}));
-    assert_eq!(told["alpha"], 3.0);
-    let told = json(folder.path(), &["shape", "m.wvm"]);
-    assert_eq!(told["alpha"]["origin"], "stored");
-}
-
-#[test]
-fn options_without_effect_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    ok(
-        folder.path(),
-        &["points", "sample:phantom@8", "--count", "40", "--layers", "2", "-o", "m.wvm"],
-    );
-    let refuses = |args: &[&str], part: &str| {
-        let (code, _, error) = run(folder.path(), args);
-        assert!(code != 0 && error.contains(part), "{args:?}: {error}");
-    };
-    refuses(&["points", "m.wvm", "--layers", "2", "-o", "n.wvm"], "--layers has no effect");
-    refuses(&["points", "m.wvm", "--value-error", "2", "-o", "n.csv"], "no .wvm is written");
-    refuses(&["points", "m.wvm", "--level", "2"], "has 2 levels");
-    refuses(&["points", "m.wvm", "--count", "9"], "--count has no effect");
-    fs::write(folder.path().join("p.csv"), "x,y,z\n0,0,0\n").unwrap();
-    refuses(&["points", "p.csv", "--gray-out"], "--gray-out has no effect");
-    let told = json(folder.path(), &["points", "m.wvm", "--level", "1"]);
-    assert_eq!(told["points"]["selected"], 10);
-}
-
-/// Points of a volume lie in clusters, and near values are alike: that is what the model knows.
-#[test]
-fn points_of_a_volume_take_less_than_chance_would() {
-    let folder = tempfile::tempdir().unwrap();
-    let select = ["--select", "adaptive", "--count", "3000", "--value-error", "3"];
-    ok(folder.path(), &[&["points", "sample:phantom@48", "-o", "m.wvm"][..], &select].concat());
-    let bytes = fs::metadata(folder.path().join("m.wvm")).unwrap().len() as f64;
-    let share: f64 = 3000.0 / 48f64.powi(3);
-    let chance = -(share * share.log2() + (1.0 - share) * (1.0 - share).log2()) / share;
-    // Of 43 steps of 6 in 0..255, any would take 5.4 bits.
-    let bits = 8.0 * bytes / 3000.0;
-    assert!(bits < 0.8 * (chance + 5.4), "{bits} bits a point, {chance} for places by chance");
 }
