@@ -4,6 +4,7 @@
     cargo build --release --features zarr,mpi
     scripts/measure_blocks.py steps 512 --blocks 8 --folder /scratch    # plan, run and merge, one thread
     scripts/measure_blocks.py ranks 512 --blocks 16 --folder /scratch   # `mpirun -n 1 … 8 walpha shape`
+    scripts/measure_blocks.py prices 1024 2048 4096 8192                # the table of docs/clusters.md, by the model alone
 
 The phantom is converted to Zarr first, once. Prints lines of the tables of docs/clusters.md: CPU time is that of user and system
 together, which other work on the machine hardly changes; memory is the largest resident set of a process.
@@ -109,6 +110,21 @@ def ranks(args, volume):
         out.unlink()
 
 
+def prices(args):
+    print("| volume | points | blocks | memory of a rank | read | written | core-hours | 1 rank | 64 ranks | 4096 ranks |\n" + "|---" * 10 + "|")
+    for size in args.size:
+        blocks = max(8, (size // 256) ** 3)
+        job = [*OPTIONS, "--engine", args.engine, "--blocks", blocks, "--dry-run", "--json"]
+        price = json.loads(measured([args.walpha, "blocks", "plan", f"sample:phantom@{size}", *job])[0])
+        plan, run, merge = price["core_seconds"]
+        hours = [(plan + run) / min(ranks, blocks) / 3600 + merge / 3600 for ranks in (1, 64, 4096)]
+        read, written = sum(price["bytes_read"]) / 1e9, price["bytes_written"][0] / 1e9
+        print(
+            f"| {size}³ | {price['points'] / 1e6:.0f}·10⁶ | {blocks} | {price['memory_per_block'] / 1e9:.1f} GB | {read:.0f} GB | {written:.0f} GB "
+            f"| {(plan + run + merge) / 3600:.2g} | " + " | ".join(f"{60 * h:.0f} min" if h < 2 else f"{h:.0f} h" for h in hours) + " |"
+        )
+
+
 def rank():
     """One rank of `ranks`: runs a command and leaves its CPU time in a folder."""
     folder, *command = sys.argv[2:]
@@ -121,8 +137,8 @@ def main():
     if sys.argv[1:2] == ["rank"]:
         return rank()
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["steps", "ranks"])
-    parser.add_argument("size", type=int, help="samples along each edge")
+    parser.add_argument("what", choices=["steps", "ranks", "prices"])
+    parser.add_argument("size", type=int, nargs="+", help="samples along each edge")
     parser.add_argument("--blocks", type=int, default=8)
     parser.add_argument("--engine", choices=["native", "cgal"], default="native")
     parser.add_argument("--folder", type=Path, default=Path("."), help="for the volume and the results")
@@ -131,6 +147,9 @@ def main():
     parser.add_argument("--no-pieces", action="store_true", help="`steps` writes no pieces")
     parser.add_argument("--walpha", type=Path, default=REPOSITORY / "target/release/walpha")
     args = parser.parse_args()
+    if args.what == "prices":
+        return prices(args)
+    [args.size] = args.size
     volume = args.folder / f"phantom{args.size}.zarr"
     if not volume.exists():
         _, wall, cpu, peak = measured([args.walpha, "convert", f"sample:phantom@{args.size}", "-o", volume, "--json"])

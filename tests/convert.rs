@@ -75,7 +75,7 @@ fn types_and_regions_come_back() {
         let metadata = fs::read_to_string(at.join(&zarr).join("zarr.json")).unwrap();
         assert!(metadata.contains(&format!("\"data_type\": \"{kind}\"")), "{metadata}");
     }
-    ok(at, &["convert", "i16.npy", "--roi", "3..70,60..,5..66", "-o", "part.zarr"]);
+    ok(at, &["convert", "i16.npy", "--roi", "3:70,60:,5:66", "-o", "part.zarr"]);
     let whole = numbers(|i| f32::from((i * 31) as i16));
     let part = whole.slice(ndarray::s![5..66, 60.., 3..70]);
     assert!(read(at, "part.zarr").as_slice().iter().eq(part.iter()));

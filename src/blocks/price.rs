@@ -46,6 +46,8 @@ const ROWS: f64 = 335.0;
 /// Bytes of keys for a point next to a face between blocks, and nanoseconds of merging them.
 const KEYS: f64 = 23.0;
 const MERGE: f64 = 250.0;
+/// Bytes of the sum of a brick.
+const SUM: u64 = 8;
 /// How many times the mean the largest difference is taken to be.
 const PEAK: f64 = 8.0;
 
@@ -92,8 +94,8 @@ struct Model {
     /// How far, in samples, what is looked at around a block reaches from it: points, and samples.
     width: f64,
     margin: f64,
-    /// Bytes for the samples at work, and for each point.
-    tile: u64,
+    /// Bytes for the sums of all bricks and the samples at work, and for each point.
+    samples_at_work: u64,
     point: u64,
 }
 
@@ -120,13 +122,15 @@ impl Model {
             Balls::Power => (job.alpha + weight).max(0.0).sqrt(),
             Balls::Radius => (job.alpha + weight).abs(),
         };
+        let product = |sizes: [usize; 3]| sizes.iter().product::<usize>() as u64;
         let reach = |radius: f64| job.reach(radius).into_iter().max().unwrap_or(0) as f64;
         Ok(Self {
             samples,
             points,
             width: reach(radius(usual) + radius(largest)),
             margin: reach(2.0 * radius(largest)) + 1.0,
-            tile: TILE_SAMPLE * Field::tile_of(source).iter().product::<usize>() as u64,
+            samples_at_work: SUM * product(Field::bricks_of(job.dims.xyz()).count())
+                + TILE_SAMPLE * product(Field::tile_of(source)),
             point: at_work(job.maker()),
         })
     }
@@ -152,7 +156,7 @@ impl Model {
     /// Bytes for a block at work.
     fn memory(&self, blocks: u64) -> u64 {
         let points = self.points / blocks as f64 * (1.0 + self.halo(blocks));
-        self.tile + (self.point as f64 * points) as u64
+        self.samples_at_work + (self.point as f64 * points) as u64
     }
 
     /// As few blocks as keep to so many bytes, one for each thread at work.

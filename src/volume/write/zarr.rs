@@ -33,6 +33,7 @@ pub(in crate::volume) fn zarr(source: &Source, folder: &Path) -> Result<(), Volu
     let part: PathBuf = folder.with_file_name(format!(".walpha-{name}.part"));
     // Of a run that was killed.
     let _ = std::fs::remove_dir_all(&part);
+    std::fs::create_dir(&part).map_err(failed)?;
     let done = fill(source, &part).and_then(|()| std::fs::rename(&part, folder).map_err(failed));
     if done.is_err() {
         // The error reported is the first one.
