@@ -32,8 +32,10 @@
 
 mod adaptive;
 mod barycentric;
+mod cells;
 mod curve;
 mod deviation;
+mod drawn;
 mod error;
 mod exchange;
 mod fill;
