@@ -110,18 +110,25 @@ def ranks(args, volume):
         out.unlink()
 
 
+def readable(seconds):
+    units = ((1, "s"), (60, "min"), (3600, "h"))
+    size, name = [unit for unit in units if seconds >= 2 * unit[0] or unit[0] == 1][-1]
+    return f"{seconds / size:.0f} {name}"
+
+
 def prices(args):
     print("| volume | points | blocks | memory of a rank | read | written | core-hours | 1 rank | 64 ranks | 4096 ranks |\n" + "|---" * 10 + "|")
     for size in args.size:
         blocks = max(8, (size // 256) ** 3)
-        job = [*OPTIONS, "--engine", args.engine, "--blocks", blocks, "--dry-run", "--json"]
+        # Of values that are no gray levels yet, as in a file of floats.
+        job = [*OPTIONS, "--gray", "0..255", "--engine", args.engine, "--blocks", blocks, "--dry-run", "--json"]
         price = json.loads(measured([args.walpha, "blocks", "plan", f"sample:phantom@{size}", *job])[0])
         plan, run, merge = price["core_seconds"]
         hours = [(plan + run) / min(ranks, blocks) / 3600 + merge / 3600 for ranks in (1, 64, 4096)]
         read, written = sum(price["bytes_read"]) / 1e9, price["bytes_written"][0] / 1e9
         print(
             f"| {size}³ | {price['points'] / 1e6:.0f}·10⁶ | {blocks} | {price['memory_per_block'] / 1e9:.1f} GB | {read:.0f} GB | {written:.0f} GB "
-            f"| {(plan + run + merge) / 3600:.2g} | " + " | ".join(f"{60 * h:.0f} min" if h < 2 else f"{h:.0f} h" for h in hours) + " |"
+            f"| {(plan + run + merge) / 3600:.1f} | " + " | ".join(readable(3600 * h) for h in hours) + " |"
         )
 
 

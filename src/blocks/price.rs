@@ -37,9 +37,9 @@ const PASSES: [f64; 2] = [5.0, 6.0];
 /// The share of the volume where the points are.
 const FILLED: f64 = 0.3;
 /// Nanoseconds of a core for a sample in a pass of the plan, and in a block.
-const SAMPLE: f64 = 70.0;
+const SAMPLE: f64 = 60.0;
 /// Nanoseconds of a core for a point of a block at work, by maker, and for its rows.
-const NATIVE: f64 = 6800.0;
+const NATIVE: f64 = 6900.0;
 const CGAL: f64 = 11_000.0;
 /// Bytes that a block writes for a point of its own.
 const ROWS: f64 = 335.0;
