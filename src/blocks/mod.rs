@@ -35,6 +35,7 @@ mod part;
 mod pieces;
 mod plan;
 mod price;
+mod rows;
 mod run;
 mod survey;
 mod team;

@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use super::file::BlockFile;
 use super::merge::Numbers;
+use super::rows::read_rows;
 use super::{Alone, BlocksError, Merged, Plan, Team};
 use crate::export::{Corners, Made, Parts, Target, write_grid, write_surface};
-use crate::shape::{Class, Complex, NO_COMPONENT, Sheets, Simplices, Surface};
+use crate::shape::{Complex, NO_COMPONENT, Sheets, Surface};
 
 /// A format of a file for each block, which VTK's programs open by the file that names them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -159,25 +160,7 @@ impl Piece {
         let common = |component: u32| {
             numbers.components.get(component as usize).copied().unwrap_or(NO_COMPONENT)
         };
-        let cells = file.read::<[u32; 4]>("cells")?;
-        let complex = Complex {
-            cells: rows(cells.iter().map(|_| Class::Interior as u8).collect(), cells),
-            facets: rows(file.read("facet_classes")?, file.read("facets")?),
-            edges: rows(file.read("edge_classes")?, file.read("edges")?),
-            vertices: rows(file.read("vertex_classes")?, file.read("vertices")?),
-        };
-        let sheet = |name: u32| numbers.sheets[name as usize];
-        let mut names = file.read::<u32>("facet_sheets")?.into_iter().map(sheet);
-        let mut next = || names.next().unwrap_or_default();
-        let mut sheets = Sheets::default();
-        for class in complex.facets.classes() {
-            match class {
-                Class::Regular => sheets.regular.push(next()),
-                Class::Singular => sheets.singular.push([next(), next()]),
-                _ => {}
-            }
-        }
-        sheets.edges = file.read::<u32>("edge_sheets")?.into_iter().map(sheet).collect();
+        let (complex, sheets) = read_rows(&file, &numbers.sheets)?;
         Ok(Self {
             positions: voxels.iter().map(place).collect(),
             weights: file.read("weights")?,
@@ -220,12 +203,4 @@ impl Piece {
         rows.for_each(|&v| used[v as usize] = true);
         (0..).zip(used).filter(|(_, used)| *used).map(|(v, _)| v).collect()
     }
-}
-
-/// Simplices with the numbers of their classes.
-fn rows<const N: usize>(classes: Vec<u8>, rows: Vec<[u32; N]>) -> Simplices<N> {
-    let class = |number: u8| Class::from_number(number).unwrap_or(Class::Exterior);
-    let mut simplices = Simplices::default();
-    rows.into_iter().zip(classes).for_each(|(row, number)| simplices.push(row, class(number)));
-    simplices
 }

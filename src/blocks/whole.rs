@@ -1,4 +1,5 @@
 use super::file::BlockFile;
+use super::rows::read_rows;
 use super::{BlocksError, Merged, Plan};
 use crate::points::WeightedPoints;
 use crate::shape::{AlphaShape, Assembled, Class, Complex, ShapeOptions, Sheets, Simplices};
@@ -76,31 +77,25 @@ impl Gathered {
         indices: &[u32],
         sheets: &[u32],
     ) -> Result<(), BlocksError> {
-        let index = |v: u32| indices[v as usize];
-        let class = |class: u8| Class::from_number(class).unwrap_or(Class::Exterior);
-        self.cells.extend(file.read::<[u32; 4]>("cells")?.into_iter().map(|row| row.map(index)));
-        let facets = file.read::<[u32; 3]>("facets")?;
-        let mut names = file.read::<u32>("facet_sheets")?.into_iter();
-        let mut next = || names.next().map_or(0, |name| sheets[name as usize]);
-        for (row, number) in facets.into_iter().zip(file.read::<u8>("facet_classes")?) {
-            let class = class(number);
+        let (complex, sheets) = read_rows(file, sheets)?;
+        let index = |v: &u32| indices[*v as usize];
+        self.cells.extend(complex.cells.rows().iter().map(|row| row.each_ref().map(index)));
+        let (mut regular, mut singular) = (sheets.regular.iter(), sheets.singular.iter());
+        for (row, class) in complex.facets.iter() {
             let sides = match class {
-                Class::Regular => [next(), 0],
-                Class::Singular => [next(), next()],
-                _ => [0; 2],
+                Class::Regular => regular.next().map(|&sheet| [sheet, 0]),
+                Class::Singular => singular.next().copied(),
+                _ => None,
             };
-            self.facets.push((row.map(index), class, sides));
+            self.facets.push((row.each_ref().map(index), class, sides.unwrap_or_default()));
         }
-        let edges = file.read::<[u32; 2]>("edges")?;
-        let mut names = file.read::<u32>("edge_sheets")?.into_iter();
-        for (row, number) in edges.into_iter().zip(file.read::<u8>("edge_classes")?) {
-            let class = class(number);
+        let mut names = sheets.edges.iter();
+        for (row, class) in complex.edges.iter() {
             let name = if class == Class::Singular { names.next() } else { None };
-            self.edges.push((row.map(index), class, name.map_or(0, |name| sheets[name as usize])));
+            self.edges.push((row.each_ref().map(index), class, name.copied().unwrap_or_default()));
         }
-        let vertices = file.read::<[u32; 1]>("vertices")?;
-        let classes = file.read::<u8>("vertex_classes")?.into_iter().map(class);
-        self.vertices.extend(vertices.into_iter().map(|row| row.map(index)).zip(classes));
+        let vertices = complex.vertices.iter();
+        self.vertices.extend(vertices.map(|(row, class)| (row.each_ref().map(index), class)));
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, merge, price, run, run_all, whole};
-use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target, write_all};
+use crate::export::{Content, ExportOptions, Exporter, Format, Target, write_all};
 use crate::progress::Stage;
 use crate::shown::shown;
 use clap::{Args, Subcommand};
@@ -13,8 +13,8 @@ use super::block_facts::{PlanFacts, PriceFacts, RunFacts};
 use super::output::tell;
 use super::progress::Progress;
 use super::report::Report;
-use super::said::{misused, said};
-use super::{Global, pipeline};
+use super::said::misused;
+use super::{Global, folder, pipeline};
 
 /// Compute a shape in blocks, on as many machines as see one folder: plan, run each block, merge.
 ///
@@ -94,16 +94,13 @@ impl PlanStep {
             progress.finish();
             return tell(global, &PriceFacts(price(&job, cutting(&self.shape))?));
         };
-        let new = NewFolder::make(&folder).map_err(|error| {
-            let path = shown(&folder);
-            said!("cannot make the folder {path}: {error}" => "choose another with --output")
-        })?;
+        let new = folder::make(&folder, "with --output")?;
         let plan =
             progress.stage(Stage::Points, || Plan::make(job, cutting(&self.shape), &folder))?;
         if let Some(new) = new {
             new.keep();
         }
-        let seconds = progress.finish().last().map_or(0.0, |(_, seconds)| *seconds);
+        let seconds = progress.total();
         tell(global, &PlanFacts::of(&plan, seconds))
     }
 }
@@ -117,7 +114,7 @@ impl RunStep {
             [one] => run(&plan, one),
             _ => run_all(&plan, &blocks),
         })?;
-        let seconds = progress.finish().last().map_or(0.0, |(_, seconds)| *seconds);
+        let seconds = progress.total();
         let folder = self.folder.display().to_string();
         tell(global, &RunFacts { folder, blocks, seconds })
     }

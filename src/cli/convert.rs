@@ -69,7 +69,7 @@ impl Convert {
             progress.stage(Stage::Write, || convert(&source, &self.output))?;
             Ok(source.dims().xyz())
         })?;
-        let seconds = progress.finish().last().map_or(0.0, |(_, seconds)| *seconds);
+        let seconds = progress.total();
         let (input, file) = (self.input.input, self.output.display().to_string());
         tell(global, &Facts { input, dims, file, seconds })
     }

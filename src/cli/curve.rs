@@ -11,16 +11,15 @@ use crate::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_cu
 use crate::progress::Stage;
 #[cfg(feature = "render")]
 use crate::render::error_figure;
-use crate::shown::shown;
 use crate::{LengthUnit, SelectionRule, Volume, Weighting, haar};
 
-use super::Global;
 use super::args::{PipelineArgs, SelectArgs};
 use super::output::{name, tell};
 use super::pipeline::{Grays, Input, read};
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
-use super::said::{misused, refused, said};
+use super::said::{misused, refused};
+use super::{Global, folder};
 
 #[derive(Serialize)]
 struct Facts {
@@ -79,7 +78,7 @@ pub(super) fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyho
     if let Some(new) = new {
         new.keep();
     }
-    let seconds = progress.finish().last().map_or(0.0, |(_, seconds)| *seconds);
+    let seconds = progress.total();
     let facts = Facts {
         schema_version: SCHEMA_VERSION,
         input: input.input.clone(),
@@ -117,9 +116,7 @@ const EXTENSIONS: &[&str] = &[
 /// given.
 fn paths(base: &Path) -> anyhow::Result<(Option<NewFolder>, Vec<PathBuf>)> {
     let asked = base.to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
-    let new = if asked { NewFolder::make(base) } else { Ok(None) }.map_err(
-        |error| said!("cannot make the folder {}: {error}", shown(base) => "choose another"),
-    )?;
+    let new = if asked { folder::make(base, "with --curve")? } else { None };
     let stem = if base.is_dir() {
         base.join("curve")
     } else if EXTENSIONS.iter().any(|known| base.extension().is_some_and(|e| e == *known)) {

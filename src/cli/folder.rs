@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::export::{Filled, NewFolder, Target, put_all};
 use crate::shown::shown;
 
-use super::said::said;
+use super::said::{Said, said};
 
 /// The folder results go to: found writable before the long work. All files appear in it at the end,
 /// or none.
@@ -18,14 +18,18 @@ pub(super) struct Folder {
     new: Option<NewFolder>,
 }
 
+/// Makes a folder if it is not there; `instead` says how another is chosen.
+pub(super) fn make(path: &Path, instead: &str) -> Result<Option<NewFolder>, Said> {
+    NewFolder::make(path).map_err(|error| {
+        said!("cannot make the folder {}: {error}", shown(path) => "choose another {instead}")
+    })
+}
+
 impl Folder {
     /// Makes the folder if it is not there; `option` names the option it was given by, `names` files
     /// that will be written for certain.
     pub(super) fn open(path: &Path, option: &str, names: &[&str]) -> anyhow::Result<Self> {
-        let new = NewFolder::make(path).map_err(|error| {
-            let path = shown(path);
-            said!("cannot make the folder {path}: {error}" => "choose another with {option}")
-        })?;
+        let new = make(path, &format!("with {option}"))?;
         let folder = Self { path: path.to_owned(), files: Vec::new(), written: Vec::new(), new };
         for name in names {
             Target::open(&path.join(name))?;

@@ -90,6 +90,11 @@ impl Progress {
         BAR.set_message(name);
     }
 
+    /// Ends the show: seconds in all.
+    pub(super) fn total(self) -> f64 {
+        self.finish().last().map_or(0.0, |(_, seconds)| *seconds)
+    }
+
     /// Ends the show: seconds per stage, and in all.
     pub(super) fn finish(self) -> Vec<(&'static str, f64)> {
         clear();

@@ -8,14 +8,13 @@ use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, Team, merge, run_missing
 use crate::export::NewFolder;
 use crate::memory;
 use crate::progress::Stage;
-use crate::shown::shown;
 
 use super::args::{PipelineArgs, ShapeArgs};
 use super::blocks::{Outputs, cutting, job};
 use super::progress::Progress;
 use super::report::Report;
-use super::said::{misused, said};
-use super::{Global, start_threads};
+use super::said::misused;
+use super::{Global, folder, start_threads};
 
 /// What processes do together. The first one reads the command line and tells the others.
 #[derive(Serialize, Deserialize)]
@@ -54,10 +53,7 @@ impl Work {
         progress: &mut Progress,
         team: &dyn Team,
     ) -> anyhow::Result<Report> {
-        let new = NewFolder::make(&self.folder).map_err(|error| {
-            let path = shown(&self.folder);
-            said!("cannot make the folder {path}: {error}" => "choose another place for the output")
-        })?;
+        let new = folder::make(&self.folder, "by another place for the output")?;
         if team.size() > 1 {
             order(team, Some(serde_json::to_string(&self)?));
         }
