@@ -91,6 +91,6 @@ int main(int, char **arguments) {
   vertices.print();
   std::printf("\n");
   std::fflush(stdout);
-  // Destructors are no part of the race.
+  // Destructors are not part of the race.
   std::_Exit(0);
 }

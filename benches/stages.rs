@@ -68,7 +68,7 @@ fn native(bencher: Bencher, weighting: &str) {
 fn engine(bencher: Bencher, engine: Engine, weighting: &str) {
     let alpha = Alpha::from_squared(10.0).expect("an alpha");
     let points = weigh(&selected(64), parsed(weighting), alpha).expect("weights");
-    let options = ShapeOptions { engine, ..ShapeOptions::new(alpha) };
+    let options = ShapeOptions::new(alpha).engine(engine);
     bencher
         .with_inputs(|| points.clone())
         .bench_local_values(|points| alpha_shape(points, &options));
@@ -102,11 +102,7 @@ fn certify(bencher: Bencher) {
 
 /// The whole triangulation, as a shape.
 fn whole_shape(points: WeightedPoints) -> AlphaShape {
-    let options = ShapeOptions {
-        exterior: true,
-        engine: Engine::Native,
-        ..ShapeOptions::new(Alpha::INFINITE)
-    };
+    let options = ShapeOptions::new(Alpha::INFINITE).exterior(true).engine(Engine::Native);
     alpha_shape(points, &options).expect("a shape")
 }
 

@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let positions: Vec<[f64; 3]> = (0..125).map(place).collect();
     let alpha = Alpha::from_squared(0.75)?;
 
-    let points = Points { positions: positions.clone(), ..Points::default() };
+    let points = Points::new(positions.clone());
     let weighted = weigh(&points, Weighting::Common(0.0), alpha)?;
     let shape = alpha_shape(weighted, &ShapeOptions::new(alpha))?;
 

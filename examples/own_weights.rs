@@ -16,8 +16,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let positions: Vec<[f64; 3]> = (0..COUNT).map(on_sphere).collect();
     // Neighbours are about 0.08 apart; a weight of 0.001 adds what a radius of 0.03 has.
-    let weights = positions.iter().map(|[_, _, z]| 0.001 * (z + 1.0)).collect();
-    let points = Points { positions, weights: Some(weights), ..Points::default() };
+    let weights: Vec<_> = positions.iter().map(|[_, _, z]| 0.001 * (z + 1.0)).collect();
+    let points = Points::new(positions).with_weights(weights)?;
 
     println!("        α  triangles  tunnels  voids");
     for alpha in [0.0, 0.0005, 0.001, 0.002, 0.004] {

@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let steps: usize = args.next().map_or(Ok(100), |steps| steps.parse())?;
     let (volume, _) = volume::sample(&name)?.into_gray(Gray::Automatic)?;
     let (smoothed, _) = smooth(&volume, &HaarOptions::default())?;
-    let goal = Adaptive { count, rmse: 0.0, max_error: None };
+    let goal = Adaptive::new(count);
     let voxels = adaptive_voxels(&volume, &goal, Units::Voxel)?;
     let points = points_at(&volume, &difference(&smoothed), &voxels, Units::Voxel);
     println!("{name}, {count} points\nweights         factor   RMSE, own values   fitted   hidden");
@@ -108,7 +108,7 @@ struct Judged {
 
 impl Judged {
     fn new(volume: &Volume, points: WeightedPoints) -> Result<Self, Box<dyn Error>> {
-        let options = ShapeOptions { engine: Engine::Native, ..ShapeOptions::new(Alpha::INFINITE) };
+        let options = ShapeOptions::new(Alpha::INFINITE).engine(Engine::Native);
         let shape = alpha_shape(points, &options)?;
         let whole = fill(&shape, Some(volume), Units::Voxel)?;
         let grid = Grid::of(volume, Units::Voxel);

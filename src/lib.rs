@@ -53,6 +53,7 @@ pub mod render;
 #[cfg(feature = "paper")]
 pub mod reproduce;
 mod select;
+mod setters;
 pub mod shape;
 mod shown;
 pub mod triangulation;

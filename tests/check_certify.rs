@@ -67,7 +67,7 @@ fn shapes_made_slab_by_slab_are_certified() {
         let weights: Vec<_> = positions.iter().map(|_| random.below(4) as f64 / 2.0).collect();
         let mut options = ShapeOptions::new(Alpha::from_squared(1.5).unwrap());
         (options.engine, options.blocks) = (Engine::Native, NonZeroUsize::new(blocks));
-        let points = WeightedPoints { positions, weights, values: None };
+        let points = WeightedPoints::new(positions, weights).unwrap();
         let shape = alpha_shape(points, &options).unwrap();
         let (findings, certificate) = shape.claim().findings().unwrap();
         assert_eq!(findings, []);

@@ -16,7 +16,7 @@ fn points() -> WeightedPoints {
     positions.iter_mut().flatten().step_by(7).for_each(|x| *x += random.unit());
     positions.push(positions[3]);
     let weights = (0..65).map(|_| random.unit()).collect();
-    WeightedPoints { positions, weights, values: None }
+    WeightedPoints::new(positions, weights).unwrap()
 }
 
 /// The two files of a shape say the same, also when `NumPy` has compressed one of them.
@@ -24,8 +24,7 @@ fn points() -> WeightedPoints {
 fn npz_is_json() {
     let points = points();
     for (alpha, exterior) in [(0.9, true), (0.9, false), (f64::INFINITY, false), (-5.0, false)] {
-        let options =
-            ShapeOptions { exterior, ..ShapeOptions::new(Alpha::from_squared(alpha).unwrap()) };
+        let options = ShapeOptions::new(Alpha::from_squared(alpha).unwrap()).exterior(exterior);
         let shape = alpha_shape(points.clone(), &options).unwrap();
         let (mut json, mut npz) = (Vec::new(), Vec::new());
         Json.write(&shape, &mut json).unwrap();

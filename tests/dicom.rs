@@ -258,9 +258,8 @@ fn series_in_nested_folders_are_listed_and_chosen() {
             Slice { series: "1.2.9", rows: 1, pixels: vec![n; 3], ..slice(n, 2.0 * f64::from(n)) };
         other.save(&deep, "other.dcm");
     }
-    let of = |series: Option<&str>| {
-        read(f, &ReadOptions { series: series.map(str::to_owned), ..ReadOptions::default() })
-    };
+    let of =
+        |series: Option<&str>| read(f, &ReadOptions::default().series(series.map(str::to_owned)));
     let text = of(None).unwrap_err().told();
     assert!(text.contains("2 DICOM series") && text.contains("`series`"), "{text}");
     assert!(text.contains("3 slices of 3×1, 1.2.9, as "), "{text}");

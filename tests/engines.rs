@@ -26,7 +26,7 @@ fn by(
     let alpha = Alpha::from_squared(alpha).unwrap();
     let blocks = blocks.and_then(NonZeroUsize::new);
     let options =
-        ShapeOptions { engine, blocks, exterior, refuse_flat: true, ..ShapeOptions::new(alpha) };
+        ShapeOptions::new(alpha).engine(engine).blocks(blocks).exterior(exterior).refuse_flat(true);
     alpha_shape(points.clone(), &options)
 }
 
@@ -97,7 +97,7 @@ fn check_parts(shape: &AlphaShape) {
 
 fn weighted(sites: impl IntoIterator<Item = ([f64; 3], f64)>) -> WeightedPoints {
     let (positions, weights) = sites.into_iter().unzip();
-    WeightedPoints { positions, weights, values: None }
+    WeightedPoints::new(positions, weights).unwrap()
 }
 
 /// Lattice points: everything that can be degenerate is.
@@ -192,10 +192,7 @@ fn memory_is_planned_for() {
     let points =
         weighted((0..40_000).map(|i| ([i % 20, i / 20 % 20, i / 400].map(f64::from), 0.0)));
     let with = |memory: u64| {
-        let options = ShapeOptions {
-            memory: Some(memory),
-            ..ShapeOptions::new(Alpha::from_squared(1.0).unwrap())
-        };
+        let options = ShapeOptions::new(Alpha::from_squared(1.0).unwrap()).memory(memory);
         alpha_shape(points.clone(), &options)
     };
     let free = by(Engine::Native, &points, 1.0, None, false).unwrap();

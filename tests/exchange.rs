@@ -15,12 +15,10 @@ use walpha::volume;
 use walpha::{Alpha, AlphaShape, Frame, Units, Volume, WeightedPoints, alpha_shape};
 
 fn whole(volume: &Volume, voxels: &[u32], units: Units) -> AlphaShape {
-    let points = WeightedPoints {
-        positions: voxels.iter().map(|&v| units.position(volume, v)).collect(),
-        weights: vec![0.0; voxels.len()],
-        values: Some(voxels.iter().map(|&v| volume.as_slice()[v as usize].into()).collect()),
-    };
-    let options = ShapeOptions { engine: Engine::Native, ..ShapeOptions::new(Alpha::INFINITE) };
+    let positions = voxels.iter().map(|&v| units.position(volume, v)).collect();
+    let values = voxels.iter().map(|&v| volume.as_slice()[v as usize].into()).collect();
+    let points = WeightedPoints::unweighted(positions).with_values(values).unwrap();
+    let options = ShapeOptions::new(Alpha::INFINITE).engine(Engine::Native);
     alpha_shape(points, &options).unwrap()
 }
 
@@ -99,7 +97,7 @@ proptest! {
     ) {
         let volume = steps(seed, spacing);
         let units = if world { Units::World } else { Units::Voxel };
-        let goal = Adaptive { count: 200, rmse: 0.0, max_error: bound };
+        let goal = Adaptive::new(200).max_error(bound);
         let ours = adaptive_voxels(&volume, &goal, units).unwrap();
         prop_assert_eq!(ours, by_definition(&volume, &goal, units));
     }
@@ -116,7 +114,7 @@ fn error_of(volume: &Volume, voxels: &[u32]) -> f64 {
 #[test]
 fn exchanged_points_are_as_many_and_better() {
     let volume = volume::phantom(24).unwrap();
-    let goal = Adaptive { count: 500, rmse: 0.0, max_error: None };
+    let goal = Adaptive::new(500);
     let chosen = adaptive_voxels(&volume, &goal, Units::Voxel).unwrap();
     let exchanged = exchange(&volume, &chosen, Units::Voxel).unwrap();
     let set: HashSet<u32> = exchanged.iter().copied().collect();

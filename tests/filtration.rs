@@ -45,7 +45,7 @@ fn sets(count: usize, most: u64) -> impl Iterator<Item = WeightedPoints> {
         let family = FAMILIES[k % FAMILIES.len()];
         let size = 4 + random.below(most - 3);
         let (positions, weights) = (0..size).map(|_| family(&mut random)).unzip();
-        WeightedPoints { positions, weights, values: None }
+        WeightedPoints::new(positions, weights).unwrap()
     });
     sets.filter(|points| common::spans_a_volume(&points.positions)).take(count)
 }
@@ -55,11 +55,7 @@ fn alpha(squared: f64) -> Alpha {
 }
 
 fn shape(points: &WeightedPoints, squared: f64) -> AlphaShape {
-    let options = ShapeOptions {
-        engine: Engine::Native,
-        exterior: true,
-        ..ShapeOptions::new(alpha(squared))
-    };
+    let options = ShapeOptions::new(alpha(squared)).engine(Engine::Native).exterior(true);
     alpha_shape(points.clone(), &options).unwrap()
 }
 
@@ -161,7 +157,7 @@ fn values_with_one_double_are_told_apart() {
     let tiny = 2f64.powi(-40);
     let positions =
         vec![[0.0; 3], [2.0, 0.0, 0.0], [9.0, 9.0, 9.0], [9.0, 11.0, 9.0 + tiny], [0.0, 40.0, 7.0]];
-    let points = WeightedPoints { weights: vec![0.0; 5], positions, values: None };
+    let points = WeightedPoints::unweighted(positions);
     let filtration = Filtration::new(points).unwrap();
     let ordered = filtration.simplices().unwrap();
     let edge = |row: [u32; 2]| ordered.iter().find(|simplex| simplex.vertices == row).unwrap();
@@ -196,7 +192,7 @@ fn fewer_components_take_a_larger_alpha() {
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let far = corners.map(|[x, y, z]| [x + 9.0, y, z]);
     let positions = [corners, far].concat();
-    let points = WeightedPoints { weights: vec![0.0; 8], positions, values: None };
+    let points = WeightedPoints::unweighted(positions);
     let filtration = Filtration::new(points).unwrap();
     assert_eq!(filtration.optimal_alpha(two).squared(), 0.75);
     assert!(filtration.optimal_alpha(std::num::NonZeroU64::MIN) == filtration.one_region());
@@ -451,11 +447,7 @@ fn the_documented_file_is_right() {
     let json = text[at..].split("```").nth(1).unwrap().trim_start_matches("json");
     let documented = FiltrationFile::read_json(json.as_bytes()).unwrap();
     assert_eq!(findings(&documented), []);
-    let points = WeightedPoints {
-        positions: documented.points.clone(),
-        weights: vec![0.0; 4],
-        values: None,
-    };
+    let points = WeightedPoints::unweighted(documented.points.clone());
     let filtration = Filtration::new(points).unwrap();
     let made = file(&filtration.simplices().unwrap());
     assert_eq!((made.values, made.order), (documented.values, documented.order));

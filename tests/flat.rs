@@ -27,12 +27,12 @@ fn set(random: &mut Random) -> WeightedPoints {
         ([0, 1, 2].map(at), weight)
     };
     let (positions, weights) = (0..count).map(|_| point(random)).unzip();
-    WeightedPoints { positions, weights, values: None }
+    WeightedPoints::new(positions, weights).unwrap()
 }
 
 fn shape(points: &WeightedPoints, alpha: f64, engine: Engine, exterior: bool) -> AlphaShape {
     let alpha = Alpha::from_squared(alpha).unwrap();
-    let options = ShapeOptions { engine, exterior, ..ShapeOptions::new(alpha) };
+    let options = ShapeOptions::new(alpha).engine(engine).exterior(exterior);
     alpha_shape(points.clone(), &options).unwrap()
 }
 
@@ -110,11 +110,7 @@ fn a_turn_changes_nothing_but_places() {
     let flat: Vec<[f64; 3]> =
         (0..30).map(|i: i32| [(i * 7 % 11).into(), (i * i % 13).into(), 0.0]).collect();
     let turned = flat.iter().map(|&[x, y, _]| [x + y, x - y, 5.0]).collect();
-    let with = |positions: Vec<[f64; 3]>| WeightedPoints {
-        weights: vec![0.0; positions.len()],
-        positions,
-        values: None,
-    };
+    let with = WeightedPoints::unweighted;
     for alpha in [1.0, 2.0, 4.0] {
         let one = shape(&with(flat.clone()), alpha, Engine::Native, false);
         let other = shape(&with(Vec::clone(&turned)), 2.0 * alpha, Engine::Native, false);
@@ -126,11 +122,7 @@ fn a_turn_changes_nothing_but_places() {
 
 #[test]
 fn one_piece_of_a_plane_and_of_a_line() {
-    let with = |positions: Vec<[f64; 3]>| WeightedPoints {
-        weights: vec![0.0; positions.len()],
-        positions,
-        values: None,
-    };
+    let with = WeightedPoints::unweighted;
     let at = |alpha: f64, points: &WeightedPoints| shape(points, alpha, Engine::Native, false);
     let grid = with((0..20).map(|i| [f64::from(i % 5), f64::from(i / 5), 1.0]).collect());
     let found = flat_region(&grid).unwrap().squared();
@@ -148,13 +140,13 @@ fn one_piece_of_a_plane_and_of_a_line() {
 fn blocks_do_not_matter_and_flat_points_can_be_refused() {
     let positions: Vec<[f64; 3]> =
         (0..900).map(|i| [f64::from(i % 30), f64::from(i / 30), f64::from(i % 30)]).collect();
-    let points = WeightedPoints { weights: vec![0.0; 900], positions, values: None };
+    let points = WeightedPoints::unweighted(positions);
     let options = ShapeOptions::new(Alpha::from_squared(0.75).unwrap());
     let one = alpha_shape(points.clone(), &options).unwrap();
     assert_eq!(one.complex().facets.len(), 2 * 29 * 29);
-    let blocks = ShapeOptions { blocks: NonZeroUsize::new(7), ..options };
+    let blocks = options.blocks(NonZeroUsize::new(7));
     assert_eq!(alpha_shape(points.clone(), &blocks).unwrap().complex(), one.complex());
-    let refuse = ShapeOptions { refuse_flat: true, ..options };
+    let refuse = options.refuse_flat(true);
     let error = alpha_shape(points, &refuse).unwrap_err();
     assert!(error.is_flat() && error.to_string().contains("in one plane"), "{error}");
 }

@@ -18,17 +18,15 @@ fn lattice() -> impl Strategy<Value = Vec<Site>> {
 }
 
 fn points(sites: &[Site]) -> WeightedPoints {
-    WeightedPoints {
-        positions: sites.iter().map(|(p, _)| p.map(f64::from)).collect(),
-        weights: sites.iter().map(|&(_, w)| f64::from(w) / 2.0).collect(),
-        values: None,
-    }
+    let positions = sites.iter().map(|(p, _)| p.map(f64::from)).collect();
+    let weights = sites.iter().map(|&(_, w)| f64::from(w) / 2.0).collect();
+    WeightedPoints::new(positions, weights).unwrap()
 }
 
 /// The whole triangulation at α.
 fn shape(points: WeightedPoints, alpha: f64) -> AlphaShape {
     let alpha = Alpha::from_squared(alpha).unwrap();
-    let options = ShapeOptions { exterior: true, ..ShapeOptions::new(alpha) };
+    let options = ShapeOptions::new(alpha).exterior(true);
     alpha_shape(points, &options).unwrap()
 }
 
@@ -78,11 +76,9 @@ proptest! {
         let alpha = f64::from(alpha) / 4.0;
         let factor = 2f64.powi(exponent);
         let here = points(&sites);
-        let scaled = WeightedPoints {
-            positions: here.positions.iter().map(|p| p.map(|v| v * factor)).collect(),
-            weights: here.weights.iter().map(|w| w * factor * factor).collect(),
-            values: None,
-        };
+        let positions = here.positions.iter().map(|p| p.map(|v| v * factor)).collect();
+        let weights = here.weights.iter().map(|w| w * factor * factor).collect();
+        let scaled = WeightedPoints::new(positions, weights).unwrap();
         let here = shape(here, alpha);
         let scaled = shape(scaled, alpha * factor * factor);
         prop_assert_eq!(here.complex(), scaled.complex());

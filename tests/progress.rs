@@ -80,7 +80,7 @@ fn the_wavelet_stage_moves() {
 fn lattice(side: usize) -> WeightedPoints {
     let at = |i: usize| [i % side, i / side % side, i / side / side].map(|c| c as f64);
     let positions: Vec<_> = (0..side.pow(3)).map(at).collect();
-    WeightedPoints { weights: vec![0.0; positions.len()], positions, values: None }
+    WeightedPoints::unweighted(positions)
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn a_shape_moves_within_its_blocks() {
     let (alpha, engine) = (Alpha::from_squared(1.0).unwrap(), Engine::Native);
     for blocks in [1, 3] {
         let blocks = std::num::NonZeroUsize::new(blocks);
-        let options = ShapeOptions { engine, blocks, ..ShapeOptions::new(alpha) };
+        let options = ShapeOptions::new(alpha).engine(engine).blocks(blocks);
         let work = || drop(alpha_shape(lattice(27), &options).unwrap());
         here.install(|| assert_moves(4 + 2 * blocks.unwrap().get(), work));
     }
@@ -104,6 +104,6 @@ fn a_shape_moves_within_its_blocks() {
 
 #[test]
 fn adaptive_selection_moves() {
-    let goal = Adaptive { count: 300, rmse: 0.0, max_error: None };
+    let goal = Adaptive::new(300);
     assert_moves(4, || drop(adaptive_voxels(&phantom(), &goal, Units::Voxel).unwrap()));
 }

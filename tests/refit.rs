@@ -19,11 +19,10 @@ fn shape_at(points: WeightedPoints, alpha: f64) -> AlphaShape {
 }
 
 fn points_of(volume: &Volume, voxels: &[(u32, f64)], units: Units) -> WeightedPoints {
-    WeightedPoints {
-        positions: voxels.iter().map(|&(v, _)| units.position(volume, v)).collect(),
-        weights: voxels.iter().map(|&(_, weight)| weight).collect(),
-        values: Some(voxels.iter().map(|&(v, _)| volume.as_slice()[v as usize].into()).collect()),
-    }
+    let positions = voxels.iter().map(|&(v, _)| units.position(volume, v)).collect();
+    let weights = voxels.iter().map(|&(_, weight)| weight).collect();
+    let values = voxels.iter().map(|&(v, _)| volume.as_slice()[v as usize].into()).collect();
+    WeightedPoints::new(positions, weights).unwrap().with_values(values).unwrap()
 }
 
 /// 7 × 6 × 5 samples without any order, on a grid whose places doubles do not hold; some may be missing.
@@ -37,7 +36,7 @@ fn noise(seed: u32, holes: bool) -> Volume {
     let frame = Frame { spacing: [0.3, 0.7, 1.1], origin: [-4.1, 2.3, 0.7], ..Frame::VOXEL };
     let file = tempfile::Builder::new().suffix(".npy").tempfile().unwrap();
     samples.write_npy(&file).unwrap();
-    let options = ReadOptions { nan: Some(Nan::Mask), ..ReadOptions::default() };
+    let options = ReadOptions::default().nan(Nan::Mask);
     read(file.path(), &options).unwrap().with_frame(frame)
 }
 

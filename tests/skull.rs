@@ -10,7 +10,7 @@ use walpha::{Alpha, AlphaShape, Gray, Points, Weighting, alpha_shape, volume};
 fn points() -> Points {
     let volume = volume::sample("sample:skull").unwrap();
     let (volume, _) = volume.into_gray(Gray::Automatic).unwrap();
-    let selection = Selection { rule: SelectionRule::Count(15956), gray_min: None };
+    let selection = Selection::default().rule(SelectionRule::Count(15956));
     let differences = difference(&volume);
     select(&volume, &volume, &differences, &selection, Units::Voxel).unwrap()
 }

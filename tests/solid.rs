@@ -13,11 +13,7 @@ fn shape(points: WeightedPoints, alpha: f64) -> AlphaShape {
 
 fn unweighted(positions: &[[f64; 3]]) -> WeightedPoints {
     let values = (0..positions.len()).map(|i| i as f64).collect();
-    WeightedPoints {
-        positions: positions.to_vec(),
-        weights: vec![0.0; positions.len()],
-        values: Some(values),
-    }
+    WeightedPoints::unweighted(positions.to_vec()).with_values(values).unwrap()
 }
 
 /// Each edge is walked along once in each direction, around each vertex is one fan, and the boundary
@@ -127,7 +123,7 @@ fn sheets_that_share_both_ends_are_bent_apart() {
 fn any_shape_of_a_volume_is_a_solid() {
     let volume = sample("sample:phantom@20").unwrap();
     let differences = difference(&volume);
-    let selection = Selection { rule: SelectionRule::Ratio(0.0609), gray_min: None };
+    let selection = Selection::default().rule(SelectionRule::Ratio(0.0609));
     let points = select(&volume, &volume, &differences, &selection, Units::Voxel).unwrap();
     let mut seen = Cuts::default();
     for weighting in [Weighting::Common(0.0), Weighting::MinMax] {

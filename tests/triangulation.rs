@@ -28,7 +28,7 @@ const FAMILIES: [fn(&mut Random) -> WeightedPoints; 9] = [
 
 fn weighted(points: impl IntoIterator<Item = ([f64; 3], f64)>) -> WeightedPoints {
     let (positions, weights) = points.into_iter().unzip();
-    WeightedPoints { positions, weights, values: None }
+    WeightedPoints::new(positions, weights).unwrap()
 }
 
 fn count(r: &mut Random) -> u64 {
@@ -160,7 +160,7 @@ fn check(points: &WeightedPoints, alphas: &[f64]) -> &'static str {
     for &alpha in alphas {
         let alpha = Alpha::from_squared(alpha).unwrap();
         let by = |engine| {
-            let options = ShapeOptions { engine, ..ShapeOptions::new(alpha) };
+            let options = ShapeOptions::new(alpha).engine(engine);
             alpha_shape(points.clone(), &options).unwrap()
         };
         let reference = by(Engine::Reference);

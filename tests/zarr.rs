@@ -20,7 +20,7 @@ use zarrs::filesystem::FilesystemStore;
 use zarrs::group::GroupBuilder;
 
 fn open(path: &Path, level: Option<u32>) -> Result<Volume, VolumeError> {
-    read(path, &ReadOptions { level, ..ReadOptions::default() })
+    read(path, &ReadOptions::default().level(level))
 }
 
 fn numbers(shape: &[u64]) -> Vec<u16> {

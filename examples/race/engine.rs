@@ -23,16 +23,16 @@ pub(super) fn run(
     let rows = bytes.as_chunks::<8>().0.as_chunks::<4>().0;
     let positions = rows.iter().map(|[x, y, z, _]| [x, y, z].map(number)).collect();
     let weights = rows.iter().map(|[.., w]| number(w)).collect();
-    let points = WeightedPoints { positions, weights, values: None };
+    let points = WeightedPoints::new(positions, weights)?;
     drop(bytes);
     let alpha = Alpha::from_squared(alpha.parse()?)?;
-    let shape = |engine| ShapeOptions { engine, memory, ..ShapeOptions::new(alpha) };
+    let shape = |engine| ShapeOptions::new(alpha).engine(engine).memory(memory);
     let started = Instant::now();
     let counts = match what {
         "cgal" => counts(&alpha_shape(points, &shape(Engine::Cgal))?),
         "native" => counts(&alpha_shape(points, &shape(Engine::Native))?),
         "whole" => {
-            let options = ShapeOptions { exterior: true, ..shape(Engine::Native) };
+            let options = shape(Engine::Native).exterior(true);
             counts(&alpha_shape(points, &options)?)
         }
         "filtration" => counts(Filtration::new(points)?.whole()),

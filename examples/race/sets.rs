@@ -56,5 +56,5 @@ fn random(count: usize) -> Points {
         (state >> 11) as f64 / (1u64 << 53) as f64 * side
     };
     let positions = (0..count).map(|_| [next(), next(), next()]).collect();
-    Points { positions, ..Points::default() }
+    Points::new(positions)
 }

@@ -53,8 +53,8 @@ macro_rules! wrong_value {
 
 wrong_value! {
     AlphaError, |error| Some(error.advice().into());
-    CompareError, |_| None;
-    SchemaError, |_| None;
+    CompareError, |error| error.advice().map(Into::into);
+    SchemaError, |error| error.advice().map(Into::into);
     TorusError, |error| error.advice().into();
     UnknownFormat, |error| error.advice().into();
     UnknownWeighting, |error| error.advice().into();
@@ -154,7 +154,7 @@ impl Told for PipelineError {
 
 impl Told for CertifyError {
     fn told(self) -> PyErr {
-        let text = self.to_string();
+        let text = message(&self, self.advice().map(Advice::from));
         match self {
             Self::Memory { .. } => PyMemoryError::new_err(text),
             _ => wrong(text),

@@ -35,7 +35,7 @@ impl Filtration {
         let points = weighted(&points, weights.as_ref(), None)?;
         let positions = points.positions;
         let weights = points.weights.unwrap_or_else(|| vec![0.0; positions.len()]);
-        let points = WeightedPoints { positions, weights, values: None };
+        let points = WeightedPoints::new(positions, weights).unwrap();
         let made = run(py, progress.as_ref(), move |call| {
             call.begin(Stage::Filtration);
             ladder::Filtration::on(torus, points)

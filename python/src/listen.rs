@@ -1,4 +1,4 @@
-//! Progress of the library, from whichever thread it is told to the call that it belongs to.
+//! Passes the library's progress reports, from any thread, to the call they belong to.
 
 use std::cell::RefCell;
 use std::panic::resume_unwind;
@@ -53,7 +53,7 @@ impl Call {
         self.stopped.store(true, Ordering::Relaxed);
     }
 
-    /// What was told since the last time: of each stage the last.
+    /// The reports since the last time: the last of each stage.
     pub fn take(&self) -> Vec<Step> {
         let mut steps = self.lock();
         let Some(&last) = steps.last() else { return Vec::new() };
@@ -67,7 +67,7 @@ impl Call {
             resume_unwind(Box::new(Stopped));
         }
         if let Some(last) = self.lock().last_mut() {
-            // Threads may tell of their parts in another order than they were done in.
+            // Threads may report their parts out of order.
             let further = u128::from(done) * u128::from(last.total)
                 >= u128::from(last.done) * u128::from(total);
             if further {

@@ -63,9 +63,10 @@ pub fn write_points(
     let alpha = alpha.map(Alpha::from_squared).transpose().map_err(Told::told)?;
     let points = weighted(&points, weights.as_ref(), values.as_ref())?;
     let weights = points.weights.unwrap_or_else(|| vec![0.0; points.positions.len()]);
-    let points = WeightedPoints { positions: points.positions, weights, values: points.values };
-    let facts = ModelFacts { alpha, ..ModelFacts::default() };
-    let packing = Packing { value_error, ..Packing::default() };
+    let mut weighted = WeightedPoints::new(points.positions, weights).map_err(Told::told)?;
+    weighted.values = points.values;
+    let facts = ModelFacts::default().alpha(alpha);
+    let packing = Packing::default().value_error(value_error);
     let target = Target::open(&path).map_err(Told::told)?;
-    run(py, None, move |_| target.write(|out| writer.write_model(&points, &facts, &packing, out)))
+    run(py, None, move |_| target.write(|out| writer.write_model(&weighted, &facts, &packing, out)))
 }

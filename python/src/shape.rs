@@ -12,7 +12,7 @@ use walpha::pipeline::{AlphaRule, Model};
 use walpha::progress::Stage;
 use walpha::shape::{Balls, Engine, ShapeOptions, Surface, Torus};
 use walpha::volume::Dims;
-use walpha::{Alpha, AlphaShape, Pipeline, Points, Simplices, Weighting};
+use walpha::{Alpha, AlphaShape, Pipeline, Points, PointsError, Simplices, Weighting};
 
 use crate::arrays::{lend, numbers, rows};
 use crate::errors::{Told, wrong};
@@ -40,7 +40,7 @@ pub fn options(engine: &str, balls: &str, exterior: bool) -> PyResult<ShapeOptio
         "radius" => Balls::Radius,
         _ => return Err(unknown("balls", balls, "'power' and 'radius'")),
     };
-    Ok(ShapeOptions { engine, balls, exterior, ..ShapeOptions::new(Alpha::INFINITE) })
+    Ok(ShapeOptions::new(Alpha::INFINITE).engine(engine).balls(balls).exterior(exterior))
 }
 
 /// The periodic box by its sides.
@@ -76,7 +76,7 @@ pub fn alpha_shape(
     periodic: Option<[f64; 3]>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Shape> {
-    let options = ShapeOptions { periodic: torus(periodic)?, ..options(engine, balls, exterior)? };
+    let options = options(engine, balls, exterior)?.periodic(torus(periodic)?);
     let points = weighted(&points, weights.as_ref(), values.as_ref())?;
     let pipeline = Pipeline::new().alpha(alpha_rule(alpha)).shape(options);
     let model = run(py, progress.as_ref(), move |call| {
@@ -93,20 +93,14 @@ pub fn weighted(
     weights: Option<&PyReadonlyArray1<'_, f64>>,
     values: Option<&PyReadonlyArray1<'_, f64>>,
 ) -> PyResult<Points> {
-    let positions: Vec<[f64; 3]> = rows("points", points)?;
-    let column = |name, column: Option<&PyReadonlyArray1<'_, f64>>| {
-        column.map(|column| paired(name, numbers(column), positions.len())).transpose()
-    };
-    let (weights, values) = (column("weights", weights)?, column("values", values)?);
-    Ok(Points { positions, values, weights, differences: None })
-}
-
-fn paired(name: &str, column: Vec<f64>, points: usize) -> PyResult<Vec<f64>> {
-    if column.len() == points {
-        Ok(column)
-    } else {
-        Err(wrong(format!("{} {name} but {points} points: each needs one", column.len())))
+    let mut points = Points::new(rows("points", points)?);
+    if let Some(weights) = weights {
+        points = points.with_weights(numbers(weights)).map_err(Told::told)?;
     }
+    if let Some(values) = values {
+        points = points.with_values(numbers(values)).map_err(Told::told)?;
+    }
+    Ok(points)
 }
 
 impl Shape {
@@ -135,7 +129,14 @@ impl Shape {
     /// The values to interpolate: these, or those of the points.
     fn values(&self, given: Option<PyReadonlyArray1<'_, f64>>) -> PyResult<Vec<f64>> {
         match given {
-            Some(given) => paired("values", numbers(&given), self.shape.points().len()),
+            Some(given) => {
+                let (values, points) = (numbers(&given), self.shape.points().len());
+                if values.len() != points {
+                    let (column, given) = ("values", values.len());
+                    return Err(Told::told(PointsError::Lengths { column, given, points }));
+                }
+                Ok(values)
+            }
             None => self.shape.points().values.clone().ok_or_else(|| {
                 wrong("the points carry no values to interpolate: give values=, one for each point")
             }),
@@ -357,7 +358,7 @@ impl Shape {
                 "solid=True is for shapes in space: the boundary of one of a torus is cut open; omit it",
             ));
         }
-        let options = ExportOptions { solid, ..ExportOptions::default() };
+        let options = ExportOptions::default().solid(solid);
         let (shape, target) = (Arc::clone(&self.shape), Target::open(&path).map_err(Told::told)?);
         run(py, None, move |_| target.write(|out| format.exporter(&options).write_any(&shape, out)))
     }

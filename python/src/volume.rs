@@ -89,7 +89,7 @@ pub fn select<'py>(
         )));
     }
     let (frame, units) = place(frame)?;
-    let selection = Selection { rule: selection_rule(&rule)?, gray_min };
+    let selection = Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min);
     let found = run(py, None, move |call| {
         call.begin(Stage::Points);
         let (volume, smoothed) = (Volume::new(samples, frame)?, Volume::new(smoothed, frame)?);
@@ -116,7 +116,7 @@ pub fn weigh<'py>(
     let differences = numbers(&differences);
     // Places do not count here.
     let positions = vec![[0.0; 3]; differences.len()];
-    let points = Points { positions, differences: Some(differences), ..Points::default() };
+    let points = Points::new(positions).with_differences(differences).map_err(Told::told)?;
     let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
     let weighed = points::weigh(&points, weighting, alpha).map_err(Told::told)?;
     Ok(weighed.weights.into_pyarray(py))
@@ -147,9 +147,11 @@ pub fn pipeline(
 ) -> PyResult<Shape> {
     let (frame, units) = place(frame)?;
     let choice = match adaptive {
-        None => Choice::Difference(Selection { rule: selection_rule(&rule)?, gray_min }),
+        None => {
+            Choice::Difference(Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min))
+        }
         Some((count, rmse, max_error, exchange)) => {
-            let goal = Adaptive { count, rmse, max_error };
+            let goal = Adaptive::new(count).rmse(rmse).max_error(max_error);
             if exchange { Choice::Exchanged(goal) } else { Choice::Adaptive(goal) }
         }
     };
@@ -211,7 +213,7 @@ fn haar_options(tolerance: &(String, f64), decomposition: &str) -> PyResult<Haar
         "standard" => Decomposition::Standard,
         other => return Err(unknown("decomposition", other, "'nonstandard' and 'standard'")),
     };
-    Ok(HaarOptions { decomposition, tolerance })
+    Ok(HaarOptions::default().decomposition(decomposition).tolerance(tolerance))
 }
 
 fn selection_rule(rule: &(String, f64)) -> PyResult<SelectionRule> {
@@ -228,6 +230,6 @@ fn whole(name: &str, number: f64) -> PyResult<u64> {
     if number >= 0.0 && number.fract() == 0.0 && number < 2f64.powi(53) {
         Ok(number as u64)
     } else {
-        Err(wrong(format!("{name}={number} is no count: give a whole number from 0 up")))
+        Err(wrong(format!("{name}={number} is not a count: give a whole number from 0 up")))
     }
 }

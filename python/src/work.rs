@@ -13,7 +13,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::errors::Told;
 use crate::listen::Call;
 
-/// How often the interpreter is asked for an interrupt, and told of progress.
+/// How often the interpreter is asked for an interrupt and progress is passed on.
 const TICK: Duration = Duration::from_millis(50);
 /// As a main thread has it; rayon's default is a quarter.
 const STACK: usize = 8 << 20;
@@ -62,7 +62,7 @@ where
     }
 }
 
-/// Threads that work for one call: events they tell of are its own. `RAYON_NUM_THREADS` says how many, or else
+/// Threads that work for one call: their progress reports belong to it. `RAYON_NUM_THREADS` says how many, or else
 /// the cores.
 fn pool(call: &Arc<Call>) -> PyResult<ThreadPool> {
     let call = Arc::clone(call);

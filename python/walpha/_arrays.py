@@ -1,4 +1,4 @@
-"""Whatever stands for an array, as the library takes it."""
+"""Array-likes as the library takes them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def floats(name, given, ndim):
 
 
 def points(given):
-    """Places, n×3; those of a plane, n×2, are at z = 0. An empty list is no place."""
+    """Places, n×3; those of a plane, n×2, are at z = 0. An empty list is not a place."""
     array = _numbers("points", given)
     if array.size == 0:
         array = array.reshape(0, 3)

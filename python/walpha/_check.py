@@ -35,7 +35,7 @@ class Complex:
         A :class:`Class` for each row. Where they are missing all rows are in the shape, and have
         the classes that follow from that.
     hidden : array_like of int, (m,); optional
-        Points that are no vertices of the regular triangulation.
+        Points that are not vertices of the regular triangulation.
     duplicates : array_like of int, (m, 2); optional
         Pairs: a point that went, and the one at its place that stayed.
     """
@@ -103,7 +103,7 @@ class Complex:
                 if most is not None and value > most:
                     continue
             if not 1 <= len(simplex) <= 4:
-                raise ValueError(f"{simplex!r} is no simplex of 1 to 4 vertices")
+                raise ValueError(f"{simplex!r} is not a simplex of 1 to 4 vertices")
             rows[len(simplex) - 1].append(simplex)
         vertices, edges, facets, cells = rows
         return cls(
@@ -257,7 +257,7 @@ def _complex(given):
         return Complex.of(given)
     if isinstance(given, Complex):
         return given
-    raise ValueError(f"{type(given).__name__} is no complex: give an AlphaShape or a walpha.Complex")
+    raise ValueError(f"{type(given).__name__} is not a complex: give an AlphaShape or a walpha.Complex")
 
 
 def _numbers(name, classes):

@@ -185,7 +185,7 @@ class Suggestions(NamedTuple):
     one_region : float
         That, and the cells are one solid component (CGAL's ``find_optimal_alpha(1)``).
     no_void : float
-        That, and there is no void.
+        The same, and without voids.
     plateau : tuple of float
         From where to where the Betti numbers stay the same longest, as a ratio of the squared radii
         of the largest balls.
@@ -265,7 +265,7 @@ class Filtration:
         ----------
         ranks : bool
             Give each simplex the rank of its value instead (:attr:`Simplices.ranks`): a whole number, so that
-            values which differ by less than doubles can tell stay apart. ``Simplices.values`` of one
+            values which differ by less than doubles can resolve stay apart. ``Simplices.values`` of one
             simplex of a rank is its value.
 
         Returns

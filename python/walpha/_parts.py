@@ -104,7 +104,7 @@ class Component(NamedTuple):
         Corners of its box, (x, y, z).
     voids : list of Void or None
         What its boundary shuts in, largest first. Another component may float in one: its volume
-        counts. None where the engine does not tell (``engine="reference"``, shapes of a filtration),
+        counts. None where the engine does not count them (``engine="reference"``, shapes of a filtration),
         and of a torus.
     rounds : int or None
         Of a torus: in how many independent directions it goes round. Its box is that of one of its copies.
@@ -149,7 +149,7 @@ class Boundary(NamedTuple):
     indices : ndarray of uint32, (m,)
         The input index of each vertex; of a midpoint, that of one end of its edge.
     cuts : tuple of int
-        Edges at which parts of the solid touched, vertices that stand there more than once, and
+        Edges at which parts of the solid touched, vertices that occur there more than once, and
         midpoints added; all 0 unless the boundary was cut apart into a manifold.
     """
 

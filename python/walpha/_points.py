@@ -19,7 +19,7 @@ class PointFile(NamedTuple):
     weights, values : ndarray of float64, (n,), or None
         ω, squared lengths, and F, where the file has them.
     grid : tuple of int, or None
-        Samples along z, y and x of the grid that the points are samples of, where the file tells it.
+        Samples along z, y and x of the grid that the points are samples of, where the file states it.
     alpha : float or None
         The α that their shape is meant to be made at, a **squared** length.
     unit : str
@@ -66,7 +66,7 @@ def write_points(path, points, weights=None, values=None, *, alpha=None, value_e
     Parameters
     ----------
     path : str or path-like
-        Its extension says the format: ``.csv``, ``.npy``, or ``.wvm``, which is small where points stand at
+        Its extension says the format: ``.csv``, ``.npy``, or ``.wvm``, which is small where points lie at
         whole numbers.
     points : array_like, (n, 3)
         x, y, z.

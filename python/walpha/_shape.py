@@ -120,7 +120,7 @@ class AlphaShape:
     def hidden(self):
         """ndarray of uint32, (n,), or None.
 
-        Points that are no vertices of the regular triangulation, as heavier ones near them make
+        Points that are not vertices of the regular triangulation, as heavier ones near them make
         them redundant. None where the shape was made in several blocks, none of which sees the
         whole triangulation: ask with ``exterior=True``.
         """
@@ -201,7 +201,7 @@ class AlphaShape:
     def unwrapped(self):
         """A shape of a torus laid out in space.
 
-        Each simplex stands where its lowest coordinates are in the box; beyond the upper sides it has
+        Each simplex is placed where its lowest coordinates are in the box; beyond the upper sides it has
         copies of points, which come after all others (:attr:`copies`).
 
         Returns
@@ -263,7 +263,7 @@ class AlphaShape:
         shape : tuple of int
             Samples along z, y and x, as numpy orders them.
         low, high : array_like, (3,), optional
-            Corners of the box (x, y, z), on which the first and last samples stand; by default
+            Corners of the box (x, y, z), where the first and last samples are; by default
             those of the points.
         values : array_like, (n,), optional
             As in :meth:`at`.
@@ -444,7 +444,7 @@ def squared(alpha, alpha_radius):
             raise ValueError("alpha is the square of alpha_radius: give one of them")
         radius = float(alpha_radius)
         if not radius >= 0:
-            raise ValueError(f"alpha_radius={radius} is no radius: give a number from 0 up")
+            raise ValueError(f"alpha_radius={radius} is not a radius: give a number from 0 up")
         return radius * radius
     if alpha is None:
         return None

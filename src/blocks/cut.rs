@@ -70,13 +70,15 @@ impl Boxes<'_> {
         cut
     }
 
-    /// The boxes asked for, or as few as keep to the memory, each with the points in it and around it.
+    /// The boxes asked for, or as few as keep to the memory of each process, and one for each of its threads,
+    /// each with the points in it and around it.
     pub(super) fn planned(
         &self,
         cutting: Cutting,
         job: &Job,
         margin: [usize; 3],
         tile: u64,
+        processes: usize,
     ) -> Result<Vec<(Part, u64)>, ShapeError> {
         let with_halo = |blocks: usize| -> Vec<(Part, u64)> {
             let around = |part: &Part| self.points(&part.grown(margin, self.bricks));
@@ -93,7 +95,7 @@ impl Boxes<'_> {
                 + threads * (tiles + at_work(job.maker()) * largest)
         };
         let mut least = PlanError { asked, needed: u64::MAX, blocks: 1 };
-        let mut blocks = threads as usize;
+        let mut blocks = processes * threads as usize;
         while blocks <= MOST {
             let cut = with_halo(blocks);
             let needed = needs(cut.iter().map(|(_, points)| *points).max().unwrap_or(0));

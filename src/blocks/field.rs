@@ -96,7 +96,7 @@ impl Field {
     }
 
     /// As small as the sums of all can be gathered.
-    fn bricks_of(dims: [usize; 3]) -> Bricks {
+    pub(super) fn bricks_of(dims: [usize; 3]) -> Bricks {
         let fine = Bricks::new(dims, 3);
         let is_fit = fine.count().iter().product::<usize>() <= SUMS;
         if is_fit { fine } else { Bricks::new(dims, 4) }

@@ -1,6 +1,8 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
+use serde::{Deserialize, Serialize};
+
 use super::file::BlockFile;
 use super::run::{BlockComponent, BlockSheet, Facts, Met, Weights};
 use super::{BlocksError, Plan};
@@ -44,7 +46,7 @@ pub struct Merged {
 }
 
 /// The common numbers of a block's components and sheets.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Numbers {
     pub components: Vec<u32>,
     pub sheets: Vec<u32>,

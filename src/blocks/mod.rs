@@ -7,13 +7,15 @@
 //! computes of the points that a [`Pipeline`](crate::Pipeline) selects, simplex by simplex and number by number:
 //! sums are exact, and ties are broken by indices of the volume.
 //!
+//! Processes that can send each other messages share the survey, the blocks and the writing of pieces as a [`Team`].
+//!
 //! ```
 //! use walpha::blocks::{Cutting, Job, Plan, merge, run};
 //! use walpha::volume::ReadOptions;
 //!
 //! let folder = tempfile::tempdir()?;
 //! let job = Job::new("sample:phantom@40", ReadOptions::default())?;
-//! let plan = Plan::make(job, Cutting { blocks: Some(4), ..Cutting::default() }, folder.path())?;
+//! let plan = Plan::make(job, Cutting::default().blocks(4), folder.path())?;
 //! // In any order, anywhere, as long as all see the folder; again, if one fails.
 //! for block in 0..plan.blocks.len() {
 //!     run(&plan, block)?;
@@ -35,6 +37,7 @@ mod plan;
 mod price;
 mod run;
 mod survey;
+mod team;
 mod turn;
 mod whole;
 
@@ -49,5 +52,6 @@ pub use price::{Price, price};
 use run::Facts;
 pub use run::run;
 pub use survey::Survey;
-pub use turn::run_all;
+pub use team::{Alone, Team};
+pub use turn::{run_all, run_missing};
 pub use whole::whole;

@@ -4,15 +4,17 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::file::BlockFile;
 use super::merge::Numbers;
-use super::{BlocksError, Merged, Plan};
+use super::{Alone, BlocksError, Merged, Plan, Team};
 use crate::export::{Corners, Made, Parts, Target, write_grid, write_surface};
 use crate::shape::{Class, Complex, NO_COMPONENT, Sheets, Simplices, Surface};
 
 /// A format of a file for each block, which VTK's programs open by the file that names them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Pieces {
     /// `.pvtu`: all simplices, as [`Vtu`](crate::export::Vtu) has them.
     Grid,
@@ -45,25 +47,53 @@ impl Pieces {
     /// # Errors
     /// A block cannot be read, a file not written.
     pub fn write(self, plan: &Plan, merged: &Merged, path: &Path) -> Result<(), BlocksError> {
-        let index = Target::open(path)?;
+        self.write_with(plan, Some(merged), path, &Alone)
+    }
+
+    /// The same as one of a team: each process writes some of the pieces, and the first, which has what was
+    /// merged, the file that names them.
+    ///
+    /// # Errors
+    /// As [`Pieces::write`]. The others of the team would wait for a process that ends with an error.
+    pub fn write_with(
+        self,
+        plan: &Plan,
+        merged: Option<&Merged>,
+        path: &Path,
+        team: &dyn Team,
+    ) -> Result<(), BlocksError> {
+        let index = if team.is_first() { Some(Target::open(path)?) } else { None };
+        let told;
+        let numbers = if let (1, Some(merged)) = (team.size(), merged) {
+            &merged.numbers
+        } else {
+            told = team.told(merged.map(|merged| merged.numbers.clone()));
+            &told
+        };
         let folder = path.with_extension("");
         let stem = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         std::fs::create_dir_all(&folder)
             .map_err(|source| BlocksError::Io { path: folder.clone(), source })?;
         let name = |block: usize| format!("{stem}_{block}.{}", self.extension());
-        let write = |block: usize| -> Result<Option<String>, BlocksError> {
-            let piece = Piece::read(plan, block, &merged.numbers[block])?;
+        let write = |block: usize| -> Result<Option<usize>, BlocksError> {
+            let piece = Piece::read(plan, block, &numbers[block])?;
             if piece.complex.vertices.is_empty() && piece.complex.edges.is_empty() {
                 return Ok(None);
             }
             let file: PathBuf = folder.join(name(block));
             Target::open(&file)?.write(|out| piece.write(self, plan, out))?;
-            Ok(Some(format!("{stem}/{}", name(block))))
+            Ok(Some(block))
         };
-        let written: Result<Vec<_>, _> =
-            (0..plan.blocks.len()).into_par_iter().map(write).collect();
-        let names: Vec<String> = written?.into_iter().flatten().collect();
-        index.write(|out| self.write_index(&names, out))?;
+        let own: Vec<usize> = team.own(plan.blocks.len()).collect();
+        let written: Result<Vec<_>, _> = own.into_par_iter().map(write).collect();
+        let written: Vec<usize> = written?.into_iter().flatten().collect();
+        let mut written = team.joined(written, Extend::extend);
+        written.sort_unstable();
+        if let Some(index) = index {
+            let names: Vec<String> =
+                written.into_iter().map(|block| format!("{stem}/{}", name(block))).collect();
+            index.write(|out| self.write_index(&names, out))?;
+        }
         Ok(())
     }
 

@@ -5,19 +5,25 @@ use serde::{Deserialize, Serialize};
 use super::cut::Boxes;
 use super::file::{numbers, read_file};
 use super::survey::{Survey, Surveyed, survey};
-use super::{BlocksError, Field, Job, Part};
+use super::{Alone, BlocksError, Field, Job, Part, Team};
 use crate::Weighting;
 use crate::export::Target;
 use crate::points::{PointsError, Shares};
+use crate::setters::setters;
 use crate::shape::{Alpha, Balls};
 
 /// How a job is cut into blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Cutting {
     /// Into so many blocks; fewer where there are fewer bricks with points.
     pub blocks: Option<usize>,
     /// Bytes of memory that all blocks at work keep to, as many as there are threads.
     pub memory: Option<u64>,
+}
+
+impl Cutting {
+    setters! { blocks: Option<usize>, memory: Option<u64> }
 }
 
 /// All that a block needs to know of the others: the job, the numbers of the whole volume, and where the
@@ -63,9 +69,53 @@ impl Plan {
     /// # Errors
     /// What a stage refuses; what is not local ([`Job::check`]); a folder that cannot be written to.
     pub fn make(job: Job, cutting: Cutting, folder: &Path) -> Result<Self, BlocksError> {
+        Self::make_with(job, cutting, folder, &Alone)
+    }
+
+    /// The same as one of a team: each process surveys its share of the volume, the first writes the plan, and
+    /// all get it. Memory that blocks keep to is that of one process.
+    ///
+    /// # Errors
+    /// As [`Plan::make`]. The others of the team would wait for a process that ends with an error.
+    pub fn make_with(
+        job: Job,
+        cutting: Cutting,
+        folder: &Path,
+        team: &dyn Team,
+    ) -> Result<Self, BlocksError> {
         job.check()?;
         let mut field = Field::open(&job)?;
-        let Surveyed { survey, sums, counts } = survey(&job, &mut field)?;
+        let surveyed = survey(&job, &mut field, team)?;
+        let plan = if team.is_first() {
+            Some(Self::cut(job, cutting, folder, &field, surveyed, team.size())?)
+        } else {
+            None
+        };
+        Self::told(plan, folder, team)
+    }
+
+    /// Gives to all what the first process has.
+    pub(super) fn told(
+        first: Option<Self>,
+        folder: &Path,
+        team: &dyn Team,
+    ) -> Result<Self, BlocksError> {
+        if team.size() == 1 {
+            return Ok(first.expect("the first process has it"));
+        }
+        let text = first.map(|plan| serde_json::to_vec(&plan).expect("it has no maps"));
+        Self::of_text(&team.told(text), folder)
+    }
+
+    /// Cuts a surveyed volume, and writes the plan.
+    fn cut(
+        job: Job,
+        cutting: Cutting,
+        folder: &Path,
+        field: &Field,
+        Surveyed { survey, sums, counts }: Surveyed,
+        processes: usize,
+    ) -> Result<Self, BlocksError> {
         let boxes = Boxes { counts: &counts, bricks: field.bricks.count() };
         let side = field.bricks.side();
         let tile = field.tile().iter().product::<usize>() as u64;
@@ -79,7 +129,7 @@ impl Plan {
             digest: String::new(),
         };
         let margin = plan.margin()?.map(|samples| samples.div_ceil(side));
-        let cut = boxes.planned(cutting, &plan.job, margin, tile)?;
+        let cut = boxes.planned(cutting, &plan.job, margin, tile, processes)?;
         let of_bricks = |(part, halo): (Part, u64)| {
             let points = boxes.points(&part);
             let whole = Part::whole(field.dims);
@@ -109,11 +159,14 @@ impl Plan {
     /// # Errors
     /// There is none, or it cannot be read.
     pub fn open(folder: &Path) -> Result<Self, BlocksError> {
-        let path = folder.join(Self::FILE);
-        let read: Result<Self, _> = serde_json::from_slice(&read_file(&path)?);
+        Self::of_text(&read_file(&folder.join(Self::FILE))?, folder)
+    }
+
+    fn of_text(text: &[u8], folder: &Path) -> Result<Self, BlocksError> {
+        let read: Result<Self, _> = serde_json::from_slice(text);
         let damaged = |error: serde_json::Error| BlocksError::Damaged {
-            path: path.clone(),
-            what: format!("is no plan of this version of walpha ({error})"),
+            path: folder.join(Self::FILE),
+            what: format!("is not a plan of this version of walpha ({error})"),
         };
         let plan = Self { folder: folder.into(), ..read.map_err(damaged)? };
         Ok(Self { digest: plan.computed_digest(), ..plan })

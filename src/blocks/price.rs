@@ -1,15 +1,16 @@
 use serde::Serialize;
 
-use super::cut::{SILENT, TILE_SAMPLE};
-use super::{BlocksError, Cutting, Field, Job};
+use crate::Weighting;
 use crate::points::SelectionRule;
-use crate::shape::{Balls, at_work};
+use crate::shape::{Balls, PlanError, ShapeError, at_work};
 use crate::triangulation::Maker;
 use crate::volume::Source;
-use crate::{Weighting, shape::PlanError};
 
-/// What a job will cost, by a model: as if its points were spread evenly, and with the speed of one core of
-/// the machine that `docs/clusters.md` names. Nothing of the volume is read.
+use super::cut::{SILENT, TILE_SAMPLE};
+use super::{BlocksError, Cutting, Field, Job};
+
+/// What a job will cost, by a model: as if its blocks were cubes, three tenths of the volume were filled evenly with
+/// points, and the cores were those of the machine in `docs/clusters.md`, which has what was measured. Nothing of the volume is read.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Price {
@@ -31,18 +32,22 @@ pub struct Price {
     pub core_seconds: [f64; 3],
 }
 
-/// Passes over the volume that a plan takes where values are not gray levels.
-const PASSES: f64 = 6.0;
+/// Passes over the volume that a plan takes: where values are gray levels, and where these are to be found first.
+const PASSES: [f64; 2] = [5.0, 6.0];
+/// The share of the volume where the points are.
+const FILLED: f64 = 0.3;
 /// Nanoseconds of a core for a sample in a pass of the plan, and in a block.
-const SAMPLE: f64 = 60.0;
+const SAMPLE: f64 = 70.0;
 /// Nanoseconds of a core for a point of a block at work, by maker, and for its rows.
-const NATIVE: f64 = 6000.0;
+const NATIVE: f64 = 6800.0;
 const CGAL: f64 = 11_000.0;
 /// Bytes that a block writes for a point of its own.
-const ROWS: f64 = 420.0;
-/// Bytes of keys for a point at a face of a block, and nanoseconds of merging them.
-const KEYS: f64 = 150.0;
-const MERGE: f64 = 3000.0;
+const ROWS: f64 = 335.0;
+/// Bytes of keys for a point next to a face between blocks, and nanoseconds of merging them.
+const KEYS: f64 = 23.0;
+const MERGE: f64 = 250.0;
+/// Bytes of the sum of a brick.
+const SUM: u64 = 8;
 /// How many times the mean the largest difference is taken to be.
 const PEAK: f64 = 8.0;
 
@@ -53,66 +58,116 @@ const PEAK: f64 = 8.0;
 pub fn price(job: &Job, cutting: Cutting) -> Result<Price, BlocksError> {
     job.check()?;
     let source = Source::open(&job.input, &job.read)?;
-    let samples = job.dims.samples() as u64;
-    let points = match job.selection.rule {
-        SelectionRule::Count(count) => count,
-        SelectionRule::Ratio(ratio) => (ratio * samples as f64).round() as u64,
-        SelectionRule::Threshold(_) => {
-            let next = "give --ratio or --count for the price";
-            return Err(BlocksError::not_local("the number of points above a threshold", next));
-        }
+    let model = Model::new(job, &source)?;
+    let blocks = match cutting.blocks {
+        Some(blocks) => blocks as u64,
+        None => model.blocks(cutting.memory.unwrap_or(SILENT))?,
     };
-    let weight = match job.weighting {
-        Weighting::Common(weight) => weight,
-        Weighting::MinMax => job.alpha,
-        Weighting::BarycentricN => PEAK * job.alpha,
-        _ => 0.0,
-    };
-    let radius = match job.balls {
-        Balls::Power => (job.alpha + weight).max(0.0).sqrt(),
-        Balls::Radius => (job.alpha + weight).abs(),
-    };
-    let margin = job.reach(2.0 * radius).into_iter().max().unwrap_or(0) as f64 + 1.0;
-    let tile = Field::tile_of(&source).iter().product::<usize>() as u64;
-    let of = |blocks: u64| {
-        let edge = (samples as f64 / blocks as f64).cbrt();
-        let halo = if blocks == 1 { 0.0 } else { ((edge + 2.0 * margin) / edge).powi(3) - 1.0 };
-        // A block has no more around it than there is.
-        let halo = halo.min(blocks as f64 - 1.0);
-        let largest = points as f64 / blocks as f64 * (1.0 + halo);
-        let memory = TILE_SAMPLE * tile + (at_work(job.maker()) as f64 * largest) as u64;
-        (edge, halo, memory)
-    };
-    let blocks = if let Some(blocks) = cutting.blocks {
-        blocks as u64
-    } else {
-        let threads = rayon::current_num_threads() as u64;
-        let asked = cutting.memory.unwrap_or(SILENT);
-        let fits = |blocks: &u64| threads * of(*blocks).2 <= asked;
-        let mut powers = (0..32).map(|power| threads << power);
-        let needed = threads * of(threads << 31).2;
-        let none = PlanError { asked, needed, blocks: 1 << 31 };
-        powers.find(fits).ok_or(crate::shape::ShapeError::Plan(none))?
-    };
-    let (edge, halo, memory_per_block) = of(blocks);
+    let Model { samples: n, points: p, .. } = model;
     let size = source.dtype().size() as f64;
-    let (n, p) = (samples as f64, points as f64);
-    // Points within an edge's length of the faces between blocks.
-    let faces = if blocks == 1 { 0.0 } else { 3.0 * n / edge * 2.0 * radius * p / n };
+    // Two layers of points at each face between blocks.
+    let faces = 6.0 * ((blocks as f64).cbrt() - 1.0) * p.powf(2.0 / 3.0);
+    let is_gray = source.has_gray_levels() && job.gray.is_none();
+    let passes = PASSES[usize::from(!is_gray)];
     let each = if job.maker() == Maker::Native { NATIVE } else { CGAL };
-    let around = n * (1.0 + halo);
+    let (halo_share, around) = (model.halo(blocks), n * model.around(blocks));
     Ok(Price {
-        samples,
-        points,
+        samples: n as u64,
+        points: p as u64,
         blocks,
-        halo_share: halo,
-        memory_per_block,
-        bytes_read: [PASSES * n * size, around * size].map(|bytes| bytes as u64),
+        halo_share,
+        memory_per_block: model.memory(blocks),
+        bytes_read: [passes * n * size, around * size].map(|bytes| bytes as u64),
         bytes_written: [ROWS * p + KEYS * faces, KEYS * faces].map(|bytes| bytes as u64),
         core_seconds: [
-            PASSES * n * SAMPLE * 1e-9,
-            (around * SAMPLE + p * (1.0 + halo) * each) * 1e-9,
+            passes * n * SAMPLE * 1e-9,
+            (around * SAMPLE + p * (1.0 + halo_share) * each) * 1e-9,
             faces * MERGE * 1e-9,
         ],
     })
+}
+
+/// Cubes of equally many samples, of which some are filled with points.
+struct Model {
+    samples: f64,
+    points: f64,
+    /// How far, in samples, what is looked at around a block reaches from it: points, and samples.
+    width: f64,
+    margin: f64,
+    /// Bytes for the sums of all bricks and the samples at work, and for each point.
+    samples_at_work: u64,
+    point: u64,
+}
+
+impl Model {
+    fn new(job: &Job, source: &Source) -> Result<Self, BlocksError> {
+        let samples = job.dims.samples() as f64;
+        let points = match job.selection.rule {
+            SelectionRule::Count(count) => count as f64,
+            SelectionRule::Ratio(ratio) => (ratio * samples).round(),
+            SelectionRule::Threshold(_) => {
+                let next = "give --ratio or --count for the price";
+                return Err(BlocksError::not_local("the number of points above a threshold", next));
+            }
+        };
+        let largest = match job.weighting {
+            Weighting::Common(weight) => weight,
+            Weighting::MinMax => job.alpha,
+            Weighting::BarycentricN => PEAK * job.alpha,
+            _ => 0.0,
+        };
+        // All weights but a common one are small as a rule.
+        let usual = if let Weighting::Common(weight) = job.weighting { weight } else { 0.0 };
+        let radius = |weight: f64| match job.balls {
+            Balls::Power => (job.alpha + weight).max(0.0).sqrt(),
+            Balls::Radius => (job.alpha + weight).abs(),
+        };
+        let product = |sizes: [usize; 3]| sizes.iter().product::<usize>() as u64;
+        let reach = |radius: f64| job.reach(radius).into_iter().max().unwrap_or(0) as f64;
+        Ok(Self {
+            samples,
+            points,
+            width: reach(radius(usual) + radius(largest)),
+            margin: reach(2.0 * radius(largest)) + 1.0,
+            samples_at_work: SUM * product(Field::bricks_of(job.dims.xyz()).count())
+                + TILE_SAMPLE * product(Field::tile_of(source)),
+            point: at_work(job.maker()),
+        })
+    }
+
+    /// How many times as large a block of so many samples is with what is around it. Blocks at the sides of
+    /// the volume have nothing beyond these.
+    fn grown(blocks: u64, samples: f64, by: f64) -> f64 {
+        let blocks = blocks as f64;
+        let edge = (samples / blocks).cbrt();
+        (1.0 + 2.0 * by * (1.0 - 1.0 / blocks.cbrt()) / edge).powi(3)
+    }
+
+    /// Samples in and around blocks, for each sample.
+    fn around(&self, blocks: u64) -> f64 {
+        Self::grown(blocks, self.samples, self.margin)
+    }
+
+    /// Points around blocks, for each point.
+    fn halo(&self, blocks: u64) -> f64 {
+        Self::grown(blocks, FILLED * self.samples, self.width) - 1.0
+    }
+
+    /// Bytes for a block at work.
+    fn memory(&self, blocks: u64) -> u64 {
+        let points = self.points / blocks as f64 * (1.0 + self.halo(blocks));
+        self.samples_at_work + (self.point as f64 * points) as u64
+    }
+
+    /// As few blocks as keep to so many bytes, one for each thread at work.
+    fn blocks(&self, asked: u64) -> Result<u64, ShapeError> {
+        /// Powers of two that are tried.
+        const POWERS: u32 = 32;
+        let threads = rayon::current_num_threads() as u64;
+        let needed = |blocks: u64| threads * self.memory(blocks);
+        let mut powers = (0..POWERS).map(|power| threads << power);
+        let most = 1 << (POWERS - 1);
+        let none = PlanError { asked, needed: needed(threads * most), blocks: most as usize };
+        powers.find(|&blocks| needed(blocks) <= asked).ok_or(ShapeError::Plan(none))
+    }
 }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::field::{Field, Sample, Truncated};
-use super::{BlocksError, Job, Part};
+use super::{BlocksError, Job, Part, Team};
 use crate::haar::Truncation;
 use crate::points::{Differences, PointsError, SelectionRule};
 use crate::progress;
@@ -72,15 +72,21 @@ pub(super) struct Surveyed {
     pub counts: Vec<u32>,
 }
 
-/// Surveys the volume of a job: reads it five or six times.
-pub(super) fn survey(job: &Job, field: &mut Field) -> Result<Surveyed, BlocksError> {
+/// Surveys the volume of a job: reads it five or six times. Each process of a team reads its share of the
+/// tiles, and all come to know the same.
+pub(super) fn survey(
+    job: &Job,
+    field: &mut Field,
+    team: &dyn Team,
+) -> Result<Surveyed, BlocksError> {
     let tiles = Part::whole(field.dims).tiles(field.tile());
-    let mut passes = Passes { tiles, done: 0 };
+    let tiles = team.own(tiles.len()).map(|tile| tiles[tile]).collect();
+    let mut passes = Passes { team, tiles, done: 0 };
     gray_levels(job, field, &mut passes)?;
     let (truncation, cut, sums) = truncate(job, field, &mut passes)?;
     let truncated = cut.map(|cut| Truncated { cut, sums: &sums });
     let choice = choose(job, field, truncated, &mut passes)?;
-    let (differences, first, counts) = count(field, truncated, &choice, &mut passes)?;
+    let Counted { differences, first, counts } = count(field, truncated, &choice, &mut passes)?;
     if differences.count == 0 {
         return Err(PointsError::Empty { voxels: job.dims.samples() as u64 }.into());
     }
@@ -90,27 +96,29 @@ pub(super) fn survey(job: &Job, field: &mut Field) -> Result<Surveyed, BlocksErr
 }
 
 /// Passes over all tiles.
-struct Passes {
+struct Passes<'a> {
+    team: &'a dyn Team,
+    /// Those of this process.
     tiles: Vec<Part>,
     done: u64,
 }
 
-impl Passes {
+impl Passes<'_> {
     /// How many are usual.
     const USUAL: u64 = 5;
 
-    /// Works on each tile, several at a time, and joins what they give in their order.
+    /// Works on each tile of this process, several at a time, and joins what they give in their order.
     fn each<T: Send>(
         &mut self,
         work: impl Fn(&Part) -> Result<T, BlocksError> + Sync,
-        mut join: impl FnMut(&Part, T),
+        mut join: impl FnMut(T),
     ) -> Result<(), BlocksError> {
         let all = self.tiles.len() as u64;
         let total = Self::USUAL.max(self.done + 1) * all;
         let mut tiles_done = 0;
         for batch in self.tiles.chunks(rayon::current_num_threads()) {
             let results: Result<Vec<T>, _> = batch.par_iter().map(&work).collect();
-            batch.iter().zip(results?).for_each(|(tile, result)| join(tile, result));
+            results?.into_iter().for_each(&mut join);
             tiles_done += batch.len() as u64;
             progress::report(self.done * all + tiles_done, total);
         }
@@ -120,14 +128,15 @@ impl Passes {
 }
 
 /// Finds the values that become gray 0 and 255.
-fn gray_levels(job: &Job, field: &mut Field, passes: &mut Passes) -> Result<(), BlocksError> {
+fn gray_levels(job: &Job, field: &mut Field, passes: &mut Passes<'_>) -> Result<(), BlocksError> {
     if field.is_gray() && job.gray.is_none() {
         return Ok(());
     }
     // Missing values must not be the least.
     field.least = f32::MAX;
     let masks = job.read.nan == Some(Nan::Mask);
-    let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+    let mut found = (f32::INFINITY, f32::NEG_INFINITY);
+    let wider = |a: &mut (f32, f32), b: (f32, f32)| *a = (a.0.min(b.0), a.1.max(b.1));
     passes.each(
         |tile| {
             let grays = field.values(tile)?;
@@ -137,8 +146,9 @@ fn gray_levels(job: &Job, field: &mut Field, passes: &mut Passes) -> Result<(), 
                 (low.min(v), high.max(v))
             }))
         },
-        |_, (l, h)| (low, high) = (low.min(l), high.max(h)),
+        |of_tile| wider(&mut found, of_tile),
     )?;
+    let (low, high) = passes.team.joined(found, wider);
     if masks && low > high {
         return Err(VolumeError::NotFinite { value: f32::INFINITY, at: [0; 3] }.into());
     }
@@ -161,7 +171,7 @@ fn gray_levels(job: &Job, field: &mut Field, passes: &mut Passes) -> Result<(), 
 fn truncate(
     job: &Job,
     field: &Field,
-    passes: &mut Passes,
+    passes: &mut Passes<'_>,
 ) -> Result<(Truncation, Option<Cut>, Vec<f64>), BlocksError> {
     let total = job.dims.samples() as u64;
     let tolerance = job.haar.tolerance;
@@ -185,14 +195,16 @@ fn truncate(
                 });
                 Ok((search.count(details.into_iter()), firsts))
             },
-            |_, (more, firsts)| {
+            |(more, firsts)| {
                 counts.join(more);
                 if is_first {
                     firsts.into_iter().for_each(|(brick, sum)| sums[brick] = sum);
                 }
             },
         )?;
+        counts = passes.team.joined(counts, Counts::join);
         if is_first {
+            sums = passes.team.joined(sums, |sums, others| either(sums, others));
             field.bricks.coarse(&mut sums);
             is_first = false;
         }
@@ -211,6 +223,12 @@ fn truncate(
     Ok((truncation, Some(cut), sums))
 }
 
+/// Takes in sums of other bricks: those of which nothing is known are positive zeros.
+fn either(sums: &mut [f64], others: Vec<f64>) {
+    let known = sums.iter_mut().zip(others).filter(|(_, other)| other.to_bits() != 0);
+    known.for_each(|(sum, other)| *sum = other);
+}
+
 /// The coefficients of levels above bricks, with their places in the volume.
 fn coarse<'a>(field: &'a Field, sums: &'a [f64]) -> impl Iterator<Item = (f64, u64)> + 'a {
     let ([cx, cy, _], side) = (field.bricks.count(), field.bricks.side());
@@ -225,7 +243,7 @@ fn choose(
     job: &Job,
     field: &Field,
     truncated: Option<Truncated<'_>>,
-    passes: &mut Passes,
+    passes: &mut Passes<'_>,
 ) -> Result<Chosen, BlocksError> {
     let gray_min = job.selection.gray_min.or(job.value_min.map(|value| field.range.gray(value)));
     if gray_min.is_some_and(f64::is_nan) {
@@ -269,11 +287,16 @@ fn choose(
                 })?;
                 Ok((round.count(differences.into_iter()), highest))
             },
-            |_, (more, high)| {
+            |(more, high)| {
                 counts.join(more);
                 highest = highest.max(high);
             },
         )?;
+        let joined = |all: &mut (Counts, f32), (more, high): (Counts, f32)| {
+            all.0.join(more);
+            all.1 = all.1.max(high);
+        };
+        let (counts, highest) = passes.team.joined((counts, highest), joined);
         let available = counts.total();
         let search = search.get_or_insert_with(|| {
             Search::new(Budget::Count(available.saturating_sub(count)), FEW)
@@ -291,16 +314,33 @@ fn choose(
     }
 }
 
-/// What is known of the points together: their differences, the first, and how many each brick has.
+/// What is known of the points together.
+#[derive(Serialize, Deserialize)]
+struct Counted {
+    differences: Differences,
+    /// The first of them, by its index in the volume.
+    first: u64,
+    /// How many each brick has.
+    counts: Vec<u32>,
+}
+
+impl Counted {
+    fn join(&mut self, other: Self) {
+        self.differences.join(&other.differences);
+        self.first = self.first.min(other.first);
+        self.counts.iter_mut().zip(other.counts).for_each(|(count, more)| *count += more);
+    }
+}
+
 fn count(
     field: &Field,
     truncated: Option<Truncated<'_>>,
     choice: &Chosen,
-    passes: &mut Passes,
-) -> Result<(Differences, u64, Vec<u32>), BlocksError> {
+    passes: &mut Passes<'_>,
+) -> Result<Counted, BlocksError> {
     let ([cx, cy, _], side) = (field.bricks.count(), field.bricks.side());
-    let mut counts = vec![0; field.bricks.count().iter().product()];
-    let (mut differences, mut first) = (Differences::default(), u64::MAX);
+    let counts = vec![0; field.bricks.count().iter().product()];
+    let mut all = Counted { differences: Differences::default(), first: u64::MAX, counts };
     passes.each(
         |tile| {
             let mut points = Vec::new();
@@ -313,16 +353,16 @@ fn count(
             let voxels: Vec<u64> = points.into_iter().map(|(voxel, _)| voxel).collect();
             Ok((Differences::of(&of_points), voxels))
         },
-        |_, (more, voxels)| {
-            differences.join(&more);
-            first = first.min(voxels.first().copied().unwrap_or(u64::MAX));
+        |(more, voxels)| {
+            all.differences.join(&more);
+            all.first = all.first.min(voxels.first().copied().unwrap_or(u64::MAX));
             let [nx, ny, _] = field.dims;
             for voxel in voxels {
                 let voxel = voxel as usize;
                 let [x, y, z] = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)].map(|i| i / side);
-                counts[(z * cy + y) * cx + x] += 1;
+                all.counts[(z * cy + y) * cx + x] += 1;
             }
         },
     )?;
-    Ok((differences, first, counts))
+    Ok(passes.team.joined(all, Counted::join))
 }

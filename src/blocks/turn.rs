@@ -1,10 +1,12 @@
-//! All blocks on one machine, several at a time, from file to file.
+//! All blocks, several at a time, from file to file: on one machine, or shared by a team.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::{BlocksError, Cutting, Job, Plan, run};
+use super::{Alone, BlocksError, Cutting, Job, Plan, Team, run};
 use crate::progress::{Piece, Share, within};
 
 impl Plan {
@@ -14,9 +16,25 @@ impl Plan {
     /// # Errors
     /// As [`Plan::make`].
     pub fn resume(job: Job, cutting: Cutting, folder: &Path) -> Result<Self, BlocksError> {
-        match Self::open(folder) {
-            Ok(plan) if plan.job == job && plan.cutting == cutting => Ok(plan),
-            _ => Self::make(job, cutting, folder),
+        Self::resume_with(job, cutting, folder, &Alone)
+    }
+
+    /// The same as one of a team, which may be of another size than the one that was interrupted.
+    ///
+    /// # Errors
+    /// As [`Plan::make_with`].
+    pub fn resume_with(
+        job: Job,
+        cutting: Cutting,
+        folder: &Path,
+        team: &dyn Team,
+    ) -> Result<Self, BlocksError> {
+        let is_same = |plan: &Self| plan.job == job && plan.cutting == cutting;
+        let there = team.is_first().then(|| Self::open(folder).ok().filter(is_same));
+        if team.told(there.as_ref().map(Option::is_some)) {
+            Self::told(there.flatten(), folder, team)
+        } else {
+            Self::make_with(job, cutting, folder, team)
         }
     }
 
@@ -73,4 +91,55 @@ pub fn run_all(plan: &Plan, blocks: &[usize]) -> Result<(), BlocksError> {
         }
     });
     failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).map_or(Ok(()), Err)
+}
+
+/// Runs the blocks of a plan that are missing, as one of a team, and waits until all are there. Each process
+/// gets blocks with about as many points, in and around them, as the others.
+///
+/// # Errors
+/// As [`run_all`]. The others of the team would wait for a process that ends with an error.
+pub fn run_missing(plan: &Plan, team: &dyn Team) -> Result<(), BlocksError> {
+    let missing = if team.is_first() { Some(plan.missing()?) } else { None };
+    let missing = team.told(missing);
+    let size = |block: usize| plan.blocks[block].points + plan.blocks[block].halo;
+    run_all(plan, &shared(missing, size, team.size())[team.rank()])?;
+    team.meet();
+    Ok(())
+}
+
+/// Shares blocks among processes: the largest first, each to the one that has least (Graham, "Bounds on
+/// multiprocessing timing anomalies", 1969, doi:10.1137/0117039). No share is above 4/3 of what it could be.
+fn shared(
+    mut blocks: Vec<usize>,
+    size: impl Fn(usize) -> u64,
+    processes: usize,
+) -> Vec<Vec<usize>> {
+    blocks.sort_by_key(|&block| Reverse(size(block)));
+    let mut shares = vec![Vec::new(); processes];
+    let mut least: BinaryHeap<Reverse<(u64, usize)>> =
+        (0..processes).map(|process| Reverse((0, process))).collect();
+    for block in blocks {
+        let Some(Reverse((load, process))) = least.pop() else { break };
+        shares[process].push(block);
+        least.push(Reverse((load + size(block), process)));
+    }
+    shares
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_about_equal() {
+        let sizes = [7, 1, 4, 0, 9, 3, 3];
+        let shares = shared((0..7).collect(), |block| sizes[block], 3);
+        let loads: Vec<u64> =
+            shares.iter().map(|share| share.iter().map(|&block| sizes[block]).sum()).collect();
+        assert_eq!(loads, [9, 10, 8], "{shares:?}");
+        let mut all = shares.concat();
+        all.sort_unstable();
+        assert_eq!(all, [0, 1, 2, 3, 4, 5, 6]);
+        assert_eq!(shared(vec![2], |_| 0, 3), [vec![2], vec![], vec![]]);
+    }
 }

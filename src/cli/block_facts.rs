@@ -2,9 +2,10 @@
 
 use std::fmt::{self, Display};
 
+use serde::Serialize;
+
 use crate::blocks::{Plan, Price};
 use crate::memory::readable;
-use serde::Serialize;
 
 use super::output::name;
 

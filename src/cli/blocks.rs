@@ -157,10 +157,15 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    pub(super) fn write(self, plan: &Plan, merged: &Merged) -> anyhow::Result<()> {
+    fn write(self, plan: &Plan, merged: &Merged) -> anyhow::Result<()> {
         for (pieces, path) in &self.pieces {
             pieces.write(plan, merged, path)?;
         }
+        self.write_whole(plan, merged)
+    }
+
+    /// Writes what goes into one file.
+    pub(super) fn write_whole(self, plan: &Plan, merged: &Merged) -> anyhow::Result<()> {
         if self.whole.is_empty() {
             return Ok(());
         }
@@ -174,37 +179,8 @@ impl Outputs {
     }
 }
 
-/// `walpha shape` in blocks, from file to file: where an output has a file for each of them. What is not
-/// done yet stands in a folder beside the first of these, `bone.blocks` for `bone.pvtp`; it goes at the end, and
-/// after an interruption the same command goes on with it.
-pub(super) fn shape(
-    pipeline: &PipelineArgs,
-    shape: &ShapeArgs,
-    outputs: Outputs,
-    progress: &mut Progress,
-) -> anyhow::Result<Report> {
-    let job = job(pipeline, shape)?;
-    let (_, first) = outputs.pieces.first().expect("an output with pieces");
-    let folder = first.with_extension("blocks");
-    let new = NewFolder::make(&folder).map_err(|error| {
-        let path = shown(&folder);
-        said!("cannot make the folder {path}: {error}" => "choose another place for the output")
-    })?;
-    let cutting = cutting(shape);
-    let plan = progress.stage(Stage::Points, || Plan::resume(job, cutting, &folder))?;
-    if let Some(new) = new {
-        new.keep();
-    }
-    progress.stage(Stage::Shape, || run_all(&plan, &plan.missing()?))?;
-    let merged = progress.stage(Stage::Shape, || merge(&plan))?;
-    let report = Report::of_blocks(&plan, &merged);
-    progress.stage(Stage::Write, || outputs.write(&plan, &merged))?;
-    plan.remove()?;
-    Ok(report)
-}
-
 /// What the options ask for.
-fn job(args: &PipelineArgs, shape: &ShapeArgs) -> anyhow::Result<Job> {
+pub(super) fn job(args: &PipelineArgs, shape: &ShapeArgs) -> anyhow::Result<Job> {
     let PipelineArgs { input, haar, select, weights, .. } = args;
     if input.input == Target::STDOUT {
         misused!("standard input cannot be read in parts, as blocks are" => "name a file");
@@ -238,7 +214,8 @@ fn job(args: &PipelineArgs, shape: &ShapeArgs) -> anyhow::Result<Job> {
     Ok(job)
 }
 
-fn cutting(shape: &ShapeArgs) -> Cutting {
+/// How the options cut it.
+pub(super) fn cutting(shape: &ShapeArgs) -> Cutting {
     let options = shape.options();
     Cutting { blocks: options.blocks.map(usize::from), memory: options.memory }
 }

@@ -8,8 +8,8 @@ use clap::error::ErrorKind;
 use crate::shown::escaped;
 use crate::volume::UnknownFormat;
 
-use super::progress;
 use super::said::{Said, advice};
+use super::{FAILURE, USAGE, progress};
 
 /// Whether standard error takes colours: a terminal, and `NO_COLOR` is not set (<https://no-color.org>).
 pub(super) fn coloured() -> bool {
@@ -24,7 +24,7 @@ struct Complaint {
     next: String,
 }
 
-/// Tells why a command failed. The work that was going on is the one last announced.
+/// Prints why a command failed. The work that was going on is the one last announced.
 pub(super) fn tell(command: &str, error: &anyhow::Error) {
     let what = match progress::current().as_str() {
         _ if is_usage(error) => "cannot do this".to_owned(),
@@ -46,7 +46,12 @@ pub(super) fn is_usage(error: &anyhow::Error) -> bool {
     error.is::<UnknownFormat>() || error.downcast_ref::<Said>().is_some_and(|said| said.usage)
 }
 
-/// Tells what is wrong with a command line; `configured` if some of it comes from a file.
+/// The exit code after an error.
+pub(super) fn code(error: &anyhow::Error) -> u8 {
+    if is_usage(error) { USAGE } else { FAILURE }
+}
+
+/// Prints what is wrong with a command line; `configured` if some of it comes from a file.
 pub(super) fn tell_usage(command: &str, error: &clap::Error, configured: bool) {
     if matches!(error.kind(), ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand) {
         let _ = error.print();
@@ -96,7 +101,7 @@ impl Complaint {
     fn print(&self) {
         let (red, bold, plain) =
             if coloured() { ("\x1b[1;31m", "\x1b[1m", "\x1b[0m") } else { ("", "", "") };
-        // Names of files and arguments stand in them.
+        // They contain names of files and arguments.
         let [what, why, next] =
             [&self.what, &self.why, &self.next].map(|text| escaped(text, |_| false));
         eprintln!("{red}error:{plain} {what}");
@@ -106,7 +111,7 @@ impl Complaint {
 }
 
 fn help(command: &str) -> String {
-    format!("`{command} --help` tells what it takes")
+    format!("`{command} --help` lists its options")
 }
 
 /// The reason in an error and its causes, each said once, and the advice of the last that has some.

@@ -46,7 +46,7 @@ pub(super) fn with_file(
     command: &Command,
     mut args: Vec<OsString>,
 ) -> anyhow::Result<Vec<OsString>> {
-    // What is wrong with the arguments is told when all of them are parsed.
+    // What is wrong with the arguments is reported once all of them are parsed.
     let lenient = command.clone().ignore_errors(true).try_get_matches_from(&args);
     let Some((given, (name, of_command))) =
         lenient.as_ref().ok().and_then(|given| Some((given, given.subcommand()?)))
@@ -205,7 +205,7 @@ fn texts(arg: &Arg, value: &Value) -> anyhow::Result<Vec<String>> {
     let one = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
         Value::Integer(_) | Value::Float(_) => Ok(value.to_string()),
-        _ => refused!("a list or table is no value" => "give a text or a number"),
+        _ => refused!("a list or table is not a value" => "give a text or a number"),
     };
     if !arg.get_action().takes_values() {
         return match value {

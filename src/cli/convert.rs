@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
+use clap::Args;
+use serde::Serialize;
+
 use crate::progress::Stage;
 use crate::shown::shown;
 use crate::volume::{Source, convert, open};
-use clap::Args;
-use serde::Serialize;
 
 use super::Global;
 use super::args::InputArgs;

@@ -69,7 +69,7 @@ enum Content {
         high: [f64; 3],
         weights: bool,
         values: bool,
-        /// Samples along x, y and z of the grid that they stand on; null where the file tells none.
+        /// Samples along x, y and z of their grid; null where the file states none.
         grid: Option<[usize; 3]>,
         coordinates: Coordinates,
         /// The α that their shape is meant to be made at, a squared length.

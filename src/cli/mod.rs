@@ -11,6 +11,7 @@ mod config;
 #[cfg(feature = "zarr")]
 mod convert;
 mod curve;
+mod filled;
 mod filtration;
 mod folder;
 mod formats;
@@ -28,12 +29,14 @@ mod pipeline;
 mod points;
 mod progress;
 mod ranges;
+mod ranks;
 mod report;
 #[cfg(feature = "paper")]
 mod reproduce;
 mod said;
 mod shape;
 mod signals;
+mod together;
 #[cfg(feature = "render")]
 mod view;
 
@@ -53,6 +56,7 @@ use crate::export::Target;
 use crate::progress::TARGET;
 
 use output::{is_broken_pipe, print};
+use ranks::Ranks;
 use said::said;
 
 /// Volume modelling of scattered data with wavelet-weighted alpha shapes.
@@ -71,7 +75,7 @@ const VERSION: &str = concat!(
 );
 
 /// Options of every command.
-#[derive(Args, Clone, Copy)]
+#[derive(Args, Clone, Copy, Default)]
 #[command(next_help_heading = EVERY_COMMAND)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
 struct Global {
@@ -85,7 +89,7 @@ struct Global {
     #[arg(short, long, global = true, conflicts_with = "quiet")]
     verbose: bool,
     /// Number of threads, at most four per processor; results do not depend on it [default: one per
-    /// processor].
+    /// processor, or one for each process that mpirun starts].
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Whether a file goes to standard output.
@@ -117,8 +121,12 @@ enum Command {
 
 /// What is above options that all commands have, behind their own.
 const EVERY_COMMAND: &str = "Every command";
+/// The exit code of what cannot be done.
+const FAILURE: u8 = 1;
 /// The exit code of wrong arguments.
 const USAGE: u8 = 2;
+/// The exit code of a fault of the program, as Rust has it.
+const PANICKED: u8 = 101;
 /// The exit code of a check or comparison that found something.
 const DIFFERENT: u8 = 3;
 /// More threads than this for a processor only wait for each other.
@@ -136,18 +144,29 @@ fn described() -> clap::Command {
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
     signals::prepare();
-    let mut command = described();
+    let command = described();
     let typed: Vec<OsString> = std::env::args_os().collect();
     let name = named(&command, &typed);
+    let ranks = Ranks::find(&name);
+    ranks.run(&name, || lead(command, &name, typed, &ranks), || together::serve(ranks.team()))
+}
+
+/// Runs a command line. The error is the exit code after a failure, which has been told.
+fn lead(
+    mut command: clap::Command,
+    name: &str,
+    typed: Vec<OsString>,
+    ranks: &Ranks,
+) -> Result<ExitCode, u8> {
     let args = match config::with_file(&command, typed.clone()) {
         Ok(args) => args,
         Err(error) => {
-            complaint::tell(&name, &error);
-            return ExitCode::from(USAGE);
+            complaint::tell(name, &error);
+            return Err(USAGE);
         }
     };
     if typed.iter().any(|arg| arg == "--print-config") {
-        // What to work on is no option.
+        // What to work on is not an option.
         command = command.mut_subcommands(|sub| {
             sub.mut_args(|arg| if arg.is_positional() { arg.required(false) } else { arg })
         });
@@ -159,27 +178,31 @@ pub fn run() -> ExitCode {
         Cli::from_arg_matches(&matches).map(|cli| Ok((cli, is_piped(&matches))))
     });
     let done = match parsed {
-        Ok(Ok((Cli { global, command }, piped))) => execute(Global { piped, ..global }, command),
+        Ok(Ok((Cli { global, command }, piped))) => {
+            execute(Global { piped, ..global }, command, ranks)
+        }
         Ok(Err(matches)) => print_config(&command, &matches),
-        // Help and version are no errors.
+        // Help and version are not errors.
         Err(error) if !error.use_stderr() => {
             error.print().map(|()| ExitCode::SUCCESS).map_err(Into::into)
         }
         Err(error) => {
-            complaint::tell_usage(&name, &error, args.len() > typed.len());
-            return ExitCode::from(USAGE);
+            complaint::tell_usage(name, &error, args.len() > typed.len());
+            return Err(USAGE);
         }
     };
-    match done {
+    let code = match done {
         Ok(code) => code,
         // Whoever reads our output has enough of it.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             progress::clear();
-            complaint::tell(&name, &error);
-            if complaint::is_usage(&error) { ExitCode::from(USAGE) } else { ExitCode::FAILURE }
+            complaint::tell(name, &error);
+            return Err(complaint::code(&error));
         }
-    }
+    };
+    together::dismiss(ranks.team());
+    Ok(code)
 }
 
 /// The command as the user calls it: `walpha shape`.
@@ -224,7 +247,7 @@ fn start_threads(asked: Option<u16>) -> anyhow::Result<()> {
     })
 }
 
-fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
+fn execute(global: Global, command: Command, ranks: &Ranks) -> anyhow::Result<ExitCode> {
     let listener = (!global.quiet && std::io::stderr().is_terminal())
         .then(|| progress::Listener.with_filter(Targets::new().with_target(TARGET, Level::TRACE)));
     let level = match global {
@@ -235,11 +258,12 @@ fn execute(global: Global, command: Command) -> anyhow::Result<ExitCode> {
     let log = tracing_subscriber::fmt::layer().with_ansi(complaint::coloured()).with_target(false);
     let log = log.with_writer(std::io::stderr).without_time().with_filter(level);
     tracing_subscriber::registry().with(listener).with(log).init();
-    start_threads(global.threads)?;
+    let alone = ranks.team().size() == 1;
+    start_threads(global.threads.or((!alone).then_some(1)))?;
     match command {
         #[cfg(feature = "paper")]
         Command::Reproduce(reproduce) => reproduce.run(global)?,
-        Command::Shape(shape) => shape.run(global)?,
+        Command::Shape(shape) => shape.run(global, ranks.team())?,
         Command::Blocks(blocks) => blocks.run(global)?,
         Command::Points(points) => points.run(global)?,
         Command::Haar(haar) => haar.run(global)?,

@@ -1,4 +1,4 @@
-//! From an input to weighted points, with what is to be told about the way.
+//! From an input to weighted points, with what is reported about it.
 
 use std::fmt::{self, Display};
 use std::path::Path;
@@ -25,7 +25,7 @@ use super::said::{Said, misused, said};
 pub(super) enum Input {
     /// A grid of gray levels.
     Volume(Grays),
-    /// Points, with weights and values perhaps, and what their file tells of them besides.
+    /// Points, perhaps with weights and values, and what else their file states.
     Points(Points, ModelFacts),
 }
 
@@ -128,7 +128,7 @@ pub(super) struct Source {
     pub facts: VolumeFacts,
 }
 
-/// What is to be told about a volume.
+/// What is reported about a volume.
 #[derive(Clone, Copy)]
 pub(super) struct VolumeFacts {
     pub dims: [usize; 3],

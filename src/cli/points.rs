@@ -63,7 +63,7 @@ impl Points {
         let mut progress = Progress::new(global);
         let stages = pipeline::stages(&self.pipeline);
         let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
-        if self.layers > 1 && weighed.order.is_none() {
+        if self.layers > 1 && weighed.order().is_none() {
             misused!("--layers has no effect: which points are the most important is known only where they are selected from a volume" => "omit it");
         }
         if let Some((target, writer)) = target {
@@ -77,7 +77,7 @@ impl Points {
         report.finish(progress.finish(), files);
         tell(global, &report)
     }
-    /// What a .wvm is told besides the points, and how it is packed.
+    /// What a .wvm holds besides the points, and how it is packed.
     fn packed(&self, weighed: &Weighed, volume: Option<&VolumeFacts>) -> (ModelFacts, Packing) {
         let origin = weighed.origin;
         let range = volume.map(|volume| volume.written).or(origin.range);
@@ -87,7 +87,7 @@ impl Points {
             coordinates: origin.coordinates,
             alpha: weighed.parameter.map(|parameter| parameter.alpha),
             range,
-            order: weighed.order.clone(),
+            order: weighed.order(),
         };
         (facts, Packing { value_error: self.value_error * step, layers: self.layers })
     }

@@ -17,7 +17,7 @@ static BAR: LazyLock<ProgressBar> = LazyLock::new(|| {
     ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(style(STAGE))
 });
 
-/// Of a stage that does not tell how far it is.
+/// The bar of a stage that does not report how far it is.
 const STAGE: &str = "{spinner} {msg} {elapsed}";
 /// Of one that does.
 const PART: &str = "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left, {rate}";
@@ -102,7 +102,7 @@ impl Progress {
 fn style(template: &str) -> ProgressStyle {
     let rate = |state: &ProgressState, out: &mut dyn fmt::Write| {
         let rate = state.per_sec();
-        // Whoever draws has nobody to tell of an error.
+        // An error of the progress bar is nobody's concern.
         let _ = if rate < 10.0 {
             write!(out, "{rate:.1}/s")
         } else {

@@ -14,7 +14,7 @@ fn ends(text: &str) -> Result<[[&str; 2]; 3], Said> {
     let mut ends = [[""; 2]; 3];
     for (range, ends) in [x, y, z].into_iter().zip(&mut ends) {
         let Some((first, end)) = range.split_once(':') else {
-            refused!("`{range}` is no range" => "give two numbers, as in 20:40");
+            refused!("`{range}` is not a range" => "give two numbers, as in 20:40");
         };
         *ends = [first.trim(), end.trim()];
     }
@@ -25,11 +25,13 @@ fn ends(text: &str) -> Result<[[&str; 2]; 3], Said> {
 pub(super) fn samples(text: &str) -> Result<Region, Said> {
     let mut region = Region::default();
     for (k, [first, end]) in ends(text)?.into_iter().enumerate() {
-        let index = |text: &str| match text {
+        let index = |text: &str| {
+            match text {
             "" => Ok(None),
             text => text.parse().map(Some).map_err(
-                |_| said!("`{text}` is no index of a sample" => "give whole numbers, as in 20:40"),
+                |_| said!("`{text}` is not an index of a sample" => "give whole numbers, as in 20:40"),
             ),
+        }
         };
         (region.first[k], region.end[k]) = (index(first)?.unwrap_or(0), index(end)?);
     }
@@ -42,11 +44,11 @@ pub(super) fn places(text: &str) -> Result<ladder::Region, Said> {
     for (k, [low, high]) in ends(text)?.into_iter().enumerate() {
         let finite = |text: &str| match text.parse() {
             Ok(number) if f64::is_finite(number) => Ok(number),
-            _ => Err(said!("`{text}` is no finite number" => "give one, as in 20 or 2.5")),
+            _ => Err(said!("`{text}` is not a finite number" => "give one, as in 20 or 2.5")),
         };
         (region.low[k], region.high[k]) = (finite(low)?, finite(high)?);
         if region.low[k] > region.high[k] {
-            refused!("`{low}:{high}` is no range" => "give the smaller number first, as in 20:40");
+            refused!("`{low}:{high}` is not a range" => "give the smaller number first, as in 20:40");
         }
     }
     Ok(region)

@@ -19,7 +19,7 @@ use super::pipeline::VolumeFacts;
 /// Counted up when a field changes its meaning or goes; new fields may come at any time.
 pub(super) const SCHEMA_VERSION: u32 = 1;
 
-/// The stages whose times are told, in the order of the work.
+/// The stages whose times are printed, in the order of the work.
 const STAGES: [&str; 10] =
     ["read", "haar", "points", "alpha", "refit", "shape", "fill", "interpolate", "write", "total"];
 
@@ -47,7 +47,7 @@ pub(super) struct Report {
     solid: Option<Cuts>,
     files: Vec<String>,
     seconds: BTreeMap<&'static str, f64>,
-    peak_memory_bytes: Option<u64>,
+    pub(super) peak_memory_bytes: Option<u64>,
 }
 
 #[derive(Serialize)]
@@ -317,7 +317,7 @@ impl Report {
     }
 }
 
-/// Components told at most.
+/// Components listed at most.
 const TOLD: usize = 20;
 
 fn largest_components(shape: &AlphaShape) -> Vec<Component> {

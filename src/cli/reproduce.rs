@@ -122,7 +122,7 @@ fn date(mut days: u64) -> String {
     format!("{year:04}-{month:02}-{:02}", days + 1)
 }
 
-/// What the terminal is told: the verdicts, and where to look.
+/// What is printed: the verdicts, and where to look.
 fn text(report: &Report, out: &Path, files: usize) -> String {
     let mut text = String::new();
     let input = &report.input;

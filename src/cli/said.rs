@@ -4,6 +4,8 @@ use std::error::Error;
 
 use crate::advice::{Advice, Setting};
 use crate::blocks::BlocksError;
+use crate::check::schema::SchemaError;
+use crate::check::{CertifyError, CertifyFiltrationError, CompareError};
 use crate::export::TargetError;
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
@@ -112,14 +114,30 @@ impl From<AlphaError> for Said {
     }
 }
 
+/// What an error of the checker knows about what to do.
+fn of_checker(error: &(dyn Error + 'static)) -> Option<&'static str> {
+    if let Some(error) = error.downcast_ref::<AlphaError>() {
+        return Some(error.advice());
+    }
+    if let Some(error) = error.downcast_ref::<SchemaError>() {
+        return error.advice();
+    }
+    if let Some(error) = error.downcast_ref::<CertifyError>() {
+        return error.advice();
+    }
+    if let Some(error) = error.downcast_ref::<CertifyFiltrationError>() {
+        return error.advice();
+    }
+    error.downcast_ref::<CompareError>()?.advice()
+}
+
 /// What an error knows about what to do, in the words of the command.
 pub(super) fn advice(error: &(dyn Error + 'static)) -> Option<String> {
     match error.downcast_ref::<Said>() {
         Some(said) => said.next.clone(),
-        None => match error.downcast_ref::<AlphaError>() {
-            Some(error) => Some(error.advice().into()),
-            None => of_library(error).map(|advice| advice.told(option)),
-        },
+        None => of_checker(error)
+            .map(Into::into)
+            .or_else(|| of_library(error).map(|advice| advice.told(option))),
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::blocks::Pieces;
+use crate::blocks::{Pieces, Team};
 use crate::export::{Content, ExportOptions, Exporter, FORMATS, Format, Target, write_all};
 use crate::progress::Stage;
 use crate::shape::{ShapeOptions, Surface};
@@ -13,13 +13,14 @@ use crate::shown::shown;
 use crate::volume::UnknownFormat;
 
 use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
-use super::blocks::{self, Outputs};
+use super::blocks::Outputs;
 use super::formats::shape_output;
 use super::output::tell;
 use super::picture::PictureArgs;
 use super::progress::Progress;
 use super::report::Report;
 use super::said::{misused, option};
+use super::together::{self, Work};
 use super::{Global, pipeline};
 
 /// Compute the weighted alpha shape of a volume or of points.
@@ -100,7 +101,8 @@ impl Shape {
             unused("--ascii", self.ascii, &why)?;
         }
         if !written(|format| format.groups) {
-            let why = format!("only {} can tell facets apart", known(|f| f.groups));
+            let why =
+                format!("only {} can separate regular and singular facets", known(|f| f.groups));
             unused("--groups", self.groups, &why)?;
         }
         if !written(|format| format.boundary) {
@@ -109,7 +111,7 @@ impl Shape {
         Ok(())
     }
 
-    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global, team: &dyn Team) -> anyhow::Result<()> {
         // Before the long work: a bad option, extension or place costs nothing yet.
         self.check()?;
         let mut targets = Vec::new();
@@ -138,6 +140,7 @@ impl Shape {
             targets.push((Target::open(path)?, exporter));
         }
 
+        together::check(team, !pieces.is_empty())?;
         let mut progress = Progress::new(global);
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         if !pieces.is_empty() {
@@ -150,8 +153,10 @@ impl Shape {
             let given = &self.pipeline.input.given;
             given.refuse(&["refit", "periodic"], "there are blocks")?;
             let outputs = Outputs { pieces, whole: targets };
-            let mut report = blocks::shape(&self.pipeline, &self.shape, outputs, &mut progress)?;
+            let work = Work::new(&self.pipeline, &self.shape, &outputs, global)?;
+            let mut report = work.lead(outputs, &mut progress, team)?;
             report.finish(progress.finish(), files);
+            report.peak_memory_bytes = together::peak(team);
             return tell(global, &report);
         }
         let refuse_flat = self.dimension.is_some();

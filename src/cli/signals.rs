@@ -8,7 +8,7 @@ use super::{INTERRUPTED, progress};
 ///
 /// The large allocations of the library return errors. Where one of the others fails, Rust has no way
 /// back in stable form: it says how many bytes were wanted and aborts, and so does C++ where it cannot
-/// throw. An allocator of our own could not tell those from the allocations that return errors, so
+/// throw. An allocator of our own could not distinguish those from the allocations that return errors, so
 /// the abort itself is caught.
 pub(super) fn prepare() {
     // A handler that cannot be set leaves the system's own.
@@ -43,7 +43,7 @@ error: walpha stopped in the middle of its work
     /// Allocates nothing, waits for no lock, and does not return.
     extern "C" fn aborted(_: c_int) {
         sweep();
-        // There is nobody to tell if it fails.
+        // A failure cannot be reported here.
         let _ = nix::unistd::write(std::io::stderr(), ABORTED.as_bytes());
         // SAFETY: it ends the process without running anything else in it, as a handler may.
         unsafe { _exit(1) }

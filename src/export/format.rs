@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{Glb, Json, Npz, Obj, Off, Ply, Stl, Vtp, Vtu};
 use crate::advice::Advice;
+use crate::setters::setters;
 use crate::shape::{AlphaShape, Surface};
 use crate::volume::UnknownFormat;
 
@@ -40,6 +41,7 @@ pub trait Exporter {
 
 /// How a shape is written down.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ExportOptions {
     /// Text where the format has a binary form too: PLY.
     pub ascii: bool,
@@ -54,6 +56,8 @@ pub struct ExportOptions {
 }
 
 impl ExportOptions {
+    setters! { ascii: bool, solid: bool, groups: bool, input: Option<String> }
+
     /// The boundary to write.
     pub(super) fn surface(&self, shape: &AlphaShape) -> Surface {
         if self.solid { Surface::solid(shape).0 } else { Surface::of(shape) }

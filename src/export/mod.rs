@@ -5,12 +5,12 @@
 //!
 //! ```
 //! use std::path::Path;
+//! use walpha::WeightedPoints;
 //! use walpha::export::{ExportOptions, Format, Target};
-//! use walpha::points::{Points, Weighting, weigh};
 //! use walpha::shape::{Alpha, ShapeOptions, alpha_shape};
 //!
 //! let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-//! let points = weigh(&Points { positions, ..Points::default() }, Weighting::Common(0.0), Alpha::from_squared(1.0)?)?;
+//! let points = WeightedPoints::unweighted(positions);
 //! let shape = alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(1.0)?))?;
 //!
 //! let exporter = Format::of(Path::new("tetrahedron.off"))?.exporter(&ExportOptions::default());

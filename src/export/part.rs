@@ -29,7 +29,7 @@ enum Way {
     Renamed,
     /// Byte by byte into the existing file, which has other names, an owner we cannot give
     /// away to, or a list of who may read it: a new file under this name would be another file.
-    #[cfg_attr(not(unix), expect(dead_code, reason = "only Unix tells of these"))]
+    #[cfg_attr(not(unix), expect(dead_code, reason = "only Unix has these"))]
     Copied,
 }
 

@@ -11,7 +11,7 @@ use crate::shown::shown;
 /// A file to be: opened before the long work, so that a bad place is known at once, and put under
 /// its name only when it is complete. Dropped before that, it leaves nothing behind.
 ///
-/// What stood under the name is replaced, and the new file has its mode and owner; links are
+/// A file of this name is replaced, and the new file has its mode and owner; links are
 /// followed. A file that has other names, too, or whose owner cannot be kept, is not replaced but
 /// overwritten, when all of the new content is on the disk: that alone is not done at one blow. There
 /// are never two targets for one file at a time.
@@ -112,7 +112,7 @@ impl Target {
         &self.path
     }
 
-    /// Writes the content and puts the file in its place, replacing what stood there.
+    /// Writes the content and puts the file in its place, replacing what was there.
     ///
     /// # Errors
     /// What the system said, with the path; the place is then as it was, unless it is a stream.

@@ -58,7 +58,7 @@ impl Entry {
     }
 
     fn remove(&self) {
-        // It may have gone by itself; there is nobody to tell.
+        // It may be gone already; a failure cannot be reported here.
         #[cfg(unix)]
         let _ = if self.folder {
             rustix::fs::rmdir(&*self.name)

@@ -22,7 +22,7 @@ impl Exporter for Vtu {
     }
 }
 
-/// How a shape was made, as far as files tell.
+/// How a shape was made, as far as files record it.
 pub(crate) struct Made<'a> {
     pub alpha: Alpha,
     pub coordinates: Coordinates,

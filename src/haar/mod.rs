@@ -33,16 +33,22 @@ pub use unnormalised::Unnormalised;
 
 use serde::{Deserialize, Serialize};
 
+use crate::setters::setters;
 use crate::volume::Volume;
 use crate::{memory, progress};
 
 /// How a volume is transformed and truncated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct HaarOptions {
     /// Which of the two three-dimensional decompositions.
     pub decomposition: Decomposition,
     /// How much of the volume may be lost.
     pub tolerance: Tolerance,
+}
+
+impl HaarOptions {
+    setters! { decomposition: Decomposition, tolerance: Tolerance }
 }
 
 /// The truncated volume f̂ of a volume f: forward, truncate, inverse.

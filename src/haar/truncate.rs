@@ -1,8 +1,8 @@
-use crate::advice::Advice;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::Coefficients;
+use crate::advice::Advice;
 use crate::memory::NoMemory;
 use crate::select::{Budget, Cut, Dropped};
 use crate::volume::VolumeError;
@@ -16,6 +16,7 @@ const SLACK: f64 = 1.0 + 1.0 / (1u64 << 34) as f64;
 /// How much of a volume may be lost, one of three ways to say it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Tolerance {
     /// The root mean square of f − f̂ over the samples, in their units (gray levels): ε² = rms²·n.
     Rms(f64),

@@ -9,10 +9,12 @@ use super::sampled::Sampled;
 use super::{Deviation, InterpolateError};
 use crate::points::Units;
 use crate::progress::report;
+use crate::setters::setters;
 use crate::volume::{Dims, Volume};
 
 /// When adaptive selection is done: as soon as one of these is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Adaptive {
     /// Points at most.
     pub count: u64,
@@ -22,6 +24,15 @@ pub struct Adaptive {
     /// A bound on the largest error of a sample, in gray levels. With one, points are chosen by that
     /// error, and only samples beyond the bound join.
     pub max_error: Option<f64>,
+}
+
+impl Adaptive {
+    /// So many points, whatever the error.
+    pub fn new(count: u64) -> Self {
+        Self { count, rmse: 0.0, max_error: None }
+    }
+
+    setters! { rmse: f64, max_error: Option<f64> }
 }
 
 /// Points of a batch, over those there are: a batch is large enough for few triangulations, and

@@ -17,6 +17,7 @@ use crate::volume::Volume;
 /// Where the numbers of an error curve come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Method {
     /// The N voxels of largest difference L, as in the paper.
     Difference,
@@ -152,7 +153,7 @@ impl Bench<'_> {
                 let Some(most) = self.counts().max().filter(|&most| most >= 8) else {
                     return Ok(Vec::new());
                 };
-                let goal = Adaptive { count: most, rmse: 0.0, max_error: None };
+                let goal = Adaptive::new(most);
                 let voxels = adaptive_voxels(self.volume, &goal, self.options.units)?;
                 let first = |count: u64| voxels.get(..count as usize);
                 Ok(self.counts().filter_map(first).map(|voxels| self.at(voxels)).collect())

@@ -6,10 +6,10 @@ use crate::volume::{Coordinates, Dims, Frame, Volume, inverse};
 
 /// A grid of places to sample F at.
 ///
-/// Its first and last samples along each axis stand on the first and last samples of the volume it
+/// Its first and last samples along each axis coincide with the first and last samples of the volume it
 /// is laid over (or on the sides of a box), the others at equal steps between: the extent is that
 /// of the sample positions, and the grid of a volume's own sizes is the volume's own. An axis of a
-/// single sample stands in the middle. Positions are rounded once, so those that a double can hold
+/// single sample lies in the middle. Positions are rounded once, so those that a double can hold
 /// are exact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {

@@ -160,7 +160,7 @@ impl<'a> Interpolant<'a> {
 }
 
 /// The sum of values by their shares, in order of size, so that it does not matter in which order the
-/// vertices stand. A vertex's own value bit for bit.
+/// vertices are. A vertex's own value bit for bit.
 pub(super) fn combine(shares: &[f64; 4], values: [f64; 4]) -> f64 {
     if let Some(vertex) = shares.iter().position(|&share| share == 1.0) {
         return values[vertex];

@@ -43,6 +43,7 @@ mod grid;
 mod interpolant;
 mod least_squares;
 mod lists;
+mod local;
 mod number;
 mod raster;
 mod refit;

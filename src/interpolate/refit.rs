@@ -11,6 +11,7 @@ use crate::volume::Volume;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Refit {
     /// All samples, with F on the whole triangulation as [`fill`] makes it.
     #[default]

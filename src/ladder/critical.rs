@@ -39,7 +39,7 @@ pub struct Suggestions {
     /// larger one. This is the smallest α with the property, not one from which it lasts: the
     /// number of components rises and falls.
     pub one_region: Alpha,
-    /// That, and there is no void.
+    /// The same, and without voids.
     pub no_void: Alpha,
     /// From where to where the Betti numbers stay the same longest, as a ratio of the squared radii
     /// of the largest balls, looked for from `all_points` on. The second is the α at which they

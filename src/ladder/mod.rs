@@ -10,8 +10,7 @@
 //! // The 26 outer points of a 3×3×3 lattice: a hollow cube.
 //! let at = |i: i32| [i % 3, i / 3 % 3, i / 9].map(f64::from);
 //! let positions: Vec<_> = (0..27).filter(|&i| i != 13).map(at).collect();
-//! let weights = vec![0.0; positions.len()];
-//! let filtration = Filtration::new(WeightedPoints { positions, weights, values: None })?;
+//! let filtration = Filtration::new(WeightedPoints::unweighted(positions))?;
 //!
 //! let alphas = [0.25, 0.75, 1.0].map(|alpha| Alpha::from_squared(alpha).unwrap());
 //! let ladder = filtration.ladder(&alphas, 8.0);

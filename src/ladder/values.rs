@@ -40,7 +40,7 @@ impl Value {
 
 impl Filtration {
     /// All critical values, ascending; those between the same two doubles are one. Radii whose
-    /// intervals meet no other are told apart by these, all others by exact arithmetic.
+    /// intervals meet no other are ordered by these, all others by exact arithmetic.
     pub(super) fn values(&self) -> Vec<Value> {
         let own = |radii: &[Radius], row: fn(u32) -> Row| -> Vec<(Interval, Row)> {
             let known = radii.par_iter().enumerate();

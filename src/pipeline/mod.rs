@@ -1,41 +1,23 @@
 //! Floor 5: all stages in one call, from a volume or points to the shape. The crate's first page has an example.
 
+mod choice;
 mod error;
 mod parameter;
+mod weighed;
 
+pub use choice::Choice;
 pub use error::PipelineError;
 pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
+pub use weighed::{Origin, Weighed};
 
-use rayon::prelude::*;
+use choice::Chosen;
 
-use crate::haar::{HaarOptions, Truncation, smooth};
-use crate::interpolate::{Adaptive, Fit, Refit, adaptive_voxels, exchange, refit};
-use crate::points::{
-    ModelFacts, Points, SampleGrid, Selection, Units, WeightedPoints, Weighting, difference,
-    points_at, scattered_difference, select, weigh,
-};
+use crate::haar::{HaarOptions, smooth};
+use crate::interpolate::{Refit, refit};
+use crate::points::{ModelFacts, Points, SampleGrid, Units, Weighting};
 use crate::progress::{Share, Stage, within};
-use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, Torus, alpha_shape};
-use crate::volume::{Coordinates, GrayRange, Volume};
-
-/// Which samples of a volume become points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Choice {
-    /// Those of the largest differences, as in the paper.
-    Difference(Selection),
-    /// Those where the interpolant of the ones before is worst.
-    Adaptive(Adaptive),
-    /// The same, and then those whose loss costs little exchanged for others
-    /// ([`exchange`](crate::interpolate::exchange())).
-    Exchanged(Adaptive),
-}
-
-impl Default for Choice {
-    fn default() -> Self {
-        Self::Difference(Selection::default())
-    }
-}
+use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, alpha_shape};
+use crate::volume::{GrayRange, Volume};
 
 /// How a volume or points become a shape: the options of every stage. By default those of the paper, without weights.
 #[derive(Clone, Debug)]
@@ -49,42 +31,6 @@ pub struct Pipeline {
     alpha: AlphaRule,
     shape: ShapeOptions,
     refit: Option<Refit>,
-}
-
-/// Weighted points, and how they came about.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Weighed {
-    /// Their values are gray levels, where they come from a volume, or what [`Pipeline::values`] makes of
-    /// these.
-    pub points: WeightedPoints,
-    /// How it all came about.
-    pub origin: Origin,
-    /// α; `None` where it is still to be found ([`Weighed::find_parameter`]), because weights do not need it.
-    pub parameter: Option<Parameter>,
-    /// The points by their indices, the most important first, where they were selected from a volume: the
-    /// first so many are what a smaller count would have selected.
-    pub order: Option<Vec<u32>>,
-}
-
-/// What is known of points besides themselves.
-#[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
-pub struct Origin {
-    /// What their coordinates mean.
-    pub coordinates: Coordinates,
-    /// Where their weights come from.
-    pub weighting: Weighting,
-    /// What was dropped of the volume they come from.
-    pub truncation: Option<Truncation>,
-    /// The grid that they are samples of, where that is known.
-    pub grid: Option<SampleGrid>,
-    /// The values that were gray 0 and 255, where a file of points tells them.
-    pub range: Option<GrayRange>,
-    /// Adaptive selection ended before it had as many points as asked for.
-    pub ended: Option<Adaptive>,
-    /// How values were fitted to the volume; `None` where they are those of its samples.
-    pub fit: Option<Fit>,
 }
 
 /// A shape, and how it came about.
@@ -192,7 +138,8 @@ impl Pipeline {
         hear(Stage::Haar);
         let (smoothed, truncation) = smooth(volume, &self.haar)?;
         hear(Stage::Points);
-        let (points, order, ended) = self.points(volume, &smoothed)?;
+        let Chosen { points, importance, ended } =
+            self.choice.points(volume, &smoothed, self.units)?;
         let (dims, frame, units) = (volume.dims(), *volume.frame(), self.units);
         let origin = Origin {
             coordinates: units.coordinates(volume),
@@ -203,8 +150,7 @@ impl Pipeline {
             ended,
             fit: None,
         };
-        let weighed = Self::weigh(points, origin, parameter, hear)?;
-        let mut weighed = Weighed { order: Some(order), ..weighed };
+        let mut weighed = Weighed::new(points, origin, parameter, hear)?.ordered(importance);
         if let Some(to) = self.refit {
             self.fit(&mut weighed, volume, to, hear)?;
         }
@@ -223,7 +169,7 @@ impl Pipeline {
         self.weighed_model(points, &ModelFacts::default(), hear)
     }
 
-    /// The points of a file, with what it tells of them: α by default is the one there. `hear` is called
+    /// The points of a file, with what it states about them: α by default is the one there. `hear` is called
     /// with each stage as it begins.
     ///
     /// # Errors
@@ -247,7 +193,7 @@ impl Pipeline {
         let stored = facts.alpha.filter(|_| self.alpha == AlphaRule::Default);
         let stored = stored.map(|alpha| Parameter { alpha, unit, origin: ParameterOrigin::Stored });
         let parameter = stored.or_else(|| self.alpha.given(unit));
-        Ok(self.written(Self::weigh(points, origin, parameter, hear)?))
+        Ok(self.written(Weighed::new(points, origin, parameter, hear)?))
     }
 
     /// The shape of weighted points. `hear` is called with each stage as it begins.
@@ -309,111 +255,6 @@ impl Pipeline {
         let silent = if column { Weighting::Column } else { Weighting::Common(0.0) };
         self.weighting.unwrap_or(silent)
     }
-
-    /// The samples chosen, their order of importance, and what they were asked for where fewer do.
-    fn points(
-        &self,
-        volume: &Volume,
-        smoothed: &Volume,
-    ) -> Result<(Points, Vec<u32>, Option<Adaptive>), PipelineError> {
-        let differences = difference(smoothed);
-        let goal = match self.choice {
-            Choice::Difference(selection) => {
-                let points = select(volume, smoothed, &differences, &selection, self.units)?;
-                let by_difference = points.differences.as_deref().unwrap_or_default();
-                let order = largest_first(by_difference);
-                return Ok((points, order, None));
-            }
-            Choice::Adaptive(goal) | Choice::Exchanged(goal) => goal,
-        };
-        let mut voxels = adaptive_voxels(volume, &goal, self.units)?;
-        if matches!(self.choice, Choice::Exchanged(_)) {
-            voxels = exchange(volume, &voxels, self.units)?;
-        }
-        // Points are in the order of their voxels; the order of importance is kept beside them.
-        let chosen = voxels.clone();
-        voxels.sort_unstable();
-        let place = |voxel: &u32| voxels.binary_search(voxel).expect("the same voxels") as u32;
-        let order = chosen.iter().map(place).collect();
-        // With a target alone as many as there are samples may be needed, and none is asked for.
-        let asked = goal.count < volume.dims().samples() as u64;
-        let fewer = asked && (voxels.len() as u64) < goal.count;
-        let points = points_at(volume, &differences, &voxels, self.units);
-        Ok((points, order, fewer.then_some(goal)))
-    }
-
-    /// Gives points their weights, and finds α first where these are in proportion to it.
-    fn weigh(
-        mut points: Points,
-        origin: Origin,
-        mut parameter: Option<Parameter>,
-        hear: &mut dyn FnMut(Stage),
-    ) -> Result<Weighed, PipelineError> {
-        hear(Stage::Points);
-        let Origin { weighting, coordinates, .. } = origin;
-        let scattered = points.differences.is_none() && points.values.is_some();
-        if scattered && weighting.needs_differences() {
-            points.differences = Some(scattered_difference(&points)?);
-        }
-        if parameter.is_none() && weighting.needs_differences() {
-            // Weights are checked before the search.
-            weigh(&points, weighting, Alpha::from_squared(0.0)?)?;
-            hear(Stage::Alpha);
-            parameter = Some(Parameter::find_unweighted(&points, coordinates.unit)?);
-            hear(Stage::Points);
-        }
-        // Weights that do not depend on α are the same at ∞.
-        let alpha = parameter.map_or(Alpha::INFINITE, |parameter| parameter.alpha);
-        let points = weigh(&points, weighting, alpha)?;
-        Ok(Weighed { points, origin, parameter, order: None })
-    }
-}
-
-impl Weighed {
-    /// α, found now if weights did not need it.
-    ///
-    /// # Errors
-    /// What a [`Filtration`](crate::ladder::Filtration) refuses.
-    pub fn find_parameter(
-        &mut self,
-        hear: &mut dyn FnMut(Stage),
-    ) -> Result<Parameter, PipelineError> {
-        self.find_on(None, hear)
-    }
-
-    /// The same of a torus, if there is one.
-    fn find_on(
-        &mut self,
-        torus: Option<Torus>,
-        hear: &mut dyn FnMut(Stage),
-    ) -> Result<Parameter, PipelineError> {
-        if let Some(parameter) = self.parameter {
-            return Ok(parameter);
-        }
-        hear(Stage::Alpha);
-        let found = Parameter::find(&self.points, torus, self.origin.coordinates.unit)?;
-        self.parameter = Some(found);
-        Ok(found)
-    }
-
-    /// Whether the points may be those of a torus: weights of scattered points that come from differences
-    /// to neighbours know nothing of the copies beyond the sides of the box.
-    ///
-    /// # Errors
-    /// [`PipelineError::PeriodicWeights`].
-    pub fn check_periodic(&self, torus: Option<Torus>) -> Result<(), PipelineError> {
-        let Origin { weighting, truncation, .. } = self.origin;
-        let scattered = truncation.is_none() && weighting.needs_differences();
-        if torus.is_some() && scattered { Err(PipelineError::PeriodicWeights) } else { Ok(()) }
-    }
-}
-
-/// The indices of numbers, the largest first, ties by the index.
-fn largest_first(numbers: &[f64]) -> Vec<u32> {
-    let mut order: Vec<u32> = (0..numbers.len() as u32).collect();
-    let number = |index: u32| numbers[index as usize];
-    order.par_sort_unstable_by(|&a, &b| number(b).total_cmp(&number(a)).then(a.cmp(&b)));
-    order
 }
 
 /// Hears which stage begins, and does nothing.

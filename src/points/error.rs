@@ -23,6 +23,16 @@ pub enum PointsError {
         /// What would do.
         need: &'static str,
     },
+    /// A column of another length than the points.
+    #[error("{given} {column} for {points} points: each point needs one")]
+    Lengths {
+        /// Which column: "weights", "values" or "differences".
+        column: &'static str,
+        /// How many it has.
+        given: usize,
+        /// How many points there are.
+        points: usize,
+    },
     /// More voxels asked for than there are, or none.
     #[error("{asked} points cannot be selected")]
     Count {
@@ -102,6 +112,7 @@ impl PointsError {
     pub fn advice(&self) -> Option<Advice> {
         Some(match self {
             Self::Number { need, .. } => format!("give {need}").into(),
+            Self::Lengths { .. } => return None,
             Self::Count { available, .. } => {
                 format!("give a count from 1 to {available}, the voxels that take part").into()
             }

@@ -25,6 +25,7 @@ mod model;
 mod read;
 mod scattered;
 mod select;
+mod sets;
 mod weigh;
 mod write;
 #[cfg(feature = "formats")]
@@ -36,6 +37,7 @@ pub use formats::{FORMATS, PointFormat, PointWriter};
 pub use model::{ModelFacts, Packing, SampleGrid};
 pub use read::{Columns, UnknownColumns, is_point_file, read_model, read_points};
 pub use scattered::scattered_difference;
-pub use select::{Points, Selection, SelectionRule, Units, points_at, select};
+pub use select::{Selection, SelectionRule, Units, points_at, select};
+pub use sets::{Points, WeightedPoints};
 pub(crate) use weigh::{Differences, Shares};
-pub use weigh::{UnknownWeighting, WeightSummary, WeightedPoints, Weighting, weigh};
+pub use weigh::{UnknownWeighting, WeightSummary, Weighting, weigh};

@@ -1,7 +1,8 @@
-use crate::volume::{Coordinates, Dims, Frame, GrayRange};
 use walpha_check::Alpha;
 
 use super::Units;
+use crate::setters::setters;
+use crate::volume::{Coordinates, Dims, Frame, GrayRange};
 
 /// The grid that points are samples of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +18,7 @@ pub struct SampleGrid {
 /// What is known of weighted points besides themselves: what a `.wvm` keeps, and other formats of points
 /// do not.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct ModelFacts {
     /// The grid that they are samples of.
     pub grid: Option<SampleGrid>,
@@ -32,6 +34,7 @@ pub struct ModelFacts {
 
 /// How a `.wvm` is packed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Packing {
     /// The largest error of a value, in units of the values. The values of F then are off by as much at
     /// most, everywhere. 0 keeps every value bit for bit.
@@ -39,6 +42,16 @@ pub struct Packing {
     /// Layers of points, the most important first; a reader may stop behind any, and has a quarter of the
     /// points without the last, a quarter of these without the last two. One layer makes the smallest file.
     pub layers: u8,
+}
+
+impl ModelFacts {
+    setters! {
+        grid: Option<SampleGrid>,
+        coordinates: Coordinates,
+        alpha: Option<Alpha>,
+        range: Option<GrayRange>,
+        order: Option<Vec<u32>>,
+    }
 }
 
 impl Default for Packing {
@@ -50,6 +63,8 @@ impl Default for Packing {
 impl Packing {
     /// Layers at most.
     pub const MOST_LAYERS: u8 = 8;
+
+    setters! { value_error: f64, layers: u8 }
 }
 
 impl SampleGrid {
@@ -62,7 +77,7 @@ impl SampleGrid {
         }
     }
 
-    /// The sample that stands exactly at a position.
+    /// The sample exactly at a position.
     pub fn sample_at(&self, position: [f64; 3]) -> Option<[u32; 3]> {
         let index = match self.units {
             Units::Voxel => position,

@@ -2,9 +2,10 @@ use ndarray::Array3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::PointsError;
+use super::{Points, PointsError};
 use crate::memory;
 use crate::select::{Budget, Cut};
+use crate::setters::setters;
 use crate::volume::{Coordinates, Dims, Frame, Volume};
 
 /// Voxels looked at as one piece of work.
@@ -12,6 +13,7 @@ const CHUNK: usize = 1 << 16;
 
 /// Which voxels become points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Selection {
     /// By what rule.
     pub rule: SelectionRule,
@@ -19,9 +21,14 @@ pub struct Selection {
     pub gray_min: Option<f64>,
 }
 
+impl Selection {
+    setters! { rule: SelectionRule, gray_min: Option<f64> }
+}
+
 /// The rule of a [`Selection`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum SelectionRule {
     /// This many voxels of the largest L, ties in order of the voxel index.
     Count(u64),
@@ -44,25 +51,13 @@ impl Default for SelectionRule {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Units {
     /// Indices of samples, as in the paper.
     #[default]
     Voxel,
     /// The file's units, by the spacing, origin and direction of its grid.
     World,
-}
-
-/// Points with what is known of them, one entry each.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Points {
-    /// Coordinates (x, y, z).
-    pub positions: Vec<[f64; 3]>,
-    /// Values F: the original gray levels, or a column of the input.
-    pub values: Option<Vec<f64>>,
-    /// Differences L, of a voxel or of scattered values.
-    pub differences: Option<Vec<f64>>,
-    /// Weights that came with the input.
-    pub weights: Option<Vec<f64>>,
 }
 
 impl Units {
@@ -106,18 +101,6 @@ impl Units {
             Self::Voxel => index,
             Self::World => frame.to_world(index),
         }
-    }
-}
-
-impl Points {
-    /// The number of points.
-    pub fn len(&self) -> usize {
-        self.positions.len()
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.positions.is_empty()
     }
 }
 

@@ -4,15 +4,16 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Points, PointsError};
 use walpha_check::Alpha;
 
+use super::{Points, PointsError, WeightedPoints};
 use crate::advice::Advice;
 use crate::math::Sum;
 
 /// Where the weights ω of points come from. Weights are **squared** lengths, as α is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Weighting {
     /// ω = C for all: the shape at α is the unweighted one at α + C.
     Common(f64),
@@ -25,17 +26,6 @@ pub enum Weighting {
     BarycentricN,
     /// A column of the input.
     Column,
-}
-
-/// What a shape is made of: places and their weights.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct WeightedPoints {
-    /// Coordinates (x, y, z).
-    pub positions: Vec<[f64; 3]>,
-    /// Weights ω, squared lengths, one each.
-    pub weights: Vec<f64>,
-    /// Values F, one each, where known.
-    pub values: Option<Vec<f64>>,
 }
 
 /// The range of weights.
@@ -57,16 +47,6 @@ impl Weighting {
 }
 
 impl WeightedPoints {
-    /// The number of points.
-    pub fn len(&self) -> usize {
-        self.positions.len()
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.positions.is_empty()
-    }
-
     /// Smallest, mean and largest weight; all 0 without points.
     pub fn summary(&self) -> WeightSummary {
         if self.weights.is_empty() {
@@ -84,9 +64,9 @@ impl WeightedPoints {
 /// frozen; common and column weights do not depend on it. O(n).
 ///
 /// # Errors
-/// α is infinite or NaN where weights are proportional to it; points without differences
-/// (of scattered ones see [`scattered_difference`](super::scattered_difference)) or without a column of weights where these are asked for; a weight that is
-/// no finite number.
+/// α is infinite or NaN where weights are proportional to it; points without differences (those of
+/// scattered points are [`scattered_difference`](super::scattered_difference)s) or without a column of
+/// weights, where these are needed; a weight that is not a finite number.
 pub fn weigh(
     points: &Points,
     weighting: Weighting,

@@ -1,4 +1,4 @@
-//! What compressors of volumes make of the skull: constants, because they are no part of this program.
+//! What compressors of volumes make of the skull: constants, because they are not part of this program.
 //!
 //! `scripts/race_compressors.py sample:skull` measures them again.
 

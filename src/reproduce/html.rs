@@ -27,7 +27,7 @@ pub fn page(report: &Report, files: &[File]) -> String {
         section(&mut html, item, files);
     }
     html.push_str(
-        "<section><p class=\"soft\">All numbers of this page stand in report.json beside it, with \
+        "<section><p class=\"soft\">All numbers of this page are in report.json beside it, with \
          more digits; times too, which are all that differs between two runs.</p></section>\n\
          </body>\n</html>\n",
     );

@@ -107,6 +107,7 @@ pub struct Finding {
 
 /// Whether a claim holds on our numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Verdict {
     /// It does.
     #[serde(rename = "reproduced")]

@@ -85,10 +85,7 @@ fn histogram(values: &[f64], prefix: u64, shift: u32, width: u32) -> Vec<Bin> {
     let chunks: Vec<Vec<Bin>> = values.par_chunks(CHUNK).map(sort).collect();
     let mut total = vec![Bin::default(); 1 << width];
     for chunk in chunks {
-        for (total, bin) in total.iter_mut().zip(chunk) {
-            total.count += bin.count;
-            total.units += bin.units;
-        }
+        total.iter_mut().zip(&chunk).for_each(|(total, bin)| total.join(bin));
     }
     if above == 63 {
         total.truncate((INFINITY >> shift) as usize);
@@ -110,10 +107,7 @@ fn leading_digits(chunk: &[f64], shift: u32, width: u32) -> Vec<Bin> {
     for bits in rest.iter().copied().map(magnitude) {
         bins[(bits >> shift) as usize].add(bits);
     }
-    for (bin, other) in bins.iter_mut().zip(others) {
-        bin.count += other.count;
-        bin.units += other.units;
-    }
+    bins.iter_mut().zip(&others).for_each(|(bin, other)| bin.join(other));
     bins
 }
 

@@ -6,7 +6,7 @@ use super::budget::{Bin, Budget, Dropped, Spent};
 use super::{Cut, EXPONENT, INFINITY, magnitude};
 
 /// The same cut as [`Cut::new`] finds, of values that are never in one place: rounds of
-/// [counting](Self::count), piece by piece, of which [`Search::learn`] is told the joined counts.
+/// [counting](Self::count), piece by piece, whose joined counts go to [`Search::learn`].
 ///
 /// Values are ordered by their magnitude, equal ones by descending index, as one number of 63 + 64 bits. A
 /// round counts what agrees with the digits known by the next one; when few are left they are listed.
@@ -41,7 +41,7 @@ enum Stage {
     Found(Cut),
 }
 
-/// Bits told apart in one round.
+/// Bits decided in one round.
 const DIGIT: u32 = 18;
 /// Bits of a magnitude.
 const MAGNITUDE: u32 = 63;
@@ -78,7 +78,7 @@ impl Search {
         Self { spent: Spent::of(budget), few, stage }
     }
 
-    /// Whether it was told nothing yet.
+    /// Whether it has no counts yet.
     pub(crate) fn is_new(&self) -> bool {
         self.stage == Stage::Magnitude { known: 0, shift: MAGNITUDE }
     }

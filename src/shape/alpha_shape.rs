@@ -83,7 +83,7 @@ impl AlphaShape {
         }
     }
 
-    /// The same shape, said to stand in these coordinates. Numbers stay what they are.
+    /// The same shape, whose numbers are declared to be in these coordinates.
     #[must_use]
     pub fn meaning(self, coordinates: Coordinates) -> Self {
         Self { coordinates, ..self }

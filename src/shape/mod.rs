@@ -1,14 +1,13 @@
 //! Floor 3: the alpha shape of weighted points, its topology and its measures.
 //!
 //! ```
-//! use walpha::points::{Points, Weighting, weigh};
+//! use walpha::WeightedPoints;
 //! use walpha::shape::{Alpha, ShapeOptions, alpha_shape};
 //!
 //! // The corners of a cube lie on a sphere of squared radius 3/4: at this α, and no less, it is full.
 //! let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|c| c as f64);
-//! let cube = Points { positions: (0..8).map(corner).collect(), ..Points::default() };
-//! let weighted = weigh(&cube, Weighting::Common(0.0), Alpha::from_squared(0.75)?)?;
-//! let shape = alpha_shape(weighted, &ShapeOptions::new(Alpha::from_squared(0.75)?))?;
+//! let cube = WeightedPoints::unweighted((0..8).map(corner).collect());
+//! let shape = alpha_shape(cube, &ShapeOptions::new(Alpha::from_squared(0.75)?))?;
 //! assert_eq!(shape.measures().volume, 1.0);
 //! assert_eq!(shape.complex().facets.counts().regular, 12);
 //! let betti = shape.betti().expect("counted");

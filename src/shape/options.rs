@@ -3,11 +3,13 @@ use std::num::NonZeroUsize;
 use serde::{Deserialize, Serialize};
 
 use super::{Alpha, Balls, ShapeError, Torus, Whole};
+use crate::setters::setters;
 
 /// Which program computes the shape; all give the same answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Engine {
     /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper.
     Reference,
@@ -21,7 +23,15 @@ pub enum Engine {
 }
 
 /// How to make a shape of weighted points.
+///
+/// ```
+/// use walpha::shape::{Alpha, Engine, ShapeOptions};
+///
+/// let options = ShapeOptions::new(Alpha::from_squared(2.5)?).engine(Engine::Native).exterior(true);
+/// # Ok::<(), walpha::shape::AlphaError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ShapeOptions {
     /// The parameter α.
     pub alpha: Alpha,
@@ -57,6 +67,17 @@ impl ShapeOptions {
             refuse_flat: false,
             periodic: None,
         }
+    }
+
+    setters! {
+        alpha: Alpha,
+        balls: Balls,
+        engine: Engine,
+        exterior: bool,
+        blocks: Option<NonZeroUsize>,
+        memory: Option<u64>,
+        refuse_flat: bool,
+        periodic: Option<Torus>,
     }
 
     /// Whether they go together, which [`alpha_shape`](super::alpha_shape()) looks at first.

@@ -122,7 +122,7 @@ fn components(complex: &Complex) -> u64 {
     of_shape.filter(|&(&[v], _)| sets.find(v) == v).count() as u64
 }
 
-/// The sides of exterior cells, so that those at one facet stand side by side.
+/// The sides of exterior cells, so that those at one facet are neighbours.
 fn exterior_sides(whole: &Complex) -> Vec<([u32; 3], u32)> {
     let mut sides: Vec<([u32; 3], u32)> = whole
         .cells

@@ -155,6 +155,7 @@ const GONE: u32 = u32::MAX;
 
 /// Which program makes a triangulation; both make the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Maker {
     /// Our own, in Rust.
     Native,

@@ -19,7 +19,7 @@ pub struct Torus {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TorusError {
-    /// A side is no length.
+    /// A side is not a length.
     #[error(
         "a periodic box has side {side} along {axis}: it must be a positive number between {low:e} and {high:e}",
         low = Torus::SHORTEST,
@@ -71,7 +71,7 @@ impl Torus {
     /// A box by its sides along x, y and z, in the unit of the points.
     ///
     /// # Errors
-    /// [`TorusError`]: a side that is no length, or one far longer than another.
+    /// [`TorusError`]: a side that is not a length, or one far longer than another.
     pub fn new(sides: [f64; 3]) -> Result<Self, TorusError> {
         for (axis, side) in AXES.into_iter().zip(sides) {
             // NaN is in no range.

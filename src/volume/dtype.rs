@@ -13,6 +13,7 @@ use crate::advice::Advice;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[allow(missing_docs, reason = "the names say all")]
+#[non_exhaustive]
 pub enum Dtype {
     U8,
     I8,

@@ -48,7 +48,7 @@ pub enum VolumeError {
     },
     /// A region without samples, or beyond the volume.
     #[error(
-        "the region {}:{},{}:{},{}:{} is no part of a volume of {dims} samples",
+        "the region {}:{},{}:{},{}:{} is not part of a volume of {dims} samples",
         first[0], end[0], first[1], end[1], first[2], end[2]
     )]
     Region {
@@ -95,7 +95,7 @@ pub enum VolumeError {
     #[error(transparent)]
     Memory(#[from] NoMemory),
     /// No sample has this name.
-    #[error("{name:?} is no sample; there are {}", SAMPLES.join(", "))]
+    #[error("{name:?} is not a sample; there are {}", SAMPLES.join(", "))]
     UnknownSample {
         /// What was asked for.
         name: String,

@@ -12,6 +12,7 @@ pub struct GrayRange {
 
 /// Which mapping turns the values of a file into gray levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Gray {
     /// Unsigned 8-bit samples as they are, anything else from its minimum to its maximum.
     #[default]

@@ -32,6 +32,7 @@ pub struct Volume {
 /// What becomes of samples that are NaN.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Nan {
     /// This value replaces them.
     Value(f32),

@@ -16,9 +16,9 @@ pub fn engine(case: &Case) -> Result<Answer, ShapeError> {
 
 /// An engine's answer: the whole triangulation.
 pub fn engine_of(case: &Case, engine: Engine) -> Result<Answer, ShapeError> {
-    let options = ShapeOptions { exterior: true, engine, ..ShapeOptions::new(case.alpha()) };
+    let options = ShapeOptions::new(case.alpha()).exterior(true).engine(engine);
     let Case { positions, weights, .. } = case.clone();
-    let shape = alpha_shape(WeightedPoints { positions, weights, values: None }, &options)?;
+    let shape = alpha_shape(WeightedPoints::new(positions, weights).unwrap(), &options)?;
     Ok(Answer {
         complex: shape.complex().clone(),
         hidden: shape.hidden().expect("the whole triangulation was seen").to_vec(),

@@ -47,7 +47,7 @@ fn one_of_several_volumes_is_read() {
         ("a.npy", npy),
     ] {
         let path = save(folder.path(), name, bytes);
-        let frame = |frame| read(&path, &ReadOptions { frame, ..ReadOptions::default() });
+        let frame = |frame| read(&path, &ReadOptions::default().frame(frame));
         let expected = |factor: f32| numbers().iter().map(|v| factor * v).collect::<Vec<_>>();
         assert_eq!(frame(Some(0)).unwrap().as_slice(), expected(1.0), "{name}");
         assert_eq!(frame(Some(1)).unwrap().as_slice(), expected(10.0), "{name}");
@@ -57,7 +57,7 @@ fn one_of_several_volumes_is_read() {
         }
     }
     let one = save(folder.path(), "v.vtk", VTK);
-    let options = ReadOptions { frame: Some(0), ..ReadOptions::default() };
+    let options = ReadOptions::default().frame(0);
     assert!(read(&one, &options).unwrap_err().told().contains("omit `frame`"));
 }
 
@@ -77,7 +77,7 @@ fn channels_and_times_of_a_tiff_are_volumes() {
     ];
     for (description, page) in cases {
         let path = save(folder.path(), "v.tif", tiff(12, Some(&description)));
-        let frame = |frame| read(&path, &ReadOptions { frame, ..ReadOptions::default() });
+        let frame = |frame| read(&path, &ReadOptions::default().frame(frame));
         for k in 0..4 {
             let volume = frame(Some(k)).unwrap();
             assert_eq!(volume.dims().xyz(), [3, 2, 3]);
@@ -90,7 +90,7 @@ fn channels_and_times_of_a_tiff_are_volumes() {
         assert!(error.contains("4 volumes") && error.contains("`frame`, from 0 to 3"), "{error}");
         // Too few pages, and the first volume whole.
         let path = save(folder.path(), "few.tif", tiff(11, Some(&description)));
-        let last = ReadOptions { frame: Some(3), ..ReadOptions::default() };
+        let last = ReadOptions::default().frame(3);
         assert!(read(&path, &last).unwrap_err().told().contains("fewer pages"));
     }
 }
@@ -190,8 +190,7 @@ fn samples_that_are_nan_are_replaced_or_left_out() {
     ndarray_npy::WriteNpyExt::write_npy(&samples, &mut bytes).unwrap();
     let path = save(f, "n.npy", bytes);
     assert!(open(&path).unwrap_err().told().contains("`nan` VALUE"));
-    let with =
-        |nan| read(&path, &ReadOptions { nan: Some(nan), ..ReadOptions::default() }).unwrap();
+    let with = |nan| read(&path, &ReadOptions::default().nan(nan)).unwrap();
     let replaced = with(Nan::Value(-5.0));
     assert!(replaced.as_slice()[0] == -5.0 && !replaced.has_missing());
     let masked = with(Nan::Mask);

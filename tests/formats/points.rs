@@ -59,18 +59,15 @@ fn damaged_points_say_what_is_wrong() {
 }
 
 pub fn scattered() -> Points {
-    Points {
-        positions: vec![
-            [0.0, 0.0, 0.0],
-            [4.0, 0.0, 0.0],
-            [0.0, 4.0, 0.0],
-            [0.0, 0.0, 4.0],
-            [1.0, 1.0, 1.0],
-            [0.0, 0.0, 0.0],
-        ],
-        values: Some(vec![1.0, 2.0, 3.0, 5.0, 10.0, 4.0]),
-        ..Points::default()
-    }
+    let positions = vec![
+        [0.0, 0.0, 0.0],
+        [4.0, 0.0, 0.0],
+        [0.0, 4.0, 0.0],
+        [0.0, 0.0, 4.0],
+        [1.0, 1.0, 1.0],
+        [0.0, 0.0, 0.0],
+    ];
+    Points::new(positions).with_values(vec![1.0, 2.0, 3.0, 5.0, 10.0, 4.0]).unwrap()
 }
 
 /// A tetrahedron with a point in it, so that all places are neighbours; the last stands on the first.
@@ -89,7 +86,7 @@ fn scattered_values_differ_from_their_delaunay_neighbours() {
             mean([2.0, 1.0, 1.0, 6.0]),
         ]
     );
-    let without = Points { values: None, ..scattered() };
+    let without = Points::new(scattered().positions);
     assert!(matches!(scattered_difference(&without), Err(PointsError::NoValues)));
     let mut flat = scattered();
     flat.positions.iter_mut().for_each(|p| p[2] = 0.0);

@@ -12,7 +12,7 @@ use crate::points::scattered;
 
 fn shape() -> walpha::AlphaShape {
     let Points { positions, values, .. } = scattered();
-    let points = WeightedPoints { weights: vec![0.0; positions.len()], positions, values };
+    let points = WeightedPoints::unweighted(positions).with_values(values.unwrap()).unwrap();
     alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(f64::INFINITY).unwrap())).unwrap()
 }
 
@@ -107,7 +107,7 @@ fn text(extension: &str, options: &ExportOptions, shape: &walpha::AlphaShape) ->
 #[test]
 fn vertices_are_coloured_by_their_values() {
     let shape = shape();
-    let options = ExportOptions { ascii: true, ..ExportOptions::default() };
+    let options = ExportOptions::default().ascii(true);
     let ply = text("ply", &options, &shape);
     let (head, body) = ply.split_once("end_header\n").unwrap();
     assert!(
@@ -116,7 +116,7 @@ fn vertices_are_coloured_by_their_values() {
     );
     assert!(!head.contains("element edge"), "which meshio, trimesh and others refuse: {head}");
     assert!(head.ends_with("vertex_indices\n"), "meshio reads no numbers of facets: {head}");
-    let groups = text("ply", &ExportOptions { groups: true, ..options.clone() }, &shape);
+    let groups = text("ply", &options.clone().groups(true), &shape);
     assert!(groups.contains("property uchar class\nproperty uint component\nproperty int sheet"));
     // Of the values 1, 2, 3 and 5 on the hull the least is dark, the most light.
     let rows: Vec<&str> = body.lines().take(4).collect();
@@ -128,7 +128,7 @@ fn vertices_are_coloured_by_their_values() {
 fn groups_are_made_where_they_are_asked_for() {
     let shape = shape();
     let plain = ExportOptions::default();
-    let groups = ExportOptions { groups: true, ..ExportOptions::default() };
+    let groups = ExportOptions::default().groups(true);
     assert!(!text("obj", &plain, &shape).contains("\ng "));
     assert!(text("obj", &groups, &shape).contains("\ng regular\nf "));
     let facets = |off: String| {
@@ -144,8 +144,7 @@ fn groups_are_made_where_they_are_asked_for() {
 #[test]
 fn files_say_how_they_were_made() {
     let shape = shape();
-    let options =
-        ExportOptions { input: Some("a <file> & \"more\".csv".into()), ..ExportOptions::default() };
+    let options = ExportOptions::default().input("a <file> & \"more\".csv".to_owned());
     let vtp = text("vtp", &options, &shape);
     for word in ["walpha ", "a <file> & \"more\".csv\0", "2 regular, 3 singular\0"] {
         assert!(vtp.contains(word), "{word}");

@@ -48,7 +48,7 @@ fn every_box_is_that_of_the_whole() {
         let writer = VolumeWriter::of(&path).unwrap();
         writer.write(&numbered(), &mut File::create(&path).unwrap()).unwrap();
         same(&path, &ReadOptions::default());
-        same(&path, &ReadOptions { region: Some(region), ..ReadOptions::default() });
+        same(&path, &ReadOptions::default().region(region));
     }
     for input in ["sample:phantom@9", "sample:phantom"] {
         same(Path::new(input), &ReadOptions::default());
@@ -65,8 +65,8 @@ fn raw_samples_of_every_type_are_read_in_boxes() {
             let bytes = (0..11 + 4 * 3 * 5 * dtype.size()).map(|i| (i * 7 % 61) as u8);
             fs::write(&path, bytes.collect::<Vec<u8>>()).unwrap();
             let dims = Dims::new(4, 3, 5).unwrap();
-            let raw = Some(RawLayout { dims, dtype, endian, offset: 11 });
-            same(&path, &ReadOptions { raw, ..ReadOptions::default() });
+            let raw = Some(RawLayout::new(dims, dtype).endian(endian).offset(11u64));
+            same(&path, &ReadOptions::default().raw(raw));
         }
     }
 }
@@ -90,7 +90,7 @@ fn samples_beside_their_header_are_read_in_boxes() {
     let two =
         two.replace("sizes: 4 3 1 5", "sizes: 2 3 5 2").replace("byte skip: -1", "byte skip: 5");
     fs::write(at("two.nhdr"), two).unwrap();
-    same(&at("two.nhdr"), &ReadOptions { frame: Some(1), ..ReadOptions::default() });
+    same(&at("two.nhdr"), &ReadOptions::default().frame(1));
 }
 
 #[test]
@@ -104,8 +104,8 @@ fn volumes_beyond_memory_are_read_in_boxes() {
     file.write_all(&[7, 8, 9]).unwrap();
     drop(file);
     let dims = Dims::unbounded(size, size, size).unwrap();
-    let raw = Some(RawLayout { dims, dtype: Dtype::U8, endian: Endian::Little, offset: 0 });
-    let options = ReadOptions { raw, ..ReadOptions::default() };
+    let raw = Some(RawLayout::new(dims, Dtype::U8));
+    let options = ReadOptions::default().raw(raw);
     let input = path.to_str().unwrap();
     let source = Source::open(input, &options).unwrap();
     assert_eq!(source.read([1996, 1999, 1999], [4, 1, 1]).unwrap(), [0.0, 7.0, 8.0, 9.0]);
@@ -137,9 +137,9 @@ fn what_cannot_be_read_in_boxes_is_refused() {
     refused(&path, "truncated");
     refused(&folder.path().join("nothing.nrrd"), "nothing.nrrd");
     let outside = Region { first: [0; 3], end: [Some(10), None, None] };
-    let options = ReadOptions { region: Some(outside), ..ReadOptions::default() };
+    let options = ReadOptions::default().region(outside);
     assert!(Source::open("sample:phantom@9", &options).is_err());
     // What NaN are is left to whoever reads.
-    let options = ReadOptions { nan: Some(Nan::Mask), ..ReadOptions::default() };
+    let options = ReadOptions::default().nan(Nan::Mask);
     assert!(Source::open("sample:phantom@9", &options).is_ok());
 }

@@ -20,7 +20,7 @@ fn dotted<'a>(extensions: impl IntoIterator<Item = &'a str>) -> String {
 fn read(extensions: &'static [&str], tells: bool) -> String {
     match (extensions, tells) {
         ([], true) => "by content".into(),
-        ([], false) => "as told".into(),
+        ([], false) => "with `--dims`".into(),
         _ => dotted(extensions.iter().copied()),
     }
 }

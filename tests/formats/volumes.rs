@@ -23,9 +23,9 @@ fn written_volumes_are_read_back() {
         writer.write(&volume, &mut bytes).unwrap();
         fs::write(&path, bytes).unwrap();
         let (dims, dtype, endian) = (volume.dims(), Dtype::F32, Endian::Little);
-        let layout = RawLayout { dims, dtype, endian, offset: 0 };
+        let layout = RawLayout::new(dims, dtype).endian(endian);
         let raw = (!format.keeps.dtype).then_some(layout);
-        let options = ReadOptions { raw, ..ReadOptions::default() };
+        let options = ReadOptions::default().raw(raw);
         let back = read(&path, &options).unwrap();
         assert_eq!(back.as_slice(), volume.as_slice(), "{extension}");
         let frame = match (format.keeps.spacing, format.keeps.directions) {
@@ -132,7 +132,7 @@ fn the_files_of_samples_are_named() {
     save(f, "2.raw", &shorts()[12..]);
     save(f, "v.nhdr", [NRRD, "data file: %d.raw 1 2 1\n"].concat());
     assert!(ok(f, &["info", "v.nhdr"]).contains("samples   in 2 files, 1.raw to 2.raw"));
-    // Samples that are no numbers are an error about the file they stand in.
+    // Samples that are not numbers are an error about the file they stand in.
     let text = NRRD.replace("type: short", "type: float").replace("raw", "text");
     let path = save(f, "v.nhdr", text + "data file: numbers.txt\n");
     save(f, "numbers.txt", "1e99 ".repeat(12));

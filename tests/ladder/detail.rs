@@ -16,7 +16,7 @@ fn a_region_of_full_detail_leaves_no_crack() {
     let (volume, _) = volume.into_gray(walpha::Gray::Automatic).unwrap();
     let differences = difference(&volume);
     let points = |count| {
-        let selection = Selection { rule: SelectionRule::Count(count), gray_min: None };
+        let selection = Selection::default().rule(SelectionRule::Count(count));
         select(&volume, &volume, &differences, &selection, Units::Voxel).unwrap()
     };
     let (fine, coarse) = (points(4000), points(900));
@@ -33,12 +33,7 @@ fn a_region_of_full_detail_leaves_no_crack() {
     let alpha = alpha(10.0);
     let of = |positions: Vec<[f64; 3]>| {
         let weights = vec![0.0; positions.len()];
-        one_by_one(
-            &WeightedPoints { positions, weights, values: None },
-            alpha,
-            false,
-            Engine::Native,
-        )
+        one_by_one(&WeightedPoints::new(positions, weights).unwrap(), alpha, false, Engine::Native)
     };
     let shape = of(both.positions.clone());
     let plain = of(union.iter().map(|&[z, y, x]| [x, y, z].map(|k| k as f64)).collect());

@@ -25,7 +25,7 @@ fn alphas(squared: &[f64]) -> Vec<Alpha> {
 }
 
 fn one_by_one(points: &WeightedPoints, alpha: Alpha, exterior: bool, engine: Engine) -> AlphaShape {
-    let options = ShapeOptions { exterior, engine, ..ShapeOptions::new(alpha) };
+    let options = ShapeOptions::new(alpha).exterior(exterior).engine(engine);
     alpha_shape(points.clone(), &options).unwrap()
 }
 
@@ -115,7 +115,7 @@ fn nested(small: &Level, large: &Level) -> bool {
 
 fn weighted(sites: impl IntoIterator<Item = ([f64; 3], f64)>) -> WeightedPoints {
     let (positions, weights) = sites.into_iter().unzip();
-    WeightedPoints { positions, weights, values: None }
+    WeightedPoints::new(positions, weights).unwrap()
 }
 
 /// Lattice points, not all in one plane: everything that can be degenerate is.

@@ -3,7 +3,7 @@
 use walpha::check::schema::{ComplexFile, PlacedComplex};
 use walpha::check::{CertifyError, Finding, NotJudged};
 use walpha::export::{Exporter, Json, Npz};
-use walpha::shape::{AlphaShape, Class, ShapeOptions};
+use walpha::shape::{AlphaShape, Class};
 
 use crate::{alpha_shape, dense, options, sets, shape};
 
@@ -29,7 +29,7 @@ fn shapes_of_a_torus_are_certified() {
     for seed in 0..6 {
         let (points, sides) = dense(seed);
         for squared in [0.2, f64::INFINITY] {
-            let whole = ShapeOptions { exterior: true, ..options(sides, squared) };
+            let whole = options(sides, squared).exterior(true);
             let shape = alpha_shape(points.clone(), &whole).unwrap();
             let (found, certificate) = placed(&shape).findings().unwrap();
             assert_eq!(found, []);
@@ -43,7 +43,7 @@ fn shapes_of_a_torus_are_certified() {
 #[test]
 fn what_is_wrong_on_a_torus_is_found() {
     let (points, sides) = dense(3);
-    let whole = ShapeOptions { exterior: true, ..options(sides, 0.3) };
+    let whole = options(sides, 0.3).exterior(true);
     let right = placed(&alpha_shape(points, &whole).unwrap());
     let count = right.complex.cells.len();
     // Cells at the sides of the box as well as within.

@@ -21,7 +21,7 @@ fn alpha(squared: f64) -> Alpha {
 fn options(sides: [f64; 3], squared: f64) -> ShapeOptions {
     let periodic = Some(Torus::new(sides).unwrap());
     let engine = Engine::Native;
-    ShapeOptions { periodic, engine, ..ShapeOptions::new(alpha(squared)) }
+    ShapeOptions::new(alpha(squared)).periodic(periodic).engine(engine)
 }
 
 fn shape(points: &WeightedPoints, sides: [f64; 3], squared: f64) -> Result<AlphaShape, ShapeError> {
@@ -30,7 +30,7 @@ fn shape(points: &WeightedPoints, sides: [f64; 3], squared: f64) -> Result<Alpha
 
 fn unweighted(positions: Vec<[f64; 3]>) -> WeightedPoints {
     let weights = vec![0.0; positions.len()];
-    WeightedPoints { positions, weights, values: None }
+    WeightedPoints::new(positions, weights).unwrap()
 }
 
 /// A lattice in a box of so many cells, with these points in each cell.
@@ -121,7 +121,7 @@ fn whole_triangulations_are_those_of_copies_in_space() {
     for seed in 0..12 {
         let (points, sides) = dense(seed);
         for squared in [0.2, 0.5, f64::INFINITY] {
-            let whole = ShapeOptions { exterior: true, ..options(sides, squared) };
+            let whole = options(sides, squared).exterior(true);
             let whole = alpha_shape(points.clone(), &whole).unwrap();
             let expected = by_copies(&points, sides, alpha(squared), true).unwrap();
             assert_eq!(*whole.complex(), expected, "set {seed}, α = {squared}");
@@ -151,7 +151,7 @@ fn filtrations_hold_all_shapes_of_the_torus() {
             assert_eq!(one.complex(), taken.complex(), "set {seed}, α = {squared}");
             assert_eq!((one.betti(), one.betti()), (taken.betti(), Some(curve.betti[k])));
             assert_eq!(one.measures(), taken.measures());
-            let whole = ShapeOptions { exterior: true, ..options(sides, squared) };
+            let whole = options(sides, squared).exterior(true);
             let whole = alpha_shape(points.clone(), &whole).unwrap();
             let levels = filtration.levels(&[alpha(squared)]);
             assert_same_voids(&whole.voids().unwrap(), &levels.voids()[0]);
@@ -214,7 +214,7 @@ fn voids_that_lie_across_the_sides_of_the_box() {
         !near(*p, [0.0; 3], 1.0) && *p != [5.0; 3] && !near([p[0], p[1], 0.0], [7.0, 2.0, 0.0], 1.0)
     };
     let points = unweighted(all.filter(keep).collect());
-    let options = ShapeOptions { exterior: true, ..options([10.0; 3], 0.75) };
+    let options = options([10.0; 3], 0.75).exterior(true);
     let shape = alpha_shape(points, &options).unwrap();
     let voids = shape.voids().unwrap();
     let [corner, middle] = voids[..] else { panic!("{voids:?}") };
@@ -261,7 +261,7 @@ fn what_cannot_be_is_refused_with_advice() {
         assert!(shape(&lattice, [2.0, 4.0, 4.0], squared).is_ok());
         assert!(shape(&unweighted(vec![[0.0; 3]]), [2.0, 4.0, 4.0], squared).is_ok());
     }
-    let reference = ShapeOptions { engine: Engine::Reference, ..options([4.0; 3], 1.0) };
+    let reference = options([4.0; 3], 1.0).engine(Engine::Reference);
     let error = alpha_shape(lattice.clone(), &reference).unwrap_err();
     assert!(matches!(error, ShapeError::Unrepeated), "{error:?}");
     let nan = unweighted(vec![[0.0; 3], [f64::NAN, 0.0, 0.0]]);
@@ -293,7 +293,7 @@ fn blocks_and_engines_agree_with_the_whole() {
     for (k, (points, sides)) in sets(60).enumerate() {
         for squared in [0.5, 1.0, 2.25] {
             let Ok(one) = shape(&points, sides, squared) else { continue };
-            let whole = ShapeOptions { exterior: true, ..options(sides, squared) };
+            let whole = options(sides, squared).exterior(true);
             if let Ok(whole) = alpha_shape(points.clone(), &whole) {
                 let mut complex = whole.complex().clone();
                 complex.retain_shape();
@@ -305,7 +305,7 @@ fn blocks_and_engines_agree_with_the_whole() {
                     continue;
                 }
                 let blocks = std::num::NonZeroUsize::new(blocks);
-                let options = ShapeOptions { blocks, engine, ..options(sides, squared) };
+                let options = options(sides, squared).blocks(blocks).engine(engine);
                 let other = alpha_shape(points.clone(), &options).unwrap();
                 assert_eq!(one.complex(), other.complex(), "set {k}, α = {squared}, {blocks:?}");
                 assert_eq!((one.betti(), one.sheets()), (other.betti(), other.sheets()));

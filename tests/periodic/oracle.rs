@@ -12,7 +12,7 @@ pub fn copies(points: &WeightedPoints, sides: [f64; 3], around: i32) -> Weighted
     let mut moves: Vec<[i32; 3]> =
         range().flat_map(|x| range().flat_map(move |y| range().map(move |z| [x, y, z]))).collect();
     moves.sort_by_key(|m| *m != [0; 3]);
-    let mut all = WeightedPoints { positions: vec![], weights: vec![], values: None };
+    let mut all = WeightedPoints::default();
     for by in moves {
         let place = |p: &[f64; 3]| [0, 1, 2].map(|k| p[k] + f64::from(by[k]) * sides[k]);
         all.positions.extend(points.positions.iter().map(place));
@@ -91,7 +91,7 @@ pub fn by_copies(
     exterior: bool,
 ) -> Option<Complex> {
     let all = copies(points, sides, 2);
-    let options = ShapeOptions { exterior, engine: Engine::Native, ..ShapeOptions::new(alpha) };
+    let options = ShapeOptions::new(alpha).exterior(exterior).engine(Engine::Native);
     let shape = alpha_shape(all.clone(), &options).unwrap();
     orbits(points, sides, &all, shape.complex())
 }

@@ -7,11 +7,9 @@ fn written_points_are_read_back() {
     let folder = tempfile::tempdir().unwrap();
     let third = 1.0 / 3.0;
     for values in [None, Some(vec![1e-300, -7.5])] {
-        let points = WeightedPoints {
-            positions: vec![[third, -2.0, 1e20], [0.0, 5.0, 6.25]],
-            weights: vec![third * third, -1.0],
-            values,
-        };
+        let positions = vec![[third, -2.0, 1e20], [0.0, 5.0, 6.25]];
+        let mut points = WeightedPoints::new(positions, vec![third * third, -1.0]).unwrap();
+        points.values = values;
         let (csv, npy) = (folder.path().join("p.csv"), folder.path().join("p.npy"));
         for path in [csv, npy] {
             let mut file = std::fs::File::create(&path).unwrap();

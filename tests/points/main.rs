@@ -54,6 +54,7 @@ fn slow_selection(l: &Array3<f64>, f: &Array3<f32>, selection: &Selection) -> Op
         SelectionRule::Count(n) => n as usize,
         SelectionRule::Ratio(r) => ((r * l.len() as f64).round() as usize).max(1),
         SelectionRule::Threshold(t) => open.iter().filter(|&&i| l[i] >= t).count(),
+        other => panic!("{other:?} is not tested"),
     };
     if count == 0 || count > open.len() {
         return None;
@@ -81,7 +82,7 @@ proptest! {
         ],
         gray_min in prop::option::of(0.0f64..4.0),
     ) {
-        let selection = Selection { rule, gray_min };
+        let selection = Selection::default().rule(rule).gray_min(gray_min);
         let (v, l) = (volume(f.clone()), slow_difference(&f));
         let (_, ny, nx) = f.dim();
         let chosen = select(&v, &v, &l, &selection, Units::Voxel);
@@ -110,16 +111,16 @@ fn the_skull_is_cut_where_it_should_be() {
         Err(other) => panic!("{other}"),
     };
     let (gray, _) = skull.into_gray(Gray::Automatic).unwrap();
-    let options = HaarOptions { tolerance: Tolerance::Rms(0.0), ..HaarOptions::default() };
+    let options = HaarOptions::default().tolerance(Tolerance::Rms(0.0));
     let (smoothed, _) = smooth(&gray, &options).unwrap();
     let l = difference(&smoothed);
-    let by_count = Selection { rule: SelectionRule::Count(15956), gray_min: None };
+    let by_count = Selection::default().rule(SelectionRule::Count(15956));
     let points = select(&gray, &smoothed, &l, &by_count, Units::Voxel).unwrap();
     let least = points.differences.iter().flatten().copied().fold(f64::INFINITY, f64::min);
     assert!((least - 20.36094).abs() < 5e-6, "{least}");
-    let by_threshold = Selection { rule: SelectionRule::Threshold(20.3608), gray_min: None };
+    let by_threshold = Selection::default().rule(SelectionRule::Threshold(20.3608));
     assert_eq!(select(&gray, &smoothed, &l, &by_threshold, Units::Voxel).unwrap(), points);
-    let next = Selection { rule: SelectionRule::Count(15957), gray_min: None };
+    let next = Selection::default().rule(SelectionRule::Count(15957));
     let next = select(&gray, &smoothed, &l, &next, Units::Voxel).unwrap();
     let least = next.differences.iter().flatten().copied().fold(f64::INFINITY, f64::min);
     assert!((least - 20.36070).abs() < 5e-6, "{least}");
@@ -133,7 +134,7 @@ fn world_units_follow_the_frame() {
     let frame = Frame { origin: [10.0, 20.0, 30.0], spacing: [2.0, 3.0, 0.5], ..Frame::VOXEL };
     let f = Array3::from_shape_fn((2, 2, 2), |(z, y, x)| (x + 2 * y + 4 * z) as f32);
     let v = Volume::new(f, frame).unwrap();
-    let all = Selection { rule: SelectionRule::Ratio(1.0), gray_min: None };
+    let all = Selection::default().rule(SelectionRule::Ratio(1.0));
     let points = select(&v, &v, &difference(&v), &all, Units::World).unwrap();
     assert_eq!(points.positions[7], [12.0, 23.0, 30.5]);
     assert_eq!(points.positions[1], [12.0, 20.0, 30.0]);
@@ -144,7 +145,9 @@ fn impossible_selections_say_what_is_possible() {
     let v = volume(Array3::zeros((2, 3, 4)));
     let l = difference(&v);
     let refuse = |rule, gray_min| {
-        select(&v, &v, &l, &Selection { rule, gray_min }, Units::Voxel).unwrap_err().told()
+        select(&v, &v, &l, &Selection::default().rule(rule).gray_min(gray_min), Units::Voxel)
+            .unwrap_err()
+            .told()
     };
     assert!(refuse(SelectionRule::Count(0), None).contains("1 to 24"));
     assert!(refuse(SelectionRule::Count(25), None).contains("1 to 24"));
@@ -176,9 +179,9 @@ fn threads_change_no_selection() {
 fn a_threshold_that_is_an_l_takes_it() {
     let v = volume(Array3::from_shape_fn((1, 1, 2), |(_, _, x)| 5.0 * x as f32));
     let rule = SelectionRule::Threshold(5.0 / 6.0);
-    let selection = Selection { rule, gray_min: None };
+    let selection = Selection::default().rule(rule);
     assert_eq!(select(&v, &v, &difference(&v), &selection, Units::Voxel).unwrap().len(), 2);
-    let above = Selection { rule: SelectionRule::Threshold((5f64 / 6.0).next_up()), ..selection };
+    let above = selection.rule(SelectionRule::Threshold((5f64 / 6.0).next_up()));
     assert!(select(&v, &v, &difference(&v), &above, Units::Voxel).is_err());
 }
 
@@ -189,7 +192,7 @@ fn close_differences_are_told_apart() {
     (samples[[0, 0, 1]], samples[[0, 0, 5]]) = (200.0, 200.0f32.next_up());
     samples[[0, 0, 3]] = 1e-7;
     let v = volume(samples);
-    let selection = Selection { rule: SelectionRule::Count(1), gray_min: None };
+    let selection = Selection::default().rule(SelectionRule::Count(1));
     let points = select(&v, &v, &difference(&v), &selection, Units::Voxel).unwrap();
     assert_eq!(points.positions, [[5.0, 0.0, 0.0]]);
     let l = difference(&v);

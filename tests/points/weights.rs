@@ -3,12 +3,8 @@
 use crate::*;
 
 fn points(differences: &[f64]) -> Points {
-    Points {
-        positions: (0..differences.len()).map(|i| [i as f64, 0.0, 0.0]).collect(),
-        values: None,
-        differences: Some(differences.to_vec()),
-        weights: None,
-    }
+    let positions = (0..differences.len()).map(|i| [i as f64, 0.0, 0.0]).collect();
+    Points::new(positions).with_differences(differences.to_vec()).unwrap()
 }
 
 #[test]
@@ -49,7 +45,7 @@ fn weights_that_cannot_be_are_refused() {
     for weighting in [Weighting::MinMax, Weighting::Barycentric, Weighting::BarycentricN] {
         let text = weigh(&here, weighting, Alpha::INFINITE).unwrap_err().told();
         assert!(text.contains("finite α"), "{text}");
-        let scattered = Points { differences: None, ..here.clone() };
+        let scattered = Points::new(here.positions.clone());
         let text =
             weigh(&scattered, weighting, Alpha::from_squared(1.0).unwrap()).unwrap_err().told();
         assert!(text.contains("column") && text.contains("common=C"), "{text}");

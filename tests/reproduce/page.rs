@@ -33,7 +33,7 @@ fn words(text: &Value) -> Vec<Shown> {
     numbers(text.as_str().expect("a text")).into_iter().map(Shown::Word).collect()
 }
 
-/// A number, unless it is infinite: the page has ∞ for it, which is no number here.
+/// A number, unless it is infinite: the page has ∞ for it, which is not a number here.
 fn rounded(number: &Value) -> Vec<Shown> {
     match number.as_str() {
         Some("inf") => Vec::new(),

@@ -45,7 +45,7 @@ fn known() -> ReadOptions {
 
 fn raw(dims: [u64; 3], dtype: Dtype, endian: Endian, offset: u64) -> ReadOptions {
     let dims = Dims::new(dims[0], dims[1], dims[2]).unwrap();
-    ReadOptions { raw: Some(RawLayout { dims, dtype, endian, offset }), ..ReadOptions::default() }
+    ReadOptions::default().raw(RawLayout::new(dims, dtype).endian(endian).offset(offset))
 }
 
 /// The numbers −3, 0, 100 or, without sign, 3, 0, 100, as a file stores them, and as samples.
@@ -70,6 +70,7 @@ fn three(dtype: Dtype, endian: Endian) -> (Vec<u8>, [f32; 3]) {
         Dtype::I64 => (bytes!(i64, -3).collect(), below),
         Dtype::F32 => (bytes!(f32, -3).collect(), below),
         Dtype::F64 => (bytes!(f64, -3).collect(), below),
+        other => panic!("{other:?} is not tested"),
     }
 }
 

@@ -33,7 +33,7 @@ fn npy_arrays_of_every_type_and_order() {
     let mask = Array3::from_shape_vec((1, 1, 2), vec![true, false]).unwrap();
     let volume = read(&folder.file("mask", &npy(&mask)), &known()).unwrap();
     assert_eq!(volume.as_slice(), [1.0, 0.0]);
-    assert!(!volume.has_gray_levels(), "0 and 1 are no gray levels");
+    assert!(!volume.has_gray_levels(), "0 and 1 are not gray levels");
 }
 
 #[test]

@@ -41,6 +41,9 @@ fn main() -> ExitCode {
             Err(failure) => {
                 failed = true;
                 eprintln!("error: {path:?}: {failure}");
+                if let Some(advice) = failure.advice() {
+                    eprintln!("next: {advice}");
+                }
             }
         }
     }
@@ -62,6 +65,17 @@ enum Failure {
     Filtration(#[from] CertifyFiltrationError),
     #[error("the result cannot be printed: {0}")]
     Output(#[from] io::Error),
+}
+
+impl Failure {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Schema(error) => error.advice(),
+            Self::Certify(error) => error.advice(),
+            Self::Filtration(error) => error.advice(),
+            Self::Output(_) => None,
+        }
+    }
 }
 
 /// Judges a file, prints what is found, and gives whether that is nothing.

@@ -1,4 +1,4 @@
-//! The wavelet stage, which samples become points, and where these stand.
+//! The wavelet stage, which samples become points, and where these are.
 
 use clap::{Args, ValueEnum};
 

@@ -7,7 +7,7 @@ use crate::{Alpha, Dims, GrayRange};
 pub(super) fn dims(text: &str) -> Result<Dims, Said> {
     let size = |size: &str| {
         let whole = size.trim().parse::<u64>();
-        whole.map_err(|_| said!("{size:?} is no whole number" => "give sizes as in 64,64,64"))
+        whole.map_err(|_| said!("{size:?} is not a whole number" => "give sizes as in 64,64,64"))
     };
     let sizes: Vec<u64> = text.split(',').map(size).collect::<Result<_, _>>()?;
     let [x, y, z] = sizes[..] else {
@@ -55,7 +55,9 @@ pub(crate) fn number(text: &str) -> Result<f64, Said> {
 pub(super) fn count(text: &str) -> Result<u64, Said> {
     match text.trim().parse() {
         Ok(0) => refused!("a count from 1 up is needed" => "give it as in 15956"),
-        count => count.map_err(|_| said!("{text:?} is no whole number" => "give one as in 15956")),
+        count => {
+            count.map_err(|_| said!("{text:?} is not a whole number" => "give one as in 15956"))
+        }
     }
 }
 

@@ -1,8 +1,10 @@
 //! What a level of detail misses of the volume.
 
-use crate::interpolate::{Deviation, Grid, Interpolant, InterpolateError, fill};
-use crate::{AlphaShape, Units, Volume};
 use serde::Serialize;
+
+use crate::cli::filled::filled_in;
+use crate::interpolate::{Deviation, Grid, Interpolant, InterpolateError};
+use crate::{AlphaShape, Units, Volume};
 
 /// Root mean square differences of F from a volume, in gray levels.
 #[derive(Clone, Copy, Serialize)]
@@ -29,10 +31,7 @@ impl Errors {
             Ok(Deviation::of(volume, &interpolant.resample(&grid)?).rmse)
         };
         let inside = rmse(Interpolant::with_values(shape, grays)?)?;
-        let whole = fill(shape, Some(volume), units)?;
-        // Behind the points stand the corners, in gray levels already.
-        let corners = whole.points().values.iter().flatten().skip(grays.len());
-        let all: Vec<f64> = grays.iter().chain(corners).copied().collect();
+        let (whole, all) = filled_in(shape, grays, volume, units)?;
         let filled = rmse(Interpolant::with_values(&whole, &all)?)?;
         Ok(Self { inside, filled: filled.unwrap_or_default() })
     }

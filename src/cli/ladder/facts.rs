@@ -1,4 +1,4 @@
-//! What a ladder tells: JSON, text, and tables.
+//! What `walpha ladder` prints: JSON, text, and tables.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Write as _};
@@ -30,7 +30,7 @@ pub(super) struct Facts {
     domain: Domain,
     /// Cells, facets, edges, vertices of the triangulation.
     simplices: [usize; 4],
-    /// Critical values, as far as some α tells them apart.
+    /// Critical values, as far as some α lies between them.
     critical_values: usize,
     suggested: Option<Suggestions>,
     levels: Vec<Row>,

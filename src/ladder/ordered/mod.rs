@@ -24,10 +24,10 @@ use sort::by_rank;
 /// Every simplex of a regular triangulation, and the α from which on it is in the shape, on its
 /// boundary, inside.
 ///
-/// A *value* is a squared radius, told as the nearest double of the exact number (of two, the one
+/// A *value* is a squared radius, given as the nearest double of the exact number (of two, the one
 /// whose last digit is even). The order is by the exact number, then by dimension, then by vertices;
 /// so faces come before what they are faces of, and simplices whose values differ by less than
-/// doubles can tell are in the right order all the same.
+/// doubles can resolve are in the right order all the same.
 ///
 /// A double nearest to a value may be below it: the shape at this very α, [`Filtration::shape`], may
 /// have the simplex or not. [`Filtration::curve`] has doubles that are not below.

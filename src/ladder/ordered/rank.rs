@@ -84,7 +84,7 @@ fn from_bits(key: u64) -> f64 {
     f64::from_bits(if key >> 63 == 1 { key & !(1 << 63) } else { !key })
 }
 
-/// Tells radii apart that have one nearest double.
+/// Distinguishes radii that have one nearest double.
 struct Exactly<'a> {
     filtration: &'a Filtration,
     numbers: Numbers,

@@ -47,7 +47,7 @@ impl Columns {
     ///
     /// # Errors
     /// x or y is missing, or z among names that say more than these; or one of the names that are read
-    /// stands twice.
+    /// occurs twice.
     pub fn named(names: &[&str]) -> Result<Self, UnknownColumns> {
         let known = |name: &&str| COLUMNS.iter().position(|c| c.eq_ignore_ascii_case(name.trim()));
         let columns: Vec<Option<usize>> = names.iter().map(known).collect();

@@ -151,10 +151,10 @@ impl Header {
             for (slot, field) in row.iter_mut().zip(&fields) {
                 let Some(field) = field else { continue };
                 let word = words[field.offset];
-                *slot = Some(
-                    word.parse()
-                        .map_err(|_| Reason::value(format!("has {word:?}, which is no number")))?,
-                );
+                *slot =
+                    Some(word.parse().map_err(|_| {
+                        Reason::value(format!("has {word:?}, which is not a number"))
+                    })?);
             }
             rows.push(row);
         }

@@ -137,7 +137,9 @@ impl<'a> Rows<'a> {
         number.ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
             format(
                 self.path,
-                Reason::value(format!("line {line}, column {name}: {word:?} is no finite number")),
+                Reason::value(format!(
+                    "line {line}, column {name}: {word:?} is not a finite number"
+                )),
             )
         })
     }

@@ -19,7 +19,7 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let mut head = Vec::new();
     (&mut reader).take(HEAD).read_to_end(&mut head).map_err(io_error(path))?;
     let count = head.last_chunk().map_or(0, |&count| u64::from(u32::from_le_bytes(count)));
-    // Binary files may begin with the word, too; their length tells.
+    // Binary files may begin with the word, too; their length decides.
     if head.starts_with(b"solid") && length != HEAD + FACET * count {
         return text(path);
     }

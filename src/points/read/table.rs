@@ -8,8 +8,9 @@ use crate::volume::{Lines, Reason, io_error};
 /// Reads CSV, or tables whose fields are separated by tabs or semicolons; then 0,5 is a half. The first
 /// line may name the columns.
 pub(crate) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
-    let said =
-        |error: csv::Error| format(path, Reason::header(format!("is no table of points: {error}")));
+    let said = |error: csv::Error| {
+        format(path, Reason::header(format!("is not a table of points: {error}")))
+    };
     let delimiter = delimiter(path)?;
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(delimiter)

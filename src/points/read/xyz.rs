@@ -64,7 +64,7 @@ fn finite(path: &Path, line: u64, name: &str, word: &str) -> Result<f64, PointsE
     word.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
         format(
             path,
-            Reason::value(format!("line {line}, column {name}: {word:?} is no finite number")),
+            Reason::value(format!("line {line}, column {name}: {word:?} is not a finite number")),
         )
     })
 }
@@ -80,7 +80,7 @@ fn atoms(path: &Path, mut lines: Lines<impl BufRead>, count: u64) -> Result<Poin
             continue;
         }
         let [_, x, y, z, ..] = words[..] else {
-            let reason = Reason::value(format!("line {number} is no element with x, y and z"));
+            let reason = Reason::value(format!("line {number} is not an element with x, y and z"));
             return Err(format(path, reason));
         };
         let axis = |axis: usize, word| finite(path, number, COLUMNS[axis], word);

@@ -57,7 +57,7 @@ pub(super) fn bit_of(voxel: Cell) -> u32 {
     x + SIDE * (y + SIDE * z)
 }
 
-/// Where the voxel of a bit stands in its block.
+/// Where the voxel of a bit is in its block.
 pub(super) fn place_in_block(bit: u32) -> Cell {
     [bit % SIDE, bit / SIDE % SIDE, bit / (SIDE * SIDE)]
 }

@@ -1,8 +1,9 @@
 //! The fields of a header, as bytes.
 
+use walpha_check::Alpha;
+
 use super::header::Layer;
 use crate::volume::{Coordinates, Frame, LengthUnit, Reason, Space};
-use walpha_check::Alpha;
 
 const SPACES: [Space; 4] = [Space::Unknown, Space::Lps, Space::Ras, Space::Las];
 

@@ -1,10 +1,11 @@
 //! The head of a file: what it holds, and the length of everything behind it.
 
+use walpha_check::Alpha;
+
 use super::super::formats::MODEL;
 use super::super::{ModelFacts, SampleGrid, Units};
 use super::fields::{In, Out};
 use crate::volume::{Coordinates, Dims, Frame, GrayRange, Reason};
-use walpha_check::Alpha;
 
 /// The version that is written, and the only one that is read.
 const VERSION: u8 = 1;
@@ -77,13 +78,13 @@ const ALPHA: u8 = 64;
 const RANGE: u8 = 128;
 
 impl Header {
-    /// What is told besides the points.
+    /// What is stored besides the points.
     pub(super) fn facts(&self) -> ModelFacts {
         let Self { grid, coordinates, alpha, range, .. } = *self;
         ModelFacts { grid, coordinates, alpha, range, order: None }
     }
 
-    /// The frame of the grid, where it has to be told.
+    /// The frame of the grid, where it has to be stored.
     fn frame(&self) -> Option<Frame> {
         let silent = Frame::VOXEL.meaning(self.coordinates);
         self.grid.map(|grid| grid.frame).filter(|frame| *frame != silent)

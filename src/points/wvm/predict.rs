@@ -20,7 +20,7 @@ const RINGS: i32 = 3;
 #[derive(Debug, Default)]
 pub(super) struct Known(HashMap<u32, Vec<(u8, u32)>>);
 
-/// A known value, and where it stands as seen from the voxel.
+/// A known value, and where it lies as seen from the voxel.
 #[derive(Clone, Copy)]
 struct Neighbour {
     step: [i32; 3],

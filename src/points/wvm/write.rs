@@ -12,7 +12,7 @@ use super::values;
 
 /// Writes points and what is known of them.
 ///
-/// Places become voxels where each stands exactly on a sample of the grid, or of one in whole numbers,
+/// Places become voxels where each lies exactly on a sample of the grid, or of one in whole numbers,
 /// and none on another's; the points then come back in the order of the samples. Otherwise they are kept
 /// as doubles, in their order and in one layer.
 ///
@@ -59,7 +59,7 @@ pub(in super::super) fn write(
     out.flush()
 }
 
-/// The grid and the sample that each point stands on, if they all do.
+/// The grid and the sample that each point lies on, if they all do.
 fn on_grid(points: &WeightedPoints, facts: &ModelFacts) -> Option<(SampleGrid, Vec<Cell>)> {
     let spanned = || SampleGrid::spanned(&points.positions, facts.coordinates);
     let grid = facts.grid.or_else(spanned)?;

@@ -85,7 +85,7 @@ impl<'a> Chart<'a> {
     }
 
     fn x(&self, alpha: f64) -> f64 {
-        // What has no place of its own stands at an end.
+        // What has no place of its own goes to an end.
         place(alpha, self.curve.largest_weight()).clamp(self.ends[0], self.ends[1])
     }
 

@@ -94,8 +94,7 @@ fn remark(others: &[Compressor]) -> String {
 fn models(volume: &Volume) -> Result<Vec<Measured>, ReproduceError> {
     let samples = volume.dims().samples();
     let count = ((MOST * samples as f64) as u64).max(8);
-    let voxels =
-        adaptive_voxels(volume, &Adaptive { count, rmse: 0.0, max_error: None }, Units::Voxel)?;
+    let voxels = adaptive_voxels(volume, &Adaptive::new(count), Units::Voxel)?;
     let counts = [8, 4, 2, 1].map(|part| (voxels.len() / part).max(8).min(voxels.len()));
     let mut measured = Vec::new();
     for count in counts {

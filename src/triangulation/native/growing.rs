@@ -40,7 +40,7 @@ pub(super) struct Body {
 
 /// The number before that of the first point.
 pub(super) const GHOST: u32 = 0;
-/// The cell at a point that is no vertex.
+/// The cell at a point that is not a vertex.
 pub(super) const NONE: u32 = u32::MAX;
 
 impl Growing {
@@ -50,7 +50,7 @@ impl Growing {
     /// The triangulation of some points.
     ///
     /// # Errors
-    /// Points that are no sites or span no volume; no memory.
+    /// Points that are not sites or span no volume; no memory.
     pub(crate) fn new(positions: &[[f64; 3]]) -> Result<Self, TriangulationError> {
         Sites::new(positions, &vec![0.0; positions.len()])?;
         let native = Native::empty(positions.len(), positions.len() + 1, GHOST)?;
@@ -74,7 +74,7 @@ impl Growing {
         Ok(growing)
     }
 
-    /// Gives points numbers; they are no vertices yet.
+    /// Gives points numbers; they are not vertices yet.
     pub(crate) fn name(&mut self, positions: &[[f64; 3]]) -> Range<u32> {
         let first = self.positions.len() as u32;
         self.positions.extend_from_slice(positions);
@@ -139,7 +139,7 @@ impl Growing {
         self.body.hole(screen, v, digger)
     }
 
-    /// What would come with a point that lies in a cell, and is no vertex.
+    /// What would come with a point that lies in a cell, and is not a vertex.
     pub(crate) fn crown(&self, screen: &Screen<'_>, v: u32, cell: u32) -> Crown {
         let mesh = &self.body.native.mesh;
         let (mut goes, mut stays, mut cells) = (vec![cell], Vec::new(), Vec::new());

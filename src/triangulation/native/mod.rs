@@ -68,7 +68,7 @@ struct Native {
 }
 
 impl Native {
-    /// Makes a point a vertex, or leaves it hidden; tells which.
+    /// Makes a point a vertex, or leaves it hidden; returns which.
     fn insert(&mut self, screen: &Screen<'_>, v: u32) -> Result<bool, TriangulationError> {
         let cell = self.locate(screen, v);
         let joins = self.mesh.conflicts(screen, cell, v);

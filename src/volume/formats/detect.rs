@@ -176,7 +176,7 @@ impl Found {
         ] {
             if given && !format.chooses.contains(&setting) {
                 let what = match setting {
-                    Setting::Level => "is no pyramid",
+                    Setting::Level => "is not a pyramid",
                     Setting::Array => "has no arrays with names",
                     Setting::Frame => "is of a format of one volume",
                     _ => "is no DICOM series",

@@ -197,7 +197,7 @@ pub static FORMATS: [VolumeFormat; 13] = [
         read: built!("formats", |path, _| slices::read(path)),
         ..PLAIN
     },
-    // Nothing tells bare samples: the user says what they are, and nothing but a name asks for them.
+    // Bare samples cannot be recognised: the user describes them.
     VolumeFormat {
         name: "raw samples",
         keeps: Keeps { dtype: false, ..SAMPLES },

@@ -70,7 +70,7 @@ fn header(path: &Path, reader: &mut impl Read) -> Result<Vec<u8>, VolumeError> {
     reader.take(MAGIC.len() as u64).read_to_end(&mut text).map_err(io_error(path))?;
     if text != MAGIC {
         return Err(format(Reason::other(
-            "is no INRIMAGE-4 file: it does not begin with #INRIMAGE-4#{",
+            "is not an INRIMAGE-4 file: it does not begin with #INRIMAGE-4#{",
         )));
     }
     while !text.ends_with(END) {
@@ -92,94 +92,111 @@ fn header(path: &Path, reader: &mut impl Read) -> Result<Vec<u8>, VolumeError> {
 }
 
 fn parse(text: &[u8]) -> Result<Header, HeaderError> {
-    let said = HeaderError::Said;
     let text = String::from_utf8_lossy(text);
-    let value = |key: &str| {
-        let of_key = |line: &str| {
-            Some(line.split_once('=')?)
-                .filter(|(k, _)| k.trim() == key)
-                .map(|(_, v)| v.trim().to_owned())
-        };
-        text.lines().filter(|line| !line.starts_with('#')).find_map(of_key)
-    };
-    let needed = |key: &str| {
-        value(key).ok_or_else(|| {
-            said(Reason::damaged(format!("its INRIMAGE header has no {key}: it is damaged")))
-        })
-    };
-    let size = |key: &str, text: String| {
-        text.parse::<u64>().map_err(|_| {
-            said(Reason::header(format!("{key}={text} in its header is no number of samples")))
-        })
-    };
-    let number = |key: &str, default: f64| match value(key) {
-        None => Ok(default),
-        Some(text) => match text.parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
-            _ => {
-                Err(said(Reason::value(format!("{key}={text} in its header is no finite number"))))
-            }
-        },
-    };
-
-    let [x, y, z] = ["XDIM", "YDIM", "ZDIM"].map(|key| size(key, needed(key)?));
+    let fields = Fields(&text);
+    let [x, y, z] = ["XDIM", "YDIM", "ZDIM"].map(|key| size(key, fields.needed(key)?));
     let dims = Dims::new(x?, y?, z?).map_err(HeaderError::Volume)?;
-    let values = size("VDIM", value("VDIM").unwrap_or_else(|| "1".into()))?;
+    let values = size("VDIM", fields.value("VDIM").unwrap_or("1"))?;
     if values != 1 {
-        return Err(said(Reason::not_scalar(format!("{values} values a voxel (VDIM)"))));
+        return Err(HeaderError::Said(Reason::not_scalar(format!(
+            "{values} values a voxel (VDIM)"
+        ))));
     }
-    for key in ["RX", "RY", "RZ"] {
-        if number(key, 0.0)? != 0.0 {
-            return Err(said(Reason::unsupported(
-                format!("has rotated axes ({key}), which are not read"),
-                "resample it",
-            )));
-        }
+    let dtype = fields.dtype()?;
+    Ok(Header { dims, dtype, endian: fields.endian(dtype)?, frame: fields.frame()? })
+}
+
+fn size(key: &str, text: &str) -> Result<u64, HeaderError> {
+    text.parse().map_err(|_| {
+        let what = format!("{key}={text} in its header is not a number of samples");
+        HeaderError::Said(Reason::header(what))
+    })
+}
+
+/// The text of a header: lines KEY=value, and comments.
+struct Fields<'a>(&'a str);
+
+impl<'a> Fields<'a> {
+    fn value(&self, key: &str) -> Option<&'a str> {
+        let fields = self.0.lines().filter(|line| !line.starts_with('#'));
+        fields
+            .filter_map(|line| line.split_once('='))
+            .find_map(|(name, value)| (name.trim() == key).then(|| value.trim()))
     }
 
-    let (kind, bits) = (needed("TYPE")?, needed("PIXSIZE")?);
-    let dtype = match (kind.as_str(), bits.split_whitespace().next().unwrap_or("")) {
-        ("float", "32") => Dtype::F32,
-        ("float", "64") => Dtype::F64,
-        ("unsigned fixed", "8") => Dtype::U8,
-        ("unsigned fixed", "16") => Dtype::U16,
-        ("unsigned fixed", "32") => Dtype::U32,
-        ("unsigned fixed", "64") => Dtype::U64,
-        ("signed fixed", "8") => Dtype::I8,
-        ("signed fixed", "16") => Dtype::I16,
-        ("signed fixed", "32") => Dtype::I32,
-        ("signed fixed", "64") => Dtype::I64,
-        _ => {
-            return Err(said(Reason::header(format!(
-                "TYPE={kind} of PIXSIZE={bits} is no INRIMAGE sample type: float is 32 or 64 \
+    fn needed(&self, key: &str) -> Result<&'a str, HeaderError> {
+        self.value(key).ok_or_else(|| {
+            let what = format!("its INRIMAGE header has no {key}: it is damaged");
+            HeaderError::Said(Reason::damaged(what))
+        })
+    }
+
+    fn number(&self, key: &str, default: f64) -> Result<f64, HeaderError> {
+        let Some(text) = self.value(key) else { return Ok(default) };
+        text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+            let what = format!("{key}={text} in its header is not a finite number");
+            HeaderError::Said(Reason::value(what))
+        })
+    }
+
+    fn dtype(&self) -> Result<Dtype, HeaderError> {
+        let (kind, bits) = (self.needed("TYPE")?, self.needed("PIXSIZE")?);
+        Ok(match (kind, bits.split_whitespace().next().unwrap_or("")) {
+            ("float", "32") => Dtype::F32,
+            ("float", "64") => Dtype::F64,
+            ("unsigned fixed", "8") => Dtype::U8,
+            ("unsigned fixed", "16") => Dtype::U16,
+            ("unsigned fixed", "32") => Dtype::U32,
+            ("unsigned fixed", "64") => Dtype::U64,
+            ("signed fixed", "8") => Dtype::I8,
+            ("signed fixed", "16") => Dtype::I16,
+            ("signed fixed", "32") => Dtype::I32,
+            ("signed fixed", "64") => Dtype::I64,
+            _ => {
+                return Err(HeaderError::Said(Reason::header(format!(
+                    "TYPE={kind} of PIXSIZE={bits} is not an INRIMAGE sample type: float is 32 or 64 \
                      bits, signed fixed and unsigned fixed are 8, 16, 32 or 64"
-            ))));
-        }
-    };
-    let endian = match (value("CPU").as_deref(), dtype.size()) {
-        (Some("decm" | "alpha" | "pc"), _) | (None, 1) => Endian::Little,
-        (Some("sun" | "sgi"), _) => Endian::Big,
-        (cpu, _) => {
-            let cpu = cpu.unwrap_or("(missing)");
-            return Err(said(Reason::header(format!(
-                "CPU={cpu} names no byte order: decm, alpha and pc are little endian, sun \
-                     and sgi big"
-            ))));
-        }
-    };
+                ))));
+            }
+        })
+    }
 
-    let mut frame = Frame::VOXEL;
-    for (axis, [spacing, origin]) in [["VX", "TX"], ["VY", "TY"], ["VZ", "TZ"]].iter().enumerate() {
-        frame.spacing[axis] = number(spacing, 1.0)?;
-        frame.origin[axis] = number(origin, 0.0)?;
-        if frame.spacing[axis] <= 0.0 {
-            return Err(said(Reason::header(format!(
-                "{spacing} in its header must be a positive length"
-            ))));
-        }
-        if value(spacing).or(value(origin)).is_some() {
-            frame.coordinates = Coordinates::default();
+    fn endian(&self, dtype: Dtype) -> Result<Endian, HeaderError> {
+        match (self.value("CPU"), dtype.size()) {
+            (Some("decm" | "alpha" | "pc"), _) | (None, 1) => Ok(Endian::Little),
+            (Some("sun" | "sgi"), _) => Ok(Endian::Big),
+            (cpu, _) => {
+                let cpu = cpu.unwrap_or("(missing)");
+                Err(HeaderError::Said(Reason::header(format!(
+                    "CPU={cpu} is not a byte order: decm, alpha and pc are little endian, sun and sgi \
+                     big"
+                ))))
+            }
         }
     }
-    Ok(Header { dims, dtype, endian, frame })
+
+    fn frame(&self) -> Result<Frame, HeaderError> {
+        for key in ["RX", "RY", "RZ"] {
+            if self.number(key, 0.0)? != 0.0 {
+                return Err(HeaderError::Said(Reason::unsupported(
+                    format!("has rotated axes ({key}), which are not read"),
+                    "resample it",
+                )));
+            }
+        }
+        let mut frame = Frame::VOXEL;
+        let keys = [["VX", "TX"], ["VY", "TY"], ["VZ", "TZ"]];
+        for (axis, [spacing, origin]) in keys.iter().enumerate() {
+            frame.spacing[axis] = self.number(spacing, 1.0)?;
+            frame.origin[axis] = self.number(origin, 0.0)?;
+            if frame.spacing[axis] <= 0.0 {
+                let what = format!("{spacing} in its header must be a positive length");
+                return Err(HeaderError::Said(Reason::header(what)));
+            }
+            if self.value(spacing).or(self.value(origin)).is_some() {
+                frame.coordinates = Coordinates::default();
+            }
+        }
+        Ok(frame)
+    }
 }

@@ -10,7 +10,7 @@ pub(crate) struct Lines<R> {
 }
 
 impl<R: BufRead> Lines<R> {
-    /// Stands at the first line.
+    /// At the first line.
     pub(crate) fn new(reader: R) -> Self {
         Self { reader, bytes: 0 }
     }

@@ -9,7 +9,9 @@ use super::lines::Lines;
 use super::nrrd::numbered;
 use super::rows::Rows;
 use super::{format_error, io_error};
-use crate::volume::{Coordinates, Dims, Dtype, Endian, LengthUnit, Reason, Volume, VolumeError};
+use crate::volume::{
+    Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume, VolumeError,
+};
 
 /// Keys of the grid's place, each by its names.
 const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
@@ -150,28 +152,22 @@ impl Header {
 
     fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
         let said = |reason: Reason| format_error(path, reason);
-        let needed = |key: &str| {
-            self.field(&[key]).ok_or_else(|| {
-                said(Reason::damaged(format!("its MetaImage header has no {key}: it is damaged")))
-            })
-        };
         if let Some(kind) = self.field(&["ObjectType"]).filter(|kind| *kind != "Image") {
             return Err(said(Reason::unsupported(
                 format!("holds an object of type {kind}: only Image is read"),
                 "convert it first",
             )));
         }
-        let count = match needed("NDims")? {
+        let count = match self.needed(path, "NDims")? {
             "2" => 2,
             "3" => 3,
             "4" => 4,
             other => {
-                return Err(said(Reason::header(format!(
-                    "has NDims = {other}: a volume has 3 axes"
-                ))));
+                let what = format!("has NDims = {other}: a volume has 3 axes");
+                return Err(said(Reason::header(what)));
             }
         };
-        let sizes = needed("DimSize")?;
+        let sizes = self.needed(path, "DimSize")?;
         let size: Option<Vec<u64>> = sizes.split_whitespace().map(|n| n.parse().ok()).collect();
         let (dims, volumes) = match size.as_deref() {
             Some(&[x, y]) if count == 2 => (Dims::unbounded(x, y, 1)?, 1),
@@ -184,20 +180,9 @@ impl Header {
             }
         };
         let frames = Frames::choose(path, &[volumes], frame)?;
-        let channels = self.field(&["ElementNumberOfChannels"]).unwrap_or("1");
-        if channels != "1" {
-            return Err(said(Reason::not_scalar(format!(
-                "{channels} values a voxel (ElementNumberOfChannels)"
-            ))));
-        }
-        let name = needed("ElementType")?;
-        let dtype = scalar_type(name).ok_or_else(|| {
-            said(Reason::unsupported(
-                format!("holds samples of type {name}, which is not read"),
-                "save it as MET_FLOAT",
-            ))
-        })?;
+        let dtype = self.dtype(path)?;
         let big = self.flag(&["BinaryDataByteOrderMSB", "ElementByteOrderMSB"]);
+        let endian = if big { Endian::Big } else { Endian::Little };
         let encoding = if self.field(&["BinaryData"]).is_some() && !self.flag(&["BinaryData"]) {
             Encoding::Text
         } else if self.flag(&["CompressedData"]) {
@@ -205,7 +190,33 @@ impl Header {
         } else {
             Encoding::Raw
         };
+        let frame = self.frame(path, count)?;
+        Ok(Described { dims, dtype, endian, frame, encoding, frames })
+    }
 
+    fn needed(&self, path: &Path, key: &str) -> Result<&str, VolumeError> {
+        self.field(&[key]).ok_or_else(|| {
+            let what = format!("its MetaImage header has no {key}: it is damaged");
+            format_error(path, Reason::damaged(what))
+        })
+    }
+
+    /// The type of samples, one for each voxel.
+    fn dtype(&self, path: &Path) -> Result<Dtype, VolumeError> {
+        let channels = self.field(&["ElementNumberOfChannels"]).unwrap_or("1");
+        if channels != "1" {
+            let what = format!("{channels} values a voxel (ElementNumberOfChannels)");
+            return Err(format_error(path, Reason::not_scalar(what)));
+        }
+        let name = self.needed(path, "ElementType")?;
+        scalar_type(name).ok_or_else(|| {
+            let what = format!("holds samples of type {name}, which is not read");
+            format_error(path, Reason::unsupported(what, "save it as MET_FLOAT"))
+        })
+    }
+
+    /// The place of a grid of `count` axes.
+    fn frame(&self, path: &Path, count: usize) -> Result<Frame, VolumeError> {
         let spacing = self.numbers(path, &SPACING, count, 1.0)?;
         let origin = self.numbers(path, &ORIGIN, count, 0.0)?;
         let [origin, spacing] = [(origin, 0.0), (spacing, 1.0)].map(|(numbers, silent)| {
@@ -223,9 +234,7 @@ impl Header {
         for (axis, length) in axes.iter_mut().zip(spacing) {
             *axis = axis.map(|component| component * length);
         }
-        let frame = described::frame(path, origin, axes, self.coordinates())?;
-        let endian = if big { Endian::Big } else { Endian::Little };
-        Ok(Described { dims, dtype, endian, frame, encoding, frames })
+        described::frame(path, origin, axes, self.coordinates())
     }
 
     /// `MetaImage` is LPS, and in millimetres unless `DistanceUnits` say otherwise.
@@ -240,7 +249,7 @@ impl Header {
         }
     }
 
-    /// Bytes before the samples of each data file; `None` where they stand at its end.
+    /// Bytes before the samples of each data file; `None` where they are at its end.
     fn skip(&self, path: &Path) -> Result<Option<u64>, VolumeError> {
         let text = self.field(&["HeaderSize"]).unwrap_or("0");
         match text.parse::<i64>() {
@@ -248,7 +257,7 @@ impl Header {
             Ok(skip) if skip >= 0 => Ok(Some(skip as u64)),
             _ => Err(format_error(
                 path,
-                Reason::header(format!("HeaderSize = {text} is no number of bytes")),
+                Reason::header(format!("HeaderSize = {text} is not a number of bytes")),
             )),
         }
     }

@@ -63,9 +63,11 @@ pub use series::Series;
 pub(crate) use vtk_xml::VtkXml;
 
 use super::{Dims, Dtype, Nan, Reason, Region, Volume, VolumeError, downsample};
+use crate::setters::setters;
 
 /// What a user says about a file beyond its name.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ReadOptions {
     /// Reads the file as bare samples in this layout, whatever it looks like.
     pub raw: Option<RawLayout>,
@@ -76,7 +78,7 @@ pub struct ReadOptions {
     /// The volume to read of a file of several (a fourth axis), from 0.
     pub frame: Option<u64>,
     /// The series to read of a folder of several (DICOM): its number, from 1, or the end of its UID, if
-    /// that is no number.
+    /// that is not a number.
     pub series: Option<String>,
     /// What becomes of samples that are NaN; without a word they are refused.
     pub nan: Option<Nan>,
@@ -87,6 +89,17 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
+    setters! {
+        raw: Option<RawLayout>,
+        level: Option<u32>,
+        array: Option<String>,
+        frame: Option<u64>,
+        series: Option<String>,
+        nan: Option<Nan>,
+        region: Option<Region>,
+        downsample: Option<NonZeroUsize>,
+    }
+
     /// The part of a volume that is asked for.
     pub(crate) fn part(&self, volume: Volume) -> Result<Volume, VolumeError> {
         let volume = match &self.region {

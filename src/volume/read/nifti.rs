@@ -95,7 +95,7 @@ fn samples(
         let samples: Vec<f64> = payload.samples(dtype, endian, count).map_err(fail)?;
         samples.iter().map(|v| (v * slope + inter) as f32).collect()
     };
-    // Scaled bytes are no gray levels.
+    // Scaled bytes are not gray levels.
     Ok(described.volume(scaled)?.with_dtype(Dtype::F32))
 }
 
@@ -187,7 +187,7 @@ impl Header {
             magic => Err(format_error(
                 path,
                 Reason::other(format!(
-                    "is no NIfTI file: {:?} stands for n+1",
+                    "is not a NIfTI file: its magic is {:?}, and not n+1",
                     String::from_utf8_lossy(magic)
                 )),
             )),

@@ -10,7 +10,7 @@ const CHUNK_BYTES: usize = 8 << 20;
 
 /// What follows a header: a row of samples, and how many bytes of them there can be.
 pub(crate) struct Payload<R> {
-    /// Stands at the first sample.
+    /// At the first sample.
     pub reader: R,
     /// What is known of the length before reading.
     pub length: Length,

@@ -9,10 +9,12 @@ use super::payload::{Length, Payload, PayloadError};
 use super::rows::Rows;
 use super::{io_error, payload_error};
 use crate::advice::{Setting, advice};
+use crate::setters::setters;
 use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError, any_size};
 
 /// What a file of bare samples does not say of itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct RawLayout {
     /// Samples along x (fastest), y and z (slowest).
     #[serde(deserialize_with = "any_size")]
@@ -23,6 +25,15 @@ pub struct RawLayout {
     pub endian: Endian,
     /// Bytes before the first sample, a header to be skipped.
     pub offset: u64,
+}
+
+impl RawLayout {
+    /// Samples from the first byte on, little-endian.
+    pub fn new(dims: Dims, dtype: Dtype) -> Self {
+        Self { dims, dtype, endian: Endian::Little, offset: 0 }
+    }
+
+    setters! { endian: Endian, offset: u64 }
 }
 
 /// Reads a file that holds `offset` bytes and then exactly the samples of the layout.

@@ -39,14 +39,14 @@ impl Rows {
         Self { path: path.into(), dims, frame, dtype, endian, offset, scaling: None }
     }
 
-    /// Scales samples, in doubles. Scaled bytes are no gray levels.
+    /// Scales samples, in doubles. Scaled bytes are not gray levels.
     #[cfg(feature = "formats")]
     pub(crate) fn scaled(self, (slope, inter): (f64, f64)) -> Self {
         Self { scaling: ((slope, inter) != (1.0, 0.0)).then_some((slope, inter)), ..self }
     }
 
     /// Samples behind a header of so many bytes, of which further ones are skipped: `None` where the samples
-    /// stand at the end of the file.
+    /// are at the end of the file.
     #[cfg(feature = "formats")]
     pub(super) fn behind(
         header: &Path,

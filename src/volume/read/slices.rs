@@ -79,9 +79,10 @@ fn page(path: &Path) -> Result<Page, VolumeError> {
         ImageError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
             io_error(path)(error)
         }
-        other => {
-            format_error(path, Reason::damaged(format!("is no image that can be read: {other}")))
-        }
+        other => format_error(
+            path,
+            Reason::damaged(format!("is not an image that can be read: {other}")),
+        ),
     };
     let length = std::fs::metadata(path).map_err(io_error(path))?.len();
     let decoder = ImageReader::open(path)

@@ -36,7 +36,7 @@ pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeEr
         let (first, last) = (extent[2 * axis], extent[2 * axis + 1]);
         if first.fract() != 0.0 || last.fract() != 0.0 || last < first || last - first > 4e9 {
             return Err(said(Reason::header(format!(
-                "has Extent {extent:?}: it is no grid of samples"
+                "has Extent {extent:?}: it is not a grid of samples"
             ))));
         }
         dims[axis] = (last - first) as u64 + 1;

@@ -7,7 +7,7 @@ use tiff::tags::{CompressionMethod, PhotometricInterpretation, ResolutionUnit, S
 use crate::volume::{LengthUnit, Volume};
 
 /// Writes a volume as TIFF, a page for each slice, or `BigTIFF` where it has more than 4 GB. Spacing and
-/// its unit stand where `ImageJ` looks for them; TIFF knows no origin and no directions. The file stands
+/// its unit are where `ImageJ` looks for them; TIFF has no origin and no directions. The file is built
 /// in memory first.
 ///
 /// # Errors

@@ -15,10 +15,11 @@ use crate::volume::{Dtype, Frame, LengthUnit, Source, VolumeError};
 /// Samples along an edge of a chunk.
 const CHUNK: usize = 64;
 
-/// Writes a volume as OME-Zarr (version 0.5, of Zarr 3) with one level, in chunks of 64³ samples compressed by
-/// zstd, part by part: rows of chunks are in memory, one for each thread. An array alone where nothing is known of
-/// the grid. Bytes and 16-bit integers keep
-/// their type, other samples become `f32`. Spacing, origin and unit are kept; directions are not, as
+/// Writes a volume as OME-Zarr (version 0.5, of Zarr 3) with one level, in chunks of 64³ samples
+/// compressed by zstd. Where nothing is known of the grid, it writes an array without a group.
+///
+/// It reads and writes one row of chunks per thread at a time. Bytes and 16-bit integers keep their
+/// type, other samples become `f32`. Spacing, origin and unit are kept; directions are not, as
 /// OME-Zarr has no place for them.
 ///
 /// # Errors
@@ -30,9 +31,12 @@ pub(in crate::volume) fn zarr(source: &Source, folder: &Path) -> Result<(), Volu
     }
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let part: PathBuf = folder.with_file_name(format!(".walpha-{name}.part"));
+    // Of a run that was killed.
+    let _ = std::fs::remove_dir_all(&part);
+    std::fs::create_dir(&part).map_err(failed)?;
     let done = fill(source, &part).and_then(|()| std::fs::rename(&part, folder).map_err(failed));
     if done.is_err() {
-        // What cannot be removed either has been told of.
+        // The error reported is the first one.
         let _ = std::fs::remove_dir_all(&part);
     }
     done
@@ -44,7 +48,6 @@ fn fill(source: &Source, folder: &Path) -> Result<(), VolumeError> {
         source: std::io::Error::other(error.to_string()),
     };
     let store = Arc::new(FilesystemStore::new(folder).map_err(|error| failed(&error))?);
-    // An array alone where nothing is known of the grid.
     let is_alone = source.frame().coordinates.unit == LengthUnit::Voxel;
     if !is_alone {
         let attributes = ome(source.frame()).as_object().cloned().unwrap_or_default();
@@ -69,7 +72,8 @@ fn fill(source: &Source, folder: &Path) -> Result<(), VolumeError> {
     let [nx, ny, nz] = sizes;
     let starts = |n: usize| (0..n).step_by(CHUNK);
     let rows: Vec<[usize; 2]> = starts(nz).flat_map(|z| starts(ny).map(move |y| [y, z])).collect();
-    for (done, batch) in rows.chunks(rayon::current_num_threads()).enumerate() {
+    let mut done = 0;
+    for batch in rows.chunks(rayon::current_num_threads()) {
         batch.par_iter().try_for_each(|&[y, z]| {
             let size = [nx, CHUNK.min(ny - y), CHUNK.min(nz - z)];
             let samples = source.read([0, y, z], size)?;
@@ -79,7 +83,8 @@ fn fill(source: &Source, folder: &Path) -> Result<(), VolumeError> {
                 .map_err(|error| failed(&error))?;
             store_part(&array, &at, source.dtype(), &samples).map_err(|error| failed(&error))
         })?;
-        progress::report((done * batch.len()) as u64, rows.len() as u64);
+        done += batch.len();
+        progress::report(done as u64, rows.len() as u64);
     }
     Ok(())
 }

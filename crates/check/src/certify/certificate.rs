@@ -60,25 +60,32 @@ pub enum CertifyError {
         weights: usize,
     },
     /// A coordinate or weight is NaN or infinite.
-    #[error("point {0} has a coordinate or weight that is not finite; clean the input")]
+    #[error("point {0} has a coordinate or weight that is not finite")]
     NotFinite(usize),
     /// On a torus: a point that is not in the box, or of which no exact copies can be made.
-    #[error(
-        "point {0} is not in the periodic box, or so fine that its copies would be rounded: coordinates go \
-         from 0 to less than the sides"
-    )]
+    #[error("point {0} is not in the periodic box, or so fine that its copies would be rounded")]
     NotInBox(usize),
     /// More simplices or points than 32-bit numbers.
     #[error("{0} cells or points are too many to check: at most {max} fit", max = MOST)]
     TooMany(usize),
     /// Memory for the links between simplices cannot be had.
-    #[error(
-        "the check of {cells} cells needs {bytes} bytes of memory, which cannot be had; make it smaller"
-    )]
+    #[error("the check of {cells} cells needs {bytes} bytes of memory, which cannot be had")]
     Memory {
         /// Cells of the complex.
         cells: usize,
         /// Bytes for it and its faces.
         bytes: usize,
     },
+}
+
+impl CertifyError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::NotFinite(_) => "clean the input",
+            Self::NotInBox(_) => "give coordinates from 0 to less than the sides of the box",
+            Self::Memory { .. } => "judge a part of it",
+            _ => return None,
+        })
+    }
 }

@@ -7,7 +7,7 @@ use crate::exact::{RoundedSphere, Side, WeightedPoint, in_conflict, orientation,
 ///
 /// A point of weight ω inside a sphere of squared radius R² ≤ α is less than √(α + ω) away from
 /// its centre, and a vertex of weight ω at most as far. So it is enough to ask the points within
-/// √(α + largest ω) of the centre; where doubles cannot tell where that is, those within twice
+/// √(α + largest ω) of the centre; where doubles cannot decide where that is, those within twice
 /// that of a vertex.
 pub(super) struct Emptiness<'a> {
     points: Points<'a>,

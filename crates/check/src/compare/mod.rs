@@ -88,9 +88,7 @@ pub enum CompareError {
         weights: usize,
     },
     /// A coordinate or weight is NaN or infinite.
-    #[error(
-        "point {point} of complex {which} has a coordinate or weight that is not finite; clean the input"
-    )]
+    #[error("point {point} of complex {which} has a coordinate or weight that is not finite")]
     NotFinite {
         /// `A` or `B`.
         which: char,
@@ -105,6 +103,13 @@ pub enum CompareError {
         /// The simplex.
         simplex: Simplex,
     },
+}
+
+impl CompareError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<&'static str> {
+        matches!(self, Self::NotFinite { .. }).then_some("clean the input")
+    }
 }
 
 /// Compares two complexes with their weights and α, matching points by their places, so that the

@@ -16,7 +16,7 @@ pub enum SchemaError {
     #[error("the complex cannot be read as JSON: {0}")]
     Json(#[source] Box<dyn std::error::Error + Send + Sync>),
     /// Not a ZIP archive, or a damaged one.
-    #[error("the complex cannot be read as NPZ: {0}; write it with numpy.savez")]
+    #[error("the complex cannot be read as NPZ: {0}")]
     Zip(String),
     /// An array of the archive cannot be read.
     #[error("array `{name}` {source}")]
@@ -27,7 +27,7 @@ pub enum SchemaError {
         source: NpyError,
     },
     /// Memory for an array cannot be had.
-    #[error("array `{name}` needs {bytes} bytes of memory, which cannot be had; make it smaller")]
+    #[error("array `{name}` needs {bytes} bytes of memory, which cannot be had")]
     Memory {
         /// Its name.
         name: &'static str,
@@ -80,9 +80,22 @@ pub enum SchemaError {
         points: usize,
     },
     /// No points at all.
-    #[error("the file lists no points: add `points`")]
+    #[error("the file lists no points")]
     NoPoints,
     /// No simplices at all.
-    #[error("the file lists no simplices: give at least one of cells, facets, edges, vertices")]
+    #[error("the file lists no simplices")]
     NoSimplices,
+}
+
+impl SchemaError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::Zip(_) => "write it with numpy.savez",
+            Self::Memory { .. } => "make it smaller",
+            Self::NoPoints => "add `points`",
+            Self::NoSimplices => "give at least one of cells, facets, edges, vertices",
+            _ => return None,
+        })
+    }
 }

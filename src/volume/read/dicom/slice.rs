@@ -110,7 +110,7 @@ impl Slice {
         let (Some(columns), Some(rows)) = (column?, row?) else {
             return Err(said(Reason::content(
                 "holds no image",
-                "move what is no slice out of the folder",
+                "move what is not a slice out of the folder",
             )));
         };
         let size = [columns as u64, rows as u64];

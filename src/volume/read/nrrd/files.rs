@@ -42,7 +42,7 @@ pub(crate) fn numbered(words: &[&str]) -> Option<Result<Vec<String>, Reason>> {
     let (first, last, step) = (i64::from(first?), i64::from(last?), i64::from(step?));
     if step == 0 || (last - first) / step < 0 || (last - first) / step >= MAX_FILES || width > 20 {
         return Some(Err(Reason::header(format!(
-            "numbers its data files {}, which is no row",
+            "numbers its data files {}, which is not a row",
             words.join(" ")
         ))));
     }

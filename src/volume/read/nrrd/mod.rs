@@ -98,7 +98,7 @@ impl Header {
             }
             let Some((name, value)) = line.split_once(':') else {
                 return Err(said(Reason::header(format!(
-                    "has a header line {line:?}, which is no field"
+                    "has a header line {line:?}, which is not a field"
                 ))));
             };
             let (name, value) = (name.trim().to_lowercase(), value.trim());
@@ -132,37 +132,9 @@ impl Header {
     }
 
     fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
-        let said = |reason: Reason| format_error(path, reason);
-        let sizes = self.needed(path, "sizes")?;
-        let mut axes: Vec<(usize, u64)> = sizes
-            .split_whitespace()
-            .map(|size| {
-                size.parse()
-                    .map_err(|_| said(Reason::header(format!("sizes: {sizes} are no numbers"))))
-            })
-            .collect::<Result<Vec<u64>, _>>()?
-            .into_iter()
-            .enumerate()
-            .collect();
-        let dimension = self.needed(path, "dimension")?;
-        if dimension.parse() != Ok(axes.len()) {
-            let count = axes.len();
-            return Err(said(Reason::header(format!(
-                "has dimension: {dimension}, but {count} sizes"
-            ))));
-        }
-        let all = axes.len();
-        let kinds: Vec<&str> =
-            self.field("kinds").map(|kinds| kinds.split_whitespace().collect()).unwrap_or_default();
-        for &(axis, size) in &axes {
-            let kind = kinds.get(axis).copied().unwrap_or("none");
-            let scalar = ["domain", "space", "time", "none", "???", "scalar", "stub"];
-            if size > 1 && !scalar.contains(&kind.to_lowercase().as_str()) {
-                return Err(said(Reason::not_scalar(format!(
-                    "{size} values a voxel (axis {axis} is of kind {kind})"
-                ))));
-            }
-        }
+        let sizes = self.sizes(path)?;
+        self.check_scalar(path, &sizes)?;
+        let mut axes: Vec<(usize, u64)> = sizes.iter().copied().enumerate().collect();
         while axes.len() > 3 {
             let Some(single) = axes.iter().position(|&(_, size)| size == 1) else { break };
             axes.remove(single);
@@ -172,47 +144,80 @@ impl Header {
         let size = |axis: usize| axes.get(axis).map_or(1, |&(_, size)| size);
         let dims = Dims::unbounded(size(0), size(1), size(2))?;
         let kept: Vec<usize> = axes.iter().map(|&(axis, _)| axis).collect();
+        let (dtype, encoding) = (self.dtype(path)?, self.encoding(path)?);
+        let endian = self.endian(path, dtype, encoding)?;
+        let frames = Frames::choose(path, &beyond, frame)?;
+        let frame = self.frame(path, sizes.len(), &kept, dims.xyz())?;
+        Ok(Described { dims, dtype, endian, frame, encoding, frames })
+    }
 
+    /// Samples along each axis, the fastest first.
+    fn sizes(&self, path: &Path) -> Result<Vec<u64>, VolumeError> {
+        let said = |what: String| format_error(path, Reason::header(what));
+        let text = self.needed(path, "sizes")?;
+        let sizes: Result<Vec<u64>, _> = text.split_whitespace().map(str::parse).collect();
+        let sizes = sizes.map_err(|_| said(format!("sizes: {text} are not numbers")))?;
+        let dimension = self.needed(path, "dimension")?;
+        if dimension.parse() != Ok(sizes.len()) {
+            let count = sizes.len();
+            return Err(said(format!("has dimension: {dimension}, but {count} sizes")));
+        }
+        Ok(sizes)
+    }
+
+    /// Refuses axes along which a voxel has several values.
+    fn check_scalar(&self, path: &Path, sizes: &[u64]) -> Result<(), VolumeError> {
+        let kinds: Vec<&str> =
+            self.field("kinds").map(|kinds| kinds.split_whitespace().collect()).unwrap_or_default();
+        for (axis, &size) in sizes.iter().enumerate() {
+            let kind = kinds.get(axis).copied().unwrap_or("none");
+            let scalar = ["domain", "space", "time", "none", "???", "scalar", "stub"];
+            if size > 1 && !scalar.contains(&kind.to_lowercase().as_str()) {
+                let what = format!("{size} values a voxel (axis {axis} is of kind {kind})");
+                return Err(format_error(path, Reason::not_scalar(what)));
+            }
+        }
+        Ok(())
+    }
+
+    fn dtype(&self, path: &Path) -> Result<Dtype, VolumeError> {
         let name = self.needed(path, "type")?;
-        let dtype = scalar_type(name).ok_or_else(|| {
-            said(Reason::unsupported(
-                format!(
-                    "holds samples of type {name}: integers of 8 to 64 bits, float and double are \
-                 read"
-                ),
-                "convert it first",
-            ))
-        })?;
-        let encoding = match self.needed(path, "encoding")?.to_lowercase().as_str() {
+        scalar_type(name).ok_or_else(|| {
+            let what = format!(
+                "holds samples of type {name}: integers of 8 to 64 bits, float and double are read"
+            );
+            format_error(path, Reason::unsupported(what, "convert it first"))
+        })
+    }
+
+    fn encoding(&self, path: &Path) -> Result<Encoding, VolumeError> {
+        Ok(match self.needed(path, "encoding")?.to_lowercase().as_str() {
             "raw" => Encoding::Raw,
             "gzip" | "gz" => Encoding::Gzip,
             "bzip2" | "bz2" => Encoding::Bzip2,
             "text" | "txt" | "ascii" => Encoding::Text,
             other => {
-                return Err(said(Reason::unsupported(
-                    format!("is encoded as {other}, which is not read"),
-                    "save it as raw or gzip",
-                )));
+                let what = format!("is encoded as {other}, which is not read");
+                let reason = Reason::unsupported(what, "save it as raw or gzip");
+                return Err(format_error(path, reason));
             }
-        };
-        let endian = match self.field("endian").map(str::to_lowercase).as_deref() {
-            Some("little") => Endian::Little,
-            Some("big") => Endian::Big,
-            None if dtype.size() == 1 || encoding == Encoding::Text => Endian::Little,
-            other => {
-                let given = other.unwrap_or("(missing)");
-                return Err(said(Reason::unsupported(
-                    format!("endian: {given} is no byte order"),
-                    "give little or big",
-                )));
-            }
-        };
-        let frames = Frames::choose(path, &beyond, frame)?;
-        let frame = self.frame(path, all, &kept, dims.xyz())?;
-        Ok(Described { dims, dtype, endian, frame, encoding, frames })
+        })
     }
 
-    /// Bytes before the samples; `None` where they stand at the end of the file.
+    fn endian(&self, path: &Path, dtype: Dtype, encoding: Encoding) -> Result<Endian, VolumeError> {
+        match self.field("endian").map(str::to_lowercase).as_deref() {
+            Some("little") => Ok(Endian::Little),
+            Some("big") => Ok(Endian::Big),
+            None if dtype.size() == 1 || encoding == Encoding::Text => Ok(Endian::Little),
+            other => {
+                let given = other.unwrap_or("(missing)");
+                let what = format!("endian: {given} is not a byte order");
+                Err(format_error(path, Reason::unsupported(what, "give little or big")))
+            }
+        }
+    }
+
+    /// Bytes before the samples; `None` where they are at the end of the file.
     fn skip(&self, path: &Path, described: &Described) -> Result<Option<u64>, VolumeError> {
         let said = |reason: Reason| format_error(path, reason);
         let lines = self.field("line skip").or(self.field("lineskip")).unwrap_or("0");
@@ -232,7 +237,7 @@ impl Header {
             Ok(skip) => Ok(Some(skip)),
             Err(_) if bytes == "-1" => Ok(None),
             Err(_) => {
-                Err(said(Reason::header(format!("byte skip: {bytes} is no number of bytes"))))
+                Err(said(Reason::header(format!("byte skip: {bytes} is not a number of bytes"))))
             }
         }
     }

@@ -60,7 +60,7 @@ impl Header {
                 Some([Some(origin)]) => *origin,
                 _ => {
                     return Err(said(Reason::header(format!(
-                        "space origin: {text} is no vector of numbers"
+                        "space origin: {text} is not a vector of numbers"
                     ))));
                 }
             };

@@ -130,7 +130,7 @@ fn header(
     let first = lines.next().map_err(io_error(path))?.unwrap_or_default();
     if !first.as_bytes().starts_with(MAGIC) {
         return Err(said(Reason::other(
-            "is no legacy VTK file: it does not begin with # vtk DataFile",
+            "is not a legacy VTK file: it does not begin with # vtk DataFile",
         )));
     }
     lines.next().map_err(io_error(path))?;
@@ -213,7 +213,7 @@ impl Grid {
         if dims.iter().any(|&size| size < 0.0 || size.fract() != 0.0) {
             return Err(format_error(
                 path,
-                Reason::header(format!("has DIMENSIONS {dims:?}: they are no sizes")),
+                Reason::header(format!("has DIMENSIONS {dims:?}: they are not sizes")),
             ));
         }
         let mut dims = dims.map(|size| size as u64);

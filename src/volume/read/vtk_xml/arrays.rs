@@ -190,7 +190,7 @@ impl<R: Read> Read for Blocks<R> {
                     ZlibDecoder::new(&packed[..]).take(self.block).read_to_end(&mut bytes)?;
                     bytes
                 }
-                // LZ4 repeats a byte for each byte of 255 in its code, so this much is no lie.
+                // LZ4 repeats a byte for each byte of 255 in its code, so this much may be true.
                 Compressor::Lz4 => {
                     let most = self.block.min(size.saturating_mul(256)) as usize;
                     lz4_flex::block::decompress(&packed, most)

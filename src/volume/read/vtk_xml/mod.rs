@@ -58,7 +58,7 @@ impl VtkXml {
         let metadata = file.metadata().map_err(io_error(path))?;
         if !metadata.is_file() {
             let reason = Reason::unsupported(
-                "is no ordinary file, and VTK's XML is read in several passes",
+                "is not an ordinary file, and VTK's XML is read in several passes",
                 "copy it into one",
             );
             return Err(format_error(path, reason));
@@ -101,7 +101,7 @@ impl VtkXml {
                     io_error(&self.path)(io::Error::new(error.kind(), error.to_string()))
                 }
                 other => self.said(Reason::header(format!(
-                    "is no well-formed XML at byte {before}: {other}"
+                    "is not well-formed XML at byte {before}: {other}"
                 ))),
             })?;
             match event {

@@ -118,7 +118,7 @@ impl fmt::Display for FiltrationFinding {
             Self::Pair { dimension, pair: [from, to], listed: true } => {
                 write!(
                     f,
-                    "simplices {from} and {to} are no persistence pair of dimension {dimension}"
+                    "simplices {from} and {to} are not a persistence pair of dimension {dimension}"
                 )
             }
             Self::Pair { dimension, pair: [from, to], listed: false } => write!(

@@ -70,14 +70,25 @@ pub enum CertifyFiltrationError {
     #[error(transparent)]
     Triangulation(#[from] CertifyError),
     /// The points are those of a torus.
-    #[error("filtrations of a periodic box are not judged; judge the complexes at some α instead")]
+    #[error("filtrations of a periodic box are not judged")]
     Periodic,
+}
+
+impl CertifyFiltrationError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Schema(error) => error.advice(),
+            Self::Triangulation(error) => error.advice(),
+            Self::Periodic => Some("judge the complexes at some α instead"),
+        }
+    }
 }
 
 /// Judges a filtration: that its simplices are the whole regular triangulation (the rules of
 /// [`Claim::visit`](crate::Claim::visit) at α = ∞), the value of each, whether it is Gabriel, from
-/// which α on it is regular and interior, the order, and where that is right the persistence pairs. All by exact numbers; what a file has as
-/// doubles must be the nearest.
+/// which α on it is regular and interior, the order, and where that is right the persistence pairs. All
+/// by exact numbers; the doubles of a file must be the nearest.
 ///
 /// With the intervals every class at every α is judged: below its value a simplex is exterior, then
 /// singular, regular and interior. Faces come before their cofaces where the order is right: no value

@@ -1,0 +1,129 @@
+//! `walpha shape` in blocks, by one process or by all that MPI started.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, Team, merge, run_missing};
+use crate::export::NewFolder;
+use crate::memory;
+use crate::progress::Stage;
+use crate::shown::shown;
+
+use super::args::{PipelineArgs, ShapeArgs};
+use super::blocks::{Outputs, cutting, job};
+use super::progress::Progress;
+use super::report::Report;
+use super::said::{misused, said};
+use super::{Global, start_threads};
+
+/// What processes do together. The first one reads the command line and tells the others.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Work {
+    job: Job,
+    cutting: Cutting,
+    /// Where what is not done yet stands.
+    folder: PathBuf,
+    /// Where pieces go.
+    pieces: Vec<(Pieces, PathBuf)>,
+    /// Of each process.
+    threads: u16,
+}
+
+impl Work {
+    /// What the options ask for. What is not done yet stands in a folder beside the first output with pieces,
+    /// `bone.blocks` for `bone.pvtp`; it goes at the end, and after an interruption the same command goes on
+    /// with it.
+    pub(super) fn new(
+        pipeline: &PipelineArgs,
+        shape: &ShapeArgs,
+        outputs: &Outputs,
+        global: Global,
+    ) -> anyhow::Result<Self> {
+        let (_, first) = outputs.pieces.first().expect("an output with pieces");
+        let pieces = outputs.pieces.clone();
+        let folder = first.with_extension("blocks");
+        let threads = global.threads.unwrap_or(1);
+        Ok(Self { job: job(pipeline, shape)?, cutting: cutting(shape), folder, pieces, threads })
+    }
+
+    /// Does the work as the first process, and writes what is written in one file.
+    pub(super) fn lead(
+        self,
+        outputs: Outputs,
+        progress: &mut Progress,
+        team: &dyn Team,
+    ) -> anyhow::Result<Report> {
+        let new = NewFolder::make(&self.folder).map_err(|error| {
+            let path = shown(&self.folder);
+            said!("cannot make the folder {path}: {error}" => "choose another place for the output")
+        })?;
+        if team.size() > 1 {
+            order(team, Some(serde_json::to_string(&self)?));
+        }
+        let (plan, merged) = self.share(new, progress, team)?;
+        let merged = merged.expect("the first process merges");
+        let report = Report::of_blocks(&plan, &merged);
+        progress.stage(Stage::Write, || outputs.write_whole(&plan, &merged))?;
+        plan.remove()?;
+        Ok(report)
+    }
+
+    /// What each process does.
+    fn share(
+        &self,
+        new: Option<NewFolder>,
+        progress: &mut Progress,
+        team: &dyn Team,
+    ) -> anyhow::Result<(Plan, Option<Merged>)> {
+        let plan = progress.stage(Stage::Points, || {
+            Plan::resume_with(self.job.clone(), self.cutting, &self.folder, team)
+        })?;
+        if let Some(new) = new {
+            new.keep();
+        }
+        progress.stage(Stage::Shape, || run_missing(&plan, team))?;
+        let merge = || team.is_first().then(|| merge(&plan)).transpose();
+        let merged = progress.stage(Stage::Shape, merge)?;
+        for (pieces, path) in &self.pieces {
+            let write = || pieces.write_with(&plan, merged.as_ref(), path, team);
+            progress.stage(Stage::Write, write)?;
+        }
+        Ok((plan, merged))
+    }
+}
+
+fn order(team: &dyn Team, work: Option<String>) {
+    team.told(Some(work));
+}
+
+/// Does what the first process orders, until it [dismisses](dismiss) this one.
+pub(super) fn serve(team: &dyn Team) -> anyhow::Result<()> {
+    while let Some(work) = team.told::<Option<String>>(None) {
+        let work: Work = serde_json::from_str(&work)?;
+        start_threads(Some(work.threads))?;
+        let silent = Global { quiet: true, ..Global::default() };
+        work.share(None, &mut Progress::new(silent), team)?;
+        peak(team);
+    }
+    Ok(())
+}
+
+/// Lets all others end.
+pub(super) fn dismiss(team: &dyn Team) {
+    order(team, None);
+}
+
+/// The most memory that any process held, in bytes; every process asks at the end of its work.
+pub(super) fn peak(team: &dyn Team) -> Option<u64> {
+    team.joined(memory::peak_bytes(), |most, other| *most = (*most).max(other))
+}
+
+/// Refuses several processes for what only one can do.
+pub(super) fn check(team: &dyn Team, pieces: bool) -> anyhow::Result<()> {
+    if let (2.., false) = (team.size(), pieces) {
+        let size = team.size();
+        misused!("{size} processes were started, and no output has a file for each block, which they could write" => "write .pvtu or .pvtp, or start one process");
+    }
+    Ok(())
+}

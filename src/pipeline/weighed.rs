@@ -1,0 +1,140 @@
+use rayon::prelude::*;
+
+use super::{Parameter, PipelineError};
+use crate::haar::Truncation;
+use crate::interpolate::{Adaptive, Fit};
+use crate::points::{Points, SampleGrid, WeightedPoints, Weighting, scattered_difference, weigh};
+use crate::progress::Stage;
+use crate::shape::{Alpha, Torus};
+use crate::volume::{Coordinates, GrayRange};
+
+/// Weighted points, and how they came about.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Weighed {
+    /// Their values are gray levels, where they come from a volume, or what [`Pipeline::values`] makes of
+    /// these.
+    pub points: WeightedPoints,
+    /// How it all came about.
+    pub origin: Origin,
+    /// α; `None` where it is still to be found ([`Weighed::find_parameter`]), because weights do not need it.
+    pub parameter: Option<Parameter>,
+    /// By what the points are ordered, where they were selected from a volume.
+    importance: Option<Importance>,
+}
+
+/// How much points matter.
+#[derive(Clone, Debug)]
+pub(super) enum Importance {
+    /// By their differences L.
+    Differences(Vec<f64>),
+    /// They are in this order, by their indices.
+    Order(Vec<u32>),
+}
+
+/// What is known of points besides themselves.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Origin {
+    /// What their coordinates mean.
+    pub coordinates: Coordinates,
+    /// Where their weights come from.
+    pub weighting: Weighting,
+    /// What was dropped of the volume they come from.
+    pub truncation: Option<Truncation>,
+    /// The grid that they are samples of, where that is known.
+    pub grid: Option<SampleGrid>,
+    /// The values that were gray 0 and 255, where a file of points states them.
+    pub range: Option<GrayRange>,
+    /// Adaptive selection ended before it had as many points as asked for.
+    pub ended: Option<Adaptive>,
+    /// How values were fitted to the volume; `None` where they are those of its samples.
+    pub fit: Option<Fit>,
+}
+
+impl Weighed {
+    /// Gives points their weights, and finds α first where these are in proportion to it.
+    pub(super) fn new(
+        mut points: Points,
+        origin: Origin,
+        mut parameter: Option<Parameter>,
+        hear: &mut dyn FnMut(Stage),
+    ) -> Result<Self, PipelineError> {
+        hear(Stage::Points);
+        let Origin { weighting, coordinates, .. } = origin;
+        let scattered = points.differences.is_none() && points.values.is_some();
+        if scattered && weighting.needs_differences() {
+            points.differences = Some(scattered_difference(&points)?);
+        }
+        if parameter.is_none() && weighting.needs_differences() {
+            // Weights are checked before the search.
+            weigh(&points, weighting, Alpha::from_squared(0.0)?)?;
+            hear(Stage::Alpha);
+            parameter = Some(Parameter::find_unweighted(&points, coordinates.unit)?);
+            hear(Stage::Points);
+        }
+        // Weights that do not depend on α are the same at ∞.
+        let alpha = parameter.map_or(Alpha::INFINITE, |parameter| parameter.alpha);
+        let points = weigh(&points, weighting, alpha)?;
+        Ok(Self { points, origin, parameter, importance: None })
+    }
+
+    /// The same points with what they are ordered by.
+    pub(super) fn ordered(self, importance: Importance) -> Self {
+        Self { importance: Some(importance), ..self }
+    }
+
+    /// The points by their indices, the most important first, where they were selected from a volume: the
+    /// first so many are what a smaller count would have selected. O(n log n).
+    pub fn order(&self) -> Option<Vec<u32>> {
+        Some(match self.importance.as_ref()? {
+            Importance::Differences(differences) => largest_first(differences),
+            Importance::Order(order) => order.clone(),
+        })
+    }
+
+    /// α, found now if weights did not need it.
+    ///
+    /// # Errors
+    /// What a [`Filtration`](crate::ladder::Filtration) refuses.
+    pub fn find_parameter(
+        &mut self,
+        hear: &mut dyn FnMut(Stage),
+    ) -> Result<Parameter, PipelineError> {
+        self.find_on(None, hear)
+    }
+
+    /// The same of a torus, if there is one.
+    pub(super) fn find_on(
+        &mut self,
+        torus: Option<Torus>,
+        hear: &mut dyn FnMut(Stage),
+    ) -> Result<Parameter, PipelineError> {
+        if let Some(parameter) = self.parameter {
+            return Ok(parameter);
+        }
+        hear(Stage::Alpha);
+        let found = Parameter::find(&self.points, torus, self.origin.coordinates.unit)?;
+        self.parameter = Some(found);
+        Ok(found)
+    }
+
+    /// Whether the points may be those of a torus: weights of scattered points that come from differences
+    /// to neighbours know nothing of the copies beyond the sides of the box.
+    ///
+    /// # Errors
+    /// [`PipelineError::PeriodicWeights`].
+    pub fn check_periodic(&self, torus: Option<Torus>) -> Result<(), PipelineError> {
+        let Origin { weighting, truncation, .. } = self.origin;
+        let scattered = truncation.is_none() && weighting.needs_differences();
+        if torus.is_some() && scattered { Err(PipelineError::PeriodicWeights) } else { Ok(()) }
+    }
+}
+
+/// The indices of numbers, the largest first, ties by the index.
+fn largest_first(numbers: &[f64]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..numbers.len() as u32).collect();
+    let number = |index: u32| numbers[index as usize];
+    order.par_sort_unstable_by(|&a, &b| number(b).total_cmp(&number(a)).then(a.cmp(&b)));
+    order
+}

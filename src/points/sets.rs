@@ -1,0 +1,124 @@
+use super::PointsError;
+
+/// Points with what is known of them: columns of one length.
+///
+/// ```
+/// use walpha::points::Points;
+///
+/// let points = Points::new(vec![[0.0; 3], [1.0, 0.0, 0.0]]).with_values(vec![10.0, 20.0])?;
+/// assert!(points.with_weights(vec![0.5]).is_err());
+/// # Ok::<(), walpha::PointsError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Points {
+    /// Coordinates (x, y, z).
+    pub positions: Vec<[f64; 3]>,
+    /// Values F: the original gray levels, or a column of the input.
+    pub values: Option<Vec<f64>>,
+    /// Differences L, of a voxel or of scattered values.
+    pub differences: Option<Vec<f64>>,
+    /// Weights ω that came with the input, squared lengths.
+    pub weights: Option<Vec<f64>>,
+}
+
+/// What a shape is made of: places, their weights, and values where they are known.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct WeightedPoints {
+    /// Coordinates (x, y, z).
+    pub positions: Vec<[f64; 3]>,
+    /// Weights ω, squared lengths, one for each point.
+    pub weights: Vec<f64>,
+    /// Values F, one for each point.
+    pub values: Option<Vec<f64>>,
+}
+
+impl Points {
+    /// Points at these places (x, y, z), of which nothing else is known.
+    pub fn new(positions: Vec<[f64; 3]>) -> Self {
+        Self { positions, ..Self::default() }
+    }
+
+    /// The same points with values F.
+    ///
+    /// # Errors
+    /// [`PointsError::Lengths`] unless there is one for each point.
+    pub fn with_values(self, values: Vec<f64>) -> Result<Self, PointsError> {
+        let values = column("values", values, self.len())?;
+        Ok(Self { values: Some(values), ..self })
+    }
+
+    /// The same points with differences L.
+    ///
+    /// # Errors
+    /// As [`with_values`](Self::with_values).
+    pub fn with_differences(self, differences: Vec<f64>) -> Result<Self, PointsError> {
+        let differences = column("differences", differences, self.len())?;
+        Ok(Self { differences: Some(differences), ..self })
+    }
+
+    /// The same points with weights ω, squared lengths.
+    ///
+    /// # Errors
+    /// As [`with_values`](Self::with_values).
+    pub fn with_weights(self, weights: Vec<f64>) -> Result<Self, PointsError> {
+        let weights = column("weights", weights, self.len())?;
+        Ok(Self { weights: Some(weights), ..self })
+    }
+
+    /// The number of points.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+}
+
+impl WeightedPoints {
+    /// Points at these places (x, y, z) with weights ω, squared lengths.
+    ///
+    /// # Errors
+    /// [`PointsError::Lengths`] unless there is a weight for each point.
+    pub fn new(positions: Vec<[f64; 3]>, weights: Vec<f64>) -> Result<Self, PointsError> {
+        let weights = column("weights", weights, positions.len())?;
+        Ok(Self { positions, weights, values: None })
+    }
+
+    /// Points whose weights are all 0.
+    pub fn unweighted(positions: Vec<[f64; 3]>) -> Self {
+        Self { weights: vec![0.0; positions.len()], positions, values: None }
+    }
+
+    /// The same points with values F.
+    ///
+    /// # Errors
+    /// [`PointsError::Lengths`] unless there is one for each point.
+    pub fn with_values(self, values: Vec<f64>) -> Result<Self, PointsError> {
+        let values = column("values", values, self.len())?;
+        Ok(Self { values: Some(values), ..self })
+    }
+
+    /// The number of points.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+}
+
+/// A column, if it has an entry for each point.
+fn column(name: &'static str, column: Vec<f64>, points: usize) -> Result<Vec<f64>, PointsError> {
+    let given = column.len();
+    if given == points {
+        Ok(column)
+    } else {
+        Err(PointsError::Lengths { column: name, given, points })
+    }
+}

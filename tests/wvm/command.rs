@@ -1,0 +1,85 @@
+//! `.wvm` on the command line.
+
+use std::fs;
+
+use walpha::volume::{self, VolumeWriter};
+use walpha::{Coordinates, Frame, LengthUnit, Space};
+
+use crate::common::{json, ok, run};
+
+/// A scan of 12 bits in the world: what `interpolate` makes of its points directly and of the file is the
+/// same, and so are the points.
+#[test]
+fn the_command_makes_the_same_of_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let phantom = volume::phantom(20).unwrap();
+    let samples = phantom.samples().mapv(|gray| (16.0 * gray).round() - 1024.0);
+    let coordinates = Coordinates { space: Space::Ras, unit: LengthUnit::Millimetre };
+    let frame =
+        Frame { origin: [3.0, -7.5, 0.1], spacing: [0.5, 0.5, 2.0], coordinates, ..Frame::VOXEL };
+    let scan = walpha::Volume::new(samples, frame).unwrap();
+    let mut bytes = Vec::new();
+    VolumeWriter::of("v.nrrd".as_ref()).unwrap().write(&scan, &mut bytes).unwrap();
+    fs::write(folder.path().join("v.nrrd"), bytes).unwrap();
+    let run_it = |args: &str| ok(folder.path(), &args.split(' ').collect::<Vec<_>>());
+    let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
+
+    let select = "--select adaptive --count 700 --alpha 3";
+    run_it(&format!("points v.nrrd {select} -o m.wvm"));
+    run_it(&format!("points v.nrrd {select} -o direct.csv"));
+    run_it("points m.wvm -o through.csv");
+    assert_eq!(read("direct.csv"), read("through.csv"));
+    for fill in ["", " --fill"] {
+        run_it(&format!("interpolate v.nrrd {select} -o direct.nrrd{fill}"));
+        run_it(&format!("interpolate m.wvm -o through.nrrd{fill}"));
+        assert_eq!(read("direct.nrrd"), read("through.nrrd"), "{fill}");
+    }
+    run_it(&format!("interpolate v.nrrd {select} -o direct.nrrd --gray-out"));
+    run_it("interpolate m.wvm -o through.nrrd --gray-out");
+    assert_eq!(read("direct.nrrd"), read("through.nrrd"));
+    run_it(&format!("shape v.nrrd {select} -o direct.ply"));
+    run_it("shape m.wvm -o through.ply");
+    assert_eq!(read("direct.ply"), read("through.ply"));
+
+    let told = json(folder.path(), &["info", "m.wvm"]);
+    assert_eq!(told["grid"], serde_json::json!([20, 20, 20]));
+    assert_eq!(told["coordinates"], serde_json::json!({"space": "LPS", "unit": "mm"}));
+    assert_eq!(told["alpha"], 3.0);
+    let told = json(folder.path(), &["shape", "m.wvm"]);
+    assert_eq!(told["alpha"]["origin"], "stored");
+}
+
+#[test]
+fn options_without_effect_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    ok(
+        folder.path(),
+        &["points", "sample:phantom@8", "--count", "40", "--layers", "2", "-o", "m.wvm"],
+    );
+    let refuses = |args: &[&str], part: &str| {
+        let (code, _, error) = run(folder.path(), args);
+        assert!(code != 0 && error.contains(part), "{args:?}: {error}");
+    };
+    refuses(&["points", "m.wvm", "--layers", "2", "-o", "n.wvm"], "--layers has no effect");
+    refuses(&["points", "m.wvm", "--value-error", "2", "-o", "n.csv"], "no .wvm is written");
+    refuses(&["points", "m.wvm", "--level", "2"], "has 2 levels");
+    refuses(&["points", "m.wvm", "--count", "9"], "--count has no effect");
+    fs::write(folder.path().join("p.csv"), "x,y,z\n0,0,0\n").unwrap();
+    refuses(&["points", "p.csv", "--gray-out"], "--gray-out has no effect");
+    let told = json(folder.path(), &["points", "m.wvm", "--level", "1"]);
+    assert_eq!(told["points"]["selected"], 10);
+}
+
+/// Points of a volume lie in clusters, and near values are alike: that is what the model knows.
+#[test]
+fn points_of_a_volume_take_less_than_chance_would() {
+    let folder = tempfile::tempdir().unwrap();
+    let select = ["--select", "adaptive", "--count", "3000", "--value-error", "3"];
+    ok(folder.path(), &[&["points", "sample:phantom@48", "-o", "m.wvm"][..], &select].concat());
+    let bytes = fs::metadata(folder.path().join("m.wvm")).unwrap().len() as f64;
+    let share: f64 = 3000.0 / 48f64.powi(3);
+    let chance = -(share * share.log2() + (1.0 - share) * (1.0 - share).log2()) / share;
+    // Of 43 steps of 6 in 0..255, any would take 5.4 bits.
+    let bits = 8.0 * bytes / 3000.0;
+    assert!(bits < 0.8 * (chance + 5.4), "{bits} bits a point, {chance} for places by chance");
+}
