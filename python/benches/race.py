@@ -1,10 +1,10 @@
 """Race walpha against GUDHI, diode and SciPy's Delaunay; prints a table in Markdown.
 
     pip install gudhi scipy diode    # those that are there take part
-    python race.py [--runs 5] [--sizes 30000,128000] [--cpu]
+    python race.py [--runs 5] [--once SECONDS] [--sizes 30000,128000] [--cpu]
 
-All in one run, medians; each gets points in memory, and hands back arrays or a tree. With --cpu it counts the time
-of all processors, which other work on the machine changes less.
+All in one run, medians; each gets points in memory, and hands back arrays or a tree. What takes longer than --once is
+not run again. With --cpu it counts the time of all processors, which other work on the machine changes less.
 """
 
 import argparse
@@ -68,13 +68,15 @@ def contestants(points, weights, alpha):
         yield "SciPy, Delaunay, without weights", lambda: scipy.spatial.Delaunay(points)
 
 
-def median(work, runs, clock):
+def median(work, runs, once, clock):
     times = []
     for _ in range(runs):
         started = clock()
         result = work()
         times.append(clock() - started)
         del result
+        if times[0] > once:
+            break
     return statistics.median(times)
 
 
@@ -93,6 +95,7 @@ def machine():
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("--once", type=float, default=float("inf"))
     parser.add_argument("--sizes", default="30000,128000")
     parser.add_argument("--cpu", action="store_true")
     arguments = parser.parse_args()
@@ -105,12 +108,12 @@ def main():
             alpha = 10.0 if make is lattice else 1.0
             for name, work in contestants(points, weights, alpha):
                 try:
-                    seconds = f"{median(work, arguments.runs, clock):.2f}"
+                    seconds = f"{median(work, arguments.runs, arguments.once, clock):.2f}"
                 except Exception as error:
                     seconds = type(error).__name__
                 table.setdefault(name, {})[columns[-1]] = seconds
                 print(f"{columns[-1]}: {name} {seconds}", flush=True)
-    print(f"\nSeconds{' of processors' if arguments.cpu else ''}, medians of {arguments.runs}; {machine()}\n")
+    print(f"\nSeconds{' of processors' if arguments.cpu else ''}, medians of {arguments.runs} (of one above {arguments.once} s); {machine()}\n")
     print("| | " + " | ".join(columns) + " |")
     print("|---" * (len(columns) + 1) + "|")
     for name, times in table.items():

@@ -46,8 +46,8 @@ impl Radius {
 }
 
 impl Filtration {
-    /// Triangulates points and finds when each simplex comes. About as dear as one shape of the
-    /// whole triangulation and half of one more; expected O(n log n).
+    /// Triangulates points and finds when each simplex comes. A little less than twice as dear
+    /// as one shape of the whole triangulation; expected O(n log n).
     ///
     /// # Errors
     /// As [`alpha_shape`] with [`ShapeOptions::refuse_flat`].
