@@ -241,6 +241,17 @@ def look(browser, checks, page, screen, out):
         choose(browser, "value")
         checks.say(f"{screen}: and F is back as it was", picture(browser) == first)
         choose(browser, "class")
+    if browser.evaluate("document.querySelector('#colour option[value=difference]') !== null"):
+        by_class = picture(browser)
+        choose(browser, "difference")
+        inked = browser.evaluate(INKED % picture(browser))
+        bar = browser.evaluate("document.getElementById('scene').data[0].colorbar.title.text")
+        checks.say(
+            f"{screen}: the difference to the original is a colour",
+            inked > 0.002 and picture(browser) != by_class and bar.startswith("difference"),
+            f"{100 * inked:.2f} % of the pixels, {bar!r}",
+        )
+        choose(browser, "class")
     browser.evaluate("document.getElementById('level').value = document.getElementById('level').max - 1")
     browser.evaluate("document.getElementById('play').click()")
     end = browser.wait("document.getElementById('scene').dataset.level === document.getElementById('level').max")

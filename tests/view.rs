@@ -73,6 +73,11 @@ fn the_page_holds_every_level() {
     let points = made["points"].as_u64().unwrap() as usize;
     assert_eq!(bytes(&arrays["x"]).len(), 4 * points);
     assert_eq!(bytes(&arrays["weights"]).len(), 4 * points);
+    let differences = bytes(&arrays["differences"]);
+    assert_eq!(differences.len(), 4 * points);
+    let (numbers, _) = differences.as_chunks::<4>();
+    assert!(numbers.iter().any(|&number| f32::from_le_bytes(number) > 1.0));
+    assert!(html.contains("<option value=\"difference\">"));
     let facets = bytes(&arrays["facetSpans"]);
     assert_eq!(bytes(&arrays["facets"]).len(), 4 * facets.len());
     for (k, alpha) in ["1", "2", "5", "10", "inf"].iter().enumerate() {
@@ -117,6 +122,7 @@ fn names_cannot_break_out_of_the_page() {
     assert!(!html.contains("<script>alert"));
     assert!(html.contains("&lt;script&gt;alert(1)"));
     assert!(!element(&html, "plot").contains('<') && !element(&html, "data").contains('<'));
+    assert!(!html.contains("<option value=\"difference\">"), "points have no original");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::prelude::*;
 use walpha::haar::{Decomposition, HaarOptions, Tolerance, smooth};
-use walpha::interpolate::Refit;
+use walpha::interpolate::{Adaptive, Refit};
 use walpha::pipeline::{Choice, PipelineError};
 use walpha::points::{self, PointsError, Weighting};
 use walpha::progress::Stage;
@@ -123,7 +123,8 @@ pub fn weigh<'py>(
 }
 
 /// All stages. `gray` is the range of values that becomes 0 to 255, `frame` JSON; without one, coordinates are
-/// indices.
+/// indices; `adaptive`, instead of `rule`, how many points at most, an RMSE and a largest error that are good
+/// enough, and whether points are exchanged.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
 pub fn pipeline(
@@ -135,6 +136,7 @@ pub fn pipeline(
     haar: ((String, f64), String),
     rule: (String, f64),
     gray_min: Option<f64>,
+    adaptive: Option<(u64, f64, Option<f64>, bool)>,
     weighting: &str,
     alpha: Option<f64>,
     engine: &str,
@@ -144,10 +146,18 @@ pub fn pipeline(
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Shape> {
     let (frame, units) = place(frame)?;
-    let rule = selection_rule(&rule)?;
+    let choice = match adaptive {
+        None => {
+            Choice::Difference(Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min))
+        }
+        Some((count, rmse, max_error, exchange)) => {
+            let goal = Adaptive::new(count).rmse(rmse).max_error(max_error);
+            if exchange { Choice::Exchanged(goal) } else { Choice::Adaptive(goal) }
+        }
+    };
     let mut pipeline = Pipeline::new()
         .haar(haar_options(&haar.0, &haar.1)?)
-        .choice(Choice::Difference(Selection::default().rule(rule).gray_min(gray_min)))
+        .choice(choice)
         .units(units)
         .weighting(weighting.parse().map_err(Told::told)?)
         .alpha(alpha_rule(alpha))

@@ -108,3 +108,32 @@ def test_volumes_that_are_none():
         walpha.haar(np.full((3, 3, 3), np.nan))
     with pytest.raises(ValueError, match="shape"):
         walpha.select(np.zeros((3, 3, 3)), np.zeros((3, 3, 4)), count=1)
+
+
+def test_points_are_chosen_by_their_error(phantom):
+    def rmse(**how):
+        shape = walpha.pipeline(phantom, count=600, alpha=1e9, refit="whole", **how)
+        assert len(shape.points) == 600
+        assert not np.isnan(shape.interpolate(phantom.samples.shape)).any()
+        return np.sqrt(((shape.interpolate(phantom.samples.shape) - phantom.samples) ** 2).mean())
+
+    adaptive, exchanged = rmse(select="adaptive"), rmse(select="adaptive", exchange=True)
+    assert exchanged < 0.95 * adaptive
+
+
+def test_the_largest_error_is_bounded(phantom):
+    gray = phantom.samples.round().clip(0, 255).astype(np.uint8)
+    shape = walpha.pipeline(gray, select="adaptive", max_error=40, alpha=1e9)
+    off = np.abs(shape.interpolate(gray.shape) - gray)
+    assert 20 < off.max() <= 40 and len(shape.points) < gray.size / 2
+    few = walpha.pipeline(gray, select="adaptive", target_rmse=20)
+    assert len(few.points) < len(shape.points)
+
+
+@pytest.mark.parametrize("how", [
+    {"exchange": True}, {"max_error": 3}, {"target_rmse": 3}, {"select": "best"},
+    {"select": "adaptive", "threshold": 9}, {"select": "adaptive", "exchange": True, "max_error": 3},
+])
+def test_options_of_adaptive_selection_go_together(phantom, how):
+    with pytest.raises(ValueError):
+        walpha.pipeline(phantom, **how)

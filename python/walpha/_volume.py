@@ -9,6 +9,8 @@ import numpy as np
 from . import _arrays, _walpha
 from ._shape import AlphaShape, squared
 
+# The share of all voxels that the paper selects.
+_RATIO = 0.0609
 _UNKNOWN = {"space": "unknown", "unit": "unit"}
 _ALONG = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 
@@ -223,6 +225,10 @@ def pipeline(
     ratio=None,
     threshold=None,
     gray_min=None,
+    select="difference",
+    target_rmse=None,
+    max_error=None,
+    exchange=False,
     weighting="common=0",
     alpha=None,
     alpha_radius=None,
@@ -250,6 +256,18 @@ def pipeline(
         As in :func:`haar`, in gray levels.
     count, ratio, threshold, gray_min
         As in :func:`select`, in gray levels.
+    select : {"difference", "adaptive"}
+        Which voxels become points: those of the largest differences, or those where the interpolant
+        of the ones before is worst, on the whole triangulation, after Garland and Heckbert
+        (CMU-CS-95-181, 1995), with ``count`` or ``ratio``, the corners of the volume among them. The
+        parameters below are for these.
+    target_rmse : float, optional
+        End as soon as the root mean square of the error is so small, in gray levels.
+    max_error : float, optional
+        Choose by the largest error until no sample is off by more, in gray levels. Not with ``exchange``.
+    exchange : bool
+        Then exchange points whose loss costs little for voxels that lower the error of fitted values;
+        for use with ``refit``.
     weighting : str
         As in :func:`weigh`.
     alpha : float or "auto", optional
@@ -276,6 +294,9 @@ def pipeline(
     samples, is_gray, frame = _grid(volume, spacing, origin)
     tolerance = _tolerance(rms, epsilon, coefficients)
     rule = _rule(count, ratio, threshold)
+    adaptive = _adaptive(samples.size, select, count, ratio, target_rmse, max_error, exchange)
+    if adaptive is not None and (threshold is not None or gray_min is not None):
+        raise ValueError("threshold and gray_min choose by gray levels, which select='adaptive' does not: give a count")
     shape = _walpha.pipeline(
         samples,
         is_gray,
@@ -284,6 +305,7 @@ def pipeline(
         (tolerance, decomposition),
         rule,
         gray_min,
+        adaptive,
         weighting,
         squared(alpha, alpha_radius),
         engine,
@@ -293,6 +315,24 @@ def pipeline(
         progress,
     )
     return AlphaShape(shape)
+
+
+def _adaptive(samples, select, count, ratio, target_rmse, max_error, exchange):
+    """How many voxels at most, the errors that are good enough, and whether points are exchanged."""
+    if select == "difference":
+        if target_rmse is not None or max_error is not None or exchange:
+            raise ValueError("target_rmse, max_error and exchange belong to select='adaptive'")
+        return None
+    if select != "adaptive":
+        raise ValueError(f"select={select!r} is unknown: 'difference' and 'adaptive' are known")
+    if exchange and max_error is not None:
+        raise ValueError("exchange=True may raise the largest error: leave max_error out")
+    if count is None and ratio is None and (target_rmse is not None or max_error is not None):
+        count = samples
+    elif count is None:
+        count = round((_RATIO if ratio is None else ratio) * samples)
+    optional = None if max_error is None else float(max_error)
+    return int(count), float(target_rmse or 0), optional, bool(exchange)
 
 
 def _grid(volume, spacing=None, origin=None):
@@ -331,7 +371,7 @@ def _tolerance(rms, epsilon, coefficients):
 
 
 def _rule(count, ratio, threshold):
-    return _one_of({"count": count, "ratio": ratio, "threshold": threshold}, ("ratio", 0.0609))
+    return _one_of({"count": count, "ratio": ratio, "threshold": threshold}, ("ratio", _RATIO))
 
 
 def _one_of(options, default):

@@ -150,6 +150,7 @@ def pipeline(
     haar: tuple[tuple[str, float], str],
     rule: tuple[str, float],
     gray_min: float | None,
+    adaptive: tuple[int, float, float | None, bool] | None,
     weighting: str,
     alpha: float | None,
     engine: str,

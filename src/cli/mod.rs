@@ -11,6 +11,7 @@ mod config;
 #[cfg(feature = "zarr")]
 mod convert;
 mod curve;
+mod filled;
 mod filtration;
 mod folder;
 mod formats;

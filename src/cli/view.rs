@@ -10,6 +10,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::export::Target;
+use crate::interpolate::{Grid, Interpolant, InterpolateError};
 use crate::ladder::Filtration;
 use crate::pipeline::{AlphaRule, Parameter, Weighed};
 use crate::progress::Stage;
@@ -20,6 +21,7 @@ use crate::{Alpha, GrayRange};
 
 use super::Global;
 use super::args::{self, Alphas, FrozenPipelineArgs};
+use super::filled::filled_in;
 use super::output::{name, tell};
 use super::pipeline::{self, Input, Source, Values, VolumeFacts};
 use super::progress::Progress;
@@ -28,8 +30,9 @@ use super::said::misused;
 
 /// Write an interactive page for the browser: self-contained, no network needed.
 ///
-/// A slider moves through α with the weights frozen. The boundary is coloured by F or by class; singular
-/// facets and edges, points sized by weight and an isosurface of the volume can be shown or hidden.
+/// A slider moves through α with the weights frozen. The boundary is coloured by F, by class, or by how
+/// far the interpolant is from the volume there. Singular facets and edges, points sized by weight and
+/// an isosurface of the volume can be shown or hidden.
 ///
 /// Examples:
 ///
@@ -195,8 +198,13 @@ impl View {
         // That level, or the last below it.
         let first = levels.alphas().partition_point(|alpha| *alpha <= opening);
         let title = format!("Alpha shapes of {}", self.pipeline.input.input);
+        let differences = match source {
+            Some(source) => differences(weighed, source, filtration)?,
+            None => None,
+        };
         let subject = Subject {
             title: &title,
+            differences: differences.as_ref().map(|(differences, unit)| (&differences[..], *unit)),
             facts: &told,
             unit: unit.symbol(),
             value: match facts {
@@ -246,6 +254,30 @@ impl View {
         told.push(("made by".into(), format!("walpha {}", env!("CARGO_PKG_VERSION"))));
         told
     }
+}
+
+/// How far the interpolant, filled in, is from the volume around each point, and in what; `None` where the
+/// points span no volume.
+fn differences(
+    weighed: &Weighed,
+    source: &Source,
+    filtration: &Filtration,
+) -> anyhow::Result<Option<(Vec<f64>, &'static str)>> {
+    let Source { volume, facts: VolumeFacts { units, written, .. } } = source;
+    let Some(values) = &weighed.points.values else { return Ok(None) };
+    let grays: Vec<f64> = values.iter().map(|&value| written.gray(value)).collect();
+    let hull = filtration.levels(&[Alpha::INFINITE]);
+    let hull = hull.shape(0, false, hull.betti()[0]);
+    let (whole, grays) = match filled_in(&hull, &grays, volume, *units) {
+        Err(InterpolateError::Shape(error)) if error.is_flat() => return Ok(None),
+        filled => filled?,
+    };
+    let interpolant = Interpolant::with_values(&whole, &grays)?;
+    let mut differences = interpolant.local_deviations(volume, &Grid::of(volume, *units))?;
+    differences.truncate(weighed.points.len());
+    differences.iter_mut().for_each(|difference| *difference *= written.step());
+    let unit = if *written == GrayRange::IDENTITY { "gray levels" } else { "values of the file" };
+    Ok(Some((differences, unit)))
 }
 
 /// Levels that each show something, and something else than the one before: the one to open at,

@@ -32,8 +32,10 @@
 
 mod adaptive;
 mod barycentric;
+mod cells;
 mod curve;
 mod deviation;
+mod drawn;
 mod error;
 mod exchange;
 mod fill;
@@ -41,6 +43,7 @@ mod grid;
 mod interpolant;
 mod least_squares;
 mod lists;
+mod local;
 mod number;
 mod raster;
 mod refit;

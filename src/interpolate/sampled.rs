@@ -5,15 +5,15 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
-use super::barycentric::{Planes, coordinates};
+use super::cells::Cells;
+use super::drawn::for_each_inside;
 use super::interpolant::combine;
 use super::least_squares::{Normal, Pieces, Solved};
 use super::raster::{CHUNK, NOTHING, for_each_near};
 use super::{Deviation, Grid, InterpolateError};
-use crate::math::Reach;
 use crate::points::Units;
-use crate::shape::{ShapeError, smallest_even_permutation};
-use crate::triangulation::{Cell, Growing};
+use crate::shape::ShapeError;
+use crate::triangulation::Growing;
 use crate::volume::Volume;
 
 /// The interpolant of samples of a volume on their Delaunay triangulation, at all samples.
@@ -30,6 +30,8 @@ pub(super) struct Sampled<'a> {
     growing: Growing,
     /// The sample of each point by its number in the triangulation; that of the ghost is 0.
     voxels: Vec<u32>,
+    /// Its index (x, y, z).
+    indices: Vec<[i64; 3]>,
     /// Values of points by their numbers in the triangulation.
     values: Vec<f64>,
     /// F at each sample.
@@ -58,6 +60,7 @@ impl<'a> Sampled<'a> {
             grid,
             growing,
             voxels: vec![0; Growing::FIRST as usize],
+            indices: vec![[0; 3]; Growing::FIRST as usize],
             values: vec![0.0; Growing::FIRST as usize],
             f: vec![0.0; samples],
             owners: vec![NOTHING; samples],
@@ -157,6 +160,10 @@ impl<'a> Sampled<'a> {
 
     fn describe(&mut self, voxels: &[u32]) {
         self.voxels.extend(voxels);
+        let [nx, ny, _] = self.volume.dims().xyz().map(|n| n as i64);
+        let index = |&voxel: &u32| i64::from(voxel);
+        let index = |voxel| [index(voxel) % nx, index(voxel) / nx % ny, index(voxel) / (nx * ny)];
+        self.indices.extend(voxels.iter().map(index));
         let value = |&voxel: &u32| f64::from(self.volume.as_slice()[voxel as usize]);
         self.values.extend(voxels.iter().map(value));
     }
@@ -172,7 +179,7 @@ impl<'a> Sampled<'a> {
         let left = |owner: &u32| AtomicU32::new(*Some(owner).filter(stays).unwrap_or(&NOTHING));
         let owners: Vec<AtomicU32> = self.owners.par_iter().map(left).collect();
         if self.exact {
-            self.draw_exactly(&fresh, &owners);
+            self.draw_exactly(&fresh, &is_fresh, &owners);
             self.owners = owners.into_iter().map(AtomicU32::into_inner).collect();
             return;
         }
@@ -194,22 +201,26 @@ impl<'a> Sampled<'a> {
         self.evaluate(changed);
     }
 
-    /// The same where nothing rounds: F is then the same whichever of several cells a sample belongs to,
-    /// and is written at once.
-    fn draw_exactly(&mut self, fresh: &[u32], owners: &[AtomicU32]) {
+    /// The same where nothing rounds: shares are then those in the frame of indices, and F is the same
+    /// whichever of several cells a sample belongs to, and is written at once.
+    fn draw_exactly(&mut self, fresh: &[u32], is_fresh: &[bool], owners: &[AtomicU32]) {
         let f: Vec<AtomicU32> = self.f.par_iter().map(|f| AtomicU32::new(f.to_bits())).collect();
         let cells = Cells::of(&self.growing, &self.values);
+        let [nx, ny, _] = self.grid.dims().xyz().map(|n| n as i64);
         fresh.par_iter().with_min_len(CHUNK).for_each(|&cell| {
             let row = cells.row(cell);
-            let corners = cells.corners(row);
-            let Some(planes) = Planes::of(corners) else { return };
-            for_each_near(&self.grid, &corners, |index| {
-                if let Some(shares) = planes.shares(self.grid.position(index)) {
-                    let sample = self.sample(index);
-                    cells.claim(cell, &shares, |_| true, &owners[sample]);
-                    let value = combine(&shares, row.map(|v| self.values[v as usize])) as f32;
-                    f[sample].store(value.to_bits(), Relaxed);
+            let values = row.map(|v| self.values[v as usize]);
+            for_each_inside(row.map(|v| self.indices[v as usize]), |[x, y, z], volumes, whole| {
+                let sample = (x + nx * (y + ny * z)) as usize;
+                let owner = &owners[sample];
+                // A new owner was found from a new cell, and once is enough; at vertices it may be another.
+                let found = is_fresh.get(owner.load(Relaxed) as usize).is_some_and(|&fresh| fresh);
+                if found && volumes.iter().filter(|&&volume| volume == 0).count() < 3 {
+                    return;
                 }
+                let shares = volumes.map(|volume| volume as f64 / whole as f64);
+                cells.claim(cell, &shares, |_| true, owner);
+                f[sample].store((combine(&shares, values) as f32).to_bits(), Relaxed);
             });
         });
         self.f = f.into_iter().map(|f| f32::from_bits(f.into_inner())).collect();
@@ -242,94 +253,4 @@ impl<'a> Sampled<'a> {
 
 fn positions(volume: &Volume, units: Units, voxels: &[u32]) -> Vec<[f64; 3]> {
     voxels.iter().map(|&voxel| units.position(volume, voxel)).collect()
-}
-
-/// The cells of a triangulation as an interpolant has them.
-struct Cells<'a> {
-    growing: &'a Growing,
-    values: &'a [f64],
-    reach: Reach,
-}
-
-impl<'a> Cells<'a> {
-    fn of(growing: &'a Growing, values: &'a [f64]) -> Self {
-        Self { growing, values, reach: Reach::of(growing.positions()) }
-    }
-
-    /// The corners of a cell in canonical order. Numbers of points are in the order of their indices.
-    fn row(&self, cell: u32) -> [u32; 4] {
-        smallest_even_permutation(self.growing.cells()[cell as usize].corners)
-    }
-
-    fn coordinates(&self, row: [u32; 4], place: [f64; 3]) -> Option<[f64; 4]> {
-        let corners = row.map(|v| self.growing.positions()[v as usize]);
-        coordinates(&corners, place, self.reach.is_exact_with(place))
-    }
-
-    fn corners(&self, row: [u32; 4]) -> [[f64; 3]; 4] {
-        row.map(|v| self.growing.positions()[v as usize])
-    }
-
-    /// Gives a sample in a new cell to the first of the cells that hold it. Shares that are 0 may be so by
-    /// rounding; then `holds` says which of the cells beside hold the sample, too.
-    #[inline(always)]
-    fn claim(
-        &self,
-        cell: u32,
-        shares: &[f64; 4],
-        holds: impl Fn([u32; 4]) -> bool,
-        owner: &AtomicU32,
-    ) {
-        match shares.iter().filter(|share| **share == 0.0).count() {
-            0 => owner.store(cell, Relaxed),
-            1 | 2 => owner.store(self.first_at(cell, shares, holds), Relaxed),
-            // At a vertex F is its value, whichever cell the sample belongs to.
-            _ => drop(owner.fetch_min(cell, Relaxed)),
-        }
-    }
-
-    /// The first in canonical order of the cells at the face that a place lies on within one of them. They
-    /// are those with all vertices of the face, and from one to the next the way leads through facets
-    /// that have all of them, too.
-    fn first_at(&self, cell: u32, shares: &[f64; 4], holds: impl Fn([u32; 4]) -> bool) -> u32 {
-        let row = self.row(cell);
-        let on = |v: u32| (0..4).any(|k| row[k] == v && shares[k] != 0.0);
-        let mut seen = vec![cell];
-        let mut first = (row, cell);
-        let mut at = 0;
-        while let Some(&cell) = seen.get(at) {
-            at += 1;
-            let Cell { corners, beside } = self.growing.cells()[cell as usize];
-            for k in 0..4 {
-                let next = beside[k] / 4;
-                if on(corners[k]) || !self.growing.is_cell(next) || seen.contains(&next) {
-                    continue;
-                }
-                let row = self.row(next);
-                if holds(row) {
-                    first = first.min((row, next));
-                    seen.push(next);
-                }
-            }
-        }
-        first.1
-    }
-}
-
-impl Pieces for Cells<'_> {
-    fn count(&self) -> usize {
-        self.growing.cells().len()
-    }
-
-    fn vertices(&self, cell: u32) -> ([u32; 4], usize) {
-        (self.row(cell), 4)
-    }
-
-    fn coordinates(&self, cell: u32, place: [f64; 3]) -> Option<[f64; 4]> {
-        self.coordinates(self.row(cell), place)
-    }
-
-    fn value(&self, cell: u32, shares: &[f64; 4]) -> f64 {
-        combine(shares, self.row(cell).map(|v| self.values[v as usize]))
-    }
 }

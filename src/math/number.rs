@@ -29,7 +29,7 @@ macro_rules! number {
     )*};
 }
 
-number!(f64 i128 IBig);
+number!(f64 i64 i128 IBig);
 
 /// A number that another, which may be of a simpler kind, multiplies.
 pub(crate) trait Scale<V>: Number {

@@ -306,6 +306,33 @@ fn phantom_points(volume: &Volume, count: u64) -> WeightedPoints {
 }
 
 #[test]
+fn differences_around_points_are_those_of_their_samples() {
+    let volume = phantom(12);
+    let made = shape(phantom_points(&volume, 150), 3.0);
+    let whole = fill(&made, Some(&volume), Units::Voxel).unwrap();
+    let interpolant = Interpolant::new(&whole).unwrap();
+    let grid = Grid::of(&volume, Units::Voxel);
+    let found = interpolant.local_deviations(&volume, &grid).unwrap();
+    let mut sums = vec![(0.0, 0.0); whole.points().len()];
+    for ((z, y, x), &sample) in volume.samples().indexed_iter() {
+        let place = interpolant.locate([x, y, z].map(|i| i as f64)).expect("filled in");
+        let shares = place.simplex.iter().zip(place.coordinates);
+        let values = whole.points().values.as_ref().unwrap();
+        let ours: f64 = shares.clone().map(|(&v, share)| share * values[v as usize]).sum();
+        for (&v, share) in shares {
+            sums[v as usize].0 += share * (ours - f64::from(sample)).powi(2);
+            sums[v as usize].1 += share;
+        }
+    }
+    assert_eq!(found.len(), sums.len());
+    for (found, (squares, weights)) in found.iter().zip(sums) {
+        let expected = if weights > 0.0 { f64::sqrt(squares / weights) } else { 0.0 };
+        assert!((found - expected).abs() < 1e-9, "{found} is not {expected}");
+    }
+    assert!(found.iter().any(|&difference| difference > 10.0));
+}
+
+#[test]
 fn filling_covers_the_grid_and_keeps_the_points() {
     let volume = phantom(16);
     let differences = difference(&volume);

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::interpolate::{Deviation, Grid, Interpolant, InterpolateError, fill};
+use crate::cli::filled::filled_in;
+use crate::interpolate::{Deviation, Grid, Interpolant, InterpolateError};
 use crate::{AlphaShape, Units, Volume};
 
 /// Root mean square differences of F from a volume, in gray levels.
@@ -30,10 +31,7 @@ impl Errors {
             Ok(Deviation::of(volume, &interpolant.resample(&grid)?).rmse)
         };
         let inside = rmse(Interpolant::with_values(shape, grays)?)?;
-        let whole = fill(shape, Some(volume), units)?;
-        // The corners follow the points, in gray levels already.
-        let corners = whole.points().values.iter().flatten().skip(grays.len());
-        let all: Vec<f64> = grays.iter().chain(corners).copied().collect();
+        let (whole, all) = filled_in(shape, grays, volume, units)?;
         let filled = rmse(Interpolant::with_values(&whole, &all)?)?;
         Ok(Self { inside, filled: filled.unwrap_or_default() })
     }

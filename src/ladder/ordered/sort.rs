@@ -15,8 +15,8 @@ pub(super) fn by_rank(all: usize, ranks: usize, rank: impl Fn(u32) -> u32 + Sync
     let shift = ranks.div_ceil(PARTS).next_power_of_two().ilog2();
     let hand_out = |from: usize| {
         let to = all.min(from + CHUNK);
-        let empty = || Vec::with_capacity((to - from) / PARTS);
-        let mut parts: Vec<_> = (0..PARTS).map(|_| empty()).collect();
+        let room = (to - from) / PARTS;
+        let mut parts: Vec<_> = (0..PARTS).map(|_| Vec::with_capacity(room)).collect();
         for simplex in from as u32..to as u32 {
             let rank = rank(simplex);
             parts[(rank >> shift) as usize].push([rank, simplex]);

@@ -33,7 +33,7 @@ pub(super) fn page(subject: &Subject<'_>, packed: &Packed) -> String {
          <input id=\"level\" type=\"range\" min=\"0\" max=\"{last}\" value=\"{first}\">\n\
          <button id=\"play\" type=\"button\">Play</button>\n\
          <label for=\"colour\">colour <select id=\"colour\">{}\
-         <option value=\"class\">class</option></select></label>\n\
+         <option value=\"class\">class</option>{}</select></label>\n\
          <button id=\"reset\" type=\"button\">Reset view</button>\n\
          <button id=\"save\" type=\"button\">Save picture</button></form>\n\
          <div id=\"scene\" role=\"img\" aria-label=\"The shape in three dimensions\"></div>\n\
@@ -41,7 +41,11 @@ pub(super) fn page(subject: &Subject<'_>, packed: &Packed) -> String {
          class; tap a name above the scene to show or hide it.{}</p>\n\
          <div class=\"tables\">\n<table id=\"numbers\"></table>\n<table>\n",
         if valued { "<option value=\"value\">F</option>" } else { "" },
-        if valued { format!("F ({}), ", escape(subject.value)) } else { String::new() },
+        match subject.differences {
+            Some(_) => "<option value=\"difference\">difference to the original</option>",
+            None => "",
+        },
+        explained(subject),
         packed
             .simplified
             .as_ref()
@@ -57,6 +61,7 @@ pub(super) fn page(subject: &Subject<'_>, packed: &Packed) -> String {
         "arrays": packed.arrays,
         "levels": subject.ladder.levels.iter().map(level).collect::<Vec<_>>(),
         "colours": colours,
+        "bars": bars(subject),
     });
     let _ = write!(
         html,
@@ -67,6 +72,29 @@ pub(super) fn page(subject: &Subject<'_>, packed: &Packed) -> String {
         inert(&data.to_string()),
     );
     html
+}
+
+/// The titles of colour scales.
+fn bars(subject: &Subject<'_>) -> serde_json::Value {
+    let difference =
+        subject.differences.map(|(_, unit)| format!("difference to the original, in {unit}"));
+    json!({ "value": format!("F: {}", subject.value), "difference": difference })
+}
+
+/// What the numbers of a point are.
+fn explained(subject: &Subject<'_>) -> String {
+    let mut text = String::new();
+    if subject.levels.points().values.is_some() {
+        let _ = write!(text, "F ({}), ", escape(subject.value));
+    }
+    if let Some((_, unit)) = subject.differences {
+        let _ = write!(
+            text,
+            "difference (root mean square of F, filled in, against the samples around it, in {}), ",
+            escape(unit)
+        );
+    }
+    text
 }
 
 /// plotly.js, without the typesetter of formulas that comes with it.

@@ -56,6 +56,9 @@ impl Packed {
         if let Some(values) = &points.values {
             arrays.insert("values", Array::f32(values.iter().copied()));
         }
+        if let Some((differences, _)) = subject.differences {
+            arrays.insert("differences", Array::f32(differences.iter().copied()));
+        }
         // Hidden points never come.
         let never = subject.levels.len() as u32;
         let mut spans = vec![Span { first: never, regular: never, interior: never }; points.len()];

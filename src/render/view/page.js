@@ -2,7 +2,7 @@
 (() => {
   const json = (id) => JSON.parse(document.getElementById(id).textContent);
   const plot = json("plot");
-  const { arrays, levels, colours } = json("data");
+  const { arrays, levels, colours, bars } = json("data");
   const unpack = ({ kind, base64 }) => {
     const text = atob(base64);
     const bytes = new Uint8Array(text.length);
@@ -18,7 +18,8 @@
     return level < first ? 0 : level < regular ? 3 : level < interior ? 2 : 1;
   };
   const count = data.x.length;
-  const valued = data.values !== undefined;
+  // What facets and points may be coloured by, besides their class.
+  const scales = { value: data.values, difference: data.differences };
 
   // Marker diameters: the weight as an area, from 2 to 9 pixels.
   let [least, most] = [Infinity, -Infinity];
@@ -60,20 +61,21 @@
   function words(level) {
     const text = new Array(count);
     for (let v = 0; v < count; v++) {
-      const value = valued ? `<br>F = ${short(data.values[v])}` : "";
+      const value = data.values ? `<br>F = ${short(data.values[v])}` : "";
+      const difference = data.differences ? `<br>difference ${short(data.differences[v])}` : "";
       const kind = CLASSES[classAt(data.pointSpans, v, level)];
-      text[v] = `point ${v}${value}<br>ω = ${short(data.weights[v])}<br>${kind}`;
+      text[v] = `point ${v}${value}${difference}<br>ω = ${short(data.weights[v])}<br>${kind}`;
     }
     return text;
   }
 
-  function pointsAt(level, text, byValue) {
+  function pointsAt(level, text, scale) {
     const shown = [];
     for (let v = 0; v < count; v++) if (classAt(data.pointSpans, v, level) !== 0) shown.push(v);
     const pick = (values) => shown.map((v) => values[v]);
     const kind = (v) => colours[classAt(data.pointSpans, v, level) - 1];
-    const colour = byValue
-      ? { color: pick(data.values), colorscale: "Viridis" }
+    const colour = scale
+      ? { color: pick(scale), colorscale: "Viridis" }
       : { color: shown.map(kind) };
     return {
       x: pick(data.x), y: pick(data.y), z: pick(data.z), text: pick(text),
@@ -81,21 +83,26 @@
     };
   }
 
-  function fill(level, byValue) {
+  function fill(level, name) {
+    const scale = scales[name];
     const text = words(level);
     const traces = plot.data.map((trace) => ({ ...trace }));
     for (const [trace, wanted] of [[BOUNDARY, 2], [SINGULAR, 3]]) {
       Object.assign(traces[trace], { x: data.x, y: data.y, z: data.z, text }, facetsAt(level, wanted));
-      if (byValue) {
+      if (scale) {
         // Nearly without shades: a colour means a value, wherever the facet looks.
-        Object.assign(traces[trace], { intensity: data.values, lighting: EVEN });
+        Object.assign(traces[trace], { intensity: scale, lighting: EVEN });
       } else {
         for (const key of ["colorscale", "intensitymode", "colorbar"]) delete traces[trace][key];
         traces[trace].showscale = false;
       }
     }
+    if (scale) {
+      const { colorbar } = traces[BOUNDARY];
+      traces[BOUNDARY].colorbar = { ...colorbar, title: { ...colorbar.title, text: bars[name] } };
+    }
     Object.assign(traces[EDGES], linesAt(level));
-    Object.assign(traces[POINTS], pointsAt(level, text, byValue));
+    Object.assign(traces[POINTS], pointsAt(level, text, scale));
     if (isosurface) Object.assign(traces[ISOSURFACE], isosurface);
     return traces;
   }
@@ -121,7 +128,7 @@
       [row.firstChild.textContent, row.lastChild.textContent] = [head, value];
       return row;
     }));
-    const traces = fill(level, colour.value === "value");
+    const traces = fill(level, colour.value);
     // What was switched on or off stays so, and the camera where it is.
     (scene.data ?? []).forEach((trace, k) => { traces[k].visible = trace.visible; });
     if (colour.value === scene.dataset.colour) return Plotly.react(scene, traces, plot.layout, plot.config);

@@ -32,9 +32,7 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
         mesh.intensity_mode(IntensityMode::Vertex)
             .color_scale(ColorScale::Palette(ColorScalePalette::Viridis))
     };
-    plot.add_trace(
-        by_value(mesh("boundary", rgb(1))).show_scale(valued).color_bar(colour_bar(subject.value)),
-    );
+    plot.add_trace(by_value(mesh("boundary", rgb(1))).show_scale(valued).color_bar(colour_bar()));
     plot.add_trace(by_value(mesh("singular facets", rgb(0))).show_scale(false));
     plot.add_trace(
         Scatter3D::<f64, f64, f64>::new(vec![], vec![], vec![])
@@ -66,9 +64,10 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
     plot
 }
 
-fn colour_bar(value: &str) -> ColorBar {
+/// The script writes what it is a scale of.
+fn colour_bar() -> ColorBar {
     ColorBar::new()
-        .title(Title::with_text(format!("F: {value}")).side(Side::Top).font(Font::new().size(12)))
+        .title(Title::new().side(Side::Top).font(Font::new().size(12)))
         .orientation(Orientation::Horizontal)
         .thickness(12)
         .y(0.0)

@@ -13,6 +13,8 @@ pub struct Subject<'a> {
     pub unit: &'a str,
     /// What F is, with its unit, as "value of the original volume, in gray levels".
     pub value: &'a str,
+    /// How far F is from the original around each point, and in what; where that is known.
+    pub differences: Option<(&'a [f64], &'a str)>,
     /// The shapes.
     pub levels: &'a Levels<'a>,
     /// Their numbers.

@@ -184,11 +184,10 @@ impl Growing {
 
     /// The finite cells made since this was last asked, ascending.
     pub(crate) fn take_fresh(&mut self) -> Vec<u32> {
-        let mut fresh = std::mem::take(&mut self.body.fresh);
-        fresh.sort_unstable();
-        fresh.dedup();
-        fresh.retain(|&cell| self.is_cell(cell));
-        fresh
+        let mut made = vec![false; self.cells().len()];
+        std::mem::take(&mut self.body.fresh).iter().for_each(|&cell| made[cell as usize] = true);
+        let fresh = (0..).zip(made).filter(|&(cell, made)| made && self.is_cell(cell));
+        fresh.map(|(cell, _)| cell).collect()
     }
 
     /// Where points stand, by number.
