@@ -1,0 +1,225 @@
+//! The facts a command prints, as JSON or as text.
+
+mod parts;
+mod shape;
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+
+use serde::Serialize;
+
+use crate::blocks::{Merged, Plan};
+use crate::interpolate::{Adaptive, Fit, Refit};
+use crate::pipeline::{Model, Parameter, Weighed};
+use crate::points::WeightSummary;
+use crate::shape::{Cuts, Engine};
+use crate::{Coordinates, GrayRange, memory};
+
+use super::output::name;
+use super::pipeline::VolumeFacts;
+use parts::{Ended, InputReport, PointsReport};
+pub(super) use parts::{HaarReport, WeightsReport};
+use shape::ShapeReport;
+
+/// Counted up when a field changes its meaning or goes; new fields may come at any time.
+pub(super) const SCHEMA_VERSION: u32 = 1;
+
+/// The stages whose times are printed, in the order of the work.
+const STAGES: [&str; 10] =
+    ["read", "haar", "points", "alpha", "refit", "shape", "fill", "interpolate", "write", "total"];
+
+/// What `walpha shape` and `walpha points` did. A fact that is not known is null.
+#[derive(Serialize)]
+pub(super) struct Report {
+    schema_version: u32,
+    input: InputReport,
+    /// Of points and all lengths: areas are in the square of this unit, volumes in its cube, α and
+    /// weights in the square.
+    coordinates: Coordinates,
+    haar: Option<HaarReport>,
+    points: PointsReport,
+    /// How values were fitted; null where they are those of samples.
+    fit: Option<Fit>,
+    /// Null where no α was needed.
+    alpha: Option<Parameter>,
+    weights: WeightsReport,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shape: Option<ShapeReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    engine: Option<Engine>,
+    /// Where the boundary was cut apart, if it is written as that of a solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    solid: Option<Cuts>,
+    files: Vec<String>,
+    seconds: BTreeMap<&'static str, f64>,
+    pub(super) peak_memory_bytes: Option<u64>,
+}
+
+impl Report {
+    /// What is known before there is a shape.
+    pub(super) fn of_points(name: &str, weighed: &Weighed, volume: Option<&VolumeFacts>) -> Self {
+        let origin = weighed.origin;
+        let truncation = origin.truncation.as_ref().zip(volume);
+        Self {
+            schema_version: SCHEMA_VERSION,
+            input: InputReport {
+                name: name.to_owned(),
+                dims: volume.map(|v| v.dims),
+                gray_range: volume
+                    .map(|VolumeFacts { range: GrayRange { low, high }, .. }| [*low, *high]),
+            },
+            coordinates: origin.coordinates,
+            haar: truncation.map(|(truncation, v)| HaarReport::new(truncation, &v.range)),
+            points: PointsReport {
+                selected: weighed.points.len(),
+                duplicates: None,
+                hidden: None,
+                in_shape: None,
+                ended_early: origin.ended.map(|Adaptive { count, rmse, max_error }| Ended {
+                    asked: count,
+                    rmse,
+                    max_error,
+                }),
+            },
+            fit: origin.fit,
+            alpha: weighed.parameter,
+            weights: WeightsReport::of(weighed),
+            shape: None,
+            engine: None,
+            solid: None,
+            files: Vec::new(),
+            seconds: BTreeMap::new(),
+            peak_memory_bytes: None,
+        }
+    }
+
+    /// Adds what the shape is.
+    pub(super) fn add_model(&mut self, model: &Model) {
+        let shape = &model.shape;
+        self.alpha = Some(model.parameter);
+        self.points.duplicates = Some(shape.duplicates().len());
+        self.points.hidden = shape.hidden().map(<[u32]>::len);
+        self.points.in_shape = Some(shape.points_in_shape());
+        self.engine = Some(shape.options().engine);
+        self.shape = Some(ShapeReport::of(shape));
+    }
+
+    /// What is known of a shape that was made in blocks.
+    pub(super) fn of_blocks(plan: &Plan, merged: &Merged) -> Self {
+        let (job, survey) = (&plan.job, &plan.survey);
+        let GrayRange { low, high } = survey.range;
+        let WeightSummary { min, mean, max } = merged.weights;
+        let parameter = job.parameter();
+        Self {
+            schema_version: SCHEMA_VERSION,
+            input: InputReport {
+                name: job.input.clone(),
+                dims: Some(job.dims.xyz()),
+                gray_range: Some([low, high]),
+            },
+            coordinates: job.units.coordinates_of(&job.frame),
+            haar: Some(HaarReport::new(&survey.truncation, &survey.range)),
+            points: PointsReport {
+                selected: merged.points as usize,
+                duplicates: Some(0),
+                hidden: merged.hidden.map(|hidden| hidden as usize),
+                in_shape: Some(merged.vertices.in_shape()),
+                ended_early: None,
+            },
+            alpha: Some(parameter),
+            weights: WeightsReport {
+                kind: job.weighting.to_string(),
+                min,
+                mean,
+                max,
+                unit: parameter.unit,
+            },
+            fit: None,
+            shape: Some(ShapeReport::of_blocks(merged)),
+            engine: Some(job.engine),
+            solid: None,
+            files: Vec::new(),
+            seconds: BTreeMap::new(),
+            peak_memory_bytes: None,
+        }
+    }
+
+    /// Adds where the boundary was cut apart.
+    pub(super) fn add_solid(&mut self, cuts: Cuts) {
+        self.solid = Some(cuts);
+    }
+
+    /// Adds what it cost and what it left.
+    pub(super) fn finish(&mut self, seconds: Vec<(&'static str, f64)>, files: Vec<String>) {
+        self.seconds = seconds.into_iter().collect();
+        self.files = files;
+        self.peak_memory_bytes = memory::peak_bytes();
+    }
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = self.coordinates.unit.symbol();
+        writeln!(f, "input     {}", self.input)?;
+        if let Some(haar) = &self.haar {
+            writeln!(f, "haar      {haar}")?;
+        }
+        write!(f, "points    {}", self.points)?;
+        if self.shape.is_some() && self.points.hidden.is_none() {
+            write!(f, " (--blocks 1 counts hidden points)")?;
+        }
+        if let Some(ended) = &self.points.ended_early {
+            write!(f, "\n          {ended}")?;
+        }
+        if let Some(Fit { to, steps, residual }) = self.fit {
+            let samples = match to {
+                Refit::Whole => "all samples",
+                Refit::Shape => "the samples on the shape",
+            };
+            write!(f, "\nvalues    fitted to {samples} by least squares: {steps} steps, ")?;
+            write!(f, "relative residual {residual:.1e}")?;
+        }
+        writeln!(f, "\nlengths   in {}", self.coordinates)?;
+        writeln!(f, "weights   {} (squared lengths)", self.weights)?;
+        if let Some(alpha) = &self.alpha {
+            writeln!(f, "parameter {alpha}")?;
+        }
+        if let Some(shape) = &self.shape {
+            shape.print(f, unit)?;
+        }
+        if self.points.in_shape == Some(0) {
+            writeln!(f, "the shape is empty: every α + ω is negative; raise --alpha")?;
+        }
+        match self.solid {
+            None => {}
+            Some(cuts) if cuts == Cuts::default() => {
+                writeln!(f, "solid     the boundary is a manifold as it is")?;
+            }
+            Some(Cuts { edges, vertices, midpoints }) => writeln!(
+                f,
+                "solid     the boundary is not a manifold: cut apart at {edges} edges, with {vertices} more \
+                 vertices and {midpoints} midpoints of edges"
+            )?,
+        }
+        ending(f, &self.files, &STAGES, &self.seconds)
+    }
+}
+
+/// The last lines of a report: the files written, and how long each stage took.
+pub(super) fn ending(
+    f: &mut fmt::Formatter<'_>,
+    files: &[String],
+    stages: &[&str],
+    seconds: &BTreeMap<&'static str, f64>,
+) -> fmt::Result {
+    for file in files {
+        writeln!(f, "wrote     {}", name(file))?;
+    }
+    write!(f, "time     ")?;
+    for stage in stages {
+        if let Some(seconds) = seconds.get(stage) {
+            write!(f, " {stage} {seconds:.2} s")?;
+        }
+    }
+    writeln!(f)
+}

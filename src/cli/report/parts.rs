@@ -1,0 +1,148 @@
+//! What is reported before there is a shape.
+
+use std::fmt::{self, Display};
+
+use serde::Serialize;
+
+use crate::pipeline::Weighed;
+use crate::points::WeightSummary;
+use crate::shown::number;
+use crate::{GrayRange, LengthUnit, Truncation};
+
+use super::super::output::name;
+
+#[derive(Serialize)]
+pub(super) struct InputReport {
+    pub(super) name: String,
+    /// Samples along x, y and z; null for points.
+    pub(super) dims: Option<[usize; 3]>,
+    /// The values that became gray 0 and 255; null for points.
+    pub(super) gray_range: Option<[f64; 2]>,
+}
+
+#[derive(Serialize)]
+pub(in crate::cli) struct HaarReport {
+    pub(super) kept: u64,
+    pub(super) total: u64,
+    /// Gray levels.
+    pub(super) epsilon: f64,
+    pub(super) rms: f64,
+    /// In values of the input; null where these are gray levels.
+    pub(super) rms_in_values: Option<f64>,
+}
+
+#[derive(Serialize)]
+pub(super) struct PointsReport {
+    pub(super) selected: usize,
+    pub(super) duplicates: Option<usize>,
+    pub(super) hidden: Option<usize>,
+    pub(super) in_shape: Option<usize>,
+    /// Adaptive selection needed fewer than asked for.
+    pub(super) ended_early: Option<Ended>,
+}
+
+/// Why there are fewer points than asked for.
+#[derive(Clone, Copy, Serialize)]
+pub(super) struct Ended {
+    pub(super) asked: u64,
+    /// The RMSE that was good enough; 0 where only a perfect interpolant is.
+    pub(super) rmse: f64,
+    /// The bound on the largest error, if there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) max_error: Option<f64>,
+}
+
+impl Display for Ended {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { asked, rmse, max_error } = self;
+        write!(f, "fewer than {asked}: ")?;
+        if let Some(bound) = max_error {
+            return write!(
+                f,
+                "no sample is further than {bound} gray levels from the interpolant of these"
+            );
+        }
+        match *rmse {
+            0.0 => write!(f, "no sample differs from the interpolant of these any more"),
+            rmse => write!(f, "these reach an RMSE of {rmse} gray levels"),
+        }
+    }
+}
+
+/// What the weights are.
+#[derive(Serialize)]
+pub(in crate::cli) struct WeightsReport {
+    pub(super) kind: String,
+    pub(super) min: f64,
+    pub(super) mean: f64,
+    pub(super) max: f64,
+    /// Of length; weights are in its square.
+    pub(super) unit: LengthUnit,
+}
+
+impl WeightsReport {
+    /// The weights of some points.
+    pub(in crate::cli) fn of(weighed: &Weighed) -> Self {
+        let WeightSummary { min, mean, max } = weighed.points.summary();
+        let origin = weighed.origin;
+        let (kind, unit) = (origin.weighting.to_string(), origin.coordinates.unit);
+        Self { kind, min, mean, max, unit }
+    }
+}
+
+impl Display for WeightsReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, min, mean, max, unit } = self;
+        write!(f, "{kind}: min {min:.6}, mean {mean:.6}, max {max:.6} {}²", unit.symbol())
+    }
+}
+
+impl HaarReport {
+    /// What was truncated, of values `range` that became gray 0..255.
+    pub(in crate::cli) fn new(t: &Truncation, range: &GrayRange) -> Self {
+        let rms_in_values = (!range.is_identity()).then(|| t.rms * range.step());
+        Self { kept: t.kept, total: t.total, epsilon: t.epsilon, rms: t.rms, rms_in_values }
+    }
+}
+
+impl Display for HaarReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kept, total, epsilon, rms, rms_in_values } = self;
+        write!(
+            f,
+            "{kept} of {total} coefficients kept, ε = {epsilon:.6}, rms {rms:.6} gray levels"
+        )?;
+        match rms_in_values {
+            Some(rms) => write!(f, " ({rms:.6} in values)"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Display for InputReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", name(&self.name))?;
+        if let (Some([x, y, z]), Some([low, high])) = (self.dims, self.gray_range) {
+            let (low, high) = (number(low), number(high));
+            write!(f, "  {x}×{y}×{z} samples, values {low}..{high} are gray 0..255")?;
+        }
+        Ok(())
+    }
+}
+
+impl Display for PointsReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} selected", self.selected)?;
+        let counts = [
+            (self.duplicates, "duplicates"),
+            (self.hidden, "hidden"),
+            (self.in_shape, "in the shape"),
+        ];
+        for (count, what) in counts {
+            if let Some(count) = count {
+                write!(f, ", {count} {what}")?;
+            }
+        }
+        Ok(())
+    }
+}
