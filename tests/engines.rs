@@ -3,12 +3,15 @@
 
 mod common;
 
+#[path = "common/sites.rs"]
+mod sites;
 #[path = "common/told.rs"]
 mod told;
 
 use std::num::NonZeroUsize;
 
 use proptest::prelude::*;
+use sites::{lattice, weighted};
 use told::Told;
 use walpha::shape::{Engine, ShapeError, ShapeOptions};
 use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
@@ -95,22 +98,6 @@ fn check_parts(shape: &AlphaShape) {
     }
 }
 
-fn weighted(sites: impl IntoIterator<Item = ([f64; 3], f64)>) -> WeightedPoints {
-    let (positions, weights) = sites.into_iter().unzip();
-    WeightedPoints::new(positions, weights).unwrap()
-}
-
-/// Lattice points: everything that can be degenerate is.
-fn lattice() -> impl Strategy<Value = WeightedPoints> {
-    let weight = prop_oneof![
-        4 => Just(0.0),
-        2 => (0..8i32).prop_map(|w| f64::from(w) / 2.0),
-        1 => -2.0..4.0f64,
-    ];
-    let long = ([0..4, 0..4, 0..12i32], weight).prop_map(|(p, w)| (p.map(f64::from), w));
-    prop::collection::vec(long, 4..90).prop_map(weighted)
-}
-
 /// Points anywhere, of uneven density.
 fn scattered() -> impl Strategy<Value = WeightedPoints> {
     let point = ([0.0..3.0f64, 0.0..3.0, 0.0..9.0], -0.5..1.0f64);
@@ -121,7 +108,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 250, ..ProptestConfig::default() })]
 
     #[test]
-    fn lattices(points in lattice(), alpha in -4..24i32) {
+    fn lattices(points in lattice(12, 4..90), alpha in -4..24i32) {
         check(&points, f64::from(alpha) / 4.0);
     }
 

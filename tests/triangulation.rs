@@ -3,10 +3,13 @@
 
 #[path = "common/random.rs"]
 mod random;
+#[path = "common/sites.rs"]
+mod sites;
 
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
+use sites::weighted;
 use walpha::shape::{Engine, ShapeOptions};
 use walpha::triangulation::{Maker, Sites, Triangulation, TriangulationError, triangulate};
 use walpha::{Alpha, WeightedPoints, alpha_shape};
@@ -25,11 +28,6 @@ const FAMILIES: [fn(&mut Random) -> WeightedPoints; 9] = [
     plane_and_a_few,
     line_and_a_few,
 ];
-
-fn weighted(points: impl IntoIterator<Item = ([f64; 3], f64)>) -> WeightedPoints {
-    let (positions, weights) = points.into_iter().unzip();
-    WeightedPoints::new(positions, weights).unwrap()
-}
 
 fn count(r: &mut Random) -> u64 {
     4 + r.below(11)

@@ -4,9 +4,12 @@ mod command;
 #[path = "../common/mod.rs"]
 mod common;
 mod detail;
+#[path = "../common/sites.rs"]
+mod sites;
 mod suggestions;
 
 use proptest::prelude::*;
+use sites::weighted;
 use walpha::ladder::{Filtration, Level};
 use walpha::shape::{Engine, ShapeOptions};
 use walpha::{Alpha, AlphaShape, Class, WeightedPoints, alpha_shape};
@@ -113,20 +116,9 @@ fn nested(small: &Level, large: &Level) -> bool {
     total(small).iter().zip(total(large)).all(|(&a, b)| a <= b)
 }
 
-fn weighted(sites: impl IntoIterator<Item = ([f64; 3], f64)>) -> WeightedPoints {
-    let (positions, weights) = sites.into_iter().unzip();
-    WeightedPoints::new(positions, weights).unwrap()
-}
-
 /// Lattice points, not all in one plane: everything that can be degenerate is.
 fn lattice() -> impl Strategy<Value = WeightedPoints> {
-    let weight = prop_oneof![
-        4 => Just(0.0),
-        2 => (0..8i32).prop_map(|w| f64::from(w) / 2.0),
-        1 => -2.0..4.0f64,
-    ];
-    let site = ([0..4, 0..4, 0..8i32], weight).prop_map(|(p, w)| (p.map(f64::from), w));
-    let points = prop::collection::vec(site, 4..70).prop_map(weighted);
+    let points = sites::lattice(8, 4..70);
     points.prop_filter("in one plane", |points| common::spans_a_volume(&points.positions))
 }
 

@@ -4,7 +4,8 @@ use walpha::ladder::Filtration;
 use walpha::shape::Engine;
 use walpha::{Alpha, WeightedPoints};
 
-use crate::{alpha, alphas, below, check, common, hollow_lattice, one_by_one, weighted};
+use crate::sites::weighted;
+use crate::{alpha, alphas, below, check, common, hollow_lattice, one_by_one};
 
 #[test]
 fn a_hollow_block_and_what_is_suggested_for_it() {
