@@ -32,6 +32,7 @@ mod file;
 mod job;
 mod merge;
 mod part;
+mod passes;
 mod pieces;
 mod plan;
 mod price;

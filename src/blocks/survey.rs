@@ -1,13 +1,12 @@
 //! The numbers that depend on the whole volume, found part by part.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::field::{Field, Sample, Truncated};
+use super::passes::Passes;
 use super::{BlocksError, Job, Part, Team};
 use crate::haar::Truncation;
 use crate::points::{Differences, PointsError, SelectionRule};
-use crate::progress;
 use crate::select::{Budget, Counts, Cut, Search};
 use crate::volume::{GrayRange, Nan, VolumeError};
 
@@ -80,8 +79,7 @@ pub(super) fn survey(
     team: &dyn Team,
 ) -> Result<Surveyed, BlocksError> {
     let tiles = Part::whole(field.dims).tiles(field.tile());
-    let tiles = team.own(tiles.len()).map(|tile| tiles[tile]).collect();
-    let mut passes = Passes { team, tiles, done: 0 };
+    let mut passes = Passes::new(team, &tiles);
     gray_levels(job, field, &mut passes)?;
     let (truncation, cut, sums) = truncate(job, field, &mut passes)?;
     let truncated = cut.map(|cut| Truncated { cut, sums: &sums });
@@ -93,38 +91,6 @@ pub(super) fn survey(
     let (range, least) = (field.range, field.least);
     let survey = Survey { range, least, truncation, cut, choice, differences, first };
     Ok(Surveyed { survey, sums, counts })
-}
-
-/// Passes over all tiles.
-struct Passes<'a> {
-    team: &'a dyn Team,
-    /// Those of this process.
-    tiles: Vec<Part>,
-    done: u64,
-}
-
-impl Passes<'_> {
-    /// How many are usual.
-    const USUAL: u64 = 5;
-
-    /// Works on each tile of this process, several at a time, and joins what they give in their order.
-    fn each<T: Send>(
-        &mut self,
-        work: impl Fn(&Part) -> Result<T, BlocksError> + Sync,
-        mut join: impl FnMut(T),
-    ) -> Result<(), BlocksError> {
-        let all = self.tiles.len() as u64;
-        let total = Self::USUAL.max(self.done + 1) * all;
-        let mut tiles_done = 0;
-        for batch in self.tiles.chunks(rayon::current_num_threads()) {
-            let results: Result<Vec<T>, _> = batch.par_iter().map(&work).collect();
-            results?.into_iter().for_each(&mut join);
-            tiles_done += batch.len() as u64;
-            progress::report(self.done * all + tiles_done, total);
-        }
-        self.done += 1;
-        Ok(())
-    }
 }
 
 /// Finds the values that become gray 0 and 255.
