@@ -68,5 +68,5 @@ def test_alpha_is_needed(cloud):
         walpha.check(cloud, cells=[[0, 1, 2, 3]])
     with pytest.raises(ValueError, match="alone"):
         walpha.check(walpha.alpha_shape(cloud, alpha=1), 1)
-    with pytest.raises(ValueError, match="no complex"):
+    with pytest.raises(ValueError, match="not a complex"):
         walpha.compare(cloud, cloud)

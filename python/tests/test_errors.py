@@ -41,7 +41,7 @@ def test_points_of_a_plane_have_the_shape_that_they_have_there(engine):
         ({"alpha": 1, "alpha_radius": 1}, "one of them"),
         ({"alpha": np.nan}, "alpha is NaN"),
         ({"alpha": "car"}, "auto"),
-        ({"alpha_radius": -1}, "no radius"),
+        ({"alpha_radius": -1}, "not a radius"),
         ({"engine": "qhull"}, "'cgal', 'native' and 'reference'"),
         ({"balls": "cubes"}, "'power' and 'radius'"),
         ({"balls": "radius"}, "α is a radius"),

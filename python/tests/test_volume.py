@@ -83,7 +83,7 @@ def test_axes_are_not_exchanged():
     [
         ({"rms": 1, "epsilon": 1}, "rms and epsilon contradict"),
         ({"count": 1, "ratio": 0.1}, "count and ratio contradict"),
-        ({"count": 1.5}, "no count"),
+        ({"count": 1.5}, "not a count"),
         ({"ratio": 2}, "ratio of 2"),
         ({"origin": (0, 0, 0)}, "spacing"),
         ({"spacing": (1, 1)}, "three lengths"),

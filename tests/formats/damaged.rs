@@ -17,17 +17,17 @@ fn a_damaged_nrrd_says_what_is_wrong() {
     refuses("v.nrrd", n("endian: little\n", ""), &["endian"]);
     refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 3 2"), &["2 sizes"]);
     refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 3 0 2"), &["empty"]);
-    refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 3 2 -2"), &["no numbers"]);
+    refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 3 2 -2"), &["not numbers"]);
     refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 3000000 2000000 2"), &["too many"]);
     refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 1600 1600 1600"), &["but 24 follow"]);
     refuses("v.nrrd", n("3\nsizes: 3 2 2", "4\nsizes: 3 2 2 2"), &["2 volumes", "`frame`"]);
     refuses("v.nrrd", n("key:=value", "kinds: RGB-color space space"), &["only scalar"]);
     refuses("v.nrrd", n("key:=value", "spacings: 1 0 1"), &["spacing must not be 0"]);
-    refuses("v.nrrd", n("key:=value", "space origin: (1,2"), &["no vector"]);
+    refuses("v.nrrd", n("key:=value", "space origin: (1,2"), &["not a vector"]);
     refuses("v.nrrd", n("key:=value", "line skip: 3"), &["line skip"]);
-    refuses("v.nrrd", n("key:=value", "no field"), &["no field"]);
+    refuses("v.nrrd", n("key:=value", "no field"), &["not a field"]);
     refuses("v.nrrd", n("key:=value", "type: short"), &["twice"]);
-    refuses("v.nrrd", n("key:=value", "data file: a%d 1 9999999 1"), &["no row"]);
+    refuses("v.nrrd", n("key:=value", "data file: a%d 1 9999999 1"), &["not a row"]);
     refuses("v.nrrd", nrrd(|h| h.replace("raw", "text"), b"1 2 3"), &["cannot hold"]);
     let words = "1 2 3 4 5 6 7 8 9 10 11 twelve";
     refuses(
@@ -61,7 +61,7 @@ fn a_damaged_metaimage_says_what_is_wrong() {
 #[test]
 fn a_damaged_vtk_says_what_is_wrong() {
     let v = |from: &str, to: &str| VTK.replace(from, to) + "0 1 2 3 4 5 6 7 8 9 10 11\n";
-    refuses("v.vtk", "hello", &["no legacy VTK"]);
+    refuses("v.vtk", "hello", &["not a legacy VTK"]);
     refuses("v.vtk", v("STRUCTURED_POINTS", "POLYDATA"), &["POLYDATA"]);
     refuses("v.vtk", v("s short", "s short 3"), &["only scalar"]);
     refuses("v.vtk", v("s short", "s string"), &["type string"]);

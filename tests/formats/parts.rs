@@ -229,7 +229,7 @@ fn parts_and_coarser_volumes_stay_in_place() {
     );
     assert_eq!(facts["min"], 10.0);
     for (roi, code, word) in
-        [("1:9,:,:", 1, "--roi"), ("1,:,:", 2, "no range"), (":,:", 2, "three ranges")]
+        [("1:9,:,:", 1, "--roi"), ("1,:,:", 2, "not a range"), (":,:", 2, "three ranges")]
     {
         let (found, _, error) = run(f, &["haar", "v.nrrd", "--roi", roi]);
         assert!(found == code && error.contains(word), "{error}");

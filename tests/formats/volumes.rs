@@ -198,7 +198,7 @@ fn folders_of_slices_are_read_in_natural_order() {
     assert!(open(f).unwrap_err().told().contains("must be alike"));
     image::RgbImage::new(3, 2).save(f.join("s12.png")).unwrap();
     assert!(open(f).unwrap_err().told().contains("only gray"));
-    save(f, "s12.png", "no image");
+    save(f, "s12.png", "not an image");
     assert!(open(f).unwrap_err().told().contains("s12.png"));
     save(f, "s12.jpg", "");
     assert!(open(f).unwrap_err().told().contains("several kinds"));

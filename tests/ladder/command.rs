@@ -141,7 +141,7 @@ fn bad_wishes_leave_nothing_behind() {
         (
             &["ladder", phantom, "-o", "out", "--counts", "9", "--focus", "2:1,1:2,1:2"],
             2,
-            "no range",
+            "not a range",
         ),
         (
             &["ladder", phantom, "-o", "out", "--counts", "9", "--focus", "90:99,1:2,1:2"],
