@@ -213,7 +213,7 @@ fn the_page_explains_itself() {
     let folder = tempfile::tempdir().unwrap();
     ok(folder.path(), &["view", "sample:phantom@12", "-o", "page.html", "-q"]);
     let html = fs::read_to_string(folder.path().join("page.html")).unwrap();
-    assert!(element(&html, "plot").contains("F: value of the original volume, in gray levels"));
+    assert!(element(&html, "data").contains("F: value of the original volume, in gray levels"));
     for id in ["play", "reset", "save", "scene", "level", "colour"] {
         assert!(html.contains(&format!("id=\"{id}\"")), "{id}");
     }

@@ -72,7 +72,7 @@ fn damaged_inrimages_are_refused() {
     assert!(read(&folder.file("v.inr", &inr(good, &payload)), &known()).is_ok());
 
     refuses(b"", &["is empty"]);
-    refuses(b"hello", &["no INRIMAGE"]);
+    refuses(b"hello", &["not an INRIMAGE"]);
     refuses(&inr(good, &payload)[..200], &["truncated"]);
     refuses(&inr(good, &payload[..11]), &["3×1×1", "12 bytes", "11", "truncated"]);
     refuses(&inr(good, &[0; 13]), &["12 bytes", "13", "too long"]);

@@ -147,7 +147,7 @@ fn damaged_gzip_streams_are_refused() {
     refuses(&whole[..20], &["v.inr.gz"]);
     refuses(&gzip(&inr(header, &samples[..29_999])), &["30000 bytes", "but 29999", "truncated"]);
     refuses(&gzip(&inr(header, &[&samples[..], b"x"].concat())), &["at least 30001", "too long"]);
-    refuses(&gzip(b"something else"), &["no INRIMAGE"]);
+    refuses(&gzip(b"something else"), &["not an INRIMAGE"]);
     refuses(b"not gzip at all", &["not compressed with gzip"]);
     let mut flipped = whole.clone();
     let last = flipped.len() - 6;
