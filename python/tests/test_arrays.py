@@ -49,9 +49,9 @@ def test_what_is_no_number_is_refused(bad):
 
 
 def test_as_many_weights_and_values_as_points(cloud):
-    with pytest.raises(ValueError, match="3 weights but 600 points"):
+    with pytest.raises(ValueError, match="3 weights for 600 points"):
         walpha.alpha_shape(cloud, [1, 2, 3], 1)
-    with pytest.raises(ValueError, match="3 values but 600 points"):
+    with pytest.raises(ValueError, match="3 values for 600 points"):
         walpha.alpha_shape(cloud, alpha=1, values=[1, 2, 3])
     with pytest.raises(ValueError, match="weights has 2 axes"):
         walpha.alpha_shape(cloud, cloud, 1)
