@@ -27,8 +27,7 @@ impl<'a> Cells<'a> {
     }
 
     pub(super) fn coordinates(&self, row: [u32; 4], place: [f64; 3]) -> Option<[f64; 4]> {
-        let corners = row.map(|v| self.growing.positions()[v as usize]);
-        coordinates(&corners, place, self.reach.is_exact_with(place))
+        coordinates(&self.corners(row), place, self.reach.is_exact_with(place))
     }
 
     pub(super) fn corners(&self, row: [u32; 4]) -> [[f64; 3]; 4] {
