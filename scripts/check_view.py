@@ -4,7 +4,7 @@
     scripts/check_view.py page.html [--chromium /usr/bin/chromium] [--out DIR]
 
 From a file: URL, at the width of a desk and of a phone: no error on the console, no request to a network,
-the scene is not blank, moving the slider and changing the colour change the picture, pointing at the
+the scene is not blank, moving the slider, changing the colour and the level of detail change the picture, pointing at the
 shape tells index, weight and class, points and isosurface can be shown, and nothing is wider than the screen. Leaves two screenshots.
 Prints a line for each check; exits with 1 when one fails, and with 77 without Chromium.
 """
@@ -170,6 +170,14 @@ def choose(browser, colour):
     browser.wait(f"document.getElementById('scene').dataset.colour === '{colour}'")
 
 
+def detail(browser, level):
+    browser.evaluate(
+        "(() => { const d = document.getElementById('detail'); d.value = '%d';"
+        " d.dispatchEvent(new Event('change')) })()" % level
+    )
+    browser.wait(f"document.getElementById('scene').dataset.detail === '{level}'")
+
+
 def drawn(level):
     return f"document.getElementById('scene').dataset.level === '{level}'"
 
@@ -252,6 +260,18 @@ def look(browser, checks, page, screen, out):
             f"{100 * inked:.2f} % of the pixels, {bar!r}",
         )
         choose(browser, "class")
+    if browser.evaluate("document.getElementById('detail') !== null"):
+        detailed, shown = picture(browser), browser.evaluate("document.getElementById('detail').value")
+        names, coarse = [], True
+        for k in range(int(browser.evaluate("document.getElementById('detail').options.length"))):
+            detail(browser, k)
+            first_row = "document.querySelector('#numbers td').textContent"
+            names.append(int(browser.evaluate(first_row)))
+            coarse = coarse and (picture(browser) == detailed) == (k == int(shown))
+        checks.say(
+            f"{screen}: levels of detail are pictures of their own",
+            coarse and names == sorted(names), f"of {names} points",
+        )
     browser.evaluate("document.getElementById('level').value = document.getElementById('level').max - 1")
     browser.evaluate("document.getElementById('play').click()")
     end = browser.wait("document.getElementById('scene').dataset.level === document.getElementById('level').max")

@@ -59,7 +59,9 @@ fn the_page_holds_every_level() {
     );
     let html = fs::read_to_string(folder.path().join("page.html")).unwrap();
     assert_eq!(made["bytes"], html.len());
-    assert_eq!((&made["levels"], &made["simplified"]), (&Value::from(5), &Value::Null));
+    let [detail] = &made["details"].as_array().unwrap()[..] else { panic!("{made}") };
+    assert_eq!((&detail["levels"], &made["simplified"]), (&Value::from(5), &Value::Null));
+    assert!(!html.contains("id=\"detail\""), "there is one level of detail");
     assert!(html.contains("width=device-width"));
     // Plain scripts, no address to load anything from.
     for tag in ["<script src", "<link", "<img", "@import", "cdn.plot.ly/plotly"] {
@@ -68,9 +70,10 @@ fn the_page_holds_every_level() {
     let data: Value = serde_json::from_str(element(&html, "data")).unwrap();
     let plot: Value = serde_json::from_str(element(&html, "plot")).unwrap();
     assert_eq!(plot["data"].as_array().unwrap().len(), 5, "with the isosurface");
-    assert_eq!(data["levels"].as_array().unwrap().len(), 5);
-    let arrays = &data["arrays"];
-    let points = made["points"].as_u64().unwrap() as usize;
+    let [page] = &data["details"].as_array().unwrap()[..] else { panic!("one level of detail") };
+    assert_eq!(page["levels"].as_array().unwrap().len(), 5);
+    let arrays = &page["arrays"];
+    let points = detail["points"].as_u64().unwrap() as usize;
     assert_eq!(bytes(&arrays["x"]).len(), 4 * points);
     assert_eq!(bytes(&arrays["weights"]).len(), 4 * points);
     let differences = bytes(&arrays["differences"]);
@@ -82,7 +85,7 @@ fn the_page_holds_every_level() {
     assert_eq!(bytes(&arrays["facets"]).len(), 4 * facets.len());
     for (k, alpha) in ["1", "2", "5", "10", "inf"].iter().enumerate() {
         // The same as the shapes that the ladder measures, which other tests hold against `shape`.
-        let rows = data["levels"][k]["rows"].as_array().unwrap();
+        let rows = page["levels"][k]["rows"].as_array().unwrap();
         let told = rows.iter().find(|row| row[0] == "facets").unwrap()[1].as_str().unwrap();
         let [regular, singular] = [2, 3].map(|class| count(&facets, k as u8, class));
         assert!(
@@ -175,10 +178,11 @@ fn stops_show_something_else_each() {
         ok(f, &args);
         let html = fs::read_to_string(f.join("page.html")).unwrap();
         let data: Value = serde_json::from_str(element(&html, "data")).unwrap();
-        let levels = data["levels"].as_array().unwrap();
+        let page = &data["details"][0];
+        let levels = page["levels"].as_array().unwrap();
         assert!((12..=40).contains(&levels.len()), "{input}: {}", levels.len());
-        let facets = bytes(&data["arrays"]["facetSpans"]);
-        let edges = bytes(&data["arrays"]["edgeSpans"]);
+        let facets = bytes(&page["arrays"]["facetSpans"]);
+        let edges = bytes(&page["arrays"]["edgeSpans"]);
         for k in 0..levels.len() as u8 {
             let seen = count(&facets, k, 2) + count(&facets, k, 3) + count(&edges, k, 3);
             assert!(seen > 0, "{input}: nothing at level {k}");
@@ -194,9 +198,7 @@ fn stops_show_something_else_each() {
             );
         }
         // Where it opens.
-        let (_, slider) = html.split_once("type=\"range\"").unwrap();
-        let (_, value) = slider.split_once("value=\"").unwrap();
-        let at: usize = value.split('"').next().unwrap().parse().unwrap();
+        let at = page["first"].as_u64().unwrap() as usize;
         let name = levels[at]["name"].as_str().unwrap().trim_start_matches("α = ");
         assert!(name.chars().filter(char::is_ascii_digit).count() <= 7, "{name}");
         let told: f64 = name.parse().unwrap();
@@ -205,7 +207,41 @@ fn stops_show_something_else_each() {
     }
     ok(f, &["view", "balls.xyz", "-o", "page.html", "-q", "--alpha", "0.5", "--alphas", "0.1,1,2"]);
     let html = fs::read_to_string(f.join("page.html")).unwrap();
-    assert!(html.contains("\"name\":\"α = 0.5\"") && html.contains("value=\"1\""));
+    assert!(html.contains("\"name\":\"α = 0.5\"") && html.contains("\"first\":1"));
+}
+
+/// A level of detail is the page of so many points, but for what is the same at all levels.
+#[test]
+fn levels_of_detail_are_pages_of_fewer_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let args = |count: &'static str| {
+        ["view", "sample:phantom@20", "--weights", "min-max", "--count", count, "-o", "page.html"]
+    };
+    let page = |args: &[&str]| -> (Value, Value, String) {
+        let made = json(f, &[args, &["-q"]].concat());
+        let html = fs::read_to_string(f.join("page.html")).unwrap();
+        let data = serde_json::from_str(element(&html, "data")).unwrap();
+        (made, data, html)
+    };
+    let (made, all, html) = page(&[&args("600")[..], &["--counts", "300,100,300"]].concat());
+    let points = |made: &Value| -> Vec<u64> {
+        let details = made["details"].as_array().unwrap();
+        details.iter().map(|detail| detail["points"].as_u64().unwrap()).collect()
+    };
+    assert_eq!(points(&made), [100, 300, 600]);
+    assert!(html.contains("<option value=\"2\" selected>600 points</option>"));
+    let rmse = |k: usize| made["details"][k]["rmse_filled"].as_f64().unwrap();
+    assert!(rmse(0) > rmse(1) && rmse(1) > rmse(2) && rmse(2) > 0.0, "{made}");
+    for (k, count) in ["100", "300", "600"].into_iter().enumerate() {
+        let (alone, one, _) = page(&args(count));
+        assert_eq!(alone["details"][0], made["details"][k]);
+        assert!(one["details"][0] == all["details"][k], "{count} points");
+        assert!(one["isosurface"] == all["isosurface"] && !one["isosurface"].is_null());
+    }
+    fs::write(f.join("points.xyz"), "0 0 0\n1 0 0\n0 1 0\n0 0 1\n").unwrap();
+    let (code, _, stderr) = run(f, &["view", "points.xyz", "--counts", "3", "-o", "page.html"]);
+    assert!(code == 2 && stderr.contains("--counts"), "{stderr}");
 }
 
 #[test]

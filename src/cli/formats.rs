@@ -54,7 +54,8 @@ pub(super) fn shape_output() -> String {
         dotted(formats.map(|format| format.extension))
     };
     format!(
-        "Files to write: {} (boundary), {} (all simplices), .png (a picture); {} (a file for each block: the \
+        "Files to write: {} (boundary), {} (all simplices), .png (a picture), .wvm (the points, packed, with \
+         what the shape is made from again); {} (a file for each block: the \
          shape is made in blocks that are never in memory together, of a volume that is read in parts); or \
          - (standard output, with --format). Files that are there are replaced",
         of(true),

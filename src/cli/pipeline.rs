@@ -198,12 +198,12 @@ pub(super) fn stages_to(args: &PipelineArgs, shape: ShapeOptions) -> Result<Pipe
 /// The same from what was read already.
 pub(super) fn weigh_input(
     input: Input,
-    mut pipeline: Pipeline,
+    pipeline: Pipeline,
     select: &SelectArgs,
     values: Values,
     progress: &mut Progress,
 ) -> anyhow::Result<(Weighed, Option<Source>)> {
-    let Grays { volume, range, written } = match input {
+    let grays = match input {
         Input::Points(mut points, facts) => {
             if let (Values::Gray, Some(range)) = (values, facts.range) {
                 to_gray(&mut points, &range);
@@ -213,15 +213,46 @@ pub(super) fn weigh_input(
         }
         Input::Volume(grays) => grays,
     };
+    let source = place(grays, select)?;
+    let weighed = weigh_source(&source, pipeline, select, values, progress)?;
+    Ok((weighed, Some(source)))
+}
+
+/// A volume in the space that its points are going to be in.
+pub(super) fn place(grays: Grays, select: &SelectArgs) -> anyhow::Result<Source> {
+    let Grays { volume, range, written } = grays;
     let (volume, units) = select.place(volume)?;
-    pipeline = pipeline.units(units).choice(select.choice(&range, volume.dims().samples())?);
-    if values == Values::Written {
-        pipeline = pipeline.values(written);
-    }
-    let weighed = progress.watch(|hear| pipeline.weighed(&volume, hear))?;
     let (dims, extent) = (volume.dims().xyz(), box_volume(&volume, units));
-    let facts = VolumeFacts { dims, units, extent, range, written };
-    Ok((weighed, Some(Source { volume, facts })))
+    Ok(Source { volume, facts: VolumeFacts { dims, units, extent, range, written } })
+}
+
+/// Weighted points of a volume.
+pub(super) fn weigh_source(
+    source: &Source,
+    mut pipeline: Pipeline,
+    select: &SelectArgs,
+    values: Values,
+    progress: &mut Progress,
+) -> anyhow::Result<Weighed> {
+    let Source { volume, facts } = source;
+    let choice = select.choice(&facts.range, volume.dims().samples())?;
+    pipeline = pipeline.units(facts.units).choice(choice);
+    if values == Values::Written {
+        pipeline = pipeline.values(facts.written);
+    }
+    Ok(progress.watch(|hear| pipeline.weighed(volume, hear))?)
+}
+
+/// What a file of a model keeps besides its points, but for their order.
+pub(super) fn model_facts(weighed: &Weighed, volume: Option<&VolumeFacts>) -> ModelFacts {
+    let origin = weighed.origin;
+    ModelFacts {
+        grid: origin.grid,
+        coordinates: origin.coordinates,
+        alpha: weighed.parameter.map(|parameter| parameter.alpha),
+        range: volume.map(|volume| volume.written).or(origin.range),
+        order: None,
+    }
 }
 
 /// The shape of weighted points.

@@ -5,14 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::export::Target;
-use crate::pipeline::Weighed;
-use crate::points::{ModelFacts, Packing, PointWriter};
+use crate::points::{Packing, PointWriter};
 use crate::progress::Stage;
 
 use super::args::{PipelineArgs, not_negative};
 use super::formats::points_output;
 use super::output::tell;
-use super::pipeline::VolumeFacts;
 use super::progress::Progress;
 use super::report::Report;
 use super::said::misused;
@@ -67,7 +65,9 @@ impl Points {
             misused!("--layers has no effect: which points are the most important is known only where they are selected from a volume" => "omit it");
         }
         if let Some((target, writer)) = target {
-            let (facts, packing) = self.packed(&weighed, volume.as_ref());
+            let facts = pipeline::model_facts(&weighed, volume.as_ref()).order(weighed.order());
+            let step = facts.range.filter(|_| volume.is_some()).map_or(1.0, |range| range.step());
+            let packing = Packing { value_error: self.value_error * step, layers: self.layers };
             progress.stage(Stage::Write, || {
                 target.write(|out| writer.write_model(&weighed.points, &facts, &packing, out))
             })?;
@@ -76,19 +76,5 @@ impl Points {
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         tell(global, &report)
-    }
-    /// What a .wvm holds besides the points, and how it is packed.
-    fn packed(&self, weighed: &Weighed, volume: Option<&VolumeFacts>) -> (ModelFacts, Packing) {
-        let origin = weighed.origin;
-        let range = volume.map(|volume| volume.written).or(origin.range);
-        let step = volume.map_or(1.0, |volume| volume.written.step());
-        let facts = ModelFacts {
-            grid: origin.grid,
-            coordinates: origin.coordinates,
-            alpha: weighed.parameter.map(|parameter| parameter.alpha),
-            range,
-            order: weighed.order(),
-        };
-        (facts, Packing { value_error: self.value_error * step, layers: self.layers })
     }
 }

@@ -41,4 +41,4 @@ pub use marching::Isosurface;
 pub use pixels::{ColourMap, PALETTE, Picture, Rgb, Size};
 pub use scene::{Background, Ball, Camera, Colours, Mesh, Projection, Scene, Shading, Tube, View};
 pub use shape::{Colouring, ShapeStyle, class_colours, plain_colours};
-pub use view::{Original, Page, Subject};
+pub use view::{Detail, Differences, Original, Page, Subject};

@@ -38,8 +38,16 @@ fn the_command_makes_the_same_of_a_file() {
     run_it("interpolate m.wvm -o through.nrrd --gray-out");
     assert_eq!(read("direct.nrrd"), read("through.nrrd"));
     run_it(&format!("shape v.nrrd {select} -o direct.ply"));
-    run_it("shape m.wvm -o through.ply");
+    run_it("shape m.wvm -o through.ply again.wvm");
     assert_eq!(read("direct.ply"), read("through.ply"));
+    assert_eq!(read("m.wvm"), read("again.wvm"));
+    // The α that is found with the shape is kept, too.
+    run_it(&format!(
+        "shape v.nrrd {} -o auto.ply auto.wvm",
+        select.replace("alpha 3", "alpha auto")
+    ));
+    run_it("shape auto.wvm -o through.ply");
+    assert_eq!(read("auto.ply"), read("through.ply"));
 
     let told = json(folder.path(), &["info", "m.wvm"]);
     assert_eq!(told["grid"], serde_json::json!([20, 20, 20]));
@@ -64,6 +72,12 @@ fn options_without_effect_are_refused() {
     refuses(&["points", "m.wvm", "--value-error", "2", "-o", "n.csv"], "no .wvm is written");
     refuses(&["points", "m.wvm", "--level", "2"], "has 2 levels");
     refuses(&["points", "m.wvm", "--count", "9"], "--count has no effect");
+    ok(folder.path(), &["haar", "sample:phantom@8", "-o", "v.npy"]);
+    refuses(
+        &["shape", "v.npy", "-o", "s.vtu", "s.wvm", "s.pvtu"],
+        "s.wvm takes all points at once",
+    );
+    assert!(!folder.path().join("s.wvm").exists());
     fs::write(folder.path().join("p.csv"), "x,y,z\n0,0,0\n").unwrap();
     refuses(&["points", "p.csv", "--gray-out"], "--gray-out has no effect");
     let told = json(folder.path(), &["points", "m.wvm", "--level", "1"]);

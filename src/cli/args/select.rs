@@ -188,6 +188,11 @@ impl SelectArgs {
         Ok(if self.exchange { Choice::Exchanged(goal) } else { Choice::Adaptive(goal) })
     }
 
+    /// The same with so many samples.
+    pub(crate) fn with_count(self, count: u64) -> Self {
+        Self { count: Some(count), ratio: None, threshold: None, ..self }
+    }
+
     /// Which samples become points where that is decided in blocks, and the least value of the input.
     pub(crate) fn in_blocks(&self) -> anyhow::Result<(Selection, Option<f64>)> {
         if self.select == SelectArg::Adaptive || self.target_rmse.is_some() {

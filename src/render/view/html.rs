@@ -3,9 +3,9 @@ use std::fmt::Write;
 use plotly::Plot;
 use serde_json::json;
 
-use super::pack::Packed;
+use super::pack::{Arrays, Packed};
 use super::plot::plot;
-use super::subject::Subject;
+use super::subject::{Detail, Subject};
 use crate::ladder::Level;
 use crate::render::pixels::PALETTE;
 
@@ -13,7 +13,7 @@ const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
 /// The page. Every string from outside is escaped, in markup and in data.
-pub(super) fn page(subject: &Subject<'_>, packed: &Packed) -> String {
+pub(super) fn page(subject: &Subject<'_>, packed: &[Packed], surface: Option<&Arrays>) -> String {
     let title = escape(subject.title);
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -21,16 +21,14 @@ pub(super) fn page(subject: &Subject<'_>, packed: &Packed) -> String {
          <title>{title}</title>\n<style>\n{STYLE}</style>\n{}\n</head>\n<body>\n<h1>{title}</h1>\n",
         library()
     );
-    let last = subject.levels.len() - 1;
-    let first = subject.first;
-    let valued = subject.levels.points().values.is_some();
+    let simplified = packed.iter().any(|packed| packed.simplified.is_some());
     let _ = write!(
         html,
         "<p>α and ω are squared lengths, in {unit} squared: at a level, a point of weight ω is a ball \
          of squared radius α + ω. Weights are the same at all levels, so each shape contains the one \
          before.</p>\n\
-         <form><label for=\"level\">level <output id=\"name\"></output></label>\n\
-         <input id=\"level\" type=\"range\" min=\"0\" max=\"{last}\" value=\"{first}\">\n\
+         <form>{}<label for=\"level\">level <output id=\"name\"></output></label>\n\
+         <input id=\"level\" type=\"range\" min=\"0\" value=\"0\">\n\
          <button id=\"play\" type=\"button\">Play</button>\n\
          <label for=\"colour\">colour <select id=\"colour\">{}\
          <option value=\"class\">class</option>{}</select></label>\n\
@@ -40,16 +38,15 @@ pub(super) fn page(subject: &Subject<'_>, packed: &Packed) -> String {
          <p class=\"soft\">Drag to turn, pinch or scroll to zoom; tap a point for its index, {}ω and \
          class; tap a name above the scene to show or hide it.{}</p>\n\
          <div class=\"tables\">\n<table id=\"numbers\"></table>\n<table>\n",
-        if valued { "<option value=\"value\">F</option>" } else { "" },
-        match subject.differences {
-            Some(_) => "<option value=\"difference\">difference to the original</option>",
-            None => "",
+        choice_of_detail(subject),
+        if subject.is_valued() { "<option value=\"value\">F</option>" } else { "" },
+        if subject.is_compared() {
+            "<option value=\"difference\">difference to the original</option>"
+        } else {
+            ""
         },
         explained(subject),
-        packed
-            .simplified
-            .as_ref()
-            .map_or(String::new(), |told| format!(" <b>This page is {}.</b>", escape(told))),
+        if simplified { " <b id=\"simplified\"></b>" } else { "" },
         unit = escape(subject.unit),
     );
     for (name, value) in subject.facts {
@@ -57,9 +54,10 @@ pub(super) fn page(subject: &Subject<'_>, packed: &Packed) -> String {
     }
     // Of what is interior, regular, singular.
     let colours = [2, 1, 0].map(|k| PALETTE[k].hex());
+    let details = subject.details.iter().zip(packed);
     let data = json!({
-        "arrays": packed.arrays,
-        "levels": subject.ladder.levels.iter().map(level).collect::<Vec<_>>(),
+        "details": details.map(|(of, packed)| detail(subject, of, packed)).collect::<Vec<_>>(),
+        "isosurface": surface,
         "colours": colours,
         "bars": bars(subject),
     });
@@ -74,24 +72,57 @@ pub(super) fn page(subject: &Subject<'_>, packed: &Packed) -> String {
     html
 }
 
+/// What one chooses a level of detail by, where there are several.
+fn choice_of_detail(subject: &Subject<'_>) -> String {
+    let last = subject.details.len() - 1;
+    if last == 0 {
+        return String::new();
+    }
+    let mut html = "<label for=\"detail\">detail <select id=\"detail\">".to_owned();
+    for (k, detail) in subject.details.iter().enumerate() {
+        let selected = if k == last { " selected" } else { "" };
+        let points = detail.levels.points().len();
+        let _ = write!(html, "<option value=\"{k}\"{selected}>{points} points</option>");
+    }
+    html + "</select></label>\n"
+}
+
+/// The data of a level of detail.
+fn detail(subject: &Subject<'_>, detail: &Detail<'_>, packed: &Packed) -> serde_json::Value {
+    let mut rows = vec![["points".to_owned(), detail.levels.points().len().to_string()]];
+    if let Some(differences) = detail.differences {
+        let rmse = significant(differences.rmse);
+        let told = format!("{rmse} {} (root mean square, on all samples)", subject.difference);
+        rows.push(["error of F".to_owned(), told]);
+    }
+    json!({
+        "arrays": packed.arrays,
+        "rows": rows,
+        "levels": detail.ladder.levels.iter().map(level).collect::<Vec<_>>(),
+        "first": detail.first,
+        "simplified": packed.simplified,
+    })
+}
+
 /// The titles of colour scales.
 fn bars(subject: &Subject<'_>) -> serde_json::Value {
-    let difference =
-        subject.differences.map(|(_, unit)| format!("difference to the original, in {unit}"));
+    let difference = subject
+        .is_compared()
+        .then(|| format!("difference to the original, in {}", subject.difference));
     json!({ "value": format!("F: {}", subject.value), "difference": difference })
 }
 
 /// What the numbers of a point are.
 fn explained(subject: &Subject<'_>) -> String {
     let mut text = String::new();
-    if subject.levels.points().values.is_some() {
+    if subject.is_valued() {
         let _ = write!(text, "F ({}), ", escape(subject.value));
     }
-    if let Some((_, unit)) = subject.differences {
+    if subject.is_compared() {
         let _ = write!(
             text,
             "difference (root mean square of F, filled in, against the samples around it, in {}), ",
-            escape(unit)
+            escape(subject.difference)
         );
     }
     text
@@ -117,6 +148,7 @@ fn level(level: &Level) -> serde_json::Value {
     };
     json!({
         "name": format!("α = {alpha}"),
+        "alpha": level.alpha.squared().clamp(f64::MIN, f64::MAX),
         "rows": [
             ["α", format!("{alpha} ({radius})")],
             ["cells", level.cells.to_string()],

@@ -6,7 +6,7 @@ mod plot;
 mod subject;
 
 use super::error::RenderError;
-pub use subject::{Original, Subject};
+pub use subject::{Detail, Differences, Original, Subject};
 
 /// A self-contained HTML page.
 #[derive(Clone, Debug)]
@@ -15,8 +15,6 @@ pub struct Page {
     pub html: String,
     /// What was simplified for display, if anything.
     pub simplified: Option<String>,
-    /// How many levels it has.
-    pub levels: usize,
 }
 
 impl Page {
@@ -29,20 +27,35 @@ impl Page {
     /// Makes the page. The same subject gives the same bytes.
     ///
     /// The boundary and what is singular are traces of their own, points are sized by weight, a
-    /// slider goes over the levels, and a click or touch shows index, F, ω and class of a point. The
-    /// library plotly.js, which draws it, is inside.
+    /// slider goes over α, a list over levels of detail, and a click or touch shows index, F, ω and
+    /// class of a point. The library plotly.js, which draws it, is inside.
     ///
     /// # Errors
     /// [`RenderError::Isosurface`] for an isovalue that is not a finite
     /// number.
     ///
     /// # Panics
-    /// When there are no levels, or more than [`Page::MOST_LEVELS`].
+    /// When there are no levels of detail, or one with no α or more than [`Page::MOST_LEVELS`].
     pub fn new(subject: &Subject<'_>) -> Result<Self, RenderError> {
-        let levels = subject.levels.len();
-        assert!((1..=Self::MOST_LEVELS).contains(&levels), "{levels} levels");
-        let packed = pack::Packed::of(subject, Self::MOST_FACETS)?;
-        let (html, levels) = (html::page(subject, &packed), subject.levels.len());
-        Ok(Self { html, simplified: packed.simplified, levels })
+        assert!(!subject.details.is_empty(), "nothing to show");
+        let surface = subject.original.as_ref().map(pack::surface).transpose()?;
+        let pack = |detail: &Detail<'_>| {
+            let levels = detail.levels.len();
+            assert!((1..=Self::MOST_LEVELS).contains(&levels), "{levels} levels");
+            pack::Packed::of(detail, Self::MOST_FACETS)
+        };
+        let packed: Vec<_> = subject.details.iter().map(pack).collect();
+        let html = html::page(subject, &packed, surface.as_ref());
+        Ok(Self { html, simplified: simplified(subject, &packed) })
     }
+}
+
+/// What was simplified at each level of detail.
+fn simplified(subject: &Subject<'_>, packed: &[pack::Packed]) -> Option<String> {
+    let of = |(detail, packed): (&Detail<'_>, &pack::Packed)| {
+        let points = detail.levels.points().len();
+        Some(format!("{points} points are {}", packed.simplified.as_ref()?))
+    };
+    let told: Vec<String> = subject.details.iter().zip(packed).filter_map(of).collect();
+    (!told.is_empty()).then(|| told.join("; "))
 }

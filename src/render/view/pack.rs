@@ -3,16 +3,19 @@ use std::collections::{BTreeMap, HashSet};
 use ndarray::s;
 use serde::Serialize;
 
-use super::subject::{Original, Subject};
+use super::subject::{Detail, Original};
 use crate::ladder::Span;
 use crate::points::Units;
 use crate::render::base64::base64;
 use crate::render::error::RenderError;
 use crate::render::marching::Isosurface;
 
-/// The arrays of a page, as base64 of little-endian numbers: each simplex once for all levels.
+/// Arrays as base64 of little-endian numbers, by name.
+pub(super) type Arrays = BTreeMap<&'static str, Array>;
+
+/// The arrays of a level of detail: each simplex once for all α.
 pub(super) struct Packed {
-    pub arrays: BTreeMap<&'static str, Array>,
+    pub arrays: Arrays,
     pub simplified: Option<String>,
 }
 
@@ -44,25 +47,24 @@ impl Array {
 const ISOSURFACE_SAMPLES: usize = 64;
 
 impl Packed {
-    pub(super) fn of(subject: &Subject<'_>, most_facets: usize) -> Result<Self, RenderError> {
-        let points = subject.levels.points();
-        let mut facets = subject.levels.facets();
-        let mut edges = subject.levels.singular_edges();
+    pub(super) fn of(detail: &Detail<'_>, most_facets: usize) -> Self {
+        let points = detail.levels.points();
+        let mut facets = detail.levels.facets();
+        let mut edges = detail.levels.singular_edges();
         let simplified = simplify(&points.positions, &mut facets, &mut edges, most_facets);
-        let mut arrays = BTreeMap::new();
         let axis = |k: usize| Array::f32(points.positions.iter().map(move |p| p[k]));
-        arrays.extend([("x", axis(0)), ("y", axis(1)), ("z", axis(2))]);
+        let mut arrays = Arrays::from([("x", axis(0)), ("y", axis(1)), ("z", axis(2))]);
         arrays.insert("weights", Array::f32(points.weights.iter().copied()));
         if let Some(values) = &points.values {
             arrays.insert("values", Array::f32(values.iter().copied()));
         }
-        if let Some((differences, _)) = subject.differences {
-            arrays.insert("differences", Array::f32(differences.iter().copied()));
+        if let Some(differences) = detail.differences {
+            arrays.insert("differences", Array::f32(differences.local.iter().copied()));
         }
         // Hidden points never come.
-        let never = subject.levels.len() as u32;
+        let never = detail.levels.len() as u32;
         let mut spans = vec![Span { first: never, regular: never, interior: never }; points.len()];
-        for (v, span) in subject.levels.vertices() {
+        for (v, span) in detail.levels.vertices() {
             spans[v as usize] = span;
         }
         arrays.insert("pointSpans", Array::u8(&bytes(spans.iter())));
@@ -72,14 +74,16 @@ impl Packed {
         let flat: Vec<u32> = edges.iter().flat_map(|edge| edge.0).collect();
         arrays.insert("edges", Array::u32(&flat));
         arrays.insert("edgeSpans", Array::u8(&bytes(edges.iter().map(|edge| &edge.1))));
-        if let Some(original) = &subject.original {
-            let surface = isosurface(original)?;
-            let axis = |k: usize| Array::f32(surface.positions.iter().map(move |p| p[k]));
-            arrays.extend([("isoX", axis(0)), ("isoY", axis(1)), ("isoZ", axis(2))]);
-            arrays.insert("isoFacets", Array::u32(surface.triangles.as_flattened()));
-        }
-        Ok(Self { arrays, simplified })
+        Self { arrays, simplified }
     }
+}
+
+/// The arrays of the surface to compare.
+pub(super) fn surface(original: &Original<'_>) -> Result<Arrays, RenderError> {
+    let surface = isosurface(original)?;
+    let axis = |k: usize| Array::f32(surface.positions.iter().map(move |p| p[k]));
+    let facets = Array::u32(surface.triangles.as_flattened());
+    Ok(Arrays::from([("x", axis(0)), ("y", axis(1)), ("z", axis(2)), ("facets", facets)]))
 }
 
 /// The surface to compare, where the points are.

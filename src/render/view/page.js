@@ -2,14 +2,15 @@
 (() => {
   const json = (id) => JSON.parse(document.getElementById(id).textContent);
   const plot = json("plot");
-  const { arrays, levels, colours, bars } = json("data");
+  const { details, isosurface: surface, colours, bars } = json("data");
   const unpack = ({ kind, base64 }) => {
     const text = atob(base64);
     const bytes = new Uint8Array(text.length);
     for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
     return new globalThis[kind](bytes.buffer);
   };
-  const data = Object.fromEntries(Object.entries(arrays).map(([name, array]) => [name, unpack(array)]));
+  const unpackAll = (arrays) =>
+    Object.fromEntries(Object.entries(arrays).map(([name, array]) => [name, unpack(array)]));
   const [BOUNDARY, SINGULAR, EDGES, POINTS, ISOSURFACE] = [0, 1, 2, 3, 4];
   const EVEN = { ambient: 0.93, diffuse: 0.18, specular: 0, roughness: 1 };
   const CLASSES = ["exterior", "interior", "regular", "singular"];
@@ -17,35 +18,48 @@
     const [first, regular, interior] = [spans[3 * row], spans[3 * row + 1], spans[3 * row + 2]];
     return level < first ? 0 : level < regular ? 3 : level < interior ? 2 : 1;
   };
-  const count = data.x.length;
-  // What facets and points may be coloured by, besides their class.
-  const scales = { value: data.values, difference: data.differences };
 
   // Marker diameters: the weight as an area, from 2 to 9 pixels.
-  let [least, most] = [Infinity, -Infinity];
-  for (const weight of data.weights) [least, most] = [Math.min(least, weight), Math.max(most, weight)];
-  const sizes = Array.from(data.weights, (weight) =>
-    most > least ? 2 + 7 * Math.sqrt((weight - least) / (most - least)) : 3);
+  function diameters(weights) {
+    let [least, most] = [Infinity, -Infinity];
+    for (const weight of weights) [least, most] = [Math.min(least, weight), Math.max(most, weight)];
+    return Array.from(weights, (weight) =>
+      most > least ? 2 + 7 * Math.sqrt((weight - least) / (most - least)) : 3);
+  }
   const corners = (facets, rows) => {
     const corner = (k) => Uint32Array.from(rows, (row) => facets[3 * row + k]);
     return { i: corner(0), j: corner(1), k: corner(2) };
   };
   const short = (number) => Number(number.toPrecision(4)).toString();
 
-  const facetCount = data.facets.length / 3;
+  // The level of detail that is shown, unpacked when first chosen.
+  let [detail, data] = [null, null];
+  function open(chosen) {
+    detail = details[chosen];
+    if (!detail.data) {
+      const unpacked = unpackAll(detail.arrays);
+      // What facets and points may be coloured by, besides their class.
+      const scales = { value: unpacked.values, difference: unpacked.differences };
+      detail.data = { ...unpacked, scales, sizes: diameters(unpacked.weights), count: unpacked.x.length };
+      delete detail.arrays;
+    }
+    data = detail.data;
+  }
+
   function facetsAt(level, wanted) {
     const rows = [];
-    for (let row = 0; row < facetCount; row++) {
+    for (let row = 0; 3 * row < data.facets.length; row++) {
       if (classAt(data.facetSpans, row, level) === wanted) rows.push(row);
     }
     return corners(data.facets, rows);
   }
 
   // The same at all levels.
-  const isosurface = data.isoFacets && {
-    x: data.isoX, y: data.isoY, z: data.isoZ,
-    ...corners(data.isoFacets, [...Array(data.isoFacets.length / 3).keys()]),
-  };
+  function whole(arrays) {
+    const { x, y, z, facets } = unpackAll(arrays);
+    return { x, y, z, ...corners(facets, [...Array(facets.length / 3).keys()]) };
+  }
+  const isosurface = surface && whole(surface);
 
   function linesAt(level) {
     const line = { x: [], y: [], z: [] };
@@ -59,8 +73,8 @@
   }
 
   function words(level) {
-    const text = new Array(count);
-    for (let v = 0; v < count; v++) {
+    const text = new Array(data.count);
+    for (let v = 0; v < data.count; v++) {
       const value = data.values ? `<br>F = ${short(data.values[v])}` : "";
       const difference = data.differences ? `<br>difference ${short(data.differences[v])}` : "";
       const kind = CLASSES[classAt(data.pointSpans, v, level)];
@@ -71,7 +85,7 @@
 
   function pointsAt(level, text, scale) {
     const shown = [];
-    for (let v = 0; v < count; v++) if (classAt(data.pointSpans, v, level) !== 0) shown.push(v);
+    for (let v = 0; v < data.count; v++) if (classAt(data.pointSpans, v, level) !== 0) shown.push(v);
     const pick = (values) => shown.map((v) => values[v]);
     const kind = (v) => colours[classAt(data.pointSpans, v, level) - 1];
     const colour = scale
@@ -79,12 +93,12 @@
       : { color: shown.map(kind) };
     return {
       x: pick(data.x), y: pick(data.y), z: pick(data.z), text: pick(text),
-      marker: { ...colour, size: pick(sizes), line: { width: 0 } },
+      marker: { ...colour, size: pick(data.sizes), line: { width: 0 } },
     };
   }
 
   function fill(level, name) {
-    const scale = scales[name];
+    const scale = data.scales[name];
     const text = words(level);
     const traces = plot.data.map((trace) => ({ ...trace }));
     for (const [trace, wanted] of [[BOUNDARY, 2], [SINGULAR, 3]]) {
@@ -108,7 +122,8 @@
   }
 
   const byId = (id) => document.getElementById(id);
-  const [scene, slider, colour, play] = ["scene", "level", "colour", "play"].map(byId);
+  const [scene, slider, colour, play, choice] =
+    ["scene", "level", "colour", "play", "detail"].map(byId);
 
   // The eye, so far away that all is seen however narrow the scene is.
   const home = plot.layout.scene.camera;
@@ -120,9 +135,12 @@
 
   function show() {
     const level = Number(slider.value);
-    const { name, rows } = levels[level];
+    if (byId("simplified")) {
+      byId("simplified").textContent = detail.simplified ? `This picture is ${detail.simplified}.` : "";
+    }
+    const { name, rows } = detail.levels[level];
     byId("name").textContent = name;
-    byId("numbers").replaceChildren(...rows.map(([head, value]) => {
+    byId("numbers").replaceChildren(...[...detail.rows, ...rows].map(([head, value]) => {
       const row = document.createElement("tr");
       row.append(document.createElement("th"), document.createElement("td"));
       [row.firstChild.textContent, row.lastChild.textContent] = [head, value];
@@ -147,13 +165,27 @@
     busy = true;
     do {
       again = false;
-      const [level, chosen] = [slider.value, colour.value];
+      const now = { level: slider.value, colour: colour.value, detail: choice?.value ?? "0" };
       await show();
-      [scene.dataset.level, scene.dataset.colour] = [level, chosen];
+      Object.assign(scene.dataset, now);
     } while (again);
     busy = false;
   }
   colour.addEventListener("change", refresh);
+
+  // Another level of detail has other levels of α: the last up to the one before is shown.
+  function change() {
+    const { alpha } = detail.levels[Number(slider.value)];
+    open(Number(choice.value));
+    const above = detail.levels.findIndex((level) => level.alpha > alpha);
+    slider.max = detail.levels.length - 1;
+    slider.value = Math.max(0, (above < 0 ? detail.levels.length : above) - 1);
+  }
+  choice?.addEventListener("change", () => {
+    stop();
+    change();
+    return refresh();
+  });
 
   // From where the slider is to its end, from the start if it is there already.
   let playing = null;
@@ -181,8 +213,10 @@
   });
   byId("reset").addEventListener("click", () => Plotly.relayout(scene, { "scene.camera": camera() }));
   byId("save").addEventListener("click", () => Plotly.downloadImage(scene, {
-    format: "png", filename: `${document.title}, ${levels[Number(slider.value)].name}`, scale: 2,
+    format: "png", filename: `${document.title}, ${detail.levels[Number(slider.value)].name}`, scale: 2,
     width: scene.clientWidth, height: scene.clientHeight,
   }));
+  open(details.length - 1);
+  [slider.max, slider.value] = [detail.levels.length - 1, detail.first];
   refresh();
 })();

@@ -17,7 +17,7 @@ use crate::render::pixels::PALETTE;
 /// data: the arrays of a level are put together in the browser.
 pub(super) fn plot(subject: &Subject<'_>) -> Plot {
     let mut plot = Plot::new();
-    let valued = subject.levels.points().values.is_some();
+    let valued = subject.is_valued();
     let mesh = |name: &str, colour: Rgb| {
         Mesh3D::<f64, f64, f64>::new(vec![], vec![], vec![], None::<Vec<usize>>, None, None)
             .name(name)

@@ -1,27 +1,27 @@
 //! `walpha shape`: the whole pipeline.
 
-use std::io::Write;
+mod outputs;
+
 use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::blocks::{Pieces, Team};
-use crate::export::{Content, ExportOptions, Exporter, FORMATS, Format, Target, write_all};
+use crate::blocks::Team;
+use crate::export::{FORMATS, Format};
 use crate::progress::Stage;
 use crate::shape::{ShapeOptions, Surface};
 use crate::shown::shown;
-use crate::volume::UnknownFormat;
 
 use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
-use super::blocks::Outputs;
 use super::formats::shape_output;
 use super::output::tell;
 use super::picture::PictureArgs;
 use super::progress::Progress;
 use super::report::Report;
-use super::said::{misused, option};
+use super::said::misused;
 use super::together::{self, Work};
-use super::{Global, pipeline};
+use super::{Global, blocks, pipeline};
+use outputs::Outputs;
 
 /// Compute the weighted alpha shape of a volume or of points.
 ///
@@ -114,79 +114,68 @@ impl Shape {
     pub(super) fn run(self, global: Global, team: &dyn Team) -> anyhow::Result<()> {
         // Before the long work: a bad option, extension or place costs nothing yet.
         self.check()?;
-        let mut targets = Vec::new();
-        let export = ExportOptions {
-            ascii: self.ascii,
-            solid: self.solid,
-            groups: self.groups,
-            input: Some(self.pipeline.input.input.clone()),
-        };
-        let mut pieces = Vec::new();
-        for path in &self.output {
-            let name = self.pipeline.input.output(path)?;
-            if let Some(of_path) = Pieces::of(&name) {
-                pieces.push((of_path, path.clone()));
-                continue;
-            }
-            let exporter: Box<dyn Exporter> = if PictureArgs::wanted(&name) {
-                self.picture.exporter()
-            } else {
-                let pieces = Pieces::ALL.map(|(_, extension)| extension);
-                let known = FORMATS.iter().map(|format| format.extension).chain(pieces);
-                let unknown =
-                    |_| UnknownFormat::new(path, "a shape", known.chain(PictureArgs::EXTENSIONS));
-                Format::of(&name).map_err(unknown)?.exporter(&export)
-            };
-            targets.push((Target::open(path)?, exporter));
-        }
-
-        together::check(team, !pieces.is_empty())?;
+        let outputs = Outputs::open(&self)?;
+        together::check(team, !outputs.pieces.is_empty())?;
         let mut progress = Progress::new(global);
+        let mut report = if outputs.pieces.is_empty() {
+            self.at_once(outputs, global, &mut progress)?
+        } else {
+            self.in_blocks(outputs, global, &mut progress, team)?
+        };
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
-        if !pieces.is_empty() {
-            unused(
-                "--dimension",
-                self.dimension.is_some(),
-                "a block may be flat where the whole is not",
-            )?;
-            unused("--solid", self.solid, "it takes the whole boundary, and there are blocks")?;
-            let given = &self.pipeline.input.given;
-            given.refuse(&["refit", "periodic"], "there are blocks")?;
-            let outputs = Outputs { pieces, whole: targets };
-            let work = Work::new(&self.pipeline, &self.shape, &outputs, global)?;
-            let mut report = work.lead(outputs, &mut progress, team)?;
-            report.finish(progress.finish(), files);
+        report.finish(progress.finish(), files);
+        if team.size() > 1 {
             report.peak_memory_bytes = together::peak(team);
-            return tell(global, &report);
         }
+        tell(global, &report)
+    }
+
+    /// Makes the shape in blocks, from file to file.
+    fn in_blocks(
+        &self,
+        outputs: Outputs,
+        global: Global,
+        progress: &mut Progress,
+        team: &dyn Team,
+    ) -> anyhow::Result<Report> {
+        let flat = "a block may be flat where the whole is not";
+        unused("--dimension", self.dimension.is_some(), flat)?;
+        let parts = "it takes the whole boundary, and there are blocks";
+        unused("--solid", self.solid, parts)?;
+        self.pipeline.input.given.refuse(&["refit", "periodic"], "there are blocks")?;
+        if let Some((target, _)) = outputs.models.first() {
+            let name = shown(target.path());
+            misused!("{name} takes all points at once, and there are blocks" => "write it by `walpha points`");
+        }
+        let outputs = blocks::Outputs { pieces: outputs.pieces, whole: outputs.whole };
+        Work::new(&self.pipeline, &self.shape, &outputs, global)?.lead(outputs, progress, team)
+    }
+
+    /// Makes the shape in memory.
+    fn at_once(
+        &self,
+        outputs: Outputs,
+        global: Global,
+        progress: &mut Progress,
+    ) -> anyhow::Result<Report> {
         let refuse_flat = self.dimension.is_some();
         let periodic = self.periodic.periodic;
         let options = ShapeOptions { refuse_flat, periodic, ..self.shape.options() };
         let stages = pipeline::stages_to(&self.pipeline, options)?;
-        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
+        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, progress)?;
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
-        let model = pipeline::shape(weighed, options, &mut progress)?;
+        let mut facts = pipeline::model_facts(&weighed, volume.as_ref());
+        let model = pipeline::shape(weighed, options, progress)?;
+        facts.alpha = Some(model.parameter.alpha);
         report.add_model(&model);
-        let shape = model.shape;
         if self.solid {
-            report.add_solid(Surface::solid(&shape).1);
+            report.add_solid(Surface::solid(&model.shape).1);
         }
-        let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
-            let remark = exporter.remark(&shape)?.told(option);
-            Some(format!("{}: {remark}", shown(target.path())))
-        };
-        let remarks: Vec<String> = targets.iter().filter_map(remark).collect();
-        progress.stage(Stage::Write, || {
-            write_all(targets.into_iter().map(|(target, exporter)| {
-                let shape = &shape;
-                let content = move |out: &mut dyn Write| exporter.write_any(shape, out);
-                (target, Box::new(content) as Content<'_>)
-            }))
-        })?;
-        report.finish(progress.finish(), files);
+        let remarks = outputs.remarks(&model.shape);
+        progress.stage(Stage::Write, || outputs.write(&model.shape, &facts))?;
         if !global.quiet {
             remarks.iter().for_each(|remark| eprintln!("walpha: {remark}"));
         }
-        tell(global, &report)
+        Ok(report)
     }
 }

@@ -1,0 +1,233 @@
+//! `walpha view`: a page to look at.
+
+mod detail;
+mod facts;
+mod isovalue;
+
+use std::path::PathBuf;
+
+use anyhow::bail;
+use clap::Args;
+
+use crate::GrayRange;
+use crate::export::Target;
+use crate::pipeline::{AlphaRule, Parameter, Weighed};
+use crate::progress::Stage;
+use crate::render::{self, Original, Page, Subject};
+use crate::shown::{number, shown};
+use crate::volume::UnknownFormat;
+
+use super::Global;
+use super::args::{Alphas, FrozenPipelineArgs};
+use super::output::tell;
+use super::pipeline::{self, Input, Source, Values, VolumeFacts};
+use super::progress::Progress;
+use super::report::{SCHEMA_VERSION, WeightsReport};
+use super::said::misused;
+
+use detail::Detail;
+use facts::{DetailFacts, Facts};
+use isovalue::Isovalue;
+
+/// Write an interactive page for the browser: self-contained, no network needed.
+///
+/// A slider moves through α with the weights frozen. The boundary is coloured by F, by class, or by how
+/// far the interpolant is from the volume there. Singular facets and edges, points sized by weight and
+/// an isosurface of the volume can be shown or hidden.
+///
+/// Examples:
+///
+/// walpha view ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.html
+///
+/// walpha view sample:skull --weights min-max --counts 1000,4000 -o skull.html
+///
+/// walpha view scan.xyz -o scan.html
+#[derive(Args)]
+pub(super) struct View {
+    /// Page to write (.html); an existing file is replaced.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// The α, a squared length, that the page opens at: a number, `inf`, or `auto`, the smallest at
+    /// which all points are in one solid component [default: --alpha-ref].
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    alpha: Option<AlphaRule>,
+    /// Stops of the slider: squared lengths, as in 1,2,5,inf; or auto, critical values that each change
+    /// the picture.
+    #[arg(long, value_name = "A,A,…", default_value = "auto", allow_hyphen_values = true)]
+    alphas: Alphas,
+    /// Further levels of detail to switch between: numbers of points, chosen as those of the shape are.
+    #[arg(long, value_name = "N,N,…", value_delimiter = ',', value_parser = clap::value_parser!(u64).range(1..))]
+    counts: Vec<u64>,
+    /// Level of the isosurface, for volumes: a gray level, as in 50, or a value of INPUT, as in 300v
+    /// [default: 50].
+    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    isovalue: Option<Isovalue>,
+    #[command(flatten)]
+    pipeline: FrozenPipelineArgs,
+}
+
+impl View {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+        let html = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("html"));
+        if !html {
+            bail!(UnknownFormat::new(&self.output, "a page", ["html"]));
+        }
+        let target = Target::open(&self.output)?;
+        let mut progress = Progress::new(global);
+        let (weighed, source) = self.weighed(&mut progress)?;
+        let details =
+            weighed.into_iter().map(|weighed| Detail::new(weighed, source.as_ref(), &mut progress));
+        let details = details.collect::<Result<Vec<_>, _>>()?;
+        let (page, facts) = self.page(&details, source.as_ref(), &mut progress)?;
+        if !global.quiet {
+            let size = page.html.len() as f64 / 1e6;
+            eprintln!("walpha: {} takes {size:.1} MB", shown(&self.output));
+            if let Some(told) = &page.simplified {
+                eprintln!("walpha: {told}");
+            }
+        }
+        progress.stage(Stage::Write, || target.write(|out| out.write_all(page.html.as_bytes())))?;
+        let facts = Facts {
+            schema_version: SCHEMA_VERSION,
+            input: self.pipeline.input.input,
+            details: facts,
+            bytes: page.html.len(),
+            simplified: page.simplified,
+            file: self.output.display().to_string(),
+            seconds: progress.finish().into_iter().collect(),
+        };
+        tell(global, &facts)
+    }
+
+    /// The weighted points of each level of detail, the fewest first and those of the shape last, and the
+    /// volume that they come from.
+    fn weighed(&self, progress: &mut Progress) -> anyhow::Result<(Vec<Weighed>, Option<Source>)> {
+        let input = &self.pipeline.input;
+        let read = pipeline::read(input, progress)?;
+        read.accepts(input)?;
+        let stages = pipeline::stages(&self.pipeline);
+        let select = &self.pipeline.select;
+        let grays = match read {
+            Input::Points(..) => {
+                if self.isovalue.is_some() {
+                    misused!("--isovalue has no effect: points have no isosurface" => "omit it");
+                }
+                if !self.counts.is_empty() {
+                    misused!("--counts chooses samples of a volume, and {} holds points", input.input => "omit it");
+                }
+                let (weighed, _) =
+                    pipeline::weigh_input(read, stages, select, Values::Written, progress)?;
+                return Ok((vec![weighed], None));
+            }
+            Input::Volume(grays) => grays,
+        };
+        let source = pipeline::place(grays, select)?;
+        let mut counts = self.counts.clone();
+        counts.sort_unstable();
+        counts.dedup();
+        let coarse = counts.into_iter().map(|count| select.with_count(count));
+        let mut details = Vec::new();
+        for select in coarse.chain([*select]) {
+            let stages = stages.clone();
+            details.push(pipeline::weigh_source(
+                &source,
+                stages,
+                &select,
+                Values::Written,
+                progress,
+            )?);
+        }
+        Ok((details, Some(source)))
+    }
+
+    /// The page of the shapes, and what is reported of each level of detail.
+    fn page(
+        &self,
+        details: &[Detail],
+        source: Option<&Source>,
+        progress: &mut Progress,
+    ) -> anyhow::Result<(Page, Vec<DetailFacts>)> {
+        let last = details.last().expect("the level of the shape");
+        let facts = source.map(|source| &source.facts);
+        let told = self.told(&last.weighed, facts, last.reference());
+        let original = source.map(|Source { volume, facts }| Original {
+            volume,
+            isovalue: self.isovalue.unwrap_or_default().gray(&facts.range),
+            units: facts.units,
+        });
+        let mut shown = Vec::new();
+        for detail in details {
+            let opening = detail.opening(self.alpha);
+            let alphas = match &self.alphas {
+                Alphas::Given(alphas) => {
+                    [&alphas[..], self.alpha.map(|_| opening).as_slice()].concat()
+                }
+                Alphas::Auto => progress.stage(Stage::Curve, || detail.stops(opening)),
+            };
+            let levels = detail.filtration.levels(&alphas);
+            if levels.len() > Page::MOST_LEVELS {
+                let (levels, most) = (levels.len(), Page::MOST_LEVELS);
+                misused!("{levels} levels are too many for a page" => "give --alphas at most {most}");
+            }
+            let domain = pipeline::domain(&detail.weighed, facts).volume;
+            let ladder = progress.stage(Stage::Ladder, || levels.ladder(domain));
+            // That level, or the last below it.
+            let first = levels.alphas().partition_point(|alpha| *alpha <= opening);
+            shown.push((levels, ladder, first.saturating_sub(1)));
+        }
+        let rendered = details.iter().zip(&shown).map(|(detail, (levels, ladder, first))| {
+            let differences = detail.differences.as_ref();
+            render::Detail { levels, ladder, first: *first, differences }
+        });
+        let rendered: Vec<_> = rendered.collect();
+        let title = format!("Alpha shapes of {}", self.pipeline.input.input);
+        let grays = facts.is_some_and(|facts| facts.written == GrayRange::IDENTITY);
+        let subject = Subject {
+            title: &title,
+            facts: &told,
+            unit: last.weighed.origin.coordinates.unit.symbol(),
+            value: match facts {
+                Some(_) if grays => "value of the original volume, in gray levels",
+                Some(_) => "value of the original volume",
+                None => "the column value of the input",
+            },
+            difference: if grays { "gray levels" } else { "values of the file" },
+            details: &rendered,
+            original,
+        };
+        let page = progress.stage(Stage::Page, || Page::new(&subject))?;
+        Ok((page, rendered.iter().map(DetailFacts::of).collect()))
+    }
+
+    /// What the page shows besides the levels' numbers.
+    fn told(
+        &self,
+        weighed: &Weighed,
+        volume: Option<&VolumeFacts>,
+        reference: Parameter,
+    ) -> Vec<(String, String)> {
+        let mut told = vec![("input".to_owned(), self.pipeline.input.input.clone())];
+        if let Some((volume, t)) = volume.zip(weighed.origin.truncation.as_ref()) {
+            let [x, y, z] = volume.dims;
+            let (low, high) = (number(volume.range.low), number(volume.range.high));
+            told.push((
+                "volume".into(),
+                format!("{x}×{y}×{z} samples, values {low} to {high} are gray 0 to 255"),
+            ));
+            told.push((
+                "Haar".into(),
+                format!(
+                    "{} of {} coefficients kept, rms {:.4} gray levels",
+                    t.kept, t.total, t.rms
+                ),
+            ));
+        }
+        told.push(("lengths in".into(), weighed.origin.coordinates.to_string()));
+        told.push((
+            "weights ω".into(),
+            format!("{}, frozen at {reference}", WeightsReport::of(weighed)),
+        ));
+        told.push(("made by".into(), format!("walpha {}", env!("CARGO_PKG_VERSION"))));
+        told
+    }
+}
