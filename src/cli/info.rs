@@ -158,6 +158,32 @@ impl Content {
     }
 }
 
+/// How the samples lie in the world.
+fn fmt_frame(
+    f: &mut std::fmt::Formatter<'_>,
+    spacing: [f64; 3],
+    origin: [f64; 3],
+    direction: &[[f64; 3]; 3],
+    Coordinates { space, unit }: Coordinates,
+) -> std::fmt::Result {
+    let stated = match (space.is_known(), unit) {
+        (true, _) => space.name(),
+        (false, LengthUnit::Voxel) => "none, the file places no grid",
+        (false, _) => "unknown, the file does not say how its axes lie in a patient",
+    };
+    writeln!(f, "space     {stated}")?;
+    let unit = unit.symbol();
+    writeln!(f, "spacing   {} {unit}", spacing.map(number).join(" "))?;
+    writeln!(f, "origin    {} {unit}", origin.map(number).join(" "))?;
+    if *direction != Frame::VOXEL.direction {
+        for (i, axis) in ["x", "y", "z"].iter().enumerate() {
+            let steps = direction.map(|row| number(row[i]));
+            writeln!(f, "axis {axis}    {}", steps.join(" "))?;
+        }
+    }
+    Ok(())
+}
+
 impl std::fmt::Display for Content {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -168,7 +194,7 @@ impl std::fmt::Display for Content {
                 spacing,
                 origin,
                 direction,
-                coordinates: Coordinates { space, unit },
+                coordinates,
                 min,
                 max,
                 gray_levels,
@@ -176,21 +202,7 @@ impl std::fmt::Display for Content {
             } => {
                 writeln!(f, "format    {format}, samples of type {samples}")?;
                 writeln!(f, "volume    {x}×{y}×{z} samples (x, y, z)")?;
-                let stated = match (space.is_known(), unit) {
-                    (true, _) => space.name(),
-                    (false, LengthUnit::Voxel) => "none, the file places no grid",
-                    (false, _) => "unknown, the file does not say how its axes lie in a patient",
-                };
-                writeln!(f, "space     {stated}")?;
-                let unit = unit.symbol();
-                writeln!(f, "spacing   {} {unit}", spacing.map(number).join(" "))?;
-                writeln!(f, "origin    {} {unit}", origin.map(number).join(" "))?;
-                if *direction != Frame::VOXEL.direction {
-                    for (i, axis) in ["x", "y", "z"].iter().enumerate() {
-                        let steps = direction.map(|row| number(row[i]));
-                        writeln!(f, "axis {axis}    {}", steps.join(" "))?;
-                    }
-                }
+                fmt_frame(f, *spacing, *origin, direction, *coordinates)?;
                 let gray = if *gray_levels { ", gray levels as they are" } else { "" };
                 let (min, max) = (number(f64::from(*min)), number(f64::from(*max)));
                 writeln!(f, "values    {min} to {max}{gray}")?;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use crate::export::{Content, Target, write_all};
+use crate::export::{Content, Target, TargetError, write_all};
 use crate::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
 use crate::pipeline::Weighed;
 use crate::progress::Stage;
@@ -186,12 +186,7 @@ impl Interpolate {
             let (mask, inside) = mask.unzip();
             let written = written.unwrap_or(GrayRange::IDENTITY);
             let values = resampled.into_volume().into_values(&written);
-            let volumes = [(output, Some(&values)), (mask, inside.as_ref())];
-            write_all(volumes.into_iter().filter_map(|(open, volume)| {
-                let ((format, target), volume) = (open?, volume?);
-                let content = move |out: &mut dyn Write| format.write(volume, out);
-                Some((target, Box::new(content) as Content<'_>))
-            }))
+            write([(output, Some(&values)), (mask, inside.as_ref())])
         })?;
         let files = self.output.iter().chain(&self.mask).map(|path| path.display().to_string());
         report.finish(progress.finish(), files.collect());
@@ -252,8 +247,20 @@ fn sample(shape: &AlphaShape, grid: &Grid, original: Option<Original>) -> anyhow
     Ok(Sampled { resampled, error })
 }
 
-fn open(path: &Path) -> anyhow::Result<(&'static VolumeWriter, Target)> {
+/// Where a volume goes.
+type Place = (&'static VolumeWriter, Target);
+
+fn open(path: &Path) -> anyhow::Result<Place> {
     Ok((VolumeWriter::of(path)?, Target::open(path)?))
+}
+
+/// Writes volumes where they go, if there are both.
+fn write(volumes: [(Option<Place>, Option<&Volume>); 2]) -> Result<(), TargetError> {
+    write_all(volumes.into_iter().filter_map(|(place, volume)| {
+        let ((format, target), volume) = (place?, volume?);
+        let content = move |out: &mut dyn Write| format.write(volume, out);
+        Some((target, Box::new(content) as Content<'_>))
+    }))
 }
 
 impl Display for Facts {

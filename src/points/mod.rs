@@ -37,6 +37,7 @@ pub use formats::{FORMATS, PointFormat, PointWriter};
 pub use model::{ModelFacts, Packing, SampleGrid};
 pub use read::{Columns, UnknownColumns, is_point_file, read_model, read_points};
 pub use scattered::scattered_difference;
+pub(crate) use select::{Asked, check_least, not_chosen};
 pub use select::{Selection, SelectionRule, Units, points_at, select};
 pub use sets::{Points, WeightedPoints};
 pub(crate) use weigh::{Differences, Shares};

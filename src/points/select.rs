@@ -128,33 +128,25 @@ pub fn select(
     let n = volume.dims().samples();
     let standard = differences.as_standard_layout();
     let flat = standard.as_slice().expect("standard layout");
-    let voxels = match selection.gray_min {
-        None if !volume.has_missing() => chosen(flat, n as u64, &selection.rule)?,
-        Some(least) if least.is_nan() => {
-            return Err(PointsError::Number {
-                what: "a least gray level of",
-                given: least,
-                need: "a number",
-            });
+    check_least(selection.gray_min)?;
+    let voxels = if selection.gray_min.is_none() && !volume.has_missing() {
+        chosen(flat, n as u64, &selection.rule)?
+    } else {
+        let least = selection.gray_min.unwrap_or(f64::NEG_INFINITY);
+        let takes_part = |i: usize, gray: f32| f64::from(gray) >= least && !volume.is_missing(i);
+        let mask = |(i, (&l, &gray)): (usize, (&f64, &f32))| {
+            if takes_part(i, gray) { l } else { f64::NAN }
+        };
+        let bytes = size_of_val(flat);
+        memory::afford(bytes, || format!("the choice among {} samples", volume.dims()))?;
+        let pairs = flat.par_iter().zip(smoothed.as_slice()).enumerate();
+        let masked: Vec<f64> = pairs.map(mask).collect();
+        let available = masked.par_iter().filter(|l| !l.is_nan()).count() as u64;
+        if available == 0 {
+            let highest = f64::from(smoothed.value_range().1);
+            return Err(PointsError::Masked { least, highest });
         }
-        least => {
-            let least = least.unwrap_or(f64::NEG_INFINITY);
-            let takes_part =
-                |i: usize, gray: f32| f64::from(gray) >= least && !volume.is_missing(i);
-            let mask = |(i, (&l, &gray)): (usize, (&f64, &f32))| {
-                if takes_part(i, gray) { l } else { f64::NAN }
-            };
-            let bytes = size_of_val(flat);
-            memory::afford(bytes, || format!("the choice among {} samples", volume.dims()))?;
-            let pairs = flat.par_iter().zip(smoothed.as_slice()).enumerate();
-            let masked: Vec<f64> = pairs.map(mask).collect();
-            let available = masked.par_iter().filter(|l| !l.is_nan()).count() as u64;
-            if available == 0 {
-                let highest = f64::from(smoothed.value_range().1);
-                return Err(PointsError::Masked { least, highest });
-            }
-            chosen(&masked, available, &selection.rule)?
-        }
+        chosen(&masked, available, &selection.rule)?
     };
     Ok(points_at(volume, differences, &voxels, units))
 }
@@ -189,31 +181,65 @@ fn chosen(
     rule: &SelectionRule,
 ) -> Result<Vec<u32>, PointsError> {
     let voxels = differences.len() as u64;
-    let largest = |count: u64| {
-        if count == 0 || count > available {
-            return Err(PointsError::Count { asked: count, available });
+    match rule.asked(voxels)? {
+        Asked::Largest(count) => {
+            let left = not_chosen(count, available)?;
+            let (cut, _) = Cut::new(differences, Budget::Count(left));
+            Ok(collect(differences, |l, i| cut.keeps(l, i as u64)))
         }
-        let (cut, _) = Cut::new(differences, Budget::Count(available - count));
-        Ok(collect(differences, |l, i| cut.keeps(l, i as u64)))
-    };
-    match *rule {
-        SelectionRule::Count(count) => largest(count),
-        SelectionRule::Ratio(ratio) if ratio > 0.0 && ratio <= 1.0 => {
-            largest(((ratio * voxels as f64).round() as u64).clamp(1, voxels))
-        }
-        SelectionRule::Ratio(ratio) => {
-            let need = "a share above 0 and up to 1, as in 0.0609 for 6.09 %";
-            Err(PointsError::Number { what: "a ratio of", given: ratio, need })
-        }
-        SelectionRule::Threshold(least) if least.is_nan() => {
-            let need = "a number of gray levels";
-            Err(PointsError::Number { what: "a threshold of", given: least, need })
-        }
-        SelectionRule::Threshold(least) => {
+        Asked::AtLeast(least) => {
             let chosen = collect(differences, |l, _| l >= least);
             if chosen.is_empty() { Err(PointsError::Empty { voxels }) } else { Ok(chosen) }
         }
     }
+}
+
+/// What a rule asks of a volume.
+pub(crate) enum Asked {
+    /// So many voxels of the largest L.
+    Largest(u64),
+    /// All with an L of at least this.
+    AtLeast(f64),
+}
+
+impl SelectionRule {
+    /// What it asks of a volume of so many voxels.
+    pub(crate) fn asked(&self, voxels: u64) -> Result<Asked, PointsError> {
+        let wrong = |what, given, need| Err(PointsError::Number { what, given, need });
+        match *self {
+            Self::Count(count) => Ok(Asked::Largest(count)),
+            Self::Ratio(ratio) if ratio > 0.0 && ratio <= 1.0 => {
+                let count = (ratio * voxels as f64).round() as u64;
+                Ok(Asked::Largest(count.clamp(1, voxels)))
+            }
+            Self::Ratio(ratio) => {
+                wrong("a ratio of", ratio, "a share above 0 and up to 1, as in 0.0609 for 6.09 %")
+            }
+            Self::Threshold(least) if least.is_nan() => {
+                wrong("a threshold of", least, "a number of gray levels")
+            }
+            Self::Threshold(least) => Ok(Asked::AtLeast(least)),
+        }
+    }
+}
+
+/// Refuses a least gray level that is none.
+pub(crate) fn check_least(gray_min: Option<f64>) -> Result<(), PointsError> {
+    match gray_min {
+        Some(given) if given.is_nan() => {
+            let (what, need) = ("a least gray level of", "a number");
+            Err(PointsError::Number { what, given, need })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// How many voxels are left out where so many are asked for, of those available.
+pub(crate) fn not_chosen(asked: u64, available: u64) -> Result<u64, PointsError> {
+    if asked == 0 || asked > available {
+        return Err(PointsError::Count { asked, available });
+    }
+    Ok(available - asked)
 }
 
 /// The indices of the values that are wanted, ascending.

@@ -78,11 +78,6 @@ impl Search {
         Self { spent: Spent::of(budget), few, stage }
     }
 
-    /// Whether it has no counts yet.
-    pub(crate) fn is_new(&self) -> bool {
-        self.stage == Stage::Magnitude { known: 0, shift: MAGNITUDE }
-    }
-
     /// The cut and what it drops, when it is found.
     pub(crate) fn found(&self) -> Option<(Cut, Dropped)> {
         match self.stage {

@@ -18,6 +18,9 @@ const MOST: f64 = 0.08;
 /// The largest error of a stored value, over the RMSE of the model without rounding.
 const ROUNDING: f64 = 1.5;
 
+/// The name of our curves, with what they need besides.
+const OURS: &str = "walpha .wvm";
+
 /// A model as a file.
 struct Measured {
     points: usize,
@@ -39,7 +42,7 @@ pub(super) fn bytes_against_error(bench: &mut Bench<'_>) -> Result<Item, Reprodu
     let others: &[Compressor] =
         if subject.name == "sample:skull" { &compressors::SKULL } else { &[] };
     let ours = measured.iter().map(|model| [model.rmse, model.bits(subject.volume)]).collect();
-    let mut curves = vec![RateCurve { name: "walpha .wvm".into(), points: ours }];
+    let mut curves = vec![RateCurve { name: OURS.into(), points: ours }];
     curves.extend(
         others
             .iter()
@@ -59,7 +62,7 @@ pub(super) fn bytes_against_error(bench: &mut Bench<'_>) -> Result<Item, Reprodu
             "Says that few points stand for the volume (6.07 %), and does not count bytes. This \
                 section is not in the paper."
                 .into(),
-        ours: remark(others),
+        ours: format!("{} {}", remark(others), verdict(&curves)),
         picture: Some(picture),
         files: vec![svg],
         commands: vec![format!(
@@ -77,16 +80,42 @@ fn remark(others: &[Compressor]) -> String {
         "Figures of compressors are known of sample:skull only.".to_owned()
     } else {
         format!(
-            "Figures of compressors were measured on {} by scripts/race_compressors.py, each in its \
-             own kind of file; ours are computed now.",
+            "Curves of compressors, and that of points exchanged and fitted (--exchange --refit), which take \
+             longer to choose, were measured on {} by scripts/race_compressors.py, each in its own kind of \
+             file; that of {OURS} alone is computed now.",
             compressors::DATE
         )
     };
     format!(
         "Points chosen where the interpolant is worst, ω = 0, written as .wvm and read back, the whole \
          file counted; F is taken over the whole volume. Values are rounded to {ROUNDING} of the RMSE at \
-         most. {beside} A compressor gives samples and nothing else; the model is a mesh, with F at any \
-         place."
+         most. {beside}"
+    )
+}
+
+/// Whether this is a good way to store a volume, by the bits that each takes at an RMSE of 2 gray levels.
+fn verdict(curves: &[RateCurve]) -> String {
+    const RMSE: f64 = 2.0;
+    let bits = |curve: &RateCurve| Some((curve.name.clone(), read_off(&curve.points, RMSE)?));
+    let (ours, others): (Vec<_>, Vec<_>) =
+        curves.iter().filter_map(bits).partition(|(name, _)| name.starts_with(OURS));
+    let model = "As a model of the volume it gives what compressors do not: tetrahedra, a boundary and its \
+                 topology at every α, and F at any place.";
+    let best = ours.iter().map(|&(_, bits)| bits).reduce(f64::min);
+    let Some(best) = best.filter(|_| !others.is_empty()) else { return model.into() };
+    let listed = |fewer: bool| {
+        let chosen = others.iter().filter(|&&(_, bits)| (bits < best) == fewer);
+        let names: Vec<String> =
+            chosen.map(|(name, bits)| format!("{name} ({})", text::number(*bits))).collect();
+        if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+    };
+    let good = if others.iter().any(|&(_, bits)| bits < best) { "No" } else { "Yes" };
+    format!(
+        "Is a weighted alpha shape a good way to store a volume? {good}: at an RMSE of {RMSE} gray levels it \
+         takes {} bits per sample at best; fewer: {}; more: {}. {model}",
+        text::number(best),
+        listed(true),
+        listed(false),
     )
 }
 

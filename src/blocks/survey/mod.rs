@@ -1,0 +1,72 @@
+//! The numbers that depend on the whole volume, found part by part.
+
+mod choose;
+mod count;
+mod gray;
+mod truncate;
+
+use serde::{Deserialize, Serialize};
+
+use super::field::{Field, Truncated};
+use super::passes::Passes;
+use super::{BlocksError, Job, Part, Team};
+use crate::haar::Truncation;
+use crate::points::{Differences, PointsError};
+use crate::select::Cut;
+use crate::volume::GrayRange;
+
+use choose::{Chosen, choose};
+use count::{Counted, count};
+use gray::gray_levels;
+use truncate::truncate;
+
+/// Values that a cut is looked for among are listed when so few are left: 64 MB.
+const FEW: u64 = 1 << 22;
+
+/// What is known of a volume as a whole.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Survey {
+    /// The values that are gray 0 and 255.
+    pub range: GrayRange,
+    /// The least value.
+    pub(super) least: f32,
+    /// What was dropped.
+    pub truncation: Truncation,
+    /// Which coefficients stay; `None` where nothing but zeros goes.
+    pub(super) cut: Option<Cut>,
+    pub(super) choice: Chosen,
+    pub(super) differences: Differences,
+    /// The first of the points, by its index in the volume.
+    pub(super) first: u64,
+}
+
+/// What a survey leaves beside itself.
+pub(super) struct Surveyed {
+    pub survey: Survey,
+    /// The sums of the bricks of the truncated volume; none where that is the volume.
+    pub sums: Vec<f64>,
+    /// How many points each brick has.
+    pub counts: Vec<u32>,
+}
+
+/// Surveys the volume of a job: reads it five or six times. Each process of a team reads its share of the
+/// tiles, and all come to know the same.
+pub(super) fn survey(
+    job: &Job,
+    field: &mut Field,
+    team: &dyn Team,
+) -> Result<Surveyed, BlocksError> {
+    let tiles = Part::whole(field.dims).tiles(field.tile());
+    let mut passes = Passes::new(team, &tiles);
+    gray_levels(job, field, &mut passes)?;
+    let (truncation, cut, sums) = truncate(job, field, &mut passes)?;
+    let truncated = cut.map(|cut| Truncated { cut, sums: &sums });
+    let choice = choose(job, field, truncated, &mut passes)?;
+    let Counted { differences, first, counts } = count(field, truncated, &choice, &mut passes)?;
+    if differences.count == 0 {
+        return Err(PointsError::Empty { voxels: job.dims.samples() as u64 }.into());
+    }
+    let (range, least) = (field.range, field.least);
+    let survey = Survey { range, least, truncation, cut, choice, differences, first };
+    Ok(Surveyed { survey, sums, counts })
+}
