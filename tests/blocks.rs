@@ -12,8 +12,8 @@ use walpha::pipeline::{Choice, Model};
 use walpha::shape::{Component, Engine, ShapeOptions};
 use walpha::volume::{Nan, ReadOptions, open};
 use walpha::{
-    Alpha, AlphaShape, Balls, Gray, GrayRange, Pipeline, Selection, SelectionRule, Tolerance,
-    Units, Weighting,
+    Alpha, AlphaShape, Balls, Decomposition, Gray, GrayRange, Pipeline, Selection, SelectionRule,
+    Tolerance, Units, Weighting,
 };
 
 /// The job in one piece, in as many blocks of a k-d tree as asked for.
@@ -136,6 +136,29 @@ fn a_phantom_of_no_power_of_two_in_blocks_is_the_phantom() {
     compare(&job, &[5, 64]);
 }
 
+/// Functions that reach across the volume, in one slab, and in several.
+#[test]
+fn the_standard_decomposition_in_blocks_is_the_same() {
+    let mut job = job("sample:phantom@50");
+    job.haar.decomposition = Decomposition::Standard;
+    for (weighting, tolerance) in WEIGHTS.into_iter().zip([
+        Tolerance::Rms(2.0),
+        Tolerance::Coefficients(5000),
+        Tolerance::Rms(0.0),
+        Tolerance::Epsilon(700.0),
+    ]) {
+        (job.weighting, job.haar.tolerance) = (weighting, tolerance);
+        let one = compare(&job, &[1, 5, 64]);
+        let exact = tolerance == Tolerance::Rms(0.0);
+        assert_eq!(one.origin.truncation.unwrap().epsilon == 0.0, exact);
+    }
+    job = self::job("sample:phantom@200");
+    job.haar = job.haar.decomposition(Decomposition::Standard).tolerance(Tolerance::Rms(3.0));
+    job.selection.rule = SelectionRule::Count(30_000);
+    (job.alpha, job.engine) = (30.0, Engine::Native);
+    compare(&job, &[6]);
+}
+
 /// Noise in a file: singular simplices of all kinds and thousands of components.
 fn noise(folder: &Path, [x, y, z]: [usize; 3], levels: u32) -> String {
     let path = folder.join("noise.npy");
@@ -179,6 +202,8 @@ fn ties_across_blocks_are_broken_as_in_one_piece() {
     job.selection = Selection::default().rule(SelectionRule::Threshold(60.0)).gray_min(80.0);
     compare(&job, &[4]);
     job.selection = Selection::default().rule(SelectionRule::Count(500)).gray_min(170.0);
+    compare(&job, &[3]);
+    job.haar.decomposition = Decomposition::Standard;
     compare(&job, &[3]);
 }
 
@@ -250,14 +275,11 @@ fn flat_volumes_are_the_same_in_blocks() {
 
 #[test]
 fn what_is_not_local_is_refused() {
-    let mut job = job("sample:phantom@20");
-    job.haar.decomposition = walpha::Decomposition::Standard;
     let refused = |job: &Job| {
         let error = job.check().unwrap_err();
         assert!(matches!(error, BlocksError::NotLocal { .. }), "{error}");
         assert!(error.advice().is_some());
     };
-    refused(&job);
     let fresh = Job::new("sample:phantom@20", ReadOptions::default()).unwrap();
     let (mut hull, mut reference, mut auto) = (fresh.clone(), fresh.clone(), fresh);
     hull.alpha = f64::INFINITY;

@@ -181,7 +181,6 @@ fn what_blocks_cannot_do_is_told() {
         (2, "points.xyz", "holds points", "write another format"),
         (2, "-", "standard input cannot be read in parts", "name a file"),
         (1, "packed.nii.gz", "not read in parts", "convert it to uncompressed"),
-        (1, "sample:phantom@20 --haar standard", "standard decomposition", "non-standard"),
         (1, "sample:phantom@20 --alpha auto", "is not local", "give α as a number"),
         (1, "sample:phantom@20 --alpha inf", "is not local", "give a finite α"),
         (1, "sample:phantom@20 --engine reference", "is not local", "native or cgal"),

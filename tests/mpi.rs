@@ -100,6 +100,7 @@ fn same(options: &str) {
 fn ranks_write_the_bytes_that_one_process_writes() {
     if has_mpirun() {
         same("sample:phantom@72 --weights min-max");
+        same("sample:phantom@50 --haar standard --weights barycentric");
         same(
             "sample:phantom@50 --weights barycentric-n --engine native --gray 0..200 --balls power",
         );

@@ -29,12 +29,14 @@ pub(super) struct Field {
 }
 
 /// What is known of the truncated volume as a whole.
-#[derive(Clone, Copy)]
-pub(super) struct Truncated<'a> {
-    /// Which coefficients stay.
-    pub cut: Cut,
-    /// The sums of the bricks of the truncated volume.
-    pub sums: &'a [f64],
+pub(super) enum Truncated {
+    /// It is the volume.
+    Same,
+    /// Of the non-standard decomposition: which coefficients stay, and the sums of the bricks of the
+    /// truncated volume.
+    Bricks { cut: Cut, sums: Vec<f64> },
+    /// Of the standard decomposition: its samples.
+    File(Source),
 }
 
 /// Gray levels of a part, and which samples are missing.
@@ -176,11 +178,12 @@ impl Field {
         &self,
         part: &Part,
         grays: &[f32],
-        truncated: Option<Truncated<'_>>,
+        truncated: &Truncated,
     ) -> Result<Volume, BlocksError> {
         let samples = match truncated {
-            None => grays.to_vec(),
-            Some(Truncated { cut, sums }) => {
+            Truncated::Same => grays.to_vec(),
+            Truncated::File(samples) => samples.read(part.first, part.size)?,
+            Truncated::Bricks { cut, sums } => {
                 let mut values = self.coefficients(part, grays);
                 self.places(part, |place, voxel, brick| {
                     let value = &mut values[place];
@@ -203,7 +206,7 @@ impl Field {
     pub(super) fn samples(
         &self,
         part: &Part,
-        truncated: Option<Truncated<'_>>,
+        truncated: &Truncated,
         mut visit: impl FnMut(Sample),
     ) -> Result<(), BlocksError> {
         let outer = part.grown([1; 3], self.dims).aligned(self.bricks.side(), self.dims);

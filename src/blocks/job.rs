@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::BlocksError;
-use crate::haar::{Decomposition, HaarOptions};
+use crate::haar::HaarOptions;
 use crate::pipeline::{AlphaRule, Parameter, ParameterOrigin};
 use crate::points::{Selection, Units, Weighting};
 use crate::shape::{Alpha, Balls, Engine};
@@ -93,10 +93,6 @@ impl Job {
     /// [`BlocksError::NotLocal`].
     pub fn check(&self) -> Result<(), BlocksError> {
         let not_local = |what: &str, next: &'static str| Err(BlocksError::not_local(what, next));
-        if self.haar.decomposition == Decomposition::Standard {
-            let what = "the standard decomposition, whose functions reach across the volume,";
-            return not_local(what, "use the non-standard one");
-        }
         if !self.alpha.is_finite() {
             return not_local("α = inf, the convex hull,", "give a finite α");
         }

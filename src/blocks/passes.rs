@@ -42,4 +42,20 @@ impl<'a> Passes<'a> {
         self.done += 1;
         Ok(())
     }
+
+    /// Works on pieces of the volume one after the other, in this process alone.
+    pub(super) fn serial(
+        &mut self,
+        pieces: &[Part],
+        mut work: impl FnMut(&Part) -> Result<(), BlocksError>,
+    ) -> Result<(), BlocksError> {
+        let all = pieces.len() as u64;
+        let total = Self::USUAL.max(self.done + 1) * all;
+        for (piece, done) in pieces.iter().zip(1..) {
+            work(piece)?;
+            progress::report(self.done * all + done, total);
+        }
+        self.done += 1;
+        Ok(())
+    }
 }

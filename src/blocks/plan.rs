@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::cut::Boxes;
+use super::field::Truncated;
 use super::file::{numbers, read_file};
 use super::survey::{Survey, Surveyed, survey};
 use super::{Alone, BlocksError, Field, Job, Part, Team};
@@ -11,6 +12,7 @@ use crate::export::Target;
 use crate::points::{PointsError, Shares};
 use crate::setters::setters;
 use crate::shape::{Alpha, Balls};
+use crate::volume::{Dims, Dtype, RawLayout, ReadOptions, Source};
 
 /// How a job is cut into blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -62,6 +64,8 @@ pub struct BlockPlan {
 impl Plan {
     pub(super) const FILE: &str = "plan.json";
     pub(super) const SUMS: &str = "sums.f64";
+    /// The truncated volume, of the standard decomposition.
+    pub(super) const SMOOTHED: &str = "truncated.f32";
 
     /// Surveys the volume of a job, cuts it, and writes the plan into a folder, which is there. Reads
     /// the volume five or six times, a tile for each thread in memory.
@@ -85,7 +89,7 @@ impl Plan {
     ) -> Result<Self, BlocksError> {
         job.check()?;
         let mut field = Field::open(&job)?;
-        let surveyed = survey(&job, &mut field, team)?;
+        let surveyed = survey(&job, &mut field, folder, team)?;
         let plan = if team.is_first() {
             Some(Self::cut(job, cutting, folder, &field, surveyed, team.size())?)
         } else {
@@ -113,7 +117,7 @@ impl Plan {
         cutting: Cutting,
         folder: &Path,
         field: &Field,
-        Surveyed { survey, sums, counts }: Surveyed,
+        Surveyed { survey, truncated, counts }: Surveyed,
         processes: usize,
     ) -> Result<Self, BlocksError> {
         let boxes = Boxes { counts: &counts, bricks: field.bricks.count() };
@@ -139,16 +143,18 @@ impl Plan {
         };
         plan.blocks = cut.into_iter().map(of_bricks).collect();
         plan.digest = plan.computed_digest();
-        plan.write(&sums)?;
+        plan.write(&truncated)?;
         Ok(plan)
     }
 
-    fn write(&self, sums: &[f64]) -> Result<(), BlocksError> {
+    fn write(&self, truncated: &Truncated) -> Result<(), BlocksError> {
         let put = |name: &str, bytes: &[u8]| {
             Target::open(&self.folder.join(name))?.write(|out| out.write_all(bytes))
         };
-        let bytes: Vec<u8> = sums.iter().flat_map(|sum| sum.to_le_bytes()).collect();
-        put(Self::SUMS, &bytes)?;
+        if let Truncated::Bricks { sums, .. } = truncated {
+            let bytes: Vec<u8> = sums.iter().flat_map(|sum| sum.to_le_bytes()).collect();
+            put(Self::SUMS, &bytes)?;
+        }
         let text = serde_json::to_string_pretty(self).expect("it has no maps");
         put(Self::FILE, text.as_bytes())?;
         Ok(())
@@ -196,11 +202,25 @@ impl Plan {
         self.folder.join(format!("block-{block:05}.walpha"))
     }
 
-    /// The sums of the bricks of the truncated volume.
-    pub(super) fn sums(&self) -> Result<Vec<f64>, BlocksError> {
-        let path = self.folder.join(Self::SUMS);
-        let bytes = read_file(&path)?;
-        numbers(&bytes).ok_or_else(|| BlocksError::Damaged { path, what: "is cut off".into() })
+    /// The truncated volume.
+    pub(super) fn truncated(&self) -> Result<Truncated, BlocksError> {
+        if let Some(cut) = self.survey.cut {
+            let path = self.folder.join(Self::SUMS);
+            let sums = numbers(&read_file(&path)?);
+            let sums = sums.ok_or(BlocksError::Damaged { path, what: "is cut off".into() })?;
+            Ok(Truncated::Bricks { cut, sums })
+        } else if self.survey.truncation.epsilon > 0.0 {
+            Ok(Truncated::File(Self::smoothed(&self.folder, self.job.dims)?))
+        } else {
+            Ok(Truncated::Same)
+        }
+    }
+
+    /// The truncated volume that a plan of the standard decomposition left in its folder.
+    pub(super) fn smoothed(folder: &Path, dims: Dims) -> Result<Source, BlocksError> {
+        let path = folder.join(Self::SMOOTHED);
+        let raw = Some(RawLayout::new(dims, Dtype::F32));
+        Ok(Source::open(&path.to_string_lossy(), &ReadOptions { raw, ..ReadOptions::default() })?)
     }
 
     /// How weights come from differences, where they do.

@@ -1,6 +1,7 @@
 use serde::Serialize;
 
 use crate::Weighting;
+use crate::haar::Decomposition;
 use crate::points::SelectionRule;
 use crate::shape::{Balls, PlanError, ShapeError, at_work};
 use crate::triangulation::Maker;
@@ -28,6 +29,8 @@ pub struct Price {
     pub bytes_read: [u64; 2],
     /// Bytes that blocks write, and of these what merging reads.
     pub bytes_written: [u64; 2],
+    /// Bytes of files that the plan works with; blocks need a third of them, for the standard decomposition.
+    pub bytes_of_plan: u64,
     /// Seconds of one core for the plan, for all blocks, and for merging without writing pieces.
     pub core_seconds: [f64; 3],
 }
@@ -48,6 +51,10 @@ const KEYS: f64 = 23.0;
 const MERGE: f64 = 250.0;
 /// Bytes of the sum of a brick.
 const SUM: u64 = 8;
+/// Of the standard decomposition, for a sample: bytes of coefficients and of the truncated volume in files, and
+/// nanoseconds of a core to make them, more than the non-standard one takes.
+const IN_FILE: u64 = 8 + 4;
+const STANDARD: f64 = 0.0;
 /// How many times the mean the largest difference is taken to be.
 const PEAK: f64 = 8.0;
 
@@ -69,6 +76,10 @@ pub fn price(job: &Job, cutting: Cutting) -> Result<Price, BlocksError> {
     let faces = 6.0 * ((blocks as f64).cbrt() - 1.0) * p.powf(2.0 / 3.0);
     let is_gray = source.has_gray_levels() && job.gray.is_none();
     let passes = PASSES[usize::from(!is_gray)];
+    let (bytes_of_plan, in_file) = match job.haar.decomposition {
+        Decomposition::NonStandard => (model.sums, 0.0),
+        Decomposition::Standard => (IN_FILE * n as u64, STANDARD),
+    };
     let each = if job.maker() == Maker::Native { NATIVE } else { CGAL };
     let (halo_share, around) = (model.halo(blocks), n * model.around(blocks));
     Ok(Price {
@@ -79,8 +90,9 @@ pub fn price(job: &Job, cutting: Cutting) -> Result<Price, BlocksError> {
         memory_per_block: model.memory(blocks),
         bytes_read: [passes * n * size, around * size].map(|bytes| bytes as u64),
         bytes_written: [ROWS * p + KEYS * faces, KEYS * faces].map(|bytes| bytes as u64),
+        bytes_of_plan,
         core_seconds: [
-            passes * n * SAMPLE * 1e-9,
+            (passes * SAMPLE + in_file) * n * 1e-9,
             (around * SAMPLE + p * (1.0 + halo_share) * each) * 1e-9,
             faces * MERGE * 1e-9,
         ],
@@ -94,7 +106,8 @@ struct Model {
     /// How far, in samples, what is looked at around a block reaches from it: points, and samples.
     width: f64,
     margin: f64,
-    /// Bytes for the sums of all bricks and the samples at work, and for each point.
+    /// Bytes for the sums of all bricks, for these and the samples at work, and for each point.
+    sums: u64,
     samples_at_work: u64,
     point: u64,
 }
@@ -124,13 +137,14 @@ impl Model {
         };
         let product = |sizes: [usize; 3]| sizes.iter().product::<usize>() as u64;
         let reach = |radius: f64| job.reach(radius).into_iter().max().unwrap_or(0) as f64;
+        let sums = SUM * product(Field::bricks_of(job.dims.xyz()).count());
         Ok(Self {
             samples,
             points,
             width: reach(radius(usual) + radius(largest)),
             margin: reach(2.0 * radius(largest)) + 1.0,
-            samples_at_work: SUM * product(Field::bricks_of(job.dims.xyz()).count())
-                + TILE_SAMPLE * product(Field::tile_of(source)),
+            sums,
+            samples_at_work: sums + TILE_SAMPLE * product(Field::tile_of(source)),
             point: at_work(job.maker()),
         })
     }

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use super::field::{Field, Truncated};
+use super::field::Field;
 use super::file::Arrays;
 use super::{BlocksError, Plan};
 use crate::math::Sum;
@@ -104,13 +104,12 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
     let (job, survey) = (&plan.job, &plan.survey);
     let mut field = Field::open(job)?;
     (field.range, field.least) = (survey.range, survey.least);
-    let sums = plan.sums()?;
-    let truncated = survey.cut.map(|cut| Truncated { cut, sums: &sums });
+    let truncated = plan.truncated()?;
     let part = plan.blocks[block].part;
     let around = part.grown(plan.margin()?, field.dims);
     let mut found = Vec::new();
     for tile in around.tiles(field.tile()) {
-        field.samples(&tile, truncated, |sample| {
+        field.samples(&tile, &truncated, |sample| {
             if survey.choice.is_point(&sample) {
                 found.push((sample.voxel, sample.difference, sample.gray));
             }

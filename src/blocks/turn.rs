@@ -44,7 +44,8 @@ impl Plan {
     /// A file cannot be removed.
     pub fn remove(self) -> Result<(), BlocksError> {
         let blocks = (0..self.blocks.len()).map(|block| self.block_file(block));
-        for path in blocks.chain([Self::SUMS, Self::FILE].map(|name| self.folder.join(name))) {
+        let names = [Self::SUMS, Self::SMOOTHED, Self::FILE].map(|name| self.folder.join(name));
+        for path in blocks.chain(names) {
             match std::fs::remove_file(&path) {
                 Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
                     return Err(BlocksError::Io { path, source });

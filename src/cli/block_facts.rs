@@ -76,7 +76,8 @@ impl Display for PriceFacts {
         )?;
         writeln!(f, "memory    {} for each block at work", readable(memory_per_block))?;
         writeln!(f, "reads     {by_plan} to plan, {by_blocks} by all blocks")?;
-        writeln!(f, "writes    {by_rows}, of which merging reads {by_keys}")?;
+        let by_plan = readable(self.0.bytes_of_plan);
+        writeln!(f, "writes    {by_rows}, of which merging reads {by_keys}; to plan {by_plan}")?;
         let hours = (plan + run + merge) / 3600.0;
         writeln!(
             f,

@@ -28,6 +28,7 @@ mod unnormalised;
 
 pub(crate) use bricks::Bricks;
 pub use coefficients::{Coefficients, Decomposition, forward};
+pub(crate) use standard::Slabs;
 pub use truncate::{HaarError, Tolerance, Truncation};
 pub use unnormalised::Unnormalised;
 

@@ -43,7 +43,7 @@ impl Chosen {
 pub(super) fn choose(
     job: &Job,
     field: &Field,
-    truncated: Option<Truncated<'_>>,
+    truncated: &Truncated,
     passes: &mut Passes<'_>,
 ) -> Result<Chosen, BlocksError> {
     let gray_min = job.selection.gray_min.or(job.value_min.map(|value| field.range.gray(value)));
@@ -76,7 +76,7 @@ fn round(
     search: &Search,
     gray_min: Option<f64>,
     field: &Field,
-    truncated: Option<Truncated<'_>>,
+    truncated: &Truncated,
     passes: &mut Passes<'_>,
 ) -> Result<(Counts, f32), BlocksError> {
     let join = |all: &mut (Counts, f32), (more, high): (Counts, f32)| {

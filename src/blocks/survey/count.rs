@@ -27,7 +27,7 @@ impl Counted {
 /// Looks at all points.
 pub(super) fn count(
     field: &Field,
-    truncated: Option<Truncated<'_>>,
+    truncated: &Truncated,
     choice: &Chosen,
     passes: &mut Passes<'_>,
 ) -> Result<Counted, BlocksError> {

@@ -3,14 +3,17 @@
 mod choose;
 mod count;
 mod gray;
+mod slabs;
 mod truncate;
+
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::field::{Field, Truncated};
 use super::passes::Passes;
 use super::{BlocksError, Job, Part, Team};
-use crate::haar::Truncation;
+use crate::haar::{Decomposition, Truncation};
 use crate::points::{Differences, PointsError};
 use crate::select::Cut;
 use crate::volume::GrayRange;
@@ -18,6 +21,7 @@ use crate::volume::GrayRange;
 use choose::{Chosen, choose};
 use count::{Counted, count};
 use gray::gray_levels;
+use slabs::truncate_to_file;
 use truncate::truncate;
 
 /// Values that a cut is looked for among are listed when so few are left: 64 MB.
@@ -32,7 +36,7 @@ pub struct Survey {
     pub(super) least: f32,
     /// What was dropped.
     pub truncation: Truncation,
-    /// Which coefficients stay; `None` where nothing but zeros goes.
+    /// Which coefficients stay, where blocks need it: not where nothing but zeros goes.
     pub(super) cut: Option<Cut>,
     pub(super) choice: Chosen,
     pub(super) differences: Differences,
@@ -43,30 +47,34 @@ pub struct Survey {
 /// What a survey leaves beside itself.
 pub(super) struct Surveyed {
     pub survey: Survey,
-    /// The sums of the bricks of the truncated volume; none where that is the volume.
-    pub sums: Vec<f64>,
+    pub truncated: Truncated,
     /// How many points each brick has.
     pub counts: Vec<u32>,
 }
 
 /// Surveys the volume of a job: reads it five or six times. Each process of a team reads its share of the
-/// tiles, and all come to know the same.
+/// tiles, and all come to know the same. Of the standard decomposition the truncated volume goes to a file in
+/// the folder.
 pub(super) fn survey(
     job: &Job,
     field: &mut Field,
+    folder: &Path,
     team: &dyn Team,
 ) -> Result<Surveyed, BlocksError> {
     let tiles = Part::whole(field.dims).tiles(field.tile());
     let mut passes = Passes::new(team, &tiles);
     gray_levels(job, field, &mut passes)?;
-    let (truncation, cut, sums) = truncate(job, field, &mut passes)?;
-    let truncated = cut.map(|cut| Truncated { cut, sums: &sums });
-    let choice = choose(job, field, truncated, &mut passes)?;
-    let Counted { differences, first, counts } = count(field, truncated, &choice, &mut passes)?;
+    let (truncation, truncated) = match job.haar.decomposition {
+        Decomposition::NonStandard => truncate(job, field, &mut passes)?,
+        Decomposition::Standard => truncate_to_file(job, field, folder, &mut passes)?,
+    };
+    let choice = choose(job, field, &truncated, &mut passes)?;
+    let Counted { differences, first, counts } = count(field, &truncated, &choice, &mut passes)?;
     if differences.count == 0 {
         return Err(PointsError::Empty { voxels: job.dims.samples() as u64 }.into());
     }
     let (range, least) = (field.range, field.least);
+    let cut = if let Truncated::Bricks { cut, .. } = truncated { Some(cut) } else { None };
     let survey = Survey { range, least, truncation, cut, choice, differences, first };
-    Ok(Surveyed { survey, sums, counts })
+    Ok(Surveyed { survey, truncated, counts })
 }

@@ -1,16 +1,17 @@
-use super::super::field::Field;
+use super::super::field::{Field, Truncated};
 use super::super::passes::Passes;
 use super::super::{BlocksError, Job};
 use super::FEW;
 use crate::haar::Truncation;
-use crate::select::{Counts, Cut, Search};
+use crate::select::{Counts, Search};
 
-/// Finds which coefficients stay, and the sums of bricks of the truncated volume.
+/// Finds which coefficients of the non-standard decomposition stay, and the sums of bricks of the truncated
+/// volume.
 pub(super) fn truncate(
     job: &Job,
     field: &Field,
     passes: &mut Passes<'_>,
-) -> Result<(Truncation, Option<Cut>, Vec<f64>), BlocksError> {
+) -> Result<(Truncation, Truncated), BlocksError> {
     let total = job.dims.samples() as u64;
     let tolerance = job.haar.tolerance;
     tolerance.check()?;
@@ -52,13 +53,13 @@ pub(super) fn truncate(
     let (cut, dropped) = found;
     let truncation = Truncation::new(tolerance, total, dropped);
     if truncation.epsilon == 0.0 {
-        return Ok((truncation, None, Vec::new()));
+        return Ok((truncation, Truncated::Same));
     }
     let kept: Vec<f64> =
         coarse(field, &sums).map(|(v, i)| if cut.keeps(v, i) { v } else { 0.0 }).collect();
     let mut sums = kept;
     field.bricks.inverse_coarse(&mut sums);
-    Ok((truncation, Some(cut), sums))
+    Ok((truncation, Truncated::Bricks { cut, sums }))
 }
 
 /// Takes in sums of other bricks: those of which nothing is known are positive zeros.
