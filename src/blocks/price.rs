@@ -51,10 +51,8 @@ const KEYS: f64 = 23.0;
 const MERGE: f64 = 250.0;
 /// Bytes of the sum of a brick.
 const SUM: u64 = 8;
-/// Of the standard decomposition, for a sample: bytes of coefficients and of the truncated volume in files, and
-/// nanoseconds of a core to make them, more than the non-standard one takes.
+/// Bytes for a sample of the coefficients of the standard decomposition, and of the truncated volume, in files.
 const IN_FILE: u64 = 8 + 4;
-const STANDARD: f64 = 0.0;
 /// How many times the mean the largest difference is taken to be.
 const PEAK: f64 = 8.0;
 
@@ -76,9 +74,9 @@ pub fn price(job: &Job, cutting: Cutting) -> Result<Price, BlocksError> {
     let faces = 6.0 * ((blocks as f64).cbrt() - 1.0) * p.powf(2.0 / 3.0);
     let is_gray = source.has_gray_levels() && job.gray.is_none();
     let passes = PASSES[usize::from(!is_gray)];
-    let (bytes_of_plan, in_file) = match job.haar.decomposition {
-        Decomposition::NonStandard => (model.sums, 0.0),
-        Decomposition::Standard => (IN_FILE * n as u64, STANDARD),
+    let bytes_of_plan = match job.haar.decomposition {
+        Decomposition::NonStandard => model.sums,
+        Decomposition::Standard => IN_FILE * n as u64,
     };
     let each = if job.maker() == Maker::Native { NATIVE } else { CGAL };
     let (halo_share, around) = (model.halo(blocks), n * model.around(blocks));
@@ -92,7 +90,7 @@ pub fn price(job: &Job, cutting: Cutting) -> Result<Price, BlocksError> {
         bytes_written: [ROWS * p + KEYS * faces, KEYS * faces].map(|bytes| bytes as u64),
         bytes_of_plan,
         core_seconds: [
-            (passes * SAMPLE + in_file) * n * 1e-9,
+            passes * n * SAMPLE * 1e-9,
             (around * SAMPLE + p * (1.0 + halo_share) * each) * 1e-9,
             faces * MERGE * 1e-9,
         ],

@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::vtu::{Appended, Corners, Made, bytes};
+use super::vtu::{Appended, Corners, Ids, Made, bytes};
 use super::{ExportOptions, Exporter};
 use crate::shape::{AlphaShape, Class, Sheets, Surface};
 use crate::volume::stated;
@@ -110,9 +110,11 @@ fn cell_data(file: &mut Appended, surface: &Surface, parts: &Parts<'_>) -> io::R
 /// Cells of so many vertices each.
 fn cells(file: &mut Appended, name: &str, size: usize, vertices: &[u32]) -> io::Result<()> {
     writeln!(file.xml, "<{name}>")?;
-    let connectivity = bytes(vertices.iter().map(|&v| i64::from(v).to_le_bytes()));
-    file.array("Int64", "connectivity", 1, connectivity)?;
-    let ends = (1..=vertices.len() / size).map(|cell| ((cell * size) as i64).to_le_bytes());
-    file.array("Int64", "offsets", 1, bytes(ends))?;
+    let most = vertices.len().max(vertices.iter().max().map_or(0, |&v| v as usize));
+    let (mut corners, mut ends) = (Ids::up_to(most), Ids::up_to(most));
+    vertices.iter().for_each(|&v| corners.push(v as usize));
+    (1..=vertices.len() / size).for_each(|cell| ends.push(cell * size));
+    file.ids("connectivity", corners)?;
+    file.ids("offsets", ends)?;
     writeln!(file.xml, "</{name}>")
 }

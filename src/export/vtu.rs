@@ -82,8 +82,8 @@ pub(crate) fn write_grid(
     made: &Made<'_>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let number = |v: u32| vertices.binary_search(&v).expect("all corners are there") as i64;
-    let mut grid = Grid::default();
+    let number = |v: u32| vertices.binary_search(&v).expect("all corners are there");
+    let mut grid = Grid::of(complex);
     grid.push(&complex.vertices, VTK_VERTEX, number);
     grid.push(&complex.edges, VTK_LINE, number);
     grid.push(&complex.facets, VTK_TRIANGLE, number);
@@ -117,9 +117,8 @@ pub(crate) fn write_grid(
     let positions = vertices.iter().flat_map(|&v| corners.positions[v as usize]);
     file.array("Float64", "Points", 3, bytes(positions.map(f64::to_le_bytes)))?;
     write!(file.xml, "</Points>\n<Cells>\n")?;
-    let connectivity = bytes(grid.connectivity.iter().map(|i| i.to_le_bytes()));
-    file.array("Int64", "connectivity", 1, connectivity)?;
-    file.array("Int64", "offsets", 1, bytes(grid.offsets.iter().map(|i| i.to_le_bytes())))?;
+    file.ids("connectivity", grid.connectivity)?;
+    file.ids("offsets", grid.offsets)?;
     file.array("UInt8", "types", 1, grid.types)?;
     write!(
         file.xml,
@@ -135,26 +134,57 @@ const VTK_LINE: u8 = 3;
 const VTK_TRIANGLE: u8 = 5;
 const VTK_TETRA: u8 = 10;
 
-#[derive(Default)]
 struct Grid {
-    connectivity: Vec<i64>,
-    offsets: Vec<i64>,
+    connectivity: Ids,
+    offsets: Ids,
     types: Vec<u8>,
     classes: Vec<u8>,
+    /// Corners so far.
+    end: usize,
 }
 
 impl Grid {
+    /// A grid with room for a complex.
+    fn of(complex: &Complex) -> Self {
+        let Complex { cells, facets, edges, vertices } = complex;
+        let corners = 4 * cells.len() + 3 * facets.len() + 2 * edges.len() + vertices.len();
+        let (connectivity, offsets) = (Ids::up_to(corners), Ids::up_to(corners));
+        Self { connectivity, offsets, types: Vec::new(), classes: Vec::new(), end: 0 }
+    }
+
     fn push<const N: usize>(
         &mut self,
         simplices: &Simplices<N>,
         vtk_type: u8,
-        number: impl Fn(u32) -> i64,
+        number: impl Fn(u32) -> usize,
     ) {
         for (row, class) in simplices.iter() {
-            self.connectivity.extend(row.iter().map(|&v| number(v)));
-            self.offsets.push(self.connectivity.len() as i64);
+            row.iter().for_each(|&v| self.connectivity.push(number(v)));
+            self.end += N;
+            self.offsets.push(self.end);
             self.types.push(vtk_type);
             self.classes.push(class as u8);
+        }
+    }
+}
+
+/// What VTK counts: 32-bit numbers where all fit, which halves most files.
+pub(super) struct Ids {
+    is_wide: bool,
+    bytes: Vec<u8>,
+}
+
+impl Ids {
+    /// None yet, and none above `most`.
+    pub(super) fn up_to(most: usize) -> Self {
+        Self { is_wide: i32::try_from(most).is_err(), bytes: Vec::new() }
+    }
+
+    pub(super) fn push(&mut self, id: usize) {
+        if self.is_wide {
+            self.bytes.extend((id as i64).to_le_bytes());
+        } else {
+            self.bytes.extend((id as i32).to_le_bytes());
         }
     }
 }
@@ -223,6 +253,10 @@ impl Appended {
         self.data.extend(bytes);
     }
 
+    pub(super) fn ids(&mut self, name: &str, ids: Ids) -> io::Result<()> {
+        self.array(if ids.is_wide { "Int64" } else { "Int32" }, name, 1, ids.bytes)
+    }
+
     pub(super) fn array(
         &mut self,
         kind: &str,
@@ -243,4 +277,18 @@ impl Appended {
 
 pub(super) fn bytes<const B: usize>(values: impl Iterator<Item = [u8; B]>) -> Vec<u8> {
     values.flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_as_wide_as_they_must_be() {
+        for (most, width) in [(0, 4), (i32::MAX as usize, 4), (i32::MAX as usize + 1, 8)] {
+            let mut ids = Ids::up_to(most);
+            ids.push(most);
+            assert_eq!(ids.bytes, (most as u64).to_le_bytes()[..width]);
+        }
+    }
 }
