@@ -1,13 +1,16 @@
 //! Files of each format and damage, written here byte by byte, and our own read back.
 
+mod clouds;
 #[path = "../common/mod.rs"]
 mod common;
 mod damage;
 mod damaged;
 mod files;
+mod meshes;
 mod parts;
 mod places;
 mod points;
+mod scattered;
 mod shapes;
 mod sources;
 mod tables;

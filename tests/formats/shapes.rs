@@ -8,7 +8,7 @@ use walpha::shape::{Alpha, ShapeOptions, alpha_shape};
 
 use crate::common;
 use crate::files::save;
-use crate::points::scattered;
+use crate::scattered::scattered;
 
 fn shape() -> walpha::AlphaShape {
     let Points { positions, values, .. } = scattered();

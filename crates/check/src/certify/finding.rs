@@ -1,33 +1,8 @@
-use std::fmt;
-
 use serde::Serialize;
 
+use super::Simplex;
 use crate::Class;
 use crate::exact::Exact;
-
-/// A simplex by the input indices of its vertices.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-pub struct Simplex(Vec<u32>);
-
-impl Simplex {
-    /// The vertices, as the judged complex lists them.
-    pub fn vertices(&self) -> &[u32] {
-        &self.0
-    }
-}
-
-impl<const N: usize> From<[u32; N]> for Simplex {
-    fn from(row: [u32; N]) -> Self {
-        Self(row.to_vec())
-    }
-}
-
-impl fmt::Display for Simplex {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = ["vertex", "edge", "facet", "cell"][self.0.len().clamp(1, 4) - 1];
-        write!(f, "{name} {:?}", self.0)
-    }
-}
 
 /// What is wrong with a complex: the rule that is broken, the simplex that breaks it, and the exact
 /// values that show it.
@@ -218,16 +193,6 @@ pub enum Finding {
         /// The point that stays in its place.
         stays: u32,
     },
-}
-
-impl Simplex {
-    /// By the numbers of points of which there are `count`, where copies follow; says whether a vertex is
-    /// none of these.
-    fn fold(&mut self, count: u32) -> bool {
-        let is_at_box = self.0.iter().any(|&v| v < count);
-        self.0.iter_mut().for_each(|v| *v %= count);
-        is_at_box
-    }
 }
 
 impl Finding {

@@ -16,6 +16,7 @@ mod near;
 mod places;
 mod points;
 mod rules;
+mod simplex;
 mod structure;
 pub(crate) mod torus;
 
@@ -27,4 +28,5 @@ pub use filtration::{
     Bound, CertifyFiltrationError, FiltrationCertificate, FiltrationFinding, Unjudged,
     certify_filtration,
 };
-pub use finding::{Finding, Simplex};
+pub use finding::Finding;
+pub use simplex::Simplex;

@@ -1,5 +1,8 @@
 //! An alpha shape in Python.
 
+mod boundary;
+mod make;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -8,15 +11,16 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReado
 use pyo3::prelude::*;
 use walpha::export::{ExportOptions, Format, Target};
 use walpha::interpolate::{Grid, Interpolant, InterpolateError};
-use walpha::pipeline::{AlphaRule, Model};
+use walpha::pipeline::Model;
 use walpha::progress::Stage;
-use walpha::shape::{Balls, Engine, ShapeOptions, Surface, Torus};
 use walpha::volume::Dims;
-use walpha::{Alpha, AlphaShape, Pipeline, Points, PointsError, Simplices, Weighting};
+use walpha::{AlphaShape, PointsError, Simplices, Weighting};
 
 use crate::arrays::{lend, numbers, rows};
 use crate::errors::{Told, wrong};
 use crate::work::run;
+use boundary::{Boundary, boundary};
+pub use make::{alpha_rule, alpha_shape, options, torus, unknown, weighted};
 
 /// A shape, which is never changed.
 #[pyclass(frozen, module = "walpha._walpha")]
@@ -25,82 +29,6 @@ pub struct Shape {
     /// What is known of it besides, as JSON: where its α and its points come from.
     #[pyo3(get)]
     facts: String,
-}
-
-/// How a shape is computed, by the names that Python has.
-pub fn options(engine: &str, balls: &str, exterior: bool) -> PyResult<ShapeOptions> {
-    let engine = match engine {
-        "cgal" => Engine::Cgal,
-        "native" => Engine::Native,
-        "reference" => Engine::Reference,
-        _ => return Err(unknown("engine", engine, "'cgal', 'native' and 'reference'")),
-    };
-    let balls = match balls {
-        "power" => Balls::Power,
-        "radius" => Balls::Radius,
-        _ => return Err(unknown("balls", balls, "'power' and 'radius'")),
-    };
-    Ok(ShapeOptions::new(Alpha::INFINITE).engine(engine).balls(balls).exterior(exterior))
-}
-
-/// The periodic box by its sides.
-pub fn torus(sides: Option<[f64; 3]>) -> PyResult<Option<Torus>> {
-    sides.map(|sides| Torus::new(sides).map_err(Told::told)).transpose()
-}
-
-/// A name that is none of those an option has.
-pub fn unknown(option: &str, name: &str, known: &str) -> PyErr {
-    wrong(format!("{option}={name:?} is unknown: there are {known}"))
-}
-
-/// `None` is the default, NaN is to be found, anything else is α.
-pub fn alpha_rule(alpha: Option<f64>) -> AlphaRule {
-    match alpha {
-        None => AlphaRule::Default,
-        Some(alpha) => Alpha::from_squared(alpha).map_or(AlphaRule::Auto, AlphaRule::Given),
-    }
-}
-
-/// The shape of scattered points.
-#[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
-pub fn alpha_shape(
-    py: Python<'_>,
-    points: PyReadonlyArray2<'_, f64>,
-    weights: Option<PyReadonlyArray1<'_, f64>>,
-    values: Option<PyReadonlyArray1<'_, f64>>,
-    alpha: Option<f64>,
-    engine: &str,
-    balls: &str,
-    exterior: bool,
-    periodic: Option<[f64; 3]>,
-    progress: Option<Bound<'_, PyAny>>,
-) -> PyResult<Shape> {
-    let options = options(engine, balls, exterior)?.periodic(torus(periodic)?);
-    let points = weighted(&points, weights.as_ref(), values.as_ref())?;
-    let pipeline = Pipeline::new().alpha(alpha_rule(alpha)).shape(options);
-    let model = run(py, progress.as_ref(), move |call| {
-        let mut hear = |stage: Stage| call.begin(stage);
-        let weighed = pipeline.weighed_points(points, &mut hear)?;
-        pipeline.finish(weighed, &mut hear)
-    })?;
-    Ok(Shape::of(model))
-}
-
-/// Points with a column of weights, or without; as many of each as points.
-pub fn weighted(
-    points: &PyReadonlyArray2<'_, f64>,
-    weights: Option<&PyReadonlyArray1<'_, f64>>,
-    values: Option<&PyReadonlyArray1<'_, f64>>,
-) -> PyResult<Points> {
-    let mut points = Points::new(rows("points", points)?);
-    if let Some(weights) = weights {
-        points = points.with_weights(numbers(weights)).map_err(Told::told)?;
-    }
-    if let Some(values) = values {
-        points = points.with_values(numbers(values)).map_err(Told::told)?;
-    }
-    Ok(points)
 }
 
 impl Shape {
@@ -275,36 +203,8 @@ impl Shape {
     }
 
     /// Places, triangles over them, and the input index of each; then edges cut, vertices doubled, midpoints.
-    #[expect(clippy::type_complexity, reason = "taken apart at once, in Python")]
-    fn boundary<'py>(
-        &self,
-        py: Python<'py>,
-        solid: bool,
-    ) -> PyResult<(
-        Bound<'py, PyArray2<f64>>,
-        Bound<'py, PyArray2<u32>>,
-        Bound<'py, PyArray1<u32>>,
-        (usize, usize, usize),
-    )> {
-        let shape = Arc::clone(&self.shape);
-        let (places, triangles, indices, cuts) = run(py, None, move |_| {
-            let (surface, cuts) = match solid {
-                true => Surface::solid(&shape),
-                false => (Surface::of(&shape), Default::default()),
-            };
-            let places: Vec<[f64; 3]> = surface.positions(&shape.points().positions).collect();
-            let indices: Vec<u32> = surface.indices().collect();
-            let cuts = (cuts.edges, cuts.vertices, cuts.midpoints);
-            Ok::<_, InterpolateError>((places, surface.regular, indices, cuts))
-        })?;
-        let table = |n: usize| (n, 3);
-        let (n, m) = (places.len(), triangles.len());
-        let places = numpy::ndarray::Array2::from_shape_vec(table(n), places.into_flattened());
-        let triangles =
-            numpy::ndarray::Array2::from_shape_vec(table(m), triangles.into_flattened());
-        let (places, triangles) =
-            (places.expect("rows of three"), triangles.expect("rows of three"));
-        Ok((places.into_pyarray(py), triangles.into_pyarray(py), indices.into_pyarray(py), cuts))
+    fn boundary<'py>(&self, py: Python<'py>, solid: bool) -> PyResult<Boundary<'py>> {
+        boundary(py, Arc::clone(&self.shape), solid)
     }
 
     /// F at places; NaN outside the shape.

@@ -1,6 +1,12 @@
-use super::rows::{Long, Owned, Side};
+//! One walk around each point, and the classes of the point and of its edges.
+
+mod give;
+
+use super::rows::Owned;
 use super::{Boundary, Local, Sheets, Stars, State, even};
 use crate::shape::{Class, UnionFind};
+
+use give::{CellRow, EdgeRow, FacetRow};
 
 /// Goes around one point after the other.
 pub(super) struct Walker<'a> {
@@ -27,36 +33,6 @@ pub(super) struct Walker<'a> {
 const COVERED: u32 = 1;
 /// One of the facets at an edge is not interior.
 const OPEN: u32 = 2;
-
-/// A cell that the point in hand is the smallest vertex of.
-#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-struct CellRow {
-    /// The three other vertices in the order that makes it positively oriented, two in one number.
-    first_two: u64,
-    third: u32,
-    inside: bool,
-}
-
-/// A facet that the point in hand is the smallest vertex of.
-#[derive(Clone, Copy, Default)]
-struct FacetRow {
-    /// The two other vertices in one number.
-    row: u64,
-    /// 4·cell + corner opposite.
-    side: u32,
-    /// Whether the point and these turn clockwise seen from the cell's fourth corner.
-    clockwise: bool,
-}
-
-/// An edge that the point in hand is the smallest vertex of.
-struct EdgeRow {
-    to: u32,
-    class: Class,
-    /// Of a singular edge: a corner at the point in hand.
-    corner: u32,
-}
-
-const NOWHERE: u32 = u32::MAX;
 
 impl<'a> Walker<'a> {
     pub(super) fn new(
@@ -169,97 +145,6 @@ impl<'a> Walker<'a> {
         covered != 0
     }
 
-    fn give_cells(&mut self, count: usize) {
-        let rows = &mut self.owned.rows;
-        let cells = &mut self.cells[..count];
-        cells.sort_unstable();
-        for cell in cells {
-            let class = if cell.inside { Class::Interior } else { Class::Exterior };
-            let [first, second] = pair(cell.first_two);
-            rows.cells.push([first, second, cell.third], class);
-        }
-    }
-
-    fn give_facets(&mut self, count: usize) {
-        let facets = &mut self.facets[..count];
-        for facet in &mut *facets {
-            let state = self.states[facet.side as usize / 4];
-            let class = state.facet(facet.side as usize % 4);
-            // A regular facet turns counter-clockwise seen from outside.
-            if class == Class::Regular && facet.clockwise != state.is_inside() {
-                facet.row = facet.row.rotate_left(32);
-            }
-        }
-        facets.sort_unstable_by_key(|facet| facet.row);
-        let rows = &mut self.owned.rows;
-        for facet in facets {
-            let state = self.states[facet.side as usize / 4];
-            let class = state.facet(facet.side as usize % 4);
-            rows.facets.push(pair(facet.row), class);
-            if matches!(class, Class::Exterior | Class::Interior) {
-                continue;
-            }
-            let beyond = self.boundary.beyond(facet.side);
-            if class == Class::Regular {
-                let outside = if state.is_inside() { beyond } else { facet.side };
-                rows.facet_sheets.push(self.local.corner(outside));
-            } else {
-                let sides = [self.local.corner(facet.side), self.local.corner(beyond)];
-                let [front, back] = if facet.clockwise { sides } else { [sides[1], sides[0]] };
-                rows.facet_sheets.extend([front, back]);
-            }
-        }
-    }
-
-    fn give_edges(&mut self, v: u32, star: &[u32]) {
-        let smallest = self.local.input(v);
-        for &neighbour in &self.neighbours[..self.near] {
-            let to = self.local.input(neighbour);
-            // An edge between two blocks is joined to its sheet at both ends.
-            if to < smallest && self.local.owned(neighbour) {
-                continue;
-            }
-            let says = self.met[neighbour as usize];
-            let mut corner = NOWHERE;
-            let class = if says & OPEN == 0 {
-                Class::Interior
-            } else if says & COVERED != 0 {
-                Class::Regular
-            } else if let Some(at) = self.lone_edge(v, neighbour, star) {
-                corner = at;
-                Class::Singular
-            } else {
-                Class::Exterior
-            };
-            if (class != Class::Exterior || self.local.exterior)
-                && self.local.is_long([v, neighbour])
-            {
-                let ends = [v, neighbour].map(|v| self.local.block.positions[v as usize]);
-                self.owned.long = Some(Long { edge: [smallest, to], ends });
-            }
-            if class == Class::Singular {
-                join_ends(self.local, self.sheets, self.owned, [v, neighbour], corner);
-            }
-            if to > smallest && (class != Class::Exterior || self.local.exterior) {
-                self.edges.push(EdgeRow { to, class, corner });
-            }
-            if class != Class::Exterior {
-                self.components.unite(v, neighbour);
-                if !self.local.owned(neighbour) {
-                    self.owned.border.extend([to, smallest]);
-                }
-            }
-        }
-        self.edges.sort_unstable_by_key(|edge| edge.to);
-        let rows = &mut self.owned.rows;
-        for EdgeRow { to, class, corner } in self.edges.drain(..) {
-            rows.edges.push([to], class);
-            if class == Class::Singular {
-                rows.edge_sheets.push(corner);
-            }
-        }
-    }
-
     /// Whether an edge that no facet covers is singular; then a corner at its first end.
     fn lone_edge(&self, v: u32, u: u32, star: &[u32]) -> Option<u32> {
         let local = self.local;
@@ -293,49 +178,5 @@ impl<'a> Walker<'a> {
             refuted |= self.local.predicates.inside([v], neighbour);
         }
         if !refuted && self.local.fits([v]) { Class::Singular } else { Class::Exterior }
-    }
-}
-
-/// Two vertices out of one number.
-#[inline(always)]
-fn pair(row: u64) -> [u32; 2] {
-    [(row >> 32) as u32, row as u32]
-}
-
-impl CellRow {
-    /// A cell without its smallest vertex, which is at place `k`; the others follow it.
-    #[inline(always)]
-    fn new(k: usize, [mut a, mut b, mut c]: [u32; 3], inside: bool) -> Self {
-        // Rotating a row of four is odd, and so is each exchange.
-        let mut odd = k % 2 == 1;
-        let mut order = |x: &mut u32, y: &mut u32| {
-            odd ^= *x > *y;
-            (*x, *y) = ((*x).min(*y), (*x).max(*y));
-        };
-        order(&mut a, &mut b);
-        order(&mut b, &mut c);
-        order(&mut a, &mut b);
-        let (second, third) = if odd { (c, b) } else { (b, c) };
-        Self { first_two: u64::from(a) << 32 | u64::from(second), third, inside }
-    }
-}
-
-/// The space around a singular edge is one piece, from end to end.
-fn join_ends(
-    local: &Local<'_>,
-    sheets: &mut Sheets,
-    owned: &mut Owned,
-    [v, u]: [u32; 2],
-    corner: u32,
-) {
-    if local.owned(u) {
-        let cell = local.cells[corner as usize / 4];
-        let place = cell.iter().position(|&w| w == u).expect("a cell at the edge");
-        sheets.unite(corner, corner / 4 * 4 + place as u32);
-    } else {
-        let ends = if local.input(v) < local.input(u) { [v, u] } else { [u, v] };
-        let [low, high] = ends.map(|end| local.input(end));
-        let windings = local.block.windings(ends[0]);
-        owned.shared.push(Side { simplex: [low, high, high], side: 0, sheet: corner, windings });
     }
 }

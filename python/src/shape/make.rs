@@ -1,0 +1,89 @@
+//! How a shape is made: of points, with options by the names that Python has.
+
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use walpha::pipeline::AlphaRule;
+use walpha::progress::Stage;
+use walpha::shape::{Balls, Engine, ShapeOptions, Torus};
+use walpha::{Alpha, Pipeline, Points};
+
+use super::Shape;
+use crate::arrays::{numbers, rows};
+use crate::errors::{Told, wrong};
+use crate::work::run;
+
+/// How a shape is computed, by the names that Python has.
+pub fn options(engine: &str, balls: &str, exterior: bool) -> PyResult<ShapeOptions> {
+    let engine = match engine {
+        "cgal" => Engine::Cgal,
+        "native" => Engine::Native,
+        "reference" => Engine::Reference,
+        _ => return Err(unknown("engine", engine, "'cgal', 'native' and 'reference'")),
+    };
+    let balls = match balls {
+        "power" => Balls::Power,
+        "radius" => Balls::Radius,
+        _ => return Err(unknown("balls", balls, "'power' and 'radius'")),
+    };
+    Ok(ShapeOptions::new(Alpha::INFINITE).engine(engine).balls(balls).exterior(exterior))
+}
+
+/// The periodic box by its sides.
+pub fn torus(sides: Option<[f64; 3]>) -> PyResult<Option<Torus>> {
+    sides.map(|sides| Torus::new(sides).map_err(Told::told)).transpose()
+}
+
+/// A name that is none of those an option has.
+pub fn unknown(option: &str, name: &str, known: &str) -> PyErr {
+    wrong(format!("{option}={name:?} is unknown: there are {known}"))
+}
+
+/// `None` is the default, NaN is to be found, anything else is α.
+pub fn alpha_rule(alpha: Option<f64>) -> AlphaRule {
+    match alpha {
+        None => AlphaRule::Default,
+        Some(alpha) => Alpha::from_squared(alpha).map_or(AlphaRule::Auto, AlphaRule::Given),
+    }
+}
+
+/// The shape of scattered points.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+pub fn alpha_shape(
+    py: Python<'_>,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    values: Option<PyReadonlyArray1<'_, f64>>,
+    alpha: Option<f64>,
+    engine: &str,
+    balls: &str,
+    exterior: bool,
+    periodic: Option<[f64; 3]>,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<Shape> {
+    let options = options(engine, balls, exterior)?.periodic(torus(periodic)?);
+    let points = weighted(&points, weights.as_ref(), values.as_ref())?;
+    let pipeline = Pipeline::new().alpha(alpha_rule(alpha)).shape(options);
+    let model = run(py, progress.as_ref(), move |call| {
+        let mut hear = |stage: Stage| call.begin(stage);
+        let weighed = pipeline.weighed_points(points, &mut hear)?;
+        pipeline.finish(weighed, &mut hear)
+    })?;
+    Ok(Shape::of(model))
+}
+
+/// Points with a column of weights, or without; as many of each as points.
+pub fn weighted(
+    points: &PyReadonlyArray2<'_, f64>,
+    weights: Option<&PyReadonlyArray1<'_, f64>>,
+    values: Option<&PyReadonlyArray1<'_, f64>>,
+) -> PyResult<Points> {
+    let mut points = Points::new(rows("points", points)?);
+    if let Some(weights) = weights {
+        points = points.with_weights(numbers(weights)).map_err(Told::told)?;
+    }
+    if let Some(values) = values {
+        points = points.with_values(numbers(values)).map_err(Told::told)?;
+    }
+    Ok(points)
+}
