@@ -43,6 +43,14 @@ pub enum BlocksError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// A folder cannot be written.
+    #[error("cannot write {}: {source}", shown(path))]
+    Written {
+        /// The folder.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
     /// A file of the plan's folder is not what it should be.
     #[error("{}: {what}", shown(path))]
     Damaged {
@@ -126,6 +134,10 @@ impl BlocksError {
             Self::Target(error) => Some(error.advice()),
             Self::Memory(lack) => Some(lack.advice()),
             Self::Io { .. } => Some("name a folder that `walpha blocks plan` made".into()),
+            Self::Written { source, .. } => match source.kind() {
+                std::io::ErrorKind::AlreadyExists => Some("remove it, or name another".into()),
+                _ => None,
+            },
             Self::Damaged { .. } => Some("remove it, and run its block again".into()),
             Self::OtherPlan { .. } => Some("remove it, or use a folder for each plan".into()),
             Self::Missing { .. } => Some("run these, then merge again".into()),

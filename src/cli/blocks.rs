@@ -70,8 +70,9 @@ struct MergeStep {
     /// Folder of the plan.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Files to write: .pvtu (all simplices) or .pvtp (boundary) with a file for each block, or any format
-    /// of `walpha shape` in one file, for which the shape must fit the memory.
+    /// Files to write: .pvtu (all simplices) or .pvtp (boundary) with a file for each block, .zarr (arrays, with
+    /// the feature zarr), or any format of `walpha shape` in one file, for which the shape must fit the
+    /// memory.
     #[arg(short, long, value_name = "FILE", num_args = 1..)]
     output: Vec<PathBuf>,
 }
@@ -129,6 +130,7 @@ impl MergeStep {
         let mut outputs = Outputs::default();
         for path in &self.output {
             if let Some(pieces) = Pieces::of(path) {
+                pieces.check(path)?;
                 outputs.pieces.push((pieces, path.clone()));
             } else {
                 let exporter = Format::of(path)?.exporter(&export);

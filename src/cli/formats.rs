@@ -55,12 +55,12 @@ pub(super) fn shape_output() -> String {
     };
     format!(
         "Files to write: {} (boundary), {} (all simplices), .png (a picture), .wvm (the points, packed, with \
-         what the shape is made from again); {} (a file for each block: the \
-         shape is made in blocks that are never in memory together, of a volume that is read in parts); or \
+         what the shape is made from again); {} (for shapes \
+         made in blocks that are never in memory together, of a volume that is read in parts); or \
          - (standard output, with --format). Files that are there are replaced",
         of(true),
         of(false),
-        dotted(Pieces::ALL.map(|(_, extension)| extension))
+        dotted(Pieces::ALL.iter().map(|(_, extension)| *extension))
     )
 }
 

@@ -26,6 +26,8 @@
 
 mod colour;
 mod filtration;
+#[cfg(feature = "zarr")]
+mod folder;
 mod format;
 mod glb;
 mod json;
@@ -44,6 +46,8 @@ mod vtu;
 
 pub use crate::volume::UnknownFormat;
 pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
+#[cfg(feature = "zarr")]
+pub(crate) use folder::make_folder;
 pub use format::{ExportOptions, Exporter, FORMATS, Format};
 pub use glb::Glb;
 pub use json::Json;

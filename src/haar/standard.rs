@@ -138,7 +138,7 @@ mod tests {
                 let in_walls = |values: &mut Array3<f64>, work: fn(Slabs, &mut [f64], usize)| {
                     for range in each(y) {
                         let (first, at) = (range.start, s![.., range, ..]);
-                        let mut part = values.slice(at.clone()).as_standard_layout().into_owned();
+                        let mut part = values.slice(at).as_standard_layout().into_owned();
                         work(slabs, part.as_slice_mut().unwrap(), first);
                         values.slice_mut(at).assign(&part);
                     }

@@ -40,6 +40,7 @@ impl Outputs {
         for path in &shape.output {
             let name = shape.pipeline.input.output(path)?;
             if let Some(pieces) = Pieces::of(&name) {
+                pieces.check(path)?;
                 outputs.pieces.push((pieces, path.clone()));
             } else if let Some(writer) = PointWriter::of(&name).ok().filter(|writer| writer.packs) {
                 outputs.models.push((Target::open(path)?, writer));
@@ -81,7 +82,7 @@ impl Outputs {
 
 /// Extensions of all formats that a shape is written in.
 fn extensions() -> impl Iterator<Item = &'static str> + Clone {
-    let pieces = Pieces::ALL.into_iter().map(|(_, extension)| extension);
+    let pieces = Pieces::ALL.iter().map(|(_, extension)| *extension);
     let models = PointWriter::all().filter(|writer| writer.packs).map(|writer| writer.extension);
     let shapes = FORMATS.iter().map(|format| format.extension);
     shapes.chain(PictureArgs::EXTENSIONS).chain(models).chain(pieces)

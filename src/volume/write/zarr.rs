@@ -1,4 +1,4 @@
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -9,6 +9,7 @@ use zarrs::array_subset::ArraySubset;
 use zarrs::filesystem::FilesystemStore;
 use zarrs::group::GroupBuilder;
 
+use crate::export::make_folder;
 use crate::progress;
 use crate::volume::{Dtype, Frame, LengthUnit, Source, VolumeError};
 
@@ -26,20 +27,7 @@ const CHUNK: usize = 64;
 /// `folder` is there already, cannot be made, or the volume cannot be read. Nothing is left behind then.
 pub(in crate::volume) fn zarr(source: &Source, folder: &Path) -> Result<(), VolumeError> {
     let failed = |source| VolumeError::Written { path: folder.into(), source };
-    if folder.exists() {
-        return Err(failed(std::io::ErrorKind::AlreadyExists.into()));
-    }
-    let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    let part: PathBuf = folder.with_file_name(format!(".walpha-{name}.part"));
-    // Of a run that was killed.
-    let _ = std::fs::remove_dir_all(&part);
-    std::fs::create_dir(&part).map_err(failed)?;
-    let done = fill(source, &part).and_then(|()| std::fs::rename(&part, folder).map_err(failed));
-    if done.is_err() {
-        // The error reported is the first one.
-        let _ = std::fs::remove_dir_all(&part);
-    }
-    done
+    make_folder(folder, failed, |part| fill(source, part))
 }
 
 fn fill(source: &Source, folder: &Path) -> Result<(), VolumeError> {

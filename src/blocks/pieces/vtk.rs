@@ -4,35 +4,20 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
-use super::file::BlockFile;
-use super::merge::Numbers;
-use super::rows::read_rows;
-use super::{Alone, BlocksError, Merged, Plan, Team};
+use super::Piece;
+use crate::blocks::{BlocksError, Merged, Plan, Team};
 use crate::export::{Corners, Made, Parts, Target, write_grid, write_surface};
-use crate::shape::{Complex, NO_COMPONENT, Sheets, Surface};
+use crate::shape::{Complex, Surface};
 
-/// A format of a file for each block, which VTK's programs open by the file that names them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[non_exhaustive]
-pub enum Pieces {
-    /// `.pvtu`: all simplices, as [`Vtu`](crate::export::Vtu) has them.
+/// What is written.
+#[derive(Clone, Copy)]
+pub(super) enum Kind {
     Grid,
-    /// `.pvtp`: boundary, singular edges and vertices, as [`Vtp`](crate::export::Vtp) has them.
     Surface,
 }
 
-impl Pieces {
-    /// The formats, and the extensions of the files that name the others.
-    pub const ALL: [(Self, &str); 2] = [(Self::Grid, "pvtu"), (Self::Surface, "pvtp")];
-
-    /// What the extension of a path asks for.
-    pub fn of(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?;
-        Self::ALL.iter().find(|(_, known)| extension == *known).map(|(pieces, _)| *pieces)
-    }
-
+impl Kind {
     /// The extension of the file of a block.
     fn extension(self) -> &'static str {
         match self {
@@ -41,22 +26,8 @@ impl Pieces {
         }
     }
 
-    /// Writes the shape of merged blocks: beside `path`, in a folder of its name without the
-    /// extension, a file for each block that has simplices, then `path`. Points are named by
-    /// their index in the volume, as `voxel`. Several blocks at a time are in memory, one for each thread.
-    ///
-    /// # Errors
-    /// A block cannot be read, a file not written.
-    pub fn write(self, plan: &Plan, merged: &Merged, path: &Path) -> Result<(), BlocksError> {
-        self.write_with(plan, Some(merged), path, &Alone)
-    }
-
-    /// The same as one of a team: each process writes some of the pieces, and the first, which has what was
-    /// merged, the file that names them.
-    ///
-    /// # Errors
-    /// As [`Pieces::write`]. The others of the team would wait for a process that ends with an error.
-    pub fn write_with(
+    /// Writes the pieces of this process, and the index as the first.
+    pub(super) fn write(
         self,
         plan: &Plan,
         merged: Option<&Merged>,
@@ -140,39 +111,8 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
-/// What a block has of the shape, with common numbers.
-struct Piece {
-    complex: Complex,
-    voxels: Vec<u64>,
-    positions: Vec<[f64; 3]>,
-    weights: Vec<f64>,
-    values: Vec<f64>,
-    components: Vec<u32>,
-    sheets: Sheets,
-}
-
 impl Piece {
-    fn read(plan: &Plan, block: usize, numbers: &Numbers) -> Result<Self, BlocksError> {
-        let file = BlockFile::open(plan, block)?;
-        let job = &plan.job;
-        let voxels = file.read::<u64>("voxels")?;
-        let place = |&voxel: &u64| job.units.place(&job.frame, job.dims, voxel);
-        let common = |component: u32| {
-            numbers.components.get(component as usize).copied().unwrap_or(NO_COMPONENT)
-        };
-        let (complex, sheets) = read_rows(&file, &numbers.sheets)?;
-        Ok(Self {
-            positions: voxels.iter().map(place).collect(),
-            weights: file.read("weights")?,
-            values: file.read("values")?,
-            components: file.read::<u32>("components")?.into_iter().map(common).collect(),
-            complex,
-            voxels,
-            sheets,
-        })
-    }
-
-    fn write(&self, pieces: Pieces, plan: &Plan, out: &mut dyn Write) -> std::io::Result<()> {
+    fn write(&self, kind: Kind, plan: &Plan, out: &mut dyn Write) -> std::io::Result<()> {
         let job = &plan.job;
         let corners = Corners {
             positions: &self.positions,
@@ -182,9 +122,9 @@ impl Piece {
         };
         let coordinates = job.units.coordinates_of(&job.frame);
         let made = Made { alpha: plan.alpha(), coordinates, input: Some(&job.input) };
-        match pieces {
-            Pieces::Grid => write_grid(&self.complex, &self.corners(), &corners, &made, out),
-            Pieces::Surface => {
+        match kind {
+            Kind::Grid => write_grid(&self.complex, &self.corners(), &corners, &made, out),
+            Kind::Surface => {
                 let surface = Surface::of_complex(&self.complex);
                 let parts = Parts { components: &self.components, sheets: Some(&self.sheets) };
                 write_surface(&surface, &corners, &parts, &made, out)

@@ -1,0 +1,127 @@
+//! Outputs that never are in memory as a whole: VTK's parallel formats, a file for each block and one that names
+//! them; and arrays of Zarr.
+
+mod vtk;
+#[cfg(feature = "zarr")]
+mod zarr;
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::file::BlockFile;
+use super::merge::Numbers;
+use super::rows::read_rows;
+use super::{Alone, BlocksError, Merged, Plan, Team};
+use crate::shape::{Complex, NO_COMPONENT, Sheets};
+
+use vtk::Kind;
+
+/// A format that blocks are written to one after the other. VTK's programs open theirs by the file that names the
+/// others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Pieces {
+    /// `.pvtu`: all simplices, as [`Vtu`](crate::export::Vtu) has them.
+    Grid,
+    /// `.pvtp`: boundary, singular edges and vertices, as [`Vtp`](crate::export::Vtp) has them.
+    Surface,
+    /// `.zarr`: a folder of arrays with all simplices (`docs/clusters.md`).
+    #[cfg(feature = "zarr")]
+    Arrays,
+}
+
+impl Pieces {
+    /// The formats, and the extensions of what they are opened by.
+    pub const ALL: &[(Self, &str)] = &[
+        (Self::Grid, "pvtu"),
+        (Self::Surface, "pvtp"),
+        #[cfg(feature = "zarr")]
+        (Self::Arrays, "zarr"),
+    ];
+
+    /// Refuses a place where this cannot be written, before the work.
+    ///
+    /// # Errors
+    /// A folder of arrays is there already.
+    pub fn check(self, path: &Path) -> Result<(), BlocksError> {
+        #[cfg(feature = "zarr")]
+        if self == Self::Arrays && path.exists() {
+            let source = std::io::ErrorKind::AlreadyExists.into();
+            return Err(BlocksError::Written { path: path.into(), source });
+        }
+        Ok(())
+    }
+
+    /// What the extension of a path asks for.
+    pub fn of(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?;
+        Self::ALL.iter().find(|(_, known)| extension == *known).map(|(pieces, _)| *pieces)
+    }
+
+    /// Writes the shape of merged blocks, several blocks at a time in memory, one for each thread. Points are
+    /// named by their index in the volume, `voxel`. Of VTK's formats there is a file for each block that
+    /// has simplices, in a folder beside `path` of its name without the extension.
+    ///
+    /// # Errors
+    /// A block cannot be read, a file not written.
+    pub fn write(self, plan: &Plan, merged: &Merged, path: &Path) -> Result<(), BlocksError> {
+        self.write_with(plan, Some(merged), path, &Alone)
+    }
+
+    /// The same as one of a team. Of VTK's formats each process writes some of the pieces, and the first, which
+    /// has what was merged, the file that names them; arrays are written by the first alone.
+    ///
+    /// # Errors
+    /// As [`Pieces::write`]. The others of the team would wait for a process that ends with an error.
+    pub fn write_with(
+        self,
+        plan: &Plan,
+        merged: Option<&Merged>,
+        path: &Path,
+        team: &dyn Team,
+    ) -> Result<(), BlocksError> {
+        match self {
+            Self::Grid => Kind::Grid.write(plan, merged, path, team),
+            Self::Surface => Kind::Surface.write(plan, merged, path, team),
+            #[cfg(feature = "zarr")]
+            Self::Arrays => match merged {
+                Some(merged) => zarr::write(plan, merged, path),
+                None => Ok(()),
+            },
+        }
+    }
+}
+
+/// What a block has of the shape, with common numbers.
+struct Piece {
+    complex: Complex,
+    voxels: Vec<u64>,
+    positions: Vec<[f64; 3]>,
+    weights: Vec<f64>,
+    values: Vec<f64>,
+    components: Vec<u32>,
+    sheets: Sheets,
+}
+
+impl Piece {
+    fn read(plan: &Plan, block: usize, numbers: &Numbers) -> Result<Self, BlocksError> {
+        let file = BlockFile::open(plan, block)?;
+        let job = &plan.job;
+        let voxels = file.read::<u64>("voxels")?;
+        let place = |&voxel: &u64| job.units.place(&job.frame, job.dims, voxel);
+        let common = |component: u32| {
+            numbers.components.get(component as usize).copied().unwrap_or(NO_COMPONENT)
+        };
+        let (complex, sheets) = read_rows(&file, &numbers.sheets)?;
+        Ok(Self {
+            positions: voxels.iter().map(place).collect(),
+            weights: file.read("weights")?,
+            values: file.read("values")?,
+            components: file.read::<u32>("components")?.into_iter().map(common).collect(),
+            complex,
+            voxels,
+            sheets,
+        })
+    }
+}
