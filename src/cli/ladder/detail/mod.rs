@@ -56,8 +56,8 @@ impl Ladder {
         let full = progress.stage(Stage::Points, || self.full(&mut stages, &range))?;
         let mut rows = Vec::new();
         for wanted in self.wanted(&range) {
-            let (mut points, truncation) =
-                progress.stage(Stage::Points, || stages.points(&wanted.haar, &wanted.selection))?;
+            let found = || stages.points(&wanted.haar, &wanted.selection);
+            let (mut points, truncation) = progress.stage(Stage::Points, found)?;
             if let Some((full, region)) = &full {
                 points = focus(full, &points, region);
             }
@@ -69,17 +69,14 @@ impl Ladder {
             let options = ShapeOptions { refuse_flat: true, ..ShapeOptions::new(alpha) };
             let shape = progress.stage(Stage::Shape, || alpha_shape(weighted, &options))?;
             let shape = shape.meaning(coordinates);
-            let errors = progress
-                .stage(Stage::Interpolate, || Errors::of(&shape, &grays, &volume, units))?;
+            let errors = || Errors::of(&shape, &grays, &volume, units);
+            let errors = progress.stage(Stage::Interpolate, errors)?;
             let mut row = Row::of(&shape, &truncation, &domain, errors);
             progress.stage(Stage::Write, || {
                 write_meshes(&shape, &wanted.name, meshes, &mut folder, &mut row)
             })?;
             rows.push(row);
         }
-        let in_region = |(points, region): &(Points, &Region)| {
-            points.positions.iter().filter(|&&p| region.contains(p)).count()
-        };
         let facts = Facts {
             schema_version: SCHEMA_VERSION,
             input: self.pipeline.input.input.clone(),
@@ -87,7 +84,7 @@ impl Ladder {
             alpha: parameter,
             weights: weighting.to_string(),
             domain,
-            points_in_region: full.as_ref().map(in_region),
+            points_in_region: full.as_ref().map(|(points, region)| inside(points, region)),
             levels: rows,
             seconds: progress.finish().into_iter().collect(),
         };
@@ -106,7 +103,7 @@ impl Ladder {
         let Some(region) = &self.focus else { return Ok(None) };
         let FrozenPipelineArgs { haar, select, .. } = &self.pipeline;
         let (points, _) = stages.points(&haar.options(), &select.selection(range))?;
-        if !points.positions.iter().any(|&p| region.contains(p)) {
+        if inside(&points, region) == 0 {
             refused!("no point lies in --focus: it is in the units of the points, x first");
         }
         Ok(Some((points, region)))
@@ -127,6 +124,11 @@ impl Ladder {
         });
         by_count.chain(by_epsilon).collect()
     }
+}
+
+/// How many points lie in a region.
+fn inside(points: &Points, region: &Region) -> usize {
+    points.positions.iter().filter(|&&p| region.contains(p)).count()
 }
 
 /// Writes a level's shape in each format, and notes it.

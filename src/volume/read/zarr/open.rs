@@ -44,32 +44,7 @@ pub(super) fn open(
             "name one of these",
         )));
     };
-    let levels = pyramid["datasets"].as_array().map_or(&[][..], Vec::as_slice);
-    let wanted = level.unwrap_or(0);
-    let Some(dataset) = levels.get(wanted as usize) else {
-        let count = levels.len();
-        return Err(said(Reason::choice(
-            Setting::Level,
-            format!("has no level {wanted}, there are {count}"),
-            advice![
-                "give ",
-                Setting::Level,
-                format!(" 0 (the finest) to {}", count.saturating_sub(1))
-            ],
-        )));
-    };
-    let Some(name) = dataset["path"].as_str() else {
-        return Err(said(Reason::damaged(format!(
-            "names no array for level {wanted}: its metadata are damaged"
-        ))));
-    };
-    // An upward step would lead to files that nobody named.
-    if Path::new(name).components().any(|part| part == Component::ParentDir) {
-        let reason = Reason::damaged(format!(
-            "names {name:?} for level {wanted}, outside the store: its metadata are damaged"
-        ));
-        return Err(said(reason));
-    }
+    let (dataset, name) = dataset(pyramid, level).map_err(said)?;
     let array = Array::open(store, &format!("/{}", name.trim_matches('/')))
         .map_err(|error| damaged(&error))?;
     let transforms = [&dataset["coordinateTransformations"], &pyramid["coordinateTransformations"]];
@@ -78,6 +53,36 @@ pub(super) fn open(
     let unit = unit(&pyramid["axes"]).map_err(said)?;
     let coordinates = Coordinates { unit, ..Coordinates::default() };
     stored(path, array, &transforms, coordinates, frame_index)
+}
+
+/// A level of a pyramid, and the path of its array.
+fn dataset(pyramid: &Value, level: Option<u32>) -> Result<(&Value, &str), Reason> {
+    let levels = pyramid["datasets"].as_array().map_or(&[][..], Vec::as_slice);
+    let wanted = level.unwrap_or(0);
+    let Some(dataset) = levels.get(wanted as usize) else {
+        let count = levels.len();
+        return Err(Reason::choice(
+            Setting::Level,
+            format!("has no level {wanted}, there are {count}"),
+            advice![
+                "give ",
+                Setting::Level,
+                format!(" 0 (the finest) to {}", count.saturating_sub(1))
+            ],
+        ));
+    };
+    let Some(name) = dataset["path"].as_str() else {
+        return Err(Reason::damaged(format!(
+            "names no array for level {wanted}: its metadata are damaged"
+        )));
+    };
+    // An upward step would lead to files that nobody named.
+    if Path::new(name).components().any(|part| part == Component::ParentDir) {
+        return Err(Reason::damaged(format!(
+            "names {name:?} for level {wanted}, outside the store: its metadata are damaged"
+        )));
+    }
+    Ok((dataset, name))
 }
 
 /// The unit of the axes of space, which must have one in common.
