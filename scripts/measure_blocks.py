@@ -99,7 +99,7 @@ def ranks(args, volume):
         usage = args.folder / "usage"
         usage.mkdir(exist_ok=True)
         launch = ["mpirun", "--oversubscribe", "--allow-run-as-root", "--bind-to", "none", "-n", count]
-        shape = [args.walpha, "shape", volume, *OPTIONS, "--engine", args.engine, "--blocks", args.blocks, "-o", out, "--json"]
+        shape = [args.walpha, "shape", volume, *OPTIONS, "--engine", args.engine, "--blocks", args.blocks, "--threads", "1", "-o", out, "--json"]
         report, wall, _, _ = measured([*launch, sys.executable, __file__, "rank", usage, *shape])
         each = [json.loads(path.read_text()) for path in sorted(usage.iterdir())]
         cpu = [rank["cpu"] for rank in each]

@@ -56,7 +56,7 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, BlocksError> {
     std::fs::read(path).map_err(|source| BlocksError::Io { path: path.into(), source })
 }
 
-/// What stands before the arrays.
+/// What precedes the arrays.
 #[derive(Serialize, Deserialize)]
 struct Header {
     plan: String,

@@ -55,7 +55,7 @@ pub(super) struct Numbers {
 /// Merges the blocks of a plan: unites components and sheets over the borders, and adds up the rest. Rows
 /// of simplices are not read.
 ///
-/// Memory for what the blocks tell about their borders, some 50 bytes for each point there.
+/// Memory for the keys of the borders, some 50 bytes for each point there.
 ///
 /// # Errors
 /// Blocks are missing or belong to another plan.
@@ -86,7 +86,7 @@ pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
     Ok(union.merged(hidden))
 }
 
-/// What blocks tell, side by side.
+/// The facts of all blocks, side by side.
 #[derive(Default)]
 struct Union {
     facts: Vec<Facts>,
@@ -95,7 +95,7 @@ struct Union {
     sheets: u32,
     same_components: Vec<[u32; 2]>,
     same_sheets: Vec<[u32; 2]>,
-    /// Who was first to tell of a point, and of a side of a facet or an edge.
+    /// Which block first named a point, and a side of a facet or an edge.
     points: HashMap<u64, u32>,
     sides: HashMap<([u64; 3], u32), u32>,
 }
@@ -168,7 +168,7 @@ impl Union {
     }
 }
 
-/// Notes that what is told now is what was told before.
+/// Notes that two names are one thing.
 fn same<K>(entry: Entry<'_, K, u32>, now: u32, pairs: &mut Vec<[u32; 2]>) {
     match entry {
         Entry::Vacant(vacant) => _ = vacant.insert(now),
@@ -218,7 +218,7 @@ fn number_sheets(
 ) -> (Vec<u32>, Vec<(u32, usize, SheetSums)>) {
     let mut whole: Vec<Option<(Met, usize, SheetSums)>> = vec![None; sets.len()];
     for (&(part, offset), i) in parts.iter().zip(0..) {
-        // A part without rows of its own has been told of by a neighbour, which has some.
+        // A part without rows of its own was named by a neighbour that has some.
         let Some(met) = part.met else { continue };
         let component = components[offset + met.component as usize] as usize;
         match &mut whole[sets.find(i) as usize] {

@@ -2,8 +2,8 @@
 //!
 //! Everything from a volume to its shape is local once a few numbers are known, so the work is three
 //! functions on files. [`Plan::make`] surveys the volume, cuts it into boxes and writes a plan into a folder. [`run`]
-//! computes one block from its own samples and those around it, with no other block. [`merge`] joins what blocks
-//! tell about their borders. What comes out is the shape that [`alpha_shape`](crate::alpha_shape)
+//! computes one block from its own samples and those around it, with no other block. [`merge`] joins blocks over
+//! their borders. What comes out is the shape that [`alpha_shape`](crate::alpha_shape)
 //! computes of the points that a [`Pipeline`](crate::Pipeline) selects, simplex by simplex and number by number:
 //! sums are exact, and ties are broken by indices of the volume.
 //!

@@ -29,7 +29,7 @@ impl Cutting {
 }
 
 /// All that a block needs to know of the others: the job, the numbers of the whole volume, and where the
-/// blocks are. It stands in a folder, where the blocks come, too.
+/// blocks are. It is kept in a folder, to which the blocks are written, too.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Plan {
@@ -178,12 +178,12 @@ impl Plan {
         Ok(Self { digest: plan.computed_digest(), ..plan })
     }
 
-    /// Where it stands.
+    /// The folder it is in.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// What tells this plan from others.
+    /// Identifies this plan.
     pub fn digest(&self) -> &str {
         &self.digest
     }

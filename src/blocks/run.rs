@@ -9,7 +9,7 @@ use crate::shape::{
 };
 use crate::volume::GrayRange;
 
-/// What is told of a block: all that merging needs but for keys and rows.
+/// The facts of a block: all that merging needs but for keys and rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Facts {
     pub points: u64,

@@ -1,4 +1,4 @@
-//! What `walpha blocks` tells of its steps.
+//! What `walpha blocks` prints about its steps.
 
 use std::fmt::{self, Display};
 

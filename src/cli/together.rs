@@ -16,12 +16,12 @@ use super::report::Report;
 use super::said::misused;
 use super::{Global, folder, start_threads};
 
-/// What processes do together. The first one reads the command line and tells the others.
+/// What processes do together. The first one reads the command line and sends it to the others.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Work {
     job: Job,
     cutting: Cutting,
-    /// Where what is not done yet stands.
+    /// Holds unfinished work.
     folder: PathBuf,
     /// Where pieces go.
     pieces: Vec<(Pieces, PathBuf)>,
@@ -30,7 +30,7 @@ pub(super) struct Work {
 }
 
 impl Work {
-    /// What the options ask for. What is not done yet stands in a folder beside the first output with pieces,
+    /// What the options ask for. Unfinished work is kept in a folder beside the first output with pieces,
     /// `bone.blocks` for `bone.pvtp`; it goes at the end, and after an interruption the same command goes on
     /// with it.
     pub(super) fn new(

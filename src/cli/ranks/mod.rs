@@ -45,7 +45,7 @@ const VARIABLES: [[&str; 2]; 4] = [
 ];
 
 impl Launched {
-    /// What the environment tells, if there is more than one process.
+    /// What the environment says, if there is more than one process.
     fn of(variable: impl Fn(&str) -> Option<OsString>) -> Option<Self> {
         let number = |name: &str| variable(name)?.to_str()?.trim().parse::<usize>().ok();
         let launched = VARIABLES.iter().filter_map(|[size, rank]| {
@@ -137,9 +137,9 @@ impl Ranks {
         }
     }
 
-    /// Tells of a failure in a process that is not the first, and gives its exit code.
+    /// Reports a failure in a process that is not the first, and returns its exit code.
     fn tell(&self, command: &str, error: &anyhow::Error) -> u8 {
-        /// What fails everywhere is told by the first process, which ends all others meanwhile.
+        /// What fails everywhere is reported by the first process, which ends all others meanwhile.
         const PATIENCE: std::time::Duration = std::time::Duration::from_secs(2);
         std::thread::sleep(PATIENCE);
         complaint::tell(&format!("{command} (rank {})", self.team().rank()), error);
