@@ -46,6 +46,7 @@ fn the_command_makes_the_same_of_a_file() {
         "shape v.nrrd {} -o auto.ply auto.wvm",
         select.replace("alpha 3", "alpha auto")
     ));
+    assert!(json(folder.path(), &["info", "auto.wvm"])["alpha"].as_f64().unwrap() > 0.0);
     run_it("shape auto.wvm -o through.ply");
     assert_eq!(read("auto.ply"), read("through.ply"));
 
