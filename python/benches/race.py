@@ -1,7 +1,7 @@
 """Race walpha against GUDHI, diode and SciPy's Delaunay; prints a table in Markdown.
 
     pip install gudhi scipy diode    # those that are there take part
-    python race.py [--runs 5] [--once SECONDS] [--sizes 30000,128000] [--cpu]
+    python race.py [--runs 5] [--once SECONDS] [--sizes 30000,128000] [--cpu] [--only native,filtration,fast]
 
 All in one run, medians; each gets points in memory, and hands back arrays or a tree. What takes longer than --once is
 not run again. With --cpu it counts the time of all processors, which other work on the machine changes less.
@@ -22,7 +22,7 @@ import walpha
 
 def lattice(n):
     """The points of a volume: samples of a phantom head of the largest differences. Nothing but ties."""
-    size = 64 if n <= 60_000 else 128
+    size = 64 if n <= 60_000 else 128 if n <= 500_000 else 256
     head = walpha.read(f"sample:phantom@{size}").samples
     chosen = walpha.select(walpha.haar(head)[0], count=n)
     return chosen.points, walpha.weigh(chosen.differences, "min-max", alpha=10)
@@ -98,15 +98,18 @@ def main():
     parser.add_argument("--once", type=float, default=float("inf"))
     parser.add_argument("--sizes", default="30000,128000")
     parser.add_argument("--cpu", action="store_true")
+    parser.add_argument("--only", default="", help="words, of which a name has one")
     arguments = parser.parse_args()
     clock = time.process_time if arguments.cpu else time.perf_counter
     columns, table = [], {}
     for n in map(int, arguments.sizes.split(",")):
         for kind, make in (("volume", lattice), ("at random", scattered)):
-            columns.append(f"{n:,} points, {kind}".replace(",", " ", 1))
+            columns.append(f"{n:,} points, {kind}".replace(",", " "))
             points, weights = make(n)
             alpha = 10.0 if make is lattice else 1.0
             for name, work in contestants(points, weights, alpha):
+                if not any(word in name for word in arguments.only.split(",")):
+                    continue
                 try:
                     seconds = f"{median(work, arguments.runs, arguments.once, clock):.2f}"
                 except Exception as error:
