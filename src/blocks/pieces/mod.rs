@@ -45,8 +45,12 @@ impl Pieces {
     /// # Errors
     /// A folder of arrays is there already.
     pub fn check(self, path: &Path) -> Result<(), BlocksError> {
-        #[cfg(feature = "zarr")]
-        if self == Self::Arrays && path.exists() {
+        let is_folder = match self {
+            Self::Grid | Self::Surface => false,
+            #[cfg(feature = "zarr")]
+            Self::Arrays => true,
+        };
+        if is_folder && path.exists() {
             let source = std::io::ErrorKind::AlreadyExists.into();
             return Err(BlocksError::Written { path: path.into(), source });
         }

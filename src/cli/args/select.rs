@@ -189,6 +189,7 @@ impl SelectArgs {
     }
 
     /// The same with so many samples.
+    #[cfg(feature = "render")]
     pub(crate) fn with_count(self, count: u64) -> Self {
         Self { count: Some(count), ratio: None, threshold: None, ..self }
     }
