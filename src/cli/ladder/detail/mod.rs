@@ -31,6 +31,8 @@ struct Wanted {
 }
 
 impl Ladder {
+    /// Makes each level, and writes its meshes and numbers. One function, because it is a list of steps that
+    /// hand each other nearly everything.
     pub(super) fn over_detail(
         &self,
         global: Global,
