@@ -78,6 +78,20 @@ impl Search {
         Self { spent: Spent::of(budget), few, stage }
     }
 
+    /// Goes on until the cut is found, with what it drops: `round` counts all values.
+    pub(crate) fn find<E>(
+        mut self,
+        mut round: impl FnMut(&Self) -> Result<Counts, E>,
+    ) -> Result<(Cut, Dropped), E> {
+        loop {
+            if let Some(found) = self.found() {
+                return Ok(found);
+            }
+            let counts = round(&self)?;
+            self.learn(counts);
+        }
+    }
+
     /// The cut and what it drops, when it is found.
     pub(crate) fn found(&self) -> Option<(Cut, Dropped)> {
         match self.stage {

@@ -62,13 +62,9 @@ pub(super) fn choose(
     }
     let mut search = Search::new(Budget::Count(not_chosen(count, available)?), FEW);
     search.learn(counts);
-    loop {
-        if let Some((cut, _)) = search.found() {
-            return Ok(Chosen { rule: Rule::Largest(cut), gray_min });
-        }
-        let (counts, _) = round(&search, gray_min, field, truncated, passes)?;
-        search.learn(counts);
-    }
+    let next = |search: &Search| Ok(round(search, gray_min, field, truncated, passes)?.0);
+    let (cut, _) = search.find::<BlocksError>(next)?;
+    Ok(Chosen { rule: Rule::Largest(cut), gray_min })
 }
 
 /// What a search asks next about the differences of all samples, and the highest truncated gray level.

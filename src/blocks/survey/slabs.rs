@@ -25,7 +25,7 @@ pub(super) fn truncate_to_file(
     passes: &mut Passes<'_>,
 ) -> Result<(Truncation, Truncated), BlocksError> {
     let mine = if passes.team.is_first() {
-        let io = |source| BlocksError::Io { path: folder.join(Plan::SMOOTHED), source };
+        let io = |source| BlocksError::Written { path: folder.join(Plan::SMOOTHED), source };
         let file = tempfile::tempfile_in(folder).map_err(io)?;
         let mut work = Work { file, dims: field.dims, slabs: Slabs::new(field.dims), folder };
         Some(work.truncate(job, field, passes)?)
@@ -74,17 +74,14 @@ impl Work<'_> {
             self.write(walls, &values)
         })?;
         search.learn(counts);
-        let (cut, dropped) = loop {
-            if let Some(found) = search.found() {
-                break found;
-            }
+        let (cut, dropped) = search.find(|search| {
             let mut counts = Counts::default();
             passes.serial(&planes, |planes| {
                 counts.join(search.count(self.indexed(planes, &self.read(planes)?)));
                 Ok(())
             })?;
-            search.learn(counts);
-        };
+            Ok::<_, BlocksError>(counts)
+        })?;
         let truncation = Truncation::new(tolerance, total, dropped);
         if truncation.epsilon > 0.0 {
             self.smooth(cut, [&planes, &walls], passes)?;
@@ -184,6 +181,6 @@ impl Work<'_> {
     }
 
     fn failed(&self, source: io::Error) -> BlocksError {
-        BlocksError::Io { path: self.folder.join(Plan::SMOOTHED), source }
+        BlocksError::Written { path: self.folder.join(Plan::SMOOTHED), source }
     }
 }

@@ -15,13 +15,10 @@ pub(super) fn truncate(
     let total = job.dims.samples() as u64;
     let tolerance = job.haar.tolerance;
     tolerance.check()?;
-    let mut search = Search::new(tolerance.budget(total), FEW);
+    let search = Search::new(tolerance.budget(total), FEW);
     let mut sums = vec![0.0; field.bricks.count().iter().product()];
     let mut is_first = true;
-    let found = loop {
-        if let Some(found) = search.found() {
-            break found;
-        }
+    let (cut, dropped) = search.find(|search| {
         let mut counts = Counts::default();
         passes.each(
             |tile| {
@@ -43,14 +40,14 @@ pub(super) fn truncate(
         )?;
         counts = passes.team.joined(counts, Counts::join);
         if is_first {
-            sums = passes.team.joined(sums, |sums, others| either(sums, others));
+            let mine = std::mem::take(&mut sums);
+            sums = passes.team.joined(mine, |sums, others| either(sums, others));
             field.bricks.coarse(&mut sums);
             is_first = false;
         }
         counts.join(search.count(coarse(field, &sums)));
-        search.learn(counts);
-    };
-    let (cut, dropped) = found;
+        Ok::<_, BlocksError>(counts)
+    })?;
     let truncation = Truncation::new(tolerance, total, dropped);
     if truncation.epsilon == 0.0 {
         return Ok((truncation, Truncated::Same));
