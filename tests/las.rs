@@ -8,8 +8,8 @@ use told::Told;
 use walpha::points::{is_point_file, read_points};
 
 /// Coordinates are whole numbers of thousandths, so that the format's scales keep them.
-fn write(path: &std::path::Path) {
-    let mut builder = las::Builder::from((1, 2));
+fn write(path: &std::path::Path, version: (u8, u8)) {
+    let mut builder = las::Builder::from(version);
     builder.point_format.is_compressed = path.extension().is_some_and(|e| e == "laz");
     let transform = las::Transform { scale: 0.001, offset: 0.0 };
     builder.transforms = las::Vector { x: transform, y: transform, z: transform };
@@ -27,7 +27,7 @@ fn clouds_of_scanners_are_read() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["a.las", "a.laz"] {
         let path = folder.path().join(name);
-        write(&path);
+        write(&path, (1, 2));
         // By content, whatever its name is.
         let other = folder.path().join("cloud.dat");
         std::fs::copy(&path, &other).unwrap();
@@ -51,7 +51,7 @@ fn clouds_of_scanners_are_read() {
 fn long_records_take_no_more_than_their_share() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("long.las");
-    write(&path);
+    write(&path, (1, 2));
     let mut bytes = std::fs::read(&path).unwrap();
     bytes[105..107].copy_from_slice(&58_369u16.to_le_bytes());
     std::fs::write(&path, &bytes).unwrap();
@@ -64,4 +64,20 @@ fn long_records_take_no_more_than_their_share() {
     assert!(read_points(&path, None).is_err());
     let more = peak() - before;
     assert!(more < 1 << 20, "{more} KiB more");
+}
+
+/// Found by fuzzing: a number of points that, times the bytes of each, is more than 64 bits.
+#[test]
+fn more_points_than_can_be_counted_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("many.las");
+    write(&path, (1, 4));
+    assert_eq!(read_points(&path, None).unwrap().len(), 5);
+    let mut bytes = std::fs::read(&path).unwrap();
+    // The number of 32 bits of older versions goes before that of 64.
+    bytes[107..111].fill(0);
+    bytes[247..255].fill(0xff);
+    std::fs::write(&path, &bytes).unwrap();
+    let error = read_points(&path, None).unwrap_err().told();
+    assert!(error.contains("more bytes of points than a number can count"), "{error}");
 }

@@ -12,7 +12,7 @@ fn what_makes_no_volume_is_told() {
         changed: vec![(group, number, kind, value.into())],
         ..at(1)
     };
-    let cases: [(Slice, &[&str]); 9] = [
+    let cases: [(Slice, &[&str]); 11] = [
         (Slice { position: [-10.0, 5.5, 5.0], ..at(1) }, &["gap of 3.000 mm", "slices missing: 1"]),
         (Slice { position: [-10.0, 5.5, 2.0], ..at(1) }, &["two slices at one place"]),
         (Slice { orientation: "0\\1\\0\\0\\0\\1", ..at(1) }, &["different orientations"]),
@@ -22,6 +22,9 @@ fn what_makes_no_volume_is_told() {
         (with(0x28, 8, b"IS", "4"), &["two slices at one place, frame 1 of "]),
         (with(0x20, 0x32, b"DS", "1\\2"), &["no Image Position"]),
         (Slice { pixels: vec![1, 2], ..at(1) }, &["cannot be read"]),
+        // Found by fuzzing: a table of as many values as these bits make.
+        (with(0x28, 0x101, b"US", "\0\0"), &["claims 0 bits of the 16"]),
+        (with(0x28, 0x101, b"US", "\x20\0"), &["claims 32 bits of the 16"]),
     ];
     for (other, parts) in cases {
         let text = series(&[at(0), other.clone(), at(2)]).unwrap_err();

@@ -84,4 +84,7 @@ fn point_clouds_are_read() {
     refuses("f.pcd", text.replace("SIZE 4", "SIZE 8 4").as_bytes(), "different lengths");
     refuses("g.pcd", text.replace("ascii", "utf-8").as_bytes(), "ascii, binary");
     refuses("h.pcd", text.replace("POINTS 3", "POINTS 999999999999").as_bytes(), "cannot hold");
+    // Found by fuzzing: a field without numbers, looked for beyond the last one.
+    let none = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 0\nPOINTS 1\nDATA ascii\n1 2\n";
+    refuses("i.pcd", none.as_bytes(), "no bytes or numbers");
 }

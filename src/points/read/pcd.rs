@@ -74,7 +74,7 @@ impl Header {
         Ok(())
     }
 
-    /// Refuses lists of different lengths, and more points than the file can hold.
+    /// Refuses lists of different lengths, empty or huge fields, and more points than the file can hold.
     fn check(&mut self, length: u64) -> Result<(), Reason> {
         let fields = self.names.len();
         if self.counts.is_empty() {
@@ -85,9 +85,9 @@ impl Header {
                 "has FIELDS, SIZE, TYPE and COUNT of different lengths: it is damaged",
             ));
         }
-        if self.sizes.iter().chain(&self.counts).any(|&n| n > 1 << 16) {
+        if self.sizes.iter().chain(&self.counts).any(|n| !(1..=1 << 16).contains(n)) {
             return Err(Reason::damaged(
-                "has fields of more than 65536 bytes or numbers: it is damaged",
+                "has fields of no bytes or numbers, or of more than 65536: it is damaged",
             ));
         }
         // Compressed to a hundredth, which is more than LZF can.

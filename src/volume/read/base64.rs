@@ -81,7 +81,7 @@ fn decode(group: [u8; 4]) -> Option<([u8; 3], usize)> {
         bits = bits << 6 | u32::from(six);
     }
     let [_, a, b, c] = bits.to_be_bytes();
-    (padding <= 2).then_some(([a, b, c], 3 - padding))
+    (padding <= 2).then(|| ([a, b, c], 3 - padding))
 }
 
 #[cfg(test)]

@@ -185,6 +185,12 @@ pub(super) fn pixels(slices: &[&Slice]) -> Result<Vec<Vec<f32>>, VolumeError> {
     let path = &first.path;
     let object = dicom_object::open_file(path).map_err(|error| damaged(path, &error))?;
     let decoded = object.decode_pixel_data().map_err(|error| damaged(path, &error))?;
+    // The decoder makes a table of all values, and panics if there are none.
+    let (stored, allocated) = (decoded.bits_stored(), decoded.bits_allocated());
+    if !(1..=allocated).contains(&stored) {
+        let reason = Reason::damaged(format!("claims {stored} bits of the {allocated} of a pixel"));
+        return Err(format_error(path, reason));
+    }
     let found = decoded.number_of_frames();
     if found != claimed {
         let reason = Reason::truncated(format!(
