@@ -1,8 +1,5 @@
 #include "walpha/cpp/regular.h"
 
-#include <utility>
-#include <vector>
-
 #include <CGAL/Regular_triangulation_3.h>
 #include <CGAL/Regular_triangulation_cell_base_3.h>
 #include <CGAL/Regular_triangulation_vertex_base_3.h>
@@ -53,12 +50,24 @@ void Regular::copy(rust::Slice<std::uint32_t> vertices, rust::Slice<std::uint32_
 }
 
 std::unique_ptr<Regular> regular(rust::Slice<const double> positions,
-                                 rust::Slice<const double> weights) {
+                                 rust::Slice<const double> weights,
+                                 rust::Slice<const std::uint32_t> order) {
   throw_quietly();
-  const auto points = numbered<Triangulation::Weighted_point>(positions, weights);
   auto data = std::make_unique<Regular::Data>();
-  data->triangulation.insert(points.begin(), points.end());
-  data->triangulation.infinite_vertex()->info() = static_cast<std::uint32_t>(points.size());
+  auto &triangulation = data->triangulation;
+  Triangulation::Cell_handle near;
+  for (const auto i : order) {
+    const double *p = positions.data() + 3 * std::size_t{i};
+    const Triangulation::Weighted_point point({p[0], p[1], p[2]}, weights[i]);
+    Triangulation::Locate_type place;
+    int j, k;
+    near = triangulation.locate(point, place, j, k, near);
+    const auto vertex = triangulation.insert(point, place, near, j, k);
+    if (vertex == Triangulation::Vertex_handle()) continue;
+    vertex->info() = i;
+    near = vertex->cell();
+  }
+  triangulation.infinite_vertex()->info() = static_cast<std::uint32_t>(weights.size());
   return std::make_unique<Regular>(std::move(data));
 }
 

@@ -29,8 +29,9 @@ class Regular {
 };
 
 // `positions` holds x, y, z of each point, `weights` one number per point; all finite, no two
-// positions equal.
+// positions equal. `order` holds each point once, as they are inserted.
 std::unique_ptr<Regular> regular(rust::Slice<const double> positions,
-                                 rust::Slice<const double> weights);
+                                 rust::Slice<const double> weights,
+                                 rust::Slice<const std::uint32_t> order);
 
 }  // namespace walpha

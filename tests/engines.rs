@@ -118,6 +118,20 @@ proptest! {
     }
 }
 
+/// Most blocks of a line span no volume, whatever their lattice.
+#[test]
+fn lines_have_collinear_blocks() {
+    for step in [1.0, 0.1, 1024.0, 1e-9] {
+        let line = (0..60).map(|i| [step * f64::from(i), 0.0, step]);
+        let beside = [[5.0 * step, step, 0.0], [7.0 * step, 0.0, 2.0 * step]];
+        let weight = |p: [f64; 3]| (p, if p[0] > 20.0 * step { step * step / 4.0 } else { 0.0 });
+        let points = weighted(line.chain(beside).map(weight));
+        for alpha in [-0.1, 0.0, 0.25, 1.0, 20.0, 1e4] {
+            check(&points, alpha * step * step);
+        }
+    }
+}
+
 #[test]
 fn planes_far_apart_have_coplanar_blocks() {
     let plane = |z: i32| (0..16).map(move |i| [i % 4, i / 4, z]);

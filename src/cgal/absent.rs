@@ -15,7 +15,7 @@ pub(crate) fn reference(_: &Sites<'_>, _: f64) -> Result<RawComplex, Triangulati
     Err(ABSENT)
 }
 
-pub(crate) fn regular(_: &[[f64; 3]], _: &[f64]) -> Result<Regular, TriangulationError> {
+pub(crate) fn regular(_: &[[f64; 3]], _: &[f64], _: &[u32]) -> Result<Regular, TriangulationError> {
     Err(ABSENT)
 }
 

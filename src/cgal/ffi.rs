@@ -31,6 +31,7 @@ pub(super) mod bridge {
         fn cells(self: &Regular) -> usize;
         fn copy(self: &Regular, vertices: &mut [u32], beside: &mut [u32]) -> Result<()>;
 
-        fn regular(positions: &[f64], weights: &[f64]) -> Result<UniquePtr<Regular>>;
+        fn regular(positions: &[f64], weights: &[f64], order: &[u32])
+        -> Result<UniquePtr<Regular>>;
     }
 }

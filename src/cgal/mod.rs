@@ -53,7 +53,7 @@ mod tests {
     fn what_cgal_throws_is_an_error() {
         let space = [0.0; 5];
         let thrown = [
-            bridge::regular(&INFINITE, &space).err(),
+            bridge::regular(&INFINITE, &space, &[0, 1, 2, 3, 4]).err(),
             bridge::reference(&INFINITE, &space, 1.0).err(),
         ];
         for (entry, error) in thrown.into_iter().enumerate() {
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn what_the_bridge_throws_is_an_error() {
-        let made = bridge::regular(&INFINITE[..12], &[0.0; 4]).unwrap();
+        let made = bridge::regular(&INFINITE[..12], &[0.0; 4], &[0, 1, 2, 3]).unwrap();
         let mut corners = vec![0; 4 * made.cells()];
         let mut beside = corners.clone();
         assert!(made.copy(&mut corners, &mut beside).is_ok());

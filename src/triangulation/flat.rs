@@ -29,8 +29,7 @@ pub(crate) fn triangulate_flat(
     sites: &Sites<'_>,
     maker: Maker,
 ) -> Result<Flat, TriangulationError> {
-    let spanning = spanning(sites);
-    let added = beside(sites, &spanning);
+    let added = beside(sites.positions());
     let along = sites.curve();
     let extra = added.len() as u32;
     let mut positions = added;
@@ -58,12 +57,22 @@ pub(crate) fn triangulate_flat(
     Ok(flat)
 }
 
-/// As many sites as are needed to span what all of them span.
-fn spanning(sites: &Sites<'_>) -> Vec<[f64; 3]> {
-    let all = sites.positions();
+/// Refuses sites that span no volume. O(n) for those, else mostly less.
+pub(crate) fn check_span(sites: &Sites<'_>) -> Result<(), SitesError> {
+    match spanning(sites.positions()).len() {
+        4 => Ok(()),
+        some => Err(SitesError::flat(sites.positions().len(), some as i32 - 1)),
+    }
+}
+
+/// As many places as are needed to span what all of them span.
+fn spanning(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let mut spanning = vec![all[0]];
     for &place in &all[1..] {
-        if spanning.len() < 4 && is_independent(&spanning, place) {
+        if spanning.len() == 4 {
+            break;
+        }
+        if is_independent(&spanning, place) {
             spanning.push(place);
         }
     }
@@ -83,16 +92,15 @@ fn is_independent(spanning: &[[f64; 3]], place: [f64; 3]) -> bool {
     }
 }
 
-/// Places beside the sites that span a volume with them: along the axes from the first site, farther
-/// away than any other, towards the origin.
-fn beside(sites: &Sites<'_>, spanning: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    let all = sites.positions().as_flattened();
-    let largest = all.iter().fold(0f64, |most, x| most.max(x.abs()));
+/// Places beside others that span a volume with them: along the axes from the first, farther away than any
+/// other, towards the origin. None if these span one.
+pub(crate) fn beside(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let mut spanning = spanning(all);
+    let given = spanning.len();
+    let largest = all.as_flattened().iter().fold(0f64, |most, x| most.max(x.abs()));
     // A power of two, so that a lattice stays one. Of points at the origin alone, any will do.
     let digits = largest.max(1e-150).log2().ceil() as i32;
     let far = if largest > 0.0 { 2f64.powi(digits + 1) } else { 1.0 };
-    let mut spanning = spanning.to_vec();
-    let sites = spanning.len();
     for axis in 0..3 {
         let mut place = spanning[0];
         place[axis] -= far.copysign(place[axis]);
@@ -100,7 +108,7 @@ fn beside(sites: &Sites<'_>, spanning: &[[f64; 3]]) -> Vec<[f64; 3]> {
             spanning.push(place);
         }
     }
-    spanning.split_off(sites)
+    spanning.split_off(given)
 }
 
 /// Whether an error says that points span no volume.

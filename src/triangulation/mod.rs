@@ -21,11 +21,12 @@ mod error;
 mod flat;
 mod native;
 mod predicates;
+mod rounds;
 mod sites;
 mod torus;
 
 pub use error::{SitesError, TriangulationError};
-pub(crate) use flat::{Flat, is_flat, triangulate_flat};
+pub(crate) use flat::{Flat, beside, check_span, is_flat, triangulate_flat};
 pub(crate) use native::{Digger, Growing};
 pub(crate) use predicates::{Interval, Predicates, Ratio, Screen, SmallRadius, lattice};
 pub(crate) use sites::check as check_numbers;
@@ -164,8 +165,8 @@ pub enum Maker {
 }
 
 impl Maker {
-    /// The triangulation of points that are sites, or some of them. [`Maker::Native`] is fast where
-    /// points near each other in the slices are near each other in space. `inserted` hears now and then
+    /// The triangulation of points that are sites, or some of them. Both are fast where points
+    /// near each other in the slices are near each other in space. `inserted` hears now and then
     /// how many more points are in; CGAL cannot be asked before it is done.
     pub(crate) fn make(
         self,
@@ -181,9 +182,14 @@ impl Maker {
 }
 
 /// CGAL's `Regular_triangulation_3`, copied out; its own memory is given back before cells are numbered.
+///
+/// Points come in our order. CGAL's, a Hilbert curve through medians, is in disorder along a line: where
+/// all have the same y, the halves by y are arbitrary, and the walks to the next point become long.
 fn cgal(positions: &[[f64; 3]], weights: &[f64]) -> Result<Triangulation, TriangulationError> {
+    let mut order = room(positions.len())?;
+    order.extend(rounds::rounds(positions.len() as u32));
     let copied = || -> Result<_, TriangulationError> {
-        let made = crate::cgal::regular(positions, weights)?;
+        let made = crate::cgal::regular(positions, weights, &order)?;
         let count = made.cells();
         if count > Triangulation::MOST_CELLS {
             return Err(TriangulationError::TooManyCells);

@@ -20,6 +20,7 @@ mod partition;
 mod piece;
 mod plan;
 mod reach;
+mod spanning;
 
 use rayon::prelude::*;
 
@@ -28,6 +29,7 @@ use crate::math::Lattice;
 use crate::progress::Piece;
 use crate::triangulation::{
     AXES, Maker, Predicates, Sites, SitesError, Torus, Triangulation, TriangulationError,
+    check_span,
 };
 
 use classify::{Long, Owned, Shelves, classify};
@@ -38,6 +40,7 @@ pub use plan::PlanError;
 pub(crate) use plan::at_work;
 pub(super) use plan::{Limits, Plan};
 pub(crate) use reach::Reach;
+use spanning::spanning;
 
 /// What is asked about all blocks of a set.
 #[derive(Clone, Copy)]
@@ -104,6 +107,9 @@ pub(super) fn run(
     question: &Question,
 ) -> Result<Answer, ShapeError> {
     let partition = &plan.partition;
+    if partition.len() > 1 && sites.torus().is_none() {
+        check_span(sites).map_err(TriangulationError::from)?;
+    }
     tracing::debug!(blocks = partition.len(), at_once = plan.at_once, "cut");
     // So many blocks at once, each giving its memory back before the next.
     let shelves = Shelves::new(sites.input(), plan.shelves());
@@ -127,7 +133,7 @@ pub(super) fn run(
     Ok(merge(sites, plan, owned, question, shelves))
 }
 
-/// Triangulates a block with its halo, or, where these span no volume, with all other sites.
+/// What a block owns.
 fn decide(
     sites: &Sites<'_>,
     partition: &Partition,
@@ -136,8 +142,11 @@ fn decide(
     shelves: Shelves,
     work: &Piece,
 ) -> Result<Owned, ShapeError> {
-    let (points, made) = triangulated(sites, partition, block, question, work)?;
-    let owned = classify(&points, made, question, shelves);
+    let (points, made, lattice) = match sites.torus() {
+        None => in_space(sites, partition, block, question, work)?,
+        Some(torus) => on_torus(sites, torus, partition, block, question, work)?,
+    };
+    let owned = classify(&points, made, &Question { lattice, ..*question }, shelves);
     work.add((WORK - TRIANGULATION) * u64::from(points.own));
     match (owned.long, sites.torus()) {
         (Some(edge), Some(torus)) => Err(too_long(torus, edge)),
@@ -145,33 +154,55 @@ fn decide(
     }
 }
 
-/// A block with as much around it as decides what it owns.
-fn triangulated(
+/// A block with what decides what it owns around it, and the lattice of all that.
+fn in_space(
     sites: &Sites<'_>,
     partition: &Partition,
     block: usize,
     question: &Question,
     work: &Piece,
-) -> Result<(Block, Triangulation), ShapeError> {
-    for reach in question.reaches(sites, partition.len()) {
+) -> Result<(Block, Triangulation, Lattice), ShapeError> {
+    let mut points = partition.block(sites, Reach::Balls(question.alpha), block);
+    if partition.len() == 1 {
+        let made = triangulate(&points, question.maker, work)?;
+        return Ok((points, made, question.lattice));
+    }
+    let (inside, next) = (points.input.len(), sites.input().last().map_or(0, |last| last + 1));
+    let made = spanning(&mut points, question.alpha, next, question.maker, work)?;
+    // Places beside the points need not be on the lattice of the set.
+    let lattice = if points.input.len() > inside {
+        Lattice::of(&points.positions, &points.weights)
+    } else {
+        question.lattice
+    };
+    Ok((points, made, lattice))
+}
+
+/// The same on a torus, where it takes as much around a block as there are large empty spheres.
+fn on_torus(
+    sites: &Sites<'_>,
+    torus: Torus,
+    partition: &Partition,
+    block: usize,
+    question: &Question,
+    work: &Piece,
+) -> Result<(Block, Triangulation, Lattice), ShapeError> {
+    for reach in question.reaches(sites, torus) {
         let points = partition.block(sites, reach, block);
         match triangulate(&points, question.maker, work) {
             Err(TriangulationError::Sites(SitesError::Flat { .. })) => {}
             Ok(made) if !question.decides(reach, &points, &made) => {}
-            made => return Ok((points, made?)),
+            made => return Ok((points, made?, question.lattice)),
         }
     }
     let points = partition.block(sites, Reach::whole(sites), block);
     let made = triangulate(&points, question.maker, work)?;
-    Ok((points, made))
+    Ok((points, made, question.lattice))
 }
 
 impl Question {
-    /// How far to look before all is looked at.
-    fn reaches(&self, sites: &Sites<'_>, blocks: usize) -> Vec<Reach> {
-        let Some(torus) = sites.torus() else {
-            return if blocks > 1 { vec![Reach::Balls(self.alpha)] } else { Vec::new() };
-        };
+    /// How far to look on a torus before all is looked at.
+    fn reaches(&self, sites: &Sites<'_>, torus: Torus) -> Vec<Reach> {
         let heaviest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let wanted = if self.exterior { f64::INFINITY } else { self.alpha };
         // The largest empty spheres of points of even density are twice as large as what each point has

@@ -2,11 +2,12 @@
 
 use super::classify::{Dimension, Owned, Shelves, classify};
 use super::partition::Neighbourhood;
-use super::{Block, Question, triangulate};
+use super::spanning::spanning;
+use super::{Block, Question};
 use crate::math::Lattice;
 use crate::progress::Piece;
 use crate::shape::{Class, Complex, ShapeError, Simplices, UnionFind};
-use crate::triangulation::{Maker, Sites, SitesError, TriangulationError};
+use crate::triangulation::{Maker, Sites};
 
 /// Points around a block, in the order of their indices in the whole set, with weights.
 #[derive(Clone, Copy)]
@@ -45,9 +46,6 @@ pub(crate) use super::classify::Side;
 
 /// Finds what a block owns of the α-complex. `alpha` is what power weights are judged by.
 ///
-/// Where the points and their halo span no volume, four places beside them are added, whose balls are empty:
-/// they are in no simplex of the shape, and refute none.
-///
 /// # Errors
 /// Numbers that are none, two points at one place, no memory.
 pub(crate) fn block_shape(
@@ -64,14 +62,7 @@ pub(crate) fn block_shape(
     let largest = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // Any α below −max ω asks for the empty shape, and doubles hold one.
     let alpha = alpha.max(-2.0 * largest.abs() - 1.0);
-    let work = Piece::new(1);
-    let made = match triangulate(&block, maker, &work) {
-        Err(TriangulationError::Sites(SitesError::Flat { .. } | SitesError::TooFew { .. })) => {
-            widen(&mut block, alpha, positions.len() as u32);
-            triangulate(&block, maker, &work)?
-        }
-        made => made?,
-    };
+    let made = spanning(&mut block, alpha, positions.len() as u32, maker, &Piece::new(1))?;
     let lattice = Lattice::of(&block.positions, &block.weights);
     let question = Question { alpha, lattice, exterior: false, maker };
     let owned = classify(&block, made, &question, Shelves::new(&[], 1));
@@ -104,27 +95,6 @@ fn block(points: Own<'_>, alpha: f64) -> Result<Block, ShapeError> {
         own: owned.len() as u32,
         copies: None,
     })
-}
-
-/// Adds four places outside the box of all points, which with them span a volume.
-fn widen(block: &mut Block, alpha: f64, next: u32) {
-    let end = |f: fn(f64, f64) -> f64| {
-        let join = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| f(a[k], b[k]));
-        block.positions.iter().copied().reduce(join).unwrap_or_default()
-    };
-    let (low, high) = (end(f64::min), end(f64::max));
-    let side = (0..3).map(|k| high[k] - low[k]).fold(1.0, f64::max).ceil();
-    let outside = low.map(|x| x.floor() - side);
-    let beyond = high.map(|x| x.ceil() + side);
-    for k in 0..4 {
-        let mut at = outside;
-        if k < 3 {
-            at[k] = beyond[k];
-        }
-        block.positions.push(at);
-        block.weights.push(-(alpha.abs() + 1.0).ceil());
-        block.input.push(next + k as u32);
-    }
 }
 
 /// Rows in the order of their smallest points; `points` are given.
@@ -166,8 +136,8 @@ fn ordered(owned: Owned, block: &Block, points: usize) -> BlockShape {
         }
     }
     piece.complex = Complex { cells, facets, edges, vertices };
-    // The places beside are in no component of others.
-    let mut sets = UnionFind::new(points + 4);
+    // The places beside that may have been added are in no component of others.
+    let mut sets = UnionFind::new(points + 3);
     joined.into_iter().for_each(|[a, b]| _ = sets.unite(a, b));
     piece.components = (0..points as u32).map(|i| sets.find(i)).collect();
     border.sort_unstable();

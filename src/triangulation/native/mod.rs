@@ -1,10 +1,8 @@
 //! Our own maker: incremental insertion (Bowyer 1981, doi:10.1093/comjnl/24.2.162; Watson 1981,
 //! doi:10.1093/comjnl/24.2.167) with weights, over flat arrays.
 //!
-//! 1. Points come in rounds, each a few times as large as all before it (a biased randomized
-//!    insertion order: Amenta, Choi and Rote 2003, doi:10.1145/777792.777824), in the order given within
-//!    a round. Points along a curve ([`Sites`](super::Sites) know one) find their cells, and the
-//!    numbers these are made of, in the cache.
+//! 1. Points come in [`rounds`]. Points along a curve ([`Sites`](super::Sites) know one) find their
+//!    cells, and the numbers these are made of, in the cache.
 //! 2. A walk from the last new cell finds the one that holds the point ([`locate`]). If the point
 //!    does not lie inside that cell's orthogonal sphere it is hidden.
 //! 3. The cells whose spheres hold the point are one cavity; new cells join the point to the
@@ -19,6 +17,7 @@ mod start;
 use std::cmp::Ordering;
 
 use super::predicates::{Predicates, Screen};
+use super::rounds::rounds;
 use super::{Cell, GONE, Triangulation, TriangulationError};
 use cavity::Cavity;
 pub(crate) use growing::Growing;
@@ -135,22 +134,4 @@ impl Mesh {
         self.cells[a as usize / 4].beside[a as usize % 4] = b;
         self.cells[b as usize / 4].beside[b as usize % 4] = a;
     }
-}
-
-/// The numbers 0..n in rounds, ascending in each.
-fn rounds(n: u32) -> impl Iterator<Item = u32> {
-    // Below this many points a round is not worth its walks.
-    let last = n.checked_ilog2().unwrap_or(0).saturating_sub(10) / ROUND;
-    (0..=last).rev().flat_map(move |round| (0..n).filter(move |&v| late(v).min(last) == round))
-}
-
-/// The logarithm of how many times as many points there are after a round as before it.
-const ROUND: u32 = 2;
-
-/// A round for a point, the last being 0, each more probable than the one before by this factor: zeros that its
-/// scrambled number ends with.
-fn late(v: u32) -> u32 {
-    let v = (v ^ v >> 16).wrapping_mul(0x45d9_f3b5);
-    let v = (v ^ v >> 16).wrapping_mul(0x45d9_f3b5);
-    (v ^ v >> 16).trailing_zeros() / ROUND
 }

@@ -1,0 +1,56 @@
+//! Blocks whose points may span no volume: along a line of points, most do not.
+
+use super::{Block, triangulate};
+use crate::progress::Piece;
+use crate::triangulation::{Maker, SitesError, Triangulation, TriangulationError, beside};
+
+/// Triangulates a block, where its points span no volume with places beside them, numbered from `next`.
+/// Their balls at α are empty: they are in no simplex of the shape, and refute none.
+pub(super) fn spanning(
+    block: &mut Block,
+    alpha: f64,
+    next: u32,
+    maker: Maker,
+    work: &Piece,
+) -> Result<Triangulation, TriangulationError> {
+    match triangulate(block, maker, work) {
+        Err(TriangulationError::Sites(SitesError::Flat { .. } | SitesError::TooFew { .. })) => {
+            let places = beside(&block.positions);
+            // Twice as much as makes them empty, for roundings.
+            block.weights.extend(places.iter().map(|_| -(2.0 * alpha.max(0.0) + 1.0).ceil()));
+            block.input.extend((next..).take(places.len()));
+            block.positions.extend(places);
+            triangulate(block, maker, work)
+        }
+        made => made,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Partition, Question, in_space};
+    use super::*;
+    use crate::math::Lattice;
+    use crate::triangulation::Sites;
+
+    /// Blocks of a line once took all points with them: quadratic in the number of blocks.
+    #[test]
+    fn a_block_of_a_line_stays_small() {
+        let line = (0..800).map(|i| [f64::from(i), 0.0, 0.0]);
+        let positions: Vec<_> = line.chain([[5.0, 1.0, 0.0], [5.0, 0.0, 1.0]]).collect();
+        let weights = vec![0.0; positions.len()];
+        let sites = Sites::new(&positions, &weights).unwrap();
+        let partition = Partition::new(&sites, 8);
+        let lattice = Lattice::of(&positions, &weights);
+        for maker in [Maker::Native, Maker::Cgal] {
+            let question = Question { alpha: 1.0, lattice, exterior: false, maker };
+            for block in 0..partition.len() {
+                let work = Piece::new(1);
+                let (points, made, _) =
+                    in_space(&sites, &partition, block, &question, &work).unwrap();
+                assert!(points.positions.len() < 110, "{}", points.positions.len());
+                assert_eq!(made.ghost() as usize, points.input.len());
+            }
+        }
+    }
+}
