@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Answer, Case, Random, closed, definition, drop_row, grid, shape_of};
-use walpha_check::{Alpha, Class, Comparison, Domain, Placed, compare};
+use walpha_check::{Alpha, Class, CompareError, Comparison, Domain, Placed, compare};
 
 /// Without weights, at α = 0.75.
 fn placed<'a>(positions: &'a [[f64; 3]], answer: &'a Answer) -> Placed<'a> {
@@ -151,4 +151,64 @@ fn weights_and_alpha_that_differ() {
     let twice = [&case.positions[..], &case.positions[3..4]].concat();
     let lighter = [&[0.0; 8][..], &[-1.0]].concat();
     assert!(compare(a, weighted(&twice, &lighter, &answer)).unwrap().is_equal());
+}
+
+/// Of everything that is compared, one thing differs at a time, on either side.
+#[test]
+fn each_difference_counts_alone() {
+    let case = Case { positions: grid(2), weights: vec![0.0; 8], alpha: 0.75 };
+    let shape = shape_of(&definition(&case).unwrap());
+    let same = placed(&case.positions, &shape);
+    let differ = |other: Placed, what: &str| {
+        assert!(!compare(same, other).unwrap().is_equal(), "{what}");
+        assert!(!compare(other, same).unwrap().is_equal(), "{what}, on the other side");
+    };
+    assert!(compare(same, same).unwrap().is_equal());
+    differ(Placed::new(&case.positions, &case.weights, squared(0.76), &shape.complex), "α");
+    let weights = [0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0];
+    differ(weighted(&case.positions, &weights, &shape), "a weight");
+    let more = [&case.positions[..], &[[5.0; 3]]].concat();
+    differ(placed(&more, &shape), "a point");
+    let mut other = shape.clone();
+    other.complex.vertices.classes_mut()[7] = Class::Singular;
+    differ(placed(&case.positions, &other), "a class");
+    let mut other = shape.clone();
+    drop_row(&mut other.complex.facets, 2).unwrap();
+    differ(placed(&case.positions, &other), "a facet");
+}
+
+/// Only where both list exterior simplices does it count that one does not have them.
+#[test]
+fn exterior_simplices_count_if_both_have_them() {
+    let case = Case { positions: grid(2), weights: vec![0.0; 8], alpha: 0.3 };
+    let whole = definition(&case).unwrap();
+    let shape = shape_of(&whole);
+    let (with, without) = (placed(&case.positions, &whole), placed(&case.positions, &shape));
+    for (a, b) in [(with, without), (without, with)] {
+        let comparison = compare(a, b).unwrap();
+        assert!(!comparison.exterior);
+        assert_eq!(only(&comparison), [[0; 3]; 4], "{comparison}");
+    }
+    let mut fewer = whole.clone();
+    let cells = fewer.complex.cells.len();
+    drop_row(&mut fewer.complex.cells, cells - 1).unwrap();
+    let comparison = compare(with, placed(&case.positions, &fewer)).unwrap();
+    assert!(comparison.exterior);
+    assert_eq!(only(&comparison)[3], [1, 0, 0]);
+}
+
+#[test]
+fn rows_of_points_that_do_not_exist_are_refused() {
+    let case = Case { positions: grid(2), weights: vec![0.0; 8], alpha: 0.75 };
+    let shape = shape_of(&definition(&case).unwrap());
+    let refused = |change: fn(&mut Answer)| {
+        let mut other = shape.clone();
+        change(&mut other);
+        let error = compare(placed(&case.positions, &shape), placed(&case.positions, &other));
+        assert!(matches!(error, Err(CompareError::Index { which: 'B', .. })), "{error:?}");
+    };
+    refused(|other| other.complex.vertices.push([8], Class::Regular));
+    refused(|other| other.complex.edges.push([0, 8], Class::Regular));
+    refused(|other| other.complex.facets.push([8, 0, 1], Class::Regular));
+    refused(|other| other.complex.cells.push([0, 1, 8, 2], Class::Interior));
 }

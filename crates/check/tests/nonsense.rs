@@ -34,6 +34,21 @@ fn corners_in_one_place_are_a_finding() {
     assert!(lines.iter().any(|line| line.contains("corners are in one place")), "{lines:?}");
 }
 
+/// Three cells on one facet are named.
+#[test]
+fn a_crowded_facet_names_its_cells() {
+    let points = r#""points":[[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1,2],[0,0,-1]],"alpha":9"#;
+    let cells = r#""cells":[[0,1,2,3],[0,1,2,4],[0,2,1,5]]"#;
+    let findings = judge(format!("{{{points},{cells}}}").as_bytes()).unwrap();
+    let crowded = findings.iter().find_map(|finding| match finding {
+        Finding::Crowded { facet, cells } => Some((facet.vertices().to_vec(), cells.len())),
+        _ => None,
+    });
+    let (mut facet, cells) = crowded.unwrap();
+    facet.sort_unstable();
+    assert_eq!((facet, cells), (vec![0, 1, 2], 3));
+}
+
 /// Random rows over points that coincide, lie on lines and in planes, with random classes.
 #[test]
 fn nonsense_is_judged() {

@@ -20,6 +20,9 @@ fn what_is_not_an_alpha_is_refused() {
     assert_eq!("big".parse::<Alpha>(), Err(AlphaError::Text("big".into())));
     assert_eq!(Alpha::from_radius(-1.0), Err(AlphaError::Radius(-1.0)));
     assert_eq!(Alpha::from_radius(3.0).unwrap().squared(), 9.0);
+    assert_eq!(Alpha::from_radius(0.0).unwrap().radius(), Some(0.0));
+    assert_eq!(Alpha::from_squared(9.0).unwrap().radius(), Some(3.0));
+    assert_eq!(Alpha::from_squared(-9.0).unwrap().radius(), None);
     for json in ["\"big\"", "\"nan\"", "null", "[1]"] {
         let error = serde_json::from_str::<Alpha>(json).unwrap_err().to_string();
         assert!(error.contains("\"inf\" or \"-inf\""), "{json}: {error}");
@@ -64,4 +67,28 @@ fn counts_by_class() {
     assert_eq!(whole, r#"{"exterior":2,"interior":1,"regular":0,"singular":1}"#);
     let shape = json(counts.serialize_shape(serde_json::value::Serializer).unwrap());
     assert_eq!(shape, r#"{"interior":1,"regular":0,"singular":1}"#);
+}
+
+/// Of a solid ball, a sphere, two of them and nothing.
+#[test]
+fn the_euler_characteristic_is_that_of_the_shape() {
+    let sphere = |from: u32, cell: Class| {
+        let corners = [from, from + 1, from + 2, from + 3];
+        let without = |k: usize| std::array::from_fn(|i| corners[i + usize::from(i >= k)]);
+        let edges = (0..4).flat_map(|i| (i + 1..4).map(move |j| [corners[i], corners[j]]));
+        Complex {
+            cells: [(corners, cell)].into_iter().collect(),
+            facets: (0..4).map(|k| (without(k), Class::Regular)).collect(),
+            edges: edges.map(|edge| (edge, Class::Regular)).collect(),
+            vertices: corners.into_iter().map(|v| ([v], Class::Regular)).collect(),
+        }
+    };
+    assert_eq!(sphere(0, Class::Interior).euler_characteristic(), 1);
+    assert_eq!(sphere(0, Class::Exterior).euler_characteristic(), 2);
+    let (mut two, other) = (sphere(0, Class::Exterior), sphere(4, Class::Exterior));
+    two.facets = two.facets.into_iter().chain(other.facets).collect();
+    two.edges = two.edges.into_iter().chain(other.edges).collect();
+    two.vertices = two.vertices.into_iter().chain(other.vertices).collect();
+    assert_eq!(two.euler_characteristic(), 4);
+    assert_eq!(Complex::default().euler_characteristic(), 0);
 }

@@ -136,3 +136,21 @@ fn row_findings<const N: usize>(rows: &[[u32; N]], points: usize) -> Vec<Finding
     };
     rows.par_iter().filter_map(judge).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Class;
+
+    /// A corner is 4 bytes, and so is a number of a row; a facet has 8 for its two halves.
+    #[test]
+    fn bytes_are_those_of_all_rows() {
+        let complex = Complex {
+            cells: [([0, 1, 2, 3], Class::Interior)].into_iter().collect(),
+            facets: [[0, 1, 2], [0, 1, 3]].map(|row| (row, Class::Regular)).into_iter().collect(),
+            edges: [[0, 1], [0, 2], [0, 3]].map(|row| (row, Class::Regular)).into_iter().collect(),
+            vertices: [0, 1, 2, 3, 4].map(|v| ([v], Class::Regular)).into_iter().collect(),
+        };
+        assert_eq!(Structure::bytes(&complex), (20 + 16) + 2 * (16 + 8) + 3 * 12 + 5 * 8);
+    }
+}
