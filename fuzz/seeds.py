@@ -142,6 +142,7 @@ def vtk_geometry():
         xml("PolyData", body.format("PolyData", "NumberOfPolys", "ascii", points)),
         xml("UnstructuredGrid", body.format("UnstructuredGrid", "NumberOfCells", "ascii", points)),
         xml("PolyData", body.format("PolyData", "NumberOfPolys", "binary", inline)),
+        xml("PolyData", body.format("PolyData", "NumberOfPolys", "binary", "====")),
         xml("PolyData", body.format("PolyData", "NumberOfPolys", "binary", blocks(F64)), b"", ' compressor="vtkZLibDataCompressor"').replace(
             b'format="ascii">1 2 3 4', b'format="ascii">1 2 3 4'
         ),
@@ -232,11 +233,13 @@ def pcd():
         head.format("ascii").encode() + b"0 0 0 1\n1 0 0 2\n0 1 0 3\n",
         head.format("binary").encode() + F32,
         head.format("binary_compressed").encode() + struct.pack("<II", len(packed), 48) + packed,
+        b"FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 0\nPOINTS 1\nDATA ascii\n1 2\n",
     ]
 
 
 def las():
-    """Two points of format 0 in LAS 1.2, and the head of one that claims records of 58 369 bytes."""
+    """Two points of format 0 in LAS 1.2, the head of one that claims records of 58 369 bytes, and that of
+    one in LAS 1.4 that claims more points than there are numbers of bytes."""
     head = bytearray(227)
     head[0:4] = b"LASF"
     head[24:26] = b"\1\2"
@@ -245,7 +248,12 @@ def las():
     points = b"".join(struct.pack("<iiiHBBbBH", at, at, at, 7, 0b1001, 2, 0, 0, 1) for at in (0, 100))
     long = bytearray(head)
     struct.pack_into("<H", long, 105, 58_369)
-    return [bytes(head) + points, bytes(long) + b"\1\2\3"]
+    many = bytearray(head.ljust(375, b"\0"))
+    many[25] = 4
+    struct.pack_into("<HII", many, 94, 375, 375, 0)
+    struct.pack_into("<I", many, 107, 0)
+    struct.pack_into("<Q", many, 247, 2**64 - 1)
+    return [bytes(head) + points, bytes(long) + b"\1\2\3", bytes(many) + points]
 
 
 def wvm():
@@ -260,7 +268,7 @@ def wvm():
 
 
 def dicom():
-    """A slice of 3 columns and 2 rows, explicit little endian; the second one in a deflated file."""
+    """A slice of 3 columns and 2 rows, explicit little endian; deflated; and with 32 bits of 16 stored."""
 
     def element(group, number, kind, value):
         value += (b"\0" if kind in (b"UI", b"OB") else b" ") * (len(value) % 2)
@@ -278,13 +286,15 @@ def dicom():
         (0x28, 0x102, b"US", us(15)), (0x28, 0x103, b"US", us(1)), (0x28, 0x1052, b"DS", b"-1024"),
         (0x28, 0x1053, b"DS", b"1"), (0x7FE0, 0x10, b"OW", bytes(12)),
     ]
-    body = b"".join(element(*row) for row in body)
+    plain, deflated = b"1.2.840.10008.1.2.1", b"1.2.840.10008.1.2.1.99"
     files = []
-    for syntax in (b"1.2.840.10008.1.2.1", b"1.2.840.10008.1.2.1.99"):
+    for syntax, stored in ((plain, 16), (deflated, 16), (plain, 32)):
         meta = element(2, 1, b"OB", b"\0\1") + element(2, 2, b"UI", b"1.2.840.10008.5.1.4.1.1.2")
         meta += element(2, 3, b"UI", b"1.2.3.4") + element(2, 0x10, b"UI", syntax) + element(2, 0x12, b"UI", b"1.2.3.5")
         packer = zlib.compressobj(wbits=-15)
-        data = packer.compress(body) + packer.flush() if syntax.endswith(b".99") else body
+        rows = [(0x28, 0x101, b"US", us(stored)) if row[:2] == (0x28, 0x101) else row for row in body]
+        data = b"".join(element(*row) for row in rows)
+        data = packer.compress(data) + packer.flush() if syntax == deflated else data
         files.append(bytes(128) + b"DICM" + element(2, 0, b"UL", struct.pack("<I", len(meta))) + meta + data)
     return files
 
