@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include <CGAL/Fixed_alpha_shape_3.h>
 #include <CGAL/Fixed_alpha_shape_cell_base_3.h>
@@ -120,7 +121,13 @@ std::unique_ptr<Complex> copy(const Triangulation &triangulation, const Classify
 std::unique_ptr<Complex> reference(rust::Slice<const double> positions,
                                    rust::Slice<const double> weights, double alpha) {
   throw_quietly();
-  auto points = numbered<Triangulation::Weighted_point>(positions, weights);
+  std::vector<std::pair<Triangulation::Weighted_point, std::uint32_t>> points;
+  points.reserve(weights.size());
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const double *p = positions.data() + 3 * i;
+    points.emplace_back(Triangulation::Weighted_point({p[0], p[1], p[2]}, weights[i]),
+                        static_cast<std::uint32_t>(i));
+  }
   Triangulation triangulation(points.begin(), points.end());
   decltype(points)().swap(points);
   // Fixed_alpha_shape_3 leaves its classes uninitialised in lower dimensions.
