@@ -238,8 +238,8 @@ def pcd():
 
 
 def las():
-    """Two points of format 0 in LAS 1.2, the head of one that claims records of 58 369 bytes, and that of
-    one in LAS 1.4 that claims more points than there are numbers of bytes."""
+    """Two points of format 0 in LAS 1.2, the head of one that claims records of 58 369 bytes, and those of
+    two in LAS 1.4 that claim more points than there are numbers of bytes, and a record of 2**62 bytes."""
     head = bytearray(227)
     head[0:4] = b"LASF"
     head[24:26] = b"\1\2"
@@ -253,7 +253,12 @@ def las():
     struct.pack_into("<HII", many, 94, 375, 375, 0)
     struct.pack_into("<I", many, 107, 0)
     struct.pack_into("<Q", many, 247, 2**64 - 1)
-    return [bytes(head) + points, bytes(long) + b"\1\2\3", bytes(many) + points]
+    record = bytearray(head.ljust(375, b"\0"))
+    record[25] = 4
+    struct.pack_into("<HII", record, 94, 375, 375, 0)
+    struct.pack_into("<QI", record, 235, 375 + len(points), 1)
+    extended = struct.pack("<H16sHQ32s", 0, b"", 0, 2**62, b"")
+    return [bytes(head) + points, bytes(long) + b"\1\2\3", bytes(many) + points, bytes(record) + points + extended]
 
 
 def wvm():

@@ -66,18 +66,28 @@ fn long_records_take_no_more_than_their_share() {
     assert!(more < 1 << 20, "{more} KiB more");
 }
 
-/// Found by fuzzing: a number of points that, times the bytes of each, is more than 64 bits.
+/// Found by fuzzing: a number of points that, times the bytes of each, is more than 64 bits; and an extended
+/// record of 2⁶² bytes.
 #[test]
-fn more_points_than_can_be_counted_are_refused() {
+fn more_than_there_can_be_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("many.las");
     write(&path, (1, 4));
     assert_eq!(read_points(&path, None).unwrap().len(), 5);
-    let mut bytes = std::fs::read(&path).unwrap();
+    let whole = std::fs::read(&path).unwrap();
+    let mut bytes = whole.clone();
     // The number of 32 bits of older versions goes before that of 64.
     bytes[107..111].fill(0);
     bytes[247..255].fill(0xff);
     std::fs::write(&path, &bytes).unwrap();
     let error = read_points(&path, None).unwrap_err().told();
     assert!(error.contains("more bytes of points than a number can count"), "{error}");
+    let mut bytes = whole.clone();
+    bytes[235..243].copy_from_slice(&(whole.len() as u64).to_le_bytes());
+    bytes[243..247].copy_from_slice(&1u32.to_le_bytes());
+    bytes.extend([0; 60]);
+    bytes[whole.len() + 20..][..8].copy_from_slice(&(1u64 << 62).to_le_bytes());
+    std::fs::write(&path, &bytes).unwrap();
+    let error = read_points(&path, None).unwrap_err().told();
+    assert!(error.contains("claims a record of 4611686018427387904 bytes"), "{error}");
 }

@@ -1,11 +1,11 @@
 //! LAS and LAZ, what laser scanners write.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::{Points, PointsError, format};
-use crate::volume::Reason;
+use crate::volume::{Reason, io_error};
 
 /// Bytes of points read at once. A header may claim records of 64 KiB each, and more than there are.
 const BATCH: u64 = 1 << 22;
@@ -13,13 +13,8 @@ const BATCH: u64 = 1 << 22;
 /// Reads the places of the points, and their intensity as values. Numbers are those that the file's
 /// scales and offsets make, in doubles.
 pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
-    let said = |error: las::Error| {
-        format(path, Reason::other(format!("is no LAS file that can be read: {error}")))
-    };
-    ends(path).map_err(said)?.ok_or_else(|| {
-        let reason = "claims more bytes of points than a number can count: its header is damaged";
-        format(path, Reason::damaged(reason))
-    })?;
+    check(path)?;
+    let said = |error| unreadable(path, &error);
     let mut reader = las::Reader::from_path(path).map_err(said)?;
     let mut points = Points { values: Some(Vec::new()), ..Points::default() };
     let record = u64::from(reader.header().point_format().len()).max(1);
@@ -41,11 +36,35 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     Ok(points)
 }
 
-/// Where the points end, uncompressed; `None` if that is no number of 64 bits. The library that reads them
-/// multiplies without a check.
-fn ends(path: &Path) -> las::Result<Option<u64>> {
-    let header = las::raw::Header::read_from(BufReader::new(File::open(path)?))?;
+/// Refuses what the library that reads points would believe: so many of them that their bytes are no number of
+/// 64 bits, and an extended record that is longer than the file, for which it would take the memory.
+fn check(path: &Path) -> Result<(), PointsError> {
+    let mut file = BufReader::new(File::open(path).map_err(io_error(path))?);
+    let length = file.get_ref().metadata().map_err(io_error(path))?.len();
+    let header =
+        las::raw::Header::read_from(&mut file).map_err(|error| unreadable(path, &error))?;
     let count = header.large_file.map_or(0, |large| large.number_of_point_records);
     let bytes = count.checked_mul(header.point_data_record_length.into());
-    Ok(bytes.and_then(|bytes| bytes.checked_add(header.offset_to_point_data.into())))
+    if bytes.and_then(|bytes| bytes.checked_add(header.offset_to_point_data.into())).is_none() {
+        let what = "claims more bytes of points than a number can count: its header is damaged";
+        return Err(format(path, Reason::damaged(what)));
+    }
+    let Some(records) = header.evlr else { return Ok(()) };
+    // Its length comes after 2 bytes, a name of 16 and a number of 2. If it is not there, the library says so.
+    let mut claimed = [0; 8];
+    let place = SeekFrom::Start(records.start_of_first_evlr.saturating_add(20));
+    if file.seek(place).and_then(|_| file.read_exact(&mut claimed)).is_err() {
+        return Ok(());
+    }
+    let claimed = u64::from_le_bytes(claimed);
+    if claimed > length {
+        let what =
+            format!("claims a record of {claimed} bytes in a file of {length}: it is damaged");
+        return Err(format(path, Reason::damaged(what)));
+    }
+    Ok(())
+}
+
+fn unreadable(path: &Path, error: &las::Error) -> PointsError {
+    format(path, Reason::other(format!("is no LAS file that can be read: {error}")))
 }
