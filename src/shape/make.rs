@@ -179,3 +179,21 @@ fn hidden(sites: &[u32], vertices: &Simplices<1>) -> Vec<u32> {
     let mut vertices = vertices.rows().iter().peekable();
     sites.iter().copied().filter(|&site| vertices.next_if(|v| v[0] == site).is_none()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ball may be a point, and no less.
+    #[test]
+    fn weights_of_radii_are_their_squares() {
+        let squared = |weights: &[f64]| squared_radii(weights, Alpha::from_squared(1.0).unwrap());
+        assert_eq!(squared(&[0.5, -1.0, 2.0]).unwrap(), [2.25, 0.0, 9.0]);
+        for (weight, radius) in [(-1.5, -0.5), (f64::INFINITY, f64::INFINITY)] {
+            match squared(&[0.0, weight]) {
+                Err(ShapeError::Radius { index: 1, radius: found }) => assert_eq!(found, radius),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+}
