@@ -41,8 +41,10 @@ pub use grid::{Dims, Frame};
 pub(crate) use grid::{any_size, inverse};
 pub use part::{Region, downsample};
 pub(crate) use read::NpyFile;
+#[cfg(any(feature = "formats", feature = "las"))]
+pub(crate) use read::io_error;
 #[cfg(feature = "formats")]
-pub(crate) use read::{Element, Lines, VtkXml, io_error};
+pub(crate) use read::{Element, Lines, VtkXml};
 pub use read::{RawLayout, ReadOptions, Series};
 pub use reason::Reason;
 pub use sample::{SAMPLES, open, phantom, sample};
