@@ -248,14 +248,13 @@ def las():
     points = b"".join(struct.pack("<iiiHBBbBH", at, at, at, 7, 0b1001, 2, 0, 0, 1) for at in (0, 100))
     long = bytearray(head)
     struct.pack_into("<H", long, 105, 58_369)
-    many = bytearray(head.ljust(375, b"\0"))
-    many[25] = 4
-    struct.pack_into("<HII", many, 94, 375, 375, 0)
+    newer = head.ljust(375, b"\0")
+    newer[25] = 4
+    struct.pack_into("<HII", newer, 94, 375, 375, 0)
+    many = bytearray(newer)
     struct.pack_into("<I", many, 107, 0)
     struct.pack_into("<Q", many, 247, 2**64 - 1)
-    record = bytearray(head.ljust(375, b"\0"))
-    record[25] = 4
-    struct.pack_into("<HII", record, 94, 375, 375, 0)
+    record = bytearray(newer)
     struct.pack_into("<QI", record, 235, 375 + len(points), 1)
     extended = struct.pack("<H16sHQ32s", 0, b"", 0, 2**62, b"")
     return [bytes(head) + points, bytes(long) + b"\1\2\3", bytes(many) + points, bytes(record) + points + extended]
