@@ -1,5 +1,7 @@
 #include "walpha/cpp/regular.h"
 
+#include <utility>
+
 #include <CGAL/Regular_triangulation_3.h>
 #include <CGAL/Regular_triangulation_cell_base_3.h>
 #include <CGAL/Regular_triangulation_vertex_base_3.h>

@@ -107,7 +107,7 @@ pub(super) fn run(
     question: &Question,
 ) -> Result<Answer, ShapeError> {
     let partition = &plan.partition;
-    if partition.len() > 1 && sites.torus().is_none() {
+    if sites.torus().is_none() {
         check_span(sites).map_err(TriangulationError::from)?;
     }
     tracing::debug!(blocks = partition.len(), at_once = plan.at_once, "cut");
@@ -163,10 +163,6 @@ fn in_space(
     work: &Piece,
 ) -> Result<(Block, Triangulation, Lattice), ShapeError> {
     let mut points = partition.block(sites, Reach::Balls(question.alpha), block);
-    if partition.len() == 1 {
-        let made = triangulate(&points, question.maker, work)?;
-        return Ok((points, made, question.lattice));
-    }
     let (inside, next) = (points.input.len(), sites.input().last().map_or(0, |last| last + 1));
     let made = spanning(&mut points, question.alpha, next, question.maker, work)?;
     // Places beside the points need not be on the lattice of the set.
