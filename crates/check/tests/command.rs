@@ -54,3 +54,28 @@ fn each_file_is_judged() {
     assert_eq!(lines[1], "  cell [0, 1, 2, 3] is listed twice");
     assert_eq!(lines.last(), Some(&"\"right.json\": no findings"));
 }
+
+#[test]
+fn what_cannot_be_judged_comes_with_advice() {
+    let folder = folder("advice");
+    let filtration = r#""points":[[0,0,0],[1,0,0]],"vertices":[0,1],"edges":[[0,1]],"facets":[],"cells":[],
+        "values":{"vertices":[0,0],"edges":[0.25],"facets":[],"cells":[]},"order":[0,1,2]"#;
+    for (fields, advice) in [
+        (POINTS.to_owned(), "next: give at least one of cells, facets, edges, vertices"),
+        (
+            format!(r#"{POINTS},"cells":[[0,1,2,3]],"periodic":[1,1,1]"#),
+            "next: give coordinates from 0 to less than the sides of the box",
+        ),
+        (
+            format!(r#"{filtration},"periodic":[4,4,4]"#),
+            "next: judge the complexes at some α instead",
+        ),
+        (format!(r#"{POINTS},"cells":[[0,1,2,9]]"#), ""),
+    ] {
+        std::fs::write(folder.join("not.json"), format!("{{{fields}}}")).unwrap();
+        let (code, stdout, stderr) = run(&folder, &["not.json"]);
+        assert_eq!((code, stdout.as_str()), (1, ""), "{fields}\n{stderr}");
+        let next = stderr.lines().find(|line| line.starts_with("next")).unwrap_or_default();
+        assert_eq!(next, advice, "{stderr}");
+    }
+}

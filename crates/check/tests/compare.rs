@@ -212,3 +212,23 @@ fn rows_of_points_that_do_not_exist_are_refused() {
     refused(|other| other.complex.facets.push([8, 0, 1], Class::Regular));
     refused(|other| other.complex.cells.push([0, 1, 8, 2], Class::Interior));
 }
+
+#[test]
+fn numbers_are_finite() {
+    let case = Case { positions: grid(2), weights: vec![0.0; 8], alpha: 0.75 };
+    let shape = shape_of(&definition(&case).unwrap());
+    let right = placed(&case.positions, &shape);
+    let (mut positions, mut weights) = (case.positions.clone(), case.weights.clone());
+    (positions[5][1], weights[3]) = (f64::NAN, f64::INFINITY);
+    for (wrong, number) in [
+        (weighted(&positions, &case.weights, &shape), 5),
+        (weighted(&case.positions, &weights, &shape), 3),
+    ] {
+        let error = compare(right, wrong).unwrap_err();
+        assert!(matches!(error, CompareError::NotFinite { which: 'B', point } if point == number));
+        assert_eq!(error.advice(), Some("clean the input"));
+    }
+    let short = compare(right, weighted(&case.positions, &weights[1..], &shape)).unwrap_err();
+    assert!(matches!(short, CompareError::Lengths { which: 'B', positions: 8, weights: 7 }));
+    assert_eq!(short.advice(), None);
+}

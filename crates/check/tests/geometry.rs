@@ -54,6 +54,27 @@ fn a_cell_that_is_not_regular() {
     );
 }
 
+/// A gap is a missing cell only where the cell would be regular.
+#[test]
+fn a_gap_that_no_cell_fills() {
+    let positions = vec![
+        [0.0, 0.0, 3.0],
+        [0.0, 0.0, -3.0],
+        [2.0, 0.0, 0.0],
+        [-1.0, 2.0, 0.0],
+        [-1.0, -2.0, 0.0],
+    ];
+    let missing = |cells: &[[u32; 4]]| {
+        let (case, mut answer) = triangulation(positions.clone(), cells);
+        answer.complex.cells = answer.complex.cells.iter().skip(1).map(|(&c, k)| (c, k)).collect();
+        let all = case.findings(&answer, Extent::Whole);
+        assert!(!all.is_empty());
+        all.iter().filter(|found| matches!(found, Finding::MissingCell { .. })).count()
+    };
+    assert_eq!(missing(&[[2, 3, 4, 0], [2, 4, 3, 1]]), 1);
+    assert_eq!(missing(&[[0, 1, 3, 2], [0, 1, 4, 3], [0, 1, 2, 4]]), 0);
+}
+
 #[test]
 fn two_cells_on_one_side_of_a_facet() {
     let positions =

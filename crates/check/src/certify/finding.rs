@@ -267,3 +267,27 @@ impl Finding {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn findings_of_copies_name_points_of_the_box() {
+        let power = Exact::default();
+        let not_hidden = |cell: [u32; 4], point| Finding::NotHidden {
+            cell: cell.into(),
+            point,
+            power: power.clone(),
+        };
+        assert_eq!(not_hidden([4, 7, 8, 11], 13).at_box(5), Some(not_hidden([4, 2, 3, 1], 3)));
+        assert_eq!(not_hidden([5, 7, 8, 11], 1).at_box(5), None);
+        let duplicate = |point, given, expected| Finding::Duplicate { point, given, expected };
+        let folded = Some(duplicate(4, Some(3), Some(2)));
+        assert_eq!(duplicate(4, Some(13), Some(7)).at_box(5), folded);
+        assert_eq!(duplicate(5, Some(3), None).at_box(5), None);
+        let vertex = |point, stays| Finding::DuplicateVertex { point, stays };
+        assert_eq!(vertex(0, 9).at_box(5), Some(vertex(0, 4)));
+        assert_eq!(Finding::NoCells.at_box(5), Some(Finding::NoCells));
+    }
+}

@@ -84,3 +84,77 @@ fn rounded_center<const N: usize>(simplex: [&WeightedPoint; N]) -> Option<([f64;
     let error = error * (1.0 + 1e-12) + f64::MIN_POSITIVE;
     error.is_finite().then_some((center, error))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::orientation;
+
+    /// Integers from −`most` to `most`, each draw another three.
+    fn draws(mut state: u64) -> impl FnMut(i64) -> [i64; 3] {
+        move |most| {
+            [0; 3].map(|_| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                (state >> 33) as i64 % (2 * most + 1) - most
+            })
+        }
+    }
+
+    fn plus(p: [i64; 3], q: [i64; 3], times: i64) -> [i64; 3] {
+        std::array::from_fn(|k| p[k] + times * q[k])
+    }
+
+    /// The point `d` from `center` with the power `power` with respect to the sphere about it of
+    /// squared radius `radius`: all of it integers, so nothing is rounded.
+    fn site(center: [i64; 3], d: [i64; 3], radius: i64, power: i64) -> WeightedPoint {
+        let length: i64 = d.iter().map(|x| x * x).sum();
+        let position = plus(center, d, 1).map(|x| x as f64);
+        WeightedPoint { position, weight: (length - radius - power) as f64 }
+    }
+
+    /// A simplex whose smallest orthogonal sphere has a known centre, its rounded sphere, and
+    /// points on the true one, inside, and outside.
+    fn judge<const N: usize>(
+        center: [i64; 3],
+        offsets: [[i64; 3]; N],
+        radius: i64,
+        draw: &mut impl FnMut(i64) -> [i64; 3],
+    ) {
+        let simplex = offsets.map(|d| site(center, d, radius, 0));
+        let sphere = RoundedSphere::new(simplex.each_ref()).expect("independent");
+        let off = |k: usize| (sphere.center[k] - center[k] as f64).abs();
+        assert!(off(0).max(off(1)).max(off(2)) <= sphere.error, "{center:?} {simplex:?}");
+        assert!(sphere.error < 1e-5, "{} at {center:?} {simplex:?}", sphere.error);
+        for _ in 0..8 {
+            let d = draw(60);
+            let told = |power| sphere.surely_outside(&site(center, d, radius, power));
+            assert!(!told(-1) && !told(0), "{center:?} {d:?} {simplex:?}");
+            assert!(told(1), "{center:?} {d:?} {simplex:?}");
+        }
+        assert!(simplex.iter().all(|corner| !sphere.surely_outside(corner)));
+    }
+
+    #[test]
+    fn what_is_surely_outside_is_outside_and_centers_are_within_their_error() {
+        let mut draw = draws(5);
+        let mut judged = 0;
+        for far in [0, 1000, 1_000_000] {
+            for _ in 0..500 {
+                let center = draw(far);
+                let [radius, times, _] = draw(100).map(|x| x.abs() + 1);
+                let [u, v, w, x] = [0; 4].map(|_| draw(40));
+                judge(center, [[0; 3]], radius, &mut draw);
+                let [p, q, r, s] = [u, v, w, x].map(|d| d.map(|x| x as f64));
+                if orientation([0.0; 3], p, q, r).is_eq() || orientation(p, q, r, s).is_eq() {
+                    continue;
+                }
+                judged += 1;
+                // Its own line and plane hold the centre.
+                judge(center, [u, plus(u, u, times)], radius, &mut draw);
+                judge(center, [u, v, plus(u, v, times)], radius, &mut draw);
+                judge(center, [u, v, w, x], radius, &mut draw);
+            }
+        }
+        assert!(judged > 1000, "{judged}");
+    }
+}

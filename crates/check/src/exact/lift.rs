@@ -63,14 +63,17 @@ mod tests {
     #[test]
     fn cells_on_one_sphere_have_one_hyperplane() {
         let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|k| 0.5 * k as f64);
-        let site = |i: usize| WeightedPoint { position: corner(i), weight: 0.1 };
-        let lift = Lift::through((0..8).map(site));
-        let one = lift.hyperplane([0, 1, 2, 4].map(site));
-        assert_eq!(one, lift.hyperplane([7, 6, 5, 3].map(site)));
-        assert_eq!(one, lift.hyperplane([1, 0, 2, 4].map(site)));
-        let mut apart = [7, 6, 5, 3].map(site);
-        apart[3].weight = apart[3].weight.next_up();
-        let lift = Lift::through((0..8).map(site).chain(apart));
-        assert_ne!(lift.hyperplane([0, 1, 2, 4].map(site)), lift.hyperplane(apart));
+        // Finer than the coordinates, coarser, and none.
+        for weight in [0.1, 2.0, 0.0] {
+            let site = |i: usize| WeightedPoint { position: corner(i), weight };
+            let lift = Lift::through((0..8).map(site));
+            let one = lift.hyperplane([0, 1, 2, 4].map(site));
+            assert_eq!(one, lift.hyperplane([7, 6, 5, 3].map(site)));
+            assert_eq!(one, lift.hyperplane([1, 0, 2, 4].map(site)));
+            let mut apart = [7, 6, 5, 3].map(site);
+            apart[3].weight = apart[3].weight.next_up();
+            let lift = Lift::through((0..8).map(site).chain(apart));
+            assert_ne!(lift.hyperplane([0, 1, 2, 4].map(site)), lift.hyperplane(apart));
+        }
     }
 }
