@@ -90,7 +90,7 @@ impl<const N: usize> Digits<N> {
             squares = squares.with(*weight);
         }
         let coordinate = lengths.unit().unwrap_or(0);
-        let height = squares.unit().unwrap_or(2 * coordinate).min(2 * coordinate);
+        let height = squares.unit().unwrap_or(i32::MAX).min(2 * coordinate);
         Self { origin, others, alpha, lengths, squares, coordinate, height }
     }
 

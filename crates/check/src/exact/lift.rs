@@ -22,7 +22,7 @@ impl Lift {
             squares = squares.with(Binary::new(point.weight));
         }
         let coordinate = lengths.unit().unwrap_or(0);
-        let height = squares.unit().unwrap_or(2 * coordinate).min(2 * coordinate);
+        let height = squares.unit().unwrap_or(i32::MAX).min(2 * coordinate);
         Self { coordinate, height }
     }
 

@@ -122,3 +122,62 @@ pub(super) fn sign(value: &IBig) -> Ordering {
         Sign::Negative => Ordering::Less,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The ends of what a number may be, where they are doubles.
+    fn ends(number: Approx) -> [f64; 2] {
+        [number.value - number.error, number.value + number.error]
+    }
+
+    /// Every number that the operands may be gives one that the result may be, and hardly more than those.
+    #[test]
+    fn errors_bound_the_worst_case() {
+        let all =
+            [(1000.0, 1.0), (-3.0, 0.5), (0.25, 0.125), (-64.0, 32.0), (0.0, 2.0), (8.0, 0.0)];
+        let all = all.map(|(value, error)| Approx { value, error });
+        for x in all {
+            for y in all {
+                type Of<T> = fn(&T, &T) -> T;
+                let operations: [(Of<Approx>, Of<f64>); 3] = [
+                    (Approx::plus, |x, y| x + y),
+                    (Approx::minus, |x, y| x - y),
+                    (Approx::times, |x, y| x * y),
+                ];
+                for (rounded, exact) in operations {
+                    let found = rounded(&x, &y);
+                    let worst = ends(x).into_iter().flat_map(|p| ends(y).map(|q| exact(&p, &q)));
+                    let worst = worst.map(|value| (value - found.value).abs()).fold(0.0, f64::max);
+                    assert!(found.error >= worst, "{x:?} {y:?}: {found:?}, {worst}");
+                    let most = worst + found.value.abs() * 1.1 * Approx::U + 1e-300;
+                    assert!(found.error <= most * (1.0 + 1e-14), "{x:?} {y:?}: {found:?}, {worst}");
+                }
+            }
+        }
+    }
+
+    /// What is lost in rounding is part of the error, and so is what the bound itself loses.
+    #[test]
+    fn roundings_are_errors() {
+        let tiny = Approx::U / 2.0;
+        let sum = Approx::exact(1.0).plus(&Approx::exact(tiny));
+        assert!(sum.value == 1.0 && sum.error >= tiny);
+        let product = Approx::exact(1.0 + f64::EPSILON).times(&Approx::exact(1.0 + f64::EPSILON));
+        assert!(product.error >= f64::EPSILON * f64::EPSILON);
+        assert!(Approx { value: 1.5, error: 1.0 }.plus(&Approx::exact(0.0)).error > 1.0);
+        assert!(Approx::exact(1e-200).times(&Approx::exact(1e-200)).sign().is_none());
+    }
+
+    #[test]
+    fn a_sign_is_told_where_it_is_sure() {
+        let sign = |value, error| Approx { value, error }.sign();
+        assert_eq!(
+            [sign(3.0, 2.0), sign(-3.0, 2.0)],
+            [Some(Ordering::Greater), Some(Ordering::Less)]
+        );
+        assert_eq!([sign(2.0, 2.0), sign(-2.0, 2.0), sign(0.0, 0.0)], [None; 3]);
+        assert_eq!([sign(1.0, f64::NAN), sign(f64::NAN, 1.0), sign(1.0, f64::INFINITY)], [None; 3]);
+    }
+}

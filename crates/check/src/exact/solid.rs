@@ -130,3 +130,37 @@ impl Star {
 fn det3(u: &[IBig; 3], v: &[IBig; 3], w: &[IBig; 3]) -> Ordering {
     sign(&dot(&cross(u, v), w))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest tetrahedra of a lattice, so many that an `i128` does not hold the sum.
+    #[test]
+    fn volumes_do_not_overflow() {
+        for bits in 34..42 {
+            let m = f64::from(2).powi(bits) - 1.0;
+            let cell = [[m, m, m], [m, -m, -m], [-m, -m, m], [-m, m, -m]];
+            let lattice = Lattice::through(&cell);
+            let one = lattice.six_volumes(1, |_| cell);
+            let side = IBig::from(2 * (1i128 << bits) - 2);
+            assert_eq!(one, IBig::from(2) * &side * &side * &side);
+            for count in [CHUNK, if bits == 36 { 64 * CHUNK + 5 } else { CHUNK + 5 }] {
+                assert_eq!(lattice.six_volumes(count, |_| cell), &one * count, "{bits} {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn triangles_of_a_plane_have_one_plane() {
+        let at = |x: i32, y: i32| [x, y, 3 - 2 * x + y].map(|k| 0.5 * f64::from(k));
+        let places = [at(0, 0), at(1, 0), at(0, 1), at(4, -6), at(-3, 8), at(2, 2)];
+        let lattice = Lattice::through(&places);
+        let one = lattice.plane([places[0], places[1], places[2]]);
+        assert_eq!(one, lattice.plane([places[2], places[1], places[0]]));
+        assert_eq!(one, lattice.plane([places[3], places[4], places[5]]));
+        assert_eq!(one, lattice.plane([places[5], places[0], places[3]]));
+        let above = places.map(|[x, y, z]| [x, y, z + 0.5]);
+        assert_ne!(one, lattice.plane([above[3], above[4], above[5]]));
+    }
+}

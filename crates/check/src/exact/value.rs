@@ -161,3 +161,20 @@ fn area(a: &[IBig; 3], b: &[IBig; 3]) -> IBig {
         .plus(&normal[1].times(&normal[1]))
         .plus(&normal[2].times(&normal[2]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_in_units_of_length() {
+        let at = |position: [f64; 3]| WeightedPoint { position, weight: 0.0 };
+        let [a, b, c, d] = [[0.0; 3], [0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5]].map(at);
+        assert_eq!(six_volume([&a, &b, &c, &d]).nearest(), 0.125);
+        assert_eq!(six_volume([&a, &c, &b, &d]).nearest(), -0.125);
+        assert_eq!(radius_value([&a, &b, &c, &d]).nearest(), 0.1875);
+        assert_eq!(power_value([&a, &b, &c, &d], &at([0.5; 3])).nearest(), 0.0);
+        assert_eq!(power_value([&a, &c, &b, &d], &at([1.0; 3])).nearest(), 1.5);
+        assert_eq!(power_value([&a, &b], &at([1.0; 3])).nearest(), 2.5);
+    }
+}

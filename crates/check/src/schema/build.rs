@@ -116,7 +116,7 @@ pub(super) fn in_range<'a>(
 #[derive(Clone, Copy)]
 struct Above {
     count: usize,
-    in_shape: usize,
+    in_shape: bool,
     all_interior: bool,
 }
 
@@ -129,10 +129,10 @@ fn settle<const N: usize, const M: usize>(
     let mut above = BTreeMap::<[u32; M], Above>::new();
     for (row, class) in higher.iter() {
         for face in faces(row) {
-            let nothing = Above { count: 0, in_shape: 0, all_interior: true };
+            let nothing = Above { count: 0, in_shape: false, all_interior: true };
             let above = above.entry(sorted(face)).or_insert(nothing);
             above.count += 1;
-            above.in_shape += usize::from(class != Class::Exterior);
+            above.in_shape |= class != Class::Exterior;
             above.all_interior &= class == Class::Interior;
         }
     }
@@ -144,7 +144,7 @@ fn settle<const N: usize, const M: usize>(
         // Nothing is above a cell.
         _ if M == 4 => Class::Interior,
         // A facet has two sides; around an edge or vertex all facets or edges must be interior.
-        Some(above) if above.in_shape > 0 => {
+        Some(above) if above.in_shape => {
             let closed = above.all_interior && (M < 3 || above.count == 2);
             if closed { Class::Interior } else { Class::Regular }
         }

@@ -86,6 +86,9 @@ mod tests {
         }
         assert_eq!(exact(3 * two_53 + 1, 3, 0).nearest(), two_53 as f64);
         assert_eq!(exact(3 * two_53 + 4, 3, 0).nearest(), (two_53 + 2) as f64);
+        assert_eq!(exact(1, -3, 0).nearest(), -1.0 / 3.0);
+        assert_eq!(exact(-2, -6, 0), exact(1, 3, 0));
+        assert_eq!(exact(1, 1, 1023).nearest(), 2f64.powi(1023));
         assert_eq!(exact(1, 1, 1024).nearest(), f64::INFINITY);
         assert_eq!(exact(-1, 1, 2000).nearest(), f64::NEG_INFINITY);
         assert_eq!(exact(1, 3, -1080).nearest(), 0.0);
