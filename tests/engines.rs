@@ -189,6 +189,15 @@ fn the_skull() {
 }
 
 #[test]
+fn exterior_simplices_take_one_block() {
+    let points = weighted((0..64).map(|i| ([i % 4, i / 4 % 4, i / 16].map(f64::from), 0.0)));
+    let with = |blocks| by(Engine::Native, &points, 0.75, Some(blocks), true);
+    assert_eq!(with(1), by(Engine::Native, &points, 0.75, None, true));
+    assert!(with(1).is_ok());
+    assert_eq!(with(2), Err(ShapeError::Exterior { blocks: 2 }));
+}
+
+#[test]
 fn memory_is_planned_for() {
     let points =
         weighted((0..40_000).map(|i| ([i % 20, i / 20 % 20, i / 400].map(f64::from), 0.0)));

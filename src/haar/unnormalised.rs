@@ -11,6 +11,8 @@
 /// assert_eq!(table.row(), [9.0, 7.0, 4.0, 4.0]);
 /// table.details[0][0] = 0.0;
 /// assert_eq!(table.row(), [8.0, 8.0, 4.0, 4.0]);
+///
+/// assert_eq!(Unnormalised::of(&[9.0, 7.0, 3.0]), None);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unnormalised {

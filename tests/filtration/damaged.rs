@@ -2,7 +2,7 @@
 
 use walpha::Alpha;
 use walpha::check::schema::FiltrationFile;
-use walpha::check::{Bound, FiltrationFinding, certify_filtration, compare_filtrations};
+use walpha::check::{Bound, Exact, FiltrationFinding, certify_filtration, compare_filtrations};
 use walpha::ladder::Filtration;
 
 use crate::files::{file, findings};
@@ -63,6 +63,13 @@ fn the_checker_finds_what_is_wrong() {
         let found = findings(&damage);
         assert!(!found.is_empty());
         assert!(found.iter().all(|found| matches!(found, FiltrationFinding::Order { .. })));
+        let values = damage.values.vertices.iter().chain(&damage.values.edges);
+        let values: Vec<_> =
+            values.chain(&damage.values.facets).chain(&damage.values.cells).collect();
+        let swapped = [at, at + 1].map(|at| values[damage.order[at] as usize].squared());
+        assert!(found.iter().any(|found| {
+            matches!(found, FiltrationFinding::Order { values, .. } if values.each_ref().map(Exact::nearest) == swapped)
+        }), "{swapped:?} {found:?}");
         let is_pair = |wanted: usize, is: bool| move |found: &FiltrationFinding| matches!(found, FiltrationFinding::Pair { dimension, listed, .. } if *dimension == wanted && *listed == is);
         let mut damage = right.clone();
         if damage.pairs.as_mut().unwrap().components.pop().is_some() {

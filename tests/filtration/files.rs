@@ -5,7 +5,7 @@ use std::path::Path;
 
 use walpha::WeightedPoints;
 use walpha::check::schema::FiltrationFile;
-use walpha::check::{FiltrationFinding, certify_filtration, compare_filtrations};
+use walpha::check::{FiltrationFinding, Unjudged, certify_filtration, compare_filtrations};
 use walpha::export::FiltrationFormat;
 use walpha::ladder::{Filtration, Ordered};
 
@@ -74,4 +74,21 @@ fn the_documented_file_is_right() {
     let filtration = Filtration::new(points).unwrap();
     let made = file(&filtration.simplices().unwrap());
     assert_eq!((made.values, made.order), (documented.values, documented.order));
+}
+
+#[test]
+fn what_is_not_there_is_not_judged() {
+    let points = sets(1, 12).next().unwrap();
+    let filtration = Filtration::new(points).unwrap();
+    let whole = file(&filtration.simplices().unwrap());
+    let unjudged = |file: FiltrationFile| {
+        let (findings, certificate) = certify_filtration(&file).unwrap();
+        assert_eq!(findings, []);
+        certificate.not_judged
+    };
+    assert_eq!(unjudged(whole.clone()), []);
+    assert_eq!(unjudged(FiltrationFile { gabriel: None, ..whole.clone() }), [Unjudged::Gabriel]);
+    assert_eq!(unjudged(FiltrationFile { regular: None, ..whole.clone() }), [Unjudged::Intervals]);
+    assert_eq!(unjudged(FiltrationFile { interior: None, ..whole.clone() }), [Unjudged::Intervals]);
+    assert_eq!(unjudged(FiltrationFile { pairs: None, ..whole }), [Unjudged::Pairs]);
 }

@@ -144,6 +144,7 @@ fn tolerances_that_are_none_are_refused() {
         let options = HaarOptions::default().tolerance(tolerance);
         let error = smooth(&volume, &options).unwrap_err();
         assert!(matches!(error, HaarError::Tolerance { .. }), "{error}");
+        assert_eq!(error.advice().unwrap().to_string(), "give a number from 0 up");
         assert!(forward(volume.samples(), Decomposition::Standard).truncate(tolerance).is_err());
     }
 }

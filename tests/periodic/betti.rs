@@ -66,6 +66,25 @@ fn a_lattice_covers_the_torus() {
     }
 }
 
+/// What goes round has no end along that axis.
+#[test]
+fn boxes_of_rods_and_slabs_span_the_torus() {
+    let box_of = |keep: fn(&[f64; 3]) -> bool| {
+        let all = (0..480).map(|i| [i % 8, i / 8 % 10, i / 80].map(f64::from));
+        let shape = shape(&unweighted(all.filter(keep).collect()), [8.0, 10.0, 6.0], 0.75).unwrap();
+        let parts = shape.components();
+        assert_eq!(parts.len(), 1);
+        (parts[0].low, parts[0].high)
+    };
+    assert_eq!(box_of(|p| p[1] == 1.0 && p[2] == 5.0), ([0.0, 1.0, 5.0], [8.0, 1.0, 5.0]));
+    assert_eq!(box_of(|p| p[1] == 3.0), ([0.0, 3.0, 0.0], [8.0, 3.0, 6.0]));
+    assert_eq!(box_of(|_| true), ([0.0; 3], [8.0, 10.0, 6.0]));
+    assert_eq!(
+        box_of(|p| p[0] < 3.0 && p[2] == 0.0 && p[1] == 4.0),
+        ([0.0, 4.0, 0.0], [2.0, 4.0, 0.0])
+    );
+}
+
 #[test]
 fn things_that_go_round() {
     let betti = |positions: Vec<[f64; 3]>, squared| {

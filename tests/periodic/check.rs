@@ -5,7 +5,7 @@ use walpha::check::{CertifyError, Finding, NotJudged};
 use walpha::export::{Exporter, Json, Npz};
 use walpha::shape::{AlphaShape, Class};
 
-use crate::{alpha_shape, dense, options, sets, shape};
+use crate::{WeightedPoints, alpha_shape, dense, options, sets, shape};
 
 fn placed(shape: &AlphaShape) -> PlacedComplex {
     let sides = shape.options().periodic.unwrap().sides();
@@ -38,6 +38,47 @@ fn shapes_of_a_torus_are_certified() {
         }
     }
     assert!(judged > 40, "{judged}");
+}
+
+/// Spheres of squared radius 768 in a box of 96, and that much beyond weights far below zero.
+#[test]
+fn large_spheres_of_a_torus_are_judged() {
+    let positions = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|k| f64::from(32 * k)));
+    let positions: Vec<_> = positions.collect();
+    for (weight, squared) in [(0.0, 767.0), (0.0, 768.0), (-5000.0, 5767.0), (-5000.0, 5768.0)] {
+        let points = WeightedPoints::new(positions.clone(), vec![weight; 27]).unwrap();
+        let shape = alpha_shape(points, &options([96.0; 3], squared).exterior(true)).unwrap();
+        let full = squared + weight >= 768.0;
+        let class = if full { Class::Interior } else { Class::Exterior };
+        assert!(shape.complex().cells.classes().iter().all(|&found| found == class));
+        assert_eq!(findings(&placed(&shape)), []);
+    }
+}
+
+/// One point hidden beside a heavier one, and one at the place of another.
+#[test]
+fn hidden_points_of_a_torus_are_judged() {
+    let mut positions: Vec<_> =
+        (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|k| f64::from(32 * k))).collect();
+    positions.extend([[1.0, 0.0, 0.0], [32.0, 0.0, 64.0]]);
+    let mut weights = vec![0.0; 27];
+    weights.extend([-100.0, -1.0]);
+    let points = WeightedPoints::new(positions, weights).unwrap();
+    let whole = options([96.0; 3], 768.0).exterior(true);
+    let right = placed(&alpha_shape(points, &whole).unwrap());
+    assert_eq!(
+        (right.hidden.as_deref(), right.duplicates.as_deref()),
+        (Some(&[27][..]), Some(&[[28, 19]][..]))
+    );
+    assert_eq!(findings(&right), []);
+    let mut unaccounted = right.clone();
+    unaccounted.hidden = Some(Vec::new());
+    let found = findings(&unaccounted);
+    assert!(matches!(found[..], [Finding::Unaccounted { point: 27 }]), "{found:?}");
+    let mut vertex = right;
+    vertex.hidden = Some(vec![13, 27]);
+    let found = findings(&vertex);
+    assert!(matches!(found[..], [Finding::NotOnlyHidden { point: 13 }]), "{found:?}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Complexes of a periodic box, by hand.
 
-use walpha_check::schema::ComplexFile;
+use walpha_check::schema::{ComplexFile, SchemaError};
 use walpha_check::{Alpha, CertifyError, Finding};
 
 /// What is found of an edge from the origin along x.
@@ -28,4 +28,18 @@ fn copies_of_points_are_exact() {
     let side = 2f64.powi(52);
     let refused = |end| matches!(findings(end, side), Err(CertifyError::NotInBox(1)));
     assert_eq!([2.0, 1.0, -2.0, side].map(refused), [false, true, true, true]);
+}
+
+#[test]
+fn sides_are_positive_numbers() {
+    for side in [0.0, -8.0, f64::NAN, f64::INFINITY] {
+        let mut file = ComplexFile::of_points(vec![[0.0; 3]], Alpha::ZERO);
+        file.vertices = Some(vec![0]);
+        file.periodic = Some([8.0, side, 8.0]);
+        let refused = file.into_complex().unwrap_err();
+        assert!(
+            matches!(refused, SchemaError::Value { name: "periodic", .. }),
+            "{side}: {refused}"
+        );
+    }
 }

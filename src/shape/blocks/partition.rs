@@ -242,3 +242,6 @@ impl Node {
         apart <= reach * reach * (1.0 + 16.0 * f64::EPSILON)
     }
 }
+
+#[cfg(test)]
+mod tests;

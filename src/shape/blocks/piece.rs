@@ -145,3 +145,26 @@ fn ordered(owned: Owned, block: &Block, points: usize) -> BlockShape {
     piece.border = border;
     piece
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Squared lengths may be below zero; below all weights there is nothing.
+    #[test]
+    fn nothing_is_in_the_shape_below_all_weights() {
+        let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        for (alpha, weight, vertices) in [
+            (f64::NEG_INFINITY, 0.0, 0),
+            (f64::NEG_INFINITY, -3.0, 0),
+            (-0.25, 0.0, 0),
+            (-0.25, 0.25, 4),
+            (3.0, -3.0, 4),
+        ] {
+            let points = Own { positions: &positions, weights: &[weight; 4], own: &[true; 4] };
+            let found = block_shape(points, alpha, Maker::Native).unwrap();
+            assert_eq!(found.complex.vertices.len(), vertices, "{alpha} {weight}");
+            assert!(found.complex.cells.is_empty());
+        }
+    }
+}

@@ -77,6 +77,11 @@ pub(crate) fn at_work(maker: Maker) -> u64 {
     }
 }
 
+/// The number of blocks to begin with.
+fn fewest(points: usize, threads: usize) -> usize {
+    threads.min(points / WORTHWHILE).max(1)
+}
+
 impl Plan {
     /// All sites as one block.
     pub(crate) fn whole(sites: &Sites<'_>) -> Self {
@@ -95,31 +100,51 @@ impl Plan {
         limits: Limits,
     ) -> Result<Self, PlanError> {
         let threads = rayon::current_num_threads();
-        let points = sites.input().len();
         let resident = memory::resident_bytes().unwrap_or(0);
         let bound = limits.memory.map(|asked| Bound { asked, resident });
-        if let Some(blocks) = limits.blocks {
-            let partition = Partition::new(sites, blocks);
-            let at_once = partition.len().min(threads);
-            return Ok(Self { partition, at_once, bound });
+        match (limits.blocks, bound) {
+            (Some(blocks), _) => {
+                let partition = Partition::new(sites, blocks);
+                let at_once = partition.len().min(threads);
+                Ok(Self { partition, at_once, bound })
+            }
+            (None, Some(bound)) => Self::within(bound, sites, reach, maker, threads),
+            (None, None) => Ok(Self::fast(sites, reach, threads)),
         }
-        let mut blocks = threads.min(points / WORTHWHILE).max(1);
-        let mut partition = Partition::new(sites, blocks);
-        let mut largest = partition.largest(sites, reach);
+    }
+
+    /// As many blocks as there are threads, if that pays.
+    fn fast(sites: &Sites<'_>, reach: Reach, threads: usize) -> Self {
+        let points = sites.input().len();
+        let at_once = fewest(points, threads);
+        let partition = Partition::new(sites, at_once);
         // More blocks than one pay only if none of them is nearly the whole.
-        if limits.memory.is_none() && largest > points - points / 8 {
-            return Ok(Self::whole(sites));
+        if partition.largest(sites, reach) > points - points / 8 {
+            return Self::whole(sites);
         }
-        let Some(asked) = limits.memory else {
-            return Ok(Self { partition, at_once: blocks, bound });
-        };
+        Self { partition, at_once, bound: None }
+    }
+
+    /// The blocks that keep a bound and take the least time.
+    fn within(
+        bound: Bound,
+        sites: &Sites<'_>,
+        reach: Reach,
+        maker: Maker,
+        threads: usize,
+    ) -> Result<Self, PlanError> {
+        let Bound { asked, resident } = bound;
+        let points = sites.input().len();
         let needs = |at_once: usize, largest: usize| {
             let at_work = at_work(maker) * (at_once * largest) as u64;
             resident + (DONE * points as u64 + at_work).max(MERGED * points as u64)
         };
+        let mut blocks = fewest(points, threads);
         let mut least = PlanError { asked, needed: u64::MAX, blocks };
         let mut best: Option<(f64, Self)> = None;
         loop {
+            let partition = Partition::new(sites, blocks);
+            let largest = partition.largest(sites, reach);
             // The time of a plan is that of its blocks with their halos, shared among threads.
             let work = (blocks * largest) as f64;
             let time = |at_once: usize| work / at_once as f64;
@@ -132,7 +157,7 @@ impl Plan {
                 needed <= asked
             });
             if let Some(at_once) = at_once.filter(|&at_once| time(at_once) < shortest) {
-                best = Some((time(at_once), Self { partition, at_once, bound }));
+                best = Some((time(at_once), Self { partition, at_once, bound: Some(bound) }));
             }
             blocks *= 2;
             // More blocks have more of a halo: with all threads at work they are slower.
@@ -142,8 +167,6 @@ impl Plan {
             {
                 return best.map(|(_, plan)| plan).ok_or(least);
             }
-            partition = Partition::new(sites, blocks);
-            largest = partition.largest(sites, reach);
         }
     }
 
@@ -176,6 +199,76 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn grid() -> Vec<[f64; 3]> {
+        (0..8000).map(|i| [i % 20, i / 20 % 20, i / 400].map(f64::from)).collect()
+    }
+
+    #[test]
+    fn threads_have_a_block_each_unless_it_is_nearly_the_whole() {
+        let (positions, weights) = (grid(), vec![0.0; 8000]);
+        let sites = Sites::new(&positions, &weights).unwrap();
+        for (reach, threads, expected) in [
+            (Reach::Balls(0.75), 3, 3),
+            (Reach::Balls(0.75), 16, 4),
+            (Reach::Distance(f64::INFINITY), 4, 1),
+        ] {
+            let plan = Plan::fast(&sites, reach, threads);
+            assert_eq!((plan.partition.len(), plan.at_once), (expected, expected), "{reach:?}");
+            assert_eq!(plan.shelves(), 1);
+        }
+    }
+
+    /// Against all plans that there are, for every bound at which the answer changes.
+    #[test]
+    fn the_fastest_plan_within_the_bound_is_found() {
+        let (positions, weights) = (grid(), vec![0.0; 8000]);
+        let sites = Sites::new(&positions, &weights).unwrap();
+        let (reach, threads, resident) = (Reach::Balls(0.75), 3, 1_000_000);
+        for maker in [Maker::Native, Maker::Cgal] {
+            // Bytes, time, blocks, blocks at once: the fastest first, of equals the one with fewer blocks.
+            let mut plans = Vec::new();
+            for blocks in (0..12).map(|step| 3 << step).take_while(|&blocks| blocks <= MOST) {
+                let largest = Partition::new(&sites, blocks).largest(&sites, reach);
+                for at_once in 1..=threads {
+                    let work = at_work(maker) * (at_once * largest) as u64;
+                    let bytes = resident + (8000 * DONE + work).max(8000 * MERGED);
+                    let time = (blocks * largest) as f64 / at_once as f64;
+                    plans.push((bytes, time, blocks, at_once));
+                }
+            }
+            plans.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.2.cmp(&b.2)));
+            let mut made = 0;
+            for asked in plans.iter().flat_map(|plan| [plan.0 - 1, plan.0]) {
+                let bound = Bound { asked, resident };
+                let plan = Plan::within(bound, &sites, reach, maker, threads);
+                match (plans.iter().find(|plan| plan.0 <= asked), plan) {
+                    (Some(&(.., blocks, at_once)), Ok(plan)) => {
+                        assert_eq!((plan.partition.len(), plan.at_once), (blocks, at_once));
+                        assert_eq!(plan.shelves(), SHELVES);
+                        made += 1;
+                    }
+                    (None, Err(error)) => {
+                        let least = plans.iter().map(|plan| plan.0).min().unwrap();
+                        assert_eq!((error.asked, error.needed), (asked, least));
+                        let least = plans.iter().filter(|plan| plan.0 == least);
+                        let fewest = least.map(|plan| plan.2).min();
+                        assert_eq!(Some(error.blocks), fewest);
+                    }
+                    (expected, _) => panic!("{expected:?} for {asked}"),
+                }
+            }
+            assert!(made > 6 && made < 2 * plans.len(), "{made}");
+        }
+    }
+
+    #[test]
+    fn a_block_at_work_has_room_for_its_cells() {
+        // Of uniformly random points there are 6.77 cells to a point; of four vertices and four
+        // neighbours, and in CGAL handles of 8 bytes, a circumcentre's room and two lists' links.
+        assert!(at_work(Maker::Native) as f64 > 6.77 * 32.0);
+        assert!(at_work(Maker::Cgal) as f64 > 6.77 * 112.0);
+    }
 
     #[test]
     fn more_rows_than_planned_are_noticed() {

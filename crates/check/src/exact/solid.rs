@@ -156,6 +156,7 @@ mod tests {
         let at = |x: i32, y: i32| [x, y, 3 - 2 * x + y].map(|k| 0.5 * f64::from(k));
         let places = [at(0, 0), at(1, 0), at(0, 1), at(4, -6), at(-3, 8), at(2, 2)];
         let lattice = Lattice::through(&places);
+        assert_eq!(lattice.exponent(), -1);
         let one = lattice.plane([places[0], places[1], places[2]]);
         assert_eq!(one, lattice.plane([places[2], places[1], places[0]]));
         assert_eq!(one, lattice.plane([places[3], places[4], places[5]]));

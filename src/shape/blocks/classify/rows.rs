@@ -222,3 +222,52 @@ fn gathered<T: Copy>(from: &[T], ranges: impl Iterator<Item = Range<usize>> + Cl
     ranges.for_each(|range| to.extend_from_slice(&from[range]));
     to
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::{Limits, Plan, Question, Reach, decide, merge};
+    use super::*;
+    use crate::math::Lattice;
+    use crate::progress::Piece;
+    use crate::triangulation::{Maker, Sites};
+
+    #[test]
+    fn merged_rows_take_the_bytes_foreseen() {
+        let axis = || (0..5).map(f64::from);
+        let rows = axis().flat_map(|z| axis().flat_map(move |y| axis().map(move |x| [x, y, z])));
+        // Points of which facets and edges dangle.
+        let apart =
+            [[9.0, 0.0, 0.0], [9.5, 0.0, 0.0], [8.7, 0.3, 0.0], [9.0, 0.0, 3.0], [9.0, 0.5, 3.0]];
+        let positions: Vec<_> = rows.chain(apart).collect();
+        let weights = vec![0.0; positions.len()];
+        let sites = Sites::new(&positions, &weights).unwrap();
+        let lattice = Lattice::of(&positions, &weights);
+        let question = Question { alpha: 0.75, lattice, exterior: false, maker: Maker::Native };
+        for blocks in [1, 7] {
+            let limits = Limits { blocks: Some(blocks), memory: None };
+            let plan = Plan::new(&sites, Reach::Balls(0.75), Maker::Native, limits).unwrap();
+            let shelves = Shelves::new(sites.input(), 1);
+            let work = Piece::new(1);
+            let owned: Vec<_> = (0..plan.partition.len())
+                .map(|block| decide(&sites, &plan.partition, block, &question, shelves, &work))
+                .collect::<Result<_, _>>()
+                .unwrap();
+            assert_eq!(owned.iter().map(Owned::points).sum::<usize>(), positions.len());
+            let foreseen: u64 = owned.iter().map(Owned::merged_bytes).sum();
+            let made = merge(&sites, &plan, owned, &question, shelves);
+            let complex = &made.complex;
+            assert!(made.facet_sheets.len() > 2 && !made.edge_sheets.is_empty());
+            let bytes = size_of_val(complex.cells.rows())
+                + size_of_val(complex.cells.classes())
+                + size_of_val(complex.facets.rows())
+                + size_of_val(complex.facets.classes())
+                + size_of_val(complex.edges.rows())
+                + size_of_val(complex.edges.classes())
+                + size_of_val(complex.vertices.rows())
+                + size_of_val(complex.vertices.classes())
+                + size_of_val(&made.facet_sheets[..])
+                + size_of_val(&made.edge_sheets[..]);
+            assert_eq!(foreseen, bytes as u64, "{blocks}");
+        }
+    }
+}

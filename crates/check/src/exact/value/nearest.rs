@@ -89,10 +89,13 @@ mod tests {
         assert_eq!(exact(1, -3, 0).nearest(), -1.0 / 3.0);
         assert_eq!(exact(-2, -6, 0), exact(1, 3, 0));
         assert_eq!(exact(1, 1, 1023).nearest(), 2f64.powi(1023));
+        assert_eq!(exact(two_53 - 1, 1, 971).nearest(), f64::MAX);
         assert_eq!(exact(1, 1, 1024).nearest(), f64::INFINITY);
         assert_eq!(exact(-1, 1, 2000).nearest(), f64::NEG_INFINITY);
         assert_eq!(exact(1, 3, -1080).nearest(), 0.0);
         assert_eq!(exact(2, 3, -1074).nearest(), 5e-324);
+        // A little less than halfway, which 53 digits do not tell from it.
+        assert_eq!(exact(3 * (1 << 60) - 1, 1, -1074 - 61).nearest(), 5e-324);
     }
 
     #[test]

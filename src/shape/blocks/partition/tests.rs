@@ -1,0 +1,86 @@
+//! Cuts and halos, against every point.
+
+use super::*;
+use crate::triangulation::Torus;
+
+/// Points in a box of 4 by 8 by 2, on and between the places of a grid.
+fn points() -> (Vec<[f64; 3]>, Vec<f64>) {
+    let mut draws = (0u64..).map(|i| (i * i * 7919 + i * 104_729) % 1009);
+    let mut along = |most: u64| (draws.next().expect("endless") % most) as f64 / 4.0;
+    let positions: Vec<_> = (0..300).map(|_| [along(16), along(32), along(8)]).collect();
+    let weights = (0..300).map(|i| f64::from(i % 7) / 4.0 - 0.5).collect();
+    (positions, weights)
+}
+
+/// How far apart a point is from a box.
+fn apart(at: [f64; 3], own: &[[f64; 3]]) -> f64 {
+    let away = (0..3).map(|k| {
+        let low = own.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
+        let high = own.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
+        (low - at[k]).max(at[k] - high).max(0.0)
+    });
+    away.map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Those, and no others, whose balls meet the box of the block.
+#[test]
+fn halos_are_the_points_within_reach() {
+    let (positions, weights) = points();
+    let torus = Torus::new([4.0, 8.0, 2.0]).unwrap();
+    let periodic = Sites::on_torus(&positions, &weights, torus).unwrap();
+    let sites = Sites::new(&positions, &weights).unwrap();
+    for (sites, copies) in [(&sites, 0..=0), (&periodic, -3..=3)] {
+        for blocks in [1, 5, 8] {
+            let partition = Partition::new(sites, blocks);
+            let reach = Reach::Balls(0.3);
+            let mut largest = 0;
+            for block in 0..blocks {
+                let made = partition.block(sites, reach, block);
+                largest = largest.max(made.input.len());
+                let own: Vec<u32> = partition.own(sites, block).collect();
+                assert_eq!(own.len(), made.own as usize);
+                let places: Vec<_> =
+                    own.iter().map(|&site| sites.positions()[site as usize]).collect();
+                let heaviest = own.iter().map(|&site| sites.weights()[site as usize]);
+                let heaviest = heaviest.fold(f64::NEG_INFINITY, f64::max);
+                let mut halo = Vec::new();
+                for (site, (&at, &weight)) in
+                    (0..).zip(sites.positions().iter().zip(sites.weights()))
+                {
+                    for x in copies.clone() {
+                        for y in copies.clone() {
+                            for z in copies.clone() {
+                                let at = [
+                                    at[0] + 4.0 * f64::from(x),
+                                    at[1] + 8.0 * f64::from(y),
+                                    at[2] + 2.0 * f64::from(z),
+                                ];
+                                let far = apart(at, &places) > reach.from(heaviest, weight);
+                                let own = own.contains(&site) && [x, y, z] == [0; 3];
+                                if !far && 0.3 + weight >= 0.0 && !own {
+                                    halo.push((at.map(f64::to_bits), sites.input()[site as usize]));
+                                }
+                            }
+                        }
+                    }
+                }
+                let got = made.positions.iter().map(|at| at.map(f64::to_bits));
+                let mut got: Vec<_> = got.zip(made.input).skip(own.len()).collect();
+                halo.sort_unstable();
+                got.sort_unstable();
+                assert_eq!(got, halo, "block {block} of {blocks}");
+            }
+            assert_eq!(partition.largest(sites, reach), largest);
+        }
+    }
+}
+
+#[test]
+fn blocks_are_cut_across_their_longest_side() {
+    let (positions, weights) = points();
+    let sites = Sites::new(&positions, &weights).unwrap();
+    let partition = Partition::new(&sites, 2);
+    let along =
+        |block| partition.own(&sites, block).map(|site| sites.positions()[site as usize][1]);
+    assert!(along(0).fold(0.0, f64::max) <= along(1).fold(8.0, f64::min));
+}
