@@ -10,6 +10,7 @@ fn written_points_are_read_back() {
         let positions = vec![[third, -2.0, 1e20], [0.0, 5.0, 6.25]];
         let mut points = WeightedPoints::new(positions, vec![third * third, -1.0]).unwrap();
         points.values = values;
+        assert_eq!((points.is_empty(), points.len()), (false, 2));
         let (csv, npy) = (folder.path().join("p.csv"), folder.path().join("p.npy"));
         for path in [csv, npy] {
             let mut file = std::fs::File::create(&path).unwrap();
@@ -22,6 +23,26 @@ fn written_points_are_read_back() {
                 "{path:?}"
             );
         }
+    }
+}
+
+/// The first axis fastest, as `numpy.asfortranarray` makes it.
+#[test]
+fn columns_of_an_array_may_come_first() {
+    use ndarray::ShapeBuilder as _;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("p.npy");
+    let of = |(row, column): (usize, usize)| (10 * row + column) as f64;
+    for columns in [4, 5] {
+        let mut bytes = Vec::new();
+        let array = ndarray::Array2::from_shape_fn((3, columns).f(), of);
+        ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes).unwrap();
+        assert!(bytes.windows(22).any(|header| header == b"'fortran_order': True,"));
+        std::fs::write(&path, bytes).unwrap();
+        let points = read_points(&path, None).unwrap();
+        assert_eq!(points.positions, [[0.0, 1.0, 2.0], [10.0, 11.0, 12.0], [20.0, 21.0, 22.0]]);
+        assert_eq!(points.weights, Some(vec![3.0, 13.0, 23.0]));
+        assert_eq!(points.values, (columns == 5).then(|| vec![4.0, 14.0, 24.0]));
     }
 }
 
@@ -66,6 +87,16 @@ fn bad_point_files_say_where_they_are_bad() {
     let infinite = ndarray::arr2(&[[1.0, 2.0, f64::INFINITY, 0.0]]);
     refuse("inf.npy", &npy(infinite), &["row 0", "z is inf"]);
     refuse("none.npy", &npy(ndarray::Array2::zeros((0, 4))), &["no point"]);
+    refuse("off.off", b"OFF\n2 0 0\n# two\n\n0 0 0\n0 zero 0\n", &["line 6", "y is \"zero\""]);
+    // The first row alone could be a place and a unit vector.
+    refuse("six.xyz", b"0 0 0 0 0 1\n0 0 1 0.5 7 300\n", &["has 6 columns"]);
+    for items in ["1.5", "-1", "nan"] {
+        let list = format!(
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n\
+             element face 1\nproperty list float int vertex_indices\nend_header\n0 0 0\n{items} 0\n"
+        );
+        refuse("list.ply", list.as_bytes(), &["has a list of"]);
+    }
     let text = read_points(Path::new("no/such.csv"), None).unwrap_err().told();
     assert!(text.contains("no/such.csv"), "{text}");
 }

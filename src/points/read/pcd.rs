@@ -270,3 +270,30 @@ fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, Reason> {
     }
     if out.len() == whole { Ok(out) } else { Err(damaged()) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Copies of what is near and far, as long as a byte can say, and into themselves.
+    #[test]
+    fn pieces_repeat_what_came_before() {
+        let literal: Vec<u8> = (0..320u32).map(|i| (i * i % 251) as u8).collect();
+        let mut packed: Vec<u8> = literal.chunks(32).flat_map(|c| [&[31], c].concat()).collect();
+        let mut expected = literal;
+        for (control, more, back, length) in [
+            (32, None, 1, 3),
+            (33, None, 300, 3),
+            (6 << 5, None, 7, 8),
+            (7 << 5, Some(200), 10, 209),
+        ] {
+            packed.push(control);
+            packed.extend(more);
+            packed.push((back - 1) as u8);
+            let start = expected.len() - back;
+            (start..start + length).for_each(|from| expected.push(expected[from]));
+        }
+        let sizes = [packed.len(), expected.len()].map(|n| (n as u32).to_le_bytes()).concat();
+        assert_eq!(unpacked(&[sizes, packed].concat()).ok(), Some(expected));
+    }
+}

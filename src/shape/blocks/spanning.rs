@@ -38,19 +38,27 @@ mod tests {
     fn a_block_of_a_line_stays_small() {
         let line = (0..800).map(|i| [f64::from(i), 0.0, 0.0]);
         let positions: Vec<_> = line.chain([[5.0, 1.0, 0.0], [5.0, 0.0, 1.0]]).collect();
+        let positions: Vec<_> = positions.iter().map(|p| p.map(|x| 1024.0 * x)).collect();
         let weights = vec![0.0; positions.len()];
         let sites = Sites::new(&positions, &weights).unwrap();
         let partition = Partition::new(&sites, 8);
         let lattice = Lattice::of(&positions, &weights);
         for maker in [Maker::Native, Maker::Cgal] {
-            let question = Question { alpha: 1.0, lattice, exterior: false, maker };
+            let question = Question { alpha: 1024.0 * 1024.0, lattice, exterior: false, maker };
+            let mut flat = 0;
             for block in 0..partition.len() {
                 let work = Piece::new(1);
-                let (points, made, _) =
+                let (points, made, lattice_of_block) =
                     in_space(&sites, &partition, block, &question, &work).unwrap();
                 assert!(points.positions.len() < 110, "{}", points.positions.len());
                 assert_eq!(made.ghost() as usize, points.input.len());
+                // The places beside are on a lattice of their own.
+                let own = Lattice::of(&points.positions, &points.weights);
+                let is_flat = points.weights.iter().any(|&weight| weight < 0.0);
+                flat += usize::from(is_flat);
+                assert_eq!(lattice_of_block, if is_flat { own } else { lattice });
             }
+            assert!(flat > 4 && flat < partition.len(), "{flat}");
         }
     }
 }
