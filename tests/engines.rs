@@ -192,9 +192,9 @@ fn the_skull() {
 fn exterior_simplices_take_one_block() {
     let points = weighted((0..64).map(|i| ([i % 4, i / 4 % 4, i / 16].map(f64::from), 0.0)));
     let with = |blocks| by(Engine::Native, &points, 0.75, Some(blocks), true);
-    assert_eq!(with(1), by(Engine::Native, &points, 0.75, None, true));
-    assert!(with(1).is_ok());
-    assert_eq!(with(2), Err(ShapeError::Exterior { blocks: 2 }));
+    let whole = by(Engine::Native, &points, 0.75, None, true).unwrap();
+    assert_same(&whole, &with(1).unwrap(), "one block");
+    assert_eq!(with(2).unwrap_err(), ShapeError::Exterior { blocks: 2 });
 }
 
 #[test]
