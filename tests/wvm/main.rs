@@ -4,6 +4,7 @@ mod command;
 #[path = "../common/mod.rs"]
 mod common;
 mod damaged;
+mod kept;
 #[path = "../common/told.rs"]
 mod told;
 
