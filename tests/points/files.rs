@@ -58,6 +58,25 @@ fn csv_columns_may_stand_anywhere() {
     assert_eq!(points.values, None);
 }
 
+/// −0 is where 0 is.
+#[test]
+fn corners_of_facets_are_points_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("p.stl");
+    let text = "solid\nvertex 0 0 1\nvertex -0 1 0\nvertex 1 0 0\nvertex 0 -0 1\nvertex 0 1 -0\nendsolid\n";
+    std::fs::write(&path, text).unwrap();
+    let points = read_points(&path, None).unwrap();
+    assert_eq!(points.positions, [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
+}
+
+#[test]
+fn formats_say_whether_they_are_built_in() {
+    let absent = FORMATS.iter().filter(|format| !format.is_built_in());
+    let absent: Vec<_> = absent.flat_map(|format| format.extensions).collect();
+    let expected: &[&str] = if cfg!(feature = "las") { &[] } else { &["las", "laz"] };
+    assert!(absent.iter().copied().eq(expected), "{absent:?}");
+}
+
 #[test]
 fn bad_point_files_say_where_they_are_bad() {
     let folder = tempfile::tempdir().unwrap();
@@ -90,6 +109,11 @@ fn bad_point_files_say_where_they_are_bad() {
     refuse("off.off", b"OFF\n2 0 0\n# two\n\n0 0 0\n0 zero 0\n", &["line 6", "y is \"zero\""]);
     // The first row alone could be a place and a unit vector.
     refuse("six.xyz", b"0 0 0 0 0 1\n0 0 1 0.5 7 300\n", &["has 6 columns"]);
+    refuse("two.pwn", b"2\n0 0 0\n1 1\n", &["line 3", "2 columns"]);
+    refuse("text.stl", b"solid\n\nvertex 0 zero 0\nendsolid\n", &["line 3", "y is \"zero\""]);
+    let binary = [&[0; 80][..], &5u32.to_le_bytes(), &[0; 150]].concat();
+    refuse("binary.stl", &binary, &["claims 5 facets, which 234 bytes cannot hold"]);
+    refuse("short.stl", &binary[..20], &["claims 0 facets"]);
     for items in ["1.5", "-1", "nan"] {
         let list = format!(
             "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n\

@@ -164,6 +164,16 @@ fn values_are_within_the_error_asked_for() {
 }
 
 #[test]
+fn a_grid_has_samples_where_they_are() {
+    let grid = grid([3, 4, 5]);
+    assert_eq!(grid.sample_at([2.0, 3.0, 4.0]), Some([2, 3, 4]));
+    for off in [[3.0, 0.0, 0.0], [0.0, 4.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.5, 0.0], [f64::NAN; 3]]
+    {
+        assert_eq!(grid.sample_at(off), None, "{off:?}");
+    }
+}
+
+#[test]
 fn degenerate_sets_come_back() {
     let full = |dims: [u32; 3], value: f64| scattered(dims, 1, |_| value);
     let mut far = vec![[0.0; 3], [1624.0; 3], [1624.0, 0.0, 1.0], [3.0, 1500.0, 1000.0]];
