@@ -84,3 +84,12 @@ fn blocks_are_cut_across_their_longest_side() {
         |block| partition.own(&sites, block).map(|site| sites.positions()[site as usize][1]);
     assert!(along(0).fold(0.0, f64::max) <= along(1).fold(8.0, f64::min));
 }
+
+/// √(3 + 1) + √(3 − 2) = 3 beyond the box.
+#[test]
+fn a_neighbourhood_holds_what_balls_reach() {
+    let own = [([0.0; 3], 1.0), ([2.0, 0.0, 0.0], 0.0)];
+    let near = Neighbourhood::of(own.into_iter(), 3.0);
+    assert!(near.holds([5.0, 0.0, 0.0], -2.0) && !near.holds([5.1, 0.0, 0.0], -2.0));
+    assert!(near.holds([1.0, -3.0, 0.0], -2.0) && !near.holds([1.0, 0.0, 0.0], -4.0));
+}
