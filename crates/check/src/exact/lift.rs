@@ -70,6 +70,9 @@ mod tests {
             let one = lift.hyperplane([0, 1, 2, 4].map(site));
             assert_eq!(one, lift.hyperplane([7, 6, 5, 3].map(site)));
             assert_eq!(one, lift.hyperplane([1, 0, 2, 4].map(site)));
+            let mut far = [7, 6, 5, 3].map(site);
+            far[0].position = [1.0; 3];
+            assert_ne!(one, Lift::through((0..8).map(site)).hyperplane(far));
             let mut apart = [7, 6, 5, 3].map(site);
             apart[3].weight = apart[3].weight.next_up();
             let lift = Lift::through((0..8).map(site).chain(apart));
