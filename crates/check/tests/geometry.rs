@@ -34,17 +34,15 @@ fn a_cube_with_other_diagonals() {
     assert!(all.iter().any(tied), "{all:?}");
 }
 
+/// Far above and below a triangle.
+fn bipyramid() -> Vec<[f64; 3]> {
+    vec![[0.0, 0.0, 3.0], [0.0, 0.0, -3.0], [2.0, 0.0, 0.0], [-1.0, 2.0, 0.0], [-1.0, -2.0, 0.0]]
+}
+
 /// Two cells around the wrong one of two diagonals, far from any tie.
 #[test]
 fn a_cell_that_is_not_regular() {
-    let positions = vec![
-        [0.0, 0.0, 3.0],
-        [0.0, 0.0, -3.0],
-        [2.0, 0.0, 0.0],
-        [-1.0, 2.0, 0.0],
-        [-1.0, -2.0, 0.0],
-    ];
-    let (case, answer) = triangulation(positions, &[[2, 3, 4, 0], [2, 4, 3, 1]]);
+    let (case, answer) = triangulation(bipyramid(), &[[2, 3, 4, 0], [2, 4, 3, 1]]);
     assert_eq!(case.findings(&answer, Extent::Whole), []);
     let (case, answer) = triangulation(case.positions, &[[0, 1, 3, 2], [0, 1, 4, 3], [0, 1, 2, 4]]);
     let all = case.findings(&answer, Extent::Whole);
@@ -57,15 +55,8 @@ fn a_cell_that_is_not_regular() {
 /// A gap is a missing cell only where the cell would be regular.
 #[test]
 fn a_gap_that_no_cell_fills() {
-    let positions = vec![
-        [0.0, 0.0, 3.0],
-        [0.0, 0.0, -3.0],
-        [2.0, 0.0, 0.0],
-        [-1.0, 2.0, 0.0],
-        [-1.0, -2.0, 0.0],
-    ];
     let missing = |cells: &[[u32; 4]]| {
-        let (case, mut answer) = triangulation(positions.clone(), cells);
+        let (case, mut answer) = triangulation(bipyramid(), cells);
         answer.complex.cells = answer.complex.cells.iter().skip(1).map(|(&c, k)| (c, k)).collect();
         let all = case.findings(&answer, Extent::Whole);
         assert!(!all.is_empty());
