@@ -119,6 +119,27 @@ fn levels_of_detail_tell_the_error_of_the_interpolant() {
     }
 }
 
+/// A grid of 1.5 × 6 × 9 mm, all of it in the shape.
+#[test]
+fn coverage_is_a_share_of_the_box_in_its_units() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementSpacing = 0.5 2 3\n\
+        ElementType = MET_UCHAR\nElementDataFile = a.raw\n";
+    std::fs::write(folder.path().join("a.mhd"), header).unwrap();
+    let samples: Vec<u8> = (0..64).map(|i: u32| (i * (37 + 11 * i) % 251) as u8).collect();
+    std::fs::write(folder.path().join("a.raw"), samples).unwrap();
+    for levels in [&["--count", "64", "--alphas", "inf"][..], &["--counts", "64"]] {
+        for (units, volume) in [("world", 81.0), ("voxel", 27.0)] {
+            let options = ["--weights", "common=0", "--units", units, "-o", units];
+            let args = [&["ladder", "a.mhd"][..], levels, &options].concat();
+            let made = common::json(folder.path(), &args);
+            assert_eq!(made["domain"]["volume"], volume, "{args:?}");
+            assert_eq!(made["levels"][0]["volume"], volume, "{args:?}");
+            assert_eq!(made["levels"][0]["coverage"], 1.0, "{args:?}");
+        }
+    }
+}
+
 /// A level of more points than those of full detail has them in the region, too.
 #[test]
 fn a_region_is_not_coarser_than_its_level() {

@@ -40,13 +40,16 @@ fn shapes_of_a_torus_are_certified() {
     assert!(judged > 40, "{judged}");
 }
 
-/// Spheres of squared radius 768 in a box of 96, and that much beyond weights far below zero.
+/// A grid in a box of 96. Its cells have spheres of squared radius 768.
+fn grid() -> Vec<[f64; 3]> {
+    (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|k| f64::from(32 * k))).collect()
+}
+
+/// Large ones, and that much beyond weights far below zero.
 #[test]
 fn large_spheres_of_a_torus_are_judged() {
-    let positions = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|k| f64::from(32 * k)));
-    let positions: Vec<_> = positions.collect();
     for (weight, squared) in [(0.0, 767.0), (0.0, 768.0), (-5000.0, 5767.0), (-5000.0, 5768.0)] {
-        let points = WeightedPoints::new(positions.clone(), vec![weight; 27]).unwrap();
+        let points = WeightedPoints::new(grid(), vec![weight; 27]).unwrap();
         let shape = alpha_shape(points, &options([96.0; 3], squared).exterior(true)).unwrap();
         let full = squared + weight >= 768.0;
         let class = if full { Class::Interior } else { Class::Exterior };
@@ -58,8 +61,7 @@ fn large_spheres_of_a_torus_are_judged() {
 /// One point hidden beside a heavier one, and one at the place of another.
 #[test]
 fn hidden_points_of_a_torus_are_judged() {
-    let mut positions: Vec<_> =
-        (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|k| f64::from(32 * k))).collect();
+    let mut positions = grid();
     positions.extend([[1.0, 0.0, 0.0], [32.0, 0.0, 64.0]]);
     let mut weights = vec![0.0; 27];
     weights.extend([-100.0, -1.0]);

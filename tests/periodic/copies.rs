@@ -4,7 +4,7 @@ use walpha::AlphaShape;
 use walpha::shape::{Measures, ShapeError};
 
 use crate::oracle::{by_copies, homology};
-use crate::{alpha, alpha_shape, dense, options, sets, shape};
+use crate::{CUBIC, alpha, alpha_shape, crystal, dense, options, sets, shape};
 
 #[test]
 fn simplices_are_those_of_copies_in_space() {
@@ -40,6 +40,21 @@ fn whole_triangulations_are_those_of_copies_in_space() {
             assert_eq!(whole.hidden(), Some(&hidden[..]));
             assert_eq!(whole.complex().euler_characteristic(), chi(&whole));
         }
+    }
+}
+
+/// Spheres across the gap are larger than those that a block looks for first.
+#[test]
+fn a_gap_is_looked_across() {
+    let (points, sides) = (crystal([12, 12, 8], &CUBIC), [12.0; 3]);
+    let all = options(sides, f64::INFINITY);
+    let whole = alpha_shape(points.clone(), &options(sides, 1.0).exterior(true)).unwrap();
+    assert!(*whole.complex() == by_copies(&points, sides, alpha(1.0), true).unwrap());
+    let expected = by_copies(&points, sides, alpha(f64::INFINITY), false).unwrap();
+    for blocks in [1, 3, 8] {
+        let cut = all.blocks(std::num::NonZeroUsize::new(blocks));
+        let cut = alpha_shape(points.clone(), &cut).unwrap();
+        assert!(*cut.complex() == expected, "{blocks}");
     }
 }
 

@@ -69,6 +69,36 @@ fn corners_of_facets_are_points_once() {
     assert_eq!(points.positions, [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
 }
 
+/// What a file holds is known by how it begins, whatever its name says.
+#[test]
+fn content_goes_before_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut points = WeightedPoints::unweighted(vec![[1.0, 2.0, 3.0], [0.5, 0.0, -1.0]]);
+    points.values = Some(vec![7.0, 8.0]);
+    let ply = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n\
+        property float z\nend_header\n1 2 3\n0.5 0 -1\n";
+    let pcd = "# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n\
+        1 2 3\n0.5 0 -1\n";
+    let vtp = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"2\">\
+        <Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">1 2 3 0.5 0 -1\
+        </DataArray></Points></Piece></PolyData></VTKFile>";
+    let written = |name: &str| {
+        let mut bytes = Vec::new();
+        PointWriter::of(name.as_ref()).unwrap().write(&points, &mut bytes).unwrap();
+        bytes
+    };
+    for bytes in [ply.into(), pcd.into(), vtp.into(), written("p.npy"), written("p.wvm")] {
+        for name in ["points", "points.csv", "points.nii"] {
+            let path = folder.path().join(name);
+            std::fs::write(&path, &bytes).unwrap();
+            let start = String::from_utf8_lossy(&bytes[..10]);
+            assert!(is_point_file(&path).unwrap(), "{start} in {name}");
+            let found = read_points(&path, None).unwrap();
+            assert_eq!(found.positions, points.positions, "{start} in {name}");
+        }
+    }
+}
+
 #[test]
 fn formats_say_whether_they_are_built_in() {
     let absent = FORMATS.iter().filter(|format| !format.is_built_in());

@@ -157,7 +157,7 @@ fn impossible_selections_say_what_is_possible() {
         assert!(refuse(SelectionRule::Ratio(ratio), None).contains("ratio"));
     }
     assert!(refuse(SelectionRule::Threshold(f64::NAN), None).contains("threshold"));
-    assert!(refuse(SelectionRule::Count(1), Some(f64::NAN)).contains("gray level"));
+    assert!(refuse(SelectionRule::Count(1), Some(f64::NAN)).contains("a least gray level of NaN"));
 }
 
 #[test]

@@ -120,6 +120,16 @@ fn a_hull_that_goes_around_twice() {
     assert!(!all.iter().any(|f| matches!(f, Finding::HullBends { .. })), "{all:?}");
 }
 
+/// Each is convex, and the ray from within the first meets nothing of the second.
+#[test]
+fn two_hulls_are_no_hull() {
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let far = corners.map(|[x, y, z]| [x + 100.0, y + 30.0, z]);
+    let (case, answer) = triangulation([corners, far].concat(), &[[0, 1, 2, 3], [4, 5, 6, 7]]);
+    let all = case.findings(&answer, Extent::Whole);
+    assert!(all.iter().any(|f| matches!(f, Finding::HullWraps { .. })), "{all:?}");
+}
+
 /// A cell of the right size in the shape, with a point inside its sphere that no facet leads to.
 #[test]
 fn a_cell_of_the_shape_with_a_point_inside() {

@@ -21,18 +21,16 @@ mod piece;
 mod plan;
 mod reach;
 mod spanning;
+mod torus;
 
 use rayon::prelude::*;
 
 use super::{Complex, ShapeError};
 use crate::math::Lattice;
 use crate::progress::Piece;
-use crate::triangulation::{
-    AXES, Maker, Predicates, Sites, SitesError, Torus, Triangulation, TriangulationError,
-    check_span,
-};
+use crate::triangulation::{Maker, Sites, Torus, Triangulation, TriangulationError, check_span};
 
-use classify::{Long, Owned, Shelves, classify};
+use classify::{Owned, Shelves, classify};
 use merge::merge;
 pub(super) use partition::Partition;
 pub(crate) use piece::{BlockShape, Own, Side, block_shape};
@@ -41,6 +39,7 @@ pub(crate) use plan::at_work;
 pub(super) use plan::{Limits, Plan};
 pub(crate) use reach::Reach;
 use spanning::spanning;
+use torus::{on_torus, too_long};
 
 /// What is asked about all blocks of a set.
 #[derive(Clone, Copy)]
@@ -172,65 +171,6 @@ fn in_space(
         question.lattice
     };
     Ok((points, made, lattice))
-}
-
-/// The same on a torus, where it takes as much around a block as there are large empty spheres.
-fn on_torus(
-    sites: &Sites<'_>,
-    torus: Torus,
-    partition: &Partition,
-    block: usize,
-    question: &Question,
-    work: &Piece,
-) -> Result<(Block, Triangulation, Lattice), ShapeError> {
-    for reach in question.reaches(sites, torus) {
-        let points = partition.block(sites, reach, block);
-        match triangulate(&points, question.maker, work) {
-            Err(TriangulationError::Sites(SitesError::Flat { .. })) => {}
-            Ok(made) if !question.decides(reach, &points, &made) => {}
-            made => return Ok((points, made?, question.lattice)),
-        }
-    }
-    let points = partition.block(sites, Reach::whole(sites), block);
-    let made = triangulate(&points, question.maker, work)?;
-    Ok((points, made, question.lattice))
-}
-
-impl Question {
-    /// How far to look on a torus before all is looked at.
-    fn reaches(&self, sites: &Sites<'_>, torus: Torus) -> Vec<Reach> {
-        let heaviest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let wanted = if self.exterior { f64::INFINITY } else { self.alpha };
-        // The largest empty spheres of points of even density are twice as large as what each point has
-        // of the box, or less: then all is known with less around it than a large α asks for.
-        let spacing = (torus.volume() / sites.input().len() as f64).cbrt();
-        let squares = [4.0, 16.0, 64.0].map(|times| times * spacing * spacing);
-        let fewer = squares.into_iter().filter(|square| 4.0 * square <= wanted + heaviest);
-        let reaches = fewer.map(|square| square - heaviest).chain([wanted]);
-        reaches.map(|alpha| Reach::at(sites, alpha, heaviest)).collect()
-    }
-
-    /// Whether the triangulation of a block with a halo decides what is asked. If the halo is for a smaller
-    /// α, it does where no sphere at the block's points is larger: all of them are empty, then.
-    fn decides(&self, reach: Reach, points: &Block, made: &Triangulation) -> bool {
-        let Reach::Balls(alpha) = reach else { return true };
-        if alpha >= self.alpha && !self.exterior {
-            return true;
-        }
-        let spheres = Predicates::on(self.lattice, &points.positions, &points.weights);
-        made.cells().par_iter().all(|&cell| {
-            !cell.iter().any(|&v| v < points.own)
-                || (!cell.contains(&made.ghost()) && spheres.fits(cell, alpha))
-        })
-    }
-}
-
-/// The error for an edge that spans half of the box.
-fn too_long(torus: Torus, Long { edge, ends }: Long) -> ShapeError {
-    let spans = |k: usize| (ends[1][k] - ends[0][k]).abs() / torus.sides()[k];
-    let axis = (0..3).max_by(|&a, &b| spans(a).total_cmp(&spans(b))).unwrap_or(0);
-    let span = spans(axis) * torus.sides()[axis];
-    ShapeError::Wraps { edge, axis: AXES[axis], span, side: torus.sides()[axis] }
 }
 
 /// What a point counts for as work, and the part of that which its triangulation takes.

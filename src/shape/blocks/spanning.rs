@@ -36,9 +36,8 @@ mod tests {
     /// Blocks of a line once took all points with them: quadratic in the number of blocks.
     #[test]
     fn a_block_of_a_line_stays_small() {
-        let line = (0..800).map(|i| [f64::from(i), 0.0, 0.0]);
-        let positions: Vec<_> = line.chain([[5.0, 1.0, 0.0], [5.0, 0.0, 1.0]]).collect();
-        let positions: Vec<_> = positions.iter().map(|p| p.map(|x| 1024.0 * x)).collect();
+        let line = (0..800).map(|i| [i, 0, 0]).chain([[5, 1, 0], [5, 0, 1]]);
+        let positions: Vec<_> = line.map(|point| point.map(|x| f64::from(1024 * x))).collect();
         let weights = vec![0.0; positions.len()];
         let sites = Sites::new(&positions, &weights).unwrap();
         let partition = Partition::new(&sites, 8);

@@ -8,7 +8,7 @@ use crate::shape::ShapeError;
 /// Each cube of a grid has six cells: with their faces more than is reckoned with for each point.
 #[test]
 fn a_run_that_will_not_keep_its_bound_is_stopped() {
-    let (positions, weights) = (grid(), vec![0.0; 8000]);
+    let (positions, weights) = grid();
     let sites = Sites::new(&positions, &weights).unwrap();
     let lattice = Lattice::of(&positions, &weights);
     let question = Question { alpha: 0.75, lattice, exterior: false, maker: Maker::Native };
@@ -20,18 +20,22 @@ fn a_run_that_will_not_keep_its_bound_is_stopped() {
         };
         run_blocks(&sites, &plan, &question).map(|answer| answer.complex.cells.len())
     };
-    assert_eq!(run(8000 * 350), Ok(6 * 19 * 19 * 19));
-    let error = run(8000 * 250).unwrap_err();
+    assert_eq!(run(POINTS * 350), Ok(6 * 19 * 19 * 19));
+    let error = run(POINTS * 250).unwrap_err();
     assert!(matches!(error, ShapeError::Plan(_)), "{error}");
 }
 
-fn grid() -> Vec<[f64; 3]> {
-    (0..8000).map(|i| [i % 20, i / 20 % 20, i / 400].map(f64::from)).collect()
+const POINTS: u64 = 20 * 20 * 20;
+
+/// Points and their weights.
+fn grid() -> (Vec<[f64; 3]>, Vec<f64>) {
+    let point = |i: u64| [i % 20, i / 20 % 20, i / 400].map(|k| k as f64);
+    (0..POINTS).map(|i| (point(i), 0.0)).unzip()
 }
 
 #[test]
 fn threads_have_a_block_each_unless_it_is_nearly_the_whole() {
-    let (positions, weights) = (grid(), vec![0.0; 8000]);
+    let (positions, weights) = grid();
     let sites = Sites::new(&positions, &weights).unwrap();
     for (reach, threads, expected) in [
         (Reach::Balls(0.75), 3, 3),
@@ -47,7 +51,7 @@ fn threads_have_a_block_each_unless_it_is_nearly_the_whole() {
 /// Against all plans that there are, for every bound at which the answer changes.
 #[test]
 fn the_fastest_plan_within_the_bound_is_found() {
-    let (positions, weights) = (grid(), vec![0.0; 8000]);
+    let (positions, weights) = grid();
     let sites = Sites::new(&positions, &weights).unwrap();
     let (reach, threads, resident) = (Reach::Balls(0.75), 3, 1_000_000);
     for maker in [Maker::Native, Maker::Cgal] {
@@ -57,7 +61,7 @@ fn the_fastest_plan_within_the_bound_is_found() {
             let largest = Partition::new(&sites, blocks).largest(&sites, reach);
             for at_once in 1..=threads {
                 let work = at_work(maker) * (at_once * largest) as u64;
-                let bytes = resident + (8000 * DONE + work).max(8000 * MERGED);
+                let bytes = resident + (POINTS * DONE + work).max(POINTS * MERGED);
                 let time = (blocks * largest) as f64 / at_once as f64;
                 plans.push((bytes, time, blocks, at_once));
             }
