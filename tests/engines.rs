@@ -82,6 +82,8 @@ fn check_parts(shape: &AlphaShape) {
     let components = shape.components();
     assert_eq!(components.len() as u64, betti.b0);
     assert_eq!(components.iter().map(|c| c.vertices).sum::<usize>(), shape.points_in_shape());
+    let cells = shape.complex().cells.counts().interior;
+    assert_eq!(components.iter().map(|c| c.cells).sum::<usize>(), cells);
     let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-9 * (1.0 + a.abs()), "{a} {b}");
     close(components.iter().map(|c| c.volume).sum(), shape.measures().volume);
     close(components.iter().map(|c| c.area).sum(), shape.measures().area);

@@ -177,6 +177,28 @@ proptest! {
     }
 }
 
+/// The square between them opens below α = 2.
+#[test]
+fn chambers_that_become_one_fill_with_the_larger() {
+    let hollow = |[x, y, z]: [i32; 3]| {
+        let within = |low: i32, high: i32| [y, z].iter().all(|k| (low..=high).contains(k));
+        match x {
+            2..=4 => within(2, 4),
+            5 => within(2, 4) && (y == 3 || z == 3),
+            6..=9 => within(1, 5),
+            _ => false,
+        }
+    };
+    let all = (0..12 * 49).map(|i| [i / 49, i / 7 % 7, i % 7]).filter(|&p| !hollow(p));
+    let points = weighted(all.map(|p| (p.map(f64::from), 0.0)));
+    let squared = [1.5, 3.0];
+    let ladder = check(&points, &squared, Engine::Reference).ladder(&alphas(&squared), 1.0);
+    let [one, two] = &ladder.levels[..] else { panic!("two levels") };
+    assert_eq!((one.voids.len(), two.voids.len()), (1, 2));
+    assert!(two.voids[0].filling_alpha > two.voids[1].filling_alpha);
+    assert_eq!(one.voids[0].filling_alpha, two.voids[0].filling_alpha);
+}
+
 #[test]
 fn a_tie_is_in() {
     // R² = 10 exactly: a 2×6 rectangle doubled up to a box has 1 + 9 = 10 under its diagonal.
