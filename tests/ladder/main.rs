@@ -177,7 +177,8 @@ proptest! {
     }
 }
 
-/// The square between them opens below α = 2.
+/// Below α = 2 the square between them opens, and nothing else does, so that the larger is joined to the
+/// smaller one's first cell.
 #[test]
 fn chambers_that_become_one_fill_with_the_larger() {
     let hollow = |[x, y, z]: [i32; 3]| {
@@ -191,7 +192,7 @@ fn chambers_that_become_one_fill_with_the_larger() {
     };
     let all = (0..12 * 49).map(|i| [i / 49, i / 7 % 7, i % 7]).filter(|&p| !hollow(p));
     let points = weighted(all.map(|p| (p.map(f64::from), 0.0)));
-    let squared = [1.5, 3.0];
+    let squared = [2f64.next_down(), 2.0];
     let ladder = check(&points, &squared, Engine::Reference).ladder(&alphas(&squared), 1.0);
     let [one, two] = &ladder.levels[..] else { panic!("two levels") };
     assert_eq!((one.voids.len(), two.voids.len()), (1, 2));

@@ -125,6 +125,8 @@ fn bad_point_files_say_where_they_are_bad() {
     refuse("word.csv", b"x,y,z\n1,2,3\n1,two,3\n", &["line 3", "column y", "two"]);
     refuse("nan.csv", b"x,y,z,weight\n1,2,3,NaN\n", &["line 2", "column weight"]);
     refuse("short.csv", b"x,y,z\n1,2,3\n1,2\n", &["line: 3"]);
+    // Commas are decimal where semicolons are between numbers, and nowhere else.
+    refuse("comma.tsv", b"x\ty\tz\n1,5\t2\t3\n", &["line 2", "column x", "1,5"]);
     refuse("text.csv", b"x,y,z\n\xff,2,3\n", &["UTF-8"]);
 
     let npy = |array: ndarray::Array2<f64>| {

@@ -185,6 +185,18 @@ fn a_threshold_that_is_an_l_takes_it() {
     assert!(select(&v, &v, &difference(&v), &above, Units::Voxel).is_err());
 }
 
+#[test]
+fn a_least_gray_level_that_is_a_gray_takes_it() {
+    let v = volume(Array3::from_shape_fn((1, 1, 3), |(_, _, x)| 5.0 * x as f32));
+    let taken = |least: f64| {
+        let rule = SelectionRule::Threshold(0.0);
+        let selection = Selection::default().rule(rule).gray_min(Some(least));
+        select(&v, &v, &difference(&v), &selection, Units::Voxel).unwrap().values.unwrap()
+    };
+    assert_eq!(taken(5.0), [5.0, 10.0]);
+    assert_eq!(taken(5f64.next_up()), [10.0]);
+}
+
 /// L of a little more than another is chosen first, even where single precision cannot tell.
 #[test]
 fn close_differences_are_told_apart() {
