@@ -77,7 +77,8 @@ fn halos_are_the_points_within_reach() {
 
 #[test]
 fn blocks_are_cut_across_their_longest_side() {
-    let (positions, weights) = points();
+    let (mut positions, weights) = points();
+    positions.iter_mut().for_each(|position| position[0] += 100.0);
     let sites = Sites::new(&positions, &weights).unwrap();
     let partition = Partition::new(&sites, 2);
     let along =
