@@ -188,7 +188,7 @@ fn what_blocks_cannot_do_is_told() {
         (2, "sample:phantom@20 --select adaptive", "all points at once", "omit it"),
         (1, "sample:phantom@20 --downsample 2", "cannot be made coarser", "omit --downsample"),
         (1, "sample:phantom@20 --gray-min 999", "no voxel reaches", "--gray-min"),
-        (1, "sample:phantom@20 --memory 1M", "do not suffice", "allow more"),
+        (1, "sample:phantom@20 --memory 1M", "is not enough", "allow more"),
     ];
     for (code, options, why, next) in cases {
         let (found, _, stderr) = run(at, &args(&format!("shape {options} -o out.pvtu")));

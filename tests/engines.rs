@@ -211,5 +211,5 @@ fn memory_is_planned_for() {
     let bounded = with(4 << 30).unwrap();
     assert_eq!(free.complex(), bounded.complex());
     let error = with(1 << 20).unwrap_err().told();
-    assert!(error.contains("1 MiB of memory do not suffice"), "{error}");
+    assert!(error.contains("1 MiB of memory is not enough"), "{error}");
 }

@@ -21,7 +21,7 @@ pub enum ShapeError {
         /// Its α + ω.
         radius: f64,
     },
-    /// The memory allowed does not suffice for any number of blocks.
+    /// The memory allowed is not enough for any number of blocks.
     #[error(transparent)]
     Plan(#[from] PlanError),
     /// Memory for what is known of the simplices cannot be had.

@@ -29,10 +29,10 @@ pub(crate) struct Limits {
     pub memory: Option<u64>,
 }
 
-/// The memory allowed does not suffice.
+/// The memory allowed is not enough.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{} of memory do not suffice: with {blocks} blocks, one at a time, about {} are needed",
+    "{} of memory is not enough: with {blocks} blocks, one at a time, about {} are needed",
     memory::readable(*asked),
     memory::readable(*needed)
 )]
