@@ -5,7 +5,7 @@ use walpha::check::{CertifyError, Finding, NotJudged};
 use walpha::export::{Exporter, Json, Npz};
 use walpha::shape::{AlphaShape, Class};
 
-use crate::{WeightedPoints, alpha_shape, dense, options, sets, shape};
+use crate::{CUBIC, WeightedPoints, alpha_shape, crystal, dense, options, sets, shape};
 
 fn placed(shape: &AlphaShape) -> PlacedComplex {
     let sides = shape.options().periodic.unwrap().sides();
@@ -42,7 +42,7 @@ fn shapes_of_a_torus_are_certified() {
 
 /// A grid in a box of 96. Its cells have spheres of squared radius 768.
 fn grid() -> Vec<[f64; 3]> {
-    (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|k| f64::from(32 * k))).collect()
+    crystal([3; 3], &CUBIC).positions.iter().map(|place| place.map(|x| 32.0 * x)).collect()
 }
 
 /// Large ones, and that much beyond weights far below zero.
@@ -62,7 +62,7 @@ fn large_spheres_of_a_torus_are_judged() {
 #[test]
 fn hidden_points_of_a_torus_are_judged() {
     let mut positions = grid();
-    positions.extend([[1.0, 0.0, 0.0], [32.0, 0.0, 64.0]]);
+    positions.extend([[1.0, 0.0, 0.0], [64.0, 0.0, 32.0]]);
     let mut weights = vec![0.0; 27];
     weights.extend([-100.0, -1.0]);
     let points = WeightedPoints::new(positions, weights).unwrap();

@@ -53,8 +53,8 @@ fn a_gap_is_looked_across() {
     let expected = by_copies(&points, sides, alpha(f64::INFINITY), false).unwrap();
     for blocks in [1, 3, 8] {
         let cut = all.blocks(std::num::NonZeroUsize::new(blocks));
-        let cut = alpha_shape(points.clone(), &cut).unwrap();
-        assert!(*cut.complex() == expected, "{blocks}");
+        let shape = alpha_shape(points.clone(), &cut).unwrap();
+        assert!(*shape.complex() == expected, "{blocks}");
     }
 }
 
