@@ -39,7 +39,7 @@ pub(crate) fn flat_simplices(points: &[WeightedPoint], sites: &[u32]) -> Flat {
     flat
 }
 
-/// Sites, and places that span a volume together with them.
+/// Sites, and auxiliary places that span a volume together with them.
 struct Beside<'a> {
     points: &'a [WeightedPoint],
     sites: &'a [u32],
@@ -48,26 +48,8 @@ struct Beside<'a> {
 
 impl<'a> Beside<'a> {
     fn of(points: &'a [WeightedPoint], sites: &'a [u32]) -> Option<Self> {
-        let place = |i: u32| points[i as usize].position;
-        let first = place(*sites.first()?);
-        let mut basis = vec![first];
-        for &i in sites {
-            if is_free(&basis, place(i)) {
-                basis.push(place(i));
-            }
-        }
-        let spanned = basis.len();
-        let coordinates = sites.iter().flat_map(|&i| place(i));
-        let far = coordinates.fold(1e-100f64, |most, x| most.max(x.abs()));
-        for axis in 0..3 {
-            let mut beside = first;
-            // Towards the origin and beyond, so that it stays a number.
-            beside[axis] = if beside[axis] > 0.0 { -far } else { far };
-            if is_free(&basis, beside) {
-                basis.push(beside);
-            }
-        }
-        Some(Self { points, sites, places: basis.split_off(spanned) })
+        let places = auxiliary(sites.iter().map(|&i| points[i as usize].position))?;
+        Some(Self { points, sites, places })
     }
 
     /// Whether a simplex makes a cell with places beside it, and no other site refutes it.
@@ -85,6 +67,29 @@ impl<'a> Beside<'a> {
         let others = self.sites.iter().filter(|i| !row.contains(i));
         others.map(|&i| &self.points[i as usize]).all(|q| !in_conflict(cell, q))
     }
+}
+
+/// The places, at most three, that span a volume together with given ones: one beside a plane, two beside a
+/// line, three beside a single place, and none where these span a volume themselves. None if there are no places.
+pub(crate) fn auxiliary(places: impl Iterator<Item = [f64; 3]> + Clone) -> Option<Vec<[f64; 3]>> {
+    let first = places.clone().next()?;
+    let mut basis = vec![first];
+    for place in places.clone() {
+        if is_free(&basis, place) {
+            basis.push(place);
+        }
+    }
+    let spanned = basis.len();
+    let far = places.flatten().fold(1e-100f64, |most, x| most.max(x.abs()));
+    for axis in 0..3 {
+        let mut beside = first;
+        // Towards the origin and beyond, so that it stays a number.
+        beside[axis] = if beside[axis] > 0.0 { -far } else { far };
+        if is_free(&basis, beside) {
+            basis.push(beside);
+        }
+    }
+    Some(basis.split_off(spanned))
 }
 
 /// Whether a place is not in what others span.

@@ -7,14 +7,14 @@
 //! input doubles on.
 //!
 //! ```
-//! use walpha_check::{Alpha, Claim, Placed, compare, enumerate};
+//! use walpha_check::{Alpha, Claim, Placed, Verdict, compare, enumerate};
 //!
 //! let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]];
 //! let weights = [0.0; 5];
 //! let alpha = Alpha::from_squared(0.75)?;
 //! let made = enumerate(&positions, &weights, alpha)?;
 //! let right = Placed::new(&positions, &weights, alpha, &made.complex);
-//! assert!(Claim::new(right).is_valid()?);
+//! assert_eq!(Claim::new(right).verdict()?, Verdict::Exact);
 //!
 //! // One cell less, and the checker names what is missing.
 //! let mut damaged = made.complex.clone();
@@ -37,11 +37,14 @@ mod flat;
 pub mod npy;
 mod placed;
 pub mod schema;
+#[cfg(feature = "cli")]
+pub mod standard_output;
+pub mod threads;
 
 pub use alpha::{Alpha, AlphaError};
 pub use certify::{
     Bound, Certificate, CertifyError, CertifyFiltrationError, Claim, Extent, FiltrationCertificate,
-    FiltrationFinding, Finding, NotJudged, Simplex, Unjudged, certify_filtration,
+    FiltrationFinding, Finding, NotJudged, Simplex, Unjudged, Verdict, certify_filtration,
 };
 pub use compare::{
     ClassDifference, CompareError, Comparison, Differences, Domain, FiltrationComparison,

@@ -5,44 +5,69 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use walpha_check::schema::{AnyFile, SchemaError};
-use walpha_check::{CertifyError, CertifyFiltrationError, Unjudged, certify_filtration};
+use walpha_check::{
+    CertifyError, CertifyFiltrationError, Unjudged, certify_filtration, standard_output, threads,
+};
 
 /// Judge weighted alpha shapes exactly.
 ///
 /// Each FILE is a complex in JSON or NPZ: points, power weights, α, simplices and, if known, their
-/// classes; or a filtration: every simplex, when it comes, and the order. Findings name the simplex and the rule that it breaks.
+/// classes; or a filtration: every simplex, when it comes, and the order. A file is exact; valid, which is
+/// right with another choice at ties, where more points lie on one empty sphere than a simplex has corners
+/// or points are equal; or wrong. Findings name the simplex and the rule that it breaks.
 ///
-/// Exit code: 0 if nothing is found, 1 if a file cannot be judged, 2 for a wrong command line, 3 if
-/// something is found.
+/// Exit code: 0 if all files are exact or valid, 1 if a file cannot be judged, 2 for a wrong command line, 3
+/// if a file is wrong, 141 if nobody reads the result.
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
     /// Complexes and filtrations: .json or .npz.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
+    /// Which choice at ties is right: any, or that of the perturbation alone (exact), so that another
+    /// choice is a finding.
+    #[arg(long, value_enum, default_value_t, value_name = "CHOICE")]
+    ties: Ties,
+}
+
+/// Which choice at ties is right.
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+enum Ties {
+    /// Any.
+    #[default]
+    Any,
+    /// That of the perturbation, as CGAL has it.
+    Exact,
 }
 
 /// Findings printed for a file; all are counted.
 const MOST_PRINTED: usize = 20;
 const FAILED: u8 = 1;
+const USAGE: u8 = 2;
 const FOUND: u8 = 3;
+/// As shells have it for what the signal PIPE ends.
+const UNREAD: u8 = 141;
 
 #[expect(clippy::unnecessary_debug_formatting, reason = "it escapes control characters")]
 fn main() -> ExitCode {
-    let Arguments { files } = Arguments::parse();
+    let Arguments { files, ties } = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return told(&error),
+    };
+    start_threads();
     let (mut failed, mut found) = (false, false);
     for path in &files {
-        match judge(path) {
-            Ok(valid) => found |= !valid,
-            // Whoever read the output has seen enough.
-            Err(Failure::Output(error)) if error.kind() == ErrorKind::BrokenPipe => break,
+        match judge(path, ties) {
+            Ok(right) => found |= !right,
+            // What comes after would be lost, too.
+            Err(Failure::Output(error)) => return unprinted(&error),
             Err(failure) => {
                 failed = true;
-                eprintln!("error: {path:?}: {failure}");
+                complain(&format!("error: {path:?}: {failure}"));
                 if let Some(advice) = failure.advice() {
-                    eprintln!("next: {advice}");
+                    complain(&format!("next: {advice}"));
                 }
             }
         }
@@ -52,6 +77,41 @@ fn main() -> ExitCode {
         (false, true) => ExitCode::from(FOUND),
         (false, false) => ExitCode::SUCCESS,
     }
+}
+
+/// Prints help and the version, or what is wrong with the command line.
+fn told(error: &clap::Error) -> ExitCode {
+    if error.use_stderr() {
+        let _ = error.print();
+        return ExitCode::from(USAGE);
+    }
+    let print = || standard_output::check().and_then(|()| error.print());
+    match print().and_then(|()| io::stdout().flush()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => unprinted(&error),
+    }
+}
+
+/// Says that the result cannot be printed.
+fn unprinted(error: &io::Error) -> ExitCode {
+    complain(&format!("error: the result cannot be printed: {error}"));
+    ExitCode::from(if error.kind() == ErrorKind::BrokenPipe { UNREAD } else { FAILED })
+}
+
+/// Says something on standard error, if anybody hears it.
+fn complain(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// As many threads as are right; fewer where not so many can be had, and this one where none can.
+fn start_threads() {
+    /// As rayon has it.
+    const STACK: usize = 2 << 20;
+    let count = threads::available(threads::wanted(None), STACK);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.max(1));
+    let pool = if count == 0 { pool.use_current_thread() } else { pool };
+    // Where that fails, rayon tries again by itself when it is first needed.
+    let _ = pool.build_global();
 }
 
 /// Why a file was not judged, or not to the end.
@@ -78,31 +138,38 @@ impl Failure {
     }
 }
 
-/// Judges a file, prints what is found, and gives whether that is nothing.
-fn judge(path: &Path) -> Result<bool, Failure> {
+/// Judges a file, prints what is found, and gives whether it is right.
+fn judge(path: &Path, ties: Ties) -> Result<bool, Failure> {
     match AnyFile::open(path)? {
         AnyFile::Complex(file) => {
-            let (findings, certificate) = file.into_complex()?.findings()?;
-            print(path, &findings, &certificate.not_judged, &[])
+            let (mut findings, certificate) = file.into_complex()?.findings()?;
+            findings.retain(|finding| ties == Ties::Exact || !finding.is_tie());
+            print(path, &certificate, &findings, &certificate.not_judged, &[])?;
+            Ok(findings.is_empty())
         }
         AnyFile::Filtration(file) => {
-            let (findings, certificate) = certify_filtration(&file)?;
-            print(path, &findings, &certificate.triangulation.not_judged, &certificate.not_judged)
+            let (mut findings, certificate) = certify_filtration(&file)?;
+            findings.retain(|finding| ties == Ties::Exact || !finding.is_tie());
+            let unjudged = &certificate.triangulation.not_judged;
+            print(path, &certificate, &findings, unjudged, &certificate.not_judged)?;
+            Ok(findings.is_empty())
         }
     }
 }
 
-/// Prints what is found and what was not judged, and gives whether nothing is found.
+/// Prints the verdict, what is found and what was not judged.
 #[expect(clippy::unnecessary_debug_formatting, reason = "it escapes control characters")]
 fn print(
     path: &Path,
+    certificate: &impl Display,
     findings: &[impl Display],
     rules: &[impl Display],
     parts: &[Unjudged],
-) -> Result<bool, Failure> {
+) -> Result<(), Failure> {
+    standard_output::check()?;
     let mut out = io::stdout().lock();
     // As Debug prints a path, control characters in its name cannot reach the terminal.
-    writeln!(out, "{path:?}: {}", verdict(findings.len()))?;
+    writeln!(out, "{path:?}: {certificate}")?;
     for finding in findings.iter().take(MOST_PRINTED) {
         writeln!(out, "  {finding}")?;
     }
@@ -111,13 +178,6 @@ fn print(
     }
     rules.iter().try_for_each(|rule| writeln!(out, "  not judged: {rule}"))?;
     parts.iter().try_for_each(|part| writeln!(out, "  not judged: {part}"))?;
-    Ok(findings.is_empty())
-}
-
-fn verdict(findings: usize) -> String {
-    match findings {
-        0 => "no findings".into(),
-        1 => "1 finding".into(),
-        many => format!("{many} findings"),
-    }
+    out.flush()?;
+    Ok(())
 }

@@ -50,9 +50,9 @@ fn each_file_is_judged() {
     let (_, stdout, stderr) = run(&folder, &["odd.json", "wrong.json", "right.json"]);
     assert!(stderr.starts_with("error: \"odd.json\": the complex cannot be read as JSON"));
     let lines: Vec<&str> = stdout.lines().filter(|line| !line.contains("not judged")).collect();
-    assert_eq!(lines.first(), Some(&"\"wrong.json\": 1 finding"), "{stdout}");
+    assert_eq!(lines.first(), Some(&"\"wrong.json\": wrong: 1 finding"), "{stdout}");
     assert_eq!(lines[1], "  cell [0, 1, 2, 3] is listed twice");
-    assert_eq!(lines.last(), Some(&"\"right.json\": no findings"));
+    assert_eq!(lines.last(), Some(&"\"right.json\": exact: no findings"));
 }
 
 #[test]
@@ -78,4 +78,35 @@ fn what_cannot_be_judged_comes_with_advice() {
         let next = stderr.lines().find(|line| line.starts_with("next")).unwrap_or_default();
         assert_eq!(next, advice, "{stderr}");
     }
+}
+
+/// What cannot be printed is lost, and the exit code says so.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_verdict_that_cannot_be_printed_is_an_error() {
+    let folder = folder("unprinted");
+    for (redirection, code, words) in [
+        (">/dev/full", 1, "No space left"),
+        (">&-", 1, "standard output is closed"),
+        ("| true", 141, "roken pipe"),
+    ] {
+        for arguments in ["right.json", "--help", "--version"] {
+            // The reader is gone before anything is written.
+            let line = match redirection {
+                "| true" => format!("(sleep 0.3; \"$0\" {arguments}; echo $? >&2) | true"),
+                _ => format!("\"$0\" {arguments} {redirection}; echo $? >&2"),
+            };
+            let mut shell = Command::new("sh");
+            shell.args(["-c", &line, env!("CARGO_BIN_EXE_walpha-check")]).current_dir(&folder);
+            let said = String::from_utf8(shell.output().unwrap().stderr).unwrap();
+            assert!(said.contains(words), "{arguments} {redirection}: {said}");
+            assert_eq!(said.lines().last(), Some(code.to_string().as_str()), "{said}");
+        }
+    }
+    // Nobody hears the error.
+    let mut shell = Command::new("sh");
+    let line =
+        "(sleep 0.3; \"$0\" none.json 2>&1 >/dev/null; echo $? >code) | true; sleep 0.6; cat code";
+    shell.args(["-c", line, env!("CARGO_BIN_EXE_walpha-check")]).current_dir(&folder);
+    assert_eq!(shell.output().unwrap().stdout, b"1\n");
 }

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Answer, Case, Random, closed, definition, drop_row, grid, shape_of};
-use walpha_check::{Alpha, Class, CompareError, Comparison, Domain, Placed, compare};
+use walpha_check::{Alpha, Class, CompareError, Comparison, Domain, Placed, Verdict, compare};
 
 /// Without weights, at α = 0.75.
 fn placed<'a>(positions: &'a [[f64; 3]], answer: &'a Answer) -> Placed<'a> {
@@ -49,10 +49,37 @@ fn other_diagonals_cover_the_same() {
     let comparison = compare(placed(&positions, &a), placed(&positions, &b)).unwrap();
     assert!(!comparison.is_equal());
     assert!(
-        matches!(&comparison.domain, Domain::SameRegion { six_volumes, tied: true } if six_volumes.to_string() == "6"),
+        matches!(&comparison.domain, Domain::SameRegion { six_volumes, tied: true, verdicts: Some([Verdict::Exact, Verdict::Valid]) } if six_volumes.to_string() == "6"),
         "{comparison}"
     );
     assert!(comparison.to_string().contains("same region"));
+    assert!(comparison.to_string().contains("as cospherical points allow"), "{comparison}");
+}
+
+/// Flat cells beside the others cover nothing, but what has them is no triangulation.
+#[test]
+fn flat_cells_are_not_excused() {
+    let positions = grid(2);
+    let case = Case { positions: positions.clone(), weights: vec![0.0; 8], alpha: 0.75 };
+    let a = definition(&case).unwrap();
+    let mirrored = positions.iter().map(|p| [-p[0], p[1], p[2]]).collect();
+    let b = definition(&Case { positions: mirrored, ..case }).unwrap();
+    let mut flat = b.complex.clone();
+    flat.cells.push([0, 1, 2, 3], Class::Interior);
+    let flat = b.with(flat);
+    for (one, other, verdicts, words) in [
+        (&a, &flat, [Verdict::Exact, Verdict::Wrong], "but B is wrong by itself"),
+        (&flat, &a, [Verdict::Wrong, Verdict::Exact], "but A is wrong by itself"),
+    ] {
+        let comparison = compare(placed(&positions, one), placed(&positions, other)).unwrap();
+        let found = match &comparison.domain {
+            Domain::SameRegion { tied: true, verdicts, .. } => *verdicts,
+            other => panic!("{other}"),
+        };
+        assert_eq!(found, Some(verdicts), "{comparison}");
+        assert!(comparison.to_string().contains(words), "{comparison}");
+        assert!(!comparison.to_string().contains("as cospherical points allow"), "{comparison}");
+    }
 }
 
 #[test]

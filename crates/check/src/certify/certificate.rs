@@ -3,16 +3,99 @@ use serde::Serialize;
 use super::claim::MOST;
 use crate::exact::Exact;
 
+/// What a complex is found to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// What the definition makes, ties decided by the rule.
+    Exact,
+    /// Right, with another choice where the definition leaves one: between points on one empty sphere, or
+    /// with equal places and weights. Each sphere is empty, and a whole triangulation fills its hull.
+    Valid,
+    /// Neither.
+    Wrong,
+}
+
+impl Verdict {
+    /// That of so many findings, of which so many are ties.
+    pub(super) fn of(findings: usize, ties: usize) -> Self {
+        match (findings, ties) {
+            (0, _) => Self::Exact,
+            (findings, ties) if findings == ties => Self::Valid,
+            _ => Self::Wrong,
+        }
+    }
+}
+
+/// The name in lower case, as in JSON.
+impl std::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Exact => "exact",
+            Self::Valid => "valid",
+            Self::Wrong => "wrong",
+        })
+    }
+}
+
 /// What was judged, and what could not be.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Certificate {
+    /// What follows from the findings.
+    pub verdict: Verdict,
     /// How many findings there were before the visitor stopped.
     pub findings: usize,
+    /// How many of these are [ties](crate::Finding::is_tie), which leave a complex valid.
+    pub ties: usize,
     /// Six times the volume of all cells; zero if rows were too wrong to add up.
     pub six_volumes: Exact,
     /// What was not judged, and why.
     pub not_judged: Vec<NotJudged>,
+}
+
+impl Certificate {
+    /// Whether the complex was judged as a whole triangulation, hull included.
+    fn is_of_whole(&self) -> bool {
+        !self.not_judged.contains(&NotJudged::HiddenAndHull)
+    }
+}
+
+/// The verdict with its reason, in one line.
+impl std::fmt::Display for Certificate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        verdict_in_words(f, self.verdict, self.findings, self.ties, self.is_of_whole())
+    }
+}
+
+/// A verdict with its reason: how many findings, of which so many are ties.
+pub(super) fn verdict_in_words(
+    f: &mut std::fmt::Formatter<'_>,
+    verdict: Verdict,
+    findings: usize,
+    ties: usize,
+    whole: bool,
+) -> std::fmt::Result {
+    let plural = |count: usize| if count == 1 { "" } else { "s" };
+    match verdict {
+        Verdict::Exact => write!(f, "exact: no findings"),
+        Verdict::Valid => {
+            let hull = if whole { ", and the hull is filled" } else { "" };
+            write!(
+                f,
+                "valid: another choice at {ties} tie{}; every sphere is empty{hull}",
+                plural(ties)
+            )
+        }
+        Verdict::Wrong => {
+            let wrong = findings - ties;
+            write!(f, "wrong: {wrong} finding{}", plural(wrong))?;
+            if ties > 0 {
+                write!(f, ", and another choice at {ties} tie{}", plural(ties))?;
+            }
+            Ok(())
+        }
+    }
 }
 
 /// Rules that were not applied.
@@ -23,9 +106,6 @@ pub enum NotJudged {
     /// Whether a simplex of the shape is missing that nothing listed has as a face: this needs the
     /// whole triangulation.
     MissingSimplices,
-    /// Whether a singular facet or edge whose sphere carries further points is the one that the
-    /// perturbation chooses: this needs the whole triangulation.
-    TiedSingular,
     /// Whether points that are not vertices are hidden, and the hull: these need the whole
     /// triangulation.
     HiddenAndHull,
@@ -38,9 +118,12 @@ pub enum NotJudged {
 impl std::fmt::Display for NotJudged {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::MissingSimplices => "whether whole parts of the shape are missing (needs the exterior simplices)",
-            Self::TiedSingular => "whether singular simplices with ties are those that the perturbation chooses (needs the exterior simplices)",
-            Self::HiddenAndHull => "hidden points and the convex hull (need the exterior simplices)",
+            Self::MissingSimplices => {
+                "whether whole parts of the shape are missing (needs the exterior simplices)"
+            }
+            Self::HiddenAndHull => {
+                "hidden points and the convex hull (need the exterior simplices)"
+            }
             Self::Duplicates => "the list of duplicates (none is given)",
             Self::AfterFindings => "rules that rest on the broken ones",
         })

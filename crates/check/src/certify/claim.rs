@@ -1,7 +1,7 @@
 use std::ops::ControlFlow;
 
 use super::structure::Structure;
-use super::{Certificate, CertifyError, Finding, NotJudged, rules};
+use super::{Certificate, CertifyError, Finding, NotJudged, Verdict, rules};
 use crate::exact::Exact;
 use crate::{Alpha, Complex, Placed};
 
@@ -66,15 +66,15 @@ impl<'a> Claim<'a> {
         Self { duplicates: duplicates.into(), ..self }
     }
 
-    /// Whether every rule that can be judged holds.
+    /// Whether it is exact, valid or wrong, as far as it can be judged.
     ///
     /// # Errors
     /// [`CertifyError`].
-    pub fn is_valid(&self) -> Result<bool, CertifyError> {
-        Ok(self.first_finding()?.is_none())
+    pub fn verdict(&self) -> Result<Verdict, CertifyError> {
+        Ok(self.visit(&mut |_| ControlFlow::Continue(()))?.verdict)
     }
 
-    /// The first broken rule.
+    /// The first broken rule, or choice among ties that is not the rule's.
     ///
     /// # Errors
     /// [`CertifyError`].
@@ -87,7 +87,7 @@ impl<'a> Claim<'a> {
         Ok(first)
     }
 
-    /// All broken rules, and what was judged.
+    /// All broken rules and [ties](Finding::is_tie) that are not decided by the rule, and what was judged.
     ///
     /// # Errors
     /// [`CertifyError`].
@@ -108,7 +108,7 @@ impl<'a> Claim<'a> {
     ///    a whole triangulation nothing else is;
     /// 3. cells are positively oriented; a facet has at most two cells, one on each side;
     /// 4. no cell is refuted by its neighbours' vertices, by the perturbed power test; in a shape
-    ///    alone, by no point nearby;
+    ///    alone, by no point nearby, and what is listed on a sphere with more points fits together;
     /// 5. the hull is convex, goes around once, and the cells' volumes add up to what it
     ///    encloses (whole triangulations only);
     /// 6. no point is more than one of vertex, hidden and duplicate, and each is one of them (in a
@@ -116,8 +116,11 @@ impl<'a> Claim<'a> {
     /// 7. every class is what the definition says, and regular facets turn counter-clockwise seen
     ///    from outside.
     ///
+    /// Points that span no volume are judged in their plane, on their line, or as the one point that they are:
+    /// a whole triangulation has no cells then, and the rules on cells hold for its largest simplices.
+    ///
     /// Rules that mean nothing once others are broken are not applied then; the certificate says
-    /// so.
+    /// so. What only departs from the rule of ties is a finding, too, and [is a tie](Finding::is_tie).
     ///
     /// Findings come in the same order on any number of threads. In a shape alone, cost also
     /// grows with the number of points within √(α + largest weight) of a simplex.
@@ -129,12 +132,15 @@ impl<'a> Claim<'a> {
         visitor: &mut dyn FnMut(Finding) -> ControlFlow<()>,
     ) -> Result<Certificate, CertifyError> {
         self.sane()?;
-        let mut certificate =
-            Certificate { findings: 0, six_volumes: Exact::default(), not_judged: Vec::new() };
+        let mut certificate = Certificate {
+            verdict: Verdict::Exact,
+            findings: 0,
+            ties: 0,
+            six_volumes: Exact::default(),
+            not_judged: Vec::new(),
+        };
         if self.extent == Extent::Shape {
-            let local =
-                [NotJudged::MissingSimplices, NotJudged::TiedSingular, NotJudged::HiddenAndHull];
-            certificate.not_judged.extend(local);
+            certificate.not_judged.extend([NotJudged::MissingSimplices, NotJudged::HiddenAndHull]);
         }
         if self.duplicates.is_none() {
             certificate.not_judged.push(NotJudged::Duplicates);
@@ -142,11 +148,13 @@ impl<'a> Claim<'a> {
         let mut report = |findings: Vec<Finding>| {
             findings.into_iter().try_for_each(|finding| {
                 certificate.findings += 1;
+                certificate.ties += usize::from(finding.is_tie());
                 visitor(finding)
             })
         };
         let mut volume = None;
         let all_rules = rules::apply(self, &mut report, &mut volume).is_continue();
+        certificate.verdict = Verdict::of(certificate.findings, certificate.ties);
         certificate.six_volumes = volume.unwrap_or_default();
         if !all_rules {
             certificate.not_judged.push(NotJudged::AfterFindings);

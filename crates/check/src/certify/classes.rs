@@ -26,7 +26,7 @@ pub(super) fn judge(structure: &Structure, judge: &Judge) -> Vec<Finding> {
     let facets = judge.facets(structure, &cells);
     findings.extend(judge.compare(&complex.facets, &facets));
     findings.extend(windings(structure, &cells, &facets));
-    if judge.extent == Extent::Whole {
+    if judge.has_strays::<3>() {
         let strays = (0..complex.facets.len()).filter(|&i| structure.halves(i).next().is_none());
         let facet = |i: usize| complex.facets.rows()[i].into();
         findings.extend(strays.map(|i| Finding::Stray { simplex: facet(i) }));
@@ -61,6 +61,8 @@ pub(super) struct Judge<'a> {
     pub points: Points<'a>,
     pub alpha: Alpha,
     pub extent: Extent,
+    /// That of the points: 3, or less where they span no volume.
+    pub dimension: usize,
     /// In a shape alone.
     pub emptiness: Option<&'a Emptiness<'a>>,
 }
@@ -79,6 +81,12 @@ impl Verdict {
 }
 
 impl Judge<'_> {
+    /// Whether simplices with so many corners must be faces of others: below the largest of a whole
+    /// triangulation.
+    pub(super) fn has_strays<const N: usize>(&self) -> bool {
+        self.extent == Extent::Whole && N != self.dimension + 1
+    }
+
     fn cells(&self, cells: &Simplices<4>) -> (Vec<Verdict>, Vec<Finding>) {
         let verdict = |&cell: &[u32; 4]| {
             let inside = !self.flat(cell) && self.small(cell);

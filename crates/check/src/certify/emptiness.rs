@@ -1,3 +1,5 @@
+use std::cell::RefCell;
+
 use super::Points;
 use super::near::Grid;
 use crate::Alpha;
@@ -26,21 +28,47 @@ impl<'a> Emptiness<'a> {
         Self { points, grid: Grid::new(points.positions, sites), heaviest, reach }
     }
 
-    /// A point that refutes a cell, after perturbation, whose squared radius is at most α.
+    /// A point that refutes a cell whose squared radius is at most α: one strictly inside its sphere, or
+    /// else one on it, by the perturbation.
     pub(super) fn refuter_of_cell(&self, cell: [u32; 4]) -> Option<u32> {
+        let perturbed = self.perturbed_refuter(cell)?;
+        let corners = self.points.at(cell);
+        match side(corners.each_ref(), &self.points.get(perturbed)) {
+            Side::On => self.refuter(cell).or(Some(perturbed)),
+            _ => Some(perturbed),
+        }
+    }
+
+    fn perturbed_refuter(&self, cell: [u32; 4]) -> Option<u32> {
         let corners = self.points.at(cell);
         let [a, b, c, d] = corners.each_ref();
         // Negatively oriented cells are another rule's business.
         let order = orientation(a.position, b.position, c.position, d.position);
         let positive = if order.is_gt() { [a, b, c, d] } else { [a, b, d, c] };
-        self.find(cell, |q| in_conflict(positive, q))
+        self.find(cell, |q, _| in_conflict(positive, q))
     }
 
     /// A point strictly inside the smallest orthogonal sphere of a simplex, whose squared radius
     /// is at most α.
     pub(super) fn refuter<const N: usize>(&self, simplex: [u32; N]) -> Option<u32> {
         let corners = self.points.at(simplex);
-        self.find(simplex, |q| side(corners.each_ref(), q) == Side::Inside)
+        self.find(simplex, |q, _| side(corners.each_ref(), q) == Side::Inside)
+    }
+
+    /// All points on the smallest orthogonal sphere of a simplex, its corners included, ascending; the
+    /// squared radius is at most α.
+    pub(super) fn on_sphere<const N: usize>(&self, simplex: [u32; N]) -> Vec<u32> {
+        let corners = self.points.at(simplex);
+        let on = RefCell::new(simplex.to_vec());
+        self.find(simplex, |q, index| {
+            if side(corners.each_ref(), q) == Side::On {
+                on.borrow_mut().push(index);
+            }
+            false
+        });
+        let mut on = on.into_inner();
+        on.sort_unstable();
+        on
     }
 
     /// Whether no other point is inside or on the sphere of a point alone.
@@ -58,7 +86,7 @@ impl<'a> Emptiness<'a> {
     fn find<const N: usize>(
         &self,
         simplex: [u32; N],
-        refutes: impl Fn(&WeightedPoint) -> bool,
+        refutes: impl Fn(&WeightedPoint, u32) -> bool,
     ) -> Option<u32> {
         let corners = self.points.at(simplex);
         let sphere =
@@ -70,7 +98,7 @@ impl<'a> Emptiness<'a> {
         self.grid.within(place, radius.next_up(), |index| {
             let q = self.points.get(index);
             let outside = sphere.as_ref().is_some_and(|sphere| sphere.surely_outside(&q));
-            (!outside && !simplex.contains(&index) && refutes(&q)).then_some(index)
+            (!outside && !simplex.contains(&index) && refutes(&q, index)).then_some(index)
         })
     }
 }

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
 use rayon::prelude::*;
 
+use super::Finding;
 use super::classes::{Judge, Verdict};
 use super::index::{Index, NONE};
-use super::{Extent, Finding};
 use crate::{Class, Simplices};
 
 /// Simplices, their verdicts, and the dimension below, whose simplices are their faces.
@@ -78,7 +78,7 @@ impl<const N: usize, const M: usize> Faces<'_, N, M> {
         };
         let rows = self.lower.rows().par_iter();
         let verdicts = rows.zip(&states).zip(refuters).map(verdict).collect();
-        if judge.extent == Extent::Whole {
+        if judge.has_strays::<M>() {
             let strays = self.lower.rows().iter().zip(&around);
             let strays = strays.filter(|(_, around)| !around.has(Around::SEEN));
             findings.extend(strays.map(|(row, _)| Finding::Stray { simplex: (*row).into() }));

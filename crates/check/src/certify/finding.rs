@@ -41,7 +41,7 @@ pub enum Finding {
         /// The simplex.
         simplex: Simplex,
     },
-    /// A whole triangulation has no cells.
+    /// A whole triangulation has no cells, nor what takes their place where points span no volume.
     NoCells,
     /// A cell is not positively oriented, or flat.
     Orientation {
@@ -186,6 +186,40 @@ pub enum Finding {
         /// itself does.
         expected: Option<u32>,
     },
+    /// Of several points with equal places and weights another stays than the first, which the rule names: a
+    /// choice among ties.
+    EqualPoint {
+        /// The point that stays.
+        point: u32,
+        /// The first of its equals.
+        first: u32,
+    },
+    /// In a shape alone: what is listed on one empty sphere with further points is no triangulation of
+    /// all its points, so no choice among ties makes it.
+    TiedSphere {
+        /// A simplex whose smallest orthogonal sphere it is.
+        simplex: Simplex,
+        /// All points on the sphere.
+        points: Vec<u32>,
+        /// How many simplices of this dimension are listed on it.
+        listed: usize,
+    },
+    /// In a shape alone: on a flat part of a tied sphere, not all facets have cells on the same sides, so
+    /// they do not fit together.
+    TiedFacets {
+        /// A facet.
+        facet: Simplex,
+        /// One in the same plane, on the same sphere, with cells on another side.
+        other: Simplex,
+    },
+    /// In a shape alone: a simplex in no other one has further points on its smallest orthogonal sphere that
+    /// span more than it does, so that a larger simplex is missing.
+    SpannedSphere {
+        /// The simplex.
+        simplex: Simplex,
+        /// Another point on its sphere.
+        point: u32,
+    },
     /// A point that gives way to a heavier or earlier one at its place is a vertex.
     DuplicateVertex {
         /// The vertex.
@@ -250,13 +284,86 @@ impl Finding {
                 given.iter_mut().chain(expected).for_each(|other| *other %= count);
                 point_at_box(point)
             }
-            Self::DuplicateVertex { point, stays } => {
-                *stays %= count;
+            Self::DuplicateVertex { point, stays: other }
+            | Self::EqualPoint { point, first: other } => {
+                *other %= count;
                 point_at_box(point)
+            }
+            Self::TiedSphere { simplex, points, .. } => {
+                points.iter_mut().for_each(|point| _ = point_at_box(point));
+                simplex.fold(count)
+            }
+            Self::TiedFacets { facet, other } => {
+                other.fold(count);
+                facet.fold(count)
+            }
+            Self::SpannedSphere { simplex, point } => {
+                point_at_box(point);
+                simplex.fold(count)
             }
             Self::NoCells | Self::Volume { .. } => true,
         };
         is_at_box.then_some(self)
+    }
+
+    /// Whether this is no fault but another choice where the definition leaves one: between points on one
+    /// empty sphere, or with equal places and weights.
+    pub fn is_tie(&self) -> bool {
+        match self {
+            Self::NotRegular { power, .. } | Self::NotHidden { power, .. } => power.is_zero(),
+            Self::EqualPoint { .. } => true,
+            _ => false,
+        }
+    }
+
+    /// The simplices named, for their vertices to be renumbered.
+    fn simplices_mut(&mut self) -> Vec<&mut Simplex> {
+        match self {
+            Self::Index { simplex, .. }
+            | Self::RepeatedVertex { simplex }
+            | Self::RepeatedSimplex { simplex }
+            | Self::Stray { simplex }
+            | Self::Orientation { cell: simplex, .. }
+            | Self::LongEdge { edge: simplex }
+            | Self::HullEdge { edge: simplex, .. }
+            | Self::MissingCell { cell: simplex, .. }
+            | Self::NotRegular { cell: simplex, .. }
+            | Self::NotHidden { cell: simplex, .. }
+            | Self::HullBends { facet: simplex, .. }
+            | Self::OutsideHull { facet: simplex, .. }
+            | Self::Winding { facet: simplex, .. }
+            | Self::Class { simplex, .. }
+            | Self::TiedSphere { simplex, .. }
+            | Self::SpannedSphere { simplex, .. } => vec![simplex],
+            Self::MissingFace { face: one, of: other }
+            | Self::HullWraps { first: one, facet: other }
+            | Self::TiedFacets { facet: one, other } => vec![one, other],
+            Self::Crowded { facet, cells } => std::iter::once(facet).chain(cells).collect(),
+            Self::Overlap { facet, cells } => std::iter::once(facet).chain(cells).collect(),
+            Self::NoCells
+            | Self::Volume { .. }
+            | Self::MissingVertex { .. }
+            | Self::Unaccounted { .. }
+            | Self::NotOnlyHidden { .. }
+            | Self::Duplicate { .. }
+            | Self::EqualPoint { .. }
+            | Self::DuplicateVertex { .. } => Vec::new(),
+        }
+    }
+
+    /// Without the vertices from this number on.
+    pub(super) fn without(mut self, first: u32) -> Self {
+        self.simplices_mut().into_iter().for_each(|simplex| simplex.drop_from(first));
+        self
+    }
+
+    /// A tie, with the points that its numbers stand for.
+    pub(super) fn renumbered(mut self, numbers: &[u32]) -> Self {
+        self.simplices_mut().into_iter().for_each(|simplex| simplex.renumber(numbers));
+        if let Self::NotRegular { point, .. } | Self::NotHidden { point, .. } = &mut self {
+            *point = numbers[*point as usize];
+        }
+        self
     }
 
     /// The simplex whose class or winding is wrong.

@@ -7,14 +7,14 @@ use super::index::NONE;
 use super::structure::Structure;
 use super::{Finding, Points};
 use crate::canonical::{outward_facets, smallest_even, sort, sorted};
-use crate::exact::{in_conflict, orientation, radius, radius_value};
+use crate::exact::{Side, orientation, radius, radius_value, side};
 use crate::{Alpha, Class, Complex};
 
 /// The cells that fill gaps between four listed facets, positively oriented, with their classes.
 ///
-/// A gap is bounded by facets that lack a cell on its side. Of a whole triangulation its cell must
-/// not be refuted by the neighbours' vertices; of a shape alone it must fit α, and no point nearby
-/// may refute it. On a tied sphere the perturbation decides.
+/// A gap is bounded by facets that lack a cell on its side. Of a whole triangulation none of the
+/// neighbours' vertices may be inside the sphere of its cell; of a shape alone it must fit α, and no point
+/// nearby may. Where further points are on the sphere, their cells are listed, or the gap is one.
 pub(super) fn missing_cells(
     structure: &Structure,
     points: Points,
@@ -70,12 +70,13 @@ fn judge(
     for half in facets.iter().flat_map(|&facet| structure.halves(facet as usize)) {
         let outward = structure.outward(half);
         let same_side = sides.contains(&(sorted(outward), smallest_even(outward)));
-        if same_side || in_conflict(corners.each_ref(), &points.get(structure.apex(half))) {
+        let apex = points.get(structure.apex(half));
+        if same_side || side(corners.each_ref(), &apex) == Side::Inside {
             return None;
         }
     }
     let fits = radius(corners.each_ref(), alpha).is_le();
-    let missing = emptiness.is_none_or(|near| fits && near.refuter_of_cell(cell).is_none());
+    let missing = emptiness.is_none_or(|near| fits && near.refuter(cell).is_none());
     missing.then_some((cell, if fits { Class::Interior } else { Class::Exterior }))
 }
 

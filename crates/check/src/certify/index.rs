@@ -33,6 +33,11 @@ impl<const N: usize> Index<N> {
         (Self { entries, starts }, findings)
     }
 
+    /// Whether a simplex is listed.
+    pub(super) fn contains(&self, simplex: [u32; N]) -> bool {
+        self.row(simplex) != NONE
+    }
+
     /// The row of a simplex, or [`NONE`].
     pub(super) fn row(&self, simplex: [u32; N]) -> u32 {
         let key = sorted(simplex);

@@ -16,7 +16,10 @@ impl fmt::Display for Finding {
             Self::RepeatedSimplex { simplex } => write!(f, "{simplex} is listed twice"),
             Self::MissingFace { face, of } => write!(f, "{face} is missing: {of} has it as a face"),
             Self::Stray { simplex } => write!(f, "{simplex} is not a face of any higher simplex"),
-            Self::NoCells => write!(f, "a triangulation needs cells, and there are none"),
+            Self::NoCells => write!(
+                f,
+                "a whole triangulation needs cells (facets if all points are in one plane, edges on one line), and there are none"
+            ),
             Self::Orientation { cell, six_volumes } => orientation(f, cell, six_volumes),
             Self::LongEdge { edge } => {
                 write!(
@@ -59,6 +62,23 @@ impl fmt::Display for Finding {
             }
             Self::NotOnlyHidden { point } => not_only_hidden(f, *point),
             Self::Duplicate { point, given, expected } => duplicate(f, *point, *given, *expected),
+            Self::EqualPoint { point, first } => write!(
+                f,
+                "point {point} stays at its place, where point {first} with the same weight comes first"
+            ),
+            Self::TiedSphere { simplex, points, listed } => write!(
+                f,
+                "{} points lie on the sphere of {simplex}, and the {listed} of its kind that are listed there do not triangulate them",
+                points.len()
+            ),
+            Self::TiedFacets { facet, other } => write!(
+                f,
+                "{facet} and {other} lie in one plane and on one sphere, but have cells on different sides: they cross"
+            ),
+            Self::SpannedSphere { simplex, point } => write!(
+                f,
+                "{simplex} is listed as a face of nothing, but point {point} is on its sphere, too: what they span is missing"
+            ),
             Self::DuplicateVertex { point, stays } => {
                 write!(f, "point {point} is a vertex, but gives way to point {stays} at its place")
             }

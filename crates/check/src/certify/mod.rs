@@ -7,10 +7,12 @@ mod emptiness;
 mod faces;
 mod filtration;
 mod finding;
+mod flat;
 mod gaps;
 mod geometry;
 mod hull;
 mod index;
+mod linked;
 mod message;
 mod near;
 mod places;
@@ -18,11 +20,12 @@ mod points;
 mod rules;
 mod simplex;
 mod structure;
+mod ties;
 pub(crate) mod torus;
 
 use points::Points;
 
-pub use certificate::{Certificate, CertifyError, NotJudged};
+pub use certificate::{Certificate, CertifyError, NotJudged, Verdict};
 pub use claim::{Claim, Extent};
 pub use filtration::{
     Bound, CertifyFiltrationError, FiltrationCertificate, FiltrationFinding, Unjudged,

@@ -1,23 +1,27 @@
 //! Rules on points that are not vertices: duplicates and hidden points.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use super::emptiness::Emptiness;
 use super::near::Grid;
 use super::structure::{Half, Structure};
-use super::{Finding, Points};
-use crate::Alpha;
+use super::{Claim, Finding, Points};
+use crate::Complex;
 use crate::canonical::outward_facets;
 use crate::exact::{in_conflict, orientation, power_value, radius, radius_value, six_volume};
 
-/// For each point, the one that stays at its place: the heaviest, of equal weights the first.
-pub(super) fn staying(points: Points) -> Vec<u32> {
+/// For each point, the one that stays at its place by the rule: the heaviest, of equal weights the first.
+fn by_rule(points: Points) -> Vec<u32> {
     let place = |i: u32| points.positions[i as usize];
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
     let by_place = |a: u32, b: u32| place(a).partial_cmp(&place(b)).expect("no coordinate is NaN");
     let weight = |i: u32| points.weights[i as usize];
     order.par_sort_unstable_by(|&a, &b| {
-        by_place(a, b).then(weight(b).total_cmp(&weight(a))).then(a.cmp(&b))
+        // Not `total_cmp`, to which −0 is less than 0.
+        let heavier = weight(b).partial_cmp(&weight(a)).expect("no weight is NaN");
+        by_place(a, b).then(heavier).then(a.cmp(&b))
     });
     let mut stays = vec![0; order.len()];
     for same_place in order.chunk_by(|&a, &b| place(a) == place(b)) {
@@ -26,6 +30,33 @@ pub(super) fn staying(points: Points) -> Vec<u32> {
         }
     }
     stays
+}
+
+/// For each point, the one that stays at its place, and where that is another than the rule names.
+///
+/// Of points with equal places and weights any may stay: the one that is a vertex does, or else the one
+/// that the list of duplicates names.
+pub(super) fn staying(
+    points: Points,
+    complex: &Complex,
+    listed: Option<&[[u32; 2]]>,
+) -> (Vec<u32>, Vec<Finding>) {
+    let by_rule = by_rule(points);
+    let weight = |i: u32| points.weights[i as usize];
+    let mut is_vertex = vec![false; by_rule.len()];
+    complex.vertices.rows().iter().for_each(|[v]| is_vertex[*v as usize] = true);
+    let vertices = complex.vertices.rows().iter().map(|&[v]| v);
+    let named = listed.unwrap_or_default().iter().map(|&[_, stayed]| stayed);
+    let mut instead = BTreeMap::new();
+    for point in vertices.chain(named) {
+        let Some(&first) = by_rule.get(point as usize) else { continue };
+        if first != point && weight(first) == weight(point) && !is_vertex[first as usize] {
+            instead.entry(first).or_insert(point);
+        }
+    }
+    let stays = by_rule.into_iter().map(|first| *instead.get(&first).unwrap_or(&first)).collect();
+    let equal = |(first, point)| Finding::EqualPoint { point, first };
+    (stays, instead.into_iter().map(equal).collect())
 }
 
 /// Duplicates are not vertices, and the list of them, if there is one, is right.
@@ -61,28 +92,60 @@ pub(super) fn duplicates(
     findings
 }
 
-/// Which points are neither vertices nor duplicates, and whether `listed` lists just these.
-pub(super) fn hidden(
-    structure: &Structure,
-    stays: &[u32],
-    listed: Option<&[u32]>,
-) -> (Vec<u32>, Vec<Finding>) {
-    let mut accounted: Vec<bool> = (0..).zip(stays).map(|(i, &stayed)| stayed != i).collect();
+/// What a complex says of each point that is not a vertex.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Standing {
+    /// Nothing yet.
+    Unknown,
+    /// A vertex, or listed as hidden.
+    Known,
+    /// Another one stays at its place.
+    Duplicate,
+}
+
+/// Which points are neither vertices nor duplicates.
+pub(super) fn hidden(structure: &Structure, stays: &[u32]) -> Vec<u32> {
+    let standings = standings(structure, stays);
+    (0..).zip(standings).filter(|(_, known)| *known == Standing::Unknown).map(|(i, _)| i).collect()
+}
+
+fn standings(structure: &Structure, stays: &[u32]) -> Vec<Standing> {
+    let of = |(i, &stayed): (u32, &u32)| {
+        if stayed == i { Standing::Unknown } else { Standing::Duplicate }
+    };
+    let mut standings: Vec<_> = (0..).zip(stays).map(of).collect();
     for [v] in structure.complex.vertices.rows() {
-        accounted[*v as usize] = true;
+        standings[*v as usize] = Standing::Known;
     }
-    let hidden = (0..).zip(&accounted).filter(|(_, known)| !**known).map(|(i, _)| i).collect();
-    let Some(listed) = listed else { return (hidden, Vec::new()) };
+    standings
+}
+
+/// The list of hidden points, if there is one, names none that is anything else. It may name duplicates
+/// where these have no list of their own.
+fn listed_hidden(standings: &mut [Standing], claim: &Claim) -> Vec<Finding> {
     let mut findings = Vec::new();
-    for &point in listed {
-        match accounted.get_mut(point as usize) {
-            Some(known @ false) => *known = true,
+    for &point in claim.hidden.unwrap_or_default() {
+        match standings.get_mut(point as usize) {
+            Some(standing @ Standing::Unknown) => *standing = Standing::Known,
+            Some(standing @ Standing::Duplicate) if claim.duplicates.is_none() => {
+                *standing = Standing::Known;
+            }
             _ => findings.push(Finding::NotOnlyHidden { point }),
         }
     }
-    let unknown = (0..).zip(&accounted).filter(|(_, known)| !**known);
-    findings.extend(unknown.map(|(point, _)| Finding::Unaccounted { point }));
-    (hidden, findings)
+    findings
+}
+
+/// In a whole triangulation: the list of hidden points, if there is one, has just those that are neither
+/// vertices nor duplicates.
+pub(super) fn of_whole(structure: &Structure, stays: &[u32], claim: &Claim) -> Vec<Finding> {
+    let mut standings = standings(structure, stays);
+    let mut findings = listed_hidden(&mut standings, claim);
+    if claim.hidden.is_some() {
+        let unknown = (0..).zip(&standings).filter(|(_, known)| **known == Standing::Unknown);
+        findings.extend(unknown.map(|(point, _)| Finding::Unaccounted { point }));
+    }
+    findings
 }
 
 /// In a shape alone: points listed as hidden are not vertices, and points that are in the shape by
@@ -92,19 +155,17 @@ pub(super) fn hidden(
 /// once it is lifted, so it is a vertex of the regular triangulation; a tie may hide it.
 pub(super) fn of_shape(
     structure: &Structure,
-    points: Points,
-    alpha: Alpha,
     emptiness: &Emptiness,
     stays: &[u32],
-    listed: Option<&[u32]>,
+    claim: &Claim,
 ) -> Vec<Finding> {
-    let mut accounted: Vec<bool> = (0..).zip(stays).map(|(i, &stayed)| stayed != i).collect();
-    for [v] in structure.complex.vertices.rows() {
-        accounted[*v as usize] = true;
-    }
+    let points = Points::of(claim);
+    let mut standings = standings(structure, stays);
     let missing = |&point: &u32| {
         let site = points.get(point);
-        !accounted[point as usize] && radius([&site], alpha).is_le() && emptiness.alone(point)
+        standings[point as usize] == Standing::Unknown
+            && radius([&site], claim.placed.alpha).is_le()
+            && emptiness.alone(point)
     };
     let all = (0..points.len() as u32).into_par_iter();
     let finding = |point| {
@@ -112,21 +173,16 @@ pub(super) fn of_shape(
         Finding::MissingVertex { point, radius_squared }
     };
     let mut findings: Vec<_> = all.filter(missing).map(finding).collect();
-    for &point in listed.unwrap_or_default() {
-        match accounted.get_mut(point as usize) {
-            Some(known @ false) => *known = true,
-            _ => findings.push(Finding::NotOnlyHidden { point }),
-        }
-    }
+    findings.extend(listed_hidden(&mut standings, claim));
     findings
 }
 
 /// Each hidden point is hidden: it does not refute the cell it lies in.
 ///
 /// The lifted cells are a convex function, so a point above it where it lies is above it for good.
-/// The cell is found by a walk from a vertex nearby, which ends because the cells of a regular
-/// triangulation have no cycle in front of any point (Edelsbrunner, Combinatorica 10, 1990,
-/// doi:10.1007/BF02122779). The triangulation must have been found regular and its hull convex.
+/// The cell is found by a walk from a vertex nearby, which ends in a regular triangulation because its
+/// cells have no cycle in front of any point (Edelsbrunner, Combinatorica 10, 1990,
+/// doi:10.1007/BF02122779). The triangulation must have been found regular, but for ties, and its hull convex.
 pub(super) fn hiddenness(structure: &Structure, points: Points, hidden: &[u32]) -> Vec<Finding> {
     if hidden.is_empty() {
         return Vec::new();
@@ -164,25 +220,34 @@ pub(super) fn hiddenness(structure: &Structure, points: Points, hidden: &[u32]) 
     hidden.par_iter().filter_map(judge).collect()
 }
 
-/// The cell that contains a place, or the facet of the hull that it is outside of.
+/// The cell that contains a place, or a facet of the hull that it is outside of.
+///
+/// Among cells on one sphere a walk may go round for ever, as any choice among ties need not be the
+/// projection of a convex surface: then all cells are looked at.
 fn walk(
     structure: &Structure,
     points: Points,
     start: usize,
     place: [f64; 3],
 ) -> Result<usize, [u32; 3]> {
+    let cells = structure.complex.cells.rows();
+    let beyond = |facet: &[u32; 3]| {
+        let [a, b, c] = points.places(*facet);
+        orientation(a, b, c, place).is_gt()
+    };
     let mut cell = start;
-    loop {
-        let facets = outward_facets(structure.complex.cells.rows()[cell]);
-        let beyond = |facet: &[u32; 3]| {
-            let [a, b, c] = points.places(*facet);
-            orientation(a, b, c, place).is_gt()
-        };
+    for _ in 0..cells.len() {
+        let facets = outward_facets(cells[cell]);
         let Some(exit) = facets.iter().position(beyond) else { return Ok(cell) };
         let row = structure.cell_facets[cell][exit] as usize;
         match structure.halves(row).find(|half: &Half| half.cell != cell) {
             Some(next) => cell = next.cell,
             None => return Err(facets[exit]),
         }
+    }
+    let holds = |cell: &[u32; 4]| !outward_facets(*cell).iter().any(beyond);
+    match cells.iter().position(holds) {
+        Some(cell) => Ok(cell),
+        None => Err(*structure.hull().iter().find(|facet| beyond(facet)).expect("a convex hull")),
     }
 }

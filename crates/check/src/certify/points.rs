@@ -1,3 +1,4 @@
+use super::Claim;
 use crate::exact::WeightedPoint;
 
 /// The input points.
@@ -7,7 +8,12 @@ pub(super) struct Points<'a> {
     pub weights: &'a [f64],
 }
 
-impl Points<'_> {
+impl<'a> Points<'a> {
+    /// Those of a claim.
+    pub(super) fn of(claim: &Claim<'a>) -> Self {
+        Self { positions: claim.placed.positions, weights: claim.placed.weights }
+    }
+
     pub(super) fn len(self) -> usize {
         self.positions.len()
     }

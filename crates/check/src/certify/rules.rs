@@ -1,14 +1,18 @@
 //! The rules in their order, and which are skipped once others are broken.
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 use super::classes::{self, Judge};
 use super::emptiness::Emptiness;
-use super::structure::{self, Structure};
-use super::{Claim, Extent, Finding, Points, gaps, geometry, hull, places};
+use super::flat::Cone;
+use super::linked::Linked;
+use super::structure;
+use super::{Claim, Extent, Finding, Points, gaps, hull, places, ties};
 use crate::Complex;
 use crate::exact::Exact;
+use crate::flat::auxiliary;
 
 /// Takes the findings of a rule; breaks if the visitor has seen enough.
 type Report<'r> = dyn FnMut(Vec<Finding>) -> ControlFlow<()> + 'r;
@@ -21,29 +25,35 @@ pub(super) fn apply(
     volume: &mut Option<Exact>,
 ) -> ControlFlow<()> {
     let (complex, alpha) = (claim.placed.complex, claim.placed.alpha);
-    let points = Points { positions: claim.placed.positions, weights: claim.placed.weights };
+    let points = Points::of(claim);
     let whole = claim.extent == Extent::Whole;
     let rows = structure::rows(complex, points.len());
     let bad_rows = !rows.is_empty();
     report(rows)?;
-    if whole && complex.cells.is_empty() {
-        report(vec![Finding::NoCells])?;
+    if bad_rows {
         return ControlFlow::Break(());
     }
-    if bad_rows {
+    if whole && complex.cells.is_empty() {
+        let beside = auxiliary(points.positions.iter().copied()).unwrap_or_default();
+        if let Some(cone) = Cone::over(complex, points, &beside) {
+            return flat(claim, &cone, report);
+        }
+        report(vec![Finding::NoCells])?;
         return ControlFlow::Break(());
     }
     let (sum, exponent) = hull::six_volumes(complex.cells.rows(), points);
     *volume = Some(Exact::integer(sum, exponent));
 
-    let stays = places::staying(points);
+    let (stays, equal) = places::staying(points, complex, claim.duplicates);
+    report(equal)?;
     let emptiness = (!whole).then(|| Emptiness::new(points, alpha, &stays));
-    let judge = Judge { points, alpha, extent: claim.extent, emptiness: emptiness.as_ref() };
-    let listed = Linked::new(complex, &judge);
+    let extent = claim.extent;
+    let judge = Judge { points, alpha, extent, dimension: 3, emptiness: emptiness.as_ref() };
+    let listed = Linked::new(complex, points, extent);
     let missing = gaps::missing_cells(&listed.structure, points, alpha, judge.emptiness);
     if !missing.is_empty() {
         let filled = gaps::filled(complex, &missing);
-        let filled = Linked::new(&filled, &judge);
+        let filled = Linked::new(&filled, points, extent);
         if filled.is_regular() {
             report(gaps::findings(&missing, points))?;
             // Classes around a gap may be right without its cell, or with it.
@@ -71,6 +81,12 @@ fn apply_to(
     let regular = linked.is_regular();
     let Linked { structure, broken, irregular } = linked;
     let points = judge.points;
+    let (wrong, tied) = (Cell::new(!regular), Cell::new(false));
+    let mut report = |findings: Vec<Finding>| {
+        wrong.set(wrong.get() || findings.iter().any(|finding| !finding.is_tie()));
+        tied.set(tied.get() || findings.iter().any(Finding::is_tie));
+        report(findings)
+    };
     report(broken)?;
     if claim.extent == Extent::Whole {
         report(hull::volume(&structure, points))?;
@@ -78,44 +94,70 @@ fn apply_to(
     report(irregular)?;
     report(places::duplicates(&structure, stays, claim.duplicates))?;
     if let Some(emptiness) = judge.emptiness {
-        let alpha = judge.alpha;
-        report(places::of_shape(&structure, points, alpha, emptiness, stays, claim.hidden))?;
+        report(places::of_shape(&structure, emptiness, stays, claim))?;
     } else {
-        let (hidden, findings) = places::hidden(&structure, stays, claim.hidden);
-        report(findings)?;
+        report(places::of_whole(&structure, stays, claim))?;
         if regular {
+            let hidden = places::hidden(&structure, stays);
             report(places::hiddenness(&structure, points, &hidden))?;
         }
     }
     report(classes::judge(&structure, judge))?;
+    if let (Some(emptiness), false) = (judge.emptiness, wrong.get()) {
+        let (singular, mut found) = ties::singular(&structure, points, emptiness);
+        if tied.get() || found.iter().any(Finding::is_tie) {
+            found.extend(ties::cells(&structure, points, emptiness, &singular));
+        }
+        report(found)?;
+    }
     if regular { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
-/// A complex with its simplices linked, and which rules of structure and geometry it breaks.
-struct Linked<'a> {
-    structure: Structure<'a>,
-    /// Rules without which the others mean nothing.
-    broken: Vec<Finding>,
-    /// Neighbours and hull, judged if nothing is broken.
-    irregular: Vec<Finding>,
+/// The rules for a whole triangulation of points that span no volume: those for cells are applied to
+/// a cone over it.
+fn flat(claim: &Claim, cone: &Cone, report: &mut Report) -> ControlFlow<()> {
+    let complex = claim.placed.complex;
+    let points = Points::of(claim);
+    let (stays, equal) = places::staying(points, complex, claim.duplicates);
+    report(equal)?;
+    let linked = Linked::new(&cone.complex, cone.points(), Extent::Whole);
+    let regular = linked.is_regular();
+    let (structure, repeated) = structure::Structure::new(complex, points);
+    let mut broken = cone.at_base(linked.broken);
+    broken.extend(cone.at_base(hull::volume(&linked.structure, cone.points())));
+    broken.extend(cone.at_base(linked.irregular));
+    let repeated = repeated.into_iter().filter(|finding| !broken.contains(finding)).collect();
+    report(broken)?;
+    report(repeated)?;
+    report(places::duplicates(&structure, &stays, claim.duplicates))?;
+    report(places::of_whole(&structure, &stays, claim))?;
+    if regular {
+        let hidden = places::hidden(&structure, &stays);
+        let found = places::hiddenness(&linked.structure, cone.points(), &hidden);
+        report(cone.at_base(found))?;
+    }
+    let judge = Judge {
+        points,
+        alpha: claim.placed.alpha,
+        extent: Extent::Whole,
+        dimension: cone.dimension,
+        emptiness: None,
+    };
+    report(classes::judge(&structure, &judge))?;
+    if regular { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
-impl<'a> Linked<'a> {
-    fn new(complex: &'a Complex, judge: &Judge) -> Self {
-        let points = judge.points;
-        let (structure, mut broken) = Structure::new(complex, points);
-        broken.extend(geometry::orientations(complex.cells.rows(), points));
-        let mut irregular = Vec::new();
-        if broken.is_empty() {
-            irregular.extend(geometry::neighbours(&structure, points));
-            if judge.extent == Extent::Whole {
-                irregular.extend(hull::convexity(&structure, points));
-            }
-        }
-        Self { structure, broken, irregular }
+/// What is wrong with cells as a whole triangulation of points, but for ties: those of a sphere, say.
+pub(super) fn wrong_triangulation(cells: &Complex, points: Points) -> Vec<Finding> {
+    let linked = Linked::new(cells, points, Extent::Whole);
+    let regular = linked.is_regular();
+    let mut found = linked.broken;
+    found.extend(hull::volume(&linked.structure, points));
+    found.extend(linked.irregular);
+    if regular {
+        let own: Vec<u32> = (0..points.len() as u32).collect();
+        let hidden = places::hidden(&linked.structure, &own);
+        found.extend(places::hiddenness(&linked.structure, points, &hidden));
     }
-
-    fn is_regular(&self) -> bool {
-        self.broken.is_empty() && self.irregular.is_empty()
-    }
+    found
 }

@@ -27,6 +27,16 @@ impl fmt::Display for Simplex {
 }
 
 impl Simplex {
+    /// Drops the vertices from this number on.
+    pub(super) fn drop_from(&mut self, first: u32) {
+        self.0.retain(|&v| v < first);
+    }
+
+    /// With the vertices that these numbers stand for.
+    pub(super) fn renumber(&mut self, numbers: &[u32]) {
+        self.0.iter_mut().for_each(|v| *v = numbers[*v as usize]);
+    }
+
     /// By the numbers of points of which there are `count`, where copies follow; says whether a vertex is
     /// none of these.
     pub(super) fn fold(&mut self, count: u32) -> bool {

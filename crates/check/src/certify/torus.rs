@@ -9,7 +9,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
-    Certificate, CertifyError, Claim, Extent, Finding, NotJudged, Points, hull, structure,
+    Certificate, CertifyError, Claim, Extent, Finding, NotJudged, Points, Verdict, hull, structure,
 };
 use crate::canonical::sort;
 use crate::exact::Exact;
@@ -35,7 +35,9 @@ pub(crate) fn findings(
     }
     if !broken.is_empty() {
         let certificate = Certificate {
+            verdict: Verdict::Wrong,
             findings: broken.len(),
+            ties: 0,
             six_volumes: Exact::default(),
             not_judged: vec![NotJudged::AfterFindings],
         };
@@ -46,7 +48,12 @@ pub(crate) fn findings(
     let (all, mut certificate) = claim.findings()?;
     let count = placed.positions.len() as u32;
     let mut seen = BTreeSet::new();
-    let near = all.into_iter().filter_map(|finding| finding.at_box(count));
+    // Of a sphere that reaches beyond the copied simplices not all of them are there.
+    let is_copied = |finding: &Finding| match finding {
+        Finding::TiedSphere { points, .. } => points.iter().all(|&point| copies.is_copied(point)),
+        _ => true,
+    };
+    let near = all.into_iter().filter(is_copied).filter_map(|finding| finding.at_box(count));
     let mut found: Vec<Finding> =
         near.filter(|finding| seen.insert(format!("{finding:?}"))).collect();
     let whole = Extent::of(&placed.complex, placed.alpha) == Extent::Whole;
@@ -60,6 +67,8 @@ pub(crate) fn findings(
         found.extend(missing);
     }
     certificate.findings = found.len();
+    certificate.ties = found.iter().filter(|finding| finding.is_tie()).count();
+    certificate.verdict = Verdict::of(certificate.findings, certificate.ties);
     Ok((found, certificate))
 }
 
@@ -104,6 +113,8 @@ struct Copies {
     complex: Complex,
     hidden: Option<Vec<u32>>,
     duplicates: Option<Vec<[u32; 2]>>,
+    /// By how many sides each copy of the box is moved.
+    moves: Vec<[i32; 3]>,
 }
 
 impl Copies {
@@ -135,7 +146,13 @@ impl Copies {
             complex: copied,
             hidden: placed.hidden.as_deref().map(|hidden| layout.of_each(hidden)),
             duplicates: placed.duplicates.as_ref().map(pairs),
+            moves: layout.moves,
         }
+    }
+
+    /// Whether simplices with this copy of a point are copied.
+    fn is_copied(&self, point: u32) -> bool {
+        is_beside(self.moves[point as usize / (self.positions.len() / self.moves.len())])
     }
 
     fn claim(&self) -> Claim<'_> {

@@ -7,7 +7,8 @@ use serde::Serialize;
 use super::{Places, weights_by_place};
 use crate::canonical::{outward_facets, smallest_even, sorted};
 use crate::exact::{Exact, Lattice, Lift, WeightedPoint, orientation};
-use crate::{Class, Placed};
+use crate::schema::turn;
+use crate::{Claim, Class, Placed, Verdict};
 
 /// What the cells of two shapes cover.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -20,10 +21,14 @@ pub enum Domain {
     SameRegion {
         /// Six times the volume of the region.
         six_volumes: Exact,
-        /// Whether the cells that differ also cover the same on each orthogonal sphere. If so,
-        /// neither program is wrong: where more than four points lie on one empty sphere, their
-        /// polytope may be cut in any way. If not, one of the two is not a regular triangulation.
+        /// Whether the cells that differ also cover the same on each orthogonal sphere. If not, one of
+        /// the two is not a regular triangulation.
         tied: bool,
+        /// Where they do, what A and B are found to be each by itself. Only if neither is wrong is this a
+        /// choice: where more than four points lie on one empty sphere, their polytope may be cut in
+        /// any way.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        verdicts: Option<[Verdict; 2]>,
     },
     /// Different regions.
     Different {
@@ -38,11 +43,17 @@ impl fmt::Display for Domain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::SameCells => write!(f, "domain: the same cells"),
-            Self::SameRegion { six_volumes, tied } => {
-                let why = if *tied {
-                    "as cospherical points allow"
-                } else {
-                    "which are not on the same spheres: no tie, and at most one of A and B is regular"
+            Self::SameRegion { six_volumes, verdicts, .. } => {
+                let why = match verdicts {
+                    None => {
+                        "which are not on the same spheres: no tie, and at most one of A and B is regular"
+                    }
+                    Some([Verdict::Wrong, Verdict::Wrong]) => {
+                        "but A and B are wrong by themselves (check them)"
+                    }
+                    Some([Verdict::Wrong, _]) => "but A is wrong by itself (check it)",
+                    Some([_, Verdict::Wrong]) => "but B is wrong by itself (check it)",
+                    Some(_) => "as cospherical points allow: both are certified",
                 };
                 write!(
                     f,
@@ -78,10 +89,19 @@ pub(super) fn compare(a: Placed, b: Placed, places: &Places) -> Domain {
     let (six_volumes_a, six_volumes_b) = (six_volumes(&in_a), six_volumes(&in_b));
     if six_volumes_a == six_volumes_b && same_surface(&in_a, &in_b, places, lattice) {
         let tied = tied(Side::new(a, &places.a, &in_a), Side::new(b, &places.b, &in_b), places);
-        Domain::SameRegion { six_volumes: six_volumes_a, tied }
+        let verdicts = tied.then(|| [a, b].map(verdict));
+        Domain::SameRegion { six_volumes: six_volumes_a, tied, verdicts }
     } else {
         Domain::Different { six_volumes_a, six_volumes_b }
     }
+}
+
+/// What a complex is found to be, with its simplices turned the canonical way, as windings are not compared.
+/// What cannot be judged is not excused.
+fn verdict(placed: Placed) -> Verdict {
+    let mut complex = placed.complex.clone();
+    turn(&mut complex, placed.positions, None);
+    Claim::new(placed.with_complex(&complex)).verdict().unwrap_or(Verdict::Wrong)
 }
 
 /// The interior cells by places, positively oriented, flat ones left out.

@@ -156,7 +156,7 @@ fn settle<const N: usize, const M: usize>(
 }
 
 /// Turns cells positive and regular facets outward, and sorts the vertices of other rows.
-fn turn(complex: &mut Complex, points: &[[f64; 3]], periodic: Option<[f64; 3]>) {
+pub(crate) fn turn(complex: &mut Complex, points: &[[f64; 3]], periodic: Option<[f64; 3]>) {
     for cell in complex.cells.rows_mut() {
         let mut places = cell.map(|v| points[v as usize]);
         if let Some(sides) = periodic {

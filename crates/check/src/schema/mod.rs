@@ -54,6 +54,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Alpha, Claim, Class, Placed};
 
+pub(crate) use build::turn;
 pub use error::SchemaError;
 pub use filtration::{Below, FiltrationFile, PairsFile, Values};
 pub use open::AnyFile;

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use walpha_check::{Extent, Finding};
+use walpha_check::{Extent, Finding, Verdict};
 
 use super::{Answer, Case, definition, grid};
 
@@ -37,7 +37,11 @@ pub fn findings(case: &Case, answer: &Answer, extent: Extent) -> Vec<Finding> {
     let claim = case.claim(answer, extent);
     let (findings, certificate) = claim.findings().unwrap();
     assert_eq!(certificate.findings, findings.len());
-    assert_eq!(claim.is_valid().unwrap(), findings.is_empty());
+    let ties = findings.iter().filter(|finding| finding.is_tie()).count();
+    assert_eq!(certificate.ties, ties);
+    assert_eq!(claim.verdict().unwrap(), certificate.verdict);
+    assert_eq!(certificate.verdict == Verdict::Exact, findings.is_empty());
+    assert_eq!(certificate.verdict == Verdict::Wrong, ties < findings.len());
     assert_eq!(claim.first_finding().unwrap().as_ref(), findings.first());
     for finding in &findings {
         let line = finding.to_string();

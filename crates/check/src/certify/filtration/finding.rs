@@ -75,6 +75,13 @@ pub enum FiltrationFinding {
     Triangulation(Finding),
 }
 
+impl FiltrationFinding {
+    /// Whether this is no fault but [another choice](Finding::is_tie) where the definition leaves one.
+    pub fn is_tie(&self) -> bool {
+        matches!(self, Self::Triangulation(finding) if finding.is_tie())
+    }
+}
+
 /// An α at which a simplex becomes something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

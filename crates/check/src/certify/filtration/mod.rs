@@ -8,8 +8,9 @@ mod values;
 
 use serde::Serialize;
 
+use super::certificate::verdict_in_words;
 use super::structure::Structure;
-use super::{Certificate, CertifyError, Points};
+use super::{Certificate, CertifyError, Points, Verdict};
 use crate::Alpha;
 use crate::schema::{Below, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
 
@@ -23,12 +24,23 @@ pub use finding::{Bound, FiltrationFinding};
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct FiltrationCertificate {
+    /// What follows from all findings: valid if only the triangulation departs from the rule, at ties.
+    pub verdict: Verdict,
+    /// How many findings there are.
+    pub findings: usize,
     /// That of the triangulation, which is the complex at α = ∞.
     pub triangulation: Certificate,
     /// Values that are different numbers.
     pub values: usize,
     /// What was not judged.
     pub not_judged: Vec<Unjudged>,
+}
+
+/// The verdict with its reason, in one line.
+impl std::fmt::Display for FiltrationCertificate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        verdict_in_words(f, self.verdict, self.findings, self.triangulation.ties, true)
+    }
 }
 
 /// Parts of a filtration that are not judged.
@@ -85,8 +97,9 @@ impl CertifyFiltrationError {
     }
 }
 
-/// Judges a filtration: that its simplices are the whole regular triangulation (the rules of
-/// [`Claim::visit`](crate::Claim::visit) at α = ∞), the value of each, whether it is Gabriel, from
+/// Judges a filtration: that its simplices are a whole regular triangulation (the rules of
+/// [`Claim::visit`](crate::Claim::visit) at α = ∞; of points that span no volume, that of their plane or
+/// line), the value of each, whether it is Gabriel, from
 /// which α on it is regular and interior, the order, and where that is right the persistence pairs. All
 /// by exact numbers; the doubles of a file must be the nearest.
 ///
@@ -110,15 +123,15 @@ pub fn certify_filtration(
     let mut findings: Vec<_> = found.into_iter().map(FiltrationFinding::Triangulation).collect();
     let mut not_judged = Vec::new();
     let mut values = 0;
-    if findings.is_empty() {
+    if triangulation.verdict == Verdict::Wrong {
+        not_judged.push(Unjudged::AfterFindings);
+    } else {
         let points = Points { positions: &placed.positions, weights: &placed.weights };
         let (structure, _) = Structure::new(&placed.complex, points);
         let ranks = Ranks::of(&structure, points);
         let spans = Spans::of(&structure, &ranks);
         values = ranks.values.len();
         findings.extend(judge(file, &structure, &ranks, &spans));
-    } else {
-        not_judged.push(Unjudged::AfterFindings);
     }
     let absent = [
         (file.gabriel.is_none(), Unjudged::Gabriel),
@@ -126,7 +139,11 @@ pub fn certify_filtration(
         (file.pairs.is_none(), Unjudged::Pairs),
     ];
     not_judged.extend(absent.into_iter().filter(|absent| absent.0).map(|absent| absent.1));
-    Ok((findings, FiltrationCertificate { triangulation, values, not_judged }))
+    let verdict = Verdict::of(findings.len(), findings.iter().filter(|f| f.is_tie()).count());
+    let count = findings.len();
+    let certificate =
+        FiltrationCertificate { verdict, findings: count, triangulation, values, not_judged };
+    Ok((findings, certificate))
 }
 
 /// The complex at α = ∞.

@@ -1,0 +1,84 @@
+//! Whole triangulations of points in one plane, on one line, or of one point alone.
+
+use std::cmp::Ordering;
+use std::collections::BTreeSet;
+
+use super::{Finding, Points};
+use crate::canonical::{outward_facets, smallest_even, sort, sorted};
+use crate::exact::orientation;
+use crate::{Class, Complex, Simplices};
+
+/// Cells over the largest simplices of a flat triangulation, with auxiliary corners beside it.
+///
+/// Which points are within a circle of a plane is the same for every sphere through it, and auxiliary
+/// corners have no part in the perturbation. So the cone is the regular triangulation of the points with
+/// the auxiliary ones if and only if its base is that of the points.
+pub(super) struct Cone {
+    pub complex: Complex,
+    /// Of the base: 0 to 2.
+    pub dimension: usize,
+    positions: Vec<[f64; 3]>,
+    weights: Vec<f64>,
+    /// The number of the first auxiliary corner.
+    first: u32,
+}
+
+impl Cone {
+    /// Over a complex without cells, of which the rows are valid. None if nothing is listed of the
+    /// dimension that the points span.
+    pub(super) fn over(complex: &Complex, points: Points, beside: &[[f64; 3]]) -> Option<Self> {
+        let first = points.len() as u32;
+        let positions = [points.positions, beside].concat();
+        let at = |k: u32| first + k;
+        let cells: Vec<[u32; 4]> = match beside.len() {
+            1 => complex.facets.rows().iter().map(|&[a, b, c]| [a, b, c, at(0)]).collect(),
+            2 => complex.edges.rows().iter().map(|&[a, b]| [a, b, at(0), at(1)]).collect(),
+            3 => complex.vertices.rows().iter().map(|&[a]| [a, at(0), at(1), at(2)]).collect(),
+            _ => Vec::new(),
+        };
+        if cells.is_empty() {
+            return None;
+        }
+        let positive = |[a, b, c, d]: [u32; 4]| {
+            let [p, q, r, s] = [a, b, c, d].map(|v| positions[v as usize]);
+            if orientation(p, q, r, s) == Ordering::Less { [b, a, c, d] } else { [a, b, c, d] }
+        };
+        let cells: Vec<_> = cells.into_iter().map(positive).collect();
+        let weights = [points.weights, &[0.0; 3][..beside.len()]].concat();
+        let dimension = 3 - beside.len();
+        Some(Self { complex: closed(&cells), dimension, positions, weights, first })
+    }
+
+    pub(super) fn points(&self) -> Points<'_> {
+        Points { positions: &self.positions, weights: &self.weights }
+    }
+
+    /// What is found of the cone, of its base; each once.
+    pub(super) fn at_base(&self, found: Vec<Finding>) -> Vec<Finding> {
+        let mut findings: Vec<Finding> = Vec::new();
+        for finding in found.into_iter().map(|finding| finding.without(self.first)) {
+            if !findings.contains(&finding) {
+                findings.push(finding);
+            }
+        }
+        findings
+    }
+}
+
+/// Cells with all their faces; every class is exterior.
+pub(super) fn closed(cells: &[[u32; 4]]) -> Complex {
+    fn exterior<const N: usize>(rows: impl Iterator<Item = [u32; N]>) -> Simplices<N> {
+        let rows: BTreeSet<[u32; N]> = rows.map(sorted).collect();
+        rows.into_iter().map(|row| (row, Class::Exterior)).collect()
+    }
+    let facets = || cells.iter().flat_map(|&cell| outward_facets(cell));
+    let edges = || facets().flat_map(|[a, b, c]| [[a, b], [b, c], [a, c]]);
+    let mut complex = Complex {
+        cells: cells.iter().map(|&cell| (smallest_even(cell), Class::Exterior)).collect(),
+        facets: exterior(facets()),
+        edges: exterior(edges()),
+        vertices: exterior(edges().flat_map(|[a, b]| [[a], [b]])),
+    };
+    sort(&mut complex);
+    complex
+}

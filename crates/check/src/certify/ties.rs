@@ -1,0 +1,197 @@
+//! In a shape alone: whether what is listed on tied spheres fits together.
+//!
+//! Where more points lie on one empty sphere than a simplex has corners, their polytope may be cut in
+//! several ways. A whole triangulation shows by its hull and volume that one way was taken. In a shape
+//! alone each polytope is judged by itself, as a whole triangulation of the points on its sphere; and
+//! on each of its flat faces, where the one beyond may be cut, too, all facets must have cells on the same sides.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::emptiness::Emptiness;
+use super::flat::{Cone, closed};
+use super::rules::wrong_triangulation;
+use super::structure::Structure;
+use super::{Finding, Points};
+use crate::canonical::{outward_facets, sorted};
+use crate::exact::{collinear, orientation};
+use crate::flat::auxiliary;
+use crate::{Class, Complex, Simplices};
+
+/// Facets in the shape by themselves on tied circles: the points of each circle, and the rows.
+pub(super) type Circles = BTreeMap<Vec<u32>, Vec<u32>>;
+
+/// Judges simplices that are in the shape by themselves and have further points on their spheres:
+/// they must be those of a triangulation of these points, by the rule or by another choice.
+pub(super) fn singular(
+    structure: &Structure,
+    points: Points,
+    emptiness: &Emptiness,
+) -> (Circles, Vec<Finding>) {
+    let complex = structure.complex;
+    let mut findings = Vec::new();
+    for (_, vertex, on) in tied(&complex.vertices, emptiness) {
+        findings.push(spanned(vertex, &on));
+    }
+    let mut lines = BTreeMap::<Vec<u32>, Vec<u32>>::new();
+    for (row, edge, on) in tied(&complex.edges, emptiness) {
+        let [a, b] = points.places(edge);
+        match on.iter().find(|&&q| !collinear(a, b, points.get(q).position)) {
+            Some(_) => findings.push(spanned(edge, &on)),
+            None => lines.entry(on).or_default().push(row),
+        }
+    }
+    let mut circles = Circles::new();
+    for (row, facet, on) in tied(&complex.facets, emptiness) {
+        let [a, b, c] = points.places(facet);
+        match on.iter().find(|&&q| orientation(a, b, c, points.get(q).position).is_ne()) {
+            Some(_) => findings.push(spanned(facet, &on)),
+            None => circles.entry(on).or_default().push(row),
+        }
+    }
+    for (on, rows) in &lines {
+        // All edges between these points, as some may be faces of facets.
+        let pairs =
+            on.iter().enumerate().flat_map(|(i, &a)| on[i + 1..].iter().map(move |&b| [a, b]));
+        let listed = pairs.filter(|&pair| structure.edges.contains(pair));
+        let edges = listed.map(|pair| (local(pair, on), Class::Exterior)).collect();
+        let first = complex.edges.rows()[rows[0] as usize];
+        let edges = Complex { edges, ..Complex::default() };
+        findings.extend(flat_findings(on, &edges, first.into(), points));
+    }
+    for (on, rows) in &circles {
+        let facets = rows.iter().map(|&row| complex.facets.rows()[row as usize]);
+        let facets = facets.map(|facet| (sorted(local(facet, on)), Class::Exterior)).collect();
+        let first = complex.facets.rows()[rows[0] as usize];
+        let facets = Complex { facets, ..Complex::default() };
+        findings.extend(flat_findings(on, &facets, first.into(), points));
+    }
+    (circles, findings)
+}
+
+/// Judges cells with further points on their spheres, and what is listed on the flat faces between them.
+pub(super) fn cells(
+    structure: &Structure,
+    points: Points,
+    emptiness: &Emptiness,
+    singular: &Circles,
+) -> Vec<Finding> {
+    let cells = structure.complex.cells.rows();
+    let facets = structure.complex.facets.rows();
+    let on = |(row, &cell): (usize, &[u32; 4])| {
+        let on = emptiness.on_sphere(cell);
+        (on.len() > 4).then_some((on, row))
+    };
+    let tied: Vec<_> = cells.par_iter().enumerate().filter_map(on).collect();
+    let mut spheres = BTreeMap::<Vec<u32>, Vec<usize>>::new();
+    for (on, cell) in tied {
+        spheres.entry(on).or_default().push(cell);
+    }
+    let spheres: Vec<_> = spheres.into_iter().collect();
+    let judge = |(on, rows): &(Vec<u32>, Vec<usize>)| {
+        let own: Vec<_> = rows.iter().map(|&row| local(cells[row], on)).collect();
+        let (positions, weights) = placed(on, points);
+        let of_sphere = Points { positions: &positions, weights: &weights };
+        let wrong = wrong_triangulation(&closed(&own), of_sphere);
+        wrong.iter().any(|finding| !finding.is_tie()).then(|| Finding::TiedSphere {
+            simplex: cells[rows[0]].into(),
+            points: on.clone(),
+            listed: rows.len(),
+        })
+    };
+    let mut findings: Vec<Finding> = spheres.par_iter().filter_map(judge).collect();
+
+    // Of each flat face with more than three corners one facet, and its sides with cells.
+    let mut faces = BTreeMap::<Vec<u32>, (u32, [bool; 2])>::new();
+    let mut crossing = BTreeMap::<u32, u32>::new();
+    let mut add = |face: Vec<u32>, facet: u32| {
+        let sides = sides(structure, points, &face, facet);
+        let (other, known) = *faces.entry(face).or_insert((facet, sides));
+        if known != sides {
+            crossing.entry(facet).or_insert(other);
+        }
+    };
+    for (on, rows) in &spheres {
+        for &row in rows {
+            for (k, facet) in outward_facets(cells[row]).into_iter().enumerate() {
+                let [a, b, c] = points.places(facet);
+                let flat = |&&q: &&u32| orientation(a, b, c, points.get(q).position).is_eq();
+                let face: Vec<u32> = on.iter().filter(flat).copied().collect();
+                if face.len() > 3 {
+                    add(face, structure.cell_facets[row][k]);
+                }
+            }
+        }
+    }
+    for (on, rows) in singular {
+        rows.iter().for_each(|&row| add(on.clone(), row));
+    }
+    let of = |row: u32| facets[row as usize].into();
+    let crossing = crossing.into_iter();
+    findings.extend(crossing.map(|(a, b)| Finding::TiedFacets { facet: of(a), other: of(b) }));
+    findings
+}
+
+/// On which sides of a flat face a facet of it has cells.
+fn sides(structure: &Structure, points: Points, face: &[u32], facet: u32) -> [bool; 2] {
+    let [a, b] = [face[0], face[1]].map(|v| points.get(v).position);
+    let places = face[2..].iter().map(|&v| points.get(v).position);
+    let c = places.into_iter().find(|&c| !collinear(a, b, c)).expect("a face spans a plane");
+    let mut sides = [false; 2];
+    for half in structure.halves(facet as usize) {
+        let apex = points.get(structure.apex(half)).position;
+        sides[usize::from(orientation(a, b, c, apex).is_gt())] = true;
+    }
+    sides
+}
+
+/// Simplices in the shape by themselves with further points on their spheres: the row, the
+/// simplex, and all points on the sphere.
+fn tied<const N: usize>(
+    simplices: &Simplices<N>,
+    emptiness: &Emptiness,
+) -> Vec<(u32, [u32; N], Vec<u32>)> {
+    let rows = simplices.rows().par_iter().zip(simplices.classes()).enumerate();
+    let on = |(i, (&row, &class)): (usize, (&[u32; N], &Class))| {
+        let on = (class == Class::Singular).then(|| emptiness.on_sphere(row))?;
+        (on.len() > N).then_some((i as u32, row, on))
+    };
+    rows.filter_map(on).collect()
+}
+
+fn spanned<const N: usize>(simplex: [u32; N], on: &[u32]) -> Finding {
+    let point = on.iter().copied().find(|v| !simplex.contains(v)).expect("a further point");
+    Finding::SpannedSphere { simplex: simplex.into(), point }
+}
+
+/// What is found of flat simplices as a whole triangulation of the points on a sphere, of which the
+/// first simplex is given: other choices one by one, or else that it is none.
+fn flat_findings(
+    on: &[u32],
+    complex: &Complex,
+    simplex: super::Simplex,
+    points: Points,
+) -> Vec<Finding> {
+    let listed = complex.facets.len() + complex.edges.len();
+    let (positions, weights) = placed(on, points);
+    let of_sphere = Points { positions: &positions, weights: &weights };
+    let beside = auxiliary(positions.iter().copied()).unwrap_or_default();
+    let found = Cone::over(complex, of_sphere, &beside)
+        .map(|cone| cone.at_base(wrong_triangulation(&cone.complex, cone.points())));
+    match found {
+        Some(found) if found.iter().all(Finding::is_tie) => {
+            found.into_iter().map(|finding| finding.renumbered(on)).collect()
+        }
+        _ => vec![Finding::TiedSphere { simplex, points: on.to_vec(), listed }],
+    }
+}
+
+/// A row by places in a list of points, ascending, that has all of them.
+fn local<const N: usize>(row: [u32; N], on: &[u32]) -> [u32; N] {
+    row.map(|v| on.binary_search(&v).expect("corners are on their sphere") as u32)
+}
+
+fn placed(on: &[u32], points: Points) -> (Vec<[f64; 3]>, Vec<f64>) {
+    on.iter().map(|&v| (points.positions[v as usize], points.weights[v as usize])).unzip()
+}
