@@ -1,15 +1,17 @@
 //! Zarr arrays and OME-Zarr pyramids, written with the zarrs crate or by hand.
 #![cfg(feature = "zarr")]
 
+#[path = "common/largest.rs"]
+mod largest;
 #[path = "common/told.rs"]
 mod told;
 
-use std::alloc::{GlobalAlloc, Layout, System};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 
+use largest::LARGEST;
 use serde_json::json;
 use told::Told;
 use walpha::Volume;
@@ -172,28 +174,6 @@ fn what_is_no_volume_is_told() {
     refuses(f, "affine");
 }
 
-/// The system's allocator, which remembers the largest piece asked for.
-struct Remembering;
-
-static LARGEST: AtomicUsize = AtomicUsize::new(0);
-
-// SAFETY: everything is handed to the system's allocator as it came.
-unsafe impl GlobalAlloc for Remembering {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        LARGEST.fetch_max(layout.size(), Ordering::Relaxed);
-        // SAFETY: the caller's promises are those the system's allocator asks for.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
-        // SAFETY: as above.
-        unsafe { System.dealloc(at, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Remembering = Remembering;
-
 /// Two slices of six million samples each, in chunks of 3000 rows of which one is there. The samples
 /// take 48 MB; nothing else may be so large.
 #[test]
@@ -225,4 +205,62 @@ fn chunks_far_larger_than_their_array_are_refused() {
     fs::write(folder.path().join(".zarray"), large).unwrap();
     let error = open(folder.path(), None).unwrap_err().told();
     assert!(error.contains("has chunks of 6597069766656 samples"), "{error}");
+}
+
+/// A chunk that holds chunks: of two the index says where they are.
+#[test]
+fn a_shard_leads_nowhere_else_than_into_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let bytes = json!([{"name": "bytes", "configuration": {"endian": "little"}}]);
+    let metadata = |location: &str| {
+        json!({
+            "zarr_format": 3, "node_type": "array", "shape": [1, 2, 4], "data_type": "uint8", "fill_value": 7,
+            "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": [1, 2, 4]}},
+            "chunk_key_encoding": {"name": "default", "configuration": {"separator": "/"}},
+            "codecs": [{"name": "sharding_indexed", "configuration": {
+                "chunk_shape": [1, 1, 4], "codecs": bytes, "index_codecs": bytes, "index_location": location
+            }}]
+        })
+    };
+    fs::create_dir_all(folder.path().join("c/0/0")).unwrap();
+    let shard = |location: &str, index: [u64; 4]| {
+        fs::write(folder.path().join("zarr.json"), metadata(location).to_string()).unwrap();
+        let index = index.map(u64::to_le_bytes).concat();
+        let data = [1, 2, 3, 4, 5, 6, 7, 8];
+        let parts = if location == "end" { [&data[..], &index] } else { [&index[..], &data] };
+        fs::write(folder.path().join("c/0/0/0"), parts.concat()).unwrap();
+        open(folder.path(), None).map(|volume| volume.as_slice().to_vec())
+    };
+    let samples = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+    assert_eq!(shard("end", [0, 4, 4, 4]).unwrap(), samples);
+    assert_eq!(shard("start", [32, 4, 36, 4]).unwrap(), samples);
+    let half = [7.0, 7.0, 7.0, 7.0, 5.0, 6.0, 7.0, 8.0];
+    assert_eq!(shard("end", [u64::MAX, u64::MAX, 4, 4]).unwrap(), half);
+    // Twice 2⁶³ is 0, to who adds 64 bits; and more.
+    for wrong in
+        [[1 << 63, 1 << 63, 4, 4], [0, 4, 1 << 63, 4], [0, 4, 4, 1 << 40], [0, 4, u64::MAX, 4]]
+    {
+        for location in ["start", "end"] {
+            let error = shard(location, wrong).unwrap_err().told();
+            assert!(error.contains("a shard of 40 bytes says that a chunk of"), "{error}");
+        }
+    }
+    fs::write(folder.path().join("c/0/0/0"), [0; 20]).unwrap();
+    let error = open(folder.path(), None).unwrap_err().told();
+    assert!(error.contains("too short for its index"), "{error}");
+}
+
+/// 600 million samples, of which nothing is there.
+#[test]
+fn claims_that_nothing_stored_can_bear_out_take_no_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let metadata = json!({
+        "zarr_format": 2, "shape": [600, 1000, 1000], "chunks": [10, 100, 100], "dtype": "|u1",
+        "compressor": null, "fill_value": 0, "order": "C", "filters": null
+    });
+    fs::write(folder.path().join(".zarray"), metadata.to_string()).unwrap();
+    let error = open(folder.path(), None).unwrap_err().told();
+    assert!(error.contains("claims 1000×1000×600 samples and holds"), "{error}");
+    assert!(error.contains("nearly all its chunks are missing"), "{error}");
+    assert!(LARGEST.load(Ordering::Relaxed) < 50 << 20);
 }

@@ -81,7 +81,7 @@ pub enum PointsError {
     #[error("the neighbours of the points cannot be found: {0}")]
     Neighbours(#[from] TriangulationError),
     /// The input has no weights.
-    #[error("column weights need a column `weight` in the input")]
+    #[error("column weights need a column `weight` or `radius` in the input")]
     NoColumn,
     /// A weight that is not finite.
     #[error("the weight of point {index} is {weight}: it must be finite")]

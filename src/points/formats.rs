@@ -5,20 +5,32 @@ use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 
+use walpha_check::schema::ComplexFile;
+
+#[cfg(feature = "formats")]
+use super::read::xyz::{self, Lay};
 use super::read::{format, npy};
 #[cfg(feature = "formats")]
-use super::read::{obj, off, pcd, ply, stl, table, vtk, xyz};
+use super::read::{obj, off, pcd, ply, stl, table, vtk};
 use super::write;
 #[cfg(feature = "formats")]
 use super::wvm;
-use super::{Columns, ModelFacts, Packing, Points, PointsError, WeightedPoints};
-use crate::volume::{NpyFile, Reason, UnknownFormat, built, is_vtk_xml, start_of};
+use super::{CellCount, Columns, ModelFacts, Packing, Points, PointsError, WeightedPoints};
+#[cfg(feature = "formats")]
+use crate::volume::VtkPoints;
+use crate::volume::{NpyFile, Reason, UnknownFormat, built, is_vtk, is_vtk_xml, start_of};
 
 /// Reads a file whose columns may be named.
 type Read = fn(&Path, Option<&Columns>) -> Result<Points, PointsError>;
 
-/// Reads a file without so many of its last layers, and what is known of its points.
-type ReadLevel = fn(&Path, u32) -> Result<(Points, ModelFacts), PointsError>;
+/// Reads a file without so many of its last layers, and what it states of its points besides.
+type ReadModel = fn(&Path, Option<&Columns>, u32) -> Result<(Points, ModelFacts), PointsError>;
+
+/// Counts what a file lists besides points.
+type CountCells = fn(&Path) -> Result<Vec<CellCount>, PointsError>;
+
+/// Reads the cells of a file as a complex.
+type ReadComplex = fn(&Path) -> Result<ComplexFile, PointsError>;
 
 /// A format of points.
 pub struct PointFormat {
@@ -37,10 +49,16 @@ pub struct PointFormat {
     begins: fn(&[u8]) -> bool,
     /// Whether a file of it holds points, where it may hold others.
     holds_points: fn(&Path) -> Result<bool, PointsError>,
-    /// Reads a file; `None` where it was left out of the build.
+    /// Whether its files may hold several levels.
+    has_levels: bool,
+    /// Reads a file that states nothing of its points besides.
     read: Option<Read>,
-    /// Reads a level of a file that has several, with all that it holds.
-    read_level: Option<ReadLevel>,
+    /// Reads a file that may. Where both are `None`, the format was left out of the build.
+    read_model: Option<ReadModel>,
+    /// What it lists besides points, where it may list cells.
+    pub(super) cells: Option<CountCells>,
+    /// Reads its cells, where they may be a complex.
+    pub(super) read_complex: Option<ReadComplex>,
 }
 
 /// How points are written under an extension.
@@ -66,13 +84,16 @@ const PLAIN: PointFormat = PointFormat {
     begins: |_| false,
     holds_points: |_| Ok(true),
     writers: &[],
+    has_levels: false,
     read: None,
-    read_level: None,
+    read_model: None,
+    cells: None,
+    read_complex: None,
 };
 
 /// The formats of points, in the order in which they are looked for. The first is the default for
 /// files that nothing identifies.
-pub static FORMATS: [PointFormat; 12] = [
+pub static FORMATS: [PointFormat; 15] = [
     PointFormat {
         name: "CSV, TSV",
         extensions: &["csv", "tsv"],
@@ -88,10 +109,26 @@ pub static FORMATS: [PointFormat; 12] = [
     },
     PointFormat {
         name: "XYZ",
-        extensions: &["xyz"],
+        extensions: &["xyz", "txt", "asc"],
         takes_columns: true,
         fuzzed_by: "xyz",
-        read: built!("formats", |path, columns| xyz::read(path, columns, xyz::Counted::Atoms)),
+        read_model: built!("formats", |path, columns, _| xyz::read(path, columns, Lay::Atoms)),
+        ..PLAIN
+    },
+    PointFormat {
+        name: "XYZ with normals or colours",
+        extensions: &["xyzn", "xyzrgb"],
+        takes_columns: true,
+        fuzzed_by: "xyz",
+        read_model: built!("formats", |path, columns, _| xyz::read(path, columns, Lay::Vectors)),
+        ..PLAIN
+    },
+    PointFormat {
+        name: "PTS",
+        extensions: &["pts"],
+        takes_columns: true,
+        fuzzed_by: "xyz",
+        read_model: built!("formats", |path, columns, _| xyz::read(path, columns, Lay::Scan)),
         ..PLAIN
     },
     PointFormat {
@@ -99,8 +136,8 @@ pub static FORMATS: [PointFormat; 12] = [
         extensions: &["pwn"],
         takes_columns: true,
         fuzzed_by: "pwn",
-        read: built!("formats", |path, columns| {
-            xyz::read(path, columns, xyz::Counted::PointsThenNormals)
+        read_model: built!("formats", |path, columns, _| {
+            xyz::read(path, columns, Lay::PointsThenNormals)
         }),
         ..PLAIN
     },
@@ -110,6 +147,7 @@ pub static FORMATS: [PointFormat; 12] = [
         fuzzed_by: "ply",
         begins: |start| start.starts_with(b"ply\n") || start.starts_with(b"ply\r"),
         read: built!("formats", |path, _| ply::read(path)),
+        cells: built!("formats", ply::cells),
         ..PLAIN
     },
     PointFormat {
@@ -117,6 +155,7 @@ pub static FORMATS: [PointFormat; 12] = [
         extensions: &["off"],
         fuzzed_by: "off",
         read: built!("formats", |path, _| off::read(path)),
+        cells: built!("formats", off::cells),
         ..PLAIN
     },
     PointFormat {
@@ -124,6 +163,7 @@ pub static FORMATS: [PointFormat; 12] = [
         extensions: &["obj"],
         fuzzed_by: "obj",
         read: built!("formats", |path, _| obj::read(path)),
+        cells: built!("formats", obj::cells),
         ..PLAIN
     },
     PointFormat {
@@ -131,6 +171,7 @@ pub static FORMATS: [PointFormat; 12] = [
         extensions: &["stl"],
         fuzzed_by: "stl",
         read: built!("formats", |path, _| stl::read(path)),
+        cells: built!("formats", stl::cells),
         ..PLAIN
     },
     PointFormat {
@@ -148,6 +189,18 @@ pub static FORMATS: [PointFormat; 12] = [
         begins: is_vtk_xml,
         holds_points: is_geometry,
         read: built!("formats", |path, _| vtk::read(path)),
+        cells: built!("formats", vtk::cells),
+        read_complex: built!("formats", vtk::read_complex),
+        ..PLAIN
+    },
+    PointFormat {
+        name: "VTK polygons and grids",
+        extensions: &["vtk"],
+        fuzzed_by: "vtk_geometry",
+        begins: is_vtk,
+        holds_points: are_listed,
+        read: built!("formats", |path, _| vtk::read_legacy(path)),
+        cells: built!("formats", vtk::cells_of_legacy),
         ..PLAIN
     },
     PointFormat {
@@ -181,8 +234,8 @@ pub static FORMATS: [PointFormat; 12] = [
         extensions: &["wvm"],
         fuzzed_by: "wvm",
         begins: |start| start.starts_with(MODEL),
-        read: built!("formats", |path, _| Ok(wvm::read(path, 0)?.0)),
-        read_level: built!("formats", wvm::read),
+        has_levels: true,
+        read_model: built!("formats", |path, _, level| wvm::read(path, level)),
         writers: MODEL_WRITERS,
         ..PLAIN
     },
@@ -212,10 +265,27 @@ fn is_geometry(path: &Path) -> Result<bool, PointsError> {
     }
 }
 
+/// Whether a legacy file of VTK lists points.
+#[expect(clippy::unnecessary_wraps, reason = "what is damaged is for the reader to say")]
+fn are_listed(path: &Path) -> Result<bool, PointsError> {
+    #[cfg(feature = "formats")]
+    return Ok(VtkPoints::are_in(path).unwrap_or(false));
+    #[cfg(not(feature = "formats"))]
+    {
+        let _ = path;
+        Ok(false)
+    }
+}
+
 impl PointFormat {
     /// Whether it was built in.
     pub fn is_built_in(&self) -> bool {
-        self.read.is_some()
+        self.read.is_some() || self.read_model.is_some()
+    }
+
+    /// Whether it has this extension, in any case.
+    pub(super) fn is_named(&self, extension: &str) -> bool {
+        self.extensions.iter().any(|own| own.eq_ignore_ascii_case(extension))
     }
 
     pub(super) fn begins(&self, start: &[u8]) -> bool {
@@ -228,7 +298,7 @@ impl PointFormat {
 
     /// Whether files of it may hold several levels.
     pub fn has_levels(&self) -> bool {
-        self.read_level.is_some()
+        self.has_levels
     }
 
     pub(super) fn read(
@@ -237,8 +307,8 @@ impl PointFormat {
         columns: Option<&Columns>,
         level: u32,
     ) -> Result<(Points, ModelFacts), PointsError> {
-        match (self.read_level, self.read) {
-            (Some(read_level), _) => read_level(path, level),
+        match (self.read_model, self.read) {
+            (Some(read_model), _) => read_model(path, columns, level),
             (None, Some(read)) => Ok((read(path, columns)?, ModelFacts::default())),
             (None, None) => {
                 let (what, feature) = (self.name, self.feature.unwrap_or_default());

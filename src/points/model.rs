@@ -1,3 +1,5 @@
+use std::fmt;
+
 use walpha_check::Alpha;
 
 use super::Units;
@@ -15,8 +17,48 @@ pub struct SampleGrid {
     pub units: Units,
 }
 
-/// What is known of weighted points besides themselves: what a `.wvm` keeps, and other formats of points
-/// do not.
+/// A cell in which points repeat, as crystals do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// Its edges, in the unit of the points.
+    pub vectors: [[f64; 3]; 3],
+    /// Along which of these points repeat.
+    pub repeats: [bool; 3],
+}
+
+impl Cell {
+    /// Its sides, where it is a box along the axes that repeats along all of them: then points are those of
+    /// a torus.
+    pub fn sides(&self) -> Option<[f64; 3]> {
+        let [[x, a, b], [c, y, d], [e, f, z]] = self.vectors;
+        let is_box = [a, b, c, d, e, f] == [0.0; 6] && [x, y, z].iter().all(|&side| side > 0.0);
+        (is_box && self.repeats == [true; 3]).then_some([x, y, z])
+    }
+}
+
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list = |numbers: [f64; 3]| numbers.map(|x| x.to_string()).join(",");
+        match self.sides() {
+            Some(sides) => {
+                write!(f, "a box of sides {0}, and `periodic` {0} makes its torus", list(sides))
+            }
+            None if self.repeats == [true; 3] => {
+                let [a, b, c] = self.vectors.map(list);
+                write!(
+                    f,
+                    "the vectors ({a}), ({b}), ({c}), which are no box along the axes: it is not supported"
+                )
+            }
+            None => {
+                f.write_str("points repeat along some of its vectors only: it is not supported")
+            }
+        }
+    }
+}
+
+/// What is known of weighted points besides themselves. A `.wvm` keeps it but for the cell, which extended
+/// XYZ states; other formats of points keep nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ModelFacts {
@@ -30,6 +72,8 @@ pub struct ModelFacts {
     pub range: Option<GrayRange>,
     /// All points by their indices, the most important first.
     pub order: Option<Vec<u32>>,
+    /// The cell in which they repeat.
+    pub cell: Option<Cell>,
 }
 
 /// How a `.wvm` is packed.
@@ -51,6 +95,7 @@ impl ModelFacts {
         alpha: Option<Alpha>,
         range: Option<GrayRange>,
         order: Option<Vec<u32>>,
+        cell: Option<Cell>,
     }
 }
 

@@ -36,6 +36,8 @@ pub enum SelectionRule {
     /// (half up, and at least 1), then as `Count`; the voxels that `gray_min` leaves are too few
     /// if they are fewer than that.
     Ratio(f64),
+    /// The same, or all voxels that take part where these are fewer.
+    AtMost(f64),
     /// All voxels with L of at least this, in gray levels: as doubles, 5/6 is at least 5/6.
     Threshold(f64),
 }
@@ -43,7 +45,7 @@ pub enum SelectionRule {
 /// 6.09 %: the paper keeps 15956 of 262144 points.
 impl Default for SelectionRule {
     fn default() -> Self {
-        Self::Ratio(0.0609)
+        Self::AtMost(0.0609)
     }
 }
 
@@ -170,7 +172,7 @@ pub fn points_at(
         positions: voxels.par_iter().map(|&voxel| units.position(volume, voxel)).collect(),
         values: Some(voxels.par_iter().map(|&i| f64::from(values[i as usize])).collect()),
         differences: Some(voxels.par_iter().map(|&i| flat[i as usize]).collect()),
-        weights: None,
+        ..Points::default()
     }
 }
 
@@ -182,8 +184,8 @@ fn chosen(
 ) -> Result<Vec<u32>, PointsError> {
     let voxels = differences.len() as u64;
     match rule.asked(voxels)? {
-        Asked::Largest(count) => {
-            let left = not_chosen(count, available)?;
+        Asked::Largest(most) => {
+            let left = most.not_chosen(available)?;
             let (cut, _) = Cut::new(differences, Budget::Count(left));
             Ok(collect(differences, |l, i| cut.keeps(l, i as u64)))
         }
@@ -197,9 +199,35 @@ fn chosen(
 /// What a rule asks of a volume.
 pub(crate) enum Asked {
     /// So many voxels of the largest L.
-    Largest(u64),
+    Largest(Most),
     /// All with an L of at least this.
     AtLeast(f64),
+}
+
+/// A number of voxels.
+#[derive(Clone, Copy)]
+pub(crate) struct Most {
+    count: u64,
+    /// Whether fewer do where there are no more.
+    or_all: bool,
+}
+
+impl Most {
+    /// How many voxels are left out of those available.
+    pub(crate) fn not_chosen(self, available: u64) -> Result<u64, PointsError> {
+        let Self { count: asked, or_all } = self;
+        if or_all && asked > available {
+            tracing::warn!(
+                "{available} samples take part, fewer than the {asked} that are selected by default: all \
+                 become points"
+            );
+            return Ok(0);
+        }
+        if asked == 0 || asked > available {
+            return Err(PointsError::Count { asked, available });
+        }
+        Ok(available - asked)
+    }
 }
 
 impl SelectionRule {
@@ -207,12 +235,13 @@ impl SelectionRule {
     pub(crate) fn asked(&self, voxels: u64) -> Result<Asked, PointsError> {
         let wrong = |what, given, need| Err(PointsError::Number { what, given, need });
         match *self {
-            Self::Count(count) => Ok(Asked::Largest(count)),
-            Self::Ratio(ratio) if ratio > 0.0 && ratio <= 1.0 => {
-                let count = (ratio * voxels as f64).round() as u64;
-                Ok(Asked::Largest(count.clamp(1, voxels)))
+            Self::Count(count) => Ok(Asked::Largest(Most { count, or_all: false })),
+            Self::Ratio(ratio) | Self::AtMost(ratio) if ratio > 0.0 && ratio <= 1.0 => {
+                let count = ((ratio * voxels as f64).round() as u64).clamp(1, voxels);
+                let or_all = matches!(self, Self::AtMost(_));
+                Ok(Asked::Largest(Most { count, or_all }))
             }
-            Self::Ratio(ratio) => {
+            Self::Ratio(ratio) | Self::AtMost(ratio) => {
                 wrong("a ratio of", ratio, "a share above 0 and up to 1, as in 0.0609 for 6.09 %")
             }
             Self::Threshold(least) if least.is_nan() => {
@@ -232,14 +261,6 @@ pub(crate) fn check_least(gray_min: Option<f64>) -> Result<(), PointsError> {
         }
         _ => Ok(()),
     }
-}
-
-/// How many voxels are left out where so many are asked for, of those available.
-pub(crate) fn not_chosen(asked: u64, available: u64) -> Result<u64, PointsError> {
-    if asked == 0 || asked > available {
-        return Err(PointsError::Count { asked, available });
-    }
-    Ok(available - asked)
 }
 
 /// The indices of the values that are wanted, ascending.

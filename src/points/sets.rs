@@ -20,6 +20,8 @@ pub struct Points {
     pub differences: Option<Vec<f64>>,
     /// Weights ω that came with the input, squared lengths.
     pub weights: Option<Vec<f64>>,
+    /// Whether the weights are squares of radii, which the input has in place of weights.
+    pub of_radii: bool,
 }
 
 /// What a shape is made of: places, their weights, and values where they are known.

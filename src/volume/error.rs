@@ -111,6 +111,24 @@ pub enum VolumeError {
 }
 
 impl VolumeError {
+    /// Why the file cannot be read, if that is what is wrong.
+    pub fn reason(&self) -> Option<&Reason> {
+        match self {
+            Self::Format { reason, .. } => Some(reason),
+            Self::InFile { source, .. } => source.reason(),
+            _ => None,
+        }
+    }
+
+    /// Whether a sample that is not finite is what is wrong.
+    pub fn is_not_finite(&self) -> bool {
+        match self {
+            Self::NotFinite { .. } => true,
+            Self::InFile { source, .. } => source.is_not_finite(),
+            _ => false,
+        }
+    }
+
     /// What to do about it, where there is something.
     pub fn advice(&self) -> Option<Advice> {
         Some(match self {
@@ -120,9 +138,9 @@ impl VolumeError {
                 advice![
                     "give ",
                     Setting::Nan,
-                    " VALUE to replace NaN, or ",
+                    " VALUE to replace NaN and infinities, or ",
                     Setting::Nan,
-                    " alone to leave it out"
+                    " alone to leave them out"
                 ]
             }
             Self::GrayRange { .. } => {

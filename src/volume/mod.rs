@@ -15,6 +15,7 @@
 mod coordinates;
 mod dtype;
 mod error;
+mod extent;
 mod formats;
 mod gray;
 mod grid;
@@ -31,11 +32,12 @@ mod write;
 pub use coordinates::{Conversion, Coordinates, LengthUnit, Space};
 pub use dtype::{Dtype, Endian, UnknownName};
 pub use error::VolumeError;
+pub use extent::Extent;
 pub use formats::{
     FORMATS, Keeps, UnknownFormat, VolumeFormat, VolumeWriter, data_files, format_name, read,
     series,
 };
-pub(crate) use formats::{built, is_vtk_xml, start_of};
+pub(crate) use formats::{begins_as_volume, built, files_of, is_vtk, is_vtk_xml, start_of};
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
 pub(crate) use grid::{any_size, inverse};
@@ -44,7 +46,7 @@ pub(crate) use read::NpyFile;
 #[cfg(any(feature = "formats", feature = "las"))]
 pub(crate) use read::io_error;
 #[cfg(feature = "formats")]
-pub(crate) use read::{Element, Lines, VtkXml};
+pub(crate) use read::{Element, Lines, VtkPoints, VtkXml};
 pub use read::{RawLayout, ReadOptions, Series};
 pub use reason::Reason;
 pub use sample::{SAMPLES, open, phantom, sample};

@@ -72,6 +72,18 @@ pub enum Reason {
         /// What to do about it.
         advice: Advice,
     },
+    /// It has several values in each voxel: colours, vectors or tensors.
+    NotScalar {
+        /// Which, and what would be read.
+        what: String,
+        /// Samples along x, y and z, where they are known.
+        dims: Option<[u64; 3]>,
+    },
+    /// It holds several volumes, and the one asked for is none of them, or none was asked for.
+    Several {
+        /// How many.
+        count: u64,
+    },
     /// A setting says nothing about it, is missing, or names what it does not have.
     Setting {
         /// The setting.
@@ -131,11 +143,9 @@ impl Reason {
     }
 
     /// Several values in each voxel.
-    pub(crate) fn not_scalar(what: impl Into<String>) -> Self {
-        Self::unsupported(
-            format!("has {}: only scalar volumes are read", what.into()),
-            "extract one first",
-        )
+    pub(crate) fn not_scalar(what: impl Into<String>, dims: Option<[u64; 3]>) -> Self {
+        let what = format!("{}: only scalar volumes are read", what.into());
+        Self::NotScalar { what, dims }
     }
 
     /// A setting that has no meaning for the file.
@@ -173,6 +183,11 @@ impl Reason {
             )
             .into(),
             Self::Memory { .. } => "crop it first".into(),
+            Self::NotScalar { .. } => "extract one first".into(),
+            Self::Several { count } => {
+                let last = count.saturating_sub(1);
+                advice!["choose one with ", Setting::Frame, format!(", from 0 to {last}")]
+            }
             Self::Within { reason, .. } => reason.advice(),
             Self::Unsupported { advice, .. }
             | Self::Content { advice, .. }
@@ -199,6 +214,8 @@ impl fmt::Display for Reason {
                 write!(f, "{claim} needs {needed} bytes of memory, which cannot be had")
             }
             Self::Within { part, reason } => write!(f, "{part} {reason}"),
+            Self::NotScalar { what, .. } => write!(f, "has {what}"),
+            Self::Several { count } => write!(f, "holds {count} volumes"),
             Self::Without { what, .. } => {
                 write!(f, "is {what}, which this walpha was built without")
             }

@@ -68,17 +68,18 @@ impl Source {
     ///
     /// # Errors
     /// As [`read()`](super::read()), and [`VolumeError::Format`] for what cannot be read in parts.
-    pub fn open(input: &str, options: &ReadOptions) -> Result<Self, VolumeError> {
-        let path = Path::new(input);
+    pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Self, VolumeError> {
+        let path = input.as_ref();
+        let name = path.to_str().unwrap_or_default();
         if options.downsample.is_some() {
             let what = "cannot be made coarser while it is read in parts";
             let reason = Reason::needless(Setting::Downsample, what);
             return Err(VolumeError::Format { path: path.into(), reason });
         }
-        let source = match input.strip_prefix("sample:phantom@").map(str::parse) {
+        let source = match name.strip_prefix("sample:phantom@").map(str::parse) {
             Some(Ok(size)) => PhantomParts::source(size)?,
-            _ if input.starts_with("sample:") => {
-                Self::of_volume(open(input, &ReadOptions::default())?)
+            _ if name.starts_with("sample:") => {
+                Self::of_volume(open(path, &ReadOptions::default())?)
             }
             _ => super::formats::source(path, options)?,
         };

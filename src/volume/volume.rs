@@ -29,7 +29,7 @@ pub struct Volume {
     missing: Option<Vec<bool>>,
 }
 
-/// What becomes of samples that are NaN.
+/// What becomes of samples that are no finite numbers: NaN and infinities.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -51,7 +51,8 @@ impl Volume {
         Self::of_file(samples, frame)?.settled(None)
     }
 
-    /// The same for readers: NaN may be among the samples until [`Volume::settled`] has seen them.
+    /// The same for readers: NaN and infinities may be among the samples until [`Volume::settled`] has seen
+    /// them.
     pub(crate) fn of_file(samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
         let (z, y, x) = samples.dim();
         let dims = Dims::new(x as u64, y as u64, z as u64)?;
@@ -61,24 +62,22 @@ impl Volume {
             samples.as_standard_layout().into_owned()
         };
         let (gray_levels, dtype, missing) = (false, Dtype::F32, None);
-        let volume = Self { samples, dims, frame, gray_levels, dtype, missing };
-        volume.refuse(f32::is_infinite)?;
-        Ok(volume)
+        Ok(Self { samples, dims, frame, gray_levels, dtype, missing })
     }
 
-    /// Applies the rule for NaN, and refuses samples that are still not finite.
+    /// Applies the rule for samples that are not finite, and refuses what is left of them.
     pub(crate) fn settled(mut self, nan: Option<Nan>) -> Result<Self, VolumeError> {
         let value = match nan {
             Some(Nan::Value(value)) => value,
-            Some(Nan::Mask) if self.as_slice().par_iter().any(|v| v.is_nan()) => {
-                self.missing = Some(self.as_slice().par_iter().map(|v| v.is_nan()).collect());
-                // Infinite where all are NaN, which is refused below.
+            Some(Nan::Mask) if self.as_slice().par_iter().any(|v| !v.is_finite()) => {
+                self.missing = Some(self.as_slice().par_iter().map(|v| !v.is_finite()).collect());
+                // Infinite where none is finite, which is refused below.
                 self.value_range().0
             }
             _ => f32::NAN,
         };
         if nan.is_some() {
-            self.samples.par_mapv_inplace(|v| if v.is_nan() { value } else { v });
+            self.samples.par_mapv_inplace(|v| if v.is_finite() { v } else { value });
         }
         self.refuse(|v| !v.is_finite())?;
         Ok(self)
@@ -186,6 +185,8 @@ impl Volume {
         let ends = |a: (f32, f32), b: (f32, f32)| (a.0.min(b.0), a.1.max(b.1));
         self.as_slice()
             .par_iter()
+            // Readers have others until they are settled.
+            .filter(|v| v.is_finite())
             .map(|&v| (v, v))
             .reduce(|| (f32::INFINITY, f32::NEG_INFINITY), ends)
     }

@@ -19,7 +19,7 @@ fn what_makes_no_volume_is_told() {
         (Slice { rows: 1, ..at(1) }, &["3×1 pixels"]),
         (with(0x28, 0x30, b"DS", "0.5\\0.5"), &["mm apart"]),
         (with(0x20, 0x32, b"DS", ""), &["no Image Position", "localisers"]),
-        (with(0x28, 8, b"IS", "4"), &["two slices at one place, frame 1 of "]),
+        (with(0x28, 8, b"IS", "4"), &["has 4 frames and one place for all of them"]),
         (with(0x20, 0x32, b"DS", "1\\2"), &["no Image Position"]),
         (Slice { pixels: vec![1, 2], ..at(1) }, &["cannot be read"]),
         // Found by fuzzing: a table of as many values as these bits make.

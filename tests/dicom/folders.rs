@@ -52,3 +52,21 @@ fn series_in_nested_folders_are_listed_and_chosen() {
     let frame = *of(Some("2")).unwrap().frame();
     assert_eq!(frame.coordinates, walpha::Coordinates::PATIENT);
 }
+
+/// A folder may be that of the whole disk: it is not walked to its end in search of slices.
+#[test]
+fn a_folder_of_ten_thousand_other_files_is_no_series() {
+    let folder = tempfile::tempdir().unwrap();
+    let others = folder.path().join("others");
+    fs::create_dir(&others).unwrap();
+    for i in 0..10_001 {
+        fs::write(others.join(i.to_string()), "").unwrap();
+    }
+    let error = open(folder.path()).unwrap_err().told();
+    assert!(!error.contains("DICOM files among"), "there is none: {error}");
+    slice(1, 0.0).save(folder.path(), "a.dcm");
+    let error = open(folder.path()).unwrap_err().told();
+    assert!(error.contains("DICOM files among more than 10000 others"), "{error}");
+    // Named itself, the slice is read: the folders beside it are not looked into.
+    assert_eq!(open(&folder.path().join("a.dcm")).unwrap().dims().xyz(), [3, 2, 1]);
+}

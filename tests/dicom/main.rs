@@ -1,9 +1,17 @@
 //! DICOM series, written here element by element as part 5 of the standard has them.
 #![cfg(feature = "dicom")]
 
+#[path = "../common/mod.rs"]
+mod common;
+mod compressed;
 mod damaged;
+mod dose;
 mod enhanced;
 mod folders;
+#[path = "../common/largest.rs"]
+mod largest;
+mod neighbours;
+mod packed;
 #[path = "../common/told.rs"]
 mod told;
 
@@ -24,6 +32,8 @@ struct Slice {
     pixels: Vec<i16>,
     /// Slope and intercept.
     rescale: Option<(&'static str, &'static str)>,
+    /// The transfer syntax, and the pixels as it packs them.
+    packed: Option<(&'static str, Vec<u8>)>,
     /// Elements that take the place of others, or are left out where empty.
     changed: Vec<(u16, u16, &'static [u8; 2], Vec<u8>)>,
 }
@@ -37,6 +47,7 @@ fn slice(number: i16, z: f64) -> Slice {
         bits: 16,
         pixels: (0..6).map(|i| 10 * number + i).collect(),
         rescale: None,
+        packed: None,
         changed: Vec::new(),
     }
 }
@@ -60,11 +71,12 @@ fn element(group: u16, number: u16, kind: &[u8], value: &[u8]) -> Vec<u8> {
 
 impl Slice {
     fn bytes(&self) -> Vec<u8> {
+        let syntax = self.packed.as_ref().map_or("1.2.840.10008.1.2.1", |(syntax, _)| syntax);
         let meta = [
             element(2, 1, b"OB", &[0, 1]),
             element(2, 2, b"UI", b"1.2.840.10008.5.1.4.1.1.2"),
             element(2, 3, b"UI", b"1.2.3.4"),
-            element(2, 0x10, b"UI", b"1.2.840.10008.1.2.1"),
+            element(2, 0x10, b"UI", syntax.as_bytes()),
             element(2, 0x12, b"UI", b"1.2.3.5"),
         ]
         .concat();
@@ -105,10 +117,19 @@ impl Slice {
             }
         }
         elements.sort_by_key(|e| (e.0, e.1));
+        let packed: Vec<u8> = self.packed.as_ref().map_or_else(Vec::new, |(_, pixels)| {
+            elements.retain(|e| e.0 != 0x7fe0);
+            // An empty table, one fragment, and the end.
+            let head = [0xe0, 0x7f, 0x10, 0, b'O', b'B', 0, 0, 0xff, 0xff, 0xff, 0xff];
+            let length = (pixels.len() as u32).to_le_bytes();
+            let item = [0xfe, 0xff, 0, 0xe0];
+            let end = [0xfe, 0xff, 0xdd, 0xe0, 0, 0, 0, 0];
+            [&head[..], &item, &[0; 4], &item, &length, pixels, &end].concat()
+        });
         let data: Vec<u8> =
             elements.iter().flat_map(|(g, n, k, v)| element(*g, *n, k.as_slice(), v)).collect();
         let length = element(2, 0, b"UL", &(meta.len() as u32).to_le_bytes());
-        [&[0; 128][..], b"DICM", &length, &meta, &data].concat()
+        [&[0; 128][..], b"DICM", &length, &meta, &data, &packed].concat()
     }
 
     fn save(&self, folder: &Path, name: &str) {

@@ -101,6 +101,11 @@ fn a_damaged_vti_says_what_is_wrong() {
         vti("compressor=\"vtkZLibDataCompressor\"", &blocks, b""),
         &["compressed blocks"],
     );
+    // Of the file that follows, a block of 12 bytes is far too little for what it is to hold.
+    let lying = [[1u32, 1 << 20, 0, 12].map(u32::to_le_bytes).concat(), vec![0; 3000]].concat();
+    let blocks = format!("format=\"binary\">{}", base64(&lying));
+    let file = vti("compressor=\"vtkZLibDataCompressor\"", &blocks, b"");
+    refuses("v.vti", file, &["12 compressed bytes", "hold 1048576, which they cannot"]);
 }
 
 #[test]

@@ -154,7 +154,7 @@ fn arrays_are_read_by_name_and_points_come_before_cells() {
         assert!(code == 1 && said.contains("no array \"x\""), "{said}");
     }
     assert_eq!(json(f, &["info", "a.vtk", "--array", "r"])["max"], 44.0);
-    let (code, _, said) = run(f, &["info", "a.vtk", "--array", "v"]);
+    let (code, _, said) = run(f, &["haar", "a.vtk", "--array", "v"]);
     assert!(code == 1 && said.contains("3 values a voxel"), "{said}");
     let arrays =
         [("a", 1.0f32), ("b", 2.0)].map(|(n, v)| (n, ndarray::Array3::from_elem((2, 2, 2), v)));
@@ -263,12 +263,14 @@ fn a_dash_is_standard_input() {
         "{error}"
     );
     let csv = b"x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n";
-    let (code, out, error) = piped(csv, &["info", "-", "--format", "csv"]);
+    let (code, out, error) = piped(csv, &["info", "-", "--input-format", "csv"]);
     assert!(code == 0 && out.starts_with(b"points    4"), "{error}");
     let (code, _, error) = piped(csv, &["info", "-"]);
     assert!(code == 1 && error.contains("standard input") && !error.contains("walpha-"), "{error}");
-    let (code, out, error) =
-        piped(&nrrd(|h| h, &shorts()), &["haar", "-", "--rms", "0", "-o", "-", "--format", "raw"]);
+    let (code, out, error) = piped(
+        &nrrd(|h| h, &shorts()),
+        &["haar", "-", "--rms", "0", "-o", "-", "--output-format", "raw"],
+    );
     assert_eq!((code, out.len()), (0, 48), "{error}");
     let back: Vec<f32> = out.chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
     assert_eq!(back, numbers());

@@ -73,7 +73,8 @@ fn the_readme_has_the_tables() {
     assert!(readme.contains(&tables), "README.md lacks these tables:\n\n{tables}");
 }
 
-/// Every format that is read has a target, and every target is one of a format, or of complexes.
+/// Every format that is read has a target, and every target is one of a format, of complexes, or of the files of
+/// plans.
 #[test]
 fn every_reader_is_fuzzed() {
     let manifest: toml::Table = file("fuzz/Cargo.toml").parse().unwrap();
@@ -84,7 +85,9 @@ fn every_reader_is_fuzzed() {
     let of_volumes = volume::FORMATS.iter().flat_map(|format| format.fuzzed_by).copied();
     let of_points = points::FORMATS.iter().map(|format| format.fuzzed_by);
     let complexes = ["complex", "check_json", "check_npz", "filtration"];
-    let wanted: BTreeSet<&str> = of_volumes.chain(of_points).chain(complexes).collect();
+    let plans = ["plan", "block", "sums", "truncated"];
+    let others = complexes.into_iter().chain(plans);
+    let wanted: BTreeSet<&str> = of_volumes.chain(of_points).chain(others).collect();
     assert_eq!(targets, wanted);
     // A file without a header is for its user to describe.
     for format in volume::FORMATS.iter().filter(|format| format.keeps.dtype) {

@@ -134,7 +134,7 @@ fn bad_point_files_say_where_they_are_bad() {
         ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes).unwrap();
         bytes
     };
-    refuse("three.npy", &npy(ndarray::arr2(&[[1.0, 2.0, 3.0]])), &["[1, 3]", "n×4"]);
+    refuse("two.npy", &npy(ndarray::arr2(&[[1.0, 2.0]])), &["[1, 2]", "n×4"]);
     let infinite = ndarray::arr2(&[[1.0, 2.0, f64::INFINITY, 0.0]]);
     refuse("inf.npy", &npy(infinite), &["row 0", "z is inf"]);
     refuse("none.npy", &npy(ndarray::Array2::zeros((0, 4))), &["no point"]);

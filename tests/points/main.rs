@@ -211,3 +211,21 @@ fn close_differences_are_told_apart() {
     // 200/6 and 10⁻⁷/6 more.
     assert!(l[[0, 0, 2]] > l[[0, 0, 0]] && l[[0, 0, 2]] as f32 == l[[0, 0, 0]] as f32);
 }
+
+/// What is asked for by default is never more than there is; what a user asks for is.
+#[test]
+fn the_default_takes_all_where_little_is_left() {
+    let samples = Array3::from_shape_fn((10, 10, 10), |(z, y, x)| (100 * z + 10 * y + x) as f32);
+    let v = volume(samples);
+    let l = difference(&v);
+    let taken = |selection: Selection| select(&v, &v, &l, &selection, Units::Voxel);
+    assert_eq!(taken(Selection::default()).unwrap().len(), 61);
+    for (least, count) in [(900.0, 61), (939.0, 61), (940.0, 60), (999.0, 1)] {
+        assert_eq!(taken(Selection::default().gray_min(least)).unwrap().len(), count, "{least}");
+        let asked = taken(Selection::default().rule(SelectionRule::Ratio(0.0609)).gray_min(least));
+        assert_eq!(asked.is_ok(), count == 61, "{least}");
+    }
+    assert!(taken(Selection::default().gray_min(1000.0)).is_err());
+    let wrong = Selection::default().rule(SelectionRule::AtMost(0.0));
+    assert!(taken(wrong).unwrap_err().told().contains("a ratio of 0"));
+}

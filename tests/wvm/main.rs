@@ -13,7 +13,9 @@ use std::path::{Path, PathBuf};
 
 use proptest::prelude::*;
 use told::Told;
-use walpha::points::{ModelFacts, Packing, PointWriter, SampleGrid, read_model, read_points};
+use walpha::points::{
+    ModelFacts, Packing, PointOptions, PointWriter, SampleGrid, read_model, read_points,
+};
 use walpha::{
     Alpha, Coordinates, Dims, Frame, GrayRange, LengthUnit, Space, Units, WeightedPoints,
 };
@@ -34,7 +36,8 @@ fn save(folder: &Path, bytes: &[u8]) -> PathBuf {
 /// What a file gives back, without so many layers.
 fn back(bytes: &[u8], level: u32) -> (WeightedPoints, ModelFacts) {
     let folder = tempfile::tempdir().unwrap();
-    let (points, facts) = read_model(&save(folder.path(), bytes), None, Some(level)).unwrap();
+    let (points, facts) =
+        read_model(&save(folder.path(), bytes), &PointOptions::default().level(level)).unwrap();
     let mut weighted = WeightedPoints::new(points.positions, points.weights.unwrap()).unwrap();
     weighted.values = points.values;
     (weighted, facts)
@@ -214,7 +217,7 @@ fn the_first_layers_are_the_most_important_points() {
     }
     let folder = tempfile::tempdir().unwrap();
     let path = save(folder.path(), &bytes);
-    let error = read_model(&path, None, Some(3)).unwrap_err().told();
+    let error = read_model(&path, &PointOptions::default().level(3)).unwrap_err().told();
     assert!(error.contains("has 3 levels") && error.contains("from 0 to 2"), "{error}");
     // A file that ends within its last layer still has the others.
     let path = save(folder.path(), &bytes[..bytes.len() - 3]);
@@ -223,9 +226,11 @@ fn the_first_layers_are_the_most_important_points() {
         error.contains("2 of its 3 layers are whole") && error.contains("`level` 1"),
         "{error}"
     );
-    assert_eq!(read_model(&path, None, Some(1)).unwrap().0.len(), count / 4);
+    assert_eq!(read_model(&path, &PointOptions::default().level(1)).unwrap().0.len(), count / 4);
     fs::write(folder.path().join("m.csv"), "x,y,z\n0,0,0\n").unwrap();
-    let error = read_model(&folder.path().join("m.csv"), None, Some(1)).unwrap_err().told();
+    let error = read_model(&folder.path().join("m.csv"), &PointOptions::default().level(1))
+        .unwrap_err()
+        .told();
     assert!(error.contains("no layers") && error.contains("omit `level`"), "{error}");
 }
 proptest! {

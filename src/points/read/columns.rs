@@ -3,9 +3,10 @@ use std::str::FromStr;
 use super::COLUMNS;
 use crate::advice::Advice;
 
-/// What the columns of a table of points hold, in their order: of the names `x`, `y`, `z`, `weight` and
-/// `value` each at most once, in any case; columns of other names are passed over. Where all names are
-/// among these, and there is no `z`, the points lie in the plane z = 0.
+/// What the columns of a table of points hold, in their order: of the names `x`, `y`, `z`, `weight`, `value`
+/// and `radius` each at most once, in any case; columns of other names are passed over. Where all names are
+/// among these, and there is no `z`, the points lie in the plane z = 0. Surveyors' names `easting`,
+/// `northing`, and `height`, `elevation` or `altitude`, stand for x, y and z where these are not named.
 ///
 /// ```
 /// use walpha::points::Columns;
@@ -25,15 +26,29 @@ pub struct Columns(pub(super) Vec<Option<usize>>);
 pub struct UnknownColumns {
     names: String,
     what: String,
+    next: &'static str,
 }
 
 impl UnknownColumns {
     /// What to do about it.
     pub fn advice(&self) -> Advice {
-        "name each column of the file, x, y and z once each, perhaps weight and value, and others as \
-         you like, as in x,y,z,nx,ny,nz"
-            .into()
+        self.next.into()
     }
+}
+
+/// What to do about names without an x, y or z.
+const NAME_THEM: &str = "name each column of the file, x, y and z once each, perhaps weight (or radius) and \
+                         value, and others as you like, as in x,y,z,nx,ny,nz";
+
+/// What x, y and z are called on maps.
+const ON_MAPS: [&[&str]; 3] = [&["easting"], &["northing"], &["height", "elevation", "altitude"]];
+
+/// Names of angles, which are no lengths.
+const ANGLES: [&str; 5] = ["lon", "lat", "lng", "longitude", "latitude"];
+
+/// Whether a name is among these, in any case.
+fn is_among(name: &str, known: &[&str]) -> bool {
+    known.iter().any(|known| known.eq_ignore_ascii_case(name.trim()))
 }
 
 #[expect(clippy::len_without_is_empty, reason = "there are two at least")]
@@ -50,17 +65,28 @@ impl Columns {
     /// occurs twice.
     pub fn named(names: &[&str]) -> Result<Self, UnknownColumns> {
         let known = |name: &&str| COLUMNS.iter().position(|c| c.eq_ignore_ascii_case(name.trim()));
-        let columns: Vec<Option<usize>> = names.iter().map(known).collect();
+        let mut columns: Vec<Option<usize>> = names.iter().map(known).collect();
+        for (axis, on_maps) in ON_MAPS.iter().enumerate() {
+            if !columns.contains(&Some(axis)) {
+                let others = columns.iter_mut().zip(names).filter(|(column, _)| column.is_none());
+                let meant = others.filter(|(_, name)| is_among(name, on_maps));
+                meant.for_each(|(column, _)| *column = Some(axis));
+            }
+        }
         let of_plane = columns.iter().all(Option::is_some);
         for (place, name) in COLUMNS.iter().enumerate() {
             let count = columns.iter().filter(|&&column| column == Some(place)).count();
-            let what = match count {
+            let (what, next) = match count {
                 0 if place == 2 && of_plane => continue,
-                0 if place < 3 => format!("do not name {name}"),
+                0 if place < 3 && names.iter().any(|name| is_among(name, &ANGLES)) => (
+                    "name longitude and latitude, which are angles and no lengths".to_owned(),
+                    "project them to a plane first, as UTM does",
+                ),
+                0 if place < 3 => (format!("do not name {name}"), NAME_THEM),
                 0 | 1 => continue,
-                _ => format!("name {name} twice"),
+                _ => (format!("name {name} twice"), NAME_THEM),
             };
-            return Err(UnknownColumns { names: names.join(","), what });
+            return Err(UnknownColumns { names: names.join(","), what, next });
         }
         Ok(Self(columns))
     }

@@ -1,6 +1,8 @@
 //! Points from files: by what the file holds first, then by its extension.
 
 mod columns;
+#[cfg(feature = "formats")]
+mod extended;
 #[cfg(feature = "las")]
 pub(super) mod las;
 pub(super) mod npy;
@@ -28,12 +30,64 @@ pub use columns::{Columns, UnknownColumns};
 use std::path::Path;
 
 use super::formats::{FORMATS, PointFormat};
+#[cfg(feature = "formats")]
+use super::mesh::CellCount;
 use super::{ModelFacts, Points, PointsError};
 use crate::advice::Setting;
-use crate::volume::{Reason, start_of};
+use crate::setters::setters;
+#[cfg(feature = "formats")]
+use crate::shown::shown;
+use crate::volume::{Reason, begins_as_volume, start_of};
 
 /// The columns of a point file that are read.
-const COLUMNS: [&str; 5] = ["x", "y", "z", "weight", "value"];
+const COLUMNS: [&str; 6] = ["x", "y", "z", "weight", "value", "radius"];
+/// The place among them of the radius, whose square is a weight.
+#[cfg(feature = "formats")]
+const RADIUS: usize = 5;
+
+/// What a user says about a file of points beyond its name.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct PointOptions {
+    /// What the columns of a table hold.
+    pub columns: Option<Columns>,
+    /// How many of the last layers of a `.wvm` are left out: each level is a coarser model, of a quarter of
+    /// the points.
+    pub level: Option<u32>,
+    /// The extension of the format that the file is of, whatever its own; content still says more.
+    pub format: Option<String>,
+}
+
+impl PointOptions {
+    setters! { columns: Option<Columns>, level: Option<u32>, format: Option<String> }
+
+    /// Whether a file so described holds points rather than a volume, as [`is_point_file`].
+    ///
+    /// # Errors
+    /// As [`is_point_file`].
+    pub fn is_point_file(&self, path: &Path) -> Result<bool, PointsError> {
+        self.found(path)?.map_or(Ok(false), |format| format.holds_points(path))
+    }
+
+    /// The format of a file, by its content and then its extension.
+    pub(in crate::points) fn found(
+        &self,
+        path: &Path,
+    ) -> Result<Option<&'static PointFormat>, PointsError> {
+        if path.is_file() {
+            let start = start_of(path)?;
+            if let Some(format) = FORMATS.iter().find(|format| format.begins(&start)) {
+                return Ok(Some(format));
+            }
+            if begins_as_volume(&start) {
+                return Ok(None);
+            }
+        }
+        let own = path.extension().unwrap_or_default().to_string_lossy();
+        let extension = self.format.as_deref().unwrap_or(&own);
+        Ok(FORMATS.iter().find(|format| format.is_named(extension)))
+    }
+}
 
 /// Whether a file holds points rather than a volume, by its content or else by its extension
 /// ([`FORMATS`](super::FORMATS)); NPY files do where their array has two axes, VTK's XML where it is
@@ -42,46 +96,51 @@ const COLUMNS: [&str; 5] = ["x", "y", "z", "weight", "value"];
 /// # Errors
 /// A file that begins as NPY or VTK's XML does and cannot be read.
 pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
-    found(path)?.map_or(Ok(false), |format| format.holds_points(path))
+    PointOptions::default().is_point_file(path)
 }
 
 /// Reads points, with their weights and values where the file has such columns. Points are counted
 /// from 0.
 ///
 /// - CSV, TSV (fields between commas, semicolons or tabs) and XYZ (between white space): the first line
-///   may name the columns: x, y, z, optionally weight and value, in any order and case; others
-///   are skipped. Without names, `columns` gives them; without both, x y z are read, followed by a
-///   value, or by a normal or a colour, which are skipped. XYZ may be atoms as chemistry
-///   writes them, too.
+///   may name the columns: x, y, z, optionally weight (or radius, whose square is the weight) and value, in
+///   any order and case; others are skipped. Without names, `columns` gives them; without both, x y z are
+///   read, followed by a value, or by a normal or a colour, which are skipped. XYZ may be atoms as
+///   chemistry writes them, too, with the columns and the cell that extended XYZ states.
+/// - PTS: as XYZ, after a line with the number of points or without; the intensity is the value.
 /// - PWN: as XYZ; or the number of points, the points, and as many normals.
 /// - OFF, OBJ, STL: the vertices; of STL each place once.
-/// - PCD: the fields x, y, z, optionally weight, and value or else intensity.
+/// - PCD: the fields x, y, z, optionally weight or radius, and value or else intensity.
 /// - LAS and LAZ: coordinates, and the intensity as value.
-/// - PLY (text, or binary of either byte order), VTU and VTP: the vertices, with their properties or
-///   point data `weight` and `value`; VTK's active scalars are the values where none are named so.
-/// - NPY: an array n×4 (x, y, z, weight) or n×5 (x, y, z, weight, value).
+/// - PLY (text, or binary of either byte order), VTU, VTP and legacy VTK: the vertices, with their properties
+///   or point data `weight` or `radius`, and `value`; VTK's active scalars are the values where none are
+///   named so.
+/// - NPY: an array n×3 (x, y, z), n×4 (…, weight) or n×5 (…, value).
 /// - WVM: all layers ([`read_model`] knows more).
 ///
 /// # Errors
 /// The file cannot be read, is truncated or longer than it claims, a column is missing or named twice,
-/// a number is not finite (the message has its place), the file holds no point, or `columns` are given for
-/// a format that names its own.
+/// a number is not finite or a radius negative (the message has its place), the file holds no point, or
+/// `columns` are given for a format that names its own.
 pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
-    Ok(read_model(path, columns, None)?.0)
+    Ok(read_model(path, &PointOptions::default().columns(columns.cloned()))?.0)
 }
 
-/// Reads points with what is known of them besides; nothing, where their format keeps nothing. `level`
-/// says how many of the last layers of a `.wvm` are left out: each level is a coarser model, of a quarter
-/// of the points.
+/// Reads points with what is known of them besides; nothing, where their format keeps nothing.
 ///
 /// # Errors
-/// As [`read_points`], and a level that the file does not have.
+/// As [`read_points`]; a level that the file does not have; another format than the content is of.
 pub fn read_model(
     path: &Path,
-    columns: Option<&Columns>,
-    level: Option<u32>,
+    options: &PointOptions,
 ) -> Result<(Points, ModelFacts), PointsError> {
-    let known = found(path)?.unwrap_or(&FORMATS[0]);
+    let known = options.found(path)?.unwrap_or(&FORMATS[0]);
+    let PointOptions { columns, level, format: named } = options;
+    let (columns, level) = (columns.as_ref(), *level);
+    if named.as_ref().is_some_and(|named| !known.is_named(named)) {
+        let what = format!("begins as files of the format {} do", known.name);
+        return Err(format(path, Reason::needless(Setting::Format, what)));
+    }
     if columns.is_some() && !known.takes_columns {
         let reason = Reason::needless(Setting::Columns, "says itself what its columns are");
         return Err(format(path, reason));
@@ -101,21 +160,33 @@ pub fn read_model(
     Ok((points, facts))
 }
 
-/// The format of a file, by its content and then its extension.
-fn found(path: &Path) -> Result<Option<&'static PointFormat>, PointsError> {
-    if path.is_file() {
-        let start = start_of(path)?;
-        if let Some(format) = FORMATS.iter().find(|format| format.begins(&start)) {
-            return Ok(Some(format));
-        }
-    }
-    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-    let named = |format: &&PointFormat| format.extensions.iter().any(|e| extension == *e);
-    Ok(FORMATS.iter().find(named))
-}
-
 pub(super) fn format(path: &Path, reason: Reason) -> PointsError {
     PointsError::Format { path: path.into(), reason }
+}
+
+/// Takes radii for weights, which are their squares, where the file has no weights.
+#[cfg(feature = "formats")]
+fn take_radii(
+    path: &Path,
+    points: &mut Points,
+    radii: Option<Vec<f64>>,
+) -> Result<(), PointsError> {
+    let Some(radii) = radii else { return Ok(()) };
+    if points.weights.is_some() {
+        tracing::warn!("{} has weights and radii: the weights are taken", shown(path));
+        return Ok(());
+    }
+    let wrong = |radius: &f64| !(*radius >= 0.0 && (radius * radius).is_finite());
+    if let Some(row) = radii.iter().position(wrong) {
+        let radius = radii[row];
+        let what = format!(
+            "row {row}: radius is {radius}, and must be from 0 up, with a square that is finite"
+        );
+        return Err(format(path, Reason::value(what)));
+    }
+    points.weights = Some(radii.iter().map(|radius| radius * radius).collect());
+    points.of_radii = true;
+    Ok(())
 }
 
 /// Refuses NaN and infinities.

@@ -3,14 +3,14 @@ use std::path::Path;
 use super::{Points, PointsError, format};
 use crate::volume::{NpyFile, Reason};
 
-/// Reads an array n×4 (x, y, z, weight) or n×5 (…, value).
+/// Reads an array n×3 (x, y, z), n×4 (…, weight) or n×5 (…, value).
 pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let file = NpyFile::open(path)?;
     let columns = match file.shape.as_slice() {
-        &[_, columns @ (4 | 5)] => columns as usize,
+        &[_, columns @ 3..=5] => columns as usize,
         other => {
             let reason = Reason::header(format!(
-                "is an array of shape {other:?}: points are n×4 (x, y, z, weight) or n×5 (…, value)"
+                "is an array of shape {other:?}: points are n×3 (x, y, z), n×4 (…, weight) or n×5 (…, value)"
             ));
             return Err(format(path, reason));
         }
@@ -23,8 +23,8 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let column = |column| (0..rows).map(|row| at(row, column)).collect();
     Ok(Points {
         positions: (0..rows).map(|row| [at(row, 0), at(row, 1), at(row, 2)]).collect(),
-        weights: Some(column(3)),
-        values: (columns == 5).then(|| column(4)),
-        differences: None,
+        weights: (columns > 3).then(|| column(3)),
+        values: (columns > 4).then(|| column(4)),
+        ..Points::default()
     })
 }

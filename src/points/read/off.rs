@@ -1,12 +1,38 @@
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use super::{COLUMNS, Points, PointsError, format};
+use super::{COLUMNS, CellCount, Points, PointsError, format};
 use crate::volume::{Lines, Reason, io_error};
 
 /// Reads the vertices of an OFF file in text, with normals, colours or texture coordinates (NOFF, COFF,
 /// STOFF) or without: the first three numbers of each line. Its faces must be there as it claims.
 pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
+    let said = |reason: Reason| format(path, reason);
+    let (mut rows, vertices, faces) = head(path)?;
+    let cut = || {
+        said(Reason::truncated(format!(
+            "ends before its {vertices} vertices and {faces} faces: it is truncated"
+        )))
+    };
+    let mut points = Points::default();
+    for _ in 0..vertices {
+        let line = rows.next(path)?.ok_or_else(cut)?;
+        points.positions.push(position(path, rows.number, line.split_whitespace())?);
+    }
+    for _ in 0..faces {
+        rows.next(path)?.ok_or_else(cut)?;
+    }
+    Ok(points)
+}
+
+/// How many faces there are.
+pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
+    let faces = head(path)?.2;
+    Ok(vec![CellCount::new("faces", usize::try_from(faces).unwrap_or(usize::MAX))])
+}
+
+/// What follows the head of a file, and how many vertices and faces it claims.
+fn head(path: &Path) -> Result<(Tokens<BufReader<std::fs::File>>, u64, u64), PointsError> {
     let said = |reason: Reason| format(path, reason);
     let file = std::fs::File::open(path).map_err(io_error(path))?;
     let mut rows = Tokens { lines: Lines::new(BufReader::new(file)), number: 0 };
@@ -34,20 +60,7 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
             "does not say how many vertices and faces it has: it is damaged",
         )));
     };
-    let cut = || {
-        said(Reason::truncated(format!(
-            "ends before its {vertices} vertices and {faces} faces: it is truncated"
-        )))
-    };
-    let mut points = Points::default();
-    for _ in 0..vertices {
-        let line = rows.next(path)?.ok_or_else(cut)?;
-        points.positions.push(position(path, rows.number, line.split_whitespace())?);
-    }
-    for _ in 0..faces {
-        rows.next(path)?.ok_or_else(cut)?;
-    }
-    Ok(points)
+    Ok((rows, vertices, faces))
 }
 
 /// The first three words of a line, as coordinates.

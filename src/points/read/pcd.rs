@@ -1,11 +1,11 @@
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use super::{Points, PointsError, format};
+use super::{Points, PointsError, RADIUS, format, take_radii};
 use crate::volume::{Lines, Reason, io_error};
 
 /// Reads PCD, the Point Cloud Library's format: text, binary or compressed, with the fields x, y and z,
-/// optionally weight, and value or else intensity. Points without a place (NaN, as scanners mark them) are
+/// optionally weight or radius, and value or else intensity. Points without a place (NaN, as scanners mark them) are
 /// left out.
 pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let said = |reason: Reason| format(path, reason);
@@ -35,7 +35,7 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
             "convert it first",
         )),
     };
-    Ok(header.points(rows.map_err(said)?))
+    header.points(path, &rows.map_err(said)?)
 }
 
 #[derive(Default)]
@@ -107,8 +107,8 @@ impl Header {
         Some(Field { index, offset: (0..index).map(width).sum() })
     }
 
-    /// x, y, z, weight and value of each point.
-    fn fields(&self, bytes: bool) -> Result<[Option<Field>; 5], Reason> {
+    /// x, y, z, weight, value and radius of each point.
+    fn fields(&self, bytes: bool) -> Result<[Option<Field>; 6], Reason> {
         let field = |name| self.field(name, bytes);
         let fields = [
             field("x"),
@@ -116,6 +116,7 @@ impl Header {
             field("z"),
             field("weight"),
             field("value").or(field("intensity")),
+            field("radius"),
         ];
         if fields[..3].iter().all(Option::is_some) {
             Ok(fields)
@@ -127,7 +128,7 @@ impl Header {
         }
     }
 
-    fn text(&self, text: &str) -> Result<Vec<[Option<f64>; 5]>, Reason> {
+    fn text(&self, text: &str) -> Result<Vec<[Option<f64>; 6]>, Reason> {
         let fields = self.fields(false)?;
         let width: usize = self.counts.iter().sum();
         let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
@@ -147,7 +148,7 @@ impl Header {
                     words.len()
                 )));
             }
-            let mut row = [None; 5];
+            let mut row = [None; 6];
             for (slot, field) in row.iter_mut().zip(&fields) {
                 let Some(field) = field else { continue };
                 let word = words[field.offset];
@@ -162,7 +163,7 @@ impl Header {
     }
 
     /// Numbers of a point side by side, or all of a field.
-    fn binary(&self, bytes: &[u8], by_field: bool) -> Result<Vec<[Option<f64>; 5]>, Reason> {
+    fn binary(&self, bytes: &[u8], by_field: bool) -> Result<Vec<[Option<f64>; 6]>, Reason> {
         let fields = self.fields(true)?;
         let width: usize =
             self.sizes.iter().zip(&self.counts).map(|(size, count)| size * count).sum();
@@ -184,7 +185,7 @@ impl Header {
             number(kind, &bytes[start..start + self.sizes[field.index]])
         };
         let row = |row: usize| {
-            let mut numbers = [None; 5];
+            let mut numbers = [None; 6];
             for (slot, field) in numbers.iter_mut().zip(&fields) {
                 *slot = field.as_ref().map(|field| at(row, field)).transpose()?;
             }
@@ -193,10 +194,10 @@ impl Header {
         (0..self.points).map(row).collect()
     }
 
-    fn points(&self, rows: Vec<[Option<f64>; 5]>) -> Points {
+    fn points(&self, path: &Path, rows: &[[Option<f64>; 6]]) -> Result<Points, PointsError> {
         let placed =
-            |row: &[Option<f64>; 5]| row[..3].iter().all(|c| c.is_some_and(|c| !c.is_nan()));
-        let kept: Vec<_> = rows.into_iter().filter(placed).collect();
+            |row: &&[Option<f64>; 6]| row[..3].iter().all(|c| c.is_some_and(|c| !c.is_nan()));
+        let kept: Vec<_> = rows.iter().filter(placed).collect();
         let left_out = self.points - kept.len();
         if left_out > 0 {
             tracing::warn!(
@@ -205,15 +206,17 @@ impl Header {
             );
         }
         let column = |k: usize| kept.iter().map(|row| row[k]).collect();
-        Points {
+        let mut points = Points {
             positions: kept
                 .iter()
                 .map(|row| [0, 1, 2].map(|k| row[k].unwrap_or(f64::NAN)))
                 .collect(),
             weights: column(3),
             values: column(4),
-            differences: None,
-        }
+            ..Points::default()
+        };
+        take_radii(path, &mut points, column(RADIUS))?;
+        Ok(points)
     }
 }
 

@@ -1,11 +1,11 @@
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use super::{COLUMNS, Points, PointsError, format};
+use super::{COLUMNS, CellCount, Points, PointsError, RADIUS, format, take_radii};
 use crate::volume::{Dtype, Element as _, Endian, Lines, Reason, io_error};
 
 /// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z,
-/// optionally weight and value. All other elements must be there as the header claims.
+/// optionally weight or radius, and value. All other elements must be there as the header claims.
 pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let said = |reason: Reason| format(path, reason);
     let file = std::fs::File::open(path).map_err(io_error(path))?;
@@ -43,6 +43,23 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     })
 }
 
+/// How many faces, edges and so on the header claims.
+pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
+    let file = std::fs::File::open(path).map_err(io_error(path))?;
+    let header = Header::read(path, &mut Lines::new(BufReader::new(file)))?;
+    let count = |element: &Element| {
+        let kind = match element.name.as_str() {
+            "face" => "faces",
+            "tristrips" => "triangle strips",
+            "edge" => "edges",
+            "cell" | "tetra" | "tet" => "tetrahedra",
+            _ => return None,
+        };
+        Some(CellCount::new(kind, usize::try_from(element.count).unwrap_or(usize::MAX)))
+    };
+    Ok(header.elements.iter().filter_map(count).collect())
+}
+
 fn vertices(path: &Path, element: &Element, numbers: &mut Numbers) -> Result<Points, PointsError> {
     let said = |reason: Reason| format(path, reason);
     let column = |property: &Property| match property {
@@ -63,6 +80,7 @@ fn vertices(path: &Path, element: &Element, numbers: &mut Numbers) -> Result<Poi
     let mut points = Points::default();
     let has = |column| columns.contains(&Some(column));
     (points.weights, points.values) = (has(3).then(Vec::new), has(4).then(Vec::new));
+    let mut radii = has(RADIUS).then(Vec::new);
     for _ in 0..element.count {
         let mut position = [0.0; 3];
         for (property, column) in element.properties.iter().zip(&columns) {
@@ -70,12 +88,14 @@ fn vertices(path: &Path, element: &Element, numbers: &mut Numbers) -> Result<Poi
             match *column {
                 Some(3) => points.weights.get_or_insert_default().push(number),
                 Some(4) => points.values.get_or_insert_default().push(number),
+                Some(RADIUS) => radii.get_or_insert_default().push(number),
                 Some(axis) => position[axis] = number,
                 None => {}
             }
         }
         points.positions.push(position);
     }
+    take_radii(path, &mut points, radii)?;
     Ok(points)
 }
 

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use super::{COLUMNS, Columns, Points, PointsError, format};
+use super::{COLUMNS, Columns, Points, PointsError, RADIUS, format, take_radii};
 use crate::advice::{Setting, advice};
 use crate::volume::Reason;
 
@@ -52,12 +52,16 @@ pub(super) struct Rows<'a> {
     waiting: Vec<(u64, Vec<String>)>,
     /// Whether 0,5 is a half.
     pub decimal_comma: bool,
+    /// What that many columns without names are.
+    pub usual: Option<Columns>,
     points: Points,
+    radii: Option<Vec<f64>>,
 }
 
 impl<'a> Rows<'a> {
     pub(super) fn new(path: &'a Path, columns: Option<Columns>) -> Self {
-        Self { path, columns, waiting: Vec::new(), decimal_comma: false, points: Points::default() }
+        let (waiting, points) = (Vec::new(), Points::default());
+        Self { path, columns, waiting, decimal_comma: false, usual: None, points, radii: None }
     }
 
     /// Says what the columns are, unless the user has.
@@ -79,6 +83,7 @@ impl<'a> Rows<'a> {
     /// The points.
     pub(super) fn finish(mut self) -> Result<Points, PointsError> {
         self.look()?;
+        take_radii(self.path, &mut self.points, self.radii)?;
         Ok(self.points)
     }
 
@@ -95,8 +100,12 @@ impl<'a> Rows<'a> {
             };
             rows.push(words.iter().enumerate().map(number).collect::<Result<Vec<_>, _>>()?);
         }
-        let guessed = Columns::guessed(&rows);
-        self.columns = Some(guessed.map_err(|reason| format(self.path, reason))?);
+        let usual =
+            self.usual.take_if(|usual| rows.first().is_some_and(|row| row.len() == usual.len()));
+        self.columns = Some(match usual {
+            Some(usual) => usual,
+            None => Columns::guessed(&rows).map_err(|reason| format(self.path, reason))?,
+        });
         let mut waiting = waiting.into_iter();
         waiting.try_for_each(|(line, words)| {
             self.add(line, &words.iter().map(String::as_str).collect::<Vec<_>>())
@@ -113,6 +122,7 @@ impl<'a> Rows<'a> {
             match column {
                 3 => self.points.weights.get_or_insert_default().push(number),
                 4 => self.points.values.get_or_insert_default().push(number),
+                RADIUS => self.radii.get_or_insert_default().push(number),
                 axis => position[axis] = number,
             }
         }

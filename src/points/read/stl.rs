@@ -3,7 +3,7 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use super::off::position;
-use super::{Points, PointsError, format};
+use super::{CellCount, Points, PointsError, format};
 use crate::volume::{Lines, Reason, io_error};
 
 /// Bytes before the facets of a binary STL file: a head, and how many there are.
@@ -19,8 +19,7 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let mut head = Vec::new();
     (&mut reader).take(HEAD).read_to_end(&mut head).map_err(io_error(path))?;
     let count = head.last_chunk().map_or(0, |&count| u64::from(u32::from_le_bytes(count)));
-    // Binary files may begin with the word, too; their length decides.
-    if head.starts_with(b"solid") && length != HEAD + FACET * count {
+    if is_text(&head, length, count) {
         return text(path);
     }
     if (head.len() as u64) < HEAD || length < HEAD + FACET * count {
@@ -39,6 +38,29 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
         numbers[3..].as_chunks().0.iter().for_each(|&corner| corners.add(corner));
     }
     Ok(corners.points)
+}
+
+/// Binary files may begin with the word of a text, too; their length decides.
+fn is_text(head: &[u8], length: u64, count: u64) -> bool {
+    head.starts_with(b"solid") && length != HEAD + FACET * count
+}
+
+/// How many facets there are.
+pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
+    let file = std::fs::File::open(path).map_err(io_error(path))?;
+    let length = file.metadata().map_err(io_error(path))?.len();
+    let mut head = Vec::new();
+    (&file).take(HEAD).read_to_end(&mut head).map_err(io_error(path))?;
+    let mut count = head.last_chunk().map_or(0, |&count| u64::from(u32::from_le_bytes(count)));
+    if is_text(&head, length, count) {
+        let file = std::fs::File::open(path).map_err(io_error(path))?;
+        let mut lines = Lines::new(BufReader::new(file));
+        count = 0;
+        while let Some(line) = lines.next().map_err(io_error(path))? {
+            count += u64::from(line.split_whitespace().next() == Some("facet"));
+        }
+    }
+    Ok(vec![CellCount::new("facets", count as usize)])
 }
 
 fn text(path: &Path) -> Result<Points, PointsError> {

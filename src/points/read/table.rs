@@ -50,8 +50,8 @@ pub(crate) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, Poi
 }
 
 /// What a first line is to be.
-const FIRST_LINE: &str = "its first line must name the columns x, y and z, perhaps weight and value, or \
-                          hold numbers alone";
+const FIRST_LINE: &str = "its first line must name the columns x, y and z, perhaps weight (or radius) and \
+                          value, or hold numbers alone";
 
 /// Whether a first line is one of data: it begins with a number, and names none.
 fn is_numbers(words: &[&str]) -> bool {

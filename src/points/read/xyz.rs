@@ -1,18 +1,36 @@
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
+use super::extended::Comment;
 use super::rows::Rows;
 use super::{COLUMNS, Columns, Points, PointsError, format};
+use crate::points::ModelFacts;
 use crate::volume::{Lines, Reason, io_error};
 
-/// What a first line with nothing but a count means.
+/// What lines of numbers are, where nothing else says it.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Counted {
-    /// Chemistry's XYZ: a line of words, then an element and the coordinates of each atom, and
-    /// whatever follows these.
+pub(crate) enum Lay {
+    /// A first line with nothing but a count begins chemistry's XYZ: a line of words, which extended XYZ has a
+    /// form for, then an element and the coordinates of each atom, and whatever follows these.
     Atoms,
-    /// PWN: the points, and then as many normals.
+    /// The same, and six columns are a place with a normal or colour.
+    Vectors,
+    /// PTS: a count may come first; seven columns are x y z, the intensity and a colour.
+    Scan,
+    /// PWN: a count, the points, and then as many normals.
     PointsThenNormals,
+}
+
+impl Lay {
+    /// What columns without names are, where it does not depend on their numbers.
+    fn usual(self) -> Option<Columns> {
+        let axes = [Some(0), Some(1), Some(2)];
+        match self {
+            Self::Atoms | Self::PointsThenNormals => None,
+            Self::Vectors => Some(Columns([axes, [None; 3]].concat())),
+            Self::Scan => Some(Columns([&axes[..], &[Some(4)], &[None; 3]].concat())),
+        }
+    }
 }
 
 /// Reads lines of numbers between white space (or commas). A first line of names, optionally after `#` or
@@ -20,12 +38,13 @@ pub(crate) enum Counted {
 pub(crate) fn read(
     path: &Path,
     columns: Option<&Columns>,
-    counted: Counted,
-) -> Result<Points, PointsError> {
+    lay: Lay,
+) -> Result<(Points, ModelFacts), PointsError> {
     let file = std::fs::File::open(path).map_err(io_error(path))?;
     let mut lines = Lines::new(BufReader::new(file));
     let mut rows = Rows::new(path, columns.cloned());
-    let (mut number, mut first) = (0, true);
+    rows.usual = lay.usual();
+    let (mut number, mut first, mut claimed) = (0, true, None);
     while let Some(line) = lines.next().map_err(io_error(path))? {
         number += 1;
         let remark = line.trim_start().starts_with(['#', '/']);
@@ -42,10 +61,19 @@ pub(crate) fn read(
             if let ([count], false) = (words.as_slice(), remark)
                 && let Ok(count) = count.parse()
             {
-                return match counted {
-                    Counted::Atoms => atoms(path, lines, count),
-                    Counted::PointsThenNormals => points_then_normals(path, lines, count),
-                };
+                match lay {
+                    Lay::Atoms | Lay::Vectors => return atoms(path, lines, count),
+                    Lay::PointsThenNormals => {
+                        let points = points_then_normals(path, lines, count)?;
+                        return Ok((points, ModelFacts::default()));
+                    }
+                    Lay::Scan => claimed = Some(count),
+                }
+                continue;
+            }
+            if words[0].eq_ignore_ascii_case("ncols") {
+                let what = "is a grid of heights (ESRI ASCII), and no list of points";
+                return Err(format(path, Reason::unsupported(what, "convert it to x,y,z")));
             }
         }
         if !remark {
@@ -53,7 +81,27 @@ pub(crate) fn read(
             rows.push(number, &words)?;
         }
     }
-    rows.finish()
+    let points = rows.finish()?;
+    check_count(path, claimed, points.len(), "points")?;
+    Ok((points, ModelFacts::default()))
+}
+
+/// Refuses another number of things than was claimed, if one was.
+fn check_count(
+    path: &Path,
+    claimed: Option<u64>,
+    found: usize,
+    what: &str,
+) -> Result<(), PointsError> {
+    match claimed {
+        Some(claimed) if claimed != found as u64 => {
+            let reason = Reason::truncated(format!(
+                "claims {claimed} {what}, but has {found}: it is truncated or mislabelled"
+            ));
+            Err(format(path, reason))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn words(line: &str) -> Vec<&str> {
@@ -70,13 +118,25 @@ fn finite(path: &Path, line: u64, name: &str, word: &str) -> Result<f64, PointsE
 }
 
 /// Reads atoms, after the line that counts them.
-fn atoms(path: &Path, mut lines: Lines<impl BufRead>, count: u64) -> Result<Points, PointsError> {
+fn atoms(
+    path: &Path,
+    mut lines: Lines<impl BufRead>,
+    count: u64,
+) -> Result<(Points, ModelFacts), PointsError> {
+    let line = lines.next().map_err(io_error(path))?.unwrap_or_default();
+    let Comment { columns, cell } = Comment::read(path, &line)?;
+    let facts = ModelFacts { cell, ..ModelFacts::default() };
     let mut points = Points::default();
-    let mut number = 1;
+    let mut rows = columns.map(|columns| Rows::new(path, Some(columns)));
+    let mut number = 2;
     while let Some(line) = lines.next().map_err(io_error(path))? {
         number += 1;
         let words: Vec<&str> = line.split_whitespace().collect();
-        if number == 2 || words.is_empty() {
+        if words.is_empty() {
+            continue;
+        }
+        if let Some(rows) = &mut rows {
+            rows.push(number, &words)?;
             continue;
         }
         let [_, x, y, z, ..] = words[..] else {
@@ -86,14 +146,11 @@ fn atoms(path: &Path, mut lines: Lines<impl BufRead>, count: u64) -> Result<Poin
         let axis = |axis: usize, word| finite(path, number, COLUMNS[axis], word);
         points.positions.push([axis(0, x)?, axis(1, y)?, axis(2, z)?]);
     }
-    if points.len() as u64 != count {
-        let found = points.len();
-        let reason = Reason::truncated(format!(
-            "claims {count} atoms, but has {found}: it is truncated or mislabelled"
-        ));
-        return Err(format(path, reason));
+    if let Some(rows) = rows {
+        points = rows.finish()?;
     }
-    Ok(points)
+    check_count(path, Some(count), points.len(), "atoms")?;
+    Ok((points, facts))
 }
 
 /// Reads so many points, and as many normals, which are passed over.

@@ -81,7 +81,7 @@ impl Header {
     /// What is stored besides the points.
     pub(super) fn facts(&self) -> ModelFacts {
         let Self { grid, coordinates, alpha, range, .. } = *self;
-        ModelFacts { grid, coordinates, alpha, range, order: None }
+        ModelFacts { grid, coordinates, alpha, range, order: None, cell: None }
     }
 
     /// The frame of the grid, where it has to be stored.

@@ -46,7 +46,7 @@ pub(in super::super) fn read(path: &Path, level: u32) -> Result<(Points, ModelFa
         }
     }
     let WeightedPoints { positions, weights, values } = model.points();
-    Ok((Points { positions, weights: Some(weights), values, differences: None }, header.facts()))
+    Ok((Points { positions, weights: Some(weights), values, ..Points::default() }, header.facts()))
 }
 
 /// The bytes of the first layers, each with its checksum.

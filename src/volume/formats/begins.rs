@@ -39,6 +39,19 @@ pub(crate) fn is_vtk_xml(start: &[u8]) -> bool {
     text.starts_with(b"<") && start.windows(name.len()).any(|window| window == name)
 }
 
+/// Whether a file begins as an MGH header does: with version 1, four sizes from 1 up, and a type that there is.
+pub(super) fn is_mgh(start: &[u8]) -> bool {
+    let (numbers, _) = start.as_chunks();
+    let numbers: Vec<i32> =
+        numbers.iter().take(6).map(|&bytes| i32::from_be_bytes(bytes)).collect();
+    matches!(numbers[..], [1, x, y, z, t, 0..=10] if [x, y, z, t].iter().all(|n| (1..1 << 20).contains(n)))
+}
+
+/// Whether a file begins as legacy VTK files do.
+pub(crate) fn is_vtk(start: &[u8]) -> bool {
+    start.starts_with(b"# vtk DataFile")
+}
+
 /// Whether a file begins as a DICOM file does. The bytes before the mark are anybody's: some scanners
 /// write a TIFF header there.
 pub(super) fn is_dicom(start: &[u8]) -> bool {

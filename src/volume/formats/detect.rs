@@ -9,6 +9,8 @@ use flate2::read::MultiGzDecoder;
 use super::{FORMATS, VolumeFormat};
 use crate::advice::Setting;
 use crate::near::nearest;
+#[cfg(feature = "formats")]
+use crate::volume::read::naming;
 use crate::volume::read::{format_error, io_error, raw};
 use crate::volume::source::whole_only;
 use crate::volume::{ReadOptions, Reason, Series, Source, Volume, VolumeError};
@@ -46,20 +48,34 @@ const REFUSED: [(&[u8], &str, &str); 8] = [
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
     let volume = match &options.raw {
         Some(layout) => raw::read(path, layout),
-        None => found(path).and_then(|found| found.read(path, options)),
+        None => found(path, options).and_then(|found| found.read(path, options)),
     };
-    let volume = volume.and_then(|volume| options.part(volume.settled(options.nan)?));
+    let settled =
+        |volume: Volume| volume.settled(options.nan).map_err(|error| beside(path, options, error));
+    let volume = volume.and_then(|volume| options.part(settled(volume)?));
     volume.map_err(|error| match error {
         VolumeError::Io { .. } | VolumeError::Format { .. } | VolumeError::InFile { .. } => error,
         other => VolumeError::InFile { path: path.into(), source: Box::new(other) },
     })
 }
 
+/// An error about samples, with the names of the files that hold them where those are not the header's.
+fn beside(path: &Path, options: &ReadOptions, error: VolumeError) -> VolumeError {
+    #[cfg(feature = "formats")]
+    if let Ok(files) = data_files(path, options)
+        && !files.is_empty()
+    {
+        return naming(path, &files)(error);
+    }
+    let _ = (path, options);
+    error
+}
+
 /// Opens a volume to be read part by part.
 pub(crate) fn source(path: &Path, options: &ReadOptions) -> Result<Source, VolumeError> {
     match &options.raw {
         Some(layout) => Ok(raw::rows(path, layout)?.source()),
-        None => found(path)?.source(path, options),
+        None => found(path, options)?.source(path, options),
     }
 }
 
@@ -71,7 +87,7 @@ pub fn format_name(path: &Path, options: &ReadOptions) -> Result<String, VolumeE
     if options.raw.is_some() {
         return Ok("raw samples".into());
     }
-    let Found { format, gzip } = found(path)?;
+    let Found { format, gzip } = found(path, options)?;
     Ok(match (path.is_dir(), gzip) {
         (true, _) => format.folder_name.into(),
         (_, true) => format!("{}, gzip", format.name),
@@ -88,7 +104,7 @@ pub fn data_files(path: &Path, options: &ReadOptions) -> Result<Vec<PathBuf>, Vo
     if options.raw.is_some() || !path.is_file() {
         return Ok(Vec::new());
     }
-    match found(path)? {
+    match found(path, options)? {
         Found { format: VolumeFormat { data_files: Some(data_files), .. }, gzip: false } => {
             data_files(path)
         }
@@ -108,6 +124,11 @@ pub fn series(folder: &Path) -> Result<Vec<Series>, VolumeError> {
         let _ = folder;
         Ok(Vec::new())
     }
+}
+
+/// Whether a file that starts so is of a format of volumes.
+pub(crate) fn begins_as_volume(start: &[u8]) -> bool {
+    by_content(start).is_some()
 }
 
 /// The first bytes of a file, from which its format is recognised.
@@ -173,6 +194,7 @@ impl Found {
             (Setting::Array, options.array.is_some()),
             (Setting::Frame, options.frame.is_some()),
             (Setting::Series, options.series.is_some()),
+            (Setting::SkipDamaged, options.skip_damaged),
         ] {
             if given && !format.chooses.contains(&setting) {
                 let what = match setting {
@@ -188,7 +210,21 @@ impl Found {
     }
 }
 
-fn found(path: &Path) -> Result<Found, VolumeError> {
+/// The format of a file or folder, which must be the one that the user says, if one is said.
+fn found(path: &Path, options: &ReadOptions) -> Result<Found, VolumeError> {
+    let asked = options.format.as_deref();
+    let found = found_as(path, asked)?;
+    let Found { format, .. } = found;
+    let is_it = |asked: &str| format.extensions.iter().any(|own| own.eq_ignore_ascii_case(asked));
+    // DICOM has no extension of its own.
+    if asked.is_some_and(|asked| !is_it(asked) && !format.extensions.is_empty()) {
+        let what = format!("is of the format {} by its content", format.name);
+        return Err(format_error(path, Reason::needless(Setting::Format, what)));
+    }
+    Ok(found)
+}
+
+fn found_as(path: &Path, asked: Option<&str>) -> Result<Found, VolumeError> {
     if path.is_dir() {
         for format in &FORMATS {
             if (format.is_folder)(path)? {
@@ -208,14 +244,14 @@ fn found(path: &Path) -> Result<Found, VolumeError> {
         return Err(format_error(path, Reason::unsupported(format!("is {what}"), *advice)));
     }
     if start.starts_with(&[0x1f, 0x8b]) {
-        return unpacked(path);
+        return unpacked(path, asked);
     }
     #[expect(clippy::case_sensitive_file_extension_comparisons, reason = "names are in lower case")]
-    if name(path).ends_with(".gz") {
+    if name(path, asked).ends_with(".gz") {
         let what = "is not compressed with gzip, whatever its name says";
         return Err(format_error(path, Reason::content(what, "rename it")));
     }
-    let format = by_extension(path).ok_or_else(|| unknown(path))?;
+    let format = by_extension(path, asked).ok_or_else(|| unknown(path))?;
     Ok(Found { format, gzip: false })
 }
 
@@ -223,28 +259,29 @@ fn by_content(start: &[u8]) -> Option<&'static VolumeFormat> {
     FORMATS.iter().find(|format| (format.begins)(start))
 }
 
-fn by_extension(path: &Path) -> Option<&'static VolumeFormat> {
-    let name = name(path);
+fn by_extension(path: &Path, asked: Option<&str>) -> Option<&'static VolumeFormat> {
+    let name = name(path, asked);
     let ends =
         |extension: &&str| name.strip_suffix(*extension).is_some_and(|stem| stem.ends_with('.'));
     FORMATS.iter().find(|format| format.extensions.iter().any(ends))
 }
 
-/// The file's name in lower case.
-fn name(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().to_lowercase()
+/// The file's name in lower case, with the extension that the user says, if one is said.
+fn name(path: &Path, asked: Option<&str>) -> String {
+    let own = || path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    asked.map_or_else(own, |asked| format!("it.{}", asked.to_lowercase()))
 }
 
 /// What a gzip stream holds.
-fn unpacked(path: &Path) -> Result<Found, VolumeError> {
+fn unpacked(path: &Path, asked: Option<&str>) -> Result<Found, VolumeError> {
     let file = File::open(path).map_err(io_error(path))?;
     let mut start = Vec::new();
     // What cannot be unpacked is left to the reader, which says why.
     let unpacked = MultiGzDecoder::new(BufReader::new(file)).take(BYTES).read_to_end(&mut start);
     let packed = FORMATS.iter().filter(|format| format.gzip);
     let names: Vec<&str> = packed.clone().map(|format| format.name).collect();
-    let names = names.join(" and ");
-    let of_name = by_extension(path).filter(|format| format.gzip);
+    let names = names.join(", ");
+    let of_name = by_extension(path, asked).filter(|format| format.gzip);
     match (by_content(&start), of_name) {
         (Some(format), _) if format.gzip => Ok(Found { format, gzip: true }),
         (Some(_), _) => {

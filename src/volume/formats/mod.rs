@@ -4,6 +4,7 @@
 mod begins;
 mod built;
 mod detect;
+mod files;
 mod table;
 mod unknown;
 
@@ -15,11 +16,12 @@ pub use detect::{data_files, format_name, read, series};
 pub use table::FORMATS;
 pub use unknown::UnknownFormat;
 
-pub(crate) use begins::is_vtk_xml;
 #[cfg(feature = "formats")]
 pub(crate) use begins::{NIFTI_HEADERS, nifti_version};
+pub(crate) use begins::{is_vtk, is_vtk_xml};
 pub(crate) use built::built;
-pub(crate) use detect::{source, start_of};
+pub(crate) use detect::{begins_as_volume, source, start_of};
+pub(crate) use files::files_of;
 
 use super::{ReadOptions, Source, Volume, VolumeError};
 use crate::advice::Setting;

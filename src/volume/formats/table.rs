@@ -1,10 +1,10 @@
-use super::begins::{is_dicom, is_metaimage, is_nifti, is_vtk_xml};
+use super::begins::{is_dicom, is_metaimage, is_mgh, is_nifti, is_vtk, is_vtk_xml};
 use super::built;
 use super::{Keeps, VolumeFormat, VolumeWriter, detect};
 use crate::advice::Setting;
 use crate::volume::read::{NpyFile, inr, npy, raw, series};
 #[cfg(feature = "formats")]
-use crate::volume::read::{metaimage, nifti, npz, nrrd, slices, tiff, vti, vtk};
+use crate::volume::read::{metaimage, mgh, nifti, npz, nrrd, slices, tiff, vti, vtk};
 use crate::volume::write;
 
 /// All of a grid's place.
@@ -46,12 +46,12 @@ const PLAIN: VolumeFormat = VolumeFormat {
 };
 
 /// The formats of volumes, in the order in which they are looked for.
-pub static FORMATS: [VolumeFormat; 13] = [
+pub static FORMATS: [VolumeFormat; 14] = [
     // First, because a file of it may begin as one of another, too.
     VolumeFormat {
         name: "DICOM",
         keeps: ALL,
-        chooses: &[Setting::Series],
+        chooses: &[Setting::Series, Setting::SkipDamaged],
         feature: Some("dicom"),
         fuzzed_by: &["dicom"],
         begins: is_dicom,
@@ -106,6 +106,19 @@ pub static FORMATS: [VolumeFormat; 13] = [
         ..PLAIN
     },
     VolumeFormat {
+        name: "MGH (FreeSurfer)",
+        extensions: &["mgz", "mgh", "mgh.gz"],
+        keeps: ALL,
+        chooses: &[Setting::Frame],
+        feature: Some("formats"),
+        fuzzed_by: &["mgh"],
+        gzip: true,
+        begins: is_mgh,
+        read: built!("formats", |path, options| mgh::read(path, options.frame)),
+        parts: built!("formats", |path, options| Ok(mgh::rows(path, options.frame)?.source())),
+        ..PLAIN
+    },
+    VolumeFormat {
         name: "MetaImage",
         extensions: &["mha", "mhd"],
         keeps: ALL,
@@ -141,7 +154,7 @@ pub static FORMATS: [VolumeFormat; 13] = [
         chooses: &[Setting::Array],
         feature: Some("formats"),
         fuzzed_by: &["vtk_legacy"],
-        begins: |start| start.starts_with(b"# vtk DataFile"),
+        begins: is_vtk,
         read: built!("formats", |path, options| vtk::read(path, options.array.as_deref())),
         ..PLAIN
     },

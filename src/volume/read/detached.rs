@@ -28,7 +28,7 @@ pub(super) fn read(
 }
 
 /// Errors about samples in files separate from their header, with the names of both.
-pub(super) fn naming<'a>(
+pub(crate) fn naming<'a>(
     header: &'a Path,
     files: &'a [PathBuf],
 ) -> impl Fn(VolumeError) -> VolumeError + 'a {

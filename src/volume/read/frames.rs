@@ -3,7 +3,6 @@ use std::path::Path;
 
 use super::payload::Length;
 use super::{format_error, io_error};
-use crate::advice::{Setting, advice};
 use crate::volume::{Reason, VolumeError};
 
 /// Which of the volumes of a file is read: those along a fourth axis (and further axes), one after the
@@ -32,15 +31,7 @@ impl Frames {
             None if count == 0 => {
                 Err(format_error(path, Reason::header("has an axis without samples")))
             }
-            _ => {
-                let last = count.saturating_sub(1);
-                let reason = Reason::choice(
-                    Setting::Frame,
-                    format!("holds {count} volumes"),
-                    advice!["choose one with ", Setting::Frame, format!(", from 0 to {last}")],
-                );
-                Err(format_error(path, reason))
-            }
+            _ => Err(format_error(path, Reason::Several { count })),
         }
     }
 

@@ -98,9 +98,10 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
     let dims = Dims::new(x?, y?, z?).map_err(HeaderError::Volume)?;
     let values = size("VDIM", fields.value("VDIM").unwrap_or("1"))?;
     if values != 1 {
-        return Err(HeaderError::Said(Reason::not_scalar(format!(
-            "{values} values a voxel (VDIM)"
-        ))));
+        return Err(HeaderError::Said(Reason::not_scalar(
+            format!("{values} values a voxel (VDIM)"),
+            Some(dims.xyz().map(|n| n as u64)),
+        )));
     }
     let dtype = fields.dtype()?;
     Ok(Header { dims, dtype, endian: fields.endian(dtype)?, frame: fields.frame()? })

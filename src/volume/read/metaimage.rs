@@ -206,7 +206,10 @@ impl Header {
         let channels = self.field(&["ElementNumberOfChannels"]).unwrap_or("1");
         if channels != "1" {
             let what = format!("{channels} values a voxel (ElementNumberOfChannels)");
-            return Err(format_error(path, Reason::not_scalar(what)));
+            let sizes = self.field(&["DimSize"]).unwrap_or_default();
+            let sizes: Vec<u64> = sizes.split_whitespace().map_while(|n| n.parse().ok()).collect();
+            let dims = <[u64; 3]>::try_from(sizes).ok();
+            return Err(format_error(path, Reason::not_scalar(what, dims)));
         }
         let name = self.needed(path, "ElementType")?;
         scalar_type(name).ok_or_else(|| {

@@ -15,6 +15,8 @@ mod lines;
 #[cfg(feature = "formats")]
 pub(super) mod metaimage;
 #[cfg(feature = "formats")]
+pub(super) mod mgh;
+#[cfg(feature = "formats")]
 pub(super) mod nifti;
 pub(super) mod npy;
 #[cfg(feature = "formats")]
@@ -48,6 +50,8 @@ use std::path::Path;
 use flate2::read::MultiGzDecoder;
 use serde::{Deserialize, Serialize};
 
+#[cfg(feature = "formats")]
+pub(crate) use detached::naming;
 pub(crate) use inr::read as read_inr;
 #[cfg(feature = "formats")]
 pub(crate) use lines::Lines;
@@ -60,6 +64,8 @@ pub use raw::RawLayout;
 pub(super) use rows::CONVERT;
 pub use series::Series;
 #[cfg(feature = "formats")]
+pub(crate) use vtk::VtkPoints;
+#[cfg(feature = "formats")]
 pub(crate) use vtk_xml::VtkXml;
 
 use super::{Dims, Dtype, Nan, Reason, Region, Volume, VolumeError, downsample};
@@ -71,6 +77,8 @@ use crate::setters::setters;
 pub struct ReadOptions {
     /// Reads the file as bare samples in this layout, whatever it looks like.
     pub raw: Option<RawLayout>,
+    /// The extension of the format that the file is of, whatever its own; content still says more.
+    pub format: Option<String>,
     /// The level of a pyramid to read (OME-Zarr), 0 being the finest. Files without levels refuse it.
     pub level: Option<u32>,
     /// The array to read, by its name, of a file that may hold several (VTK, NPZ).
@@ -80,7 +88,9 @@ pub struct ReadOptions {
     /// The series to read of a folder of several (DICOM): its number, from 1, or the end of its UID, if
     /// that is not a number.
     pub series: Option<String>,
-    /// What becomes of samples that are NaN; without a word they are refused.
+    /// Goes on without damaged slices of a series (DICOM), which a warning names; without it they are refused.
+    pub skip_damaged: bool,
+    /// What becomes of samples that are NaN or infinite; without a word they are refused.
     pub nan: Option<Nan>,
     /// The part to take.
     pub region: Option<Region>,
@@ -91,10 +101,12 @@ pub struct ReadOptions {
 impl ReadOptions {
     setters! {
         raw: Option<RawLayout>,
+        format: Option<String>,
         level: Option<u32>,
         array: Option<String>,
         frame: Option<u64>,
         series: Option<String>,
+        skip_damaged: bool,
         nan: Option<Nan>,
         region: Option<Region>,
         downsample: Option<NonZeroUsize>,

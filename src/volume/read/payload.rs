@@ -2,6 +2,7 @@ use std::io::{self, Read};
 
 use rayon::prelude::*;
 
+use crate::memory::asking;
 use crate::progress;
 use crate::volume::{Dtype, Endian};
 
@@ -83,7 +84,8 @@ impl<R: Read> Payload<R> {
         let mut samples = Vec::<T>::new();
         let memory =
             |_| PayloadError::Memory { needed: count.saturating_mul(size_of::<T>() as u64) };
-        samples.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX)).map_err(memory)?;
+        asking(|| samples.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX)))
+            .map_err(memory)?;
         let mut bytes = vec![0; CHUNK_BYTES.min(needed as usize)];
         let mut left = needed as usize;
         while left > 0 {

@@ -49,7 +49,7 @@ pub(crate) fn read(folder: &Path) -> Result<Volume, VolumeError> {
 }
 
 /// The slices of a folder, in order.
-fn slices(folder: &Path) -> Result<Vec<PathBuf>, VolumeError> {
+pub(crate) fn slices(folder: &Path) -> Result<Vec<PathBuf>, VolumeError> {
     let mut found: [Vec<PathBuf>; 3] = Default::default();
     for entry in std::fs::read_dir(folder).map_err(io_error(folder))? {
         let path = entry.map_err(io_error(folder))?.path();
@@ -112,11 +112,8 @@ fn page(path: &Path) -> Result<Page, VolumeError> {
             Ok(Page { size, dtype: Dtype::U16, samples })
         }
         other => {
-            let reason = Reason::unsupported(
-                format!("has pixels of {:?}: only gray is read", other.color()),
-                "convert it",
-            );
-            Err(format_error(path, reason))
+            let what = format!("pixels of {:?}: only gray is read", other.color());
+            Err(format_error(path, Reason::NotScalar { what, dims: None }))
         }
     }
 }

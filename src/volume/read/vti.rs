@@ -51,7 +51,7 @@ pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeEr
     }
     let components = file.components(array);
     if components != "1" {
-        return Err(said(Reason::not_scalar(format!("{components} values a voxel"))));
+        return Err(said(Reason::not_scalar(format!("{components} values a voxel"), Some(dims))));
     }
     let dims = Dims::new(dims[0], dims[1], dims[2])?;
     let (frame, dtype) =

@@ -21,11 +21,11 @@ const PHANTOM_SIZE: u64 = 64;
 ///
 /// # Errors
 /// Those of [`sample`] and [`read()`].
-pub fn open(input: &str, options: &ReadOptions) -> Result<Volume, VolumeError> {
-    if input.starts_with("sample:") {
-        options.part(sample(input)?)
-    } else {
-        read(Path::new(input), options)
+pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Volume, VolumeError> {
+    let input = input.as_ref();
+    match input.to_str() {
+        Some(name) if name.starts_with("sample:") => options.part(sample(name)?),
+        _ => read(input, options),
     }
 }
 

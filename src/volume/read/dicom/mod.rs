@@ -2,33 +2,36 @@
 //! frames of one.
 
 mod claims;
+mod gather;
 mod header;
 mod slice;
 mod stack;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use rayon::prelude::*;
 
 use super::described::{Described, Encoding};
 use super::frames::Frames;
-use super::series::{self, Series};
+use super::series::Series;
 use super::{ReadOptions, format_error};
 use crate::advice::{Setting, advice};
+use crate::memory::asking;
 use crate::progress;
-use crate::volume::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
+use crate::shown::shown;
+use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
+use gather::{Gathered, pattern, reason, skippable};
 use slice::{Found, Slice, pixels};
 use stack::stacked;
 
 /// Reads the series that a file belongs to, or one in a folder.
 pub(crate) fn read(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
-    let wanted = options.series.as_deref();
-    if path.is_dir() { read_folder(path, wanted) } else { read_series_of(path, wanted) }
+    if path.is_dir() { read_folder(path, options) } else { read_series_of(path, options) }
 }
 
 /// Reads the series that a file belongs to: all slices of it in the same folder.
-fn read_series_of(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
-    if wanted.is_some() {
+fn read_series_of(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
+    if options.series.is_some() {
         let reason = Reason::choice(
             Setting::Series,
             "is one file, and its series is read",
@@ -42,18 +45,23 @@ fn read_series_of(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeErr
         _ => Path::new("."),
     };
     one.slices?;
-    let mut found = found(&series::files(folder, false)?)?;
-    found.retain(|other| other.series == one.series);
-    assemble(path, slices(found)?)
+    let mut gathered = Gathered::of(folder, false)?;
+    gathered.found.retain(|other| other.series == one.series);
+    // Its neighbours may be anything, but those that are called alike.
+    let names: Vec<String> = gathered.found.iter().map(|found| pattern(&found.path)).collect();
+    let near = |other: &Path| names.contains(&pattern(other));
+    let skip = options.skip_damaged;
+    assemble(path, gathered.slices(skip, near)?, skip)
 }
 
 /// Reads the one series in a folder, or the one wanted.
-fn read_folder(folder: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
-    let mut found = found(&series::files(folder, true)?)?;
-    let listed = listed(&found);
+fn read_folder(folder: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
+    let (wanted, skip) = (options.series.as_deref(), options.skip_damaged);
+    let mut gathered = Gathered::of(folder, true)?;
+    let listed = listed(&gathered.found);
     let list = || listed.iter().map(Series::to_string).collect::<Vec<_>>().join("; ");
     let chosen = match (wanted, &listed[..]) {
-        (None, []) => return assemble(folder, slices(found)?),
+        (None, []) => return assemble(folder, gathered.slices(skip, |_| true)?, skip),
         (None, [one]) => one,
         (None, several) => {
             let count = several.len();
@@ -82,25 +90,13 @@ fn read_folder(folder: &Path, wanted: Option<&str>) -> Result<Volume, VolumeErro
             })?
         }
     };
-    found.retain(|one| one.series == chosen.uid);
-    assemble(folder, slices(found)?)
+    gathered.found.retain(|one| one.series == chosen.uid);
+    assemble(folder, gathered.slices(skip, |_| true)?, skip)
 }
 
 /// The series in a folder that have images, in the order of the names of their files.
 pub(crate) fn series(folder: &Path) -> Result<Vec<Series>, VolumeError> {
-    Ok(listed(&found(&series::files(folder, true)?)?))
-}
-
-/// What these files are; indices of media (DICOMDIR) are passed over.
-fn found(files: &[PathBuf]) -> Result<Vec<Found>, VolumeError> {
-    let is_index = |path: &PathBuf| path.file_name().is_some_and(|name| name == "DICOMDIR");
-    files.par_iter().filter(|path| !is_index(path)).map(|path| Found::open(path)).collect()
-}
-
-fn slices(found: Vec<Found>) -> Result<Vec<Slice>, VolumeError> {
-    let slices: Vec<Vec<Slice>> =
-        found.into_iter().map(|one| one.slices).collect::<Result<_, _>>()?;
-    Ok(slices.concat())
+    Ok(listed(&Gathered::of(folder, true)?.found))
 }
 
 fn listed(found: &[Found]) -> Vec<Series> {
@@ -127,13 +123,38 @@ fn listed(found: &[Found]) -> Vec<Series> {
     list
 }
 
-/// The volume of slices of one series.
-fn assemble(path: &Path, slices: Vec<Slice>) -> Result<Volume, VolumeError> {
-    let (slices, frame) = stacked(path, slices)?;
+/// The volume of slices of one series. Those whose pixels cannot be read are refused, or left out with a warning
+/// where `skip` says so.
+fn assemble(path: &Path, mut slices: Vec<Slice>, skip: bool) -> Result<Volume, VolumeError> {
+    loop {
+        let (stack, frame) = stacked(path, slices.clone())?;
+        let error = match volume(path, &stack, frame) {
+            Err(error) => error,
+            done => return done,
+        };
+        let of = match &error {
+            VolumeError::Format { path, .. } | VolumeError::Io { path, .. } => path.clone(),
+            _ => return Err(error),
+        };
+        let count = slices.len();
+        slices.retain(|slice| slice.path != of);
+        // Nothing to do with one of several slices.
+        if slices.len() == count || slices.is_empty() {
+            return Err(error);
+        }
+        if !skip {
+            return Err(skippable(error));
+        }
+        tracing::warn!("{} is left out: {}", shown(&of), reason(&error));
+    }
+}
+
+/// The volume of a stack of slices that can all be read.
+fn volume(path: &Path, slices: &[Slice], frame: Frame) -> Result<Volume, VolumeError> {
     let first = &slices[0];
     let dims = Dims::new(first.columns, first.rows, slices.len() as u64)?;
     let mut samples = Vec::new();
-    samples.try_reserve_exact(dims.samples()).map_err(|_| {
+    asking(|| samples.try_reserve_exact(dims.samples())).map_err(|_| {
         let bytes = dims.samples() * size_of::<f32>();
         let reason = Reason::unsupported(
             format!("needs {bytes} bytes of memory, which cannot be had"),

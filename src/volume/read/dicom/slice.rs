@@ -1,10 +1,13 @@
 use std::path::{Path, PathBuf};
 
-use dicom_object::{InMemDicomObject, OpenFileOptions, Tag};
+use dicom_encoding::{TransferSyntax, TransferSyntaxIndex};
+use dicom_object::{DefaultDicomObject, InMemDicomObject, OpenFileOptions, Tag};
 use dicom_pixeldata::PixelDecoder;
+use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
 
 use super::claims;
 use super::header::Header;
+use crate::math::vector::cross;
 use crate::shown::shown;
 use crate::volume::read::format_error;
 use crate::volume::read::payload::MOST_EXPANSION;
@@ -27,12 +30,15 @@ const BITS_ALLOCATED: Tag = Tag(0x0028, 0x0100);
 const PIXEL_REPRESENTATION: Tag = Tag(0x0028, 0x0103);
 const RESCALE_INTERCEPT: Tag = Tag(0x0028, 0x1052);
 const RESCALE_SLOPE: Tag = Tag(0x0028, 0x1053);
+// Of doses of radiation (PS3.3, C.8.8.3).
+const GRID_FRAME_OFFSETS: Tag = Tag(0x3004, 0x000C);
+const DOSE_GRID_SCALING: Tag = Tag(0x3004, 0x000E);
 // Functional groups.
 const PLANE_POSITION: Tag = Tag(0x0020, 0x9113);
 const PLANE_ORIENTATION: Tag = Tag(0x0020, 0x9116);
 const PIXEL_MEASURES: Tag = Tag(0x0028, 0x9110);
 const PIXEL_VALUE_TRANSFORMATION: Tag = Tag(0x0028, 0x9145);
-const PIXEL_DATA: Tag = Tag(0x7FE0, 0x0010);
+pub(super) const PIXEL_DATA: Tag = Tag(0x7FE0, 0x0010);
 
 /// One slice of a series: all but its pixels.
 #[derive(Clone, Debug)]
@@ -53,6 +59,18 @@ pub(super) struct Slice {
     pub thickness: f64,
     /// The type of a pixel if pixels are used unscaled, otherwise `f32`.
     pub dtype: Dtype,
+    /// What rescaled pixels are multiplied by, where they are doses.
+    pub scaling: Option<f64>,
+    /// How pixels of 32 bits are stored, which the decoder does not know.
+    pub wide: Option<Wide>,
+}
+
+/// Pixels of 32 bits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wide {
+    unsigned: bool,
+    slope: f64,
+    intercept: f64,
 }
 
 /// A file of a series, whether it is a slice or not.
@@ -73,7 +91,7 @@ pub(super) struct Found {
 impl Found {
     /// Reads the header.
     pub(super) fn open(path: &Path) -> Result<Self, VolumeError> {
-        claims::check(path)?;
+        let unpacked = claims::check(path)?;
         let object = OpenFileOptions::new()
             .read_until(PIXEL_DATA)
             .open_file(path)
@@ -90,21 +108,23 @@ impl Found {
             modality: text(MODALITY),
             description: text(SERIES_DESCRIPTION),
             size: number(COLUMNS).zip(number(ROWS)).map(|(columns, rows)| [columns, rows]),
-            slices: Slice::all(path, &object),
+            slices: Slice::all(path, &object, unpacked),
         })
     }
 }
 
 impl Slice {
-    /// The slices of a file, from its header: one, or as many as it has frames.
-    fn all(path: &Path, object: &InMemDicomObject) -> Result<Vec<Self>, VolumeError> {
+    /// The slices of a file, from its header: one, or as many as it has frames. In a packed file, so many bytes are
+    /// said to be pixels.
+    fn all(
+        path: &Path,
+        object: &InMemDicomObject,
+        unpacked: Option<u64>,
+    ) -> Result<Vec<Self>, VolumeError> {
         let said = |reason: Reason| format_error(path, reason);
         let header = Header::new(path, object);
         if header.number(None, SAMPLES_PER_PIXEL)?.unwrap_or(1.0) != 1.0 {
-            return Err(said(Reason::unsupported(
-                "has pixels of colours, and only gray is read",
-                "convert it",
-            )));
+            return Err(said(Reason::not_scalar("pixels of colours", None)));
         }
         let [column, row] = [COLUMNS, ROWS].map(|tag| header.number(None, tag));
         let (Some(columns), Some(rows)) = (column?, row?) else {
@@ -125,10 +145,58 @@ impl Slice {
                  truncated or damaged"
             ))));
         }
+        // One byte may be there to make their number even.
+        let expected = frame.saturating_mul(frames as u64);
+        if let Some(bytes) = unpacked.filter(|&bytes| bytes > expected.saturating_add(1)) {
+            return Err(said(Reason::header(format!(
+                "claims {frames} × {columns}×{rows} pixels, which are {expected} bytes, and {bytes} bytes of them"
+            ))));
+        }
         let frames = frames as u32;
-        (0..frames)
+        let mut slices: Vec<Self> = (0..frames)
             .map(|frame| Self::of(path, header.of_frame(frame), size, [frame, frames]))
-            .collect()
+            .collect::<Result<_, _>>()?;
+        Self::spread(path, object, &mut slices)?;
+        Ok(slices)
+    }
+
+    /// Places the frames of a file that says how far each is from the first, as doses do.
+    fn spread(
+        path: &Path,
+        object: &InMemDicomObject,
+        slices: &mut [Self],
+    ) -> Result<(), VolumeError> {
+        let said = |reason: Reason| format_error(path, reason);
+        let places =
+            |slices: &[Self]| slices.windows(2).any(|two| two[0].position != two[1].position);
+        if slices.len() < 2 || places(slices) {
+            return Ok(());
+        }
+        let Some(element) = object.get(GRID_FRAME_OFFSETS) else {
+            return Err(said(Reason::unsupported(
+                format!(
+                    "has {} frames and one place for all of them: times, views or a cine, and no volume",
+                    slices.len()
+                ),
+                "convert those of one volume to NRRD or NIfTI",
+            )));
+        };
+        let offsets = element.to_multi_float64().unwrap_or_default();
+        if offsets.len() != slices.len() || offsets.iter().any(|offset| !offset.is_finite()) {
+            return Err(said(Reason::header(format!(
+                "has {} frames, and Grid Frame Offset Vector {GRID_FRAME_OFFSETS} of {} numbers",
+                slices.len(),
+                offsets.len()
+            ))));
+        }
+        for (slice, offset) in slices.iter_mut().zip(&offsets) {
+            let [column, row] = slice.orientation;
+            let normal = cross(column, row);
+            // Where the first is not 0, they are places along the axis, of which the first is that of the file.
+            let step = offset - offsets[0];
+            slice.position = [0, 1, 2].map(|k| slice.position[k] + step * normal[k]);
+        }
+        Ok(())
     }
 
     /// One frame of several.
@@ -156,6 +224,7 @@ impl Slice {
         let slope = header.number(PIXEL_VALUE_TRANSFORMATION, RESCALE_SLOPE)?.unwrap_or(1.0);
         let intercept =
             header.number(PIXEL_VALUE_TRANSFORMATION, RESCALE_INTERCEPT)?.unwrap_or(0.0);
+        let scaling = header.number(None, DOSE_GRID_SCALING)?;
         Ok(Self {
             path: path.to_owned(),
             frame,
@@ -166,8 +235,48 @@ impl Slice {
             orientation: [[a, b, c], [d, e, f]],
             spacing: [of_columns, of_rows],
             thickness,
-            dtype: dtype(bits, unsigned, slope, intercept),
+            dtype: if scaling.is_some() {
+                Dtype::F32
+            } else {
+                dtype(bits, unsigned, slope, intercept)
+            },
+            scaling,
+            wide: (bits == 32.0).then_some(Wide { unsigned, slope, intercept }),
         })
+    }
+
+    /// Pixels of 32 bits that are not compressed.
+    fn wide_pixels(&self, wide: Wide, object: &InMemDicomObject) -> Result<Vec<f32>, VolumeError> {
+        let path = &self.path;
+        let said = |reason: Reason| format_error(path, reason);
+        let element = object.get(PIXEL_DATA).and_then(|element| element.value().primitive());
+        let Some(value) = element else {
+            let what = "has compressed pixels of 32 bits, which are not read";
+            return Err(said(Reason::unsupported(what, "unpack it first")));
+        };
+        let bytes = value.to_bytes();
+        let each = (self.columns * self.rows) as usize;
+        let (all, _) = bytes.as_chunks::<4>();
+        let pixels = all.chunks_exact(each.max(1)).nth(self.frame as usize).ok_or_else(|| {
+            said(Reason::truncated(format!(
+                "claims {} frames of {}×{} pixels and holds {} pixels: it is truncated or damaged",
+                self.frames,
+                self.columns,
+                self.rows,
+                all.len()
+            )))
+        })?;
+        let Wide { unsigned, slope, intercept } = wide;
+        let factor = self.scaling.unwrap_or(1.0);
+        let value = |&bytes: &[u8; 4]| {
+            let stored = if unsigned {
+                f64::from(u32::from_le_bytes(bytes))
+            } else {
+                f64::from(i32::from_le_bytes(bytes))
+            };
+            ((stored * slope + intercept) * factor) as f32
+        };
+        Ok(pixels.iter().map(value).collect())
     }
 
     /// Its file, for people, and which frame it is of several.
@@ -184,6 +293,10 @@ pub(super) fn pixels(slices: &[&Slice]) -> Result<Vec<Vec<f32>>, VolumeError> {
     let Slice { columns, rows, frames: claimed, .. } = *first;
     let path = &first.path;
     let object = dicom_object::open_file(path).map_err(|error| damaged(path, &error))?;
+    check_syntax(path, &object)?;
+    if let Some(wide) = first.wide {
+        return slices.iter().map(|slice| slice.wide_pixels(wide, &object)).collect();
+    }
     let decoded = object.decode_pixel_data().map_err(|error| damaged(path, &error))?;
     // The decoder makes a table of all values, and panics if there are none.
     let (stored, allocated) = (decoded.bits_stored(), decoded.bits_allocated());
@@ -199,8 +312,14 @@ pub(super) fn pixels(slices: &[&Slice]) -> Result<Vec<Vec<f32>>, VolumeError> {
         return Err(format_error(path, reason));
     }
     let frame = |slice: &&Slice| {
-        let pixels = decoded.to_vec_frame::<f32>(slice.frame);
-        let pixels = pixels.map_err(|error| damaged(path, &error))?;
+        let failed = |error| damaged(path, &error);
+        let pixels = if let Some(scaling) = slice.scaling {
+            // Of 32 bits, often.
+            let pixels = decoded.to_vec_frame::<f64>(slice.frame).map_err(failed)?;
+            pixels.into_iter().map(|pixel| (pixel * scaling) as f32).collect()
+        } else {
+            decoded.to_vec_frame::<f32>(slice.frame).map_err(failed)?
+        };
         let (found, claimed) = (pixels.len() as u64, columns * rows);
         if found != claimed {
             let reason = Reason::truncated(format!(
@@ -211,6 +330,18 @@ pub(super) fn pixels(slices: &[&Slice]) -> Result<Vec<Vec<f32>>, VolumeError> {
         Ok(pixels)
     };
     slices.iter().map(frame).collect()
+}
+
+/// Refuses pixels that are compressed in a way that there is no decoder for.
+fn check_syntax(path: &Path, object: &DefaultDicomObject) -> Result<(), VolumeError> {
+    let uid = object.meta().transfer_syntax();
+    let known = TransferSyntaxRegistry.get(uid);
+    if known.is_some_and(TransferSyntax::can_decode_all) {
+        return Ok(());
+    }
+    let name = known.map_or("a transfer syntax that is not known", |syntax| syntax.name());
+    let what = format!("has pixels compressed as {name} ({uid}), which is not read");
+    Err(format_error(path, Reason::unsupported(what, "unpack it first, as `gdcmconv --raw` does")))
 }
 
 /// The type of the rescaled values: that of the file, if pixels are only shifted by whole steps.

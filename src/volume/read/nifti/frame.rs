@@ -4,18 +4,53 @@ use std::path::Path;
 
 use super::super::described::{diagonal, frame};
 use super::header::Header;
-use crate::volume::{Coordinates, Frame, LengthUnit, Space, VolumeError};
+use crate::shown::{number, shown, six_digits};
+use crate::volume::{Coordinates, Dims, Frame, LengthUnit, Space, VolumeError};
+
+/// Frames that place a sample further apart than this share of the shortest spacing say different things.
+const APART: f64 = 0.01;
 
 impl Header {
-    pub(super) fn frame(&self, path: &Path) -> Result<Frame, VolumeError> {
-        let pixdim = |i: usize| self.real(76, 104, i);
-        if self.code(254, 348) > 0 {
-            let row = |r: usize| [0, 1, 2, 3].map(|c| self.real(280, 400, 4 * r + c));
-            let rows = [row(0), row(1), row(2)];
-            let column = |c: usize| [0, 1, 2].map(|r| rows[r][c]);
-            let axes = [column(0), column(1), column(2)];
-            return frame(path, column(3), axes, self.coordinates(Space::Ras));
+    /// Where the samples lie: as `sform` says, else as `qform` does. A warning says by how much these differ.
+    pub(super) fn frame(&self, path: &Path, dims: Dims) -> Result<Frame, VolumeError> {
+        let taken = if self.code(254, 348) > 0 { self.sform(path)? } else { self.qform(path)? };
+        let unit = taken.coordinates.unit;
+        if matches!(unit, LengthUnit::Metre | LengthUnit::Micrometre) {
+            tracing::warn!(
+                "{}: lengths are in {}, as the file states; programs that use ITK scale them to mm",
+                shown(path),
+                unit.symbol()
+            );
         }
+        if self.code(254, 348) > 0
+            && self.code(252, 344) > 0
+            && let Ok(other) = self.qform(path)
+        {
+            let apart = apart(&taken, &other, dims);
+            let shortest = taken.spacing.iter().copied().fold(f64::INFINITY, f64::min);
+            if apart > APART * shortest {
+                tracing::warn!(
+                    "{}: sform and qform place samples up to {} {} apart: sform is taken",
+                    shown(path),
+                    number(six_digits(apart)),
+                    unit.symbol()
+                );
+            }
+        }
+        Ok(taken)
+    }
+
+    fn sform(&self, path: &Path) -> Result<Frame, VolumeError> {
+        let row = |r: usize| [0, 1, 2, 3].map(|c| self.real(280, 400, 4 * r + c));
+        let rows = [row(0), row(1), row(2)];
+        let column = |c: usize| [0, 1, 2].map(|r| rows[r][c]);
+        let axes = [column(0), column(1), column(2)];
+        frame(path, column(3), axes, self.coordinates(Space::Ras))
+    }
+
+    /// As `qform` says, else as `pixdim` alone does.
+    fn qform(&self, path: &Path) -> Result<Frame, VolumeError> {
+        let pixdim = |i: usize| self.real(76, 104, i);
         // 0 stands for "unknown" in some files.
         let length = |i: usize| if pixdim(i) == 0.0 { 1.0 } else { pixdim(i).abs() };
         let spacing = [1, 2, 3].map(length);
@@ -62,4 +97,15 @@ impl Header {
         };
         Coordinates { space, unit }
     }
+}
+
+/// How far apart two frames place the samples of a grid at most: at one of its corners.
+fn apart(one: &Frame, other: &Frame, dims: Dims) -> f64 {
+    let last = dims.xyz().map(|n| n.saturating_sub(1) as f64);
+    let distance = |corner: usize| {
+        let index = [0, 1, 2].map(|k| if corner >> k & 1 == 1 { last[k] } else { 0.0 });
+        let [a, b] = [one, other].map(|frame| frame.to_world(index));
+        [0, 1, 2].map(|k| (a[k] - b[k]).powi(2)).iter().sum::<f64>().sqrt()
+    };
+    (0..8).map(distance).fold(0.0, f64::max)
 }

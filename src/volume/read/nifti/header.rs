@@ -164,8 +164,11 @@ impl Header {
             code => {
                 let name = match code {
                     1 => "single bits",
+                    128 | 2304 => {
+                        let dims = Some([x, y, z]);
+                        return Err(said(Reason::not_scalar("colours", dims)));
+                    }
                     32 | 1792 | 2048 => "complex numbers",
-                    128 | 2304 => "colours",
                     1536 => "128-bit floats",
                     _ => "an unknown type",
                 };
@@ -178,7 +181,7 @@ impl Header {
                 )));
             }
         };
-        let frame = self.frame(path)?;
+        let frame = self.frame(path, dims)?;
         let (endian, encoding) = (self.endian, Encoding::Raw);
         Ok(Described { dims, dtype, endian, frame, encoding, frames })
     }

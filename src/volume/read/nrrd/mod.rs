@@ -174,7 +174,10 @@ impl Header {
             let scalar = ["domain", "space", "time", "none", "???", "scalar", "stub"];
             if size > 1 && !scalar.contains(&kind.to_lowercase().as_str()) {
                 let what = format!("{size} values a voxel (axis {axis} is of kind {kind})");
-                return Err(format_error(path, Reason::not_scalar(what)));
+                let others = sizes.iter().enumerate().filter(|(other, _)| *other != axis);
+                let others: Vec<u64> = others.map(|(_, &size)| size).collect();
+                let dims = <[u64; 3]>::try_from(others).ok();
+                return Err(format_error(path, Reason::not_scalar(what, dims)));
             }
         }
         Ok(())

@@ -148,10 +148,8 @@ impl<'a> Pages<'a> {
                 )));
             }
             other => {
-                return Err(said(Reason::unsupported(
-                    format!("has colours ({other:?}): only gray is read"),
-                    "convert it",
-                )));
+                let what = format!("colours ({other:?}): only gray is read");
+                return Err(said(Reason::NotScalar { what, dims: None }));
             }
         }
         let depth = self.decoder.find_tag_unsigned::<u64>(IMAGE_DEPTH).map_err(damaged(path))?;

@@ -25,7 +25,11 @@ pub(super) const KEYWORDS: [&str; 14] = [
     "CELL_DATA",
 ];
 
+/// The name of the array of places.
+pub(super) const POINTS: &str = "POINTS";
+
 /// An array of points or cells.
+#[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
 pub(super) struct Array {
     pub name: String,
     pub cells: bool,
@@ -37,6 +41,8 @@ pub(super) struct Array {
     pub kind: String,
     /// `COLOR_SCALARS`, as VTK calls bytes, which text gives as shares of 255.
     pub colours: bool,
+    /// `SCALARS`, as VTK calls what it shows.
+    pub active: bool,
     /// Where the values begin, and where they end as far as that is known.
     pub start: u64,
     pub end: Option<u64>,
@@ -53,39 +59,73 @@ pub(super) fn find(
     line: &str,
     text: bool,
 ) -> Result<Vec<Array>, VolumeError> {
-    let mut search = Search { path, lines, text, cells: false, count: 0, found: Vec::new() };
-    let mut line = Some(line.to_owned());
-    while let Some(words) = line {
-        match search.section(&words) {
-            Ok(true) => {}
-            Ok(false) => break,
-            Err(_) if !search.found.is_empty() => break,
-            Err(error) => return Err(error),
-        }
-        line = match search.lines.next() {
-            Err(_) if !search.found.is_empty() => break,
-            next => next.map_err(io_error(path))?,
-        };
-    }
-    if search.found.is_empty() {
-        let reason =
-            Reason::truncated("ends before any SCALARS: it is truncated, or holds no samples");
-        return Err(format_error(path, reason));
-    }
+    let mut search = Search::new(path, lines, text, false);
+    search.all(Some(line.to_owned()))?;
     Ok(search.found)
+}
+
+/// How many cells a keyword lists, in the plural.
+pub(crate) type CellList = (&'static str, u64);
+
+/// Finds the places and the arrays that lie behind the line DATASET, and the cells, single points aside. Where
+/// cells come as `offsets` and corners, as from version 5 on, each of these is an array of its own.
+pub(super) fn find_all(
+    path: &Path,
+    lines: &mut Lines<impl BufRead>,
+    text: bool,
+    offsets: bool,
+) -> Result<(Vec<Array>, Vec<CellList>), VolumeError> {
+    let line = lines.next().map_err(io_error(path))?;
+    let mut search = Search::new(path, lines, text, offsets);
+    search.all(line)?;
+    Ok((search.found, search.listed))
 }
 
 struct Search<'a, R> {
     path: &'a Path,
     lines: &'a mut Lines<R>,
     text: bool,
+    /// Whether cells are two arrays.
+    offsets: bool,
+    /// The lengths of these.
+    lists: [u64; 2],
     cells: bool,
     /// Points or cells.
     count: u64,
     found: Vec<Array>,
+    listed: Vec<CellList>,
 }
 
-impl<R: BufRead> Search<'_, R> {
+impl<'a, R: BufRead> Search<'a, R> {
+    fn new(path: &'a Path, lines: &'a mut Lines<R>, text: bool, offsets: bool) -> Self {
+        let (lists, cells, count, found, listed) = ([0; 2], false, 0, Vec::new(), Vec::new());
+        Self { path, lines, text, offsets, lists, cells, count, found, listed }
+    }
+
+    /// Finds them all, from a line on.
+    fn all(&mut self, mut line: Option<String>) -> Result<(), VolumeError> {
+        let search = self;
+        let path = search.path;
+        while let Some(words) = line {
+            match search.section(&words) {
+                Ok(true) => {}
+                Ok(false) => break,
+                Err(_) if !search.found.is_empty() => break,
+                Err(error) => return Err(error),
+            }
+            line = match search.lines.next() {
+                Err(_) if !search.found.is_empty() => break,
+                next => next.map_err(io_error(path))?,
+            };
+        }
+        if search.found.is_empty() {
+            let reason =
+                Reason::truncated("ends before any SCALARS: it is truncated, or holds no samples");
+            return Err(format_error(path, reason));
+        }
+        Ok(())
+    }
+
     /// Goes over what a line begins; `false` where it begins nothing that is known.
     fn section(&mut self, line: &str) -> Result<bool, VolumeError> {
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -106,7 +146,38 @@ impl<R: BufRead> Search<'_, R> {
                     return Err(format_error(self.path, reason));
                 }
                 self.array(word(1), word(2), components, self.count, true)?;
+                if let Some(array) = self.found.last_mut() {
+                    array.active = true;
+                }
             }
+            // What lies between the line DATASET and the data of points.
+            POINTS => self.array(POINTS, word(2), 3, number(1), true)?,
+            "DIMENSIONS" => {}
+            "VERTICES" | "LINES" | "POLYGONS" | "TRIANGLE_STRIPS" | "CELLS" => {
+                let [first, second] = [number(1), number(2)];
+                // Numbers of offsets and corners, or of cells and of these with their corners.
+                let (cells, corners) = if self.offsets {
+                    (first.saturating_sub(1), second)
+                } else {
+                    (first, second.saturating_sub(first))
+                };
+                let kind = match keyword.as_str() {
+                    "LINES" => Some("lines"),
+                    "POLYGONS" => Some("polygons"),
+                    "TRIANGLE_STRIPS" => Some("strips"),
+                    "CELLS" if corners > cells => Some("cells"),
+                    _ => None,
+                };
+                self.listed.extend(kind.map(|kind| (kind, cells)));
+                if self.offsets {
+                    self.lists = [first, second];
+                } else {
+                    self.pass("int", second)?;
+                }
+            }
+            "OFFSETS" => self.pass(word(1), self.lists[0])?,
+            "CONNECTIVITY" => self.pass(word(1), self.lists[1])?,
+            "CELL_TYPES" => self.pass("int", number(1))?,
             "COLOR_SCALARS" => {
                 self.array(word(1), "unsigned_char", number(2), self.count, true)?;
                 if let Some(array) = self.found.last_mut() {
@@ -169,8 +240,9 @@ impl<R: BufRead> Search<'_, R> {
         let values = components.saturating_mul(count);
         let start = self.lines.bytes();
         let (name, kind) = (name.to_owned(), kind.to_owned());
-        let (cells, colours, end) = (self.cells, false, None);
-        let array = Array { name, cells, components, values, kind, colours, start, end, last };
+        let (cells, colours, active, end) = (self.cells, false, false, None);
+        let array =
+            Array { name, cells, components, values, kind, colours, active, start, end, last };
         let kind = array.kind.clone();
         self.found.push(array);
         self.pass(&kind, values)?;
@@ -201,7 +273,10 @@ impl<R: BufRead> Search<'_, R> {
 /// The type of one number, by its name.
 pub(super) fn scalar(path: &Path, name: &str, components: u64) -> Result<Dtype, VolumeError> {
     if components != 1 {
-        return Err(format_error(path, Reason::not_scalar(format!("{components} values a voxel"))));
+        return Err(format_error(
+            path,
+            Reason::not_scalar(format!("{components} values a voxel"), None),
+        ));
     }
     Ok(match name {
         "unsigned_char" => Dtype::U8,

@@ -1,6 +1,7 @@
 //! The legacy VTK format.
 
 mod arrays;
+mod geometry;
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
@@ -14,6 +15,7 @@ use crate::advice::{Setting, advice};
 use crate::volume::{Coordinates, Dims, Dtype, Endian, Reason, Volume, VolumeError};
 
 use arrays::Array;
+pub(crate) use geometry::VtkPoints;
 
 /// The first bytes of each legacy VTK file.
 pub(super) const MAGIC: &[u8] = b"# vtk DataFile";
@@ -145,7 +147,7 @@ fn header(
             "DATASET" => {
                 return Err(said(Reason::unsupported(
                     format!(
-                        "holds a dataset {}: of legacy VTK files only STRUCTURED_POINTS are read",
+                        "holds a dataset {}: of legacy VTK files only STRUCTURED_POINTS are read as volumes",
                         words.get(1).unwrap_or(&"without a name")
                     ),
                     "convert it first",

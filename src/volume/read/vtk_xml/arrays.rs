@@ -1,6 +1,6 @@
 //! The arrays of a file, in each of their codings.
 
-use std::io::{self, Read};
+use std::io::{self, Read, Take};
 use std::str::FromStr;
 
 use flate2::read::ZlibDecoder;
@@ -140,9 +140,28 @@ impl VtkXml {
             ))));
         };
         let sizes = (0..first).map(|_| self.word(&mut data)).collect::<io::Result<Vec<u64>>>();
-        let sizes = sizes.map_err(cut)?.into_iter();
-        let (block, ready) = (block.max(last), io::Cursor::default());
-        let reader = Blocks { data, compressor, sizes, block, ready };
+        let sizes = sizes.map_err(cut)?;
+        let packed = sizes.iter().fold(0u64, |sum, &size| sum.saturating_add(size));
+        if packed > most {
+            return Err(self.said(Reason::truncated(format!(
+                "claims {packed} compressed bytes for its array {}, but at most {most} follow: it is \
+                 truncated",
+                self.name(array)
+            ))));
+        }
+        if bytes > packed.saturating_mul(MOST_EXPANSION) {
+            return Err(self.said(Reason::header(format!(
+                "claims that {packed} compressed bytes of its array {} hold {bytes}, which they cannot",
+                self.name(array)
+            ))));
+        }
+        let reader = Blocks {
+            data: Some(data),
+            compressor,
+            sizes: sizes.into_iter(),
+            block: block.max(last),
+            at: At::End,
+        };
         let payload = Payload { reader, length: Length::Exactly(bytes) };
         payload.samples(dtype, self.endian, count).map_err(located)
     }
@@ -162,42 +181,64 @@ impl VtkXml {
 
 /// Blocks compressed one by one.
 struct Blocks<R> {
-    data: R,
+    /// What follows, where no block is being read.
+    data: Option<R>,
     compressor: Compressor,
     /// Compressed bytes of those to come.
     sizes: std::vec::IntoIter<u64>,
     /// The most bytes of one.
     block: u64,
-    ready: io::Cursor<Vec<u8>>,
+    at: At<R>,
+}
+
+/// Where in a block we are.
+enum At<R> {
+    /// A block that is unpacked as it is read: it may be as large as the array.
+    Within(Take<ZlibDecoder<Take<R>>>),
+    /// What is left of a block that was unpacked at once.
+    Ready(io::Cursor<Vec<u8>>),
+    /// At its end.
+    End,
 }
 
 impl<R: Read> Read for Blocks<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         loop {
-            let found = self.ready.read(buffer)?;
+            let found = match &mut self.at {
+                At::Within(block) => block.read(buffer)?,
+                At::Ready(bytes) => bytes.read(buffer)?,
+                At::End => 0,
+            };
             if found > 0 || buffer.is_empty() {
                 return Ok(found);
             }
-            let Some(size) = self.sizes.next() else { return Ok(0) };
-            let mut packed = Vec::new();
-            (&mut self.data).take(size).read_to_end(&mut packed)?;
-            if (packed.len() as u64) < size {
-                return Err(io::ErrorKind::UnexpectedEof.into());
-            }
-            let bytes = match self.compressor {
-                Compressor::Zlib => {
-                    let mut bytes = Vec::new();
-                    ZlibDecoder::new(&packed[..]).take(self.block).read_to_end(&mut bytes)?;
-                    bytes
+            if let At::Within(block) = std::mem::replace(&mut self.at, At::End) {
+                let mut packed = block.into_inner().into_inner();
+                // The decoder reads ahead, but not beyond the block.
+                io::copy(&mut packed, &mut io::sink())?;
+                if packed.limit() > 0 {
+                    return Err(io::ErrorKind::UnexpectedEof.into());
                 }
-                // LZ4 repeats a byte for each byte of 255 in its code, so this much may be true.
+                self.data = Some(packed.into_inner());
+            }
+            let Some(size) = self.sizes.next() else { return Ok(0) };
+            let mut packed = self.data.take().expect("no block is being read").take(size);
+            self.at = match self.compressor {
+                Compressor::Zlib => At::Within(ZlibDecoder::new(packed).take(self.block)),
                 Compressor::Lz4 => {
+                    let mut code = Vec::new();
+                    packed.read_to_end(&mut code)?;
+                    if packed.limit() > 0 {
+                        return Err(io::ErrorKind::UnexpectedEof.into());
+                    }
+                    self.data = Some(packed.into_inner());
+                    // LZ4 repeats a byte for each byte of 255 in its code, so this much may be true.
                     let most = self.block.min(size.saturating_mul(256)) as usize;
-                    lz4_flex::block::decompress(&packed, most)
-                        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?
+                    let bytes = lz4_flex::block::decompress(&code, most)
+                        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
+                    At::Ready(io::Cursor::new(bytes))
                 }
             };
-            self.ready = io::Cursor::new(bytes);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod open;
 mod samples;
+mod shards;
 
 use std::path::Path;
 

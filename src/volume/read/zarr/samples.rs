@@ -9,8 +9,9 @@ use zarrs::array_subset::ArraySubset;
 use zarrs::filesystem::FilesystemStore;
 
 use super::super::format_error;
-use super::damaged;
+use super::{damaged, shards};
 use crate::advice::{Setting, advice};
+use crate::memory::asking;
 use crate::progress;
 use crate::volume::source::Parts;
 use crate::volume::{Dims, Dtype, Reason, VolumeError};
@@ -115,6 +116,7 @@ impl ZarrParts {
         part: &ArraySubset,
         convert: impl Fn(T) -> f32,
     ) -> Result<Vec<f32>, VolumeError> {
+        shards::check(&self.array, part).map_err(|error| damaged(&self.path, &error))?;
         let read = self.array.retrieve_array_subset_elements::<T>(part);
         let samples = read.map_err(|error| damaged(&self.path, &error))?;
         Ok(samples.into_iter().map(convert).collect())
@@ -129,7 +131,51 @@ struct Read<'a> {
     leading: &'a [u64],
 }
 
+/// Zarr leaves out chunks of nothing but the fill value, so an array may be larger than what is stored of it; so many
+/// bytes are believed without any.
+const MOST_UNSTORED: u64 = 1 << 28;
+/// No codec expands by more: zstd repeats a byte 128 KiB long for 4 bytes of code.
+const MOST_EXPANSION: u64 = 1 << 15;
+
+/// The bytes in a folder and those in it, as far as `enough`.
+fn stored(folder: &Path, enough: u64) -> u64 {
+    let (mut folders, mut bytes) = (vec![folder.to_owned()], 0u64);
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+            match entry.metadata() {
+                Ok(about) if about.is_dir() => folders.push(entry.path()),
+                Ok(about) => bytes = bytes.saturating_add(about.len()),
+                Err(_) => {}
+            }
+            if bytes >= enough {
+                return bytes;
+            }
+        }
+    }
+    bytes
+}
+
 impl Read<'_> {
+    /// Refuses an array that claims far more than what is stored can hold, before memory is asked for.
+    fn check_stored(&self) -> Result<(), VolumeError> {
+        let Self { path, dims, .. } = self;
+        let needed = (dims.samples() as u64).saturating_mul(size_of::<f32>() as u64);
+        if needed <= MOST_UNSTORED {
+            return Ok(());
+        }
+        let enough = needed.div_ceil(MOST_EXPANSION);
+        let found = stored(path, enough);
+        if found < enough {
+            return Err(format_error(
+                path,
+                Reason::truncated(format!(
+                    "claims {dims} samples and holds {found} bytes: nearly all its chunks are missing"
+                )),
+            ));
+        }
+        Ok(())
+    }
+
     /// All samples, by as many slices at once as a chunk is thick, and as many rows as fit a piece.
     fn all<T: ElementOwned + Copy + Send + Sync>(
         &self,
@@ -143,9 +189,10 @@ impl Read<'_> {
         };
         let chunk = array.chunk_shape(&vec![0; axes]).map_err(|error| damaged(&error))?;
         check_chunk(path, &chunk, *dims)?;
+        self.check_stored()?;
         let [thick, high] = [3, 2].map(|axis| chunk[axes - axis].get());
         let mut samples = Vec::new();
-        samples.try_reserve_exact(dims.samples()).map_err(|_| {
+        asking(|| samples.try_reserve_exact(dims.samples())).map_err(|_| {
             let bytes = dims.samples() * size_of::<f32>();
             said(Reason::choice(
                 Setting::Level,
@@ -168,6 +215,7 @@ impl Read<'_> {
             let mut ranges: Vec<_> = leading.iter().map(|&i| i..i + 1).collect();
             ranges.extend([slices.clone(), rows.clone(), 0..x]);
             let part = ArraySubset::new_with_ranges(&ranges);
+            shards::check(array, &part).map_err(|error| damaged(&error))?;
             let part: Vec<T> =
                 array.retrieve_array_subset_elements(&part).map_err(|error| damaged(&error))?;
             let in_slice = ((rows.end - rows.start) * x) as usize;

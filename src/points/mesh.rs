@@ -1,0 +1,64 @@
+//! What files of points list besides points: cells of meshes, which are read as complexes where they can be.
+
+use std::fmt;
+use std::path::Path;
+
+use serde::Serialize;
+use walpha_check::schema::ComplexFile;
+
+use super::read::format;
+use super::{PointOptions, PointsError};
+use crate::volume::Reason;
+
+/// How many cells of a kind a file lists.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct CellCount {
+    /// In the plural: tetrahedra, faces.
+    pub kind: &'static str,
+    /// How many.
+    pub count: usize,
+}
+
+/// As in `200 tetrahedra`.
+impl fmt::Display for CellCount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, count } = self;
+        write!(f, "{count} {kind}")
+    }
+}
+
+impl CellCount {
+    #[cfg(feature = "formats")]
+    pub(super) fn new(kind: &'static str, count: usize) -> Self {
+        Self { kind, count }
+    }
+}
+
+/// The cells that a file lists besides its points, by kind; none for a list of points alone.
+///
+/// # Errors
+/// A file that cannot be read, or whose header is damaged.
+pub fn cells_of(path: &Path, options: &PointOptions) -> Result<Vec<CellCount>, PointsError> {
+    let cells = match options.found(path)?.and_then(|format| format.cells) {
+        Some(cells) => cells(path)?,
+        None => Vec::new(),
+    };
+    Ok(cells.into_iter().filter(|cells| cells.count > 0).collect())
+}
+
+/// Reads the cells of a file as a complex, to be judged: of VTU, tetrahedra, triangles, edges and vertices, with
+/// the point data `weight`, and where walpha wrote the file its α and classes. Otherwise α is ∞.
+///
+/// # Errors
+/// A format whose cells are not read, cells that are no simplices, and what [`super::read_points`] refuses.
+pub fn read_complex(path: &Path, options: &PointOptions) -> Result<ComplexFile, PointsError> {
+    if let Some(read) = options.found(path)?.and_then(|format| format.read_complex) {
+        return read(path);
+    }
+    let reason = Reason::unsupported(
+        "lists cells that are no tetrahedra of a complex",
+        "give a complex as .json, .npz or .vtu (docs/cross-checking.md)",
+    );
+    Err(format(path, reason))
+}
