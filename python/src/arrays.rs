@@ -1,7 +1,8 @@
 //! Arrays of numpy as the library takes them, and back.
 
-use numpy::ndarray::{ArrayView2, Ix1, Ix2};
-use numpy::{Element, PyArray2, PyArrayMethods, PyReadonlyArray};
+use numpy::ndarray::{Array3, ArrayView2, Ix1, Ix2, Ix3};
+use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 
 use crate::errors::wrong;
@@ -16,15 +17,63 @@ pub fn rows<const N: usize, T: Element + Copy>(
         let shape = array.shape();
         return Err(wrong(format!("{name} has shape {shape:?}, expected (n, {N})")));
     }
-    Ok(match array.as_slice() {
-        Some(flat) => flat.as_chunks::<N>().0.to_vec(),
-        None => array.rows().into_iter().map(|row| std::array::from_fn(|k| row[k])).collect(),
-    })
+    let mut rows = room(array.nrows())?;
+    match array.as_slice() {
+        Some(flat) => rows.extend_from_slice(flat.as_chunks::<N>().0),
+        None => {
+            rows.extend(
+                array.rows().into_iter().map(|row| std::array::from_fn::<T, N, _>(|k| row[k])),
+            );
+        }
+    }
+    Ok(rows)
 }
 
 /// Numbers, copied once.
-pub fn numbers<T: Element + Copy>(array: &PyReadonlyArray<'_, T, Ix1>) -> Vec<T> {
-    array.as_array().to_vec()
+pub fn numbers<T: Element + Copy>(array: &PyReadonlyArray<'_, T, Ix1>) -> PyResult<Vec<T>> {
+    let array = array.as_array();
+    let mut numbers = room(array.len())?;
+    numbers.extend(array);
+    Ok(numbers)
+}
+
+/// Samples of a volume, copied once, x fastest.
+pub fn samples(array: &PyReadonlyArray<'_, f32, Ix3>) -> PyResult<Array3<f32>> {
+    let array = array.as_array();
+    let mut samples = room(array.len())?;
+    samples.extend(array);
+    Ok(Array3::from_shape_vec(array.dim(), samples).expect("as many samples as in the array"))
+}
+
+/// A new array of these numbers.
+pub fn column<'py, T: Element>(
+    py: Python<'py>,
+    numbers: impl ExactSizeIterator<Item = T>,
+) -> PyResult<Bound<'py, PyArray1<T>>> {
+    let mut column = room(numbers.len())?;
+    column.extend(numbers);
+    Ok(column.into_pyarray(py))
+}
+
+/// A copy of a slice.
+pub fn copied<T: Copy>(items: &[T]) -> PyResult<Vec<T>> {
+    let mut copy = room(items.len())?;
+    copy.extend_from_slice(items);
+    Ok(copy)
+}
+
+/// Room for so many items, or `MemoryError`: these copies are made in Python's own thread, where no other failure
+/// can be survived.
+fn room<T>(count: usize) -> PyResult<Vec<T>> {
+    let mut items = Vec::new();
+    let refused = |_| {
+        let bytes = count as u128 * size_of::<T>() as u128;
+        PyMemoryError::new_err(format!(
+            "a copy of an array needs {bytes} bytes of memory, which cannot be had"
+        ))
+    };
+    items.try_reserve_exact(count).map_err(refused)?;
+    Ok(items)
 }
 
 /// An array over rows that an object owns, without a copy; nobody can write to it.

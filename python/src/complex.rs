@@ -21,9 +21,9 @@ pub struct Complex(Arc<PlacedComplex>);
 /// Simplices of one dimension, and their classes.
 type Listed<'py> = (Option<PyReadonlyArray2<'py, u32>>, Option<PyReadonlyArray1<'py, u8>>);
 
-/// How many findings there are, of the first what they say and their fields as JSON, and the certificate as
-/// JSON.
-type Verdict = (usize, Vec<(String, String)>, String);
+/// The verdict, how many ties and findings there are, of the first findings what they say and their fields
+/// as JSON, and what was not judged as JSON.
+type Judged = (String, usize, usize, Vec<(String, String)>, String);
 
 #[pymethods]
 impl Complex {
@@ -44,7 +44,7 @@ impl Complex {
     ) -> PyResult<Self> {
         let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
         let mut file = ComplexFile::of_points(rows("points", &points)?, alpha);
-        file.weights = weights.as_ref().map(numbers);
+        file.weights = weights.as_ref().map(numbers).transpose()?;
         file.cells = table("cells", &cells)?;
         file.facets = table("facets", &facets)?;
         file.edges = table("edges", &edges)?;
@@ -53,7 +53,7 @@ impl Complex {
         file.classes.facets = classes("facet_classes", &facets)?;
         file.classes.edges = classes("edge_classes", &edges)?;
         file.classes.vertices = classes("vertex_classes", &vertices)?;
-        file.hidden = hidden.as_ref().map(numbers);
+        file.hidden = hidden.as_ref().map(numbers).transpose()?;
         file.duplicates = duplicates.as_ref().map(|pairs| rows("duplicates", pairs)).transpose()?;
         Ok(Self(Arc::new(run(py, None, move |_| file.into_complex())?)))
     }
@@ -66,23 +66,27 @@ impl Complex {
         Ok(Self(Arc::new(placed)))
     }
 
-    /// What is wrong with it: how many findings, of the first `most` what they say and their fields as JSON,
-    /// and the certificate as JSON.
+    /// What is wrong with it; of the first `most` findings what they say and their fields. Other choices among
+    /// ties are findings if `ties_too`.
     fn check(
         &self,
         py: Python<'_>,
         most: usize,
+        ties_too: bool,
         progress: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<Verdict> {
+    ) -> PyResult<Judged> {
         let placed = Arc::clone(&self.0);
         run(py, progress.as_ref(), move |call| {
             call.begin(Stage::Certify);
-            let (findings, certificate) = placed.findings()?;
+            let (mut findings, certificate) = placed.findings()?;
+            findings.retain(|finding| ties_too || !finding.is_tie());
             let told =
                 findings.iter().take(most).map(|finding| (finding.to_string(), json(finding)));
             let unjudged: Vec<String> =
                 certificate.not_judged.iter().map(ToString::to_string).collect();
-            Ok::<_, CertifyError>((findings.len(), told.collect(), json(&unjudged)))
+            let (verdict, ties) = (certificate.verdict.to_string(), certificate.ties);
+            let (total, told) = (findings.len(), told.collect());
+            Ok::<_, CertifyError>((verdict, ties, total, told, json(&unjudged)))
         })
     }
 }
@@ -122,6 +126,6 @@ fn classes(name: &str, listed: &Listed<'_>) -> PyResult<Option<Vec<Class>>> {
             wrong(format!("{name} holds {number}: classes are numbered from 0 to 3"))
         })
     };
-    let all = |array: &PyReadonlyArray1<'_, u8>| numbers(array).into_iter().map(class).collect();
+    let all = |array: &PyReadonlyArray1<'_, u8>| numbers(array)?.into_iter().map(class).collect();
     listed.1.as_ref().map(all).transpose()
 }

@@ -9,7 +9,7 @@ use walpha::progress::Stage;
 use walpha::shape::ShapeError;
 use walpha::{Alpha, WeightedPoints, ladder};
 
-use crate::arrays::{lend, numbers};
+use crate::arrays::{column, lend, numbers};
 use crate::errors::{Told, wrong};
 use crate::shape::{Shape, json, torus, weighted};
 use crate::work::run;
@@ -33,11 +33,12 @@ impl Filtration {
     ) -> PyResult<Self> {
         let torus = torus(periodic)?;
         let points = weighted(&points, weights.as_ref(), None)?;
-        let positions = points.positions;
-        let weights = points.weights.unwrap_or_else(|| vec![0.0; positions.len()]);
-        let points = WeightedPoints::new(positions, weights).unwrap();
         let made = run(py, progress.as_ref(), move |call| {
             call.begin(Stage::Filtration);
+            let positions = points.positions;
+            let weights = points.weights.unwrap_or_else(|| vec![0.0; positions.len()]);
+            let points =
+                WeightedPoints::new(positions, weights).expect("as many weights as points");
             ladder::Filtration::on(torus, points)
         })?;
         Ok(Self(Arc::new(made)))
@@ -75,7 +76,7 @@ impl Filtration {
         alphas: PyReadonlyArray1<'_, f64>,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<String> {
-        let alphas = numbers(&alphas).into_iter().map(Alpha::from_squared);
+        let alphas = numbers(&alphas)?.into_iter().map(Alpha::from_squared);
         let alphas: Vec<Alpha> = alphas.collect::<Result<_, _>>().map_err(Told::told)?;
         let filtration = Arc::clone(&self.0);
         run(py, progress.as_ref(), move |call| {
@@ -221,18 +222,18 @@ impl Simplices {
     }
 
     #[getter]
-    fn ranks<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        self.ranks.clone().into_pyarray(py)
+    fn ranks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
+        column(py, self.ranks.iter().copied())
     }
 
     #[getter]
-    fn gabriel<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        self.gabriel.clone().into_pyarray(py)
+    fn gabriel<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        column(py, self.gabriel.iter().copied())
     }
 
     #[getter]
-    fn order<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        self.order.clone().into_pyarray(py)
+    fn order<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
+        column(py, self.order.iter().copied())
     }
 
     #[getter]

@@ -4,6 +4,7 @@
 //! defaults and documentation for people are in Python (`walpha/*.py`). Long work runs in threads of its own,
 //! without the interpreter ([`work`]).
 
+mod allocator;
 mod arrays;
 mod complex;
 mod errors;

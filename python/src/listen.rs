@@ -21,6 +21,7 @@ thread_local! {
 pub struct Call {
     steps: Mutex<Vec<Step>>,
     stopped: AtomicBool,
+    starved: AtomicBool,
 }
 
 /// So many of so many equal parts of a stage; of a total of 0 nothing is known.
@@ -51,6 +52,24 @@ impl Call {
     /// Ends the work the next time it says how far it is.
     pub fn stop(&self) {
         self.stopped.store(true, Ordering::Relaxed);
+    }
+
+    /// Says that memory has run out for the call that this thread works for, if there is one, and ends it. Allocates
+    /// nothing.
+    pub fn starve() -> bool {
+        let starve = |call: &RefCell<Option<Arc<Self>>>| {
+            let call = call.try_borrow().ok()?;
+            let call = call.as_ref()?;
+            call.starved.store(true, Ordering::Relaxed);
+            call.stop();
+            Some(())
+        };
+        CALL.try_with(starve).is_ok_and(|starved| starved.is_some())
+    }
+
+    /// Whether memory has run out.
+    pub fn is_starved(&self) -> bool {
+        self.starved.load(Ordering::Relaxed)
     }
 
     /// The reports since the last time: the last of each stage.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::export::Target;
-use walpha::points::{ModelFacts, Packing, PointWriter, read_model};
+use walpha::points::{ModelFacts, Packing, PointOptions, PointWriter, read_model};
 use walpha::progress::Stage;
 use walpha::{Alpha, WeightedPoints};
 
@@ -28,7 +28,7 @@ type Read<'py> = (
 pub fn read_points<'py>(py: Python<'py>, path: PathBuf, level: Option<u32>) -> PyResult<Read<'py>> {
     let (points, facts) = run(py, None, move |call| {
         call.begin(Stage::Read);
-        read_model(&path, None, level)
+        read_model(&path, &PointOptions::default().level(level))
     })?;
     let rows = points.positions.len();
     let places = points.positions.into_flattened().into_pyarray(py).reshape([rows, 3])?;
@@ -62,11 +62,14 @@ pub fn write_points(
     }
     let alpha = alpha.map(Alpha::from_squared).transpose().map_err(Told::told)?;
     let points = weighted(&points, weights.as_ref(), values.as_ref())?;
-    let weights = points.weights.unwrap_or_else(|| vec![0.0; points.positions.len()]);
-    let mut weighted = WeightedPoints::new(points.positions, weights).map_err(Told::told)?;
-    weighted.values = points.values;
     let facts = ModelFacts::default().alpha(alpha);
     let packing = Packing::default().value_error(value_error);
     let target = Target::open(&path).map_err(Told::told)?;
-    run(py, None, move |_| target.write(|out| writer.write_model(&weighted, &facts, &packing, out)))
+    run(py, None, move |_| {
+        let weights = points.weights.unwrap_or_else(|| vec![0.0; points.positions.len()]);
+        let mut weighted =
+            WeightedPoints::new(points.positions, weights).expect("as many weights as points");
+        weighted.values = points.values;
+        target.write(|out| writer.write_model(&weighted, &facts, &packing, out))
+    })
 }

@@ -11,7 +11,7 @@ use walpha::progress::Stage;
 use walpha::volume::{Coordinates, Frame, Gray, GrayRange, ReadOptions, Space, Volume, open};
 use walpha::{Alpha, Pipeline, Points, Selection, SelectionRule, Units};
 
-use crate::arrays::numbers;
+use crate::arrays::{numbers, samples as owned};
 use crate::errors::{Told, wrong};
 use crate::shape::{Shape, alpha_rule, json, options, unknown};
 use crate::work::run;
@@ -46,7 +46,7 @@ pub fn haar<'py>(
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<(Bound<'py, PyArray3<f32>>, String)> {
     let options = haar_options(&tolerance, decomposition)?;
-    let samples = samples.as_array().to_owned();
+    let samples = owned(&samples)?;
     let (smoothed, truncation) = run(py, progress.as_ref(), move |call| {
         call.begin(Stage::Haar);
         smooth(&Volume::new(samples, Frame::VOXEL)?, &options)
@@ -60,7 +60,7 @@ pub fn difference<'py>(
     py: Python<'py>,
     samples: PyReadonlyArray3<'_, f32>,
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-    let samples = samples.as_array().to_owned();
+    let samples = owned(&samples)?;
     let found = run(py, None, move |_| {
         Ok::<_, PointsError>(points::difference(&Volume::new(samples, Frame::VOXEL)?))
     })?;
@@ -81,13 +81,14 @@ pub fn select<'py>(
     rule: (String, f64),
     gray_min: Option<f64>,
 ) -> PyResult<Selected<'py>> {
-    let (samples, smoothed) = (samples.as_array().to_owned(), smoothed.as_array().to_owned());
-    if samples.dim() != smoothed.dim() {
-        let (given, other) = (samples.shape(), smoothed.shape());
+    let (given, other) = (samples.as_array(), smoothed.as_array());
+    if given.dim() != other.dim() {
+        let (given, other) = (given.shape(), other.shape());
         return Err(wrong(format!(
             "smoothed has shape {other:?}, the volume {given:?}: give one of its shape"
         )));
     }
+    let (samples, smoothed) = (owned(&samples)?, owned(&smoothed)?);
     let (frame, units) = place(frame)?;
     let selection = Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min);
     let found = run(py, None, move |call| {
@@ -113,12 +114,14 @@ pub fn weigh<'py>(
     alpha: f64,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let weighting: Weighting = weighting.parse().map_err(Told::told)?;
-    let differences = numbers(&differences);
-    // Places do not count here.
-    let positions = vec![[0.0; 3]; differences.len()];
-    let points = Points::new(positions).with_differences(differences).map_err(Told::told)?;
+    let differences = numbers(&differences)?;
     let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
-    let weighed = points::weigh(&points, weighting, alpha).map_err(Told::told)?;
+    let weighed = run(py, None, move |_| {
+        // Places do not count here.
+        let positions = vec![[0.0; 3]; differences.len()];
+        let points = Points::new(positions).with_differences(differences)?;
+        points::weigh(&points, weighting, alpha)
+    })?;
     Ok(weighed.weights.into_pyarray(py))
 }
 
@@ -169,7 +172,7 @@ pub fn pipeline(
         Some(other) => return Err(unknown("refit", other, "'whole' and 'shape'")),
     };
     let gray = gray.map_or(Gray::Automatic, |(low, high)| Gray::Range(GrayRange { low, high }));
-    let samples = samples.as_array().to_owned();
+    let samples = owned(&samples)?;
     let model = run(py, progress.as_ref(), move |call| {
         let volume = grays(samples, frame, is_gray)?.into_gray(gray).map_err(PointsError::from)?;
         let (volume, range) = volume;
@@ -220,6 +223,7 @@ fn selection_rule(rule: &(String, f64)) -> PyResult<SelectionRule> {
     Ok(match rule.0.as_str() {
         "count" => SelectionRule::Count(whole("count", rule.1)?),
         "ratio" => SelectionRule::Ratio(rule.1),
+        "at_most" => SelectionRule::AtMost(rule.1),
         "threshold" => SelectionRule::Threshold(rule.1),
         other => return Err(unknown("rule", other, "'count', 'ratio' and 'threshold'")),
     })

@@ -4,24 +4,27 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use pyo3::exceptions::PyOSError;
+use pyo3::exceptions::{PyMemoryError, PyOSError};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use walpha::threads;
 
 use crate::errors::Told;
 use crate::listen::Call;
 
 /// How often the interpreter is asked for an interrupt and progress is passed on.
 const TICK: Duration = Duration::from_millis(50);
+/// How long work that memory ran out for may take to end before the call returns without it.
+const GRACE: Duration = Duration::from_secs(2);
 /// As a main thread has it; rayon's default is a quarter.
 const STACK: usize = 8 << 20;
 
 /// Does work in threads of its own while other threads of Python run, and returns its result.
 ///
 /// This thread waits; it asks Python for interrupts and calls `progress(stage, done, total)`. After an
-/// interrupt, or an exception of `progress`, it returns at once. The work then owns all that it works on, and
+/// interrupt, or an exception of `progress`, it returns at once, and with `MemoryError` soon after memory ran out. The work then owns all that it works on, and
 /// ends when it next says how far it is.
 pub fn run<T, E>(
     py: Python<'_>,
@@ -36,6 +39,7 @@ where
     let wanted = Wanted(Arc::clone(&call));
     let threads = pool(&call)?;
     let (sender, mut receiver) = sync_channel(1);
+    let mut starved = None;
     thread::Builder::new().name("walpha".into()).spawn(move || {
         let outcome = catch_unwind(AssertUnwindSafe(|| threads.install(|| work(&call))));
         // Nobody waits after an interrupt.
@@ -55,18 +59,41 @@ where
         }
         match received {
             Ok(Ok(result)) => return result.map_err(Told::told),
+            Ok(Err(_)) if wanted.0.is_starved() => return Err(no_memory()),
             Ok(Err(panic)) => resume_unwind(panic),
-            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Timeout) => {
+                py.check_signals()?;
+                if wanted.0.is_starved()
+                    && starved.get_or_insert_with(Instant::now).elapsed() > GRACE
+                {
+                    return Err(no_memory());
+                }
+            }
             Err(RecvTimeoutError::Disconnected) => unreachable!("an outcome is always sent"),
         }
     }
 }
 
+/// Memory ran out where no estimate had foreseen it. What the work holds comes free when it ends, which it may have to
+/// wait for memory to do.
+fn no_memory() -> PyErr {
+    PyMemoryError::new_err(
+        "memory ran out in the middle of the work; give it more, or make the input smaller",
+    )
+}
+
 /// Threads that work for one call: their progress reports belong to it. `RAYON_NUM_THREADS` says how many, or else
-/// the cores.
+/// the cores; where not so many can be had, fewer.
 fn pool(call: &Arc<Call>) -> PyResult<ThreadPool> {
     let call = Arc::clone(call);
+    // The last is for the thread that waits for them.
+    let available = threads::available(threads::wanted(None) + 1, STACK).saturating_sub(1);
+    if available == 0 {
+        let text = "no threads to work in: memory, or the number of processes, is limited too much";
+        return Err(PyMemoryError::new_err(text));
+    }
     ThreadPoolBuilder::new()
+        .num_threads(available)
         .thread_name(|i| format!("walpha {i}"))
         .stack_size(STACK)
         .start_handler(move |_| Arc::clone(&call).enter())

@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ def test_our_shapes_are_valid(cloud, weights):
     for exterior in (False, True):
         verdict = walpha.check(walpha.alpha_shape(cloud, weights, 0.004, exterior=exterior))
         assert verdict and verdict.total == 0 and verdict.findings == []
+        assert verdict.verdict == "exact" and verdict.ties == 0
         assert exterior == (not any("hidden" in rule for rule in verdict.not_judged))
 
 
@@ -23,7 +26,7 @@ def test_a_wrong_class_is_found(cloud):
         vertices=shape.vertices, vertex_classes=shape.vertex_classes, hidden=shape.hidden, duplicates=shape.duplicates,
     )
     verdict = walpha.check(cloud, 0.004, **given)
-    assert not verdict and verdict.total == 1
+    assert not verdict and verdict.total == 1 and verdict.verdict == "wrong"
     (finding,) = verdict.findings
     assert finding.rule == "class" and sorted(finding.facts["simplex"]) == sorted(shape.facets[row].tolist())
     assert "singular" in str(finding) and finding.facts["expected"] == "regular"
@@ -70,3 +73,21 @@ def test_alpha_is_needed(cloud):
         walpha.check(walpha.alpha_shape(cloud, alpha=1), 1)
     with pytest.raises(ValueError, match="not a complex"):
         walpha.compare(cloud, cloud)
+
+
+def test_another_choice_at_ties_is_valid():
+    grid = np.stack(np.meshgrid(*[np.arange(3.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    # Each cube around its diagonal (Kuhn): a Delaunay triangulation, and not CGAL's.
+    steps = [np.array(order) for order in itertools.permutations(np.array([9, 3, 1]))]
+    corners = [9 * i + 3 * j + k for i in range(2) for j in range(2) for k in range(2)]
+    cells = [[c, *(c + np.cumsum(step))] for c in corners for step in steps]
+    verdict = walpha.check(grid, np.inf, cells=cells)
+    assert verdict and verdict.verdict == "valid" and verdict.ties > 0 and verdict.findings == []
+    strict = walpha.check(grid, np.inf, cells=cells, ties="exact")
+    assert not strict and strict.verdict == "valid" and strict.total == verdict.ties
+    assert {finding.rule for finding in strict.findings} == {"not_regular"}
+    assert walpha.check(grid, np.inf, cells=cells[1:]).verdict == "wrong"
+    with pytest.raises(ValueError, match="'any' or 'exact'"):
+        walpha.check(grid, np.inf, cells=cells, ties="none")
+    comparison = walpha.compare(walpha.Complex(grid, np.inf, cells=cells), walpha.alpha_shape(grid, alpha=np.inf))
+    assert comparison.facts["domain"]["same_region"]["verdicts"] == ["valid", "exact"]

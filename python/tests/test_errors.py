@@ -30,9 +30,11 @@ def test_points_of_a_plane_have_the_shape_that_they_have_there(engine):
     shape = walpha.alpha_shape(square, alpha=1, engine=engine)
     assert len(shape.cells) == 0
     assert len(shape.facets) == 2 and len(shape.vertices) == 5
-    # All shapes at once are made of cells.
-    with pytest.raises(ValueError, match="in one plane"):
-        walpha.filtration(square)
+    filtration = walpha.filtration(square)
+    assert len(filtration.simplices().cells) == 0
+    assert len(filtration.shape(1).facets) == 2
+    assert filtration.levels([1])[0].coverage == 0
+    assert filtration.optimal_alpha() == filtration.suggestions().one_region
 
 
 @pytest.mark.parametrize(
@@ -83,7 +85,7 @@ def test_values_are_needed_to_interpolate(cloud):
 GREEDY = """
 import numpy as np, resource, walpha
 shape = walpha.alpha_shape(np.eye(4)[:, :3], alpha=9, values=np.zeros(4))
-resource.setrlimit(resource.RLIMIT_AS, (4 << 30, resource.RLIM_INFINITY))
+resource.setrlimit(resource.RLIMIT_AS, (4 << 30, resource.getrlimit(resource.RLIMIT_AS)[1]))
 try:
     shape.interpolate((4000, 1000, 1000))
 except MemoryError as error:

@@ -115,5 +115,8 @@ def test_points_of_a_plane(cloud):
     flat = walpha.alpha_shape(cloud[:, :2], alpha=np.inf)
     assert len(flat.cells) == 0 and (flat.facet_classes == walpha.Class.SINGULAR).any()
     assert np.array_equal(flat.points[:, :2], cloud[:, :2]) and (flat.points[:, 2] == 0).all()
-    with pytest.raises(ValueError, match="plane"):
-        walpha.filtration(cloud[:, :2])
+    filtration = walpha.filtration(cloud[:, :2])
+    assert len(filtration.shape(np.inf).cells) == 0
+    assert np.array_equal(filtration.shape(np.inf).facets, flat.facets)
+    some = filtration.shape(filtration.optimal_alpha())
+    assert 0 < len(some.facets) <= len(flat.facets) and walpha.check(some).verdict == "exact"

@@ -144,8 +144,14 @@ class Verdict(NamedTuple):
 
     Attributes
     ----------
+    verdict : str
+        "exact": what the definition makes, ties decided as CGAL does. "valid": right, with another
+        choice at ties, where more points lie on one empty sphere than a simplex has corners, or
+        points are equal. "wrong": neither.
     valid : bool
-        Whether nothing was found.
+        Whether that is right: exact or valid; with ``ties="exact"``, exact.
+    ties : int
+        At how many ties another choice was made.
     total : int
         How many findings there are.
     findings : list of Finding
@@ -154,7 +160,9 @@ class Verdict(NamedTuple):
         What could not be judged, in words: hidden points, say, where no exterior simplices are.
     """
 
+    verdict: str
     valid: bool
+    ties: int
     total: int
     findings: list
     not_judged: list
@@ -188,7 +196,7 @@ class Comparison(NamedTuple):
         return self.text
 
 
-def check(points, alpha=None, *, most=1000, progress=None, **complex_):
+def check(points, alpha=None, *, ties="any", most=1000, progress=None, **complex_):
     """Judge a complex exactly: is it the alpha shape of its points?
 
     Parameters
@@ -198,6 +206,8 @@ def check(points, alpha=None, *, most=1000, progress=None, **complex_):
         or a shape or complex, alone.
     alpha : float
         A squared length.
+    ties : {"any", "exact"}
+        Whether another choice at ties is a finding.
     most : int
         So many findings are listed; all are counted.
     progress : callable, optional
@@ -208,7 +218,7 @@ def check(points, alpha=None, *, most=1000, progress=None, **complex_):
     Returns
     -------
     Verdict
-        True if nothing was found.
+        True if it is right.
 
     Notes
     -----
@@ -221,18 +231,20 @@ def check(points, alpha=None, *, most=1000, progress=None, **complex_):
     >>> walpha.check(points, np.inf, cells=tri.simplices).valid
     True
     """
+    if ties not in ("any", "exact"):
+        raise ValueError(f"ties is {ties!r}, and must be 'any' or 'exact'")
     if isinstance(points, (AlphaShape, Complex)):
         if alpha is not None or complex_:
             raise ValueError("a shape or complex knows its alpha and simplices: give it alone")
         judged = _complex(points)
     else:
         judged = Complex(points, alpha, **complex_)
-    total, findings, not_judged = judged._complex.check(most, progress)
+    verdict, tied, total, findings, not_judged = judged._complex.check(most, ties == "exact", progress)
     listed = []
     for text, facts in findings:
         facts = json.loads(facts)
         listed.append(Finding(facts.pop("rule"), text, facts))
-    return Verdict(total == 0, total, listed, json.loads(not_judged))
+    return Verdict(verdict, total == 0, tied, total, listed, json.loads(not_judged))
 
 
 def compare(a, b):

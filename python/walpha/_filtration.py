@@ -22,7 +22,8 @@ class BettiCurve(NamedTuple):
     b0, b1, b2 : ndarray of uint64, (m,)
         Components, tunnels, voids.
     solid_components : ndarray of uint64, (m,)
-        Components of the cells, joined through facets.
+        Components of the cells, joined through facets; of points that span no volume triangles joined
+        through edges, or edges through vertices.
     """
 
     alpha: np.ndarray
@@ -146,7 +147,7 @@ class Level(NamedTuple):
     volume, area, singular_area : float
         As those of :class:`AlphaShape`.
     coverage : float
-        The share of the convex hull that the cells fill.
+        The share of the volume of the convex hull that the cells fill; 0 of points that span no volume.
     voids : list of Void
         Largest first.
     """

@@ -40,7 +40,8 @@ def read_points(path, *, level=None):
     Parameters
     ----------
     path : str or path-like
-        CSV, XYZ, PLY, OFF, OBJ, STL, PCD, VTU, VTP, NPY or WVM.
+        CSV, XYZ, PTS, PLY, OFF, OBJ, STL, PCD, VTU, VTP, VTK, NPY or WVM. Weights are a column ``weight``,
+        or else the squares of a column ``radius``.
     level : int, optional
         For WVM in layers: how many of the last layers to leave out.
 

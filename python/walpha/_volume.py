@@ -171,8 +171,8 @@ def select(
     smoothed : array_like, (nz, ny, nx), optional
         The truncated volume, which differences and ``gray_min`` are judged on; by default the same.
     count, ratio, threshold : int, float, float; optional
-        One of: so many voxels; this share of all (0.0609 by default, that of the paper); all of at
-        least this L.
+        One of: so many voxels; this share of all (0.0609 by default, that of the paper, or all that take
+        part where these are fewer); all of at least this L.
     gray_min : float, optional
         Voxels of the smoothed volume below this take no part.
     spacing : tuple of float, optional
@@ -371,7 +371,7 @@ def _tolerance(rms, epsilon, coefficients):
 
 
 def _rule(count, ratio, threshold):
-    return _one_of({"count": count, "ratio": ratio, "threshold": threshold}, ("ratio", _RATIO))
+    return _one_of({"count": count, "ratio": ratio, "threshold": threshold}, ("at_most", _RATIO))
 
 
 def _one_of(options, default):

@@ -80,10 +80,10 @@ pub fn weighted(
 ) -> PyResult<Points> {
     let mut points = Points::new(rows("points", points)?);
     if let Some(weights) = weights {
-        points = points.with_weights(numbers(weights)).map_err(Told::told)?;
+        points = points.with_weights(numbers(weights)?).map_err(Told::told)?;
     }
     if let Some(values) = values {
-        points = points.with_values(numbers(values)).map_err(Told::told)?;
+        points = points.with_values(numbers(values)?).map_err(Told::told)?;
     }
     Ok(points)
 }

@@ -16,7 +16,7 @@ use walpha::progress::Stage;
 use walpha::volume::Dims;
 use walpha::{AlphaShape, PointsError, Simplices, Weighting};
 
-use crate::arrays::{lend, numbers, rows};
+use crate::arrays::{column, copied, lend, numbers, rows};
 use crate::errors::{Told, wrong};
 use crate::work::run;
 use boundary::{Boundary, boundary};
@@ -58,23 +58,26 @@ impl Shape {
     fn values(&self, given: Option<PyReadonlyArray1<'_, f64>>) -> PyResult<Vec<f64>> {
         match given {
             Some(given) => {
-                let (values, points) = (numbers(&given), self.shape.points().len());
+                let (values, points) = (numbers(&given)?, self.shape.points().len());
                 if values.len() != points {
                     let (column, given) = ("values", values.len());
                     return Err(Told::told(PointsError::Lengths { column, given, points }));
                 }
                 Ok(values)
             }
-            None => self.shape.points().values.clone().ok_or_else(|| {
+            None => copied(self.shape.points().values.as_ref().ok_or_else(|| {
                 wrong("the points carry no values to interpolate: give values=, one for each point")
-            }),
+            })?),
         }
     }
 }
 
 /// Class numbers, as in [`walpha::Class`].
-fn class_numbers<const N: usize>(simplices: &Simplices<N>) -> Vec<u8> {
-    simplices.classes().iter().map(|&class| class as u8).collect()
+fn class_numbers<'py, const N: usize>(
+    py: Python<'py>,
+    simplices: &Simplices<N>,
+) -> PyResult<Bound<'py, PyArray1<u8>>> {
+    column(py, simplices.classes().iter().map(|&class| class as u8))
 }
 
 #[pymethods]
@@ -86,13 +89,14 @@ impl Shape {
     }
 
     #[getter]
-    fn weights<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.shape.points().weights.clone().into_pyarray(py)
+    fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        column(py, self.shape.points().weights.iter().copied())
     }
 
     #[getter(values)]
-    fn own_values<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.shape.points().values.clone().map(|values| values.into_pyarray(py))
+    fn own_values<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
+        let values = self.shape.points().values.as_ref();
+        values.map(|values| column(py, values.iter().copied())).transpose()
     }
 
     #[getter]
@@ -120,15 +124,14 @@ impl Shape {
     }
 
     /// Classes of cells, facets, edges and vertices.
-    fn classes<'py>(&self, py: Python<'py>) -> [Bound<'py, PyArray1<u8>>; 4] {
+    fn classes<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArray1<u8>>; 4]> {
         let complex = self.shape.complex();
-        [
-            class_numbers(&complex.cells),
-            class_numbers(&complex.facets),
-            class_numbers(&complex.edges),
-            class_numbers(&complex.vertices),
-        ]
-        .map(|classes| classes.into_pyarray(py))
+        Ok([
+            class_numbers(py, &complex.cells)?,
+            class_numbers(py, &complex.facets)?,
+            class_numbers(py, &complex.edges)?,
+            class_numbers(py, &complex.vertices)?,
+        ])
     }
 
     #[getter]
@@ -168,13 +171,14 @@ impl Shape {
 
     /// What the last points are copies of.
     #[getter]
-    fn copies<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        self.shape.copies().to_vec().into_pyarray(py)
+    fn copies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
+        column(py, self.shape.copies().iter().copied())
     }
 
     #[getter]
-    fn hidden<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<u32>>> {
-        self.shape.hidden().map(|hidden| hidden.to_vec().into_pyarray(py))
+    fn hidden<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<u32>>>> {
+        let hidden = self.shape.hidden();
+        hidden.map(|hidden| column(py, hidden.iter().copied())).transpose()
     }
 
     #[getter]
@@ -190,10 +194,11 @@ impl Shape {
     }
 
     /// The number of the component of each point; −1 outside.
-    fn component_numbers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+    fn component_numbers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let number = |n: u32| if n == walpha::shape::NO_COMPONENT { -1 } else { i64::from(n) };
-        let numbers = py.detach(|| self.shape.component_numbers());
-        numbers.into_iter().map(number).collect::<Vec<_>>().into_pyarray(py)
+        let shape = Arc::clone(&self.shape);
+        let numbers = run(py, None, move |_| Ok::<_, InterpolateError>(shape.component_numbers()))?;
+        column(py, numbers.into_iter().map(number))
     }
 
     /// The voids, as JSON; `None` without exterior simplices.

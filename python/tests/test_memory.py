@@ -1,0 +1,85 @@
+"""What is asked of the library with too little memory is refused with `MemoryError`, and the interpreter lives on."""
+
+import subprocess
+import sys
+
+import pytest
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="needs RLIMIT_AS")
+
+LIMITED = """
+import gc, resource, sys
+import numpy as np, walpha
+corner = np.eye(4)[:, :3]
+walpha.alpha_shape(corner, alpha=9)
+exec(sys.argv[2])
+soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+held = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (held + (int(sys.argv[1]) << 20), hard))
+try:
+    eval(sys.argv[3])
+    print("done")
+except MemoryError as error:
+    print("MemoryError:", error)
+gc.collect()
+resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+print(len(walpha.alpha_shape(corner, alpha=9).cells), "cell")
+"""
+
+
+def limited(megabytes, given, asked):
+    """What came of it in a process with so many more MB of address space."""
+    command = [sys.executable, "-c", LIMITED, str(megabytes), given, asked]
+    ran = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert ran.returncode == 0, f"{asked} with {megabytes} MB: {ran.stderr}"
+    told, after = ran.stdout.splitlines()
+    assert after == "1 cell"
+    return told
+
+
+CLOUD = "points = np.random.default_rng(0).random((100_000, 3))"
+
+
+@pytest.mark.parametrize(
+    "given, asked",
+    [
+        (CLOUD, "walpha.alpha_shape(points, alpha=1e-3)"),
+        (CLOUD, "walpha.alpha_shape(points, alpha=1e-3, engine='native')"),
+        (CLOUD, "walpha.alpha_shape(points, alpha=1e-3, engine='reference')"),
+        (CLOUD, "walpha.filtration(points).simplices().values"),
+        (CLOUD, "walpha.filtration(points).betti_curve()"),
+        (CLOUD + "; shape = walpha.alpha_shape(points, alpha=1e-3)", "walpha.check(shape)"),
+        (CLOUD + "; shape = walpha.alpha_shape(points, alpha=1e-3)", "shape.components"),
+        ("volume = np.random.default_rng(0).random((128, 128, 128))", "walpha.haar(volume, rms=0.1)"),
+    ],
+    ids=["cgal", "native", "reference", "simplices", "betti_curve", "check", "components", "haar"],
+)
+def test_too_little_memory(given, asked):
+    told = [limited(megabytes, given, asked).split(":")[0] for megabytes in (5, 30, 60, 120, 250, 3000)]
+    # A little more memory may be enough, and less is not again.
+    assert told == sorted(told), told
+    assert told[-1] == "done", told
+
+
+@pytest.mark.parametrize(
+    "given, asked",
+    [
+        ("volume = np.broadcast_to(np.float32(1), (2**14,) * 3)", "walpha.pipeline(volume)"),
+        ("volume = np.broadcast_to(np.float32(1), (2**14,) * 3)", "walpha.haar(volume)"),
+        ("points = np.broadcast_to(np.float64(1), (2**40, 3))", "walpha.alpha_shape(points)"),
+        ("points = np.broadcast_to(np.float64(1), (2**40, 3))", "walpha.filtration(points)"),
+        ("column = np.broadcast_to(np.float64(1), 2**45)", "walpha.alpha_shape(corner, weights=column)"),
+    ],
+)
+def test_views_larger_than_any_memory(given, asked):
+    assert limited(1000, given, asked).startswith("MemoryError: a copy of an array needs")
+
+
+def test_what_nobody_could_estimate(tmp_path):
+    """A text does not say how many points are in it: memory runs out in the middle of the work."""
+    path = tmp_path / "points.csv"
+    with open(path, "w") as file:
+        file.write("x,y,z\n")
+        file.write("1,2,3\n" * 6_000_000)
+    told = limited(20, f"path = {str(path)!r}", "walpha.read_points(path)")
+    assert told.startswith("MemoryError: memory ran out in the middle"), told
