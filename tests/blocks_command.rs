@@ -171,6 +171,63 @@ fn a_killed_shape_goes_on_where_it_was() {
     assert!(!work.exists());
 }
 
+/// `check` names what does not verify, `merge` does, and `run` mends it.
+#[test]
+fn damaged_files_are_named_and_mended() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    ok(at, &args("blocks plan sample:phantom@30 --blocks 4 -o work"));
+    let (code, stdout, _) = run(at, &args("blocks check work"));
+    assert!(code == 3 && stdout.contains("missing   0, 1, 2, 3"), "{stdout}");
+    ok(at, &args("blocks run work"));
+    let stdout = ok(at, &args("blocks check work"));
+    assert!(stdout.contains("verified  4 blocks in work"), "{stdout}");
+    assert_eq!(json(at, &args("blocks check work"))["whole"], true);
+    ok(at, &args("blocks merge work -o before.vtu"));
+
+    let flip = |name: &str, at: usize| {
+        let path = folder.path().join(name);
+        let mut bytes = fs::read(&path).unwrap();
+        let last = bytes.len() - 1;
+        bytes[at.min(last)] ^= 1;
+        fs::write(path, bytes).unwrap();
+    };
+    flip("work/block-00001.walpha", usize::MAX);
+    // In the header.
+    flip("work/block-00003.walpha", 100);
+    let (code, stdout, _) = run(at, &args("blocks check work --json"));
+    let facts: Value = serde_json::from_str(&stdout).unwrap();
+    let named: Vec<&str> =
+        facts["findings"].as_array().unwrap().iter().map(|f| f["path"].as_str().unwrap()).collect();
+    assert_eq!((code, named), (3, vec!["work/block-00001.walpha", "work/block-00003.walpha"]));
+    for outputs in ["", " -o after.vtu", " -o after.pvtu"] {
+        let (code, _, stderr) = run(at, &args(&format!("blocks merge work{outputs}")));
+        assert_eq!(code, 1, "{stderr}");
+        for word in ["2 files do not verify", "block-00001.walpha is damaged", "block-00003"] {
+            assert!(stderr.contains(word), "{stderr}");
+        }
+        assert!(stderr.contains("walpha blocks run"), "{stderr}");
+        assert!(!at.join("after.vtu").exists() && !at.join("after.pvtu").exists());
+    }
+    flip("work/sums.f64", 11);
+    let again = json(at, &args("blocks run work"));
+    assert_eq!(again["blocks"], serde_json::json!([1, 3]), "only what was damaged");
+    ok(at, &args("blocks check work"));
+    ok(at, &args("blocks merge work -o after.vtu"));
+    assert!(fs::read(at.join("after.vtu")).unwrap() == fs::read(at.join("before.vtu")).unwrap());
+
+    flip("work/plan.json", 200);
+    let (code, stdout, _) = run(at, &args("blocks check work"));
+    assert!(code == 3 && stdout.contains("plan.json: is damaged"), "{stdout}");
+    for step in ["run work", "merge work"] {
+        let (code, _, stderr) = run(at, &args(&format!("blocks {step}")));
+        assert!(
+            code == 1 && stderr.contains("plan.json") && stderr.contains("plan again"),
+            "{stderr}"
+        );
+    }
+}
+
 #[test]
 fn what_blocks_cannot_do_is_told() {
     let folder = tempfile::tempdir().unwrap();

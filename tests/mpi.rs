@@ -107,6 +107,30 @@ fn ranks_write_the_bytes_that_one_process_writes() {
     }
 }
 
+/// Without pieces, too: what one process says, and writes.
+#[test]
+fn ranks_work_for_any_output_or_none() {
+    if !has_mpirun() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    // Several blocks do not know which points are hidden.
+    let options = "shape sample:phantom@30 --weights min-max --blocks 3";
+    let args = |text: &str| -> Vec<String> { text.split_whitespace().map(Into::into).collect() };
+    let one = args(&format!("{options} -o one.ply one.vtu"));
+    let expected = lasting(json(at, &one.iter().map(String::as_str).collect::<Vec<_>>()));
+    assert_eq!(lasting(json_of(at, 2, options)), expected);
+    assert_eq!(lasting(json_of(at, 3, &format!("{options} -o two.ply two.vtu"))), expected);
+    for extension in ["ply", "vtu"] {
+        let [one, two] =
+            ["one", "two"].map(|name| fs::read(at.join(format!("{name}.{extension}"))));
+        assert!(one.unwrap() == two.unwrap(), "{extension}");
+    }
+    let left: Vec<_> = files(at).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(left, ["one.ply", "one.vtu", "two.ply", "two.vtu"]);
+}
+
 /// Waits for a process, and fails where it takes too long.
 fn ended(mut child: Child) -> Output {
     let begun = Instant::now();
@@ -141,7 +165,7 @@ fn errors_end_all_ranks_and_are_told_once() {
         (1, "shape sample:phantom@20 --gray-min 999 -o out.pvtu", "no voxel reaches"),
         (1, "shape sample:phantom@20 -o file/out.pvtu", "cannot make the folder"),
         // What several processes cannot do.
-        (2, "shape sample:phantom@20 -o out.ply", "no output has a file for each block"),
+        (1, "shape sample:phantom@20 --alpha auto -o out.ply", "is not local"),
         (2, "points sample:phantom@20 -o out.xyz", "3 processes were started"),
     ];
     for (code, options, why) in cases {

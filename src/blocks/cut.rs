@@ -9,7 +9,7 @@ pub(super) const SILENT: u64 = 2 << 30;
 /// Bytes for each sample of a tile, of which each thread has one.
 pub(super) const TILE_SAMPLE: u64 = 48;
 /// No volume has use for more blocks.
-const MOST: usize = 1 << 16;
+pub(super) const MOST: usize = 1 << 16;
 
 /// Boxes of bricks with their points.
 pub(super) struct Boxes<'a> {

@@ -1,5 +1,6 @@
 use std::path::PathBuf;
 
+use super::{Finding, Job};
 use crate::advice::Advice;
 use crate::export::TargetError;
 use crate::haar::HaarError;
@@ -59,6 +60,14 @@ pub enum BlocksError {
         /// What is wrong.
         what: String,
     },
+    /// There is no plan that can be used.
+    #[error("{}: {what}", shown(path))]
+    NoPlan {
+        /// Its file.
+        path: PathBuf,
+        /// What is wrong.
+        what: String,
+    },
     /// A block was made by another plan.
     #[error("{} belongs to another plan", shown(path))]
     OtherPlan {
@@ -81,18 +90,21 @@ pub enum BlocksError {
         /// How many there are.
         count: usize,
     },
+    /// Files do not verify.
+    #[error("{} in {}: {}", number(findings.len(), "file does", "files do"), shown(folder), listed(findings))]
+    Unsound {
+        /// The folder of the plan.
+        folder: PathBuf,
+        /// Which, and why.
+        findings: Vec<Finding>,
+    },
     /// The input is not what it was when the plan was made.
-    #[error(
-        "block {index} has {found} points where the plan counted {planned}: the input has changed \
-         since it was planned"
-    )]
+    #[error("{input} has changed since it was planned: {what}")]
     Changed {
-        /// The block.
-        index: usize,
-        /// Its points.
-        found: u64,
-        /// Those planned.
-        planned: u64,
+        /// What the plan is of.
+        input: String,
+        /// What is not the same.
+        what: String,
     },
     /// What takes the whole volume or all points at once.
     #[error("{what} is not local, so that it cannot be computed in blocks")]
@@ -118,7 +130,24 @@ fn first(numbers: &[usize]) -> String {
     shown.join(", ") + more
 }
 
+/// A few findings in one line.
+fn listed(findings: &[Finding]) -> String {
+    const SHOWN: usize = 5;
+    let shown: Vec<String> = findings.iter().take(SHOWN).map(Finding::to_string).collect();
+    let more = if findings.len() > SHOWN { ", …" } else { "" };
+    shown.join(", ") + more
+}
+
+/// A number of files, and that they do not verify.
+fn number(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {} not verify", if count == 1 { one } else { many })
+}
+
 impl BlocksError {
+    pub(super) fn changed(job: &Job, what: String) -> Self {
+        Self::Changed { input: job.input.clone(), what }
+    }
+
     pub(super) fn not_local(what: &str, next: &'static str) -> Self {
         Self::NotLocal { what: what.to_owned(), next }
     }
@@ -138,11 +167,18 @@ impl BlocksError {
                 std::io::ErrorKind::AlreadyExists => Some("remove it, or name another".into()),
                 _ => None,
             },
-            Self::Damaged { .. } => Some("remove it, and run its block again".into()),
-            Self::OtherPlan { .. } => Some("remove it, or use a folder for each plan".into()),
+            Self::NoPlan { .. } => Some(
+                "plan again, by `walpha blocks plan` or the command that was interrupted".into(),
+            ),
+            Self::Damaged { .. } | Self::OtherPlan { .. } | Self::Unsound { .. } => {
+                Some("compute it again by `walpha blocks run`, then merge again".into())
+            }
             Self::Missing { .. } => Some("run these, then merge again".into()),
             Self::NoBlock { .. } => None,
-            Self::Changed { .. } => Some("plan again".into()),
+            Self::Changed { .. } => Some(
+                "plan again: of `walpha shape`, remove the folder `.blocks` beside the output first"
+                    .into(),
+            ),
             Self::NotLocal { next, .. } => Some((*next).into()),
             Self::TooLarge { .. } => Some("write .pvtu or .pvtp".into()),
         }

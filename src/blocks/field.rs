@@ -3,6 +3,7 @@
 use ndarray::Array3;
 use rayon::prelude::*;
 
+use super::seen::Seen;
 use super::{BlocksError, Job, Part};
 use crate::haar::{Bricks, HaarError};
 use crate::points::difference;
@@ -19,6 +20,7 @@ const SUMS: usize = 1 << 24;
 /// A volume read part by part, as gray levels.
 pub(super) struct Field {
     source: Source,
+    input: String,
     pub dims: [usize; 3],
     pub bricks: Bricks,
     nan: Option<Nan>,
@@ -26,17 +28,20 @@ pub(super) struct Field {
     pub range: GrayRange,
     /// The least value, which stands in for missing ones.
     pub least: f32,
+    /// What was read of it.
+    pub seen: Seen,
 }
 
 /// What is known of the truncated volume as a whole.
+#[expect(clippy::large_enum_variant, reason = "there is one for each block at work")]
 pub(super) enum Truncated {
     /// It is the volume.
     Same,
     /// Of the non-standard decomposition: which coefficients stay, and the sums of the bricks of the
     /// truncated volume.
     Bricks { cut: Cut, sums: Vec<f64> },
-    /// Of the standard decomposition: its samples.
-    File(Source),
+    /// Of the standard decomposition: its samples, and what was read of them.
+    File(Source, Seen),
 }
 
 /// Gray levels of a part, and which samples are missing.
@@ -58,12 +63,19 @@ pub(super) struct Sample {
 }
 
 impl Field {
-    /// Opens the input of a job.
-    pub(super) fn open(job: &Job) -> Result<Self, BlocksError> {
+    /// Opens the input of a job, of which a part will be read, or all.
+    pub(super) fn open(job: &Job, part: Option<&Part>) -> Result<Self, BlocksError> {
         let source = Source::open(&job.input, &job.read)?;
+        if source.dims() != job.dims {
+            let what = format!("it has {} samples, not {}", source.dims(), job.dims);
+            return Err(BlocksError::changed(job, what));
+        }
         let dims = source.dims().xyz();
         let (bricks, nan) = (Self::bricks_of(dims), job.read.nan);
-        Ok(Self { source, dims, bricks, nan, range: GrayRange::IDENTITY, least: 0.0 })
+        let seen = Seen::none_of(part.unwrap_or(&Part::whole(dims)), bricks.side(), dims);
+        let input = job.input.clone();
+        let (range, least) = (GrayRange::IDENTITY, 0.0);
+        Ok(Self { source, input, dims, bricks, nan, range, least, seen })
     }
 
     /// Whether values are gray levels as they are, and all numbers.
@@ -110,22 +122,26 @@ impl Field {
         ((z * ny + y) * nx + x) as u64
     }
 
-    /// The values of a part, where NaN are values or [missing](Nan::Mask).
+    /// The values of a part, where NaN and infinities are values or [missing](Nan::Mask).
     pub(super) fn values(&self, part: &Part) -> Result<Grays, BlocksError> {
         let mut values = self.source.read(part.first, part.size)?;
+        if !self.seen.note(part, &values) {
+            let what = "a part of it was read twice, and was not the same".to_owned();
+            return Err(BlocksError::Changed { input: self.input.clone(), what });
+        }
         let mut missing = None;
         if !self.is_gray() {
             if let Some(Nan::Mask) = self.nan
-                && values.par_iter().any(|v| v.is_nan())
+                && values.par_iter().any(|v| !v.is_finite())
             {
-                missing = Some(values.par_iter().map(|v| v.is_nan()).collect());
+                missing = Some(values.par_iter().map(|v| !v.is_finite()).collect());
             }
             let instead = match self.nan {
                 Some(Nan::Value(value)) => value,
                 Some(Nan::Mask) => self.least,
                 None => f32::NAN,
             };
-            values.par_iter_mut().filter(|v| v.is_nan()).for_each(|v| *v = instead);
+            values.par_iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = instead);
             if let Some(i) = values.par_iter().position_first(|v| !v.is_finite()) {
                 let [x, y, _] = part.size;
                 let at = [i % x, i / x % y, i / (x * y)];
@@ -182,7 +198,11 @@ impl Field {
     ) -> Result<Volume, BlocksError> {
         let samples = match truncated {
             Truncated::Same => grays.to_vec(),
-            Truncated::File(samples) => samples.read(part.first, part.size)?,
+            Truncated::File(samples, seen) => {
+                let samples = samples.read(part.first, part.size)?;
+                seen.note(part, &samples);
+                samples
+            }
             Truncated::Bricks { cut, sums } => {
                 let mut values = self.coefficients(part, grays);
                 self.places(part, |place, voxel, brick| {

@@ -1,4 +1,5 @@
-//! The files of blocks: a header in JSON, then arrays of little-endian numbers.
+//! The files of blocks: a header in JSON, then arrays of little-endian numbers. The start has the digest of the
+//! header, which has those of the arrays, so that no byte is used unseen.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -6,11 +7,14 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::digest::{Digest, Hasher};
 use super::{BlocksError, Facts, Plan};
 use crate::export::Target;
 
-/// How a file of a block begins.
-const MAGIC: &[u8; 16] = b"walpha block 1\r\n";
+/// How a file of a block begins. The length of the header in 64 bits follows, and its digest.
+const MAGIC: &[u8; 16] = b"walpha block 2\r\n";
+/// Bytes before the header.
+const START: usize = 40;
 
 /// A number as files have it.
 pub(super) trait Number: Copy {
@@ -56,13 +60,43 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, BlocksError> {
     std::fs::read(path).map_err(|source| BlocksError::Io { path: path.into(), source })
 }
 
+/// How many bytes a file has, and their digest. Reads it, a little at a time.
+pub(super) fn digest_of(file: impl Read) -> io::Result<(u64, Digest)> {
+    let (mut file, mut hasher, mut length) = (file, Hasher::default(), 0);
+    let mut bytes = vec![0; 1 << 18];
+    loop {
+        match file.read(&mut bytes) {
+            Ok(0) => return Ok((length, hasher.digest())),
+            Ok(count) => {
+                hasher.update(&bytes[..count]);
+                length += count as u64;
+            }
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+}
+
 /// What precedes the arrays.
 #[derive(Serialize, Deserialize)]
 struct Header {
-    plan: String,
+    /// The program's.
+    version: String,
+    /// The digest of the plan.
+    plan: Digest,
+    /// The number of the block.
+    block: usize,
     facts: Facts,
-    /// Names of arrays, and how many bytes each has.
-    arrays: Vec<(String, u64)>,
+    arrays: Vec<Array>,
+}
+
+/// What is said of an array.
+#[derive(Serialize, Deserialize)]
+struct Array {
+    name: String,
+    /// How many bytes it has.
+    bytes: u64,
+    digest: Digest,
 }
 
 /// Arrays that are to be written.
@@ -83,13 +117,19 @@ impl Arrays {
 
     /// Writes the file of a block, which appears when it is whole.
     pub(super) fn write(self, plan: &Plan, block: usize, facts: Facts) -> Result<(), BlocksError> {
-        let arrays = self.0.iter().map(|(name, bytes)| ((*name).into(), bytes.len() as u64));
-        let arrays = arrays.collect();
-        let header = Header { plan: plan.digest.clone(), facts, arrays };
+        let array = |(name, bytes): &(&str, Vec<u8>)| Array {
+            name: (*name).into(),
+            bytes: bytes.len() as u64,
+            digest: Digest::of(bytes),
+        };
+        let arrays = self.0.iter().map(array).collect();
+        let version = Plan::VERSION.into();
+        let header = Header { version, plan: plan.digest, block, facts, arrays };
         let header = serde_json::to_vec(&header).expect("it has no maps");
         Target::open(&plan.block_file(block))?.write(|out| {
             out.write_all(MAGIC)?;
             out.write_all(&(header.len() as u64).to_le_bytes())?;
+            out.write_all(Digest::of(&header).bytes())?;
             out.write_all(&header)?;
             self.0.iter().try_for_each(|(_, bytes)| out.write_all(bytes))
         })?;
@@ -101,65 +141,184 @@ impl Arrays {
 pub(super) struct BlockFile {
     path: PathBuf,
     pub facts: Facts,
-    /// Names of arrays, where they begin, and how many bytes they have.
-    arrays: Vec<(String, u64, u64)>,
+    /// Arrays, and where they begin.
+    arrays: Vec<(Array, u64)>,
+    /// Samples of the volume.
+    samples: u64,
 }
 
 impl BlockFile {
     /// Opens the file of a block, whose arrays are read when they are asked for.
     ///
     /// # Errors
-    /// It is not there, damaged, or of another plan.
+    /// It is not there, does not verify, or is of another plan or block.
     pub(super) fn open(plan: &Plan, block: usize) -> Result<Self, BlocksError> {
         let path = plan.block_file(block);
-        let read = || -> io::Result<Option<(Header, u64, u64)>> {
+        let read = || -> io::Result<Option<(Vec<u8>, u64)>> {
             let mut file = File::open(&path)?;
             let length = file.metadata()?.len();
-            let mut start = [0; 24];
-            if length < 24 {
+            let mut start = [0; START];
+            if length < START as u64 {
                 return Ok(None);
             }
             file.read_exact(&mut start)?;
-            let size = u64::get(&start[16..]);
-            if &start[..16] != MAGIC || size > length - 24 {
+            let size = u64::get(&start[16..24]);
+            if &start[..16] != MAGIC || size > length - START as u64 {
                 return Ok(None);
             }
             let mut header = vec![0; size as usize];
             file.read_exact(&mut header)?;
-            Ok(serde_json::from_slice(&header).ok().map(|header| (header, 24 + size, length)))
+            let digest = Digest::read(&start[24..]);
+            Ok(digest.is_of(&header).then_some((header, length)))
         };
         let read = read().map_err(|source| BlocksError::Io { path: path.clone(), source })?;
         let damaged =
-            || BlocksError::Damaged { path: path.clone(), what: "is damaged, or cut off".into() };
-        let (header, mut at, length) = read.ok_or_else(damaged)?;
-        if header.plan != plan.digest {
+            |what: &str| BlocksError::Damaged { path: path.clone(), what: what.to_owned() };
+        let (text, length) = read.ok_or_else(|| damaged(Self::DAMAGED))?;
+        let header: Header = serde_json::from_slice(&text).map_err(|_| damaged(Self::DAMAGED))?;
+        if header.version != Plan::VERSION || !plan.digest.is(header.plan) {
             return Err(BlocksError::OtherPlan { path });
         }
+        if header.block != block {
+            return Err(damaged(&format!("is block {}, not {block}", header.block)));
+        }
+        let mut at = START as u64 + text.len() as u64;
         let mut arrays = Vec::new();
-        for (name, bytes) in header.arrays {
-            arrays.push((name, at, bytes));
-            at = at.saturating_add(bytes);
+        for array in header.arrays {
+            let end = at.saturating_add(array.bytes);
+            arrays.push((array, at));
+            at = end;
         }
         if at != length {
-            return Err(damaged());
+            return Err(damaged(Self::DAMAGED));
         }
-        Ok(Self { path, facts: header.facts, arrays })
+        let samples = plan.job.dims.samples() as u64;
+        let file = Self { path: path.clone(), facts: header.facts, arrays, samples };
+        if !file.fits(plan.blocks[block].points) {
+            return Err(damaged("contradicts itself"));
+        }
+        Ok(file)
+    }
+
+    const DAMAGED: &str = "is damaged, or cut off";
+
+    /// Whether the facts are those of the arrays, by their lengths. A block that was written is; what is wrong
+    /// here nobody has to expect later.
+    fn fits(&self, points: u64) -> bool {
+        let Facts { cells, facets, edges, vertices, components, sheets, .. } = &self.facts;
+        let sum = |counts: &[usize; 3]| counts.iter().map(|&count| count as u128).sum::<u128>();
+        let has = |name: &str, size: u128, count: u128| {
+            let array = self.arrays.iter().find(|(known, _)| known.name == name);
+            array.is_some_and(|(array, _)| u128::from(array.bytes) == size * count)
+        };
+        let rows = |name: &str, size: u128| {
+            let array = self.arrays.iter().find(|(known, _)| known.name == name);
+            array.map_or(0, |(array, _)| u128::from(array.bytes) / size)
+        };
+        let (kept, border, shared) =
+            (rows("voxels", 8), rows("border_points", 8), rows("shared_simplices", 24));
+        // A regular facet has a sheet on one side, a singular one on both.
+        let sides = facets[1] as u128 + 2 * facets[2] as u128;
+        let lengths = [
+            ("voxels", 8, kept),
+            ("own", 1, kept),
+            ("values", 8, kept),
+            ("weights", 8, kept),
+            ("components", 4, kept),
+            ("cells", 16, *cells as u128),
+            ("facets", 12, sum(facets)),
+            ("facet_classes", 1, sum(facets)),
+            ("facet_sheets", 4, sides),
+            ("edges", 8, sum(edges)),
+            ("edge_classes", 1, sum(edges)),
+            ("edge_sheets", 4, edges[2] as u128),
+            ("vertices", 4, sum(vertices)),
+            ("vertex_classes", 1, sum(vertices)),
+            ("hidden", 8, rows("hidden", 8)),
+            ("border_points", 8, border),
+            ("border_components", 4, border),
+            ("shared_simplices", 24, shared),
+            ("shared_sides", 4, shared),
+            ("shared_sheets", 4, shared),
+        ];
+        lengths.into_iter().all(|(name, size, count)| has(name, size, count))
+            && self.facts.points == points
+            && self.facts.halo <= self.samples
+            && components.iter().all(|component| {
+                component.sums.vertices as u128 <= sum(vertices) && component.sums.cells <= *cells
+            })
+            && sheets
+                .iter()
+                .filter_map(|sheet| sheet.met)
+                .all(|met| components.get(met.component as usize).is_some())
     }
 
     /// An array.
+    ///
+    /// # Errors
+    /// It cannot be read, or does not verify.
     pub(super) fn read<T: Number>(&self, name: &str) -> Result<Vec<T>, BlocksError> {
-        let damaged =
-            || BlocksError::Damaged { path: self.path.clone(), what: format!("has no {name}") };
-        let (_, at, bytes) =
-            self.arrays.iter().find(|(known, ..)| known == name).ok_or_else(damaged)?;
+        let known = self.arrays.iter().find(|(known, _)| known.name == name);
+        let (array, at) = known.ok_or_else(|| self.damaged(&format!("has no {name}")))?;
         let read = || {
             let mut file = File::open(&self.path)?;
             file.seek(SeekFrom::Start(*at))?;
-            let mut array = vec![0; *bytes as usize];
-            file.read_exact(&mut array)?;
-            Ok(array)
+            let mut bytes = vec![0; array.bytes as usize];
+            file.read_exact(&mut bytes)?;
+            Ok(bytes)
         };
-        let array = read().map_err(|source| BlocksError::Io { path: self.path.clone(), source })?;
-        numbers(&array).ok_or_else(damaged)
+        let bytes = read().map_err(|source| BlocksError::Io { path: self.path.clone(), source })?;
+        let sound = numbers(&bytes).filter(|_| array.digest.is_of(&bytes));
+        sound.ok_or_else(|| self.damaged(Self::DAMAGED))
+    }
+
+    /// An array of numbers that are below a bound each.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read); one is not.
+    pub(super) fn below<T: Number + Ord>(
+        &self,
+        name: &str,
+        bound: T,
+    ) -> Result<Vec<T>, BlocksError> {
+        let numbers = self.read::<T>(name)?;
+        if numbers.iter().any(|number| *number >= bound) {
+            return Err(self.damaged(&format!("has {name} that are not there")));
+        }
+        Ok(numbers)
+    }
+
+    /// The points by their index in the volume, ascending.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub(super) fn voxels(&self) -> Result<Vec<u64>, BlocksError> {
+        let voxels = self.below("voxels", self.samples)?;
+        if !voxels.is_sorted_by(|a, b| a < b) {
+            return Err(self.damaged("has points out of order"));
+        }
+        Ok(voxels)
+    }
+
+    /// The error for what a block that verifies cannot have.
+    pub(super) fn damaged(&self, what: &str) -> BlocksError {
+        BlocksError::Damaged { path: self.path.clone(), what: what.to_owned() }
+    }
+
+    /// Reads all of it, a little at a time, and looks whether it is what was written.
+    ///
+    /// # Errors
+    /// It is not, or cannot be read.
+    pub(super) fn verify(&self) -> Result<(), BlocksError> {
+        let io = |source| BlocksError::Io { path: self.path.clone(), source };
+        let mut file = File::open(&self.path).map_err(io)?;
+        for (array, at) in &self.arrays {
+            file.seek(SeekFrom::Start(*at)).map_err(io)?;
+            let found = digest_of(file.by_ref().take(array.bytes)).map_err(io)?;
+            if found.0 != array.bytes || !array.digest.is(found.1) {
+                return Err(self.damaged(Self::DAMAGED));
+            }
+        }
+        Ok(())
     }
 }

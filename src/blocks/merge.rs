@@ -53,12 +53,12 @@ pub(super) struct Numbers {
 }
 
 /// Merges the blocks of a plan: unites components and sheets over the borders, and adds up the rest. Rows
-/// of simplices are not read.
+/// of simplices are not read: [`Plan::check`] looks at these, too.
 ///
 /// Memory for the keys of the borders, some 50 bytes for each point there.
 ///
 /// # Errors
-/// Blocks are missing or belong to another plan.
+/// Blocks are missing, belong to another plan, or what is read of them does not verify.
 pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
     let all = plan.blocks.len();
     let mut missing = Vec::new();
@@ -83,7 +83,9 @@ pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
         1 => Some(BlockFile::open(plan, 0)?.read::<u64>("hidden")?.len() as u64),
         _ => None,
     };
-    Ok(union.merged(hidden))
+    let folder = plan.folder();
+    let what = || "has blocks that do not fit together".to_owned();
+    union.merged(hidden).ok_or_else(|| BlocksError::Damaged { path: folder.into(), what: what() })
 }
 
 /// The facts of all blocks, side by side.
@@ -102,23 +104,31 @@ struct Union {
 
 impl Union {
     fn take(&mut self, file: &BlockFile) -> Result<(), BlocksError> {
+        let facts = &file.facts;
+        let added = |before: u32, more: usize, what: &str| {
+            let sum = u32::try_from(more).ok().and_then(|more| before.checked_add(more));
+            sum.ok_or_else(|| BlocksError::TooLarge { what: format!("{what} of all blocks") })
+        };
+        let components = added(self.components, facts.components.len(), "components")?;
+        let sheets = added(self.sheets, facts.sheets.len(), "sheets")?;
         let points = file.read::<u64>("border_points")?;
-        for (point, component) in points.into_iter().zip(file.read::<u32>("border_components")?) {
+        let of_points = file.below("border_components", facts.components.len() as u32)?;
+        for (point, component) in points.into_iter().zip(of_points) {
             let component = self.components + component;
             same(self.points.entry(point), component, &mut self.same_components);
         }
         let simplices = file.read::<[u64; 3]>("shared_simplices")?;
         let sides = simplices.into_iter().zip(file.read::<u32>("shared_sides")?);
-        for (side, sheet) in sides.zip(file.read::<u32>("shared_sheets")?) {
+        for (side, sheet) in sides.zip(file.below("shared_sheets", facts.sheets.len() as u32)?) {
             same(self.sides.entry(side), self.sheets + sheet, &mut self.same_sheets);
         }
-        self.components += file.facts.components.len() as u32;
-        self.sheets += file.facts.sheets.len() as u32;
-        self.facts.push(file.facts.clone());
+        (self.components, self.sheets) = (components, sheets);
+        self.facts.push(facts.clone());
         Ok(())
     }
 
-    fn merged(self, hidden: Option<u64>) -> Merged {
+    /// `None` where the numbers of the blocks are of no shape.
+    fn merged(self, hidden: Option<u64>) -> Option<Merged> {
         let Self { facts, components: all_components, sheets: all_sheets, .. } = &self;
         let components = united(*all_components, &self.same_components);
         let sheets = united(*all_sheets, &self.same_sheets);
@@ -144,13 +154,13 @@ impl Union {
         let measures = ComponentSums::measures(components.iter());
         let lone = totals.vertices.singular as u64;
         let b0 = components.len() as u64;
-        let b2 = u64::from(count) + lone - b0;
+        let b2 = (u64::from(count) + lone).checked_sub(b0)?;
         let euler = totals.vertices.in_shape() as i64 - totals.edges.in_shape() as i64
             + totals.facets.in_shape() as i64
             - totals.cells as i64;
-        let b1 = ((b0 + b2) as i64 - euler) as u64;
+        let b1 = u64::try_from((b0 + b2) as i64 - euler).ok()?;
         let with_facets = sheets.into_iter().filter(|(_, _, sums)| *sums != SheetSums::default());
-        Merged {
+        Some(Merged {
             points: totals.points,
             hidden,
             weights: totals.weights,
@@ -164,7 +174,7 @@ impl Union {
             halo: totals.halo,
             numbers,
             sheets: count,
-        }
+        })
     }
 }
 

@@ -25,11 +25,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod check;
 mod cut;
+mod digest;
 mod error;
 mod field;
 mod file;
 mod job;
+mod kept;
 mod merge;
 mod part;
 mod passes;
@@ -38,11 +41,14 @@ mod plan;
 mod price;
 mod rows;
 mod run;
+mod seen;
+mod stamp;
 mod survey;
 mod team;
 mod turn;
 mod whole;
 
+pub use check::{Checked, Finding};
 pub use error::BlocksError;
 use field::Field;
 pub use job::Job;

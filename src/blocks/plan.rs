@@ -2,9 +2,12 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::cut::Boxes;
+use super::cut::{Boxes, MOST};
+use super::digest::Digest;
 use super::field::Truncated;
-use super::file::{numbers, read_file};
+use super::file::read_file;
+use super::kept::Kept;
+use super::stamp::Stamp;
 use super::survey::{Survey, Surveyed, survey};
 use super::{Alone, BlocksError, Field, Job, Part, Team};
 use crate::Weighting;
@@ -12,7 +15,6 @@ use crate::export::Target;
 use crate::points::{PointsError, Shares};
 use crate::setters::setters;
 use crate::shape::{Alpha, Balls};
-use crate::volume::{Dims, Dtype, RawLayout, ReadOptions, Source};
 
 /// How a job is cut into blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,10 +45,14 @@ pub struct Plan {
     pub survey: Survey,
     /// The blocks.
     pub blocks: Vec<BlockPlan>,
+    /// The files beside it.
+    pub(super) kept: Vec<Kept>,
+    /// How the files of the input looked.
+    pub(super) stamp: Stamp,
     #[serde(skip)]
     pub(super) folder: PathBuf,
     #[serde(skip)]
-    pub(super) digest: String,
+    pub(super) digest: Digest,
 }
 
 /// A block: a box of the volume, whose points are its own.
@@ -59,13 +65,22 @@ pub struct BlockPlan {
     pub points: u64,
     /// The points around it that it may need, counted by bricks.
     pub halo: u64,
+    /// What it reads.
+    pub(super) reads: Reads,
+}
+
+/// Digests of what a block reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Reads {
+    pub input: Digest,
+    /// Of the truncated volume, where that is in a file.
+    pub truncated: Option<Digest>,
 }
 
 impl Plan {
     pub(super) const FILE: &str = "plan.json";
-    pub(super) const SUMS: &str = "sums.f64";
-    /// The truncated volume, of the standard decomposition.
-    pub(super) const SMOOTHED: &str = "truncated.f32";
+    /// The program's. A plan and its blocks are of one version.
+    pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
     /// Surveys the volume of a job, cuts it, and writes the plan into a folder, which is there. Reads
     /// the volume five or six times, a tile for each thread in memory.
@@ -88,10 +103,14 @@ impl Plan {
         team: &dyn Team,
     ) -> Result<Self, BlocksError> {
         job.check()?;
-        let mut field = Field::open(&job)?;
+        // Before it is read, so that what is written while it is read is newer.
+        let stamp = Stamp::of(&job);
+        let mut field = Field::open(&job, None)?;
         let surveyed = survey(&job, &mut field, folder, team)?;
         let plan = if team.is_first() {
-            Some(Self::cut(job, cutting, folder, &field, surveyed, team.size())?)
+            let plan = Self::cut(job, cutting, stamp, folder, &field, surveyed, team.size())?;
+            plan.write()?;
+            Some(plan)
         } else {
             None
         };
@@ -107,75 +126,133 @@ impl Plan {
         if team.size() == 1 {
             return Ok(first.expect("the first process has it"));
         }
-        let text = first.map(|plan| serde_json::to_vec(&plan).expect("it has no maps"));
+        let text = first.map(|plan| plan.text());
         Self::of_text(&team.told(text), folder)
     }
 
-    /// Cuts a surveyed volume, and writes the plan.
+    /// Cuts a surveyed volume, and writes what the plan keeps.
     fn cut(
         job: Job,
         cutting: Cutting,
+        stamp: Stamp,
         folder: &Path,
         field: &Field,
-        Surveyed { survey, truncated, counts }: Surveyed,
+        Surveyed { survey, truncated, counts, mut kept }: Surveyed,
         processes: usize,
     ) -> Result<Self, BlocksError> {
         let boxes = Boxes { counts: &counts, bricks: field.bricks.count() };
         let side = field.bricks.side();
         let tile = field.tile().iter().product::<usize>() as u64;
         let mut plan = Self {
-            version: env!("CARGO_PKG_VERSION").into(),
+            version: Self::VERSION.into(),
             job,
             cutting,
             survey,
             blocks: Vec::new(),
+            kept: Vec::new(),
+            stamp,
             folder: folder.into(),
-            digest: String::new(),
+            digest: Digest::default(),
         };
-        let margin = plan.margin()?.map(|samples| samples.div_ceil(side));
-        let cut = boxes.planned(cutting, &plan.job, margin, tile, processes)?;
+        if let Truncated::Bricks { sums, .. } = &truncated {
+            kept.push(Kept::write_sums(sums, folder)?);
+        }
+        plan.kept = kept;
+        let margin = plan.margin()?;
+        let bricks = margin.map(|samples| samples.div_ceil(side));
+        let cut = boxes.planned(cutting, &plan.job, bricks, tile, processes)?;
         let of_bricks = |(part, halo): (Part, u64)| {
             let points = boxes.points(&part);
             let whole = Part::whole(field.dims);
             let part =
                 Part { first: part.first.map(|i| i * side), size: part.size.map(|n| n * side) };
-            BlockPlan { part: part.common(&whole), points, halo: halo - points }
+            let part = part.common(&whole);
+            let read = Self::read_around(&part, margin, field.dims);
+            let input = field.seen.digest(&read);
+            let truncated = if let Truncated::File(_, seen) = &truncated {
+                Some(seen.digest(&read))
+            } else {
+                None
+            };
+            BlockPlan { part, points, halo: halo - points, reads: Reads { input, truncated } }
         };
         plan.blocks = cut.into_iter().map(of_bricks).collect();
         plan.digest = plan.computed_digest();
-        plan.write(&truncated)?;
         Ok(plan)
     }
 
-    fn write(&self, truncated: &Truncated) -> Result<(), BlocksError> {
-        let put = |name: &str, bytes: &[u8]| {
-            Target::open(&self.folder.join(name))?.write(|out| out.write_all(bytes))
-        };
-        if let Truncated::Bricks { sums, .. } = truncated {
-            let bytes: Vec<u8> = sums.iter().flat_map(|sum| sum.to_le_bytes()).collect();
-            put(Self::SUMS, &bytes)?;
-        }
-        let text = serde_json::to_string_pretty(self).expect("it has no maps");
-        put(Self::FILE, text.as_bytes())?;
-        Ok(())
+    /// The samples that are read for a part of which the points within a margin are looked at: differences
+    /// take one sample more.
+    pub(super) fn read_around(part: &Part, margin: [usize; 3], dims: [usize; 3]) -> Part {
+        part.grown(margin, dims).grown([1; 3], dims)
+    }
+
+    fn write(&self) -> Result<(), BlocksError> {
+        let target = Target::open(&self.folder.join(Self::FILE))?;
+        Ok(target.write(|out| out.write_all(&self.text()))?)
+    }
+
+    /// What is before the digest of a plan in its text, and behind it.
+    const CHECKSUM: [&[u8]; 2] = [b",\n  \"checksum\": \"", b"\"\n}\n"];
+
+    /// Its text: JSON, with the digest of all bytes before as the last field.
+    fn text(&self) -> Vec<u8> {
+        let mut text = serde_json::to_vec_pretty(self).expect("it has no maps");
+        // Without the brace and the line before it.
+        text.truncate(text.len() - 2);
+        let [before, behind] = Self::CHECKSUM;
+        let digest = Digest::of(&text).to_string();
+        [&text, before, digest.as_bytes(), behind].concat()
     }
 
     /// Opens the plan in a folder.
     ///
     /// # Errors
-    /// There is none, or it cannot be read.
+    /// There is none, it cannot be read, or does not verify.
     pub fn open(folder: &Path) -> Result<Self, BlocksError> {
         Self::of_text(&read_file(&folder.join(Self::FILE))?, folder)
     }
 
     fn of_text(text: &[u8], folder: &Path) -> Result<Self, BlocksError> {
-        let read: Result<Self, _> = serde_json::from_slice(text);
-        let damaged = |error: serde_json::Error| BlocksError::Damaged {
-            path: folder.join(Self::FILE),
-            what: format!("is not a plan of this version of walpha ({error})"),
+        let none = |what: String| BlocksError::NoPlan { path: folder.join(Self::FILE), what };
+        let damaged = || none("is damaged, cut off, or not a plan of this version".into());
+        let sealed = || {
+            let [before, behind] = Self::CHECKSUM;
+            let text = text.strip_suffix(behind)?;
+            let (text, digest) = text.split_at_checked(text.len().checked_sub(32)?)?;
+            let digest = String::from_utf8(digest.to_vec()).ok()?;
+            let text = text.strip_suffix(before)?;
+            let digest = Digest::try_from(digest).ok()?;
+            digest.is_of(text).then_some(text)
         };
-        let plan = Self { folder: folder.into(), ..read.map_err(damaged)? };
+        let text = sealed().ok_or_else(damaged)?;
+        let read: Result<Self, _> = serde_json::from_slice(&[text, b"}"].concat());
+        let plan = Self {
+            folder: folder.into(),
+            ..read.map_err(|error| none(format!("is not a plan of this version ({error})")))?
+        };
+        if plan.version != Self::VERSION {
+            let (theirs, ours) = (&plan.version, Self::VERSION);
+            return Err(none(format!("was made by walpha {theirs}, and this is {ours}")));
+        }
+        if !plan.fits() {
+            return Err(none("contradicts itself".into()));
+        }
         Ok(Self { digest: plan.computed_digest(), ..plan })
+    }
+
+    /// Whether its blocks are in the volume.
+    fn fits(&self) -> bool {
+        let dims = self.job.dims.xyz();
+        let is_inside = |BlockPlan { part: Part { first, size }, .. }: &BlockPlan| {
+            (0..3).all(|k| {
+                size[k] > 0 && first[k].checked_add(size[k]).is_some_and(|end| end <= dims[k])
+            })
+        };
+        (1..=MOST).contains(&self.blocks.len())
+            && self.blocks.iter().all(is_inside)
+            && self.survey.first < self.job.dims.samples() as u64
+            && self.kept.iter().all(|kept| [Self::SUMS, Self::SMOOTHED].contains(&&*kept.name))
     }
 
     /// The folder it is in.
@@ -183,44 +260,19 @@ impl Plan {
         &self.folder
     }
 
-    /// Identifies this plan.
-    pub fn digest(&self) -> &str {
-        &self.digest
+    /// Identifies this plan, whatever its folder, and whenever the files of its input were written.
+    pub fn digest(&self) -> String {
+        self.digest.to_string()
     }
 
-    /// FNV-1a of its text (Fowler, Noll and Vo, RFC 9923), 64 bits.
-    fn computed_digest(&self) -> String {
-        let text = serde_json::to_vec(self).expect("it has no maps");
-        let hash = text.iter().fold(0xcbf2_9ce4_8422_2325u64, |hash, &byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-        });
-        format!("{hash:016x}")
+    fn computed_digest(&self) -> Digest {
+        let timeless = Self { stamp: Stamp::default(), ..self.clone() };
+        Digest::of(&serde_json::to_vec(&timeless).expect("it has no maps"))
     }
 
     /// The file of a block.
     pub fn block_file(&self, block: usize) -> PathBuf {
         self.folder.join(format!("block-{block:05}.walpha"))
-    }
-
-    /// The truncated volume.
-    pub(super) fn truncated(&self) -> Result<Truncated, BlocksError> {
-        if let Some(cut) = self.survey.cut {
-            let path = self.folder.join(Self::SUMS);
-            let sums = numbers(&read_file(&path)?);
-            let sums = sums.ok_or(BlocksError::Damaged { path, what: "is cut off".into() })?;
-            Ok(Truncated::Bricks { cut, sums })
-        } else if self.survey.truncation.epsilon > 0.0 {
-            Ok(Truncated::File(Self::smoothed(&self.folder, self.job.dims)?))
-        } else {
-            Ok(Truncated::Same)
-        }
-    }
-
-    /// The truncated volume that a plan of the standard decomposition left in its folder.
-    pub(super) fn smoothed(folder: &Path, dims: Dims) -> Result<Source, BlocksError> {
-        let path = folder.join(Self::SMOOTHED);
-        let raw = Some(RawLayout::new(dims, Dtype::F32));
-        Ok(Source::open(&path.to_string_lossy(), &ReadOptions { raw, ..ReadOptions::default() })?)
     }
 
     /// How weights come from differences, where they do.
@@ -251,34 +303,41 @@ impl Plan {
         };
         let largest = weights.map(radius).into_iter().fold(0.0, f64::max);
         // Rounded up by more than all roundings on the way.
-        Ok(self.job.reach(2.0 * largest * (1.0 + 1e-9)).map(|samples| samples + 1))
+        Ok(self.job.reach(2.0 * largest * (1.0 + 1e-9)).map(|samples| samples.saturating_add(1)))
     }
 
     /// α, for weights and reports.
     pub fn alpha(&self) -> Alpha {
         self.job.squared()
     }
+}
 
-    /// The blocks that are not there, or belong to another plan.
-    ///
-    /// # Errors
-    /// A file cannot be read.
-    pub fn missing(&self) -> Result<Vec<usize>, BlocksError> {
-        let mut missing = Vec::new();
-        for block in 0..self.blocks.len() {
-            match super::file::BlockFile::open(self, block) {
-                Ok(_) => {}
-                Err(BlocksError::OtherPlan { .. } | BlocksError::Damaged { .. }) => {
-                    missing.push(block);
-                }
-                Err(BlocksError::Io { source, .. })
-                    if source.kind() == std::io::ErrorKind::NotFound =>
-                {
-                    missing.push(block);
-                }
-                Err(error) => return Err(error),
-            }
-        }
-        Ok(missing)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Engine;
+    use crate::volume::ReadOptions;
+
+    /// With a digest that is right: what is in the plan decides.
+    #[test]
+    fn plans_that_verify_are_looked_at_still() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut job = Job::new("sample:phantom@12", ReadOptions::default()).unwrap();
+        job.engine = Engine::Native;
+        let plan = Plan::make(job, Cutting::default().blocks(2), folder.path()).unwrap();
+        let read = Plan::of_text(&plan.text(), folder.path()).unwrap();
+        assert_eq!((&read, read.digest()), (&plan, plan.digest()));
+        let refused = |change: fn(&mut Plan), why: &str| {
+            let mut other = plan.clone();
+            change(&mut other);
+            let error = Plan::of_text(&other.text(), folder.path()).unwrap_err();
+            assert!(matches!(error, BlocksError::NoPlan { .. }), "{error}");
+            assert!(error.to_string().contains(why), "{error}");
+        };
+        refused(|plan| plan.version = "0.1.0".into(), "was made by walpha 0.1.0, and this is");
+        refused(|plan| plan.blocks[1].part.size[0] += 1, "contradicts itself");
+        refused(|plan| plan.blocks[0].part.first[2] = usize::MAX, "contradicts itself");
+        refused(|plan| plan.blocks.clear(), "contradicts itself");
+        refused(|plan| plan.survey.first = 12 * 12 * 12, "contradicts itself");
     }
 }

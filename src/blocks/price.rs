@@ -115,7 +115,7 @@ impl Model {
         let samples = job.dims.samples() as f64;
         let points = match job.selection.rule {
             SelectionRule::Count(count) => count as f64,
-            SelectionRule::Ratio(ratio) => (ratio * samples).round(),
+            SelectionRule::Ratio(ratio) | SelectionRule::AtMost(ratio) => (ratio * samples).round(),
             SelectionRule::Threshold(_) => {
                 let next = "give --ratio or --count for the price";
                 return Err(BlocksError::not_local("the number of points above a threshold", next));

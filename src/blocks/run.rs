@@ -1,8 +1,9 @@
 use serde::{Deserialize, Serialize};
 
-use super::field::Field;
-use super::file::Arrays;
-use super::{BlocksError, Plan};
+use super::field::{Field, Truncated};
+use super::file::{Arrays, BlockFile};
+use super::stamp::Stamp;
+use super::{BlockPlan, BlocksError, Plan};
 use crate::math::Sum;
 use crate::shape::{
     Balls, BlockShape, ByClass, Class, ComponentSums, Own, ShapeError, SheetSums, Side, block_shape,
@@ -71,7 +72,8 @@ struct Points {
 }
 
 /// Computes what a block owns of the shape, and writes it into the folder of the plan. A block that is
-/// there is left alone, unless it belongs to another plan. Needs no other block.
+/// there is left alone, unless it does not verify or belongs to another plan. What the plan keeps in files is made
+/// again where it does not verify. Needs no other block.
 ///
 /// # Errors
 /// What a stage refuses, an input that has changed since, a folder that cannot be written to.
@@ -80,13 +82,22 @@ pub fn run(plan: &Plan, block: usize) -> Result<(), BlocksError> {
     let Some(planned) = plan.blocks.get(block) else {
         return Err(BlocksError::NoBlock { index: block, count });
     };
-    if super::file::BlockFile::open(plan, block).is_ok() {
+    if BlockFile::open(plan, block).and_then(|file| file.verify()).is_ok() {
         return Ok(());
     }
-    let points = points(plan, block)?;
+    let points = match points(plan, block) {
+        // Whatever went wrong, it may be for want of these.
+        Err(_) if plan.verify_kept().is_err() => {
+            plan.restore()?;
+            points(plan, block)?
+        }
+        other => other?,
+    };
     let found = points.own.iter().filter(|&&own| own).count() as u64;
     if found != planned.points {
-        return Err(BlocksError::Changed { index: block, found, planned: planned.points });
+        let planned = planned.points;
+        let what = format!("block {block} has {found} points where {planned} were counted");
+        return Err(BlocksError::changed(&plan.job, what));
     }
     let job = &plan.job;
     let squared = match job.balls {
@@ -102,11 +113,12 @@ pub fn run(plan: &Plan, block: usize) -> Result<(), BlocksError> {
 /// Selects the points of a block and those that may be in its halo, from the samples there.
 fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
     let (job, survey) = (&plan.job, &plan.survey);
-    let mut field = Field::open(job)?;
+    let (BlockPlan { part, reads, .. }, margin) = (plan.blocks[block], plan.margin()?);
+    let dims = job.dims.xyz();
+    let (around, read) = (part.grown(margin, dims), Plan::read_around(&part, margin, dims));
+    let mut field = Field::open(job, Some(&read))?;
     (field.range, field.least) = (survey.range, survey.least);
-    let truncated = plan.truncated()?;
-    let part = plan.blocks[block].part;
-    let around = part.grown(plan.margin()?, field.dims);
+    let truncated = plan.truncated(&read)?;
     let mut found = Vec::new();
     for tile in around.tiles(field.tile()) {
         field.samples(&tile, &truncated, |sample| {
@@ -114,6 +126,17 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
                 found.push((sample.voxel, sample.difference, sample.gray));
             }
         })?;
+    }
+    if !reads.input.is(field.seen.digest(&read)) {
+        let same = Stamp::of(job) == plan.stamp;
+        let files = if same { "" } else { ", and files of another size or time" };
+        return Err(BlocksError::changed(job, format!("block {block} finds other samples{files}")));
+    }
+    if let Truncated::File(_, seen) = &truncated
+        && !reads.truncated.is_some_and(|planned| planned.is(seen.digest(&read)))
+    {
+        let path = plan.folder().join(Plan::SMOOTHED);
+        return Err(BlocksError::Damaged { path, what: "is damaged".into() });
     }
     found.sort_unstable_by_key(|&(voxel, ..)| voxel);
     let shares = plan.shares()?;

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use super::stamp::Stamp;
 use super::{Alone, BlocksError, Cutting, Job, Plan, Team, run};
 use crate::progress::{Piece, Share, within};
 
@@ -29,7 +30,11 @@ impl Plan {
         folder: &Path,
         team: &dyn Team,
     ) -> Result<Self, BlocksError> {
-        let is_same = |plan: &Self| plan.job == job && plan.cutting == cutting;
+        // An input whose files look otherwise is planned again. Where it is what it was, that is the same plan,
+        // and the blocks that are there are its.
+        let is_same = |plan: &Self| {
+            plan.job == job && plan.cutting == cutting && plan.stamp == Stamp::of(&job)
+        };
         let there = team.is_first().then(|| Self::open(folder).ok().filter(is_same));
         if team.told(there.as_ref().map(Option::is_some)) {
             Self::told(there.flatten(), folder, team)

@@ -8,8 +8,7 @@ use crate::shape::{AlphaShape, Assembled, Class, Complex, ShapeOptions, Sheets, 
 /// that fit the memory.
 ///
 /// # Errors
-/// A file cannot be read; more points than 32-bit indices name.
-#[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
+/// A file cannot be read or does not verify; more points than 32-bit indices name.
 pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
     if merged.points > u64::from(u32::MAX) {
         return Err(BlocksError::TooLarge { what: format!("{} points", merged.points) });
@@ -20,20 +19,23 @@ pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
         let file = BlockFile::open(plan, block)?;
         let own = file.read::<u8>("own")?;
         let numbers = file.read::<f64>("values")?.into_iter().zip(file.read::<f64>("weights")?);
-        let all = file.read::<u64>("voxels")?.into_iter().zip(numbers).zip(own);
+        let all = file.voxels()?.into_iter().zip(numbers).zip(own);
         points.extend(all.filter(|(_, own)| *own == 1).map(|((voxel, (f, w)), _)| (voxel, f, w)));
     }
     points.sort_unstable_by_key(|&(voxel, ..)| voxel);
-    let index = |voxel: u64| {
-        let found = points.binary_search_by_key(&voxel, |&(voxel, ..)| voxel);
-        found.expect("each corner is some block's own") as u32
+    let indices = |file: &BlockFile, voxels: Vec<u64>| -> Result<Vec<u32>, BlocksError> {
+        let index = |voxel: u64| {
+            let found = points.binary_search_by_key(&voxel, |&(voxel, ..)| voxel);
+            // Each corner is some block's own.
+            found.map(|index| index as u32).map_err(|_| file.damaged("has points of no block"))
+        };
+        voxels.into_iter().map(index).collect()
     };
     let mut hidden = Vec::new();
     for (block, numbers) in merged.numbers.iter().enumerate() {
         let file = BlockFile::open(plan, block)?;
-        let indices: Vec<u32> = file.read::<u64>("voxels")?.into_iter().map(index).collect();
-        rows.take(&file, &indices, &numbers.sheets)?;
-        hidden.extend(file.read::<u64>("hidden")?.into_iter().map(index));
+        rows.take(&file, &indices(&file, file.voxels()?)?, &numbers.sheets)?;
+        hidden.extend(indices(&file, file.read::<u64>("hidden")?)?);
     }
     let (complex, sheets) = rows.finish(merged.sheets);
     let job = &plan.job;
@@ -77,7 +79,7 @@ impl Gathered {
         indices: &[u32],
         sheets: &[u32],
     ) -> Result<(), BlocksError> {
-        let (complex, sheets) = read_rows(file, sheets)?;
+        let (complex, sheets) = read_rows(file, indices.len(), sheets)?;
         let index = |v: &u32| indices[*v as usize];
         self.cells.extend(complex.cells.rows().iter().map(|row| row.each_ref().map(index)));
         let (mut regular, mut singular) = (sheets.regular.iter(), sheets.singular.iter());

@@ -3,12 +3,9 @@
 //! There are no cells. Classes are those of space: what is in the shape and a face of nothing there is
 //! singular, the faces of it are regular, and nothing is interior, as space is on both sides.
 
-use std::collections::HashMap;
-
 use super::topology::flat_betti;
-use super::{Alpha, Betti, Class, Complex, ShapeError, Simplices, UnionFind};
-use crate::points::WeightedPoints;
-use crate::triangulation::{Flat, Maker, Predicates, Sites, triangulate_flat};
+use super::{Betti, Class, Complex, ShapeError, Simplices};
+use crate::triangulation::{Maker, Predicates, Sites, triangulate_flat};
 
 /// What a flat shape is.
 pub(super) struct Found {
@@ -94,54 +91,4 @@ fn by_input<const N: usize>(mut simplices: Simplices<N>, input: &[u32]) -> Simpl
         *v = input[*v as usize];
     }
     simplices
-}
-
-/// The smallest α at which all points that span no volume are in one piece of their shape's largest
-/// simplices: triangles joined through edges, or edges joined through vertices. What
-/// [`Filtration::one_region`](crate::ladder::Filtration::one_region) is in space. The first double that
-/// is not below it. O(n log n).
-///
-/// # Errors
-/// As [`alpha_shape`](super::alpha_shape).
-#[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
-pub fn flat_region(points: &WeightedPoints) -> Result<Alpha, ShapeError> {
-    let sites = Sites::any(&points.positions, &points.weights)?;
-    let Flat { triangles, edges, vertices } = triangulate_flat(&sites, Maker::Native)?;
-    let spheres = Predicates::new(sites.positions(), sites.weights());
-    let alpha = match (&triangles[..], &edges[..]) {
-        ([], []) => spheres.first_alpha(vertices[0]),
-        ([], edges) => one_piece(edges, &spheres, |&[a, b]| vec![[a, a], [b, b]]),
-        (triangles, _) => one_piece(triangles, &spheres, |&[a, b, c]| vec![[a, b], [a, c], [b, c]]),
-    };
-    Ok(Alpha::from_squared(alpha).expect("radii are numbers"))
-}
-
-/// The first α at which every vertex is in one of the simplices, and these are one piece.
-fn one_piece<const N: usize>(
-    rows: &[[u32; N]],
-    spheres: &Predicates<'_>,
-    ridges: impl Fn(&[u32; N]) -> Vec<[u32; 2]>,
-) -> f64 {
-    let mut order: Vec<(f64, usize)> =
-        rows.iter().enumerate().map(|(i, &row)| (spheres.first_alpha(row), i)).collect();
-    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let mut loose: std::collections::HashSet<u32> = rows.as_flattened().iter().copied().collect();
-    let mut sets = UnionFind::new(rows.len());
-    let mut at_ridge: HashMap<[u32; 2], u32> = HashMap::new();
-    let mut pieces = 0usize;
-    for group in order.chunk_by(|a, b| a.0 == b.0) {
-        for &(_, i) in group {
-            pieces += 1;
-            rows[i].iter().for_each(|v| _ = loose.remove(v));
-            for ridge in ridges(&rows[i]) {
-                if let Some(other) = at_ridge.insert(ridge, i as u32) {
-                    pieces -= usize::from(sets.unite(other, i as u32));
-                }
-            }
-        }
-        if loose.is_empty() && pieces == 1 {
-            return group[0].0;
-        }
-    }
-    unreachable!("all of them are one piece")
 }

@@ -153,6 +153,7 @@ fn by_blocks(sites: &Sites<'_>, maker: Maker, options: &ShapeOptions) -> Result<
         let reach = Reach::at(sites, alpha, largest);
         Plan::new(sites, reach, maker, Limits { blocks: asked, memory: options.memory })?
     };
+    plan.afford(sites.input().len(), maker)?;
     let lattice = lattice(sites.positions(), sites.weights(), sites.torus());
     let question = Question { alpha, lattice, exterior: options.exterior, maker };
     let answer = blocks::run(sites, &plan, &question)?;

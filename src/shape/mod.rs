@@ -44,7 +44,6 @@ pub use blocks::PlanError;
 pub(crate) use blocks::{BlockShape, Own, Side, at_work, block_shape};
 pub(crate) use canonical::smallest_even_permutation;
 pub use error::{ShapeError, Whole};
-pub use flat::flat_region;
 pub use infinite::number_or_null_or_name;
 pub use make::alpha_shape;
 pub use manifold::ManifoldDefects;

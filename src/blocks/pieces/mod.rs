@@ -13,6 +13,7 @@ use super::file::BlockFile;
 use super::merge::Numbers;
 use super::rows::read_rows;
 use super::{Alone, BlocksError, Merged, Plan, Team};
+use crate::export::{Filled, NewFolder, Target, put_all};
 use crate::shape::{Complex, NO_COMPONENT, Sheets};
 
 use vtk::Kind;
@@ -43,16 +44,21 @@ impl Pieces {
     /// Refuses a place where this cannot be written, before the work.
     ///
     /// # Errors
-    /// A folder of arrays is there already.
+    /// A folder of arrays is there already, or what is there is an input.
     pub fn check(self, path: &Path) -> Result<(), BlocksError> {
-        let is_folder = match self {
-            Self::Grid | Self::Surface => false,
+        match self {
+            Self::Grid | Self::Surface => {
+                Target::check(path)?;
+                Target::check(&Kind::folder(path))?;
+            }
             #[cfg(feature = "zarr")]
-            Self::Arrays => true,
-        };
-        if is_folder && path.exists() {
-            let source = std::io::ErrorKind::AlreadyExists.into();
-            return Err(BlocksError::Written { path: path.into(), source });
+            Self::Arrays => {
+                if path.exists() {
+                    let source = std::io::ErrorKind::AlreadyExists.into();
+                    return Err(BlocksError::Written { path: path.into(), source });
+                }
+                Target::check(path)?;
+            }
         }
         Ok(())
     }
@@ -85,16 +91,53 @@ impl Pieces {
         path: &Path,
         team: &dyn Team,
     ) -> Result<(), BlocksError> {
-        match self {
-            Self::Grid => Kind::Grid.write(plan, merged, path, team),
-            Self::Surface => Kind::Surface.write(plan, merged, path, team),
-            #[cfg(feature = "zarr")]
-            Self::Arrays => match merged {
-                Some(merged) => zarr::write(plan, merged, path),
-                None => Ok(()),
-            },
+        let Written { new, files } = self.fill(plan, merged, path, team)?;
+        // The first process has the file that names the others.
+        team.meet();
+        let put = || -> Result<(), BlocksError> {
+            put_all(files)?;
+            if let Some(new) = new {
+                new.keep();
+            }
+            Ok(())
+        };
+        if team.is_first() {
+            team.meet();
+            put()
+        } else {
+            put()?;
+            team.meet();
+            Ok(())
         }
     }
+
+    /// Writes all that a process of a team has to write, but puts nothing in its place yet.
+    pub(crate) fn fill(
+        self,
+        plan: &Plan,
+        merged: Option<&Merged>,
+        path: &Path,
+        team: &dyn Team,
+    ) -> Result<Written, BlocksError> {
+        match self {
+            Self::Grid => Kind::Grid.fill(plan, merged, path, team),
+            Self::Surface => Kind::Surface.fill(plan, merged, path, team),
+            #[cfg(feature = "zarr")]
+            Self::Arrays => {
+                let arrays = merged.map(|merged| zarr::write(plan, merged, path)).transpose()?;
+                Ok(Written { files: arrays.into_iter().collect(), new: None })
+            }
+        }
+    }
+}
+
+/// Pieces that are complete, and wait to be put in their places; dropped, they go.
+#[derive(Debug)]
+pub(crate) struct Written {
+    /// The one that names the others is the last.
+    pub files: Vec<Filled>,
+    /// The folder of the pieces, if it was made for them. After the files: it goes when it is empty.
+    pub new: Option<NewFolder>,
 }
 
 /// What a block has of the shape, with common numbers.
@@ -112,12 +155,12 @@ impl Piece {
     fn read(plan: &Plan, block: usize, numbers: &Numbers) -> Result<Self, BlocksError> {
         let file = BlockFile::open(plan, block)?;
         let job = &plan.job;
-        let voxels = file.read::<u64>("voxels")?;
+        let voxels = file.voxels()?;
         let place = |&voxel: &u64| job.units.place(&job.frame, job.dims, voxel);
         let common = |component: u32| {
             numbers.components.get(component as usize).copied().unwrap_or(NO_COMPONENT)
         };
-        let (complex, sheets) = read_rows(&file, &numbers.sheets)?;
+        let (complex, sheets) = read_rows(&file, voxels.len(), &numbers.sheets)?;
         Ok(Self {
             positions: voxels.iter().map(place).collect(),
             weights: file.read("weights")?,

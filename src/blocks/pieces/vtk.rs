@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::Piece;
+use super::{Piece, Written};
 use crate::blocks::{BlocksError, Merged, Plan, Team};
-use crate::export::{Corners, Made, Parts, Target, write_grid, write_surface};
+use crate::export::{Corners, Filled, Made, NewFolder, Parts, Target, write_grid, write_surface};
 use crate::shape::{Complex, Surface};
 
 /// What is written.
@@ -18,6 +18,11 @@ pub(super) enum Kind {
 }
 
 impl Kind {
+    /// Where the files of blocks go.
+    pub(super) fn folder(path: &Path) -> PathBuf {
+        path.with_extension("")
+    }
+
     /// The extension of the file of a block.
     fn extension(self) -> &'static str {
         match self {
@@ -26,14 +31,14 @@ impl Kind {
         }
     }
 
-    /// Writes the pieces of this process, and the index as the first.
-    pub(super) fn write(
+    /// Fills the pieces of this process, and last the index as the first.
+    pub(super) fn fill(
         self,
         plan: &Plan,
         merged: Option<&Merged>,
         path: &Path,
         team: &dyn Team,
-    ) -> Result<(), BlocksError> {
+    ) -> Result<Written, BlocksError> {
         let index = if team.is_first() { Some(Target::open(path)?) } else { None };
         let told;
         let numbers = if let (1, Some(merged)) = (team.size(), merged) {
@@ -42,31 +47,32 @@ impl Kind {
             told = team.told(merged.map(|merged| merged.numbers.clone()));
             &told
         };
-        let folder = path.with_extension("");
+        let folder = Self::folder(path);
         let stem = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        std::fs::create_dir_all(&folder)
-            .map_err(|source| BlocksError::Io { path: folder.clone(), source })?;
+        let new = NewFolder::make(&folder)
+            .map_err(|source| BlocksError::Written { path: folder.clone(), source })?;
         let name = |block: usize| format!("{stem}_{block}.{}", self.extension());
-        let write = |block: usize| -> Result<Option<usize>, BlocksError> {
+        let fill = |block: usize| -> Result<Option<(usize, Filled)>, BlocksError> {
             let piece = Piece::read(plan, block, &numbers[block])?;
             if piece.complex.vertices.is_empty() && piece.complex.edges.is_empty() {
                 return Ok(None);
             }
             let file: PathBuf = folder.join(name(block));
-            Target::open(&file)?.write(|out| piece.write(self, plan, out))?;
-            Ok(Some(block))
+            let filled = Target::open(&file)?.fill(|out| piece.write(self, plan, out))?;
+            Ok(Some((block, filled)))
         };
         let own: Vec<usize> = team.own(plan.blocks.len()).collect();
-        let written: Result<Vec<_>, _> = own.into_par_iter().map(write).collect();
-        let written: Vec<usize> = written?.into_iter().flatten().collect();
-        let mut written = team.joined(written, Extend::extend);
-        written.sort_unstable();
+        let filled: Result<Vec<_>, _> = own.into_par_iter().map(fill).collect();
+        let (blocks, files): (Vec<usize>, Vec<Filled>) = filled?.into_iter().flatten().unzip();
+        let mut written = Written { files, new };
+        let mut blocks = team.joined(blocks, Extend::extend);
+        blocks.sort_unstable();
         if let Some(index) = index {
             let names: Vec<String> =
-                written.into_iter().map(|block| format!("{stem}/{}", name(block))).collect();
-            index.write(|out| self.write_index(&names, out))?;
+                blocks.into_iter().map(|block| format!("{stem}/{}", name(block))).collect();
+            written.files.push(index.fill(|out| self.write_index(&names, out))?);
         }
-        Ok(())
+        Ok(written)
     }
 
     fn write_index(self, names: &[String], out: &mut dyn Write) -> std::io::Result<()> {

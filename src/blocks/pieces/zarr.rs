@@ -13,17 +13,17 @@ use zarrs::group::GroupBuilder;
 
 use super::Piece;
 use crate::blocks::{BlocksError, Merged, Plan};
-use crate::export::make_folder;
+use crate::export::{Filled, fill_folder};
 use crate::progress;
 use crate::shape::Simplices;
 
 /// Rows of a chunk.
 const ROWS: u64 = 1 << 18;
 
-/// Writes a folder that is not there yet.
-pub(super) fn write(plan: &Plan, merged: &Merged, path: &Path) -> Result<(), BlocksError> {
+/// Fills a folder that is not there yet.
+pub(super) fn write(plan: &Plan, merged: &Merged, path: &Path) -> Result<Filled, BlocksError> {
     let failed = |source| BlocksError::Written { path: path.into(), source };
-    make_folder(path, failed, |part| fill(plan, merged, part))
+    fill_folder(path, failed, |part| fill(plan, merged, part))
 }
 
 /// Fills a folder: a group for each dimension, with the rows of all blocks, the first block first. Corners are

@@ -4,7 +4,7 @@ use super::super::field::{Field, Sample, Truncated};
 use super::super::passes::Passes;
 use super::super::{BlocksError, Job};
 use super::FEW;
-use crate::points::{Asked, PointsError, check_least, not_chosen};
+use crate::points::{Asked, PointsError, check_least};
 use crate::select::{Budget, Counts, Cut, Search};
 
 /// Which samples are points.
@@ -48,8 +48,8 @@ pub(super) fn choose(
 ) -> Result<Chosen, BlocksError> {
     let gray_min = job.selection.gray_min.or(job.value_min.map(|value| field.range.gray(value)));
     check_least(gray_min)?;
-    let count = match job.selection.rule.asked(job.dims.samples() as u64)? {
-        Asked::Largest(count) => count,
+    let most = match job.selection.rule.asked(job.dims.samples() as u64)? {
+        Asked::Largest(most) => most,
         Asked::AtLeast(least) => return Ok(Chosen { rule: Rule::Threshold(least), gray_min }),
     };
     // The first round asks the same whatever the budget is.
@@ -60,7 +60,7 @@ pub(super) fn choose(
         let least = gray_min.unwrap_or(f64::NEG_INFINITY);
         return Err(PointsError::Masked { least, highest: highest.into() }.into());
     }
-    let mut search = Search::new(Budget::Count(not_chosen(count, available)?), FEW);
+    let mut search = Search::new(Budget::Count(most.not_chosen(available)?), FEW);
     search.learn(counts);
     let next = |search: &Search| Ok(round(search, gray_min, field, truncated, passes)?.0);
     let (cut, _) = search.find::<BlocksError>(next)?;

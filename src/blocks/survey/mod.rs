@@ -11,7 +11,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::field::{Field, Truncated};
+use super::kept::Kept;
 use super::passes::Passes;
+use super::seen::Seen;
 use super::{BlocksError, Job, Part, Team};
 use crate::haar::{Decomposition, Truncation};
 use crate::points::{Differences, PointsError};
@@ -50,6 +52,8 @@ pub(super) struct Surveyed {
     pub truncated: Truncated,
     /// How many points each brick has.
     pub counts: Vec<u32>,
+    /// Files that are written.
+    pub kept: Vec<Kept>,
 }
 
 /// Surveys the volume of a job: reads it five or six times. Each process of a team reads its share of the
@@ -64,17 +68,50 @@ pub(super) fn survey(
     let tiles = Part::whole(field.dims).tiles(field.tile());
     let mut passes = Passes::new(team, &tiles);
     gray_levels(job, field, &mut passes)?;
-    let (truncation, truncated) = match job.haar.decomposition {
-        Decomposition::NonStandard => truncate(job, field, &mut passes)?,
-        Decomposition::Standard => truncate_to_file(job, field, folder, &mut passes)?,
-    };
+    let (truncation, mut truncated, kept) = truncated(job, field, folder, &mut passes)?;
     let choice = choose(job, field, &truncated, &mut passes)?;
     let Counted { differences, first, counts } = count(field, &truncated, &choice, &mut passes)?;
     if differences.count == 0 {
         return Err(PointsError::Empty { voxels: job.dims.samples() as u64 }.into());
     }
+    all_saw(&mut field.seen, job, team)?;
+    if let Truncated::File(_, seen) = &mut truncated {
+        all_saw(seen, job, team)?;
+    }
     let (range, least) = (field.range, field.least);
     let cut = if let Truncated::Bricks { cut, .. } = truncated { Some(cut) } else { None };
     let survey = Survey { range, least, truncation, cut, choice, differences, first };
-    Ok(Surveyed { survey, truncated, counts })
+    Ok(Surveyed { survey, truncated, counts, kept })
+}
+
+/// Truncates the volume of a job whose gray levels are known, and gives what is kept in a file.
+pub(super) fn truncated(
+    job: &Job,
+    field: &Field,
+    folder: &Path,
+    passes: &mut Passes<'_>,
+) -> Result<(Truncation, Truncated, Vec<Kept>), BlocksError> {
+    match job.haar.decomposition {
+        Decomposition::NonStandard => {
+            let (truncation, truncated) = truncate(job, field, passes)?;
+            Ok((truncation, truncated, Vec::new()))
+        }
+        Decomposition::Standard => truncate_to_file(job, field, folder, passes),
+    }
+}
+
+/// Joins what the processes of a team read.
+fn all_saw(seen: &mut Seen, job: &Job, team: &dyn Team) -> Result<(), BlocksError> {
+    if team.size() == 1 {
+        return Ok(());
+    }
+    let (all, same) = team.joined((seen.told(), true), |(all, same), (others, too)| {
+        *same &= too & Seen::join(all, &others);
+    });
+    if !same {
+        let what = "processes read other samples at one place".to_owned();
+        return Err(BlocksError::changed(job, what));
+    }
+    seen.take(all);
+    Ok(())
 }

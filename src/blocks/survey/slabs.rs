@@ -4,7 +4,9 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
+use super::super::digest::Hasher;
 use super::super::field::{Field, Truncated};
+use super::super::kept::Kept;
 use super::super::passes::Passes;
 use super::super::{BlocksError, Job, Part, Plan};
 use super::FEW;
@@ -23,7 +25,7 @@ pub(super) fn truncate_to_file(
     field: &Field,
     folder: &Path,
     passes: &mut Passes<'_>,
-) -> Result<(Truncation, Truncated), BlocksError> {
+) -> Result<(Truncation, Truncated, Vec<Kept>), BlocksError> {
     let mine = if passes.team.is_first() {
         let io = |source| BlocksError::Written { path: folder.join(Plan::SMOOTHED), source };
         let file = tempfile::tempfile_in(folder).map_err(io)?;
@@ -32,11 +34,10 @@ pub(super) fn truncate_to_file(
     } else {
         None
     };
-    let truncation = passes.team.told(mine);
-    if truncation.epsilon == 0.0 {
-        return Ok((truncation, Truncated::Same));
-    }
-    Ok((truncation, Truncated::File(Plan::smoothed(folder, job.dims)?)))
+    let (truncation, kept) = passes.team.told(mine);
+    let Some(kept) = kept else { return Ok((truncation, Truncated::Same, Vec::new())) };
+    let (source, seen) = Plan::smoothed(folder, job.dims)?;
+    Ok((truncation, Truncated::File(source, seen), vec![kept]))
 }
 
 /// The coefficients of a volume in a file, in double precision.
@@ -55,7 +56,7 @@ impl Work<'_> {
         job: &Job,
         field: &Field,
         passes: &mut Passes<'_>,
-    ) -> Result<Truncation, BlocksError> {
+    ) -> Result<(Truncation, Option<Kept>), BlocksError> {
         let (tolerance, total) = (job.haar.tolerance, job.dims.samples() as u64);
         tolerance.check()?;
         let [planes, walls] = [self.cut(2), self.cut(1)];
@@ -83,10 +84,9 @@ impl Work<'_> {
             Ok::<_, BlocksError>(counts)
         })?;
         let truncation = Truncation::new(tolerance, total, dropped);
-        if truncation.epsilon > 0.0 {
-            self.smooth(cut, [&planes, &walls], passes)?;
-        }
-        Ok(truncation)
+        let smooth = || self.smooth(cut, [&planes, &walls], passes);
+        let kept = (truncation.epsilon > 0.0).then(smooth).transpose()?;
+        Ok((truncation, kept))
     }
 
     /// Drops coefficients, and writes the samples of what stays.
@@ -95,7 +95,7 @@ impl Work<'_> {
         cut: Cut,
         [planes, walls]: [&[Part]; 2],
         passes: &mut Passes<'_>,
-    ) -> Result<(), BlocksError> {
+    ) -> Result<Kept, BlocksError> {
         passes.serial(walls, |walls| {
             let mut values = self.read(walls)?;
             let kept: Vec<f64> = self
@@ -107,23 +107,27 @@ impl Work<'_> {
             self.write(walls, &values)
         })?;
         let target = Target::open(&self.folder.join(Plan::SMOOTHED))?;
-        let mut failed = None;
+        let (mut failed, mut hasher, mut length) = (None, Hasher::default(), 0);
         let written = target.write(|out| {
             let done = passes.serial(planes, |planes| {
                 let mut values = self.read(planes)?;
                 self.slabs.inverse_planes(&mut values);
                 let bytes = values.iter().flat_map(|&value| (value as f32).to_le_bytes());
-                out.write_all(&bytes.collect::<Vec<u8>>()).map_err(|error| self.failed(error))
+                let bytes: Vec<u8> = bytes.collect();
+                hasher.update(&bytes);
+                length += bytes.len() as u64;
+                out.write_all(&bytes).map_err(|error| self.failed(error))
             });
             done.map_err(|error| {
                 failed = Some(error);
                 io::Error::other("the slabs before it")
             })
         });
-        match failed {
-            Some(error) => Err(error),
-            None => Ok(written?),
+        if let Some(error) = failed {
+            return Err(error);
         }
+        written?;
+        Ok(Kept { name: Plan::SMOOTHED.into(), bytes: length, digest: hasher.digest() })
     }
 
     /// Whole planes (axis 2) or whole walls (axis 1), of about [`SLAB`] samples each.

@@ -79,12 +79,15 @@ impl Partition {
 
     /// How many points the largest block has, those around it included.
     pub(crate) fn largest(&self, sites: &Sites<'_>, reach: Reach) -> usize {
-        let size = |block: usize| {
-            let mut count = self.nodes[self.leaves[block]].members.len();
-            self.halo(sites, reach, block, |_, _| count += 1);
-            count
-        };
+        let size = |block: usize| self.size(sites, reach, block);
         (0..self.len()).into_par_iter().map(size).max().unwrap_or(0)
+    }
+
+    /// How many points a block has, those around it included.
+    pub(crate) fn size(&self, sites: &Sites<'_>, reach: Reach, block: usize) -> usize {
+        let mut count = self.nodes[self.leaves[block]].members.len();
+        self.halo(sites, reach, block, |_, _| count += 1);
+        count
     }
 
     /// The points of a block and of its halo. Copies of points come copy by copy, each along the curve.

@@ -2,13 +2,15 @@
 
 use super::{Partition, Reach};
 use crate::advice::Advice;
-use crate::memory;
+use crate::memory::{self, NoMemory};
 use crate::triangulation::{Maker, Sites};
 
 /// The blocks, and how many are worked on at once.
 pub(crate) struct Plan {
     pub partition: Partition,
     pub at_once: usize,
+    /// Points in the blocks worked on at once, their halos' included.
+    at_work: usize,
     /// Bytes allowed, and held when the plan was made. Memory that comes free then goes back to the
     /// system at once, which takes a tenth of the time, as it must be asked for again.
     bound: Option<Bound>,
@@ -77,6 +79,12 @@ pub(crate) fn at_work(maker: Maker) -> u64 {
     }
 }
 
+/// Bytes that a shape of so many points takes, with so many of them and of halos at work.
+fn taken(points: usize, at_work: usize, maker: Maker) -> u64 {
+    let working = DONE * points as u64 + self::at_work(maker) * at_work as u64;
+    working.max(MERGED * points as u64)
+}
+
 /// The number of blocks to begin with.
 fn fewest(points: usize, threads: usize) -> usize {
     threads.min(points / WORTHWHILE).max(1)
@@ -85,7 +93,8 @@ fn fewest(points: usize, threads: usize) -> usize {
 impl Plan {
     /// All sites as one block.
     pub(crate) fn whole(sites: &Sites<'_>) -> Self {
-        Self { partition: Partition::new(sites, 1), at_once: 1, bound: None }
+        let at_work = sites.input().len();
+        Self { partition: Partition::new(sites, 1), at_once: 1, at_work, bound: None }
     }
 
     /// As many blocks as there are threads; with a bound on memory, those that keep it and take the
@@ -106,7 +115,8 @@ impl Plan {
             (Some(blocks), _) => {
                 let partition = Partition::new(sites, blocks);
                 let at_once = partition.len().min(threads);
-                Ok(Self { partition, at_once, bound })
+                let at_work = at_once * partition.largest(sites, reach);
+                Ok(Self { partition, at_once, at_work, bound })
             }
             (None, Some(bound)) => Self::within(bound, sites, reach, maker, threads),
             (None, None) => Ok(Self::fast(sites, reach, threads)),
@@ -119,10 +129,11 @@ impl Plan {
         let at_once = fewest(points, threads);
         let partition = Partition::new(sites, at_once);
         // More blocks than one pay only if none of them is nearly the whole.
-        if partition.largest(sites, reach) > points - points / 8 {
+        let largest = partition.largest(sites, reach);
+        if largest > points - points / 8 {
             return Self::whole(sites);
         }
-        Self { partition, at_once, bound: None }
+        Self { partition, at_once, at_work: at_once * largest, bound: None }
     }
 
     /// The blocks that keep a bound and take the least time.
@@ -135,16 +146,18 @@ impl Plan {
     ) -> Result<Self, PlanError> {
         let Bound { asked, resident } = bound;
         let points = sites.input().len();
-        let needs = |at_once: usize, largest: usize| {
-            let at_work = at_work(maker) * (at_once * largest) as u64;
-            resident + (DONE * points as u64 + at_work).max(MERGED * points as u64)
-        };
+        let needs =
+            |at_once: usize, largest: usize| resident + taken(points, at_once * largest, maker);
         let mut blocks = fewest(points, threads);
         let mut least = PlanError { asked, needed: u64::MAX, blocks };
         let mut best: Option<(f64, Self)> = None;
         loop {
             let partition = Partition::new(sites, blocks);
-            let largest = partition.largest(sites, reach);
+            // The largest block has no fewer points than this one. Where that is too many already, and no news
+            // for the least that is needed, the others are not counted: with a long reach each has nearly all.
+            let some = partition.size(sites, reach, partition.len() / 2);
+            let hopeless = needs(1, some) > asked && needs(1, some) >= least.needed;
+            let largest = if hopeless { some } else { partition.largest(sites, reach) };
             // The time of a plan is that of its blocks with their halos, shared among threads.
             let work = (blocks * largest) as f64;
             let time = |at_once: usize| work / at_once as f64;
@@ -157,7 +170,8 @@ impl Plan {
                 needed <= asked
             });
             if let Some(at_once) = at_once.filter(|&at_once| time(at_once) < shortest) {
-                best = Some((time(at_once), Self { partition, at_once, bound: Some(bound) }));
+                let (at_work, bound) = (at_once * largest, Some(bound));
+                best = Some((time(at_once), Self { partition, at_once, at_work, bound }));
             }
             blocks *= 2;
             // More blocks have more of a halo: with all threads at work they are slower.
@@ -168,6 +182,15 @@ impl Plan {
                 return best.map(|(_, plan)| plan).ok_or(least);
             }
         }
+    }
+
+    /// Whether the memory for it can be had, as far as can be said before.
+    ///
+    /// # Errors
+    /// [`NoMemory`] when not.
+    pub(crate) fn afford(&self, points: usize, maker: Maker) -> Result<(), NoMemory> {
+        let bytes = usize::try_from(taken(points, self.at_work, maker)).unwrap_or(usize::MAX);
+        memory::afford(bytes, || format!("the shape of {points} points"))
     }
 
     /// In how many steps the rows of blocks are merged.
