@@ -61,10 +61,11 @@ pub mod volume;
 
 /// The exact checker: a crate of its own, `walpha-check`, for use in other programs.
 pub use walpha_check as check;
+pub use walpha_check::threads;
 
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
 pub use interpolate::Interpolant;
-pub use memory::NoMemory;
+pub use memory::{NoMemory, is_asking};
 pub use pipeline::Pipeline;
 pub use points::{Points, PointsError, Selection, SelectionRule, Units, WeightedPoints, Weighting};
 pub use shape::{Alpha, AlphaShape, Balls, Class, Complex, Simplices, alpha_shape};

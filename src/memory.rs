@@ -1,5 +1,8 @@
 //! What the system says of this process's memory, and large pieces of it that may not be had.
 
+use std::cell::Cell;
+use std::collections::TryReserveError;
+
 use crate::advice::Advice;
 
 /// The most memory this process ever held, in bytes; `None` where the system does not say (only
@@ -53,12 +56,32 @@ impl NoMemory {
     }
 }
 
+thread_local! {
+    static ASKING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether this thread asks for memory that it may be refused: a failure is an error then, and the end of
+/// the process otherwise. For allocators of programs that must not end.
+pub fn is_asking() -> bool {
+    ASKING.get()
+}
+
+/// Asks for memory that may be refused, as [`is_asking`] then says.
+pub(crate) fn asking<T>(
+    ask: impl FnOnce() -> Result<T, TryReserveError>,
+) -> Result<T, TryReserveError> {
+    let outer = ASKING.replace(true);
+    let answer = ask();
+    ASKING.set(outer);
+    answer
+}
+
 /// Room for so many items, or an error that names what they are for. What is large, and grows with
 /// what a user asks for, begins here.
 pub(crate) fn room<T>(count: usize, what: impl FnOnce() -> String) -> Result<Vec<T>, NoMemory> {
     let mut items = Vec::new();
     let bytes = count as u128 * size_of::<T>() as u128;
-    items.try_reserve_exact(count).map_err(|_| NoMemory { what: what(), bytes })?;
+    asking(|| items.try_reserve_exact(count)).map_err(|_| NoMemory { what: what(), bytes })?;
     Ok(items)
 }
 

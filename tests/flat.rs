@@ -7,7 +7,8 @@ mod random;
 use std::num::NonZeroUsize;
 
 use walpha::check::enumerate;
-use walpha::shape::{Betti, Engine, ShapeOptions, flat_region};
+use walpha::ladder::Filtration;
+use walpha::shape::{Betti, Engine, ShapeOptions};
 use walpha::{Alpha, AlphaShape, Class, WeightedPoints, alpha_shape};
 
 use random::Random;
@@ -125,13 +126,15 @@ fn one_piece_of_a_plane_and_of_a_line() {
     let with = WeightedPoints::unweighted;
     let at = |alpha: f64, points: &WeightedPoints| shape(points, alpha, Engine::Native, false);
     let grid = with((0..20).map(|i| [f64::from(i % 5), f64::from(i / 5), 1.0]).collect());
-    let found = flat_region(&grid).unwrap().squared();
+    let one_region =
+        |points: &WeightedPoints| Filtration::new(points.clone()).unwrap().one_region().squared();
+    let found = one_region(&grid);
     assert_eq!(found, 0.5);
     assert_eq!(at(found, &grid).betti().unwrap(), Betti::in_space(1, 0, 0));
     assert_eq!(at(found, &grid).measures().singular_area, 12.0);
     assert!(at(found.next_down(), &grid).complex().facets.is_empty());
     let line = with([0.0, 1.0, 3.0, 4.0].map(|x| [x, 2.0 * x, -x]).into());
-    assert_eq!(flat_region(&line).unwrap().squared(), 6.0);
+    assert_eq!(one_region(&line), 6.0);
     assert_eq!(at(6.0, &line).betti().unwrap().b0, 1);
     assert_eq!(at(6f64.next_down(), &line).betti().unwrap().b0, 2);
 }
@@ -167,4 +170,44 @@ fn the_command_takes_tables_of_the_plane() {
         common::run(f, &["shape", "plane.csv", "--dimension", "3", "--alpha", "1"]);
     assert!(code == 1 && said.contains("in one plane"), "{said}");
     assert_eq!(common::run(f, &["shape", "plane.csv", "--dimension", "2"]).0, 2);
+}
+
+/// What makes all shapes at once, shows them, or interpolates on them takes what `shape` takes.
+#[test]
+fn all_commands_take_what_lies_in_a_plane_on_a_line_or_at_a_point() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let row = |x: i32, y: i32| format!("{x},{y},{},{}\n", x + y, x);
+    let plane: String = (0..16).map(|i| row(i % 4, i / 4)).collect();
+    let line: String = (0..5).map(|i| row(i * i, 0)).collect();
+    for (name, rows, vertices, area, one_region) in [
+        ("plane", plane, 16, 9.0 * 3f64.sqrt(), 2.0 / 3.0),
+        ("line", line, 5, 0.0, 24.5),
+        ("point", row(1, 2), 1, 0.0, 0.0),
+    ] {
+        let table = format!("{name}.csv");
+        std::fs::write(f.join(&table), format!("x,y,z,value\n{rows}")).unwrap();
+        let told = common::json(f, &["filtration", &table, "-o", "a.json", "a.npz", "a.txt"]);
+        assert_eq!(told["simplices"]["cells"]["count"].as_u64().unwrap_or(0), 0, "{told}");
+        let told = common::json(f, &["ladder", &table, "-o", "made", "--mesh", "ply"]);
+        let last = told["levels"].as_array().unwrap().last().unwrap();
+        assert_eq!(last["coverage"], 0.0, "{last}");
+        let told = common::json(f, &["ladder", &table, "--alphas", "inf", "-o", "made"]);
+        let last = &told["levels"][0];
+        assert_eq!(
+            (last["cells"].as_u64(), &last["betti"]),
+            (Some(0), &serde_json::json!([1, 0, 0]))
+        );
+        assert!((last["singular_area"].as_f64().unwrap() - area).abs() < 1e-9, "{last}");
+        common::ok(f, &["view", &table, "-o", "a.html"]);
+        let told = common::json(f, &["shape", &table, "--alpha", "auto"]);
+        assert!((told["alpha"]["squared"].as_f64().unwrap() - one_region).abs() < 1e-9, "{name}");
+        assert_eq!(
+            told["shape"]["vertices"]["regular"].as_u64().unwrap()
+                + told["shape"]["vertices"]["singular"].as_u64().unwrap(),
+            vertices
+        );
+        let args = ["interpolate", &table, "--alpha", "inf", "--dims", "4,4,4", "-o", "a.npy"];
+        assert_eq!(common::json(f, &args)["shape"]["betti"], serde_json::json!([1, 0, 0]));
+    }
 }

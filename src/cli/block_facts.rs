@@ -4,7 +4,9 @@ use std::fmt::{self, Display};
 
 use serde::Serialize;
 
-use crate::blocks::{Plan, Price};
+use std::path::Path;
+
+use crate::blocks::{Checked, Plan, Price};
 use crate::memory::readable;
 
 use super::output::name;
@@ -30,7 +32,7 @@ impl PlanFacts {
         let halo = plan.blocks.iter().map(|block| block.halo).sum::<u64>();
         Self {
             folder: plan.folder().display().to_string(),
-            plan: plan.digest().to_owned(),
+            plan: plan.digest(),
             input: plan.job.input.clone(),
             samples: plan.job.dims.samples(),
             points,
@@ -99,5 +101,64 @@ impl Display for RunFacts {
         let Self { folder, blocks, seconds } = self;
         let folder = name(folder);
         writeln!(f, "blocks    {} done in {folder}, {seconds:.2} s", blocks.len())
+    }
+}
+
+/// What was found of the files of a plan.
+#[derive(Serialize)]
+pub(super) struct CheckFacts {
+    folder: String,
+    /// What identifies the plan; nothing where it cannot be read.
+    plan: Option<String>,
+    /// How many there should be.
+    blocks: Option<usize>,
+    missing: Vec<usize>,
+    findings: Vec<Found>,
+    /// Whether all is there, as it was written.
+    pub whole: bool,
+}
+
+/// A file that does not verify.
+#[derive(Serialize)]
+struct Found {
+    path: String,
+    what: String,
+}
+
+impl CheckFacts {
+    pub(super) fn of(folder: &Path, plan: Option<&Plan>, checked: Checked) -> Self {
+        let whole = checked.is_whole();
+        let found = checked.findings.into_iter();
+        Self {
+            folder: folder.display().to_string(),
+            plan: plan.map(Plan::digest),
+            blocks: plan.map(|plan| plan.blocks.len()),
+            findings: found
+                .map(|found| Found { path: found.path.display().to_string(), what: found.what })
+                .collect(),
+            missing: checked.missing,
+            whole,
+        }
+    }
+}
+
+impl Display for CheckFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for Found { path, what } in &self.findings {
+            writeln!(f, "{}: {what}", name(path))?;
+        }
+        if !self.missing.is_empty() {
+            let missing: Vec<String> = self.missing.iter().map(usize::to_string).collect();
+            writeln!(f, "missing   {}", missing.join(", "))?;
+        }
+        let folder = name(&self.folder);
+        match (self.whole, self.blocks, self.findings.len()) {
+            (true, Some(blocks), _) => writeln!(f, "verified  {blocks} blocks in {folder}"),
+            (_, Some(_), 0) => writeln!(f, "verified  what is there in {folder}"),
+            (_, Some(_), _) => {
+                writeln!(f, "next      walpha blocks run {folder}, which computes these again")
+            }
+            (_, None, _) => writeln!(f, "next      plan again"),
+        }
     }
 }

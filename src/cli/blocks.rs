@@ -1,20 +1,26 @@
 //! `walpha blocks`: one shape in pieces that other processes or machines compute.
 
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
-use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, merge, price, run, run_all, whole};
-use crate::export::{Content, ExportOptions, Exporter, Format, Target, write_all};
+use crate::blocks::{
+    Alone, BlocksError, Checked, Cutting, Finding, Job, Merged, Pieces, Plan, Team, merge, price,
+    run, run_all, whole,
+};
+use crate::export::{
+    Content, ExportOptions, Exporter, Format, NewFolder, Target, Working, fill_all, keep_input,
+};
 use crate::progress::Stage;
 use crate::shown::shown;
 use clap::{Args, Subcommand};
 
 use super::args::{PipelineArgs, ShapeArgs};
-use super::block_facts::{PlanFacts, PriceFacts, RunFacts};
+use super::block_facts::{CheckFacts, PlanFacts, PriceFacts, RunFacts};
 use super::output::tell;
 use super::progress::Progress;
 use super::report::Report;
 use super::said::misused;
-use super::{Global, folder, pipeline};
+use super::{DIFFERENT, Global, folder, pipeline};
 
 /// Compute a shape in blocks, on as many machines as see one folder: plan, run each block, merge.
 ///
@@ -25,6 +31,8 @@ use super::{Global, folder, pipeline};
 /// walpha blocks run work 0 1 2
 ///
 /// walpha blocks merge work -o bone.pvtp bone.ply
+///
+/// walpha blocks check work
 #[derive(Args)]
 pub(super) struct Blocks {
     #[command(subcommand)]
@@ -36,6 +44,7 @@ enum Step {
     Plan(Box<PlanStep>),
     Run(RunStep),
     Merge(MergeStep),
+    Check(CheckStep),
 }
 
 /// Survey the volume, cut it into blocks, and write the plan.
@@ -53,18 +62,18 @@ struct PlanStep {
     shape: ShapeArgs,
 }
 
-/// Compute blocks; those that are there already are left alone.
+/// Compute blocks; those that are there already are left alone, and those that are damaged computed again.
 #[derive(Args)]
 struct RunStep {
     /// Folder of the plan.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Numbers of blocks, from 0 [default: all that are missing].
+    /// Numbers of blocks, from 0 [default: all that are missing or do not verify].
     #[arg(value_name = "I")]
     blocks: Vec<usize>,
 }
 
-/// Merge all blocks, and write what comes out.
+/// Verify and merge all blocks, and write what comes out: all outputs, or none.
 #[derive(Args)]
 struct MergeStep {
     /// Folder of the plan.
@@ -77,13 +86,48 @@ struct MergeStep {
     output: Vec<PathBuf>,
 }
 
+/// Read all files of a plan, and name those that are not what was written.
+///
+/// The exit code is 0 where all blocks are there and sound, and 3 where one is missing, damaged or of
+/// another plan.
+#[derive(Args)]
+struct CheckStep {
+    /// Folder of the plan.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+}
+
 impl Blocks {
-    pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
+    pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
         match self.step {
-            Step::Plan(step) => step.run(global),
-            Step::Run(step) => step.run(global),
-            Step::Merge(step) => step.run(global),
+            Step::Plan(step) => step.run(global)?,
+            Step::Run(step) => step.run(global)?,
+            Step::Merge(step) => step.run(global)?,
+            Step::Check(step) => return step.run(global),
         }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+impl CheckStep {
+    fn run(self, global: Global) -> anyhow::Result<ExitCode> {
+        let mut progress = Progress::new(global);
+        let folder = &self.folder;
+        let facts = match Plan::open(folder) {
+            Ok(plan) => {
+                let checked = progress.stage(Stage::Shape, || plan.check())?;
+                CheckFacts::of(folder, Some(&plan), checked)
+            }
+            Err(BlocksError::NoPlan { path, what }) => {
+                let mut checked = Checked::default();
+                checked.findings.push(Finding { path, what });
+                CheckFacts::of(folder, None, checked)
+            }
+            Err(error) => return Err(error.into()),
+        };
+        progress.finish();
+        tell(global, &facts)?;
+        Ok(if facts.whole { ExitCode::SUCCESS } else { DIFFERENT.into() })
     }
 }
 
@@ -110,7 +154,12 @@ impl RunStep {
     fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
         let plan = Plan::open(&self.folder)?;
-        let blocks = if self.blocks.is_empty() { plan.missing()? } else { self.blocks };
+        let blocks = if self.blocks.is_empty() {
+            plan.restore()?;
+            plan.missing()?
+        } else {
+            self.blocks
+        };
         progress.stage(Stage::Shape, || match blocks[..] {
             [one] => run(&plan, one),
             _ => run_all(&plan, &blocks),
@@ -127,6 +176,11 @@ impl MergeStep {
         let plan = Plan::open(&self.folder)?;
         let input = Some(plan.job.input.clone());
         let export = ExportOptions { input, ..ExportOptions::default() };
+        // An output there would replace the plan.
+        let _working = (!global.in_place).then(|| Working::folder(&self.folder));
+        if !global.in_place {
+            keep_input(Path::new(&plan.job.input));
+        }
         let mut outputs = Outputs::default();
         for path in &self.output {
             if let Some(pieces) = Pieces::of(path) {
@@ -137,9 +191,12 @@ impl MergeStep {
                 outputs.whole.push((Target::open(path)?, exporter));
             }
         }
-        let merged = progress.stage(Stage::Shape, || merge(&plan))?;
+        let merged = progress.stage(Stage::Shape, || {
+            plan.verify_blocks()?;
+            merge(&plan)
+        })?;
         let mut report = Report::of_blocks(&plan, &merged);
-        progress.stage(Stage::Write, || outputs.write(&plan, &merged))?;
+        progress.stage(Stage::Write, || outputs.write(&plan, Some(&merged), &Alone))?;
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         tell(global, &report)
@@ -156,24 +213,41 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    fn write(self, plan: &Plan, merged: &Merged) -> anyhow::Result<()> {
+    /// Writes all outputs or none as one of a team, of which the first process has what was merged, and targets.
+    pub(super) fn write(
+        self,
+        plan: &Plan,
+        merged: Option<&Merged>,
+        team: &dyn Team,
+    ) -> anyhow::Result<()> {
+        // Dropped in the reverse order: folders go when they are empty.
+        let (mut folders, mut files) = (Vec::new(), Vec::new());
         for (pieces, path) in &self.pieces {
-            pieces.write(plan, merged, path)?;
+            let written = pieces.fill(plan, merged, path, team)?;
+            files.extend(written.files);
+            folders.extend(written.new);
         }
-        self.write_whole(plan, merged)
-    }
-
-    /// Writes what goes into one file.
-    pub(super) fn write_whole(self, plan: &Plan, merged: &Merged) -> anyhow::Result<()> {
-        if self.whole.is_empty() {
-            return Ok(());
-        }
-        let shape = whole(plan, merged)?;
-        write_all(self.whole.into_iter().map(|(target, exporter)| {
-            let shape = &shape;
+        let shape = match merged {
+            Some(merged) if !self.whole.is_empty() => Some(whole(plan, merged)?),
+            _ => None,
+        };
+        let whole = self.whole.into_iter().zip(std::iter::repeat(shape.as_ref()));
+        let whole = whole.filter_map(|((target, exporter), shape)| {
+            let shape = shape?;
             let content = move |out: &mut dyn std::io::Write| exporter.write(shape, out);
-            (target, Box::new(content) as Content<'_>)
-        }))?;
+            Some((target, Box::new(content) as Content<'_>))
+        });
+        let whole = fill_all(whole)?;
+        // Nothing gets its name before all is written, and what names other files comes after these.
+        team.meet();
+        if team.is_first() {
+            team.meet();
+        }
+        whole.put(files)?;
+        if !team.is_first() {
+            team.meet();
+        }
+        folders.into_iter().for_each(NewFolder::keep);
         Ok(())
     }
 }
@@ -181,12 +255,15 @@ impl Outputs {
 /// What the options ask for.
 pub(super) fn job(args: &PipelineArgs, shape: &ShapeArgs) -> anyhow::Result<Job> {
     let PipelineArgs { input, haar, select, weights, .. } = args;
-    if input.input == Target::STDOUT {
+    if input.input.is_stdin() {
         misused!("standard input cannot be read in parts, as blocks are" => "name a file");
     }
-    if pipeline::is_points(input, &input.input)? {
-        let name = shown(Path::new(&input.input));
-        misused!("{name} holds points, and blocks are cut from volumes" => "write another format than .pvtu and .pvtp");
+    if input.input.path().to_str().is_none() {
+        misused!("the plan of blocks is a text, and {} is no name in UTF-8", input.input => "name a link to it");
+    }
+    if pipeline::is_points(input, input.input.path())? {
+        let name = shown(input.input.path());
+        misused!("{name} holds points, and blocks are cut from volumes" => "start one process, and write another format than .pvtu and .pvtp");
     }
     input.given.refuse(&["columns"], format!("{} holds a volume", input.input))?;
     let alone = ["refit", "exchange", "max_error"];
@@ -196,7 +273,7 @@ pub(super) fn job(args: &PipelineArgs, shape: &ShapeArgs) -> anyhow::Result<Job>
         misused!("--exterior needs the whole triangulation, which blocks do not have" => "omit it");
     }
     let mut job = Job::new(&input.input, input.options()).map_err(|error| match error {
-        crate::blocks::BlocksError::Volume(error) => pipeline::with_points(error),
+        BlocksError::Volume(error) => pipeline::with_points(error),
         other => other.into(),
     })?;
     (job.frame, job.units) = select.place_frame(job.frame)?;

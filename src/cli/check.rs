@@ -5,11 +5,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clap::{Args, Command};
+use clap::{Args, Command, ValueEnum};
 use serde::Serialize;
 
+use crate::Alpha;
 use crate::check::schema::{FiltrationFile, PlacedComplex};
-use crate::check::{Comparison, Extent, certify_filtration, compare, enumerate};
+use crate::check::{Comparison, Extent, Verdict, certify_filtration, compare, enumerate};
+use crate::pipeline::AlphaRule;
+use crate::points::{self, CellCount};
 use crate::progress::Stage;
 use crate::shape::ShapeOptions;
 use crate::shown::shown;
@@ -24,9 +27,12 @@ use super::{DIFFERENT, Global, pipeline};
 
 /// Check a complex exactly: one of an engine, or one that another program wrote.
 ///
-/// INPUT is a volume or points, from which an engine computes a shape, or a complex or filtration
-/// (.json, .npz). The checker shares no code with the engines or CGAL. Exit code 3 if there are
-/// findings.
+/// INPUT is a volume or points, from which an engine computes a shape; a complex or filtration
+/// (.json, .npz); or a mesh of tetrahedra (.vtu), of which the cells are judged. The checker shares no
+/// code with the engines or CGAL.
+///
+/// The verdict is exact; valid, where points lie on one empty sphere, or are equal, and another
+/// choice was made than CGAL's; or wrong. Exit code 3 if it is wrong, or with --ties exact, not exact.
 ///
 /// Examples:
 ///
@@ -35,6 +41,8 @@ use super::{DIFFERENT, Global, pipeline};
 /// walpha check skull.json
 ///
 /// walpha check theirs.json --points skull.csv
+///
+/// walpha check theirs.vtu --ties exact
 #[derive(Args)]
 pub(super) struct Check {
     /// Points of the complex or filtration, where its file lists none: .csv or .npy.
@@ -43,12 +51,25 @@ pub(super) struct Check {
     /// Also build the answer from the definition, and compare (at most 200 points).
     #[arg(long)]
     enumerate: bool,
+    /// Which choice at ties is right: any, or CGAL's alone (exact), so that another is a finding.
+    #[arg(long, value_enum, default_value_t, value_name = "CHOICE")]
+    ties: Ties,
     #[command(flatten)]
     pipeline: PipelineArgs,
     #[command(flatten)]
     shape: ShapeArgs,
     #[command(flatten)]
     periodic: PeriodicArgs,
+}
+
+/// Which choice at ties is right.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Ties {
+    /// Any.
+    #[default]
+    Any,
+    /// The one that the perturbation makes.
+    Exact,
 }
 
 /// Points that `--enumerate` takes: more would take hours.
@@ -62,14 +83,16 @@ const MOST_LISTED: usize = 1000;
 struct Facts<F, C> {
     schema_version: u32,
     input: String,
-    #[serde(skip)]
-    kind: &'static str,
+    /// In words: the complex of a file, or our own shape.
+    judged: String,
     points: usize,
     /// Cells, facets, edges, vertices.
     simplices: [usize; 4],
     /// Of a complex.
     #[serde(skip_serializing_if = "Option::is_none")]
     extent: Option<&'static str>,
+    verdict: Verdict,
+    /// Whether that is right: with --ties exact, whether it is exact.
     valid: bool,
     findings_total: usize,
     /// The first of them.
@@ -78,40 +101,108 @@ struct Facts<F, C> {
     /// In words.
     #[serde(skip)]
     not_judged: Vec<String>,
+    /// The verdict with its reason.
+    #[serde(skip)]
+    words: String,
     enumeration: Option<Comparison>,
     seconds: f64,
 }
 
 impl Check {
     pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
-        let path = Path::new(&self.pipeline.input.input);
+        let input = self.pipeline.input.clone();
+        // All of this looks at one file, which standard input is for that time.
+        pipeline::with_file(&input, |file| {
+            let mut check = self;
+            check.pipeline.input.input = file.as_os_str().to_owned().into();
+            check.judge(global, &input.input)
+        })
+    }
+
+    /// Judges INPUT, whose name is told as `input`.
+    fn judge(self, global: Global, input: &str) -> anyhow::Result<ExitCode> {
+        let file = self.pipeline.input.input.clone();
+        let path = file.path();
         let mut progress = Progress::new(global);
         if !judged::is_named(path) {
+            if pipeline::is_points(&self.pipeline.input, path)? {
+                let cells = points::cells_of(path, &self.pipeline.input.of_points())?;
+                if !cells.is_empty() {
+                    return self.mesh(global, input, &cells, progress);
+                }
+            }
             let made = self.made(path, &mut progress)?;
-            return self.complex(global, &made, progress);
+            let judged = format!("our own shape of {}", name(input));
+            return self.complex(global, Subject { input, judged }, &made, &[], progress);
         }
         let read = || judged::read(path, self.points.as_deref());
         match progress.stage(Stage::Read, read)? {
             Judged::Complex(complex) => {
-                self.refuse_ours(format!("{} is a complex, made already", shown(path)))?;
-                self.complex(global, &complex, progress)
+                self.refuse_ours(&[], format!("{} is a complex, made already", name(input)))?;
+                let judged = format!("the complex of {}", name(input));
+                self.complex(global, Subject { input, judged }, &complex, &[], progress)
             }
             Judged::Filtration(filtration) => {
-                self.refuse_ours(format!("{} is a filtration, made already", shown(path)))?;
+                self.refuse_ours(&[], format!("{} is a filtration, made already", name(input)))?;
                 if self.enumerate {
-                    misused!("--enumerate belongs to a complex, and {} is a filtration", shown(path) => "omit it");
+                    misused!("--enumerate belongs to a complex, and {} is a filtration", name(input) => "omit it");
                 }
-                self.filtration(global, &filtration, progress)
+                let judged = format!("the filtration of {}", name(input));
+                self.filtration(global, Subject { input, judged }, &filtration, progress)
             }
         }
     }
 
-    /// Refuses options of how a complex is made.
-    fn refuse_ours(&self, why: String) -> Result<(), Said> {
+    /// Judges the cells that a file of points lists.
+    fn mesh(
+        self,
+        global: Global,
+        input: &str,
+        cells: &[CellCount],
+        mut progress: Progress,
+    ) -> anyhow::Result<ExitCode> {
+        let listed = cells.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+        let why = format!("{} lists {listed}, which are judged", name(input));
+        self.refuse_ours(&["alpha", "alpha_radius"], why)?;
+        if self.points.is_some() {
+            misused!("--points has no effect: {} has points of its own", name(input) => "omit it");
+        }
+        let path = self.pipeline.input.input.path();
+        let read = || -> anyhow::Result<(PlacedComplex, bool)> {
+            let mut file = points::read_complex(path, &self.pipeline.input.of_points()).map_err(|error| {
+                let Said { why, next, usage } = Said::from(error);
+                let csv = "write its points by `walpha points INPUT -o points.csv` to judge our own shape of them";
+                let next = next.map_or(csv.to_owned(), |next| format!("{next}, or {csv}"));
+                Said { why: format!("{} lists {listed}: {why}", name(input)), next: Some(next), usage }
+            })?;
+            let states_alpha = file.alpha != Alpha::INFINITE || file.classes.vertices.is_some();
+            if let AlphaRule::Given(alpha) = self.pipeline.weights.alpha() {
+                if states_alpha {
+                    misused!("--alpha has no effect: {} states its α", name(input) => "omit it");
+                }
+                file.alpha = alpha;
+            }
+            Ok((file.into_complex()?, states_alpha))
+        };
+        let (complex, states_alpha) = progress.stage(Stage::Read, read)?;
+        let mut judged = format!("the {listed} of {}", name(input));
+        if !states_alpha && complex.alpha == Alpha::INFINITE {
+            judged += " as a triangulation (it states no α; --alpha gives one)";
+        }
+        let mut unjudged = Vec::new();
+        if complex.claim().extent == Extent::Shape {
+            unjudged.push("points that the file leaves out".to_owned());
+        }
+        self.complex(global, Subject { input, judged }, &complex, &unjudged, progress)
+    }
+
+    /// Refuses options of how a complex is made, but some.
+    fn refuse_ours(&self, but: &[&str], why: String) -> Result<(), Said> {
         let ours = ShapeArgs::augment_args(<PipelineArgs>::augment_args(Command::new("check")));
         let ours = PeriodicArgs::augment_args(ours);
         let options = ours.get_arguments().filter(|arg| !arg.is_positional());
-        let names: Vec<&str> = options.map(|arg| arg.get_id().as_str()).collect();
+        let names = options.map(|arg| arg.get_id().as_str());
+        let names: Vec<&str> = names.filter(|name| !but.contains(name)).collect();
         self.pipeline.input.given.refuse(&names, why)
     }
 
@@ -124,7 +215,7 @@ impl Check {
         }
         let given = &self.pipeline.input.given;
         given.refuse(&["refit"], "values are not judged")?;
-        let mut options = ShapeOptions { periodic, ..self.shape.options() };
+        let mut options = ShapeOptions { periodic, refuse_flat: false, ..self.shape.options() };
         let stages = pipeline::stages(&self.pipeline);
         let (weighed, _) = pipeline::weighted_points(&self.pipeline, stages, progress)?;
         // The whole triangulation can be judged wholly. Several blocks are judged as they are; and of a
@@ -141,7 +232,9 @@ impl Check {
     fn complex(
         &self,
         global: Global,
+        Subject { input, judged: words }: Subject,
         judged: &PlacedComplex,
+        unjudged: &[String],
         mut progress: Progress,
     ) -> anyhow::Result<ExitCode> {
         let n = judged.positions.len();
@@ -153,7 +246,8 @@ impl Check {
         }
         let (claim, complex) = (judged.claim(), &judged.complex);
         let started = Instant::now();
-        let (findings, certificate) = progress.stage(Stage::Certify, || judged.findings())?;
+        let (mut findings, certificate) = progress.stage(Stage::Certify, || judged.findings())?;
+        findings.retain(|finding| self.ties == Ties::Exact || !finding.is_tie());
         let seconds = started.elapsed().as_secs_f64();
         let enumeration = if self.enumerate {
             Some(progress.stage(Stage::Enumerate, || by_definition(judged))?)
@@ -161,10 +255,15 @@ impl Check {
             None
         };
         progress.finish();
+        let rules = certificate.not_judged.iter().map(ToString::to_string);
+        // The definition decides ties by the rule.
+        let is_excused = |comparison: &Comparison| {
+            comparison.is_equal() || self.ties == Ties::Any && certificate.verdict == Verdict::Valid
+        };
         let facts = Facts {
             schema_version: SCHEMA_VERSION,
-            input: self.pipeline.input.input.clone(),
-            kind: "",
+            input: input.to_owned(),
+            judged: words,
             points: n,
             simplices: [
                 complex.cells.len(),
@@ -173,10 +272,12 @@ impl Check {
                 complex.vertices.len(),
             ],
             extent: Some(if claim.extent == Extent::Whole { "whole" } else { "shape" }),
-            valid: findings.is_empty() && enumeration.as_ref().is_none_or(Comparison::is_equal),
+            verdict: certificate.verdict,
+            valid: findings.is_empty() && enumeration.as_ref().is_none_or(is_excused),
             findings_total: findings.len(),
             findings,
-            not_judged: certificate.not_judged.iter().map(ToString::to_string).collect(),
+            not_judged: rules.chain(unjudged.iter().cloned()).collect(),
+            words: certificate.to_string(),
             certificate,
             enumeration,
             seconds,
@@ -188,33 +289,43 @@ impl Check {
     fn filtration(
         &self,
         global: Global,
+        Subject { input, judged }: Subject,
         file: &FiltrationFile,
         mut progress: Progress,
     ) -> anyhow::Result<ExitCode> {
         let started = Instant::now();
-        let (findings, certificate) =
+        let (mut findings, certificate) =
             progress.stage(Stage::Certify, || certify_filtration(file))?;
+        findings.retain(|finding| self.ties == Ties::Exact || !finding.is_tie());
         let seconds = started.elapsed().as_secs_f64();
         progress.finish();
         let of_triangulation = certificate.triangulation.not_judged.iter().map(ToString::to_string);
         let of_values = certificate.not_judged.iter().map(ToString::to_string);
         let facts = Facts {
             schema_version: SCHEMA_VERSION,
-            input: self.pipeline.input.input.clone(),
-            kind: "a filtration of ",
+            input: input.to_owned(),
+            judged,
             points: file.points.len(),
             simplices: [file.cells.len(), file.facets.len(), file.edges.len(), file.vertices.len()],
             extent: None,
+            verdict: certificate.verdict,
             valid: findings.is_empty(),
             findings_total: findings.len(),
             findings,
             not_judged: of_triangulation.chain(of_values).collect(),
+            words: certificate.to_string(),
             certificate,
             enumeration: None,
             seconds,
         };
         facts.tell(global)
     }
+}
+
+/// What is judged: the name of INPUT, and what of it.
+struct Subject<'a> {
+    input: &'a str,
+    judged: String,
 }
 
 /// How a complex (A) differs from the one its definition makes (B).
@@ -236,7 +347,7 @@ impl<F: Serialize + Display, C: Serialize> Facts<F, C> {
 impl<F: Display, C> Display for Facts<F, C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [cells, facets, edges, vertices] = self.simplices;
-        writeln!(f, "judged    {}: {}{} points", name(&self.input), self.kind, self.points)?;
+        writeln!(f, "judged    {}, over {} points", self.judged, self.points)?;
         writeln!(
             f,
             "          {cells} cells, {facets} facets, {edges} edges, {vertices} vertices"
@@ -254,11 +365,6 @@ impl<F: Display, C> Display for Facts<F, C> {
             writeln!(f, "against the definition (A: judged, B: made from the definition)")?;
             writeln!(f, "{enumeration}")?;
         }
-        let verdict = if self.valid { "certified: no finding" } else { "wrong" };
-        writeln!(
-            f,
-            "verdict   {verdict}, {} findings in {:.2} s",
-            self.findings_total, self.seconds
-        )
+        writeln!(f, "verdict   {} ({:.2} s)", self.words, self.seconds)
     }
 }

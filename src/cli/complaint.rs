@@ -8,8 +8,9 @@ use clap::error::ErrorKind;
 use crate::shown::escaped;
 use crate::volume::UnknownFormat;
 
+use super::output::{Unprinted, is_broken_pipe, remark};
 use super::said::{Said, advice};
-use super::{FAILURE, USAGE, progress};
+use super::{FAILURE, UNREAD, USAGE, progress};
 
 /// Whether standard error takes colours: a terminal, and `NO_COLOR` is not set (<https://no-color.org>).
 pub(super) fn coloured() -> bool {
@@ -28,6 +29,7 @@ struct Complaint {
 pub(super) fn tell(command: &str, error: &anyhow::Error) {
     let what = match progress::current().as_str() {
         _ if is_usage(error) => "cannot do this".to_owned(),
+        _ if error.is::<Unprinted>() => "could not print its result".into(),
         "" => "could not start".into(),
         "read" => "could not read its input".into(),
         "haar" => "could not transform the volume".into(),
@@ -48,7 +50,11 @@ pub(super) fn is_usage(error: &anyhow::Error) -> bool {
 
 /// The exit code after an error.
 pub(super) fn code(error: &anyhow::Error) -> u8 {
-    if is_usage(error) { USAGE } else { FAILURE }
+    match error {
+        _ if is_usage(error) => USAGE,
+        _ if is_broken_pipe(error) => UNREAD,
+        _ => FAILURE,
+    }
 }
 
 /// Prints what is wrong with a command line; `configured` if some of it comes from a file.
@@ -104,9 +110,9 @@ impl Complaint {
         // They contain names of files and arguments.
         let [what, why, next] =
             [&self.what, &self.why, &self.next].map(|text| escaped(text, |_| false));
-        eprintln!("{red}error:{plain} {what}");
-        eprintln!("{bold}  why:{plain} {why}");
-        eprintln!("{bold} next:{plain} {next}");
+        remark(&format!("{red}error:{plain} {what}"));
+        remark(&format!("{bold}  why:{plain} {why}"));
+        remark(&format!("{bold} next:{plain} {next}"));
     }
 }
 

@@ -70,7 +70,7 @@ impl Convert {
             Ok(source.dims().xyz())
         })?;
         let seconds = progress.total();
-        let (input, file) = (self.input.input, self.output.display().to_string());
+        let (input, file) = (self.input.input.to_string(), self.output.display().to_string());
         tell(global, &Facts { input, dims, file, seconds })
     }
 }

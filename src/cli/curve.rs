@@ -81,7 +81,7 @@ pub(super) fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyho
     let seconds = progress.total();
     let facts = Facts {
         schema_version: SCHEMA_VERSION,
-        input: input.input.clone(),
+        input: input.input.to_string(),
         alpha,
         unit: units.coordinates(&volume).unit,
         curve,
@@ -95,7 +95,9 @@ pub(super) fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyho
 fn counts(volume: &Volume, select: &SelectArgs) -> anyhow::Result<Vec<u64>> {
     let whole = match select.rule() {
         SelectionRule::Count(count) => count as f64,
-        SelectionRule::Ratio(ratio) => ratio * volume.dims().samples() as f64,
+        SelectionRule::Ratio(ratio) | SelectionRule::AtMost(ratio) => {
+            ratio * volume.dims().samples() as f64
+        }
         SelectionRule::Threshold(_) => {
             misused!("--curve needs a number of points" => "give --count or --ratio")
         }
@@ -141,7 +143,7 @@ impl Display for Facts {
         writeln!(
             f,
             "{:<20}{:<12}{:>8}{:>8}{:>11}{:>13}{:>13}",
-            "method", "weights", "count", "hidden", "coverage", "RMSE inside", "RMSE filled"
+            "method", "weights", "count", "hidden", "covered", "RMSE inside", "RMSE filled"
         )?;
         let number =
             |rmse: Option<f64>| rmse.map_or_else(|| "–".into(), |rmse| format!("{rmse:.3}"));
@@ -153,7 +155,7 @@ impl Display for Facts {
                 point.weighting.map_or_else(|| "–".into(), |w| w.to_string()),
                 point.count,
                 point.hidden,
-                100.0 * point.inside.coverage(),
+                100.0 * point.inside.covered_share(),
                 number(point.inside.rmse),
                 number(point.filled.rmse)
             )?;

@@ -8,17 +8,18 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use crate::Coordinates;
 use crate::export::{Content, FiltrationFormat, Target, write_all};
 use crate::ladder::{self, Ordered};
 use crate::pipeline::{Parameter, Weighed};
 use crate::progress::Stage;
+use crate::shape::ShapeOptions;
+use crate::{Alpha, Coordinates};
 
-use super::args::{FrozenPipelineArgs, PeriodicArgs};
+use super::args::{FrozenPipelineArgs, OutputArgs, PeriodicArgs};
 use super::formats::filtration_output;
 use super::output::{name, tell};
 use super::progress::Progress;
-use super::report::{SCHEMA_VERSION, WeightsReport, ending};
+use super::report::{Folded, SCHEMA_VERSION, WeightsReport, ending};
 use super::{Global, pipeline};
 
 /// Every simplex of the regular triangulation, and the α at which it comes.
@@ -44,6 +45,8 @@ pub(super) struct Filtration {
     pipeline: FrozenPipelineArgs,
     #[command(flatten)]
     periodic: PeriodicArgs,
+    #[command(flatten)]
+    format: OutputArgs,
 }
 
 #[derive(Serialize)]
@@ -53,6 +56,9 @@ struct Facts {
     points: usize,
     hidden: usize,
     duplicates: usize,
+    /// Outside of the periodic box, and moved into it; absent without a box.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    folded: Option<usize>,
     /// Of points and all lengths; values are in the square.
     coordinates: Coordinates,
     /// The α that weights are in proportion to; null where they need none.
@@ -88,18 +94,19 @@ struct Persistence {
 impl Filtration {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         let input = &self.pipeline.input;
-        input.check_format(self.output.iter())?;
+        self.format.check(self.output.iter())?;
         let mut targets = Vec::new();
         for path in &self.output {
-            let format = FiltrationFormat::of(&input.output(path)?)?;
+            let format = FiltrationFormat::of(&self.format.named(path)?)?;
             targets.push((Target::open(path)?, format));
         }
         let mut progress = Progress::new(global);
         input.given.refuse(&["refit"], "a filtration has no values")?;
-        let stages = pipeline::stages(&self.pipeline);
-        let (weighed, _) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
         let torus = self.periodic.periodic;
-        weighed.check_periodic(torus)?;
+        let options = ShapeOptions { periodic: torus, ..ShapeOptions::new(Alpha::INFINITE) };
+        let stages = pipeline::stages(&self.pipeline).shape(options);
+        let (mut weighed, _) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
+        weighed.on_torus(torus)?;
         let filtration = progress
             .stage(Stage::Filtration, || ladder::Filtration::on(torus, weighed.points.clone()))?;
         let ordered = progress.stage(Stage::Order, || filtration.simplices())?;
@@ -133,6 +140,7 @@ impl Facts {
             points: whole.points().len(),
             hidden: whole.hidden().map_or(0, <[u32]>::len),
             duplicates: whole.duplicates().len(),
+            folded: weighed.origin.folded,
             coordinates: weighed.origin.coordinates,
             alpha_ref: weighed.parameter,
             weights: WeightsReport::of(weighed),
@@ -174,7 +182,8 @@ impl Display for Facts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "input     {}", name(&self.input))?;
         let Self { points, duplicates, hidden, .. } = self;
-        writeln!(f, "points    {points}, {duplicates} duplicates, {hidden} hidden")?;
+        write!(f, "points    {points}, {duplicates} duplicates, {hidden} hidden")?;
+        writeln!(f, "{}", Folded(self.folded))?;
         writeln!(f, "lengths   in {}", self.coordinates)?;
         writeln!(f, "weights   {} (squared lengths), frozen", self.weights)?;
         if let Some(alpha_ref) = &self.alpha_ref {

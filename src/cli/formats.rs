@@ -42,7 +42,7 @@ fn dotted<'a>(extensions: impl IntoIterator<Item = &'a str>) -> String {
 /// The help of an output of a volume of `what`.
 pub(super) fn volume_output(what: &str) -> String {
     format!(
-        "{what}, as f32, replaced if it is there: {}; or - (standard output, with --format)",
+        "{what}, as f32, replaced if it is there: {}; or - (standard output, with --output-format)",
         dotted(volume::VolumeWriter::all().map(|writer| writer.extension))
     )
 }
@@ -57,7 +57,7 @@ pub(super) fn shape_output() -> String {
         "Files to write: {} (boundary), {} (all simplices), .png (a picture), .wvm (the points, packed, with \
          what the shape is made from again); {} (for shapes \
          made in blocks that are never in memory together, of a volume that is read in parts); or \
-         - (standard output, with --format). Files that are there are replaced",
+         - (standard output, with --output-format). Files that are there are replaced",
         of(true),
         of(false),
         dotted(Pieces::ALL.iter().map(|(_, extension)| *extension))
@@ -67,7 +67,7 @@ pub(super) fn shape_output() -> String {
 /// The help of the outputs of a filtration.
 pub(super) fn filtration_output() -> String {
     format!(
-        "Files to write: {}; or - (standard output, with --format). Files that are there are replaced",
+        "Files to write: {}; or - (standard output, with --output-format). Files that are there are replaced",
         dotted(export::FILTRATION_FORMATS.iter().map(|format| format.extension))
     )
 }
@@ -76,7 +76,7 @@ pub(super) fn filtration_output() -> String {
 pub(super) fn points_output() -> String {
     format!(
         "File to write, replaced if it is there: {} (columns x, y, z, weight and value); or - (standard \
-         output, with --format)",
+         output, with --output-format)",
         dotted(points::PointWriter::all().map(|writer| writer.extension))
     )
 }

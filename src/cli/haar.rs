@@ -11,7 +11,7 @@ use crate::progress::Stage;
 use crate::volume::VolumeWriter;
 
 use super::Global;
-use super::args::{HaarArgs, InputArgs};
+use super::args::{HaarArgs, InputArgs, OutputArgs};
 use super::formats::volume_output;
 use super::output::tell;
 use super::pipeline::{Grays, Input, read};
@@ -34,6 +34,8 @@ pub(super) struct Haar {
     input: InputArgs,
     #[command(flatten)]
     haar: HaarArgs,
+    #[command(flatten)]
+    format: OutputArgs,
 }
 
 #[derive(Serialize)]
@@ -45,10 +47,10 @@ struct Facts {
 
 impl Haar {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
-        self.input.check_format(self.output.iter())?;
+        self.format.check(self.output.iter())?;
         let target = match &self.output {
             None => None,
-            Some(path) => Some((VolumeWriter::of(&self.input.output(path)?)?, Target::open(path)?)),
+            Some(path) => Some((VolumeWriter::of(&self.format.named(path)?)?, Target::open(path)?)),
         };
         let mut progress = Progress::new(global);
         let read = read(&self.input, &mut progress)?;
@@ -66,7 +68,10 @@ impl Haar {
         }
         progress.finish();
         let haar = HaarReport::new(&truncation, &range);
-        tell(global, &Facts { schema_version: SCHEMA_VERSION, input: self.input.input, haar })
+        tell(
+            global,
+            &Facts { schema_version: SCHEMA_VERSION, input: self.input.input.to_string(), haar },
+        )
     }
 }
 

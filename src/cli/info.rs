@@ -5,11 +5,11 @@ use std::path::Path;
 use clap::Args;
 use serde::Serialize;
 
-use crate::points::read_model;
+use crate::points::{Cell, CellCount, cells_of, read_model};
 use crate::progress::Stage;
 use crate::shown::number;
-use crate::volume::{self, Series};
-use crate::{Alpha, Coordinates, Frame, LengthUnit};
+use crate::volume::{self, Dtype, Extent, Nan, ReadOptions, Reason, Series, Source};
+use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
 
 use super::args::InputArgs;
 use super::output::{name, tell};
@@ -54,12 +54,26 @@ enum Content {
         direction: [[f64; 3]; 3],
         #[serde(flatten)]
         coordinates: Coordinates,
-        min: f32,
-        max: f32,
+        /// Of the values that are finite; null where none is.
+        min: Option<f32>,
+        max: Option<f32>,
+        /// Samples that are NaN or infinite.
+        missing: u64,
+        /// Volumes in the file, of which --frame reads one and the first is described; absent where it is one.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        volumes: Option<u64>,
         gray_levels: bool,
         /// Where the samples are, if not in INPUT itself.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         data_files: Vec<String>,
+    },
+    /// A volume with several values in each voxel, which is not read.
+    Unread {
+        format: String,
+        /// What a voxel holds.
+        voxels: String,
+        /// Null where that takes reading it.
+        dims: Option<[u64; 3]>,
     },
     /// Several series in a folder, of which --series reads one.
     Series { series: Vec<Series> },
@@ -68,7 +82,15 @@ enum Content {
         low: [f64; 3],
         high: [f64; 3],
         weights: bool,
+        /// Whether the weights are squares of radii, which the file has in place of weights.
+        of_radii: bool,
         values: bool,
+        /// What the file lists besides points.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        cells: Vec<CellCount>,
+        /// The cell in which they repeat; absent where the file states none.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        cell: Option<CellFacts>,
         /// Samples along x, y and z of their grid; null where the file states none.
         grid: Option<[usize; 3]>,
         coordinates: Coordinates,
@@ -79,17 +101,43 @@ enum Content {
     },
 }
 
+/// A cell in which points repeat.
+#[derive(Serialize)]
+struct CellFacts {
+    vectors: [[f64; 3]; 3],
+    repeats: [bool; 3],
+    /// What --periodic takes; null where the cell is no box along the axes.
+    sides: Option<[f64; 3]>,
+    #[serde(skip)]
+    told: String,
+}
+
+impl From<Cell> for CellFacts {
+    fn from(cell: Cell) -> Self {
+        let told = match cell.sides() {
+            Some(sides) => {
+                let sides = sides.map(number).join(",");
+                format!("a box of sides {sides}, and --periodic {sides} makes its torus")
+            }
+            None => cell.to_string(),
+        };
+        Self { vectors: cell.vectors, repeats: cell.repeats, sides: cell.sides(), told }
+    }
+}
+
 impl Info {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         let look = || pipeline::with_file(&self.input, |input| self.look(input));
         let content = Progress::new(global).stage(Stage::Read, look)?;
-        tell(global, &Facts { schema_version: SCHEMA_VERSION, input: self.input.input, content })
+        tell(
+            global,
+            &Facts { schema_version: SCHEMA_VERSION, input: self.input.input.to_string(), content },
+        )
     }
 
-    fn look(&self, input: &str) -> anyhow::Result<Content> {
+    fn look(&self, input: &Path) -> anyhow::Result<Content> {
         if pipeline::is_points(&self.input, input)? {
-            let level = self.input.options().level;
-            let (points, facts) = read_model(input.as_ref(), self.input.columns(), level)?;
+            let (points, facts) = read_model(input, &self.input.of_points())?;
             let axis = |end: fn(f64, f64) -> f64, start: f64, axis: usize| {
                 points.positions.iter().fold(start, |so_far, p| end(so_far, p[axis]))
             };
@@ -98,7 +146,10 @@ impl Info {
                 low: [0, 1, 2].map(|i| axis(f64::min, f64::INFINITY, i)),
                 high: [0, 1, 2].map(|i| axis(f64::max, f64::NEG_INFINITY, i)),
                 weights: points.weights.is_some(),
+                of_radii: points.of_radii,
+                cell: facts.cell.map(Into::into),
                 values: points.values.is_some(),
+                cells: cells_of(input, &self.input.of_points())?,
                 grid: facts.grid.map(|grid| grid.dims.xyz()),
                 coordinates: facts.coordinates,
                 alpha: facts.alpha,
@@ -106,33 +157,87 @@ impl Info {
             });
         }
         let options = self.input.options();
-        if options.series.is_none() && Path::new(input).is_dir() {
-            let series = volume::series(input.as_ref())?;
+        if options.series.is_none() && input.is_dir() {
+            let series = volume::series(input)?;
             if series.len() > 1 {
                 return Ok(Content::Series { series });
             }
         }
-        let volume = volume::open(input, &options).map_err(pipeline::with_points)?;
-        let (min, max) = volume.value_range();
-        let (format, data_files) = if input.starts_with("sample:") {
+        let path = input;
+        let is_sample = input.to_str().is_some_and(|name| name.starts_with("sample:"));
+        let seen = match Seen::of(input, &options) {
+            Ok(seen) => seen,
+            Err(error) => match error.reason() {
+                Some(Reason::NotScalar { what, dims }) => {
+                    let format = volume::format_name(path, &options)?;
+                    return Ok(Content::Unread { format, voxels: what.clone(), dims: *dims });
+                }
+                Some(&Reason::Several { count }) if options.frame.is_none() => {
+                    let first = ReadOptions { frame: Some(0), ..options.clone() };
+                    Seen { volumes: Some(count), ..Seen::of(input, &first)? }
+                }
+                _ => return Err(pipeline::with_points(error)),
+            },
+        };
+        let (format, data_files) = if is_sample {
             ("sample".to_owned(), Vec::new())
         } else {
-            let path = input.as_ref();
             (volume::format_name(path, &options)?, volume::data_files(path, &options)?)
         };
+        let Seen { dims, frame, dtype, gray_levels, extent, volumes } = seen;
         Ok(Content::Volume {
             format,
-            samples: volume.dtype().to_string(),
-            dims: volume.dims().xyz(),
-            spacing: volume.frame().spacing,
-            origin: volume.frame().origin,
-            direction: volume.frame().direction,
-            coordinates: volume.frame().coordinates,
-            min,
-            max,
-            gray_levels: volume.has_gray_levels(),
+            samples: dtype.to_string(),
+            dims: dims.xyz(),
+            spacing: frame.spacing,
+            origin: frame.origin,
+            direction: frame.direction,
+            coordinates: frame.coordinates,
+            min: extent.range.map(|(min, _)| min),
+            max: extent.range.map(|(_, max)| max),
+            missing: extent.missing,
+            volumes,
+            gray_levels,
             data_files: data_files.iter().map(|file| file.display().to_string()).collect(),
         })
+    }
+}
+
+/// What is seen of a volume.
+struct Seen {
+    dims: Dims,
+    frame: Frame,
+    dtype: Dtype,
+    gray_levels: bool,
+    extent: Extent,
+    volumes: Option<u64>,
+}
+
+impl Seen {
+    /// Looks at a volume: part by part where its format allows that, and at all of it otherwise.
+    fn of(input: &Path, options: &ReadOptions) -> Result<Self, VolumeError> {
+        let (source, extent) = if let Ok(source) = Source::open(input, options) {
+            let extent = Extent::of(&source, options.nan)?;
+            (source, extent)
+        } else {
+            // It says what is wrong where something is.
+            let opened = |nan| volume::open(input, &ReadOptions { nan, ..options.clone() });
+            match opened(options.nan.or(Some(Nan::Mask))) {
+                Ok(volume) => {
+                    let extent = Extent::of_volume(&volume);
+                    (Source::of_volume(volume), extent)
+                }
+                Err(error) if error.is_not_finite() => {
+                    let volume = opened(Some(Nan::Value(0.0)))?;
+                    let missing = volume.dims().samples() as u64;
+                    (Source::of_volume(volume), Extent { range: None, missing })
+                }
+                Err(error) => return Err(error),
+            }
+        };
+        let (dims, frame, dtype) = (source.dims(), *source.frame(), source.dtype());
+        let gray_levels = source.has_gray_levels();
+        Ok(Self { dims, frame, dtype, gray_levels, extent, volumes: None })
     }
 }
 
@@ -197,6 +302,8 @@ impl std::fmt::Display for Content {
                 coordinates,
                 min,
                 max,
+                missing,
+                volumes,
                 gray_levels,
                 data_files,
             } => {
@@ -204,8 +311,25 @@ impl std::fmt::Display for Content {
                 writeln!(f, "volume    {x}×{y}×{z} samples (x, y, z)")?;
                 fmt_frame(f, *spacing, *origin, direction, *coordinates)?;
                 let gray = if *gray_levels { ", gray levels as they are" } else { "" };
-                let (min, max) = (number(f64::from(*min)), number(f64::from(*max)));
-                writeln!(f, "values    {min} to {max}{gray}")?;
+                match (min, max) {
+                    (Some(min), Some(max)) => {
+                        let (min, max) = (number(f64::from(*min)), number(f64::from(*max)));
+                        writeln!(f, "values    {min} to {max}{gray}")?;
+                    }
+                    _ => writeln!(f, "values    none that is a finite number")?,
+                }
+                if *missing > 0 {
+                    writeln!(
+                        f,
+                        "missing   {missing} samples are NaN or infinite; --nan masks or replaces them"
+                    )?;
+                }
+                if let Some(volumes) = volumes {
+                    writeln!(
+                        f,
+                        "volumes   {volumes} in the file; --frame K reads one, and 0 is described here"
+                    )?;
+                }
                 match &data_files[..] {
                     [] => Ok(()),
                     [file] => writeln!(f, "samples   in {}", name(file)),
@@ -215,17 +339,44 @@ impl std::fmt::Display for Content {
                     }
                 }
             }
+            Self::Unread { format, voxels, dims } => {
+                writeln!(f, "volume    {format}")?;
+                if let Some([x, y, z]) = dims {
+                    writeln!(f, "size      {x}×{y}×{z}")?;
+                }
+                writeln!(f, "samples   {voxels}; extract one first")
+            }
             Self::Series { series } => {
                 writeln!(f, "series    {} in the folder; --series N reads one", series.len())?;
                 series.iter().try_for_each(|one| writeln!(f, "          {one}"))
             }
-            Self::Points { count, low, high, weights, values, grid, coordinates, .. } => {
+            Self::Points {
+                count,
+                low,
+                high,
+                weights,
+                of_radii,
+                values,
+                cells,
+                cell,
+                grid,
+                coordinates,
+                ..
+            } => {
                 writeln!(f, "points    {count}")?;
+                if !cells.is_empty() {
+                    let cells: Vec<String> = cells.iter().map(ToString::to_string).collect();
+                    writeln!(f, "cells     {}", cells.join(", "))?;
+                }
                 for (i, axis) in ["x", "y", "z"].iter().enumerate() {
                     writeln!(f, "{axis}         {} to {}", number(low[i]), number(high[i]))?;
                 }
                 let has = |there: bool| if there { "yes" } else { "no" };
-                writeln!(f, "weights   {}\nvalues    {}", has(*weights), has(*values))?;
+                let squares = if *of_radii { ", squares of its radii" } else { "" };
+                writeln!(f, "weights   {}{squares}\nvalues    {}", has(*weights), has(*values))?;
+                if let Some(CellFacts { told, .. }) = cell {
+                    writeln!(f, "cell      {told}")?;
+                }
                 if let Some([x, y, z]) = grid {
                     writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;
                 }

@@ -15,7 +15,7 @@ use crate::shape::number_or_null_or_name;
 use crate::volume::VolumeWriter;
 use crate::{AlphaShape, Dims, GrayRange, Units, Volume};
 
-use super::args::{PipelineArgs, ShapeArgs};
+use super::args::{OutputArgs, PipelineArgs, ShapeArgs};
 use super::formats::volume_output;
 use super::output::tell;
 use super::pipeline::{Source, Values, VolumeFacts};
@@ -32,7 +32,7 @@ use super::{Global, curve, pipeline};
 /// shape covers; PSNR is relative to gray 255. Hidden points carry no value. Points without a volume need
 /// --dims, a grid over their box; a .wvm knows the grid that its points are samples of.
 ///
-/// With --curve: error and coverage over the number of points instead, from a sixteenth to twice
+/// With --curve: error and covered samples over the number of points instead, from a sixteenth to twice
 /// those selected, for each way to select them and the weights common=0, min-max and barycentric, as
 #[cfg_attr(feature = "render", doc = " CSV, PNG and SVG.")]
 #[cfg_attr(not(feature = "render"), doc = " CSV.")]
@@ -63,13 +63,15 @@ pub(super) struct Interpolate {
     /// Measure error against the number of points.
     #[arg(long, requires = "output", conflicts_with_all = [
         "mask", "fill", "select", "target_rmse", "max_error", "exchange", "threshold", "gray_min", "value_min", "refit", "weights", "balls",
-        "engine", "blocks", "memory", "exterior",
+        "engine", "blocks", "memory", "exterior", "output_format",
     ])]
     curve: bool,
     #[command(flatten)]
     pipeline: PipelineArgs,
     #[command(flatten)]
     shape: ShapeArgs,
+    #[command(flatten)]
+    format: OutputArgs,
 }
 
 #[derive(Serialize)]
@@ -99,7 +101,8 @@ struct Error {
     /// In values of INPUT; null where these are gray levels.
     rmse_in_values: Option<f64>,
     max_in_values: Option<f64>,
-    coverage: f64,
+    /// The share of samples on the shape.
+    covered_share: f64,
     /// Decibels; "inf" where nothing differs.
     #[serde(serialize_with = "number_or_null_or_name")]
     psnr: Option<f64>,
@@ -112,7 +115,7 @@ impl Error {
             deviation,
             rmse_in_values: in_values.and_then(|d| d.rmse),
             max_in_values: in_values.and_then(|d| d.max),
-            coverage: deviation.coverage(),
+            covered_share: deviation.covered_share(),
             psnr: deviation.psnr(),
         }
     }
@@ -148,13 +151,11 @@ impl Interpolate {
             let base = self.output.as_deref().expect("clap requires it");
             return curve::run(global, &self.pipeline, base);
         }
-        self.pipeline.input.check_format(self.output.iter())?;
+        self.format.check(self.output.iter())?;
         self.shape.check(self.pipeline.weights.alpha(), None)?;
         let output = match &self.output {
             None => None,
-            Some(path) => {
-                Some((VolumeWriter::of(&self.pipeline.input.output(path)?)?, Target::open(path)?))
-            }
+            Some(path) => Some((VolumeWriter::of(&self.format.named(path)?)?, Target::open(path)?)),
         };
         let mask = self.mask.as_deref().map(open).transpose()?;
         let mut progress = Progress::new(global);
@@ -280,7 +281,7 @@ impl Display for Facts {
 impl Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Deviation { samples, rmse, max, .. } = self.deviation;
-        write!(f, "{:.2} % of {samples} samples", 100.0 * self.coverage)?;
+        write!(f, "{:.2} % of {samples} samples", 100.0 * self.covered_share)?;
         if let (Some(rmse), Some(max), Some(psnr)) = (rmse, max, self.psnr) {
             write!(f, ", RMSE {rmse:.6}, largest error {max:.6} gray levels")?;
             if let (Some(rmse), Some(max)) = (self.rmse_in_values, self.max_in_values) {

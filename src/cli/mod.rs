@@ -18,6 +18,7 @@ mod formats;
 mod given;
 mod haar;
 mod info;
+mod inputs;
 mod interpolate;
 mod judged;
 mod ladder;
@@ -39,6 +40,7 @@ mod signals;
 mod together;
 #[cfg(feature = "render")]
 mod view;
+mod warnings;
 
 use std::ffi::OsString;
 use std::io::IsTerminal;
@@ -54,8 +56,9 @@ use tracing_subscriber::util::SubscriberInitExt;
 
 use crate::export::Target;
 use crate::progress::TARGET;
+use crate::threads;
 
-use output::{is_broken_pipe, print};
+use output::{print, print_with};
 use ranks::Ranks;
 use said::said;
 
@@ -92,6 +95,9 @@ struct Global {
     /// processor, or one for each process that mpirun starts].
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Let outputs replace inputs, or what is in the working folder of a plan.
+    #[arg(long, global = true)]
+    in_place: bool,
     /// Whether a file goes to standard output.
     #[arg(skip)]
     piped: bool,
@@ -127,10 +133,12 @@ const FAILURE: u8 = 1;
 const USAGE: u8 = 2;
 /// The exit code of a fault of the program, as Rust has it.
 const PANICKED: u8 = 101;
+/// The exit code after nobody read to the end, as shells have it for what the signal PIPE ends.
+const UNREAD: u8 = 141;
 /// The exit code of a check or comparison that found something.
 const DIFFERENT: u8 = 3;
-/// More threads than this for a processor only wait for each other.
-const MOST_THREADS_EACH: usize = 4;
+/// Bytes of the stack of a thread, as rayon has it.
+const STACK: usize = 2 << 20;
 /// The exit code after Ctrl-C, as shells have it.
 const INTERRUPTED: i32 = 130;
 
@@ -171,20 +179,23 @@ fn lead(
             sub.mut_args(|arg| if arg.is_positional() { arg.required(false) } else { arg })
         });
     }
+    let mut kept = Ok(());
     let parsed = command.clone().try_get_matches_from(&args).and_then(|matches| {
         if matches.get_flag(config::PRINT) {
             return Ok(Err(matches));
         }
+        kept = inputs::keep(&command, &matches);
         Cli::from_arg_matches(&matches).map(|cli| Ok((cli, is_piped(&matches))))
     });
     let done = match parsed {
         Ok(Ok((Cli { global, command }, piped))) => {
-            execute(Global { piped, ..global }, command, ranks)
+            kept.and_then(|()| execute(Global { piped, ..global }, command, ranks))
         }
         Ok(Err(matches)) => print_config(&command, &matches),
         // Help and version are not errors.
         Err(error) if !error.use_stderr() => {
-            error.print().map(|()| ExitCode::SUCCESS).map_err(Into::into)
+            let printed = print_with(|_| error.print());
+            printed.map(|()| ExitCode::SUCCESS).map_err(Into::into)
         }
         Err(error) => {
             complaint::tell_usage(name, &error, args.len() > typed.len());
@@ -193,8 +204,6 @@ fn lead(
     };
     let code = match done {
         Ok(code) => code,
-        // Whoever reads our output has enough of it.
-        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             progress::clear();
             complaint::tell(name, &error);
@@ -231,17 +240,26 @@ fn print_config(command: &clap::Command, matches: &ArgMatches) -> anyhow::Result
     Ok(ExitCode::SUCCESS)
 }
 
-/// Starts the threads asked for, or as many as rayon finds right.
+/// Starts the threads asked for, or as many as are right; fewer where not so many can be had.
 fn start_threads(asked: Option<u16>) -> anyhow::Result<()> {
-    let count = asked.map_or(0, usize::from);
-    let processors = std::thread::available_parallelism().map_or(1, usize::from);
-    let most = MOST_THREADS_EACH * processors;
-    if count > most {
+    let asked = asked.map(usize::from);
+    let (wanted, most) = (threads::wanted(asked), threads::most());
+    if let Some(count) = asked.filter(|&count| count > most) {
+        let processors = threads::processors();
         tracing::warn!(
             "--threads {count} is more than {processors} processors can use: {most} start"
         );
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.min(most));
+    let count = threads::available(wanted, STACK);
+    if count < wanted {
+        tracing::warn!(
+            "memory, or the number of processes, is limited so much that {} of {wanted} threads start",
+            count.max(1)
+        );
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.max(1));
+    // Where no thread can be had, this one does the work.
+    let pool = if count == 0 { pool.use_current_thread() } else { pool };
     pool.build_global().map_err(|error| {
         said!("threads cannot be started: {error}" => "give fewer with --threads").into()
     })
@@ -256,15 +274,17 @@ fn execute(global: Global, command: Command, ranks: &Ranks) -> anyhow::Result<Ex
         _ => LevelFilter::WARN,
     };
     let log = tracing_subscriber::fmt::layer().with_ansi(complaint::coloured()).with_target(false);
+    // Nor does what cannot be logged end the command.
+    let log = log.log_internal_errors(false);
     let log = log.with_writer(std::io::stderr).without_time().with_filter(level);
-    tracing_subscriber::registry().with(listener).with(log).init();
+    let warnings = warnings::Listener.with_filter(LevelFilter::WARN);
+    tracing_subscriber::registry().with(listener).with(warnings).with(log).init();
     let alone = ranks.team().size() == 1;
     start_threads(global.threads.or((!alone).then_some(1)))?;
     match command {
         #[cfg(feature = "paper")]
         Command::Reproduce(reproduce) => reproduce.run(global)?,
         Command::Shape(shape) => shape.run(global, ranks.team())?,
-        Command::Blocks(blocks) => blocks.run(global)?,
         Command::Points(points) => points.run(global)?,
         Command::Haar(haar) => haar.run(global)?,
         Command::Interpolate(interpolate) => interpolate.run(global)?,
@@ -273,6 +293,7 @@ fn execute(global: Global, command: Command, ranks: &Ranks) -> anyhow::Result<Ex
         Command::Info(info) => info.run(global)?,
         Command::Completions(completions) => completions.run(global)?,
         Command::Man(man) => man.run(global)?,
+        Command::Blocks(blocks) => return blocks.run(global),
         Command::Check(check) => return check.run(global),
         Command::Compare(compare) => return compare.run(global),
         Command::Ladder(ladder) => ladder.run(global)?,

@@ -1,23 +1,36 @@
 //! What goes to standard output.
 
 use std::fmt::Display;
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 
 use serde::Serialize;
 
+use crate::advice::Advice;
+use crate::check::standard_output;
 use crate::shown::escaped;
 
-use super::Global;
+use super::{Global, warnings};
 
 /// Prints facts as the user wants them: as JSON, as text, or not at all; to standard error when
 /// standard output has a file (`-o -`).
 pub(super) fn tell<T: Serialize + Display>(global: Global, facts: &T) -> anyhow::Result<()> {
     if global.json {
-        say(global, &json(facts)?)?;
+        let warnings = warnings::heard();
+        let text =
+            if warnings.is_empty() { json(facts) } else { json(&Warned { facts, warnings }) };
+        say(global, &text?)?;
     } else if !global.quiet {
         say(global, &escaped(&facts.to_string(), |c| c == '\n'))?;
     }
     Ok(())
+}
+
+/// Facts, with the warnings of the run.
+#[derive(Serialize)]
+struct Warned<'a, T> {
+    #[serde(flatten)]
+    facts: &'a T,
+    warnings: Vec<String>,
 }
 
 /// A name within a text, where it must not begin a line.
@@ -25,15 +38,48 @@ pub(super) fn name(name: &str) -> String {
     escaped(name, |_| false)
 }
 
-fn say(global: Global, text: &str) -> io::Result<()> {
-    if global.piped { io::stderr().lock().write_all(text.as_bytes()) } else { print(text) }
+fn say(global: Global, text: &str) -> anyhow::Result<()> {
+    if global.piped {
+        io::stderr().lock().write_all(text.as_bytes())?;
+    } else {
+        print(text)?;
+    }
+    Ok(())
 }
 
-/// Prints text without the panic of `println!` when nobody reads on.
-pub(super) fn print(text: &str) -> io::Result<()> {
+/// Standard output is closed, full, or nobody reads it any more: what was to be printed is lost.
+#[derive(Debug, thiserror::Error)]
+#[error("standard output does not take it: {0}")]
+pub(super) struct Unprinted(#[from] io::Error);
+
+impl Unprinted {
+    pub(super) fn advice(&self) -> Advice {
+        match self.0.kind() {
+            ErrorKind::BrokenPipe => "have its reader read to the end, if all is needed".into(),
+            _ => "look at where standard output goes, or give --quiet to go without".into(),
+        }
+    }
+}
+
+/// Prints text, without the panic of `println!` when it cannot be.
+pub(super) fn print(text: &str) -> Result<(), Unprinted> {
+    print_with(|out| out.write_all(text.as_bytes()))
+}
+
+/// Prints what is written, to the last byte.
+pub(super) fn print_with(
+    write: impl FnOnce(&mut io::StdoutLock<'static>) -> io::Result<()>,
+) -> Result<(), Unprinted> {
+    standard_output::check()?;
     let mut out = io::stdout().lock();
-    out.write_all(text.as_bytes())?;
-    out.flush()
+    write(&mut out)?;
+    Ok(out.flush()?)
+}
+
+/// Says something beside the result, on standard error. Where nobody hears it, that is no error, nor a panic
+/// as `eprintln!` has it.
+pub(super) fn remark(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
 fn json(value: &impl Serialize) -> serde_json::Result<String> {
@@ -43,7 +89,7 @@ fn json(value: &impl Serialize) -> serde_json::Result<String> {
 /// Whether an error means that our reader has gone.
 pub(super) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     let broken = |cause: &(dyn std::error::Error + 'static)| {
-        cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe)
+        cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe)
     };
     error.chain().any(broken)
 }

@@ -8,7 +8,7 @@ use crate::export::Target;
 use crate::points::{Packing, PointWriter};
 use crate::progress::Stage;
 
-use super::args::{PipelineArgs, not_negative};
+use super::args::{OutputArgs, PipelineArgs, not_negative};
 use super::formats::points_output;
 use super::output::tell;
 use super::progress::Progress;
@@ -42,15 +42,17 @@ pub(super) struct Points {
     #[arg(long, value_name = "N", default_value = "1", help_heading = "Packing",
           value_parser = clap::value_parser!(u8).range(1..=i64::from(Packing::MOST_LAYERS)))]
     layers: u8,
+    #[command(flatten)]
+    format: OutputArgs,
 }
 
 impl Points {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
-        self.pipeline.input.check_format(self.output.iter())?;
+        self.format.check(self.output.iter())?;
         let target = match &self.output {
             None => None,
             Some(path) => {
-                let name = self.pipeline.input.output(path)?;
+                let name = self.format.named(path)?;
                 Some((Target::open(path)?, PointWriter::of(&name)?))
             }
         };

@@ -1,6 +1,7 @@
 //! Which stage is at work, how far it is, and how long each took.
 
 use std::fmt;
+use std::io::{self, IsTerminal};
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
@@ -10,7 +11,8 @@ use tracing_subscriber::layer::Context;
 
 use crate::progress::Stage;
 
-use super::Global;
+use super::{Global, STACK};
+use crate::threads;
 
 /// What a terminal shows. There is one, as there is one standard error.
 static BAR: LazyLock<ProgressBar> = LazyLock::new(|| {
@@ -43,7 +45,9 @@ pub(super) fn clear() {
 impl Progress {
     /// Draws on standard error if that is a terminal and nobody asked for quiet.
     pub(super) fn new(global: Global) -> Self {
-        if !global.quiet && !global.verbose {
+        // What draws is a thread of its own, which cannot always be had.
+        let watched = !global.quiet && !global.verbose && io::stderr().is_terminal();
+        if watched && threads::available(1, STACK) == 1 {
             BAR.set_draw_target(ProgressDrawTarget::stderr());
             BAR.enable_steady_tick(Duration::from_millis(100));
         }

@@ -13,7 +13,7 @@ use crate::{Gray, Volume, VolumeError};
 
 use super::Global;
 use super::folder::Folder;
-use super::output::print;
+use super::output::{print, remark};
 use super::progress::Progress;
 
 /// Reproduce the paper: Table 1, the figures, and a report on its claims.
@@ -79,10 +79,10 @@ impl Reproduce {
         match open(SKULL, &ReadOptions::default()) {
             Err(VolumeError::NoSkull { .. }) => {
                 if !global.quiet {
-                    eprintln!(
+                    remark(&format!(
                         "walpha: {SKULL} is not installed (on Debian and Ubuntu, `apt-get install \
                          libcgal-demo` brings it); going on with {PHANTOM}"
-                    );
+                    ));
                 }
                 Ok((PHANTOM.into(), open(PHANTOM, &ReadOptions::default())?))
             }

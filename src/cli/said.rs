@@ -19,6 +19,8 @@ use crate::triangulation::{SitesError, TriangulationError};
 use crate::volume::{UnknownFormat, UnknownName};
 use crate::{PointsError, VolumeError};
 
+use super::output::Unprinted;
+
 /// Why a command cannot do something, and what to do next.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{why}")]
@@ -105,6 +107,7 @@ advising![
     UnknownFormat,
     UnknownName,
     UnknownWeighting,
+    Unprinted,
     VolumeError,
 ];
 
@@ -144,6 +147,7 @@ pub(super) fn advice(error: &(dyn Error + 'static)) -> Option<String> {
 /// What the command calls a setting.
 pub(super) fn option(setting: Setting) -> String {
     match setting {
+        Setting::Format => "--input-format".into(),
         Setting::Region => "--roi".into(),
         other => format!("--{}", other.name().replace('_', "-")),
     }

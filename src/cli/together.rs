@@ -1,11 +1,11 @@
 //! `walpha shape` in blocks, by one process or by all that MPI started.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, Team, merge, run_missing};
-use crate::export::NewFolder;
+use crate::export::{NewFolder, Target};
 use crate::memory;
 use crate::progress::Stage;
 
@@ -13,7 +13,6 @@ use super::args::{PipelineArgs, ShapeArgs};
 use super::blocks::{Outputs, cutting, job};
 use super::progress::Progress;
 use super::report::Report;
-use super::said::misused;
 use super::{Global, folder, start_threads};
 
 /// What processes do together. The first one reads the command line and sends it to the others.
@@ -30,18 +29,14 @@ pub(super) struct Work {
 }
 
 impl Work {
-    /// What the options ask for. Unfinished work is kept in a folder beside the first output with pieces,
-    /// `bone.blocks` for `bone.pvtp`; it goes at the end, and after an interruption the same command goes on
-    /// with it.
+    /// What the options ask for, in a [working folder](folder()).
     pub(super) fn new(
         pipeline: &PipelineArgs,
         shape: &ShapeArgs,
-        outputs: &Outputs,
+        pieces: Vec<(Pieces, PathBuf)>,
+        folder: PathBuf,
         global: Global,
     ) -> anyhow::Result<Self> {
-        let (_, first) = outputs.pieces.first().expect("an output with pieces");
-        let pieces = outputs.pieces.clone();
-        let folder = first.with_extension("blocks");
         let threads = global.threads.unwrap_or(1);
         Ok(Self { job: job(pipeline, shape)?, cutting: cutting(shape), folder, pieces, threads })
     }
@@ -57,10 +52,8 @@ impl Work {
         if team.size() > 1 {
             order(team, Some(serde_json::to_string(&self)?));
         }
-        let (plan, merged) = self.share(new, progress, team)?;
-        let merged = merged.expect("the first process merges");
-        let report = Report::of_blocks(&plan, &merged);
-        progress.stage(Stage::Write, || outputs.write_whole(&plan, &merged))?;
+        let (plan, merged) = self.share(new, outputs, progress, team)?;
+        let report = Report::of_blocks(&plan, &merged.expect("the first process merges"));
         plan.remove()?;
         Ok(report)
     }
@@ -69,6 +62,7 @@ impl Work {
     fn share(
         &self,
         new: Option<NewFolder>,
+        outputs: Outputs,
         progress: &mut Progress,
         team: &dyn Team,
     ) -> anyhow::Result<(Plan, Option<Merged>)> {
@@ -81,10 +75,7 @@ impl Work {
         progress.stage(Stage::Shape, || run_missing(&plan, team))?;
         let merge = || team.is_first().then(|| merge(&plan)).transpose();
         let merged = progress.stage(Stage::Shape, merge)?;
-        for (pieces, path) in &self.pieces {
-            let write = || pieces.write_with(&plan, merged.as_ref(), path, team);
-            progress.stage(Stage::Write, write)?;
-        }
+        progress.stage(Stage::Write, || outputs.write(&plan, merged.as_ref(), team))?;
         Ok((plan, merged))
     }
 }
@@ -99,7 +90,8 @@ pub(super) fn serve(team: &dyn Team) -> anyhow::Result<()> {
         let work: Work = serde_json::from_str(&work)?;
         start_threads(Some(work.threads))?;
         let silent = Global { quiet: true, ..Global::default() };
-        work.share(None, &mut Progress::new(silent), team)?;
+        let outputs = Outputs { pieces: work.pieces.clone(), whole: Vec::new() };
+        work.share(None, outputs, &mut Progress::new(silent), team)?;
         peak(team);
     }
     Ok(())
@@ -115,11 +107,15 @@ pub(super) fn peak(team: &dyn Team) -> Option<u64> {
     team.joined(memory::peak_bytes(), |most, other| *most = (*most).max(other))
 }
 
-/// Refuses several processes for what only one can do.
-pub(super) fn check(team: &dyn Team, pieces: bool) -> anyhow::Result<()> {
-    if let (2.., false) = (team.size(), pieces) {
-        let size = team.size();
-        misused!("{size} processes were started, and no output has a file for each block, which they could write" => "write .pvtu or .pvtp, or start one process");
+/// Where unfinished work is kept: beside the first output with pieces, `bone.blocks` for `bone.pvtp`, or else the
+/// first file; without any in the current folder, named after the input. It goes at the end, and after an
+/// interruption the same command goes on with it.
+pub(super) fn folder(outputs: &[PathBuf], input: &str) -> PathBuf {
+    let pieces = outputs.iter().find(|path| Pieces::of(path).is_some());
+    let file = || outputs.iter().find(|path| *path != Path::new(Target::STDOUT));
+    if let Some(first) = pieces.or_else(file) {
+        return first.with_extension("blocks");
     }
-    Ok(())
+    let name = Path::new(input.trim_start_matches("sample:")).file_name().unwrap_or_default();
+    Path::new(name).with_extension("blocks")
 }

@@ -30,6 +30,8 @@ mod filtration;
 mod folder;
 mod format;
 mod glb;
+#[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "the command keeps its inputs"))]
+mod inputs;
 mod json;
 mod npz;
 mod obj;
@@ -47,9 +49,11 @@ mod vtu;
 pub use crate::volume::UnknownFormat;
 pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
 #[cfg(feature = "zarr")]
-pub(crate) use folder::make_folder;
+pub(crate) use folder::{fill_folder, make_folder};
 pub use format::{ExportOptions, Exporter, FORMATS, Format};
 pub use glb::Glb;
+#[cfg(feature = "cli")]
+pub(crate) use inputs::{Working, keep_input};
 pub use json::Json;
 pub use npz::Npz;
 pub use obj::Obj;
@@ -57,6 +61,8 @@ pub use off::Off;
 pub use ply::Ply;
 pub use scratch::Scratch;
 pub use stl::Stl;
+#[cfg(feature = "cli")]
+pub(crate) use target::fill_all;
 pub use target::{Content, Filled, Target, TargetError, put_all, write_all};
 #[cfg(feature = "cli")]
 pub(crate) use unfinished::abandon;

@@ -4,6 +4,7 @@ use std::fs::{self, Metadata, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
+use super::inputs;
 use super::unfinished::gate;
 use crate::shown::shown;
 
@@ -78,9 +79,30 @@ fn behind_links(path: &Path) -> PathBuf {
 /// The identity of a place.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Key {
-    path: PathBuf,
+    pub path: PathBuf,
     /// Device and inode of an existing file: hard links are one file.
     file: Option<(u64, u64)>,
+}
+
+impl Key {
+    /// That of a place, whose folder is there.
+    pub(super) fn of(path: &Path) -> io::Result<Self> {
+        let path = behind_links(path);
+        let name = path.file_name().ok_or(ErrorKind::InvalidFilename)?;
+        let file = fs::metadata(&path).ok().as_ref().and_then(number);
+        Ok(Self { path: fs::canonicalize(folder(&path))?.join(name), file })
+    }
+
+    /// That of a file that is there.
+    pub(super) fn of_existing(path: &Path) -> Option<Self> {
+        let file = fs::metadata(path).ok().as_ref().and_then(number);
+        fs::canonicalize(path).ok().map(|path| Self { path, file })
+    }
+
+    /// Whether two places are one.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        self.path == other.path || self.file.is_some() && self.file == other.file
+    }
 }
 
 /// A place that is one target's alone, until this is dropped.
@@ -90,9 +112,9 @@ pub(super) struct Claim(Key);
 impl Claim {
     /// Refuses a place that another target is open for: one of the two files would be lost.
     pub(super) fn of(place: &Place) -> io::Result<Self> {
-        let name = place.path.file_name().ok_or(ErrorKind::InvalidFilename)?;
-        let path = fs::canonicalize(place.folder())?.join(name);
-        Self::new(Key { path, file: place.existing.as_ref().and_then(number) })
+        let key = Key::of(&place.path)?;
+        inputs::check(&key)?;
+        Self::new(key)
     }
 
     /// The same for standard output.
@@ -102,9 +124,7 @@ impl Claim {
 
     fn new(key: Key) -> io::Result<Self> {
         let mut gate = gate();
-        let same =
-            |other: &Key| key.path == other.path || key.file.is_some() && key.file == other.file;
-        if gate.claimed.iter().any(same) {
+        if gate.claimed.iter().any(|other| key.is(other)) {
             return Err(io::Error::new(ErrorKind::AlreadyExists, "another output goes there, too"));
         }
         gate.claimed.push(key.clone());

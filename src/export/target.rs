@@ -2,8 +2,11 @@ use std::fs::OpenOptions;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "zarr")]
+use super::folder::PartFolder;
+use super::inputs::{self, Refused};
 use super::part::{Part, Whole};
-use super::place::{Claim, Place};
+use super::place::{Claim, Key, Place};
 use super::unfinished::gate;
 use crate::advice::Advice;
 use crate::shown::shown;
@@ -46,6 +49,10 @@ pub struct TargetError {
 impl TargetError {
     /// What became of the outputs, and what to do.
     pub fn advice(&self) -> Advice {
+        let refused = self.source.get_ref().and_then(|error| error.downcast_ref::<Refused>());
+        if refused.is_some() {
+            return Refused::advice();
+        }
         format!("{}{}", self.left, next_step(&self.source)).into()
     }
 
@@ -97,6 +104,8 @@ impl Target {
 
     fn sink(path: &Path) -> io::Result<(Sink, Option<Claim>)> {
         if path == Path::new(Self::STDOUT) {
+            #[cfg(feature = "cli")]
+            crate::check::standard_output::check()?;
             return Ok((Sink::Stdout, Some(Claim::of_stdout()?)));
         }
         let place = Place::of(path)?;
@@ -105,6 +114,16 @@ impl Target {
         }
         let claim = Claim::of(&place)?;
         Ok((Sink::Part(Part::beside(place)?.into()), Some(claim)))
+    }
+
+    /// Refuses what [`open`](Self::open) would because it is read, or in a working folder; of folders, too.
+    ///
+    /// # Errors
+    /// It is.
+    pub(crate) fn check(path: &Path) -> Result<(), TargetError> {
+        // Where there is no folder around it, nothing is read there.
+        let checked = Key::of(path).map_or(Ok(()), |key| inputs::check(&key));
+        checked.map_err(TargetError::of(path, ""))
     }
 
     /// Where the file will be.
@@ -144,20 +163,36 @@ impl Target {
             }
         };
         let (whole, bytes) = filled.map_err(TargetError::of(&path, left))?;
-        Ok(Filled { path, whole, bytes, _claim: claim })
+        let output = whole.map_or(Output::Stream, Output::File);
+        Ok(Filled { path, output, bytes, _claim: claim })
     }
 }
 
-/// A complete file to be put in its place; dropped before that, it is removed.
+/// A complete file or folder to be put in its place; dropped before that, it is removed.
 #[derive(Debug)]
 pub struct Filled {
     path: PathBuf,
-    whole: Option<Whole>,
+    output: Output,
     bytes: u64,
     _claim: Option<Claim>,
 }
 
+#[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "nearly all are files")]
+enum Output {
+    File(Whole),
+    #[cfg(feature = "zarr")]
+    Folder(PartFolder),
+    /// It has taken all there is.
+    Stream,
+}
+
 impl Filled {
+    #[cfg(feature = "zarr")]
+    pub(super) fn folder(path: &Path, part: PartFolder) -> Self {
+        Self { path: path.to_owned(), output: Output::Folder(part), bytes: 0, _claim: None }
+    }
+
     /// Bytes of the file; 0 of a stream.
     pub fn bytes(&self) -> u64 {
         self.bytes
@@ -171,14 +206,19 @@ impl Filled {
 pub fn put_all(mut files: Vec<Filled>) -> Result<(), TargetError> {
     // Files that are dropped take the gate themselves.
     let gate = gate();
-    for (done, file) in files.iter_mut().enumerate() {
-        let Filled { path, whole: Some(whole), .. } = file else { continue };
+    for (done, Filled { path, output, .. }) in files.iter_mut().enumerate() {
         let left = match done {
             0 => TargetError::NOTHING_LEFT.to_owned(),
             1 => "one other output is complete, ".to_owned(),
             _ => format!("{done} other outputs are complete, "),
         };
-        whole.put(&gate).map_err(TargetError::of(path, left))?;
+        let put = match output {
+            Output::File(whole) => whole.put(&gate),
+            #[cfg(feature = "zarr")]
+            Output::Folder(part) => part.put(path),
+            Output::Stream => continue,
+        };
+        put.map_err(TargetError::of(path, left))?;
     }
     drop(gate);
     Ok(())
@@ -192,11 +232,32 @@ pub fn put_all(mut files: Vec<Filled>) -> Result<(), TargetError> {
 pub fn write_all<'a>(
     files: impl IntoIterator<Item = (Target, Content<'a>)>,
 ) -> Result<(), TargetError> {
+    fill_all(files)?.put(Vec::new())
+}
+
+/// Outputs of which the files are complete, and wait to be put in their places.
+pub(crate) struct FilledAll<'a> {
+    files: Vec<Filled>,
+    streams: Vec<(Target, Content<'a>)>,
+}
+
+/// Fills all files; streams wait until these are in place.
+pub(crate) fn fill_all<'a>(
+    files: impl IntoIterator<Item = (Target, Content<'a>)>,
+) -> Result<FilledAll<'a>, TargetError> {
     let is_part = |(target, _): &(Target, Content<'_>)| matches!(target.sink, Sink::Part(_));
     let (files, streams): (Vec<_>, Vec<_>) = files.into_iter().partition(is_part);
     let filled = files.into_iter().map(|(target, content)| target.fill(content));
-    put_all(filled.collect::<Result<_, _>>()?)?;
-    streams.into_iter().try_for_each(|(target, content)| target.write(content))
+    Ok(FilledAll { files: filled.collect::<Result<_, _>>()?, streams })
+}
+
+impl FilledAll<'_> {
+    /// Puts all in their places, behind others that are complete, and writes the streams.
+    pub(crate) fn put(self, mut others: Vec<Filled>) -> Result<(), TargetError> {
+        others.extend(self.files);
+        put_all(others)?;
+        self.streams.into_iter().try_for_each(|(target, content)| target.write(content))
+    }
 }
 
 fn through(

@@ -79,7 +79,7 @@ pub struct CurvePoint {
     pub filled: Deviation,
 }
 
-/// Error and coverage over the number of points, for each method and weighting, in that order.
+/// Error and covered share of samples over the number of points, for each method and weighting, in that order.
 ///
 /// `smoothed` is the truncated volume, whose differences choose and weigh points; error is always
 /// measured from `volume`. Where so few points span no volume, or there are not so many, the
@@ -256,7 +256,7 @@ impl Bench<'_> {
 pub fn write_curve_csv(curve: &[CurvePoint], step: f64, out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
-        "method,weights,count,hidden,coverage,rmse_inside,max_inside,rmse_filled,max_filled,\
+        "method,weights,count,hidden,covered_share,rmse_inside,max_inside,rmse_filled,max_filled,\
          rmse_inside_values,rmse_filled_values"
     )?;
     let text = |number: Option<f64>| number.map_or_else(String::new, |number| number.to_string());
@@ -268,7 +268,7 @@ pub fn write_curve_csv(curve: &[CurvePoint], step: f64, out: &mut dyn Write) -> 
             point.method,
             point.count,
             point.hidden,
-            point.inside.coverage(),
+            point.inside.covered_share(),
             text(point.inside.rmse),
             text(point.inside.max),
             text(point.filled.rmse),

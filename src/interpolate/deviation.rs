@@ -73,8 +73,8 @@ impl Deviation {
         Self { rmse: scaled(self.rmse), max: scaled(self.max), ..*self }
     }
 
-    /// The share of samples on the shape.
-    pub fn coverage(&self) -> f64 {
+    /// The share of samples on the shape; coverage, of a ladder, is one of volume.
+    pub fn covered_share(&self) -> f64 {
         self.covered as f64 / self.samples as f64
     }
 

@@ -25,12 +25,8 @@ pub fn fill(
         add_corners(&mut points, volume, units)?;
     }
     let engine = shape.options().engine;
-    let options = ShapeOptions {
-        balls: Balls::Power,
-        engine,
-        refuse_flat: true,
-        ..ShapeOptions::new(Alpha::INFINITE)
-    };
+    let options =
+        ShapeOptions { balls: Balls::Power, engine, ..ShapeOptions::new(Alpha::INFINITE) };
     Ok(alpha_shape(points, &options)?)
 }
 

@@ -26,7 +26,7 @@
 //! let inside = Deviation::of(&volume, &interpolant.resample(&grid)?);
 //! let whole = fill(&shape, Some(&volume), Units::Voxel)?;
 //! let filled = Deviation::of(&volume, &Interpolant::new(&whole)?.resample(&grid)?);
-//! assert!(inside.coverage() < 1.0 && filled.coverage() == 1.0);
+//! assert!(inside.covered_share() < 1.0 && filled.covered_share() == 1.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -21,7 +21,8 @@ pub struct Curve {
     pub betti: Vec<Betti>,
     /// The solid components from each value on.
     pub solid_components: Vec<u64>,
-    /// Vertices of the triangulation that no cell of the shape has, from each value on.
+    /// Vertices of the triangulation that no cell of the shape has, from each value on; where points span no
+    /// volume, no triangle, or no edge.
     pub loose: Vec<u64>,
     /// What can be seen from each value on.
     pub(super) sights: Vec<Sight>,
@@ -65,7 +66,7 @@ impl Filtration {
         }
     }
 
-    /// The smallest α at which all points are in one solid component: [`Suggestions::one_region`],
+    /// The smallest α at which all points are in one solid component ([`Levels::solid_components`]): [`Suggestions::one_region`],
     /// for less than half of what a [`Curve`] costs. O(n log n).
     pub fn one_region(&self) -> Alpha {
         self.optimal_alpha(NonZeroU64::MIN)
@@ -91,13 +92,13 @@ impl Filtration {
         levels
     }
 
-    /// Vertices that no cell has, at each level.
+    /// Vertices that no largest simplex has, at each level.
     fn loose(&self, levels: &Levels<'_>) -> Vec<u64> {
-        let (first, levels) = (&levels.cells, levels.len());
+        let (firsts, levels) = (levels.of_largest(), levels.len());
         let vertices = self.whole.complex().vertices.len();
         let mut covered = vec![levels as u32; vertices];
-        for (cell, &level) in self.whole.complex().cells.rows().iter().zip(first) {
-            for &v in cell {
+        for (row, &level) in firsts.iter().enumerate() {
+            for &v in self.largest(row) {
                 let at = &mut covered[self.incidence.vertex_rows[v as usize] as usize];
                 *at = level.min(*at);
             }

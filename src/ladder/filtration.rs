@@ -49,8 +49,11 @@ impl Filtration {
     /// Triangulates points and finds when each simplex comes. A little less than twice as dear
     /// as one shape of the whole triangulation; expected O(n log n).
     ///
+    /// Points in one plane, on one line or at one place have the filtration that they have there: there are no
+    /// cells, the triangles (edges, vertex) come by their own spheres, and nothing is ever interior.
+    ///
     /// # Errors
-    /// As [`alpha_shape`] with [`ShapeOptions::refuse_flat`].
+    /// As [`alpha_shape`].
     pub fn new(points: WeightedPoints) -> Result<Self, ShapeError> {
         Self::on(None, points)
     }
@@ -64,7 +67,6 @@ impl Filtration {
         let options = ShapeOptions {
             engine: Engine::Native,
             exterior: true,
-            refuse_flat: true,
             periodic: torus,
             ..ShapeOptions::new(Alpha::INFINITE)
         };

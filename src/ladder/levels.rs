@@ -120,12 +120,15 @@ impl Filtration {
         };
         let facets: Vec<Span> =
             incidence.facet_cells.par_iter().enumerate().map(of_facet).collect();
-        let mut edges = vec![Span::until(never); complex.edges.len()];
+        // Where there are no cells, the points span no volume, and space is on both sides of all.
+        let faces =
+            Span { interior: if cells.is_empty() { never } else { 0 }, ..Span::until(never) };
+        let mut edges = vec![faces; complex.edges.len()];
         for (&facet, on) in facets.iter().zip(&incidence.facet_edges) {
             on.iter().for_each(|&edge| edges[edge as usize].beside(facet));
         }
         edges.par_iter_mut().enumerate().for_each(|(row, span)| span.own((own.edges)(row)));
-        let mut vertices = vec![Span::until(never); complex.vertices.len()];
+        let mut vertices = vec![faces; complex.vertices.len()];
         for (&edge, ends) in edges.iter().zip(complex.edges.rows()) {
             for &v in ends {
                 vertices[incidence.vertex_rows[v as usize] as usize].beside(edge);

@@ -26,6 +26,7 @@
 mod critical;
 mod filtration;
 mod incidence;
+mod largest;
 mod levels;
 mod ordered;
 mod region;

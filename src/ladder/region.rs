@@ -46,6 +46,7 @@ pub fn focus(fine: &Points, coarse: &Points, region: &Region) -> Points {
         values: column(|points| points.values.as_ref()),
         differences: column(|points| points.differences.as_ref()),
         weights: column(|points| points.weights.as_ref()),
+        of_radii: fine.of_radii && coarse.of_radii,
     }
 }
 

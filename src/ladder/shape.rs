@@ -83,6 +83,10 @@ impl Levels<'_> {
             cell => self.cells[cell as usize],
         };
         let inside = if comes(sides[0]) < comes(sides[1]) { sides[0] } else { sides[1] };
+        // In a plane, where no side is the outer one.
+        if inside == Incidence::OUTSIDE {
+            return incidence.facets[row];
+        }
         let facets = &incidence.cell_facets[inside as usize];
         let opposite = facets.iter().position(|&facet| facet as usize == row).expect("its facet");
         let cell = self.filtration.whole.complex().cells.rows()[inside as usize];

@@ -31,12 +31,12 @@ pub struct Level {
     pub vertices: ByClass<usize>,
     /// Components, tunnels, voids.
     pub betti: Betti,
-    /// Components of the cells, joined through facets.
+    /// Components of the cells, joined through facets; see [`Levels::solid_components`].
     pub solid_components: u64,
     /// Volume and areas, in units of the points.
     #[serde(flatten)]
     pub measures: Measures,
-    /// The share of the domain that the cells fill.
+    /// The share of the volume of the domain that the cells fill; 0 of a flat one.
     pub coverage: f64,
     /// The voids, largest first.
     pub voids: Vec<Void>,
@@ -91,7 +91,7 @@ impl Levels<'_> {
                 betti: betti[k],
                 solid_components: solid[k],
                 measures: measures[k],
-                coverage: measures[k].volume / domain,
+                coverage: if domain > 0.0 { measures[k].volume / domain } else { 0.0 },
                 voids,
             }
         });

@@ -1,7 +1,6 @@
 //! Betti numbers and solid parts of all levels, by adding what comes at each.
 
 use super::Levels;
-use super::incidence::Incidence;
 use super::levels::ByLevel;
 use super::voids::Closed;
 use crate::shape::{Betti, UnionFind};
@@ -26,25 +25,23 @@ impl Levels<'_> {
     }
 
     /// Solid components of each level: cells joined through facets, as CGAL's
-    /// `Alpha_shape_3::number_of_solid_components` counts them. O(n α(n)).
+    /// `Alpha_shape_3::number_of_solid_components` counts them; where points span no volume, triangles joined
+    /// through edges, or edges through vertices. O(n α(n)).
     pub fn solid_components(&self) -> Vec<u64> {
-        let incidence = &self.filtration.incidence;
-        let cells = ByLevel::new(self.len(), self.cells.iter().copied());
-        let mut sets = UnionFind::new(self.cells.len());
+        let firsts = self.of_largest();
+        let simplices = ByLevel::new(self.len(), firsts.iter().copied());
+        // Two are united when the later of them comes.
+        let joints = self.filtration.joints();
+        let later = joints.iter().map(|&[a, b]| firsts[a as usize].max(firsts[b as usize]));
+        let by_level = ByLevel::new(self.len(), later);
+        let mut sets = UnionFind::new(firsts.len());
         let mut count = 0;
         let grow = |level| {
             // All of them first: one may be united with others that come at the same level.
-            count += cells.at(level).len() as u64;
-            for &cell in cells.at(level) {
-                for &facet in &incidence.cell_facets[cell as usize] {
-                    let [a, b] = incidence.facet_cells[facet as usize];
-                    let there = |side: u32| {
-                        side != Incidence::OUTSIDE && self.cells[side as usize] <= level as u32
-                    };
-                    if there(a) && there(b) {
-                        count -= u64::from(sets.unite(a, b));
-                    }
-                }
+            count += simplices.at(level).len() as u64;
+            for &joint in by_level.at(level) {
+                let [a, b] = joints[joint as usize];
+                count -= u64::from(sets.unite(a, b));
             }
             count
         };

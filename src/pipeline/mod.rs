@@ -148,6 +148,8 @@ impl Pipeline {
             grid: Some(SampleGrid { dims, frame, units }),
             range: None,
             ended,
+            of_radii: false,
+            folded: None,
             fit: None,
         };
         let mut weighed = Weighed::new(points, origin, parameter, hear)?.ordered(importance);
@@ -187,8 +189,15 @@ impl Pipeline {
             grid: facts.grid,
             range: facts.range,
             ended: None,
+            of_radii: points.of_radii,
+            folded: None,
             fit: None,
         };
+        if let (Some(cell), None) = (facts.cell, self.shape.periodic) {
+            tracing::warn!(
+                "the file states a cell in which points repeat, and it is not used: {cell}"
+            );
+        }
         let unit = origin.coordinates.unit;
         let stored = facts.alpha.filter(|_| self.alpha == AlphaRule::Default);
         let stored = stored.map(|alpha| Parameter { alpha, unit, origin: ParameterOrigin::Stored });
@@ -205,7 +214,7 @@ impl Pipeline {
         mut weighed: Weighed,
         hear: &mut dyn FnMut(Stage),
     ) -> Result<Model, PipelineError> {
-        weighed.check_periodic(self.shape.periodic)?;
+        weighed.on_torus(self.shape.periodic)?;
         let parameter = weighed.find_on(self.shape.periodic, hear)?;
         let options = self.options(parameter)?;
         hear(Stage::Shape);

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::PipelineError;
 use crate::ladder::Filtration;
 use crate::points::{Points, Units, WeightedPoints, Weighting, weigh};
-use crate::shape::{Alpha, AlphaError, ShapeError, Torus, flat_region, number_or_null_or_name};
+use crate::shape::{Alpha, AlphaError, ShapeError, Torus, number_or_null_or_name};
 use crate::shown::{number, six_digits};
 use crate::volume::{Frame, LengthUnit, Volume};
 
@@ -125,19 +125,13 @@ impl Parameter {
         Self { alpha: filtration.one_region(), unit, origin: ParameterOrigin::Auto }
     }
 
-    /// The same of points that are triangulated for it; where they lie in one plane or on one line,
-    /// [`flat_region`]; of a torus, if there is one.
+    /// The same of points that are triangulated for it; of a torus, if there is one.
     pub(super) fn find(
         points: &WeightedPoints,
         torus: Option<Torus>,
         unit: LengthUnit,
     ) -> Result<Self, ShapeError> {
-        match Filtration::on(torus, points.clone()) {
-            Err(error) if error.is_flat() => {
-                Ok(Self { alpha: flat_region(points)?, unit, origin: ParameterOrigin::Auto })
-            }
-            made => Ok(Self::of_filtration(&made?, unit)),
-        }
+        Ok(Self::of_filtration(&Filtration::on(torus, points.clone())?, unit))
     }
 
     /// The α that weights are to be in proportion to: that of the points alone.

@@ -48,6 +48,11 @@ pub struct Origin {
     pub range: Option<GrayRange>,
     /// Adaptive selection ended before it had as many points as asked for.
     pub ended: Option<Adaptive>,
+    /// Whether their weights are squares of radii.
+    pub of_radii: bool,
+    /// How many of them lay outside of the periodic box, and were moved to their copies inside; `None` without
+    /// a box.
+    pub folded: Option<usize>,
     /// How values were fitted to the volume; `None` where they are those of its samples.
     pub fit: Option<Fit>,
 }
@@ -119,15 +124,20 @@ impl Weighed {
         Ok(found)
     }
 
-    /// Whether the points may be those of a torus: weights of scattered points that come from differences
-    /// to neighbours know nothing of the copies beyond the sides of the box.
+    /// Says that the points are those of a torus, if there is one, and counts those outside of its box.
     ///
     /// # Errors
-    /// [`PipelineError::PeriodicWeights`].
-    pub fn check_periodic(&self, torus: Option<Torus>) -> Result<(), PipelineError> {
+    /// [`PipelineError::PeriodicWeights`]: weights of scattered points that come from differences to neighbours
+    /// know nothing of the copies beyond the sides of the box.
+    pub fn on_torus(&mut self, torus: Option<Torus>) -> Result<(), PipelineError> {
+        let Some(torus) = torus else { return Ok(()) };
         let Origin { weighting, truncation, .. } = self.origin;
-        let scattered = truncation.is_none() && weighting.needs_differences();
-        if torus.is_some() && scattered { Err(PipelineError::PeriodicWeights) } else { Ok(()) }
+        if truncation.is_none() && weighting.needs_differences() {
+            return Err(PipelineError::PeriodicWeights);
+        }
+        let is_outside = |place: &&[f64; 3]| !torus.holds(**place);
+        self.origin.folded = Some(self.points.positions.par_iter().filter(is_outside).count());
+        Ok(())
     }
 }
 

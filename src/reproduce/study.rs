@@ -36,7 +36,7 @@ impl<'a> Study<'a> {
         let (rule, select_option) = if volume.dims().samples() == PAPER_SAMPLES {
             (SelectionRule::Count(PAPER_POINTS as u64), format!("--count {PAPER_POINTS}"))
         } else {
-            let SelectionRule::Ratio(ratio) = SelectionRule::default() else {
+            let SelectionRule::AtMost(ratio) = SelectionRule::default() else {
                 unreachable!("the default is a ratio")
             };
             (SelectionRule::Ratio(ratio), format!("--ratio {ratio}"))

@@ -25,8 +25,10 @@ mod rounds;
 mod sites;
 mod torus;
 
+use crate::memory::asking;
+
 pub use error::{SitesError, TriangulationError};
-pub(crate) use flat::{Flat, beside, check_span, is_flat, triangulate_flat};
+pub(crate) use flat::{beside, check_span, is_flat, triangulate_flat};
 pub(crate) use native::{Digger, Growing};
 pub(crate) use predicates::{Interval, Predicates, Ratio, Screen, SmallRadius, lattice};
 pub(crate) use sites::check as check_numbers;
@@ -127,7 +129,7 @@ impl Triangulation {
 /// A vector with room for so many elements.
 fn room<T>(count: usize) -> Result<Vec<T>, TriangulationError> {
     let mut room = Vec::new();
-    match room.try_reserve_exact(count) {
+    match asking(|| room.try_reserve_exact(count)) {
         Ok(()) => Ok(room),
         Err(_) => Err(no_memory(count.saturating_mul(size_of::<T>()))),
     }

@@ -126,6 +126,11 @@ impl Torus {
         place
     }
 
+    /// Whether a place is in the box: at least 0 and less than the side along each axis.
+    pub fn holds(&self, place: [f64; 3]) -> bool {
+        place.iter().zip(self.sides).all(|(x, side)| (0.0..side).contains(x))
+    }
+
     /// The copy of a place in the box that is nearest to another one there, along each axis; of
     /// two equally near ones, the place as it is. Exact.
     #[inline]

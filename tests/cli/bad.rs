@@ -50,7 +50,12 @@ fn no_option_is_without_effect() {
         ("shape sample:phantom@8 --ascii -o a.obj", "only PLY has a binary form"),
         ("shape sample:phantom@8 --groups -o a.stl", "only OBJ, OFF and PLY"),
         ("shape sample:phantom@8 --solid -o a.vtu", "no output holds a boundary alone"),
-        ("shape sample:phantom@8 --format ply -o a.ply", "--format has no effect"),
+        ("shape sample:phantom@8 --output-format ply -o a.ply", "--output-format has no effect"),
+        (
+            "shape sample:phantom@8 --input-format nrrd",
+            "--input-format has no effect: a sample is no file",
+        ),
+        ("shape cube.csv --input-format foo", "no format that is read has the extension"),
         ("shape sample:phantom@8 --engine reference --blocks 2", "--blocks has no effect"),
         ("check cube.json --alpha 1", "--alpha has no effect: cube.json is a complex"),
         ("check cube.json --engine native", "--engine has no effect"),
@@ -166,4 +171,44 @@ fn a_full_disk_is_an_error() {
         .status()
         .unwrap();
     assert_eq!(status.code(), Some(1));
+}
+
+/// Names are bytes to the system, and need not be text.
+#[test]
+#[cfg(target_os = "linux")]
+fn names_need_not_be_utf_8() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let name = |end: &str| OsStr::from_bytes(&[b"caf\xe9", end.as_bytes()].concat()).to_owned();
+    let walpha = |args: &[&OsStr]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_walpha"));
+        let done = command.args(args).current_dir(f).output().unwrap();
+        let said = String::from_utf8(done.stderr).unwrap();
+        (done.status.code(), String::from_utf8(done.stdout).unwrap() + &said)
+    };
+    fs::write(f.join(name(".csv")), cube()).unwrap();
+    let os = OsStr::new;
+    let [csv, json, nrrd, html] = [".csv", ".json", ".nrrd", ".html"].map(name);
+    let commands: [&[&OsStr]; 9] = [
+        &[os("shape"), &csv, os("-o"), &json],
+        &[os("info"), &csv],
+        &[os("check"), &csv],
+        &[os("check"), &json],
+        &[os("compare"), &json, &json],
+        &[os("haar"), os("sample:phantom@8"), os("-o"), &nrrd],
+        &[os("info"), &nrrd, os("--json")],
+        &[os("points"), &nrrd, os("-o"), &csv],
+        &[os("view"), &csv, os("-o"), &html],
+    ];
+    for args in commands {
+        let (code, said) = walpha(args);
+        assert_eq!(code, Some(0), "{args:?}: {said}");
+    }
+    // Reports are text.
+    let (_, said) = walpha(&[os("info"), &nrrd, os("--json")]);
+    assert!(said.contains("caf\u{fffd}.nrrd"), "{said}");
+    let (code, said) = walpha(&[os("shape"), &name(".none")]);
+    assert!(code == Some(1) && said.contains("caf\u{fffd}.none"), "{said}");
 }

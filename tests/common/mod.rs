@@ -43,6 +43,21 @@ pub fn json(folder: &Path, args: &[&str]) -> serde_json::Value {
     value
 }
 
+/// Runs, expects this exit code, an error that names every word, nothing on standard output, and
+/// nothing new in the folder.
+pub fn fails(folder: &Path, code: i32, args: &str, words: &[&str]) {
+    let entries = |folder| std::fs::read_dir(folder).unwrap().count();
+    let before = entries(folder);
+    let (got, stdout, stderr) = run(folder, &args.split(' ').collect::<Vec<_>>());
+    assert_eq!(got, code, "walpha {args}\n{stderr}");
+    assert_eq!(stdout, "", "walpha {args}");
+    assert!(!stderr.contains("panicked"), "walpha {args}\n{stderr}");
+    for word in words {
+        assert!(stderr.contains(word), "walpha {args}: no {word:?} in\n{stderr}");
+    }
+    assert_eq!(entries(folder), before, "walpha {args} left something behind");
+}
+
 /// Whether points are in no plane; exact where coordinates are small whole numbers or halves.
 pub fn spans_a_volume(positions: &[[f64; 3]]) -> bool {
     let minus = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k] - b[k]);

@@ -11,7 +11,7 @@ fn the_command_writes_checks_and_compares() {
     assert_eq!(told["files"].as_array().unwrap().len(), 3);
     assert!(told["persistence"]["components"].as_array().is_some());
     let checked = common::ok(f, &["check", "a.npz"]);
-    assert!(checked.contains("certified: no finding"), "{checked}");
+    assert!(checked.contains("exact: no findings"), "{checked}");
     common::ok(f, &["compare", "a.json", "a.npz"]);
     let text = std::fs::read_to_string(f.join("a.json")).unwrap();
     let wrong =

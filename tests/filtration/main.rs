@@ -7,6 +7,7 @@ mod command;
 mod common;
 mod damaged;
 mod files;
+mod flat;
 mod pairs;
 #[path = "../common/random.rs"]
 mod random;

@@ -46,7 +46,7 @@ fn the_command_tells_what_its_files_hold() {
     for threads in ["1", "2", "5"] {
         let more = ["--fill", "-o", "b.nrrd", "--mask", "m2.npy", "--threads", threads];
         let told = json(f, &[&args[..], &more].concat());
-        assert_eq!(told["interpolation"]["filled"]["coverage"], 1.0);
+        assert_eq!(told["interpolation"]["filled"]["covered_share"], 1.0);
         assert_eq!(told["interpolation"]["inside"], *inside);
         bytes.push(fs::read(f.join("b.nrrd")).unwrap());
     }
@@ -177,7 +177,7 @@ fn errors_on_the_skull_are_those_found_elsewhere() {
     let args = "interpolate sample:skull --rms 0 --count 15956 --alpha inf";
     let told = json(folder.path(), &args.split(' ').collect::<Vec<_>>());
     let inside = &told["interpolation"]["inside"];
-    assert!((inside["coverage"].as_f64().unwrap() - 0.27).abs() < 0.005, "{inside}");
+    assert!((inside["covered_share"].as_f64().unwrap() - 0.27).abs() < 0.005, "{inside}");
     assert!((inside["rmse"].as_f64().unwrap() - 40.6).abs() < 0.2, "{inside}");
 }
 

@@ -2,6 +2,7 @@
 //! failure or an interrupt leaves unfinished.
 #![cfg(unix)]
 
+mod inputs;
 mod unfinished;
 
 #[path = "../common/mod.rs"]
@@ -142,7 +143,7 @@ fn no_output_is_lost_to_another() {
     let word = ["another output goes there", "a name of its own"];
     refused(f, "shape no.nrrd -o s.ply ./s.ply", &word);
     refused(f, "interpolate no.nrrd -o s.npy --mask s.npy", &word);
-    refused(f, "shape no.nrrd -o - - --format ply", &word);
+    refused(f, "shape no.nrrd -o - - --output-format ply", &word);
     symlink("s.ply", f.join("link.ply")).unwrap();
     refused(f, "shape no.nrrd -o s.ply link.ply", &word);
     fs::write(f.join("a.ply"), "").unwrap();

@@ -1,19 +1,18 @@
 //! What to read, and which part of it.
 
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use crate::cli::given::Given;
 use crate::cli::ranges;
-use crate::cli::said::misused;
-use crate::export::Target;
-use crate::points::Columns;
+use crate::cli::said::Said;
+use crate::points::{Columns, PointOptions};
 use crate::volume::{Dtype, Endian, Nan, RawLayout, ReadOptions, Region};
 use crate::{Dims, Gray, GrayRange};
 
-use super::values::{dims, gray_range, nan};
+use super::name::InputName;
+use super::values::{dims, gray_range, input_format, nan};
 
 /// What to read.
 #[derive(Args, Clone)]
@@ -24,10 +23,11 @@ pub(crate) struct InputArgs {
     pub given: Given,
     /// Volume or point file, - (standard input), sample:skull, sample:phantom or sample:phantom@N.
     #[arg(value_name = "INPUT", help_heading = None::<&str>)]
-    pub input: String,
-    /// Format of standard input or output (-), as in --format nrrd.
-    #[arg(long, value_name = "EXTENSION")]
-    format: Option<String>,
+    pub input: InputName,
+    /// Format of INPUT where neither its content nor its name says it, as in --input-format xyz: the
+    /// extension that a file of it has.
+    #[arg(long, value_name = "EXTENSION", value_parser = input_format, conflicts_with = "dims")]
+    input_format: Option<String>,
     #[command(flatten)]
     part: PartArgs,
     /// Values mapped to gray 0 and 255 [default: unchanged for unsigned 8-bit samples, otherwise min..max].
@@ -48,13 +48,16 @@ pub(crate) struct InputArgs {
 impl InputArgs {
     /// How to read a volume.
     pub(crate) fn options(&self) -> ReadOptions {
-        let PartArgs { level, array, frame, series, nan, roi, downsample } = self.part.clone();
+        let PartArgs { level, array, frame, series, skip_damaged, nan, roi, downsample } =
+            self.part.clone();
         ReadOptions {
             raw: self.raw.layout(),
+            format: self.input_format.clone(),
             level,
             array,
             frame,
             series,
+            skip_damaged,
             nan,
             region: roi,
             downsample,
@@ -63,37 +66,25 @@ impl InputArgs {
 
     /// What the name of standard input would end with.
     pub(crate) fn extension(&self) -> String {
-        let dotted = |format: &String| format!(".{}", format.trim_start_matches('.'));
-        self.format.as_ref().map(dotted).unwrap_or_default()
+        self.input_format.as_ref().map(|format| format!(".{format}")).unwrap_or_default()
     }
 
-    /// A path for an output whose extension names the format: its own path, if it has one.
-    pub(crate) fn output(&self, path: &Path) -> anyhow::Result<PathBuf> {
-        match &self.format {
-            _ if path.extension().is_some() => Ok(path.to_owned()),
-            Some(_) => Ok(format!("output{}", self.extension()).into()),
-            None if path == Path::new(Target::STDOUT) => {
-                misused!("standard output has no extension" => "name the format, as in --format nrrd")
-            }
-            None => Ok(path.to_owned()),
-        }
+    /// How to read points.
+    pub(crate) fn of_points(&self) -> PointOptions {
+        PointOptions::default()
+            .columns(self.columns.clone())
+            .level(self.part.level)
+            .format(self.input_format.clone())
     }
 
-    /// Refuses --format where nothing needs it.
-    pub(crate) fn check_format<'a>(
-        &self,
-        mut outputs: impl Iterator<Item = &'a PathBuf>,
-    ) -> anyhow::Result<()> {
-        let used = self.input == Target::STDOUT || outputs.any(|path| path.extension().is_none());
-        if self.format.is_some() && !used {
-            misused!("--format has no effect: the extension of each file says its format" => "omit it");
+    /// Refuses a format of INPUT that is a sample, or a folder.
+    pub(crate) fn check_format(&self) -> Result<(), Said> {
+        if self.input.starts_with("sample:") {
+            self.given.refuse(&["input_format"], "a sample is no file")?;
+        } else if self.input.path().is_dir() {
+            self.given.refuse(&["input_format"], "a folder says what it holds")?;
         }
         Ok(())
-    }
-
-    /// What the columns of a table of points are.
-    pub(crate) fn columns(&self) -> Option<&Columns> {
-        self.columns.as_ref()
     }
 
     /// How values become gray levels.
@@ -134,7 +125,11 @@ pub(super) struct PartArgs {
     /// UID.
     #[arg(long, value_name = "N", conflicts_with = "dims")]
     series: Option<String>,
-    /// Value that replaces NaN samples; without a value they are masked: no points, no errors.
+    /// Go on without damaged slices of a series (DICOM): a warning names each.
+    #[arg(long, conflicts_with = "dims")]
+    skip_damaged: bool,
+    /// Value that replaces samples that are NaN or infinite; without a value they are masked: no points, no
+    /// errors.
     #[arg(long, value_name = "VALUE", num_args = 0..=1, default_missing_value = "mask",
           value_parser = nan, allow_negative_numbers = true)]
     nan: Option<Nan>,

@@ -1,6 +1,8 @@
 //! Options that several commands share, and how they become options of the library.
 
 mod input;
+mod name;
+mod output;
 mod periodic;
 mod select;
 mod shape;
@@ -11,6 +13,7 @@ use clap::{Args, Command};
 
 pub(super) use input::InputArgs;
 use input::PartArgs;
+pub(super) use output::OutputArgs;
 pub(super) use periodic::PeriodicArgs;
 pub(super) use select::{HaarArgs, RefitArgs, SelectArgs};
 pub(super) use shape::ShapeArgs;

@@ -67,7 +67,8 @@ pub(crate) struct SelectArgs {
     /// Keep N samples.
     #[arg(long, value_name = "N", group = "rule", value_parser = count)]
     count: Option<u64>,
-    /// Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609].
+    /// Keep this share of all samples, 0 < R ≤ 1 [default: 0.0609, or all that take part where these are
+    /// fewer].
     #[arg(long, value_name = "R", group = "rule", value_parser = share)]
     ratio: Option<f64>,
     /// Keep the samples whose gray difference is at least T gray levels.
@@ -176,12 +177,12 @@ impl SelectArgs {
         let rmse = self.target_rmse.unwrap_or(0.0);
         let count = match self.rule() {
             SelectionRule::Count(count) => count,
-            SelectionRule::Ratio(_)
-                if self.ratio.is_none() && self.target_rmse.or(self.max_error).is_some() =>
-            {
+            SelectionRule::AtMost(_) if self.target_rmse.or(self.max_error).is_some() => {
                 samples as u64
             }
-            SelectionRule::Ratio(ratio) => (ratio * samples as f64).round() as u64,
+            SelectionRule::Ratio(ratio) | SelectionRule::AtMost(ratio) => {
+                (ratio * samples as f64).round() as u64
+            }
             SelectionRule::Threshold(_) => unreachable!("refused above"),
         };
         let goal = Adaptive { count, rmse, max_error: self.max_error };

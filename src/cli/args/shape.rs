@@ -59,7 +59,7 @@ impl ShapeArgs {
             exterior,
             blocks,
             memory,
-            refuse_flat: true,
+            refuse_flat: false,
             periodic: None,
         }
     }

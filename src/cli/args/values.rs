@@ -2,7 +2,20 @@
 
 use crate::cli::said::{Said, refused, said};
 use crate::volume::Nan;
-use crate::{Alpha, Dims, GrayRange};
+use crate::{Alpha, Dims, GrayRange, points, volume};
+
+pub(super) fn input_format(text: &str) -> Result<String, Said> {
+    let named = text.trim_start_matches('.').to_lowercase();
+    let volumes = volume::FORMATS.iter().flat_map(|format| format.extensions);
+    let known: Vec<&str> = volumes
+        .chain(points::FORMATS.iter().flat_map(|format| format.extensions))
+        .copied()
+        .collect();
+    if !known.contains(&named.as_str()) {
+        refused!("no format that is read has the extension {text:?}" => "give one of {}", known.join(", "));
+    }
+    Ok(named)
+}
 
 pub(super) fn dims(text: &str) -> Result<Dims, Said> {
     let size = |size: &str| {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::export::{Scratch, Target};
-use crate::points::{ModelFacts, is_point_file, read_model};
+use crate::export::Scratch;
+use crate::points::{ModelFacts, read_model};
 use crate::progress::Stage;
 use crate::volume::Reason;
 use crate::{GrayRange, Points, Volume, VolumeError, volume};
@@ -35,8 +35,7 @@ pub(in crate::cli) fn read(args: &InputArgs, progress: &mut Progress) -> anyhow:
     progress.stage(Stage::Read, || {
         with_file(args, |input| {
             if is_points(args, input)? {
-                let level = args.options().level;
-                let (mut points, mut facts) = read_model(Path::new(input), args.columns(), level)?;
+                let (mut points, mut facts) = read_model(input, &args.of_points())?;
                 if let Some(range) = &mut facts.range {
                     let written = args.written(*range);
                     if written != *range {
@@ -73,16 +72,17 @@ pub(in crate::cli) fn with_points(error: VolumeError) -> anyhow::Error {
 /// time: formats are read in several passes.
 pub(in crate::cli) fn with_file<T>(
     args: &InputArgs,
-    work: impl FnOnce(&str) -> anyhow::Result<T>,
+    work: impl FnOnce(&Path) -> anyhow::Result<T>,
 ) -> anyhow::Result<T> {
-    if args.input != Target::STDOUT {
-        return work(&args.input);
+    args.check_format()?;
+    if !args.input.is_stdin() {
+        return work(args.input.path());
     }
     let file = Scratch::of(&mut std::io::stdin().lock(), &args.extension())
         .map_err(|error| said!("cannot read standard input: {error}" => "name a file instead"))?;
     let path = file.path().to_string_lossy().into_owned();
     // Nobody knows the name of that file.
-    work(&path).map_err(|error| {
+    work(file.path()).map_err(|error| {
         let (why, next) = reasons(&error);
         let named = |text: String| text.replace(&path, "standard input");
         let usage = is_usage(&error);
@@ -108,7 +108,8 @@ impl Input {
 }
 
 /// Whether an input is a point file.
-pub(in crate::cli) fn is_points(args: &InputArgs, input: &str) -> anyhow::Result<bool> {
-    let volume = input.starts_with("sample:") || args.options().raw.is_some();
-    Ok(!volume && is_point_file(Path::new(input))?)
+pub(in crate::cli) fn is_points(args: &InputArgs, input: &Path) -> anyhow::Result<bool> {
+    let sample = input.to_str().is_some_and(|name| name.starts_with("sample:"));
+    let volume = sample || args.options().raw.is_some();
+    Ok(!volume && args.of_points().is_point_file(input)?)
 }

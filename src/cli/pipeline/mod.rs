@@ -151,6 +151,7 @@ pub(super) fn model_facts(weighed: &Weighed, volume: Option<&VolumeFacts>) -> Mo
         alpha: weighed.parameter.map(|parameter| parameter.alpha),
         range: volume.map(|volume| volume.written).or(origin.range),
         order: None,
+        cell: None,
     }
 }
 

@@ -18,7 +18,7 @@ use crate::{Coordinates, GrayRange, memory};
 use super::output::name;
 use super::pipeline::VolumeFacts;
 use parts::{Ended, InputReport, PointsReport};
-pub(super) use parts::{HaarReport, WeightsReport};
+pub(super) use parts::{Folded, HaarReport, WeightsReport};
 use shape::ShapeReport;
 
 /// Counted up when a field changes its meaning or goes; new fields may come at any time.
@@ -73,6 +73,7 @@ impl Report {
             points: PointsReport {
                 selected: weighed.points.len(),
                 duplicates: None,
+                folded: None,
                 hidden: None,
                 in_shape: None,
                 ended_early: origin.ended.map(|Adaptive { count, rmse, max_error }| Ended {
@@ -98,6 +99,7 @@ impl Report {
         let shape = &model.shape;
         self.alpha = Some(model.parameter);
         self.points.duplicates = Some(shape.duplicates().len());
+        self.points.folded = model.origin.folded;
         self.points.hidden = shape.hidden().map(<[u32]>::len);
         self.points.in_shape = Some(shape.points_in_shape());
         self.engine = Some(shape.options().engine);
@@ -122,6 +124,7 @@ impl Report {
             points: PointsReport {
                 selected: merged.points as usize,
                 duplicates: Some(0),
+                folded: None,
                 hidden: merged.hidden.map(|hidden| hidden as usize),
                 in_shape: Some(merged.vertices.in_shape()),
                 ended_early: None,
@@ -129,6 +132,7 @@ impl Report {
             alpha: Some(parameter),
             weights: WeightsReport {
                 kind: job.weighting.to_string(),
+                of_radii: false,
                 min,
                 mean,
                 max,

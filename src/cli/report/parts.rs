@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::pipeline::Weighed;
 use crate::points::WeightSummary;
 use crate::shown::number;
-use crate::{GrayRange, LengthUnit, Truncation};
+use crate::{GrayRange, LengthUnit, Truncation, Weighting};
 
 use super::super::output::name;
 
@@ -35,6 +35,9 @@ pub(in crate::cli) struct HaarReport {
 pub(super) struct PointsReport {
     pub(super) selected: usize,
     pub(super) duplicates: Option<usize>,
+    /// Outside of the periodic box, and moved into it; absent without a box.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) folded: Option<usize>,
     pub(super) hidden: Option<usize>,
     pub(super) in_shape: Option<usize>,
     /// Adaptive selection needed fewer than asked for.
@@ -73,6 +76,8 @@ impl Display for Ended {
 #[derive(Serialize)]
 pub(in crate::cli) struct WeightsReport {
     pub(super) kind: String,
+    /// Whether they are squares of radii, which the input has in place of weights.
+    pub(super) of_radii: bool,
     pub(super) min: f64,
     pub(super) mean: f64,
     pub(super) max: f64,
@@ -86,14 +91,16 @@ impl WeightsReport {
         let WeightSummary { min, mean, max } = weighed.points.summary();
         let origin = weighed.origin;
         let (kind, unit) = (origin.weighting.to_string(), origin.coordinates.unit);
-        Self { kind, min, mean, max, unit }
+        let of_radii = origin.of_radii && origin.weighting == Weighting::Column;
+        Self { kind, of_radii, min, mean, max, unit }
     }
 }
 
 impl Display for WeightsReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { kind, min, mean, max, unit } = self;
-        write!(f, "{kind}: min {min:.6}, mean {mean:.6}, max {max:.6} {}²", unit.symbol())
+        let Self { kind, of_radii, min, mean, max, unit } = self;
+        let squares = if *of_radii { ", squares of its radii" } else { "" };
+        write!(f, "{kind}{squares}: min {min:.6}, mean {mean:.6}, max {max:.6} {}²", unit.symbol())
     }
 }
 
@@ -143,6 +150,18 @@ impl Display for PointsReport {
                 write!(f, ", {count} {what}")?;
             }
         }
-        Ok(())
+        Folded(self.folded).fmt(f)
+    }
+}
+
+/// How many points were moved into a periodic box, to follow other counts; nothing where none was.
+pub(in crate::cli) struct Folded(pub Option<usize>);
+
+impl Display for Folded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            None | Some(0) => Ok(()),
+            Some(count) => write!(f, ", {count} outside of the periodic box, moved into it"),
+        }
     }
 }

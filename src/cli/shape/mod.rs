@@ -6,15 +6,15 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::blocks::Team;
-use crate::export::{FORMATS, Format};
+use crate::blocks::{Pieces, Team};
+use crate::export::{FORMATS, Format, Working};
 use crate::progress::Stage;
 use crate::shape::{ShapeOptions, Surface};
 use crate::shown::shown;
 
-use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
+use super::args::{OutputArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::formats::shape_output;
-use super::output::tell;
+use super::output::{remark, tell};
 use super::picture::PictureArgs;
 use super::progress::Progress;
 use super::report::Report;
@@ -60,6 +60,8 @@ pub(super) struct Shape {
     #[command(flatten)]
     periodic: PeriodicArgs,
     #[command(flatten)]
+    format: OutputArgs,
+    #[command(flatten)]
     picture: PictureArgs,
 }
 
@@ -75,9 +77,9 @@ impl Shape {
     /// Refuses options that no output has a use for.
     fn check(&self) -> anyhow::Result<()> {
         let input = &self.pipeline.input;
-        input.check_format(self.output.iter())?;
+        self.format.check(self.output.iter())?;
         let names: Vec<PathBuf> =
-            self.output.iter().map(|path| input.output(path)).collect::<Result<_, _>>()?;
+            self.output.iter().map(|path| self.format.named(path)).collect::<Result<_, _>>()?;
         let written =
             |has: fn(&Format) -> bool| names.iter().any(|name| Format::of(name).is_ok_and(has));
         let known = |has: fn(&Format) -> bool| {
@@ -114,13 +116,18 @@ impl Shape {
     pub(super) fn run(self, global: Global, team: &dyn Team) -> anyhow::Result<()> {
         // Before the long work: a bad option, extension or place costs nothing yet.
         self.check()?;
+        let folder = together::folder(&self.output, &self.pipeline.input.input);
+        let in_blocks =
+            team.size() > 1 || self.output.iter().any(|path| Pieces::of(path).is_some());
+        let working = (in_blocks && !global.in_place).then(|| Working::folder(&folder));
         let outputs = Outputs::open(&self)?;
-        together::check(team, !outputs.pieces.is_empty())?;
+        // From here on the blocks are written there.
+        drop(working);
         let mut progress = Progress::new(global);
-        let mut report = if outputs.pieces.is_empty() {
-            self.at_once(outputs, global, &mut progress)?
+        let mut report = if in_blocks {
+            self.in_blocks(outputs, folder, global, &mut progress, team)?
         } else {
-            self.in_blocks(outputs, global, &mut progress, team)?
+            self.at_once(outputs, global, &mut progress)?
         };
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
@@ -134,6 +141,7 @@ impl Shape {
     fn in_blocks(
         &self,
         outputs: Outputs,
+        folder: PathBuf,
         global: Global,
         progress: &mut Progress,
         team: &dyn Team,
@@ -148,7 +156,9 @@ impl Shape {
             misused!("{name} takes all points at once, and there are blocks" => "write it by `walpha points`");
         }
         let outputs = blocks::Outputs { pieces: outputs.pieces, whole: outputs.whole };
-        Work::new(&self.pipeline, &self.shape, &outputs, global)?.lead(outputs, progress, team)
+        let pieces = outputs.pieces.clone();
+        let work = Work::new(&self.pipeline, &self.shape, pieces, folder, global)?;
+        work.lead(outputs, progress, team)
     }
 
     /// Makes the shape in memory.
@@ -174,7 +184,7 @@ impl Shape {
         let remarks = outputs.remarks(&model.shape);
         progress.stage(Stage::Write, || outputs.write(&model.shape, &facts))?;
         if !global.quiet {
-            remarks.iter().for_each(|remark| eprintln!("walpha: {remark}"));
+            remarks.iter().for_each(|text| remark(&format!("walpha: {text}")));
         }
         Ok(report)
     }

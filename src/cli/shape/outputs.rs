@@ -34,11 +34,11 @@ impl Outputs {
             ascii: shape.ascii,
             solid: shape.solid,
             groups: shape.groups,
-            input: Some(shape.pipeline.input.input.clone()),
+            input: Some(shape.pipeline.input.input.to_string()),
         };
         let mut outputs = Self::default();
         for path in &shape.output {
-            let name = shape.pipeline.input.output(path)?;
+            let name = shape.format.named(path)?;
             if let Some(pieces) = Pieces::of(&name) {
                 pieces.check(path)?;
                 outputs.pieces.push((pieces, path.clone()));

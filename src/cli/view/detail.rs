@@ -4,7 +4,7 @@ use crate::Alpha;
 use crate::cli::filled::filled_in;
 use crate::cli::pipeline::{self, Source};
 use crate::cli::progress::Progress;
-use crate::interpolate::{Deviation, Grid, Interpolant, InterpolateError};
+use crate::interpolate::{Deviation, Grid, Interpolant};
 use crate::ladder::Filtration;
 use crate::pipeline::{AlphaRule, Parameter, Weighed};
 use crate::progress::Stage;
@@ -66,7 +66,7 @@ impl Detail {
     }
 }
 
-/// How far the interpolant, filled in, is from the volume; `None` where the points span no volume.
+/// How far the interpolant, filled in, is from the volume; `None` where the points have no values.
 fn differences(
     weighed: &Weighed,
     source: &Source,
@@ -77,10 +77,7 @@ fn differences(
     let grays: Vec<f64> = values.iter().map(|&value| facts.written.gray(value)).collect();
     let hull = filtration.levels(&[Alpha::INFINITE]);
     let hull = hull.shape(0, false, hull.betti()[0]);
-    let (whole, grays) = match filled_in(&hull, &grays, volume, facts.units) {
-        Err(InterpolateError::Shape(error)) if error.is_flat() => return Ok(None),
-        filled => filled?,
-    };
+    let (whole, grays) = filled_in(&hull, &grays, volume, facts.units)?;
     let interpolant = Interpolant::with_values(&whole, &grays)?;
     let grid = Grid::of(volume, facts.units);
     let mut local = interpolant.local_deviations(volume, &grid)?;

@@ -19,7 +19,7 @@ use crate::volume::UnknownFormat;
 
 use super::Global;
 use super::args::{Alphas, FrozenPipelineArgs};
-use super::output::tell;
+use super::output::{remark, tell};
 use super::pipeline::{self, Input, Source, Values, VolumeFacts};
 use super::progress::Progress;
 use super::report::{SCHEMA_VERSION, WeightsReport};
@@ -81,15 +81,15 @@ impl View {
         let (page, facts) = self.page(&details, source.as_ref(), &mut progress)?;
         if !global.quiet {
             let size = page.html.len() as f64 / 1e6;
-            eprintln!("walpha: {} takes {size:.1} MB", shown(&self.output));
+            remark(&format!("walpha: {} takes {size:.1} MB", shown(&self.output)));
             if let Some(told) = &page.simplified {
-                eprintln!("walpha: {told}");
+                remark(&format!("walpha: {told}"));
             }
         }
         progress.stage(Stage::Write, || target.write(|out| out.write_all(page.html.as_bytes())))?;
         let facts = Facts {
             schema_version: SCHEMA_VERSION,
-            input: self.pipeline.input.input,
+            input: self.pipeline.input.input.to_string(),
             details: facts,
             bytes: page.html.len(),
             simplified: page.simplified,
@@ -206,7 +206,7 @@ impl View {
         volume: Option<&VolumeFacts>,
         reference: Parameter,
     ) -> Vec<(String, String)> {
-        let mut told = vec![("input".to_owned(), self.pipeline.input.input.clone())];
+        let mut told = vec![("input".to_owned(), self.pipeline.input.input.to_string())];
         if let Some((volume, t)) = volume.zip(weighed.origin.truncation.as_ref()) {
             let [x, y, z] = volume.dims;
             let (low, high) = (number(volume.range.low), number(volume.range.high));

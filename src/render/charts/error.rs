@@ -4,7 +4,7 @@ use crate::render::figure::{Content, Drawing, Figure, Panel, Pen};
 use crate::render::pixels::{PALETTE, Rgb, Size};
 
 /// The figure of an error curve (see [`error_curve`](crate::interpolate::error_curve)): RMSE of the
-/// filled interpolant, RMSE inside the shape at α (squared), coverage, and how many points are
+/// filled interpolant, RMSE inside the shape at α (squared), the share of samples it covers, and how many points are
 /// hidden, over the number of points. A colour for each method; unweighted lines are solid.
 #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn error_figure(title: &str, alpha: f64, curve: &[CurvePoint]) -> Figure {
@@ -22,7 +22,7 @@ pub fn error_figure(title: &str, alpha: f64, curve: &[CurvePoint]) -> Figure {
             shapes(point).and_then(|inside| inside.rmse)
         }),
         panel(&format!("covered by the shape at α = {alpha}"), "samples (%)", &|point| {
-            shapes(point).as_ref().map(Deviation::coverage).map(|share| 100.0 * share)
+            shapes(point).as_ref().map(Deviation::covered_share).map(|share| 100.0 * share)
         }),
         panel("hidden by heavier points, so that they carry no value", "points (%)", &|point| {
             point.weighting.map(|_| 100.0 * point.hidden as f64 / point.count as f64)

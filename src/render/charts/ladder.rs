@@ -80,6 +80,8 @@ impl<'a> Chart<'a> {
             .map(|alpha| place(alpha, weight))
             .filter(|x| x.is_finite())
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x), h.max(x)]);
+        // A point alone comes with a ball of no size, which has no place on a logarithmic axis.
+        let ends = if ends[0] <= ends[1] { ends } else { [0.0; 2] };
         let room = 0.03 * (ends[1] - ends[0]) + 0.02;
         Self { ladder, curve, marks, ends: [ends[0] - room, ends[1] + room] }
     }

@@ -6,7 +6,7 @@ use crate::interpolate::{
     Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels,
 };
 use crate::points::{
-    ModelFacts, Packing, PointWriter, SampleGrid, Units, WeightedPoints, read_model,
+    ModelFacts, Packing, PointOptions, PointWriter, SampleGrid, Units, WeightedPoints, read_model,
 };
 use crate::render::{RateCurve, rate_figure};
 use crate::shape::{Alpha, ShapeOptions, alpha_shape};
@@ -172,7 +172,7 @@ fn through_file(
     let mut bytes = Vec::new();
     writer.write_model(points, &facts, &packing, &mut bytes)?;
     let file = Scratch::of(&mut &bytes[..], NAME)?;
-    let (read, _) = read_model(file.path(), None, None)?;
+    let (read, _) = read_model(file.path(), &PointOptions::default())?;
     let weights = read.weights.unwrap_or_default();
     Ok((bytes.len(), WeightedPoints { positions: read.positions, weights, values: read.values }))
 }

@@ -81,7 +81,7 @@ fn table(curve: &[CurvePoint]) -> Table {
             point.weighting.map_or_else(|| "–".into(), |weighting| weighting.to_string()),
             point.count.to_string(),
             point.hidden.to_string(),
-            number(Some(100.0 * point.inside.coverage())),
+            number(Some(100.0 * point.inside.covered_share())),
             number(point.inside.rmse),
             number(point.filled.rmse),
             number(point.filled.max),

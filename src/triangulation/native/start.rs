@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use super::super::predicates::Screen;
 use super::super::{Cell, SitesError, TriangulationError, no_memory};
 use super::{Cavity, Mesh, Native};
+use crate::memory::asking;
 
 impl Native {
     /// Nothing yet, with room for a triangulation of so many of the points below a number, which no
@@ -62,10 +63,8 @@ impl Native {
     /// Makes room for so many more cells.
     pub(super) fn reserve(&mut self, more: usize) -> Result<(), TriangulationError> {
         let bytes = (self.mesh.cells.len() + more).saturating_mul(36);
-        self.mesh
-            .cells
-            .try_reserve(more)
-            .and_then(|()| self.marks.try_reserve(more))
+        asking(|| self.mesh.cells.try_reserve(more))
+            .and_then(|()| asking(|| self.marks.try_reserve(more)))
             .map_err(|_| no_memory(bytes))
     }
 }

@@ -68,7 +68,11 @@ impl Row {
             boundary_facets: Surface::of(shape).facets().count(),
             betti: shape.betti(),
             measures: *shape.measures(),
-            coverage: shape.measures().volume / domain.volume,
+            coverage: if domain.volume > 0.0 {
+                shape.measures().volume / domain.volume
+            } else {
+                0.0
+            },
             bytes: 0,
             files: Vec::new(),
         }

@@ -68,7 +68,7 @@ impl Ladder {
                 values.iter_mut().for_each(|value| *value = written.value(*value));
             }
             let weighted = weigh(&points, weighting, alpha)?;
-            let options = ShapeOptions { refuse_flat: true, ..ShapeOptions::new(alpha) };
+            let options = ShapeOptions::new(alpha);
             let shape = progress.stage(Stage::Shape, || alpha_shape(weighted, &options))?;
             let shape = shape.meaning(coordinates);
             let errors = || Errors::of(&shape, &grays, &volume, units);
@@ -81,7 +81,7 @@ impl Ladder {
         }
         let facts = Facts {
             schema_version: SCHEMA_VERSION,
-            input: self.pipeline.input.input.clone(),
+            input: self.pipeline.input.input.to_string(),
             coordinates,
             alpha: parameter,
             weights: weighting.to_string(),
