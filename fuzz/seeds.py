@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 """Small valid files for every fuzz target, in corpus/TARGET: `python3 fuzz/seeds.py fuzz/corpus`.
 
-Standard library only. The fuzzer finds the rest from these.
+Standard library only, and `walpha` for the files of plans. The fuzzer finds the rest from these.
 """
 
 import base64
 import gzip
 import io
 import json
+import shutil
 import struct
+import subprocess
 import sys
+import tempfile
 import zipfile
 import zlib
 from pathlib import Path
@@ -18,6 +21,12 @@ N = 2 * 3 * 2
 U8 = bytes(range(N))
 F32 = struct.pack(f"<{N}f", *range(N))
 F64 = struct.pack(f"<{3 * 4}d", *range(12))
+
+
+def mgh():
+    head = struct.pack(">7i", 1, 2, 3, 2, 1, 3, 0) + struct.pack(">h15f", 1, *[2, 1, 1], *[-1, 0, 0], *[0, 0, -1], *[0, 1, 0], *[3, 4, 5])
+    samples = struct.pack(">12f", *range(12))
+    return [head.ljust(284, b"\0") + samples, head.ljust(284, b"\0") + samples + b"TR", head]
 
 
 def inrimage():
@@ -398,12 +407,33 @@ def zarr():
     return [b"\xff".join(part if isinstance(part, bytes) else json.dumps(part).encode() for part in file) for file in parts]
 
 
+def plan_files(*names):
+    """Files of a plan, as the command writes them, which must be on the path."""
+    def files():
+        walpha = shutil.which("walpha")
+        if walpha is None:
+            print(f"no walpha on the path: no seeds for {', '.join(names)}", file=sys.stderr)
+            return []
+        found = []
+        for haar in ("non-standard", "standard"):
+            with tempfile.TemporaryDirectory() as folder:
+                work = Path(folder) / "work"
+                for step in (["plan", "sample:phantom@12", "--engine", "native", "--rms", "2", "--haar", haar, "--blocks", "2", "-o", work],
+                             ["run", work]):
+                    subprocess.run([walpha, "blocks", *step, "--quiet"], check=True)
+                found += [(work / name).read_bytes() for name in names if (work / name).exists()]
+        return found
+    return files
+
+
 TARGETS = {
-    "inrimage": inrimage, "npy": npys, "npz": npz, "nrrd": nrrd, "metaimage": metaimage, "nifti": nifti,
+    "inrimage": inrimage, "mgh": mgh, "npy": npys, "npz": npz, "nrrd": nrrd, "metaimage": metaimage, "nifti": nifti,
     "nifti_gzip": lambda: [gzip.compress(file) for file in nifti()], "vtk_legacy": vtk_legacy, "vti": vti,
     "tiff": tiffs, "table": table, "xyz": xyz, "pwn": pwn, "npy_points": npy_points, "ply": ply, "vtk_geometry": vtk_geometry,
     "off": off, "obj": obj, "stl": stl,
     "pcd": pcd, "las": las, "wvm": wvm, "dicom": dicom, "zarr": zarr, "slices": slices, "complex": complexes, "check_json": check_json, "check_npz": check_npz, "filtration": filtrations,
+    "plan": plan_files("plan.json"), "block": plan_files("block-00000.walpha", "block-00001.walpha"),
+    "sums": plan_files("sums.f64"), "truncated": plan_files("truncated.f32"),
 }
 
 if __name__ == "__main__":

@@ -3,11 +3,15 @@
 
 use std::io::Cursor;
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
+use walpha::blocks::{Cutting, Job, Pieces, Plan, merge, run, whole};
 use walpha::check::certify_filtration;
 use walpha::check::schema::{ComplexFile, FiltrationFile, SchemaError};
-use walpha::points::{is_point_file, read_points};
+use walpha::points::{PointOptions, cells_of, is_point_file, read_complex, read_points};
+use walpha::shape::Engine;
 use walpha::volume::{ReadOptions, read};
+use walpha::{Decomposition, Tolerance};
 
 /// Reads bytes as a volume file of this name.
 pub fn volume(name: &str, bytes: &[u8]) {
@@ -20,6 +24,10 @@ pub fn points(name: &str, bytes: &[u8]) {
     let (_folder, path) = file(name, bytes);
     let _ = is_point_file(&path);
     let _ = read_points(&path, None);
+    let options = PointOptions::default();
+    if cells_of(&path, &options).is_ok_and(|cells| !cells.is_empty()) {
+        let _ = read_complex(&path, &options).map(ComplexFile::into_complex);
+    }
 }
 
 /// Reads bytes as the one slice of a folder, PNG or else JPEG.
@@ -67,6 +75,65 @@ pub fn filtration(bytes: &[u8]) {
     if let Ok((findings, _)) = certify_filtration(&file) {
         findings.iter().for_each(|finding| assert!(!finding.to_string().is_empty()));
     }
+}
+
+/// Reads bytes as the plan of a folder whose blocks are there, and merges these.
+pub fn plan(bytes: &[u8]) {
+    let folder = planned(Decomposition::NonStandard);
+    std::fs::write(folder.join("plan.json"), bytes).expect("room for a small file");
+    if let Ok(plan) = Plan::open(folder) {
+        let _ = plan.check();
+        merged(&plan);
+    }
+}
+
+/// Reads bytes as one of two blocks, and merges them.
+pub fn block(bytes: &[u8]) {
+    let folder = planned(Decomposition::NonStandard);
+    std::fs::write(folder.join("block-00000.walpha"), bytes).expect("room for a small file");
+    let plan = Plan::open(folder).expect("it is left alone");
+    let _ = plan.check();
+    merged(&plan);
+}
+
+/// Computes a block with these bytes as the sums of bricks.
+pub fn sums(bytes: &[u8]) {
+    with_kept(Decomposition::NonStandard, "sums.f64", bytes);
+}
+
+/// Computes a block with these bytes as the truncated volume.
+pub fn truncated(bytes: &[u8]) {
+    with_kept(Decomposition::Standard, "truncated.f32", bytes);
+}
+
+fn with_kept(decomposition: Decomposition, name: &str, bytes: &[u8]) {
+    let folder = planned(decomposition);
+    std::fs::write(folder.join(name), bytes).expect("room for a small file");
+    let plan = Plan::open(folder).expect("it is left alone");
+    let _ = std::fs::remove_file(plan.block_file(0));
+    let _ = run(&plan, 0);
+}
+
+fn merged(plan: &Plan) {
+    let Ok(all) = merge(plan) else { return };
+    let _ = whole(plan, &all);
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    let _ = Pieces::Grid.write(plan, &all, &folder.path().join("a.pvtu"));
+    let _ = Pieces::Surface.write(plan, &all, &folder.path().join("a.pvtp"));
+}
+
+/// The folder of a small plan with its blocks, made once: by the same options as the seeds.
+fn planned(decomposition: Decomposition) -> &'static std::path::Path {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a folder for temporary files").keep();
+        let mut job = Job::new("sample:phantom@12", ReadOptions::default()).expect("a sample");
+        job.engine = Engine::Native;
+        job.haar = job.haar.decomposition(decomposition).tolerance(Tolerance::Rms(2.0));
+        let plan = Plan::make(job, Cutting::default().blocks(2), &folder).expect("room for a plan");
+        (0..plan.blocks.len()).for_each(|block| run(&plan, block).expect("room for a block"));
+        folder
+    })
 }
 
 /// Reads bytes as a Zarr store: the metadata of an array, then its first chunk; of a group, if they
