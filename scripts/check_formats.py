@@ -92,9 +92,16 @@ class Checker:
         self.judge(name, None)
 
     def refused(self, name, file, word):
+        run = self.run("haar", file)
+        good = run.returncode == 1 and word in run.stderr
+        self.judge(name, None if good else f"exit {run.returncode}, {run.stderr.strip()!r} without {word!r}")
+
+    def described(self, name, file, word, refusal):
+        """`info` describes what no shape is made of; what would take its samples is refused."""
         info = self.run("info", file)
-        good = info.returncode == 1 and word in info.stderr
-        self.judge(name, None if good else f"exit {info.returncode}, {info.stderr.strip()!r} without {word!r}")
+        good = info.returncode == 0 and word in info.stdout
+        self.judge(f"{name} described", None if good else f"exit {info.returncode}, {info.stdout!r} without {word!r}")
+        self.refused(name, file, refusal)
 
     def lacks(self, name, file):
         """Whether walpha was built without the feature this file needs; says so."""
@@ -150,7 +157,7 @@ def read_nrrd(check):
     check.volume("pynrrd bzip2", check.path("b.nrrd"), data)
     colour = np.zeros((3, 4, 5, 6), "u1")
     nrrd.write(check.path("c.nrrd"), colour, {"kinds": ["RGB-color", "space", "space", "space"]})
-    check.refused("pynrrd colours", check.path("c.nrrd"), "only scalar")
+    check.described("pynrrd colours", check.path("c.nrrd"), "3 values a voxel", "only scalar")
 
 
 def itk_image(data):
@@ -188,7 +195,7 @@ def read_itk(check):
         check.volume(f"MetaImage {tail.split()[0]}", check.path("list.mhd"), theirs)
     rgb = sitk.GetImageFromArray(np.zeros((3, 4, 5, 3), "u1"), isVector=True)
     sitk.WriteImage(rgb, check.path("rgb.mha"))
-    check.refused("ITK colours", check.path("rgb.mha"), "only scalar")
+    check.described("ITK colours", check.path("rgb.mha"), "3 values a voxel", "only scalar")
 
 
 def read_nifti(check):
@@ -221,7 +228,7 @@ def read_nifti(check):
     nib.save(nib.Nifti1Image(samples("c8").T, affine), check.path("complex.nii"))
     check.refused("nibabel complex", check.path("complex.nii"), "complex")
     nib.save(nib.Nifti1Image(np.zeros((3, 3, 3, 2), "f4"), affine), check.path("four.nii"))
-    check.refused("nibabel 4D", check.path("four.nii"), "choose one with --frame")
+    check.described("nibabel 4D", check.path("four.nii"), "2 in the file", "choose one with --frame")
 
 
 def read_dicom(check):
@@ -452,9 +459,9 @@ def read_tiff(check):
         check.volume(f"OME {dtype}", check.path("o.ome.tif"), data, spacing=SPACING)
     one_page_imagej(check)
     tifffile.imwrite(check.path("rgb.tif"), np.zeros((3, 4, 5, 3), "u1"), photometric="rgb")
-    check.refused("tifffile colours", check.path("rgb.tif"), "only gray")
+    check.described("tifffile colours", check.path("rgb.tif"), "colours", "only gray")
     tifffile.imwrite(check.path("hyper.tif"), np.zeros((2, 3, 4, 5), "u1"), imagej=True, metadata={"axes": "TZYX"})
-    check.refused("ImageJ hyperstack", check.path("hyper.tif"), "choose one with --frame")
+    check.described("ImageJ hyperstack", check.path("hyper.tif"), "2 in the file", "choose one with --frame")
 
 
 def one_page_imagej(check):

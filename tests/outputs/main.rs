@@ -24,8 +24,20 @@ const HAAR: [&str; 5] = ["haar", "sample:phantom@8", "-q", "-o", "a.npy"];
 
 /// Runs under a limit of the system.
 fn limited(folder: &Path, resource: Resource, limit: u64, args: &[&str]) -> Output {
+    limited_with(&[], folder, resource, limit, args)
+}
+
+/// The same with variables of the environment.
+fn limited_with(
+    variables: &[(&str, &str)],
+    folder: &Path,
+    resource: Resource,
+    limit: u64,
+    args: &[&str],
+) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_walpha"));
     command.args(args).current_dir(folder).env_remove("RUST_BACKTRACE");
+    command.envs(variables.iter().copied());
     let lower = move || Ok(setrlimit(resource, limit, limit)?);
     // SAFETY: between fork and exec this makes one system call, which allocates nothing.
     unsafe { command.pre_exec(lower) };

@@ -179,6 +179,33 @@ fn sizes_beyond_all_memory_are_named() {
     assert!(output.status.code() == Some(1) && said.contains("needs 201326592 bytes"), "{said}");
 }
 
+/// The variable that rayon reads is bounded as the option is: 10 000 stacks would not have room here, and the
+/// command would say so.
+#[test]
+fn threads_of_the_environment_are_bounded() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["haar", "sample:phantom@8"];
+    let variables = [("RAYON_NUM_THREADS", "10000")];
+    let output = limited_with(&variables, folder.path(), Resource::RLIMIT_AS, 8 << 30, &args);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!((output.status.code(), said.contains("threads start")), (Some(0), false), "{said}");
+}
+
+/// No block is so small: the shape is refused before anything of it is computed.
+#[test]
+fn a_memory_that_no_block_fits_is_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = std::time::Instant::now();
+    let args = ["shape", "sample:phantom@128", "--memory", "1K", "--alpha", "10000"];
+    let (code, _, said) = run(folder.path(), &args);
+    assert_eq!(code, 1, "{said}");
+    for word in ["1 KiB of memory", "are needed", "next: "] {
+        assert!(said.contains(word), "no {word:?} in {said}");
+    }
+    // Computed, it takes minutes.
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+}
+
 /// What C++ throws for want of memory arrives as an error of that.
 #[test]
 fn cpp_says_that_it_has_no_memory() {
