@@ -82,6 +82,10 @@ pub(super) fn tell_usage(command: &str, error: &clap::Error, configured: bool) {
     {
         (what, rest) = (format!("{head}'"), tail.to_owned());
     }
+    if what.contains("'--format'") {
+        // Its name in 0.2, for both ends of a pipe.
+        tips = vec!["give --input-format for INPUT, or --output-format for standard output".into()];
+    }
     if what.ends_with(':') {
         what = format!("{what} {rest}");
         rest = String::new();
