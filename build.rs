@@ -28,17 +28,10 @@ mod bridge {
         "cpp/bridge.cc",
         #[cfg(feature = "paper")]
         "cpp/plane.cc",
-        "cpp/reference.cc",
-        "cpp/regular.cc",
+        "cpp/shape.cc",
     ];
-    const HEADERS: &[&str] = &[
-        "cpp/bridge.h",
-        "cpp/classes.h",
-        "cpp/kernel.h",
-        "cpp/plane.h",
-        "cpp/reference.h",
-        "cpp/regular.h",
-    ];
+    const HEADERS: &[&str] =
+        &["cpp/bridge.h", "cpp/classes.h", "cpp/kernel.h", "cpp/plane.h", "cpp/shape.h"];
 
     pub(crate) fn build() {
         for file in SOURCES.iter().chain(HEADERS).chain(BRIDGES) {

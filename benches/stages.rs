@@ -57,7 +57,7 @@ fn weights(bencher: Bencher, weighting: &str) {
 
 #[divan::bench(args = WEIGHTINGS)]
 fn reference(bencher: Bencher, weighting: &str) {
-    engine(bencher, Engine::Reference, weighting);
+    engine(bencher, Engine::Cgal, weighting);
 }
 
 #[divan::bench(args = WEIGHTINGS)]

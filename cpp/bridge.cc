@@ -1,11 +1,6 @@
 #include "walpha/cpp/bridge.h"
 
-#include <cstdlib>
 #include <mutex>
-
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 #include <CGAL/assertions.h>
 #include <CGAL/assertions_behaviour.h>
@@ -19,12 +14,6 @@ void throw_quietly() {
     CGAL::set_error_handler(silent);
     CGAL::set_warning_handler(silent);
   });
-}
-
-void give_back() {
-#ifdef __GLIBC__
-  malloc_trim(0);
-#endif
 }
 
 }  // namespace walpha

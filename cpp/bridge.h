@@ -33,7 +33,4 @@ namespace walpha {
 // Makes a failed CGAL check throw without writing to the terminal: the caller prints it.
 void throw_quietly();
 
-// Gives freed memory back to the system, where the allocator would keep it for itself (glibc).
-void give_back();
-
 }  // namespace walpha

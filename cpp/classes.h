@@ -1,4 +1,4 @@
-// The numbers of `Class` in src/shape/complex.rs.
+// The numbers of `Class` in crates/check/src/complex/class.rs.
 #pragma once
 
 #include <cstdint>

@@ -24,6 +24,17 @@ pub(crate) fn readable(bytes: u64) -> String {
     format!("{} {name}", bytes / unit)
 }
 
+/// Gives freed memory back to the system, where the allocator would keep it for itself (glibc).
+pub(crate) fn give_back() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    {
+        unsafe extern "C" {
+            safe fn malloc_trim(pad: usize) -> std::ffi::c_int;
+        }
+        malloc_trim(0);
+    }
+}
+
 fn status(field: &str) -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix(field))?;

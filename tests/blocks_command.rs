@@ -240,7 +240,7 @@ fn what_blocks_cannot_do_is_told() {
         (1, "packed.nii.gz", "not read in parts", "convert it to uncompressed"),
         (1, "sample:phantom@20 --alpha auto", "is not local", "give α as a number"),
         (1, "sample:phantom@20 --alpha inf", "is not local", "give a finite α"),
-        (1, "sample:phantom@20 --engine reference", "is not local", "native or cgal"),
+        (1, "sample:phantom@20 --engine cgal", "is not local", "engine native"),
         (2, "sample:phantom@20 --exterior", "whole triangulation", "omit it"),
         (2, "sample:phantom@20 --select adaptive", "all points at once", "omit it"),
         (1, "sample:phantom@20 --downsample 2", "cannot be made coarser", "omit --downsample"),

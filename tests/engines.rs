@@ -1,4 +1,4 @@
-//! Three engines, one answer: simplices and classes of all dimensions, and Betti numbers, whatever
+//! Two engines, one answer: simplices and classes of all dimensions, Betti numbers and sheets, whatever
 //! the number of blocks.
 
 mod common;
@@ -13,11 +13,10 @@ use std::num::NonZeroUsize;
 use proptest::prelude::*;
 use sites::{lattice, weighted};
 use told::Told;
-use walpha::shape::{Engine, ShapeError, ShapeOptions};
+use walpha::shape::{Engine, ShapeError, ShapeOptions, Whole, direct_betti};
 use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
 
 const BLOCKS: [usize; 5] = [1, 2, 3, 7, 16];
-const MAKERS: [Engine; 2] = [Engine::Cgal, Engine::Native];
 
 fn by(
     engine: Engine,
@@ -34,45 +33,47 @@ fn by(
 }
 
 /// Compares counts first, which say more when they differ.
-fn assert_same(reference: &AlphaShape, other: &AlphaShape, what: &str) {
+fn assert_same(cgal: &AlphaShape, native: &AlphaShape, what: &str) {
     let counts = |shape: &AlphaShape| {
         let c = shape.complex();
         [c.cells.counts(), c.facets.counts(), c.edges.counts(), c.vertices.counts()]
     };
-    assert_eq!(counts(reference), counts(other), "{what}: counts");
-    assert_eq!(reference.complex(), other.complex(), "{what}: complex");
-    assert_eq!(reference.betti(), other.betti(), "{what}: Betti numbers");
-    assert_eq!(reference.measures(), other.measures(), "{what}: measures");
-    assert_eq!(reference.duplicates(), other.duplicates(), "{what}: duplicates");
+    assert_eq!(counts(cgal), counts(native), "{what}: counts");
+    assert_eq!(cgal.complex(), native.complex(), "{what}: complex");
+    assert_eq!(cgal.betti(), native.betti(), "{what}: Betti numbers");
+    assert_eq!(cgal.sheets(), native.sheets(), "{what}: sheets");
+    assert_eq!(cgal.measures(), native.measures(), "{what}: measures");
+    assert_eq!(cgal.duplicates(), native.duplicates(), "{what}: duplicates");
+    assert_eq!(cgal.hidden(), native.hidden(), "{what}: hidden points");
 }
 
 fn check(points: &WeightedPoints, alpha: f64) {
-    let reference = by(Engine::Reference, points, alpha, None, false);
-    for engine in MAKERS {
-        let reference = match &reference {
-            Ok(reference) => reference,
-            Err(error) => {
-                // Flat and small sets are refused alike.
-                for blocks in BLOCKS {
-                    let same = by(engine, points, alpha, Some(blocks), false);
-                    assert_eq!(same.unwrap_err(), *error);
-                }
-                continue;
+    let native = |blocks| by(Engine::Native, points, alpha, Some(blocks), false);
+    let cgal = match by(Engine::Cgal, points, alpha, None, false) {
+        Ok(cgal) => cgal,
+        Err(error) => {
+            // Flat and small sets are refused alike.
+            for blocks in BLOCKS {
+                assert_eq!(native(blocks).unwrap_err(), error);
             }
-        };
-        let one = by(engine, points, alpha, None, true).unwrap();
-        for blocks in BLOCKS {
-            let shape = by(engine, points, alpha, Some(blocks), false).unwrap();
-            assert_same(reference, &shape, &format!("{engine:?}, {blocks} blocks at α = {alpha}"));
-            // The convex hull is not local: it is one block, whatever was asked for.
-            let whole = blocks == 1 || alpha == f64::INFINITY;
-            assert_eq!(shape.hidden(), if whole { reference.hidden() } else { None });
-            assert_eq!(one.sheets(), shape.sheets(), "{blocks} blocks at α = {alpha}: sheets");
+            return;
         }
-        check_parts(&one);
-        let whole = by(Engine::Reference, points, alpha, None, true).unwrap();
-        assert_same(&whole, &one, "exterior simplices too");
-        assert_eq!(whole.hidden(), one.hidden());
+    };
+    for blocks in BLOCKS {
+        assert_same(&cgal, &native(blocks).unwrap(), &format!("{blocks} blocks at α = {alpha}"));
+    }
+    assert_eq!(cgal.hidden(), None);
+    let [cgal, native] =
+        [Engine::Cgal, Engine::Native].map(|engine| by(engine, points, alpha, None, true).unwrap());
+    assert_same(&cgal, &native, "exterior simplices too");
+    assert!(cgal.hidden().is_some());
+    assert_eq!(cgal.betti(), Some(direct_betti(cgal.complex())));
+    check_parts(&cgal);
+    let options = ShapeOptions::new(Alpha::from_squared(alpha).unwrap()).hidden(true);
+    for engine in [Engine::Cgal, Engine::Native] {
+        let listed = alpha_shape(points.clone(), &options.engine(engine)).unwrap();
+        assert_eq!(listed.hidden(), cgal.hidden(), "{engine:?}");
+        assert_eq!(listed.complex().cells.counts().exterior, 0);
     }
 }
 
@@ -196,7 +197,7 @@ fn exterior_simplices_take_one_block() {
     let with = |blocks| by(Engine::Native, &points, 0.75, Some(blocks), true);
     let whole = by(Engine::Native, &points, 0.75, None, true).unwrap();
     assert_same(&whole, &with(1).unwrap(), "one block");
-    assert_eq!(with(2).unwrap_err(), ShapeError::Exterior { blocks: 2 });
+    assert_eq!(with(2).unwrap_err(), ShapeError::Divided { by: Whole::Exterior, blocks: 2 });
 }
 
 #[test]

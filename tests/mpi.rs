@@ -115,7 +115,6 @@ fn ranks_work_for_any_output_or_none() {
     }
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    // Several blocks do not know which points are hidden.
     let options = "shape sample:phantom@30 --weights min-max --blocks 3";
     let args = |text: &str| -> Vec<String> { text.split_whitespace().map(Into::into).collect() };
     let one = args(&format!("{options} -o one.ply one.vtu"));

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use walpha::ladder::Filtration;
 use walpha::shape::{Engine, ShapeOptions};
-use walpha::triangulation::{Maker, Sites, triangulate};
+use walpha::triangulation::{Sites, triangulate};
 use walpha::{Alpha, AlphaShape, Simplices, WeightedPoints, alpha_shape};
 
 use super::Result;
@@ -44,7 +44,7 @@ pub(super) fn run(
         }
         _ => {
             let sites = Sites::new(&points.positions, &points.weights)?;
-            assert!(!triangulate(&sites, Maker::Native)?.cells().is_empty());
+            assert!(!triangulate(&sites)?.cells().is_empty());
             "0 0 0 0 0 0 0 0 0 0".to_owned()
         }
     };

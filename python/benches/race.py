@@ -37,7 +37,7 @@ def scattered(n):
 
 def contestants(points, weights, alpha):
     """Each with what it does."""
-    for engine in ("native", "cgal", "reference"):
+    for engine in ("native", "cgal"):
         yield f"`alpha_shape`, `engine=\"{engine}\"`", lambda engine=engine: walpha.alpha_shape(
             points, weights, alpha, engine=engine
         ).cells

@@ -13,7 +13,7 @@ use walpha::{Alpha, Pipeline, Points, Selection, SelectionRule, Units};
 
 use crate::arrays::{numbers, samples as owned};
 use crate::errors::{Told, wrong};
-use crate::shape::{Shape, alpha_rule, json, options, unknown};
+use crate::shape::{Options, Shape, alpha_rule, json, options, unknown};
 use crate::work::run;
 
 /// A file or sample: its samples, whether they are gray levels, and its frame as JSON, in LPS where it says in
@@ -142,9 +142,7 @@ pub fn pipeline(
     adaptive: Option<(u64, f64, Option<f64>, bool)>,
     weighting: &str,
     alpha: Option<f64>,
-    engine: &str,
-    balls: &str,
-    exterior: bool,
+    how: Options,
     refit: Option<&str>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Shape> {
@@ -164,7 +162,7 @@ pub fn pipeline(
         .units(units)
         .weighting(weighting.parse().map_err(Told::told)?)
         .alpha(alpha_rule(alpha))
-        .shape(options(engine, balls, exterior)?);
+        .shape(options(&how)?);
     pipeline = match refit {
         None => pipeline,
         Some("whole") => pipeline.refit(Refit::Whole),

@@ -36,7 +36,7 @@ def test_alpha_is_squared_and_alpha_radius_is_not(cloud):
     assert not same(squared, walpha.alpha_shape(cloud, alpha=0.01))
 
 
-@pytest.mark.parametrize("engine", ["cgal", "native", "reference"])
+@pytest.mark.parametrize("engine", ["auto", "cgal", "native"])
 @pytest.mark.parametrize("exterior", [False, True])
 def test_engines_agree(cloud, weights, engine, exterior):
     wanted = walpha.alpha_shape(cloud, weights, 0.003, engine="native", exterior=exterior)
@@ -83,6 +83,15 @@ def test_duplicates_and_hidden_points():
     shape = walpha.alpha_shape(points, weights, 1.0, exterior=True)
     assert shape.duplicates.tolist() == [[8, 0]] and shape.hidden.tolist() == [9]
     assert shape.vertices[:, 0].tolist() == list(range(8))
+
+
+def test_hidden_points_and_the_engine_that_ran():
+    points, weights = np.concatenate([CUBE, [[0.5, 0.5, 0.5]]]), np.array([0.0] * 8 + [-5.0])
+    for engine in ("auto", "cgal", "native"):
+        assert walpha.alpha_shape(points, weights, 1.0, engine=engine).hidden is None
+        shape = walpha.alpha_shape(points, weights, 1.0, engine=engine, hidden=True)
+        assert shape.hidden.tolist() == [8] and shape.engine == ("native" if engine == "native" else "cgal")
+    assert walpha.alpha_shape(CUBE + 0.25, alpha=0.1, periodic=4).engine == "native"
 
 
 def test_what_is_lent_cannot_be_written_and_outlives_the_shape(cloud):

@@ -104,7 +104,7 @@ class Component(NamedTuple):
         Corners of its box, (x, y, z).
     voids : list of Void or None
         What its boundary shuts in, largest first. Another component may float in one: its volume
-        counts. None where the engine does not count them (``engine="reference"``, shapes of a filtration),
+        counts. None where the engine does not count them (shapes of a filtration),
         and of a torus.
     rounds : int or None
         Of a torus: in how many independent directions it goes round. Its box is that of one of its copies.

@@ -116,13 +116,17 @@ class AlphaShape:
         """ndarray of uint8, (n,): the :class:`Class` of each vertex."""
         return self._classes[3]
 
+    @property
+    def engine(self):
+        """str: which program computed it, "cgal" or "native"."""
+        return self._shape.engine
+
     @functools.cached_property
     def hidden(self):
         """ndarray of uint32, (n,), or None.
 
         Points that are not vertices of the regular triangulation, as heavier ones near them make
-        them redundant. None where the shape was made in several blocks, none of which sees the
-        whole triangulation: ask with ``exterior=True``.
+        them redundant. None unless they were asked for, with ``hidden=True`` or ``exterior=True``.
         """
         return self._shape.hidden
 
@@ -176,8 +180,8 @@ class AlphaShape:
         Raises
         ------
         ValueError
-            For a shape that knows neither its exterior nor its sheets (``engine="reference"``,
-            a filtration's): make it with ``exterior=True``.
+            For a shape that knows neither its exterior nor its sheets (a filtration's): make it with
+            ``exterior=True``.
         """
         exact = self._shape.voids()
         if exact is not None:
@@ -352,8 +356,9 @@ def alpha_shape(
     alpha="auto",
     *,
     alpha_radius=None,
-    engine="cgal",
+    engine="auto",
     exterior=False,
+    hidden=False,
     balls="power",
     values=None,
     periodic=None,
@@ -376,11 +381,14 @@ def alpha_shape(
         smallest α at which all points are in one solid component.
     alpha_radius : float, optional
         √α instead of α, as Open3D and PyVista have it.
-    engine : {"cgal", "native", "reference"}
-        Who computes it; all give the same answer. "native" is the fastest.
+    engine : {"auto", "cgal", "native"}
+        Which program computes it; both give the same answer. "auto" takes CGAL for up to 20 000 points, and
+        our own, the fastest, beyond and for periodic boxes: :attr:`AlphaShape.engine` says which one it was.
     exterior : bool
         Keep the simplices outside the shape: the whole triangulation. Voids then know what fills
-        them, and hidden points are always known.
+        them, and hidden points are known.
+    hidden : bool
+        Find the points that heavier ones hide (:attr:`AlphaShape.hidden`), which takes the whole triangulation, too.
     balls : {"power", "radius"}
         "radius": a point is a ball of radius α + ω instead.
     values : array_like, (n,), optional
@@ -428,9 +436,7 @@ def alpha_shape(
         weights,
         values,
         rule,
-        engine,
-        balls,
-        exterior,
+        (engine, balls, exterior, hidden),
         _arrays.sides(periodic),
         progress,
     )

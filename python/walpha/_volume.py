@@ -232,9 +232,10 @@ def pipeline(
     weighting="common=0",
     alpha=None,
     alpha_radius=None,
-    engine="cgal",
+    engine="auto",
     balls="power",
     exterior=False,
+    hidden=False,
     refit=None,
     progress=None,
 ):
@@ -273,7 +274,7 @@ def pipeline(
     alpha : float or "auto", optional
         A squared length; by default 10 h², h³ being the volume of a voxel. "auto" as in
         :func:`alpha_shape`.
-    alpha_radius, engine, balls, exterior, progress
+    alpha_radius, engine, balls, exterior, hidden, progress
         As in :func:`alpha_shape`.
     refit : {"whole", "shape"}, optional
         Fit the values of the points to the volume by least squares: to all its samples, interpolated on
@@ -308,9 +309,7 @@ def pipeline(
         adaptive,
         weighting,
         squared(alpha, alpha_radius),
-        engine,
-        balls,
-        exterior,
+        (engine, balls, exterior, hidden),
         refit,
         progress,
     )

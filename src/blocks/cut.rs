@@ -1,8 +1,8 @@
 //! Into which boxes a volume is cut.
 
-use super::{Cutting, Job, Part};
+use super::{Cutting, Part};
 use crate::memory;
-use crate::shape::{PlanError, ShapeError, at_work};
+use crate::shape::{AT_WORK, PlanError, ShapeError};
 
 /// Bytes of memory that blocks keep to where nothing is said.
 pub(super) const SILENT: u64 = 2 << 30;
@@ -75,7 +75,6 @@ impl Boxes<'_> {
     pub(super) fn planned(
         &self,
         cutting: Cutting,
-        job: &Job,
         margin: [usize; 3],
         tile: u64,
         processes: usize,
@@ -91,8 +90,7 @@ impl Boxes<'_> {
         let asked = cutting.memory.unwrap_or(SILENT);
         let needs = |largest: u64| {
             let tiles = TILE_SAMPLE * tile;
-            memory::resident_bytes().unwrap_or(0)
-                + threads * (tiles + at_work(job.maker()) * largest)
+            memory::resident_bytes().unwrap_or(0) + threads * (tiles + AT_WORK * largest)
         };
         let mut least = PlanError { asked, needed: u64::MAX, blocks: 1 };
         let mut blocks = processes * threads as usize;

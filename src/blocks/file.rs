@@ -234,7 +234,6 @@ impl BlockFile {
             ("edge_sheets", 4, edges[2] as u128),
             ("vertices", 4, sum(vertices)),
             ("vertex_classes", 1, sum(vertices)),
-            ("hidden", 8, rows("hidden", 8)),
             ("border_points", 8, border),
             ("border_components", 4, border),
             ("shared_simplices", 24, shared),

@@ -5,7 +5,6 @@ use crate::haar::HaarOptions;
 use crate::pipeline::{AlphaRule, Parameter, ParameterOrigin};
 use crate::points::{Selection, Units, Weighting};
 use crate::shape::{Alpha, Balls, Engine};
-use crate::triangulation::Maker;
 use crate::volume::{Dims, Frame, GrayRange, ReadOptions, Source, any_size};
 
 /// What is to be computed: an input and the options of every stage. Plans hold it.
@@ -96,8 +95,8 @@ impl Job {
         if !self.alpha.is_finite() {
             return not_local("α = inf, the convex hull,", "give a finite α");
         }
-        if self.engine == Engine::Reference {
-            return not_local("the reference engine", "use the engine native or cgal");
+        if self.engine == Engine::Cgal {
+            return not_local("the engine cgal", "use the engine native");
         }
         if self.weighting == Weighting::Column {
             return Err(crate::points::PointsError::NoColumn.into());
@@ -125,10 +124,6 @@ impl Job {
             Balls::Power => self.alpha,
             Balls::Radius => 0.0,
         }
-    }
-
-    pub(super) fn maker(&self) -> Maker {
-        if self.engine == Engine::Native { Maker::Native } else { Maker::Cgal }
     }
 
     /// How many samples along x, y and z balls of this radius reach.

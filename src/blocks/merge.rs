@@ -18,9 +18,6 @@ use crate::shape::{
 pub struct Merged {
     /// How many points were selected.
     pub points: u64,
-    /// Points that are not vertices of the triangulation; `None` where there are several blocks, which do
-    /// not know.
-    pub hidden: Option<u64>,
     /// The weights ω.
     pub weights: WeightSummary,
     /// Cells in the shape.
@@ -79,13 +76,9 @@ pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
     if !missing.is_empty() {
         return Err(BlocksError::Missing { missing, all });
     }
-    let hidden = match all {
-        1 => Some(BlockFile::open(plan, 0)?.read::<u64>("hidden")?.len() as u64),
-        _ => None,
-    };
     let folder = plan.folder();
     let what = || "has blocks that do not fit together".to_owned();
-    union.merged(hidden).ok_or_else(|| BlocksError::Damaged { path: folder.into(), what: what() })
+    union.merged().ok_or_else(|| BlocksError::Damaged { path: folder.into(), what: what() })
 }
 
 /// The facts of all blocks, side by side.
@@ -128,7 +121,7 @@ impl Union {
     }
 
     /// `None` where the numbers of the blocks are of no shape.
-    fn merged(self, hidden: Option<u64>) -> Option<Merged> {
+    fn merged(self) -> Option<Merged> {
         let Self { facts, components: all_components, sheets: all_sheets, .. } = &self;
         let components = united(*all_components, &self.same_components);
         let sheets = united(*all_sheets, &self.same_sheets);
@@ -162,7 +155,6 @@ impl Union {
         let with_facets = sheets.into_iter().filter(|(_, _, sums)| *sums != SheetSums::default());
         Some(Merged {
             points: totals.points,
-            hidden,
             weights: totals.weights,
             cells: totals.cells,
             facets: totals.facets,

@@ -160,7 +160,7 @@ impl Plan {
         plan.kept = kept;
         let margin = plan.margin()?;
         let bricks = margin.map(|samples| samples.div_ceil(side));
-        let cut = boxes.planned(cutting, &plan.job, bricks, tile, processes)?;
+        let cut = boxes.planned(cutting, bricks, tile, processes)?;
         let of_bricks = |(part, halo): (Part, u64)| {
             let points = boxes.points(&part);
             let whole = Part::whole(field.dims);

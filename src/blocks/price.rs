@@ -3,8 +3,7 @@ use serde::Serialize;
 use crate::Weighting;
 use crate::haar::Decomposition;
 use crate::points::SelectionRule;
-use crate::shape::{Balls, PlanError, ShapeError, at_work};
-use crate::triangulation::Maker;
+use crate::shape::{AT_WORK, Balls, PlanError, ShapeError};
 use crate::volume::Source;
 
 use super::cut::{SILENT, TILE_SAMPLE};
@@ -41,9 +40,8 @@ const PASSES: [f64; 2] = [5.0, 6.0];
 const FILLED: f64 = 0.3;
 /// Nanoseconds of a core for a sample in a pass of the plan, and in a block.
 const SAMPLE: f64 = 60.0;
-/// Nanoseconds of a core for a point of a block at work, by maker, and for its rows.
-const NATIVE: f64 = 6900.0;
-const CGAL: f64 = 11_000.0;
+/// Nanoseconds of a core for a point of a block at work, and for its rows.
+const POINT: f64 = 6900.0;
 /// Bytes that a block writes for a point of its own.
 const ROWS: f64 = 335.0;
 /// Bytes of keys for a point next to a face between blocks, and nanoseconds of merging them.
@@ -78,7 +76,6 @@ pub fn price(job: &Job, cutting: Cutting) -> Result<Price, BlocksError> {
         Decomposition::NonStandard => model.sums,
         Decomposition::Standard => IN_FILE * n as u64,
     };
-    let each = if job.maker() == Maker::Native { NATIVE } else { CGAL };
     let (halo_share, around) = (model.halo(blocks), n * model.around(blocks));
     Ok(Price {
         samples: n as u64,
@@ -91,7 +88,7 @@ pub fn price(job: &Job, cutting: Cutting) -> Result<Price, BlocksError> {
         bytes_of_plan,
         core_seconds: [
             passes * n * SAMPLE * 1e-9,
-            (around * SAMPLE + p * (1.0 + halo_share) * each) * 1e-9,
+            (around * SAMPLE + p * (1.0 + halo_share) * POINT) * 1e-9,
             faces * MERGE * 1e-9,
         ],
     })
@@ -143,7 +140,7 @@ impl Model {
             margin: reach(2.0 * radius(largest)) + 1.0,
             sums,
             samples_at_work: sums + TILE_SAMPLE * product(Field::tile_of(source)),
-            point: at_work(job.maker()),
+            point: AT_WORK,
         })
     }
 

@@ -106,7 +106,7 @@ pub fn run(plan: &Plan, block: usize) -> Result<(), BlocksError> {
     };
     let weights = squared.as_deref().unwrap_or(&points.weights);
     let own = Own { positions: &points.positions, weights, own: &points.own };
-    let shape = block_shape(own, job.power_alpha(), job.maker())?;
+    let shape = block_shape(own, job.power_alpha())?;
     write(plan, block, &points, shape)
 }
 
@@ -308,7 +308,6 @@ fn arrays(
     arrays.add("edge_sheets", shape.edge_sheets.iter().copied());
     arrays.add("vertices", complex.vertices.rows().iter().map(|row| row.map(number)));
     arrays.add("vertex_classes", complex.vertices.classes().iter().map(class));
-    arrays.add("hidden", shape.hidden.iter().map(|&v| voxel(v)));
     arrays.add("border_points", border.iter().map(|&(voxel, _)| voxel));
     arrays.add("border_components", border.iter().map(|&(_, component)| component));
     arrays.add("shared_simplices", shape.shared.iter().map(|side| side.simplex.map(voxel)));

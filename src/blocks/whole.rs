@@ -2,7 +2,9 @@ use super::file::BlockFile;
 use super::rows::read_rows;
 use super::{BlocksError, Merged, Plan};
 use crate::points::WeightedPoints;
-use crate::shape::{AlphaShape, Assembled, Class, Complex, ShapeOptions, Sheets, Simplices};
+use crate::shape::{
+    AlphaShape, Assembled, Class, Complex, Engine, ShapeOptions, Sheets, Simplices,
+};
 
 /// The shape of all blocks in one piece, as [`alpha_shape`](crate::alpha_shape) gives it: for results
 /// that fit the memory.
@@ -31,11 +33,9 @@ pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
         };
         voxels.into_iter().map(index).collect()
     };
-    let mut hidden = Vec::new();
     for (block, numbers) in merged.numbers.iter().enumerate() {
         let file = BlockFile::open(plan, block)?;
         rows.take(&file, &indices(&file, file.voxels()?)?, &numbers.sheets)?;
-        hidden.extend(indices(&file, file.read::<u64>("hidden")?)?);
     }
     let (complex, sheets) = rows.finish(merged.sheets);
     let job = &plan.job;
@@ -49,12 +49,12 @@ pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
         coordinates: job.units.coordinates_of(&job.frame),
         options: ShapeOptions {
             balls: job.balls,
-            engine: job.engine,
+            engine: Engine::Native,
             refuse_flat: true,
             ..ShapeOptions::new(plan.alpha())
         },
         complex,
-        hidden: (plan.blocks.len() == 1).then_some(hidden),
+        hidden: None,
         betti: merged.betti,
         sheets,
         measures: merged.measures,

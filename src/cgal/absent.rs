@@ -7,15 +7,7 @@ const ABSENT: TriangulationError = TriangulationError::WithoutCgal;
 
 pub(crate) enum RawComplex {}
 
-pub(crate) enum Regular {}
-
-pub(crate) fn give_back() {}
-
-pub(crate) fn reference(_: &Sites<'_>, _: f64) -> Result<RawComplex, TriangulationError> {
-    Err(ABSENT)
-}
-
-pub(crate) fn regular(_: &[[f64; 3]], _: &[f64], _: &[u32]) -> Result<Regular, TriangulationError> {
+pub(crate) fn shape(_: &Sites<'_>, _: f64) -> Result<RawComplex, TriangulationError> {
     Err(ABSENT)
 }
 
@@ -33,20 +25,6 @@ impl RawComplex {
     }
 
     pub(crate) fn vertices(&self) -> (&[[u32; 1]], &[u8]) {
-        match *self {}
-    }
-}
-
-impl Regular {
-    pub(crate) fn cells(&self) -> usize {
-        match *self {}
-    }
-
-    pub(crate) fn copy(
-        &self,
-        _: &mut [[u32; 4]],
-        _: &mut [[u32; 4]],
-    ) -> Result<(), TriangulationError> {
         match *self {}
     }
 }

@@ -4,8 +4,7 @@
 pub(super) mod bridge {
     unsafe extern "C++" {
         include!("walpha/cpp/bridge.h");
-        include!("walpha/cpp/reference.h");
-        include!("walpha/cpp/regular.h");
+        include!("walpha/cpp/shape.h");
 
         /// A classified complex as flat arrays of input indices and class numbers.
         type Complex;
@@ -20,18 +19,6 @@ pub(super) mod bridge {
         fn edge_classes(self: &Complex) -> &[u8];
         fn vertex_classes(self: &Complex) -> &[u8];
 
-        fn reference(positions: &[f64], weights: &[f64], alpha: f64) -> Result<UniquePtr<Complex>>;
-
-        fn give_back();
-
-        /// A regular triangulation of space.
-        type Regular;
-
-        fn dimension(self: &Regular) -> i32;
-        fn cells(self: &Regular) -> usize;
-        fn copy(self: &Regular, vertices: &mut [u32], beside: &mut [u32]) -> Result<()>;
-
-        fn regular(positions: &[f64], weights: &[f64], order: &[u32])
-        -> Result<UniquePtr<Regular>>;
+        fn shape(positions: &[f64], weights: &[f64], alpha: f64) -> Result<UniquePtr<Complex>>;
     }
 }

@@ -13,14 +13,11 @@ mod ffi;
 #[cfg(feature = "paper")]
 #[expect(unreachable_pub, reason = "cxx writes `pub`")]
 mod plane;
-mod reference;
-mod regular;
+mod shape;
 
-pub(crate) use ffi::bridge::give_back;
 #[cfg(feature = "paper")]
 pub(crate) use plane::{RawTriangulation, farthest_plane, regular_plane};
-pub(crate) use reference::{RawComplex, reference};
-pub(crate) use regular::regular;
+pub(crate) use shape::{RawComplex, shape};
 
 use crate::triangulation::TriangulationError;
 
@@ -52,24 +49,9 @@ mod tests {
     #[test]
     fn what_cgal_throws_is_an_error() {
         let space = [0.0; 5];
-        let thrown = [
-            bridge::regular(&INFINITE, &space, &[0, 1, 2, 3, 4]).err(),
-            bridge::reference(&INFINITE, &space, 1.0).err(),
-        ];
-        for (entry, error) in thrown.into_iter().enumerate() {
-            let (stage, text) = told(error.unwrap_or_else(|| panic!("entry {entry} took ∞")));
-            assert_eq!(stage, "tried");
-            assert!(text.starts_with("CGAL ERROR: assertion violation!"), "{entry}: {text}");
-        }
-    }
-
-    #[test]
-    fn what_the_bridge_throws_is_an_error() {
-        let made = bridge::regular(&INFINITE[..12], &[0.0; 4], &[0, 1, 2, 3]).unwrap();
-        let mut corners = vec![0; 4 * made.cells()];
-        let mut beside = corners.clone();
-        assert!(made.copy(&mut corners, &mut beside).is_ok());
-        let (_, text) = told(made.copy(&mut corners[1..], &mut beside).unwrap_err());
-        assert_eq!(text, "four vertices and four neighbours are copied for each cell");
+        let thrown = bridge::shape(&INFINITE, &space, 1.0).err();
+        let (stage, text) = told(thrown.expect("∞ was taken"));
+        assert_eq!(stage, "tried");
+        assert!(text.starts_with("CGAL ERROR: assertion violation!"), "{text}");
     }
 }

@@ -23,9 +23,9 @@ use super::{DIFFERENT, Global};
 /// are not. Exit code 3 if anything compared differs.
 ///
 /// Examples, of files that `walpha shape sample:skull --weights min-max -o skull.json` and the same
-/// with --engine reference -o reference.npz make:
+/// with --engine cgal -o cgal.npz make:
 ///
-/// walpha compare skull.json reference.npz
+/// walpha compare skull.json cgal.npz
 ///
 /// walpha compare skull.json theirs.json --json
 #[derive(Args)]

@@ -156,7 +156,8 @@ mod tests {
 
     #[test]
     fn the_library_speaks_in_options() {
-        let error = crate::shape::ShapeError::Exterior { blocks: 3 };
+        let error =
+            crate::shape::ShapeError::Divided { by: crate::shape::Whole::Exterior, blocks: 3 };
         let (why, next) = reasons(&error.into());
         assert!(why.contains("3 blocks") && !why.contains("--"), "{why}");
         assert_eq!(next.as_deref(), Some("give --blocks 1, or omit --exterior"));

@@ -1,5 +1,5 @@
 use super::{Points, PointsError};
-use crate::triangulation::{Maker, Sites, Triangulation, TriangulationError, triangulate};
+use crate::triangulation::{Sites, Triangulation, TriangulationError, triangulate};
 
 /// The difference L of each scattered point: the mean of |F(point) − F(neighbour)| over its
 /// neighbours in the Delaunay triangulation of the places.
@@ -17,7 +17,7 @@ pub fn scattered_difference(points: &Points) -> Result<Vec<f64>, PointsError> {
     let values = points.values.as_deref().ok_or(PointsError::NoValues)?;
     let unweighted = vec![0.0; points.len()];
     let sites = Sites::new(&points.positions, &unweighted).map_err(TriangulationError::from)?;
-    let neighbours = Neighbours::of(&triangulate(&sites, Maker::Native)?);
+    let neighbours = Neighbours::of(&triangulate(&sites)?);
 
     let mut place: Vec<u32> = vec![0; points.len()];
     for (site, &point) in sites.input().iter().enumerate() {

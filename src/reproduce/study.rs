@@ -77,7 +77,7 @@ impl<'a> Study<'a> {
         let alpha = Alpha::from_squared(alpha).expect("a recipe's α is a number");
         let weighted = weigh(&self.points, weighting, alpha)?;
         // CGAL as the paper used it.
-        let engine = Engine::Reference;
+        let engine = Engine::Cgal;
         let options = ShapeOptions {
             balls,
             engine,

@@ -145,8 +145,8 @@ impl AlphaShape {
         &self.duplicates
     }
 
-    /// Points that are not vertices of the regular triangulation, ascending; `None` when the engine
-    /// did not see the whole triangulation.
+    /// Points that are not vertices of the regular triangulation, ascending; `None` unless they were asked for
+    /// ([`ShapeOptions::hidden`], [`ShapeOptions::exterior`]).
     pub fn hidden(&self) -> Option<&[u32]> {
         self.hidden.as_deref()
     }
@@ -156,8 +156,7 @@ impl AlphaShape {
         self.betti
     }
 
-    /// The sheets that boundary facets and singular edges are part of; `None` when the engine does
-    /// not know them ([`Engine::Reference`](super::Engine::Reference)).
+    /// The sheets that boundary facets and singular edges are part of; `None` of a flat shape.
     pub fn sheets(&self) -> Option<&Sheets> {
         self.sheets.as_ref()
     }

@@ -42,18 +42,17 @@ pub enum ShapeError {
         /// The place.
         at: [f64; 3],
     },
-    /// Exterior simplices are known to the whole triangulation only.
-    #[error(
-        "simplices outside the shape are not local: they need the whole triangulation, and \
-         {blocks} blocks were asked for"
-    )]
-    Exterior {
+    /// Blocks were asked for, and something that takes the whole triangulation.
+    #[error("a shape {} takes the whole triangulation, and {blocks} blocks were asked for", by.when())]
+    Divided {
+        /// What takes it.
+        by: Whole,
         /// The blocks asked for.
         blocks: usize,
     },
-    /// The reference engine knows no periodic boxes.
+    /// CGAL's alpha shapes know no periodic boxes with weights.
     #[error(
-        "the reference engine is CGAL's alpha shape of points in space, which knows no periodic box"
+        "the engine cgal is CGAL's alpha shape of points in space, which knows no periodic box"
     )]
     Unrepeated,
     /// An edge is so long that its ends do not say which of their copies it joins.
@@ -78,10 +77,12 @@ pub enum ShapeError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Whole {
-    /// The reference engine.
-    Reference,
+    /// The engine cgal.
+    Cgal,
     /// The simplices outside the shape.
     Exterior,
+    /// The hidden points.
+    Hidden,
     /// α = ∞.
     Hull,
 }
@@ -89,8 +90,9 @@ pub enum Whole {
 impl Whole {
     fn when(self) -> &'static str {
         match self {
-            Self::Reference => "by the reference engine",
+            Self::Cgal => "by the engine cgal",
             Self::Exterior => "with the simplices outside the shape",
+            Self::Hidden => "with its hidden points",
             Self::Hull => "at α = inf, the convex hull",
         }
     }
@@ -107,16 +109,16 @@ impl ShapeError {
             Self::Unbounded { by: Whole::Exterior } => {
                 advice!["omit ", Setting::Memory, ", or omit ", Setting::Exterior]
             }
+            Self::Unbounded { by: Whole::Hidden } => {
+                advice!["omit ", Setting::Memory, ", or omit ", Setting::Hidden]
+            }
             Self::Unbounded { by: Whole::Hull } => {
                 advice!["omit ", Setting::Memory, ", or give a finite ", Setting::Alpha]
             }
-            Self::Unbounded { by: Whole::Reference } => {
-                let (memory, engine) = (Setting::Memory, Setting::Engine);
-                advice!["omit ", memory, ", or use ", engine, " native or ", engine, " cgal"]
+            Self::Unbounded { by: Whole::Cgal } => {
+                advice!["omit ", Setting::Memory, ", or use ", Setting::Engine, " native"]
             }
-            Self::Unrepeated => {
-                advice!["use ", Setting::Engine, " native or ", Setting::Engine, " cgal"]
-            }
+            Self::Unrepeated => advice!["use ", Setting::Engine, " native"],
             Self::Wraps { axis, .. } => advice![
                 "lower ",
                 Setting::Alpha,
@@ -127,7 +129,10 @@ impl ShapeError {
             Self::Coincident { .. } => {
                 "correct the spacing and directions of the grid, or use voxels as units".into()
             }
-            Self::Exterior { .. } => {
+            Self::Divided { by: Whole::Hidden, .. } => {
+                advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Hidden]
+            }
+            Self::Divided { .. } => {
                 advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Exterior]
             }
         })

@@ -5,7 +5,7 @@
 
 use super::topology::flat_betti;
 use super::{Betti, Class, Complex, ShapeError, Simplices};
-use crate::triangulation::{Maker, Predicates, Sites, triangulate_flat};
+use crate::triangulation::{Predicates, Sites, triangulate_flat};
 
 /// What a flat shape is.
 pub(super) struct Found {
@@ -15,8 +15,8 @@ pub(super) struct Found {
 }
 
 /// The α-complex of sites that span no volume, and the simplices that are not in it.
-pub(super) fn flat(sites: &Sites<'_>, alpha: f64, maker: Maker) -> Result<Found, ShapeError> {
-    let tops = triangulate_flat(sites, maker)?;
+pub(super) fn flat(sites: &Sites<'_>, alpha: f64) -> Result<Found, ShapeError> {
+    let tops = triangulate_flat(sites)?;
     let plane = Plane { spheres: Predicates::new(sites.positions(), sites.weights()), alpha };
     // The sphere of a largest simplex is always empty.
     let facets = plane.classified(lone(&tops.triangles));

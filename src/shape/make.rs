@@ -7,13 +7,13 @@ use super::canonical::canonical;
 use super::flat::{self, flat};
 use super::options::power_alpha;
 use super::parts::wound;
-use super::topology::{sheet_betti, torus_betti};
+use super::topology::{components, sheet_betti, torus_betti};
 use super::{
     Alpha, AlphaShape, Balls, Betti, Complex, Engine, Measures, ShapeError, ShapeOptions, Sheets,
-    Simplices, direct_betti,
+    Simplices,
 };
 use crate::points::WeightedPoints;
-use crate::triangulation::{Maker, Sites, check_numbers, lattice};
+use crate::triangulation::{Sites, check_numbers, lattice};
 use crate::volume::Coordinates;
 
 /// The alpha shape of weighted points.
@@ -42,6 +42,8 @@ pub fn alpha_shape(
     options: &ShapeOptions,
 ) -> Result<AlphaShape, ShapeError> {
     options.check()?;
+    let mut options = *options;
+    options.engine = Engine::chosen(points.positions.len(), &options);
     if let Some(torus) = options.periodic {
         check_numbers(&points.positions, &points.weights)?;
         points.positions.par_iter_mut().for_each(|place| *place = torus.wrap(*place));
@@ -51,16 +53,19 @@ pub fn alpha_shape(
         Balls::Radius => Some(squared_radii(&points.weights, options.alpha)?),
     };
     let weights = squared.as_deref().unwrap_or(&points.weights);
-    let found = match in_space(&points.positions, weights, options) {
+    let found = match in_space(&points.positions, weights, &options) {
         Err(error) if !options.refuse_flat && error.is_flat() => {
-            in_plane(&points.positions, weights, options)?
+            options.engine = Engine::Native;
+            in_plane(&points.positions, weights, &options)?
         }
         found => found?,
     };
-    let Found { mut complex, boundary, hidden, duplicates, direct } = found;
-    if boundary.is_none() && !options.exterior {
+    let Found { mut complex, boundary, hidden, duplicates, betti } = found;
+    // Only who saw the whole triangulation lists what is outside.
+    if hidden.is_some() && !options.exterior {
         complex.retain_shape();
     }
+    let hidden = hidden.filter(|_| options.exterior || options.hidden);
     let (counted, measures) = rayon::join(
         || {
             let (b0, sheets, windings) = boundary.as_ref()?;
@@ -77,13 +82,13 @@ pub fn alpha_shape(
     Ok(AlphaShape {
         points,
         coordinates: Coordinates::default(),
-        options: *options,
+        options,
         squared,
         complex,
         copies: Vec::new(),
         duplicates,
         hidden,
-        betti: direct.or(counted),
+        betti: betti.or(counted),
         sheets: boundary.map(|(_, sheets, _)| sheets),
         measures,
     })
@@ -99,7 +104,7 @@ struct Found {
     hidden: Option<Vec<u32>>,
     duplicates: Vec<[u32; 2]>,
     /// Betti numbers, where they are not counted by sheets.
-    direct: Option<Betti>,
+    betti: Option<Betti>,
 }
 
 fn in_space(
@@ -112,9 +117,8 @@ fn in_space(
         Some(torus) => Sites::on_torus(positions, weights, torus)?,
     };
     match options.engine {
-        Engine::Reference => by_reference(&sites, power_alpha(options).squared()),
-        Engine::Cgal => by_blocks(&sites, Maker::Cgal, options),
-        Engine::Native => by_blocks(&sites, Maker::Native, options),
+        Engine::Cgal => by_cgal(&sites, power_alpha(options).squared()),
+        _ => by_blocks(&sites, options),
     }
 }
 
@@ -125,41 +129,41 @@ fn in_plane(
     options: &ShapeOptions,
 ) -> Result<Found, ShapeError> {
     let sites = Sites::any(positions, weights)?;
-    let maker = if options.engine == Engine::Native { Maker::Native } else { Maker::Cgal };
-    let flat::Found { complex, betti } = flat(&sites, power_alpha(options).squared(), maker)?;
+    let flat::Found { complex, betti } = flat(&sites, power_alpha(options).squared())?;
     let hidden = Some(hidden(sites.input(), &complex.vertices));
     let duplicates = sites.duplicates().to_vec();
-    Ok(Found { complex, boundary: None, hidden, duplicates, direct: Some(betti) })
+    Ok(Found { complex, boundary: None, hidden, duplicates, betti: Some(betti) })
 }
 
-fn by_reference(sites: &Sites<'_>, alpha: f64) -> Result<Found, ShapeError> {
-    let raw = crate::cgal::reference(sites, alpha)?;
+fn by_cgal(sites: &Sites<'_>, alpha: f64) -> Result<Found, ShapeError> {
+    let raw = crate::cgal::shape(sites, alpha)?;
     let complex = canonical(&raw, sites.input());
     let hidden = Some(hidden(sites.input(), &complex.vertices));
-    // Counted over what is outside, too.
-    let direct = Some(direct_betti(&complex));
+    let boundary = Some((components(&complex), Sheets::of_whole(&complex), 0));
     let duplicates = sites.duplicates().to_vec();
-    Ok(Found { complex, boundary: None, hidden, duplicates, direct })
+    Ok(Found { complex, boundary, hidden, duplicates, betti: None })
 }
 
-fn by_blocks(sites: &Sites<'_>, maker: Maker, options: &ShapeOptions) -> Result<Found, ShapeError> {
+fn by_blocks(sites: &Sites<'_>, options: &ShapeOptions) -> Result<Found, ShapeError> {
     let asked = options.blocks.map(NonZeroUsize::get);
     // Any α below −max ω asks for the empty shape, and doubles hold one.
     let largest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let alpha = power_alpha(options).squared().max(-2.0 * largest.abs() - 1.0);
-    let plan = if options.exterior || alpha.is_infinite() {
+    // Of a torus, the whole triangulation is that with its exterior simplices.
+    let exterior = options.exterior || (options.hidden && sites.torus().is_some());
+    let plan = if exterior || options.hidden || alpha.is_infinite() {
         Plan::whole(sites)
     } else {
         let reach = Reach::at(sites, alpha, largest);
-        Plan::new(sites, reach, maker, Limits { blocks: asked, memory: options.memory })?
+        Plan::new(sites, reach, Limits { blocks: asked, memory: options.memory })?
     };
-    plan.afford(sites.input().len(), maker)?;
+    plan.afford(sites.input().len())?;
     let lattice = lattice(sites.positions(), sites.weights(), sites.torus());
-    let question = Question { alpha, lattice, exterior: options.exterior, maker };
+    let question = Question { alpha, lattice, exterior };
     let answer = blocks::run(sites, &plan, &question)?;
     let boundary = Some((answer.b0, Sheets::of(&answer), answer.sheet_windings));
     let duplicates = sites.duplicates().to_vec();
-    Ok(Found { complex: answer.complex, boundary, hidden: answer.hidden, duplicates, direct: None })
+    Ok(Found { complex: answer.complex, boundary, hidden: answer.hidden, duplicates, betti: None })
 }
 
 pub(super) fn squared_radii(weights: &[f64], alpha: Alpha) -> Result<Vec<f64>, ShapeError> {

@@ -11,15 +11,33 @@ use crate::setters::setters;
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Engine {
-    /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper.
-    Reference,
-    /// CGAL's `Regular_triangulation_3` in blocks, in parallel or in bounded memory, classified by
-    /// exact predicates of our own.
-    #[cfg_attr(feature = "cgal", default)]
+    /// CGAL for up to [`Engine::MOST_FOR_CGAL`] points, native beyond and for what only it can do: blocks,
+    /// a limit on memory, periodic boxes, a build without CGAL.
+    #[default]
+    Auto,
+    /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper. On one thread.
     Cgal,
-    /// The same with our own triangulation: no C++, and the fastest.
-    #[cfg_attr(not(feature = "cgal"), default)]
+    /// Our own triangulation and classes: no C++, on all cores, in bounded memory, and the fastest.
     Native,
+}
+
+impl Engine {
+    /// The most points for which [`Engine::Auto`] takes CGAL: the paper's size, for which it takes a third
+    /// of a second.
+    pub const MOST_FOR_CGAL: usize = 20_000;
+
+    /// The engine that runs: what was asked for, or what [`Engine::Auto`] takes for so many points.
+    pub(super) fn chosen(points: usize, options: &ShapeOptions) -> Self {
+        let needs_native = options.periodic.is_some()
+            || options.memory.is_some()
+            || options.blocks.is_some_and(|blocks| blocks.get() > 1);
+        match options.engine {
+            Self::Auto if cfg!(not(feature = "cgal")) || needs_native => Self::Native,
+            Self::Auto if points > Self::MOST_FOR_CGAL => Self::Native,
+            Self::Auto => Self::Cgal,
+            asked => asked,
+        }
+    }
 }
 
 /// How to make a shape of weighted points.
@@ -42,6 +60,9 @@ pub struct ShapeOptions {
     /// Whether the simplices outside the shape are wanted too: the whole triangulation, which
     /// takes one block.
     pub exterior: bool,
+    /// Whether the points that heavier ones hide are wanted ([`AlphaShape::hidden`](super::AlphaShape::hidden)),
+    /// which takes the whole triangulation, too.
+    pub hidden: bool,
     /// How many blocks the points are cut into, at most one for each; by default, as few as keep the
     /// threads at work and the memory bounded. One block is the whole triangulation.
     pub blocks: Option<NonZeroUsize>,
@@ -55,13 +76,14 @@ pub struct ShapeOptions {
 }
 
 impl ShapeOptions {
-    /// The shape at α, with power balls, by the default engine, without exterior simplices.
+    /// The shape at α, with power balls, by the default engine, without exterior simplices or hidden points.
     pub fn new(alpha: Alpha) -> Self {
         Self {
             alpha,
             balls: Balls::default(),
             engine: Engine::default(),
             exterior: false,
+            hidden: false,
             blocks: None,
             memory: None,
             refuse_flat: false,
@@ -74,6 +96,7 @@ impl ShapeOptions {
         balls: Balls,
         engine: Engine,
         exterior: bool,
+        hidden: bool,
         blocks: Option<NonZeroUsize>,
         memory: Option<u64>,
         refuse_flat: bool,
@@ -83,24 +106,29 @@ impl ShapeOptions {
     /// Whether they go together, which [`alpha_shape`](super::alpha_shape()) looks at first.
     ///
     /// # Errors
-    /// [`ShapeError::Unbounded`] and [`ShapeError::Exterior`]: blocks, or a bound on memory, for what
+    /// [`ShapeError::Unbounded`] and [`ShapeError::Divided`]: blocks, or a bound on memory, for what
     /// takes the whole triangulation; [`ShapeError::Unrepeated`].
     pub fn check(&self) -> Result<(), ShapeError> {
-        if self.periodic.is_some() && self.engine == Engine::Reference {
+        if self.periodic.is_some() && self.engine == Engine::Cgal {
             return Err(ShapeError::Unrepeated);
         }
+        let listed = match self {
+            Self { exterior: true, .. } => Some(Whole::Exterior),
+            Self { hidden: true, .. } => Some(Whole::Hidden),
+            _ => None,
+        };
         if let Some(blocks) = self.blocks.map(NonZeroUsize::get)
-            && self.exterior
+            && let Some(by) = listed
             && blocks > 1
         {
-            return Err(ShapeError::Exterior { blocks });
+            return Err(ShapeError::Divided { by, blocks });
         }
         let unbounded = |by| Err(ShapeError::Unbounded { by });
         match self.memory {
-            Some(_) if self.engine == Engine::Reference => unbounded(Whole::Reference),
-            Some(_) if self.exterior => unbounded(Whole::Exterior),
+            Some(_) if self.engine == Engine::Cgal => unbounded(Whole::Cgal),
             Some(_) if power_alpha(self) == Alpha::INFINITE => unbounded(Whole::Hull),
-            _ => Ok(()),
+            Some(_) => listed.map_or(Ok(()), unbounded),
+            None => Ok(()),
         }
     }
 }

@@ -1,71 +1,12 @@
-//! Components of a shape, and the sheets of its boundary.
+//! Components of a shape.
 
 use serde::{Deserialize, Serialize};
 
-use super::blocks::Answer;
 use super::sums::{ComponentSums, SheetSums, told};
 use super::union_find::UnionFind;
 use super::winding::WindingSets;
-use super::{AlphaShape, Class, Complex};
+use super::{AlphaShape, Class, Complex, Sheets};
 use crate::triangulation::Torus;
-
-/// The sheets of a shape's boundary: the connected pieces of its outside seen closely. A component
-/// has one around it and one for each of its voids. They are numbered from 0 in the order in which
-/// they appear along the boundary facets, then the singular edges; isolated points, each a sheet of
-/// its own, have no number.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Sheets {
-    /// For each regular facet, in their order, the sheet it is part of.
-    pub regular: Vec<u32>,
-    /// For each singular facet, in their order, the sheet seen from which its sorted row turns
-    /// clockwise, and that on the other side.
-    pub singular: Vec<[u32; 2]>,
-    /// For each singular edge, in their order, the sheet around it.
-    pub edges: Vec<u32>,
-    /// How many there are.
-    pub count: u32,
-}
-
-impl Sheets {
-    /// Gives the sheets of blocks numbers that do not depend on the blocks. O(n).
-    pub(super) fn of(answer: &Answer) -> Self {
-        const NONE: u32 = u32::MAX;
-        let raw = answer.facet_sheets.iter().chain(&answer.edge_sheets);
-        let mut numbers = vec![NONE; raw.clone().max().map_or(0, |&most| most as usize + 1)];
-        let mut count = 0;
-        let mut names = raw.map(|&name| {
-            let number = &mut numbers[name as usize];
-            if *number == NONE {
-                *number = count;
-                count += 1;
-            }
-            *number
-        });
-        let mut next = || names.next().expect("a name for each side of the boundary");
-        let (mut regular, mut singular) = (Vec::new(), Vec::new());
-        for class in answer.complex.facets.classes() {
-            match class {
-                Class::Regular => regular.push(next()),
-                Class::Singular => singular.push([next(), next()]),
-                _ => {}
-            }
-        }
-        let edges = names.collect();
-        Self { regular, singular, edges, count }
-    }
-}
-
-impl Sheets {
-    /// The number that files have where there is no sheet.
-    pub const NONE: i32 = -1;
-
-    /// For each regular and then each singular facet the sheet in front of it, seen from which its
-    /// row turns counter-clockwise, and that behind it: [`Sheets::NONE`] where the shape is solid.
-    pub fn sides(&self) -> impl Iterator<Item = [i32; 2]> + '_ {
-        let regular = self.regular.iter().map(|&front| [front as i32, Self::NONE]);
-        regular.chain(self.singular.iter().map(|&[behind, front]| [front as i32, behind as i32]))
-    }
-}
 
 /// A connected component of a shape.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -116,7 +116,7 @@ pub(super) fn flat_betti(complex: &Complex) -> Betti {
 }
 
 /// Components of the shape, by its edges.
-fn components(complex: &Complex) -> u64 {
+pub(super) fn components(complex: &Complex) -> u64 {
     let mut sets = connected(complex);
     let of_shape = complex.vertices.iter().filter(|&(_, class)| class != Class::Exterior);
     of_shape.filter(|&(&[v], _)| sets.find(v) == v).count() as u64

@@ -88,8 +88,8 @@ pub enum TriangulationError {
     },
     /// This program was built without CGAL.
     #[error(
-        "this walpha was built without CGAL: there is no reference engine, no cgal engine and no \
-         triangulation of the plane"
+        "this walpha was built without CGAL: there is no engine cgal and no triangulation of the \
+         plane"
     )]
     WithoutCgal,
 }

@@ -7,7 +7,7 @@
 //! by infinitely little change nothing of this, so ties are broken in the order of (x, y, z) as in space.
 //! Each of its largest simplices is in one finite cell, with all the points added.
 
-use super::{Maker, Predicates, Sites, SitesError, TriangulationError};
+use super::{Predicates, Sites, SitesError, TriangulationError, incremental};
 use crate::progress::Piece;
 
 /// The largest simplices of a flat triangulation, by site index, each ascending: all of one kind.
@@ -25,10 +25,7 @@ pub(crate) struct Flat {
 ///
 /// # Errors
 /// No memory.
-pub(crate) fn triangulate_flat(
-    sites: &Sites<'_>,
-    maker: Maker,
-) -> Result<Flat, TriangulationError> {
+pub(crate) fn triangulate_flat(sites: &Sites<'_>) -> Result<Flat, TriangulationError> {
     let added = beside(sites.positions());
     let along = sites.curve();
     let extra = added.len() as u32;
@@ -38,7 +35,7 @@ pub(crate) fn triangulate_flat(
     let mut weights = vec![0.0; extra as usize];
     weights.extend(along.iter().map(|&i| sites.weights()[i as usize]));
     let piece = Piece::new(positions.len() as u64);
-    let made = maker.make(&positions, &weights, |more| piece.add(more as u64))?;
+    let made = incremental(&positions, &weights, |more| piece.add(more as u64))?;
     let mut flat = Flat::default();
     for cell in made.cells().iter().filter(|cell| !cell.contains(&made.ghost())) {
         let mut rest: Vec<u32> =
@@ -126,7 +123,7 @@ mod tests {
     fn flat(positions: &[[f64; 3]]) -> Flat {
         let weights = vec![0.0; positions.len()];
         let sites = Sites::any(positions, &weights).unwrap();
-        triangulate_flat(&sites, Maker::Native).unwrap()
+        triangulate_flat(&sites).unwrap()
     }
 
     #[test]

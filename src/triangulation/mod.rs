@@ -1,15 +1,14 @@
 //! Floor 2: regular triangulations as flat arrays, and the exact predicates behind them.
 //!
-//! Two makers give the same triangulation: our own, and CGAL's `Regular_triangulation_3` copied out.
 //! Ties are broken as CGAL does, by raising each point by an infinitely small height, the larger the
 //! later it comes in the order of (x, y, z): so the triangulation is a function of the set of points.
 //!
 //! ```
-//! use walpha::triangulation::{Maker, Sites, triangulate};
+//! use walpha::triangulation::{Sites, triangulate};
 //!
 //! let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|c| c as f64);
 //! let (positions, weights): (Vec<_>, Vec<_>) = (0..8).map(|i| (corner(i), 0.0)).unzip();
-//! let cube = triangulate(&Sites::new(&positions, &weights)?, Maker::Native)?;
+//! let cube = triangulate(&Sites::new(&positions, &weights)?)?;
 //! let finite = cube.cells().iter().filter(|cell| !cell.contains(&cube.ghost()));
 //! assert_eq!(finite.count(), 6);
 //! assert!(cube.hidden().is_empty());
@@ -29,7 +28,7 @@ use crate::memory::asking;
 
 pub use error::{SitesError, TriangulationError};
 pub(crate) use flat::{beside, check_span, is_flat, triangulate_flat};
-pub(crate) use native::{Digger, Growing};
+pub(crate) use native::{Digger, Growing, incremental};
 pub(crate) use predicates::{Interval, Predicates, Ratio, Screen, SmallRadius, lattice};
 pub(crate) use sites::check as check_numbers;
 pub use sites::{MAX_COORDINATE, MAX_WEIGHT, Sites};
@@ -42,7 +41,7 @@ pub use torus::{Torus, TorusError};
 /// fourth corner is the *ghost*, the number one past the last point. Cells are positively oriented:
 /// a, b, c turn counter-clockwise seen from d, where the ghost counts as a point far outside.
 ///
-/// For four points a maker may give the cell `[0, 1, 2, 3]` and four infinite ones, among them
+/// Four points may have the cell `[0, 1, 2, 3]` and four infinite ones, among them
 /// `[0, 2, 1, 4]` with the ghost 4 as its corner 3. If that one has number 2, `beside()[0][3]` is
 /// 4·2 + 3: across the facet opposite corner 3 of cell 0 lies cell 2, of which it is opposite
 /// corner 3.
@@ -146,7 +145,7 @@ fn no_memory(bytes: usize) -> TriangulationError {
     TriangulationError::Memory { stage: "triangulation", needed: Some(bytes) }
 }
 
-/// A cell as its makers have it: its corners, and 4·cell + corner across each facet.
+/// A cell while it is made: its corners, and 4·cell + corner across each facet.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Cell {
     pub corners: [u32; 4],
@@ -156,66 +155,15 @@ pub(crate) struct Cell {
 /// The first corner of a cell that is none.
 const GONE: u32 = u32::MAX;
 
-/// Which program makes a triangulation; both make the same.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Maker {
-    /// Our own, in Rust.
-    Native,
-    /// CGAL's `Regular_triangulation_3`; needs the feature `cgal`.
-    Cgal,
-}
-
-impl Maker {
-    /// The triangulation of points that are sites, or some of them. Both are fast where points
-    /// near each other in the slices are near each other in space. `inserted` hears now and then
-    /// how many more points are in; CGAL cannot be asked before it is done.
-    pub(crate) fn make(
-        self,
-        positions: &[[f64; 3]],
-        weights: &[f64],
-        inserted: impl FnMut(usize),
-    ) -> Result<Triangulation, TriangulationError> {
-        match self {
-            Self::Native => native::native(positions, weights, inserted),
-            Self::Cgal => cgal(positions, weights),
-        }
-    }
-}
-
-/// CGAL's `Regular_triangulation_3`, copied out; its own memory is given back before cells are numbered.
-///
-/// Points come in our order. CGAL's, a Hilbert curve through medians, is in disorder along a line: where
-/// all have the same y, the halves by y are arbitrary, and the walks to the next point become long.
-fn cgal(positions: &[[f64; 3]], weights: &[f64]) -> Result<Triangulation, TriangulationError> {
-    let mut order = room(positions.len())?;
-    order.extend(rounds::rounds(positions.len() as u32));
-    let copied = || -> Result<_, TriangulationError> {
-        let made = crate::cgal::regular(positions, weights, &order)?;
-        let count = made.cells();
-        if count > Triangulation::MOST_CELLS {
-            return Err(TriangulationError::TooManyCells);
-        }
-        let (mut cells, mut beside) = (filled(count, [0; 4])?, filled(count, [0; 4])?);
-        made.copy(&mut cells, &mut beside)?;
-        Ok((cells, beside))
-    };
-    let (corners, beside) = copied()?;
-    let mut cells = room(corners.len())?;
-    let both = corners.into_iter().zip(beside);
-    cells.extend(both.map(|(corners, beside)| Cell { corners, beside }));
-    Triangulation::along_points(cells, positions.len() as u32)
-}
-
 /// The regular triangulation of sites, by site index. Expected O(n log n) for points of even density.
 ///
 /// # Errors
 /// Sites that span no volume, no memory, more than [`Triangulation::MOST_CELLS`] cells.
-pub fn triangulate(sites: &Sites<'_>, maker: Maker) -> Result<Triangulation, TriangulationError> {
+pub fn triangulate(sites: &Sites<'_>) -> Result<Triangulation, TriangulationError> {
     let along = sites.curve();
     let positions: Vec<_> = along.iter().map(|&i| sites.positions()[i as usize]).collect();
     let weights: Vec<_> = along.iter().map(|&i| sites.weights()[i as usize]).collect();
-    let mut triangulation = maker.make(&positions, &weights, |_| {})?;
+    let mut triangulation = incremental(&positions, &weights, |_| {})?;
     for v in triangulation.cells.as_flattened_mut() {
         *v = along.get(*v as usize).copied().unwrap_or(*v);
     }

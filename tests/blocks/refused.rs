@@ -19,7 +19,7 @@ fn what_is_not_local_is_refused() {
     let (mut hull, mut reference, mut auto) = (fresh.clone(), fresh.clone(), fresh);
     hull.alpha = f64::INFINITY;
     refused(&hull);
-    reference.engine = Engine::Reference;
+    reference.engine = Engine::Cgal;
     refused(&reference);
     let error = auto.set_alpha(walpha::pipeline::AlphaRule::Auto).unwrap_err();
     assert!(matches!(error, BlocksError::NotLocal { .. }), "{error}");

@@ -11,7 +11,7 @@ pub use common::{Answer, Case, Random, definition, grid, shape_of};
 
 /// CGAL's own answer: the whole triangulation.
 pub fn engine(case: &Case) -> Result<Answer, ShapeError> {
-    engine_of(case, Engine::Reference)
+    engine_of(case, Engine::Cgal)
 }
 
 /// An engine's answer: the whole triangulation.

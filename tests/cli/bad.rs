@@ -57,7 +57,7 @@ fn no_option_is_without_effect() {
             "--input-format has no effect: a sample is no file",
         ),
         ("shape cube.csv --input-format foo", "no format that is read has the extension"),
-        ("shape sample:phantom@8 --engine reference --blocks 2", "--blocks has no effect"),
+        ("shape sample:phantom@8 --engine cgal --blocks 2", "--blocks has no effect"),
         ("check cube.json --alpha 1", "--alpha has no effect: cube.json is a complex"),
         ("check cube.json --engine native", "--engine has no effect"),
         ("shape cube.csv --balls radius", "give a number, as in --alpha 0.8"),

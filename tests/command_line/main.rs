@@ -65,7 +65,7 @@ fn errors_say_what_why_and_what_next() {
         (2, "shape sample:phantom --count 1 --ratio 0.5", "cannot be used with", "--help"),
         (2, "shape sample:phantom --memory 1G --alpha inf", "cannot do this", "a finite --alpha"),
         (2, "shape sample:phantom --memory 1G --exterior", "cannot do this", "omit --exterior"),
-        (2, "check a.csv --memory 1G --engine reference", "cannot do this", "--engine native"),
+        (2, "check a.csv --memory 1G --engine cgal", "cannot do this", "--engine native"),
         (2, "interpolate a --memory 1G --alpha-radius inf", "cannot do this", "a finite --alpha"),
         (2, "interpolate sample:phantom --memory 1G --fill", "cannot be used with", "--help"),
         (2, "shape", "required arguments", "walpha shape --help"),

@@ -142,7 +142,7 @@ proptest! {
     fn lattices(points in lattice()) {
         // Squared radii of lattice simplices are multiples of small fractions: α hits them.
         let squared: Vec<f64> = (-6..30).map(|k| f64::from(k) / 4.0).chain([10.0, f64::INFINITY]).collect();
-        check(&points, &squared, Engine::Reference);
+        check(&points, &squared, Engine::Cgal);
     }
 
     #[test]
@@ -170,7 +170,7 @@ proptest! {
         let filtration = Filtration::new(points.clone()).unwrap();
         let curve = filtration.curve();
         for (k, alpha) in curve.alphas().enumerate().step_by(1 + curve.len() / 9) {
-            let shape = one_by_one(&points, self::alpha(alpha), true, Engine::Reference);
+            let shape = one_by_one(&points, self::alpha(alpha), true, Engine::Cgal);
             prop_assert_eq!(Some(curve.betti[k]), shape.betti());
             prop_assert_eq!(curve.solid_components[k], solid_components(&shape));
         }
@@ -193,7 +193,7 @@ fn chambers_that_become_one_fill_with_the_larger() {
     let all = (0..12 * 49).map(|i| [i / 49, i / 7 % 7, i % 7]).filter(|&p| !hollow(p));
     let points = weighted(all.map(|p| (p.map(f64::from), 0.0)));
     let squared = [2f64.next_down(), 2.0];
-    let ladder = check(&points, &squared, Engine::Reference).ladder(&alphas(&squared), 1.0);
+    let ladder = check(&points, &squared, Engine::Cgal).ladder(&alphas(&squared), 1.0);
     let [one, two] = &ladder.levels[..] else { panic!("two levels") };
     assert_eq!((one.voids.len(), two.voids.len()), (1, 2));
     assert!(two.voids[0].filling_alpha > two.voids[1].filling_alpha);
@@ -206,7 +206,7 @@ fn a_tie_is_in() {
     let corner = |i: i32| [2 * (i & 1), 6 * (i >> 1 & 1), (i >> 2) * 20].map(f64::from);
     let points = weighted((0..8).map(|i| (corner(i), 0.0)));
     let filtration =
-        check(&points, &[10f64.next_down(), 10.0, 110.0, 110f64.next_down()], Engine::Reference);
+        check(&points, &[10f64.next_down(), 10.0, 110.0, 110f64.next_down()], Engine::Cgal);
     let ladder = filtration.ladder(&alphas(&[10f64.next_down(), 10.0]), 1.0);
     let [below, at] = &ladder.levels[..] else { panic!() };
     assert_eq!((below.facets.in_shape(), at.facets.singular), (0, 4));

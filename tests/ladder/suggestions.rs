@@ -11,7 +11,7 @@ use crate::{alpha, alphas, below, check, common, hollow_lattice, one_by_one};
 fn a_hollow_block_and_what_is_suggested_for_it() {
     let points = hollow_lattice();
     let squared = [0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.75, 3.0];
-    let filtration = check(&points, &squared, Engine::Reference);
+    let filtration = check(&points, &squared, Engine::Cgal);
     let curve = filtration.curve();
     let suggested = filtration.suggest(&curve);
     assert_eq!(suggested.all_points, alpha(0.75));
@@ -48,7 +48,7 @@ fn the_critical_values_of_ill_conditioned_points_are_exact() {
         assert!(all.len() > 5, "{all:?}");
         for alpha in all {
             let [at, below] = [alpha, below(alpha)]
-                .map(|alpha| one_by_one(&points, alpha, true, Engine::Reference).complex().clone());
+                .map(|alpha| one_by_one(&points, alpha, true, Engine::Cgal).complex().clone());
             assert!(at != below, "nothing comes at {alpha}");
         }
     }

@@ -49,7 +49,7 @@ fn what_is_refused() {
     refused(&["--periodic", "4,4"], 2, "three sides");
     refused(&["--periodic", "4,4,-4"], 2, "along z");
     refused(&["--periodic", "4,4,4", "--solid"], 2, "--solid");
-    refused(&["--periodic", "4,4,4", "--engine", "reference"], 2, "reference engine");
+    refused(&["--periodic", "4,4,4", "--engine", "cgal"], 2, "engine cgal");
     refused(&["--periodic", "4,4,2", "--alpha", "0.3125"], 1, "repeat the points along z");
 }
 

@@ -111,7 +111,7 @@ fn what_cannot_be_is_refused_with_advice() {
         assert!(shape(&lattice, [2.0, 4.0, 4.0], squared).is_ok());
         assert!(shape(&unweighted(vec![[0.0; 3]]), [2.0, 4.0, 4.0], squared).is_ok());
     }
-    let reference = options([4.0; 3], 1.0).engine(Engine::Reference);
+    let reference = options([4.0; 3], 1.0).engine(Engine::Cgal);
     let error = alpha_shape(lattice.clone(), &reference).unwrap_err();
     assert!(matches!(error, ShapeError::Unrepeated), "{error:?}");
     let nan = unweighted(vec![[0.0; 3], [f64::NAN, 0.0, 0.0]]);

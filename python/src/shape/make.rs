@@ -12,20 +12,24 @@ use crate::arrays::{numbers, rows};
 use crate::errors::{Told, wrong};
 use crate::work::run;
 
-/// How a shape is computed, by the names that Python has.
-pub fn options(engine: &str, balls: &str, exterior: bool) -> PyResult<ShapeOptions> {
-    let engine = match engine {
+/// Engine and balls by the names that Python has, and whether exterior simplices and hidden points are wanted.
+pub type Options = (String, String, bool, bool);
+
+/// How a shape is computed.
+pub fn options((engine, balls, exterior, hidden): &Options) -> PyResult<ShapeOptions> {
+    let engine = match &engine[..] {
+        "auto" => Engine::Auto,
         "cgal" => Engine::Cgal,
         "native" => Engine::Native,
-        "reference" => Engine::Reference,
-        _ => return Err(unknown("engine", engine, "'cgal', 'native' and 'reference'")),
+        _ => return Err(unknown("engine", engine, "'auto', 'cgal' and 'native'")),
     };
-    let balls = match balls {
+    let balls = match &balls[..] {
         "power" => Balls::Power,
         "radius" => Balls::Radius,
         _ => return Err(unknown("balls", balls, "'power' and 'radius'")),
     };
-    Ok(ShapeOptions::new(Alpha::INFINITE).engine(engine).balls(balls).exterior(exterior))
+    let options = ShapeOptions::new(Alpha::INFINITE).engine(engine).balls(balls);
+    Ok(options.exterior(*exterior).hidden(*hidden))
 }
 
 /// The periodic box by its sides.
@@ -55,13 +59,11 @@ pub fn alpha_shape(
     weights: Option<PyReadonlyArray1<'_, f64>>,
     values: Option<PyReadonlyArray1<'_, f64>>,
     alpha: Option<f64>,
-    engine: &str,
-    balls: &str,
-    exterior: bool,
+    how: Options,
     periodic: Option<[f64; 3]>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Shape> {
-    let options = options(engine, balls, exterior)?.periodic(torus(periodic)?);
+    let options = options(&how)?.periodic(torus(periodic)?);
     let points = weighted(&points, weights.as_ref(), values.as_ref())?;
     let pipeline = Pipeline::new().alpha(alpha_rule(alpha)).shape(options);
     let model = run(py, progress.as_ref(), move |call| {

@@ -13,6 +13,7 @@ use walpha::export::{ExportOptions, Format, Target};
 use walpha::interpolate::{Grid, Interpolant, InterpolateError};
 use walpha::pipeline::Model;
 use walpha::progress::Stage;
+use walpha::shape::Engine;
 use walpha::volume::Dims;
 use walpha::{AlphaShape, PointsError, Simplices, Weighting};
 
@@ -20,7 +21,7 @@ use crate::arrays::{column, copied, lend, numbers, rows};
 use crate::errors::{Told, wrong};
 use crate::work::run;
 use boundary::{Boundary, boundary};
-pub use make::{alpha_rule, alpha_shape, options, torus, unknown, weighted};
+pub use make::{Options, alpha_rule, alpha_shape, options, torus, unknown, weighted};
 
 /// A shape, which is never changed.
 #[pyclass(frozen, module = "walpha._walpha")]
@@ -137,6 +138,14 @@ impl Shape {
     #[getter]
     fn alpha(&self) -> f64 {
         self.shape.options().alpha.squared()
+    }
+
+    #[getter]
+    fn engine(&self) -> &'static str {
+        match self.shape.options().engine {
+            Engine::Cgal => "cgal",
+            _ => "native",
+        }
     }
 
     #[getter]

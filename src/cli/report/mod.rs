@@ -125,7 +125,7 @@ impl Report {
                 selected: merged.points as usize,
                 duplicates: Some(0),
                 folded: None,
-                hidden: merged.hidden.map(|hidden| hidden as usize),
+                hidden: None,
                 in_shape: Some(merged.vertices.in_shape()),
                 ended_early: None,
             },
@@ -169,9 +169,6 @@ impl Display for Report {
             writeln!(f, "haar      {haar}")?;
         }
         write!(f, "points    {}", self.points)?;
-        if self.shape.is_some() && self.points.hidden.is_none() {
-            write!(f, " (--blocks 1 counts hidden points)")?;
-        }
         if let Some(ended) = &self.points.ended_early {
             write!(f, "\n          {ended}")?;
         }
@@ -187,6 +184,11 @@ impl Display for Report {
         writeln!(f, "weights   {} (squared lengths)", self.weights)?;
         if let Some(alpha) = &self.alpha {
             writeln!(f, "parameter {alpha}")?;
+        }
+        match self.engine {
+            None => {}
+            Some(Engine::Cgal) => writeln!(f, "engine    cgal; native gives the same")?,
+            Some(_) => writeln!(f, "engine    native; cgal gives the same")?,
         }
         if let Some(shape) = &self.shape {
             shape.print(f, unit)?;

@@ -28,14 +28,16 @@ use rayon::prelude::*;
 use super::{Complex, ShapeError};
 use crate::math::Lattice;
 use crate::progress::Piece;
-use crate::triangulation::{Maker, Sites, Torus, Triangulation, TriangulationError, check_span};
+use crate::triangulation::{
+    Sites, Torus, Triangulation, TriangulationError, check_span, incremental,
+};
 
 use classify::{Owned, Shelves, classify};
 use merge::merge;
 pub(super) use partition::Partition;
 pub(crate) use piece::{BlockShape, Own, Side, block_shape};
+pub(crate) use plan::AT_WORK;
 pub use plan::PlanError;
-pub(crate) use plan::at_work;
 pub(super) use plan::{Limits, Plan};
 pub(crate) use reach::Reach;
 use spanning::spanning;
@@ -51,8 +53,6 @@ pub(super) struct Question {
     /// Whether exterior simplices are wanted too, which mean something in a triangulation of all
     /// points only.
     pub exterior: bool,
-    /// Who triangulates.
-    pub maker: Maker,
 }
 
 /// What the blocks say together.
@@ -163,7 +163,7 @@ fn in_space(
 ) -> Result<(Block, Triangulation, Lattice), ShapeError> {
     let mut points = partition.block(sites, Reach::Balls(question.alpha), block);
     let (inside, next) = (points.input.len(), sites.input().last().map_or(0, |last| last + 1));
-    let made = spanning(&mut points, question.alpha, next, question.maker, work)?;
+    let made = spanning(&mut points, question.alpha, next, work)?;
     // Places beside the points need not be on the lattice of the set.
     let lattice = if points.input.len() > inside {
         Lattice::of(&points.positions, &points.weights)
@@ -177,14 +177,10 @@ fn in_space(
 const WORK: u64 = 3;
 const TRIANGULATION: u64 = 2;
 
-fn triangulate(
-    points: &Block,
-    maker: Maker,
-    work: &Piece,
-) -> Result<Triangulation, TriangulationError> {
+fn triangulate(points: &Block, work: &Piece) -> Result<Triangulation, TriangulationError> {
     let (own, all) = (TRIANGULATION * u64::from(points.own), points.input.len() as u64);
     let (mut inside, mut counted) = (0, 0);
-    let made = maker.make(&points.positions, &points.weights, |more| {
+    let made = incremental(&points.positions, &points.weights, |more| {
         inside += more as u64;
         let units = own * inside / all;
         work.add(units - counted);

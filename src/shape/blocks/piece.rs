@@ -7,7 +7,7 @@ use super::{Block, Question};
 use crate::math::Lattice;
 use crate::progress::Piece;
 use crate::shape::{Class, Complex, ShapeError, Simplices, UnionFind};
-use crate::triangulation::{Maker, Sites};
+use crate::triangulation::Sites;
 
 /// Points around a block, in the order of their indices in the whole set, with weights.
 #[derive(Clone, Copy)]
@@ -36,8 +36,6 @@ pub(crate) struct BlockShape {
     pub components: Vec<u32>,
     /// The ends of the edges between points of this block and of others, ascending.
     pub border: Vec<u32>,
-    /// Own points that are not vertices of the triangulation, ascending: hidden, if there is no other block.
-    pub hidden: Vec<u32>,
     /// How many points were in the halo.
     pub halo: u64,
 }
@@ -48,11 +46,7 @@ pub(crate) use super::classify::Side;
 ///
 /// # Errors
 /// Numbers that are none, two points at one place, no memory.
-pub(crate) fn block_shape(
-    points: Own<'_>,
-    alpha: f64,
-    maker: Maker,
-) -> Result<BlockShape, ShapeError> {
+pub(crate) fn block_shape(points: Own<'_>, alpha: f64) -> Result<BlockShape, ShapeError> {
     let Own { positions, weights, own } = points;
     if !own.contains(&true) {
         return Ok(BlockShape::default());
@@ -62,9 +56,9 @@ pub(crate) fn block_shape(
     let largest = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // Any α below −max ω asks for the empty shape, and doubles hold one.
     let alpha = alpha.max(-2.0 * largest.abs() - 1.0);
-    let made = spanning(&mut block, alpha, positions.len() as u32, maker, &Piece::new(1))?;
+    let made = spanning(&mut block, alpha, positions.len() as u32, &Piece::new(1))?;
     let lattice = Lattice::of(&block.positions, &block.weights);
-    let question = Question { alpha, lattice, exterior: false, maker };
+    let question = Question { alpha, lattice, exterior: false };
     let owned = classify(&block, made, &question, Shelves::new(&[], 1));
     Ok(BlockShape { halo, ..ordered(owned, &block, positions.len()) })
 }
@@ -130,8 +124,7 @@ fn ordered(owned: Owned, block: &Block, points: usize) -> BlockShape {
         piece.facet_sheets.extend(&shelf.facet_sheets[rows(Dimension::FacetSheets)]);
         piece.edge_sheets.extend(&shelf.edge_sheets[rows(Dimension::EdgeSheets)]);
         match shelf.vertices[v as usize] {
-            None => piece.hidden.push(a),
-            Some(Class::Exterior) => {}
+            None | Some(Class::Exterior) => {}
             Some(class) => vertices.push([a], class),
         }
     }
@@ -162,7 +155,7 @@ mod tests {
             (3.0, -3.0, 4),
         ] {
             let points = Own { positions: &positions, weights: &[weight; 4], own: &[true; 4] };
-            let found = block_shape(points, alpha, Maker::Native).unwrap();
+            let found = block_shape(points, alpha).unwrap();
             assert_eq!(found.complex.vertices.len(), vertices, "{alpha} {weight}");
             assert!(found.complex.cells.is_empty());
         }

@@ -3,7 +3,7 @@
 use super::{Partition, Reach};
 use crate::advice::Advice;
 use crate::memory::{self, NoMemory};
-use crate::triangulation::{Maker, Sites};
+use crate::triangulation::Sites;
 
 /// The blocks, and how many are worked on at once.
 pub(crate) struct Plan {
@@ -69,19 +69,13 @@ const WORTHWHILE: usize = 2000;
 /// No set has use for more blocks.
 const MOST: usize = 1 << 12;
 
-/// Bytes for each point of a block at work, its halo's included.
-pub(crate) fn at_work(maker: Maker) -> u64 {
-    match maker {
-        // 6 to 7 cells of 36 bytes while they are made; then of 32, with stars and rows.
-        Maker::Native => 600,
-        // 6 to 7 cells of 112 bytes in CGAL, and their copies.
-        Maker::Cgal => 1250,
-    }
-}
+/// Bytes for each point of a block at work, its halo's included: 6 to 7 cells of 36 bytes while they are
+/// made; then of 32, with stars and rows.
+pub(crate) const AT_WORK: u64 = 600;
 
 /// Bytes that a shape of so many points takes, with so many of them and of halos at work.
-fn taken(points: usize, at_work: usize, maker: Maker) -> u64 {
-    let working = DONE * points as u64 + self::at_work(maker) * at_work as u64;
+fn taken(points: usize, at_work: usize) -> u64 {
+    let working = DONE * points as u64 + AT_WORK * at_work as u64;
     working.max(MERGED * points as u64)
 }
 
@@ -102,12 +96,7 @@ impl Plan {
     ///
     /// # Errors
     /// [`PlanError`] when the bound cannot be kept.
-    pub(crate) fn new(
-        sites: &Sites<'_>,
-        reach: Reach,
-        maker: Maker,
-        limits: Limits,
-    ) -> Result<Self, PlanError> {
+    pub(crate) fn new(sites: &Sites<'_>, reach: Reach, limits: Limits) -> Result<Self, PlanError> {
         let threads = rayon::current_num_threads();
         let resident = memory::resident_bytes().unwrap_or(0);
         let bound = limits.memory.map(|asked| Bound { asked, resident });
@@ -118,7 +107,7 @@ impl Plan {
                 let at_work = at_once * partition.largest(sites, reach);
                 Ok(Self { partition, at_once, at_work, bound })
             }
-            (None, Some(bound)) => Self::within(bound, sites, reach, maker, threads),
+            (None, Some(bound)) => Self::within(bound, sites, reach, threads),
             (None, None) => Ok(Self::fast(sites, reach, threads)),
         }
     }
@@ -141,13 +130,11 @@ impl Plan {
         bound: Bound,
         sites: &Sites<'_>,
         reach: Reach,
-        maker: Maker,
         threads: usize,
     ) -> Result<Self, PlanError> {
         let Bound { asked, resident } = bound;
         let points = sites.input().len();
-        let needs =
-            |at_once: usize, largest: usize| resident + taken(points, at_once * largest, maker);
+        let needs = |at_once: usize, largest: usize| resident + taken(points, at_once * largest);
         let mut blocks = fewest(points, threads);
         let mut least = PlanError { asked, needed: u64::MAX, blocks };
         let mut best: Option<(f64, Self)> = None;
@@ -188,8 +175,8 @@ impl Plan {
     ///
     /// # Errors
     /// [`NoMemory`] when not.
-    pub(crate) fn afford(&self, points: usize, maker: Maker) -> Result<(), NoMemory> {
-        let bytes = usize::try_from(taken(points, self.at_work, maker)).unwrap_or(usize::MAX);
+    pub(crate) fn afford(&self, points: usize) -> Result<(), NoMemory> {
+        let bytes = usize::try_from(taken(points, self.at_work)).unwrap_or(usize::MAX);
         memory::afford(bytes, || format!("the shape of {points} points"))
     }
 
@@ -214,7 +201,7 @@ impl Plan {
     /// would keep it for itself (glibc).
     pub(crate) fn give_back(&self) {
         if self.bound.is_some() {
-            crate::cgal::give_back();
+            memory::give_back();
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Block, triangulate};
 use crate::progress::Piece;
-use crate::triangulation::{Maker, SitesError, Triangulation, TriangulationError, beside};
+use crate::triangulation::{SitesError, Triangulation, TriangulationError, beside};
 
 /// Triangulates a block, where its points span no volume with places beside them, numbered from `next`.
 /// Their balls at α are empty: they are in no simplex of the shape, and refute none.
@@ -10,17 +10,16 @@ pub(super) fn spanning(
     block: &mut Block,
     alpha: f64,
     next: u32,
-    maker: Maker,
     work: &Piece,
 ) -> Result<Triangulation, TriangulationError> {
-    match triangulate(block, maker, work) {
+    match triangulate(block, work) {
         Err(TriangulationError::Sites(SitesError::Flat { .. } | SitesError::TooFew { .. })) => {
             let places = beside(&block.positions);
             // Twice as much as makes them empty, for roundings.
             block.weights.extend(places.iter().map(|_| -(2.0 * alpha.max(0.0) + 1.0).ceil()));
             block.input.extend((next..).take(places.len()));
             block.positions.extend(places);
-            triangulate(block, maker, work)
+            triangulate(block, work)
         }
         made => made,
     }
@@ -42,22 +41,20 @@ mod tests {
         let sites = Sites::new(&positions, &weights).unwrap();
         let partition = Partition::new(&sites, 8);
         let lattice = Lattice::of(&positions, &weights);
-        for maker in [Maker::Native, Maker::Cgal] {
-            let question = Question { alpha: 1024.0 * 1024.0, lattice, exterior: false, maker };
-            let mut flat = 0;
-            for block in 0..partition.len() {
-                let work = Piece::new(1);
-                let (points, made, lattice_of_block) =
-                    in_space(&sites, &partition, block, &question, &work).unwrap();
-                assert!(points.positions.len() < 110, "{}", points.positions.len());
-                assert_eq!(made.ghost() as usize, points.input.len());
-                // The places beside are on a lattice of their own.
-                let own = Lattice::of(&points.positions, &points.weights);
-                let is_flat = points.weights.iter().any(|&weight| weight < 0.0);
-                flat += usize::from(is_flat);
-                assert_eq!(lattice_of_block, if is_flat { own } else { lattice });
-            }
-            assert!(flat > 4 && flat < partition.len(), "{flat}");
+        let question = Question { alpha: 1024.0 * 1024.0, lattice, exterior: false };
+        let mut flat = 0;
+        for block in 0..partition.len() {
+            let work = Piece::new(1);
+            let (points, made, lattice_of_block) =
+                in_space(&sites, &partition, block, &question, &work).unwrap();
+            assert!(points.positions.len() < 110, "{}", points.positions.len());
+            assert_eq!(made.ghost() as usize, points.input.len());
+            // The places beside are on a lattice of their own.
+            let own = Lattice::of(&points.positions, &points.weights);
+            let is_flat = points.weights.iter().any(|&weight| weight < 0.0);
+            flat += usize::from(is_flat);
+            assert_eq!(lattice_of_block, if is_flat { own } else { lattice });
         }
+        assert!(flat > 4 && flat < partition.len(), "{flat}");
     }
 }

@@ -22,14 +22,14 @@ pub(super) fn on_torus(
 ) -> Result<(Block, Triangulation, Lattice), ShapeError> {
     for reach in question.reaches(sites, torus) {
         let points = partition.block(sites, reach, block);
-        match triangulate(&points, question.maker, work) {
+        match triangulate(&points, work) {
             Err(TriangulationError::Sites(SitesError::Flat { .. })) => {}
             Ok(made) if !question.decides(reach, &points, &made) => {}
             made => return Ok((points, made?, question.lattice)),
         }
     }
     let points = partition.block(sites, Reach::whole(sites), block);
-    let made = triangulate(&points, question.maker, work)?;
+    let made = triangulate(&points, work)?;
     Ok((points, made, question.lattice))
 }
 
@@ -73,11 +73,10 @@ pub(super) fn too_long(torus: Torus, Long { edge, ends }: Long) -> ShapeError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::triangulation::Maker;
 
     fn question(alpha: f64, exterior: bool, sites: &Sites<'_>) -> Question {
         let lattice = Lattice::of(sites.positions(), sites.weights());
-        Question { alpha, lattice, exterior, maker: Maker::Native }
+        Question { alpha, lattice, exterior }
     }
 
     /// Points of even density in a box of 8: a point to each cube of side 1, and not at its centre.
@@ -120,7 +119,7 @@ mod tests {
             let partition = Partition::new(&sites, 8);
             let one = Reach::Balls(4.0);
             let points = partition.block(&sites, one, 3);
-            let made = triangulate(&points, Maker::Native, &Piece::new(1)).unwrap();
+            let made = triangulate(&points, &Piece::new(1)).unwrap();
             for (alpha, exterior, expected) in [
                 (4.0, false, true),
                 (16.0, false, decided),

@@ -31,7 +31,7 @@ const TOGETHER: usize = 4096;
 ///
 /// # Errors
 /// Points that span no volume, too many cells, no memory.
-pub(super) fn native(
+pub(crate) fn incremental(
     positions: &[[f64; 3]],
     weights: &[f64],
     mut inserted: impl FnMut(usize),

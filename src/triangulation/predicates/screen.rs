@@ -132,7 +132,7 @@ impl<'a> Screen<'a> {
 
     /// The same for a finite cell, always decided: points on the sphere are judged as if each point
     /// were raised by an infinitely small height, the larger the later it comes in the order of
-    /// (x, y, z) (Devillers and Teillaud 2011, doi:10.1016/j.comgeo.2010.08.002; CGAL's
+    /// (x, y, z) (Devillers and Teillaud 2011, doi:10.1016/j.comgeo.2010.09.010; CGAL's
     /// `Regular_triangulation_3` does the same).
     pub(crate) fn conflicts_closely(&self, cell: [u32; 4], t: u32) -> bool {
         // With a bound of 0 the first look has seen a true 0.

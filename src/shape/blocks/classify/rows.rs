@@ -229,7 +229,7 @@ mod tests {
     use super::*;
     use crate::math::Lattice;
     use crate::progress::Piece;
-    use crate::triangulation::{Maker, Sites};
+    use crate::triangulation::Sites;
 
     #[test]
     fn merged_rows_take_the_bytes_foreseen() {
@@ -242,10 +242,10 @@ mod tests {
         let weights = vec![0.0; positions.len()];
         let sites = Sites::new(&positions, &weights).unwrap();
         let lattice = Lattice::of(&positions, &weights);
-        let question = Question { alpha: 0.75, lattice, exterior: false, maker: Maker::Native };
+        let question = Question { alpha: 0.75, lattice, exterior: false };
         for blocks in [1, 7] {
             let limits = Limits { blocks: Some(blocks), memory: None };
-            let plan = Plan::new(&sites, Reach::Balls(0.75), Maker::Native, limits).unwrap();
+            let plan = Plan::new(&sites, Reach::Balls(0.75), limits).unwrap();
             let shelves = Shelves::new(sites.input(), 1);
             let work = Piece::new(1);
             let owned: Vec<_> = (0..plan.partition.len())

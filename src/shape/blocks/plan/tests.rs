@@ -11,7 +11,7 @@ fn a_run_that_will_not_keep_its_bound_is_stopped() {
     let (positions, weights) = grid();
     let sites = Sites::new(&positions, &weights).unwrap();
     let lattice = Lattice::of(&positions, &weights);
-    let question = Question { alpha: 0.75, lattice, exterior: false, maker: Maker::Native };
+    let question = Question { alpha: 0.75, lattice, exterior: false };
     let run = |asked| {
         let plan = Plan {
             partition: Partition::new(&sites, 8),
@@ -55,49 +55,45 @@ fn the_fastest_plan_within_the_bound_is_found() {
     let (positions, weights) = grid();
     let sites = Sites::new(&positions, &weights).unwrap();
     let (reach, threads, resident) = (Reach::Balls(0.75), 3, 1_000_000);
-    for maker in [Maker::Native, Maker::Cgal] {
-        // Bytes, time, blocks, blocks at once: the fastest first, of equals the one with fewer blocks.
-        let mut plans = Vec::new();
-        for blocks in (0..12).map(|step| 3 << step).take_while(|&blocks| blocks <= MOST) {
-            let largest = Partition::new(&sites, blocks).largest(&sites, reach);
-            for at_once in 1..=threads {
-                let work = at_work(maker) * (at_once * largest) as u64;
-                let bytes = resident + (POINTS * DONE + work).max(POINTS * MERGED);
-                let time = (blocks * largest) as f64 / at_once as f64;
-                plans.push((bytes, time, blocks, at_once));
-            }
+    // Bytes, time, blocks, blocks at once: the fastest first, of equals the one with fewer blocks.
+    let mut plans = Vec::new();
+    for blocks in (0..12).map(|step| 3 << step).take_while(|&blocks| blocks <= MOST) {
+        let largest = Partition::new(&sites, blocks).largest(&sites, reach);
+        for at_once in 1..=threads {
+            let work = AT_WORK * (at_once * largest) as u64;
+            let bytes = resident + (POINTS * DONE + work).max(POINTS * MERGED);
+            let time = (blocks * largest) as f64 / at_once as f64;
+            plans.push((bytes, time, blocks, at_once));
         }
-        plans.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.2.cmp(&b.2)));
-        let mut made = 0;
-        for asked in plans.iter().flat_map(|plan| [plan.0 - 1, plan.0]) {
-            let bound = Bound { asked, resident };
-            let plan = Plan::within(bound, &sites, reach, maker, threads);
-            match (plans.iter().find(|plan| plan.0 <= asked), plan) {
-                (Some(&(.., blocks, at_once)), Ok(plan)) => {
-                    assert_eq!((plan.partition.len(), plan.at_once), (blocks, at_once));
-                    assert_eq!(plan.shelves(), SHELVES);
-                    made += 1;
-                }
-                (None, Err(error)) => {
-                    let least = plans.iter().map(|plan| plan.0).min().unwrap();
-                    assert_eq!((error.asked, error.needed), (asked, least));
-                    let least = plans.iter().filter(|plan| plan.0 == least);
-                    let fewest = least.map(|plan| plan.2).min();
-                    assert_eq!(Some(error.blocks), fewest);
-                }
-                (expected, _) => panic!("{expected:?} for {asked}"),
-            }
-        }
-        assert!(made > 6 && made < 2 * plans.len(), "{made}");
     }
+    plans.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.2.cmp(&b.2)));
+    let mut made = 0;
+    for asked in plans.iter().flat_map(|plan| [plan.0 - 1, plan.0]) {
+        let bound = Bound { asked, resident };
+        let plan = Plan::within(bound, &sites, reach, threads);
+        match (plans.iter().find(|plan| plan.0 <= asked), plan) {
+            (Some(&(.., blocks, at_once)), Ok(plan)) => {
+                assert_eq!((plan.partition.len(), plan.at_once), (blocks, at_once));
+                assert_eq!(plan.shelves(), SHELVES);
+                made += 1;
+            }
+            (None, Err(error)) => {
+                let least = plans.iter().map(|plan| plan.0).min().unwrap();
+                assert_eq!((error.asked, error.needed), (asked, least));
+                let least = plans.iter().filter(|plan| plan.0 == least);
+                let fewest = least.map(|plan| plan.2).min();
+                assert_eq!(Some(error.blocks), fewest);
+            }
+            (expected, _) => panic!("{expected:?} for {asked}"),
+        }
+    }
+    assert!(made > 6 && made < 2 * plans.len(), "{made}");
 }
 
 #[test]
 fn a_block_at_work_has_room_for_its_cells() {
-    // Of uniformly random points there are 6.77 cells to a point; of four vertices and four
-    // neighbours, and in CGAL handles of 8 bytes, a circumcentre's room and two lists' links.
-    assert!(at_work(Maker::Native) as f64 > 6.77 * 32.0);
-    assert!(at_work(Maker::Cgal) as f64 > 6.77 * 112.0);
+    // Of uniformly random points there are 6.77 cells to a point, of four vertices and four neighbours.
+    assert!(AT_WORK as f64 > 6.77 * 32.0);
 }
 
 #[test]

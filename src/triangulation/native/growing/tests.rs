@@ -1,4 +1,4 @@
-use super::super::super::{Maker, triangulate};
+use super::super::super::triangulate;
 use super::*;
 use proptest::prelude::*;
 
@@ -17,7 +17,7 @@ fn cells(rows: impl Iterator<Item = [u32; 4]>, positions: &[[f64; 3]]) -> Vec<[[
 
 fn from_the_start(positions: &[[f64; 3]]) -> Vec<[[u64; 3]; 4]> {
     let weights = vec![0.0; positions.len()];
-    let made = triangulate(&Sites::new(positions, &weights).unwrap(), Maker::Native).unwrap();
+    let made = triangulate(&Sites::new(positions, &weights).unwrap()).unwrap();
     let finite = made.cells().iter().filter(|cell| !cell.contains(&made.ghost()));
     cells(finite.copied(), positions)
 }

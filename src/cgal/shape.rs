@@ -14,11 +14,10 @@ pub(crate) struct RawComplex(cxx::UniquePtr<bridge::Complex>);
 ///
 /// # Errors
 /// [`SitesError::Flat`] when the sites span no volume.
-pub(crate) fn reference(sites: &Sites<'_>, alpha: f64) -> Result<RawComplex, TriangulationError> {
+pub(crate) fn shape(sites: &Sites<'_>, alpha: f64) -> Result<RawComplex, TriangulationError> {
     assert!(!alpha.is_nan(), "Alpha is never NaN");
     let (positions, weights) = (sites.positions().as_flattened(), sites.weights());
-    let complex =
-        bridge::reference(positions, weights, alpha).map_err(thrown("reference engine"))?;
+    let complex = bridge::shape(positions, weights, alpha).map_err(thrown("alpha shape"))?;
     match complex.dimension() {
         3 => Ok(RawComplex(complex)),
         flat => Err(SitesError::flat(sites.positions().len(), flat).into()),

@@ -1,4 +1,4 @@
-// The reference engine: Regular_triangulation_3 and Fixed_alpha_shape_3, as the paper used CGAL.
+// The engine cgal: Regular_triangulation_3 and Fixed_alpha_shape_3, as the paper used CGAL.
 #pragma once
 
 #include <array>
@@ -53,7 +53,7 @@ class Complex {
 // `positions` holds x, y, z of each point, `weights` one number per point; all finite, no
 // two positions equal. `alpha` is a squared length, or ±infinity. Every simplex of the
 // triangulation is classified; exterior ones are returned too.
-std::unique_ptr<Complex> reference(rust::Slice<const double> positions,
-                                   rust::Slice<const double> weights, double alpha);
+std::unique_ptr<Complex> shape(rust::Slice<const double> positions,
+                               rust::Slice<const double> weights, double alpha);
 
 }  // namespace walpha

@@ -1,4 +1,4 @@
-#include "walpha/cpp/reference.h"
+#include "walpha/cpp/shape.h"
 
 #include <cmath>
 #include <set>
@@ -118,7 +118,7 @@ std::unique_ptr<Complex> copy(const Triangulation &triangulation, const Classify
 
 }  // namespace
 
-std::unique_ptr<Complex> reference(rust::Slice<const double> positions,
+std::unique_ptr<Complex> shape(rust::Slice<const double> positions,
                                    rust::Slice<const double> weights, double alpha) {
   throw_quietly();
   std::vector<std::pair<Triangulation::Weighted_point, std::uint32_t>> points;
