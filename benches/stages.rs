@@ -56,7 +56,7 @@ fn weights(bencher: Bencher, weighting: &str) {
 }
 
 #[divan::bench(args = WEIGHTINGS)]
-fn reference(bencher: Bencher, weighting: &str) {
+fn cgal(bencher: Bencher, weighting: &str) {
     engine(bencher, Engine::Cgal, weighting);
 }
 

@@ -52,7 +52,7 @@ def told(folder):
 def steps(args, volume):
     work, out = args.folder / "work", args.folder / "steps.pvtu"
     shutil.rmtree(work, ignore_errors=True)
-    job = [*OPTIONS, "--engine", args.engine, "--blocks", args.blocks]
+    job = [*OPTIONS, "--blocks", args.blocks]
     price = json.loads(measured([args.walpha, "blocks", "plan", volume, *job, "--dry-run", "--json"])[0])
     common = ["--threads", "1", "--json"]
     plan, plan_wall, plan_cpu, plan_peak = measured([args.walpha, "blocks", "plan", volume, *job, "-o", work, *common])
@@ -83,7 +83,7 @@ def steps(args, volume):
     core = price["core_seconds"]
     predicted = [price["points"], price["halo_share"], price["memory_per_block"] / 1e6]
     predicted += [price["bytes_written"][0] / 1e6, price["bytes_written"][1] / 1e6, *core, sum(core)]
-    print(f"phantom@{args.size}, {plan['blocks']} blocks, {args.engine}: CPU time, one thread")
+    print(f"phantom@{args.size}, {plan['blocks']} blocks: CPU time, one thread")
     print("| | predicted | measured | ratio |\n|---|---|---|---|")
     for (name, value), model in zip(found.items(), predicted):
         print(f"| {name} | {model:.4g} | {value:.4g} | {model / value if value else 0:.2f} |")
@@ -92,14 +92,14 @@ def steps(args, volume):
 
 
 def ranks(args, volume):
-    print(f"phantom@{args.size}, at most {args.blocks} blocks, {args.engine}: mpirun, one thread for each rank")
+    print(f"phantom@{args.size}, at most {args.blocks} blocks: mpirun, one thread for each rank")
     print("| ranks | wall, s | CPU of the slowest rank, s | CPU of all, s | peak of a rank, MB |\n|---|---|---|---|---|")
     for count in args.ranks:
         out = args.folder / f"ranks.{args.output}"
         usage = args.folder / "usage"
         usage.mkdir(exist_ok=True)
         launch = ["mpirun", "--oversubscribe", "--allow-run-as-root", "--bind-to", "none", "-n", count]
-        shape = [args.walpha, "shape", volume, *OPTIONS, "--engine", args.engine, "--blocks", args.blocks, "--threads", "1", "-o", out, "--json"]
+        shape = [args.walpha, "shape", volume, *OPTIONS, "--blocks", args.blocks, "--threads", "1", "-o", out, "--json"]
         report, wall, _, _ = measured([*launch, sys.executable, __file__, "rank", usage, *shape])
         each = [json.loads(path.read_text()) for path in sorted(usage.iterdir())]
         cpu = [rank["cpu"] for rank in each]
@@ -121,7 +121,7 @@ def prices(args):
     for size in args.size:
         blocks = max(8, (size // 256) ** 3)
         # Of values that are no gray levels yet, as in a file of floats.
-        job = [*OPTIONS, "--gray", "0..255", "--engine", args.engine, "--blocks", blocks, "--dry-run", "--json"]
+        job = [*OPTIONS, "--gray", "0..255", "--blocks", blocks, "--dry-run", "--json"]
         price = json.loads(measured([args.walpha, "blocks", "plan", f"sample:phantom@{size}", *job])[0])
         plan, run, merge = price["core_seconds"]
         hours = [(plan + run) / min(ranks, blocks) / 3600 + merge / 3600 for ranks in (1, 64, 4096)]
@@ -147,7 +147,6 @@ def main():
     parser.add_argument("what", choices=["steps", "ranks", "prices"])
     parser.add_argument("size", type=int, nargs="+", help="samples along each edge")
     parser.add_argument("--blocks", type=int, default=8)
-    parser.add_argument("--engine", choices=["native", "cgal"], default="native")
     parser.add_argument("--folder", type=Path, default=Path("."), help="for the volume and the results")
     parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 4, 8])
     parser.add_argument("--output", choices=["pvtu", "pvtp"], default="pvtp", help="what `ranks` writes")

@@ -25,8 +25,12 @@ pub fn fill(
         add_corners(&mut points, volume, units)?;
     }
     let engine = shape.options().engine;
-    let options =
-        ShapeOptions { balls: Balls::Power, engine, ..ShapeOptions::new(Alpha::INFINITE) };
+    let options = ShapeOptions {
+        balls: Balls::Power,
+        engine,
+        hidden: true,
+        ..ShapeOptions::new(Alpha::INFINITE)
+    };
     Ok(alpha_shape(points, &options)?)
 }
 

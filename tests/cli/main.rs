@@ -19,7 +19,8 @@ fn cube() -> String {
 #[test]
 fn json_has_what_is_promised() {
     let folder = tempfile::tempdir().unwrap();
-    let report = json(folder.path(), &["shape", "sample:phantom@24", "--weights", "min-max", "--hidden"]);
+    let report =
+        json(folder.path(), &["shape", "sample:phantom@24", "--weights", "min-max", "--hidden"]);
     for path in [
         "/schema_version",
         "/input/dims",

@@ -138,7 +138,7 @@ fn points_beyond_the_box_are_moved_into_it() {
 }
 
 #[test]
-fn blocks_and_engines_agree_with_the_whole() {
+fn blocks_agree_with_the_whole() {
     let mut compared = 0;
     for (k, (points, sides)) in sets(60).enumerate() {
         for squared in [0.5, 1.0, 2.25] {
@@ -150,12 +150,9 @@ fn blocks_and_engines_agree_with_the_whole() {
                 assert_eq!(*one.complex(), complex, "set {k}, α = {squared}");
                 assert_eq!(one.betti(), whole.betti());
             }
-            for (blocks, engine) in [(2, Engine::Native), (5, Engine::Native), (3, Engine::Cgal)] {
-                if engine == Engine::Cgal && cfg!(not(feature = "cgal")) {
-                    continue;
-                }
+            for blocks in [2, 3, 5] {
                 let blocks = std::num::NonZeroUsize::new(blocks);
-                let options = options(sides, squared).blocks(blocks).engine(engine);
+                let options = options(sides, squared).blocks(blocks);
                 let other = alpha_shape(points.clone(), &options).unwrap();
                 assert_eq!(one.complex(), other.complex(), "set {k}, α = {squared}, {blocks:?}");
                 assert_eq!((one.betti(), one.sheets()), (other.betti(), other.sheets()));

@@ -140,7 +140,7 @@ impl Report {
             },
             fit: None,
             shape: Some(ShapeReport::of_blocks(merged)),
-            engine: Some(job.engine),
+            engine: Some(Engine::Native),
             solid: None,
             files: Vec::new(),
             seconds: BTreeMap::new(),
