@@ -32,7 +32,6 @@
 
 pub use ndarray;
 
-pub mod advice;
 pub mod blocks;
 #[cfg_attr(not(feature = "cgal"), path = "cgal/absent.rs")]
 mod cgal;
@@ -42,8 +41,6 @@ pub mod export;
 pub mod haar;
 pub mod interpolate;
 pub mod ladder;
-mod math;
-mod memory;
 mod near;
 pub mod pipeline;
 pub mod points;
@@ -53,22 +50,26 @@ pub mod render;
 #[cfg(feature = "paper")]
 pub mod reproduce;
 mod select;
-mod setters;
 pub mod shape;
 mod shown;
-pub mod triangulation;
 pub mod volume;
+
+/// What errors advise.
+pub use walpha_base::advice;
+/// Exact regular triangulations: a crate of its own, `walpha-regular`, for use in other programs.
+pub use walpha_regular as triangulation;
 
 /// The exact checker: a crate of its own, `walpha-check`, for use in other programs.
 pub use walpha_check as check;
 pub use walpha_check::threads;
 
+pub use cgal::CgalError;
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
 pub use interpolate::Interpolant;
-pub use memory::{NoMemory, is_asking};
 pub use pipeline::Pipeline;
 pub use points::{Points, PointsError, Selection, SelectionRule, Units, WeightedPoints, Weighting};
 pub use shape::{Alpha, AlphaShape, Balls, Class, Complex, Simplices, alpha_shape};
 pub use volume::{
     Coordinates, Dims, Frame, Gray, GrayRange, LengthUnit, Space, Volume, VolumeError,
 };
+pub use walpha_base::memory::{NoMemory, is_asking};

@@ -71,6 +71,16 @@ impl Told for TriangulationError {
         let text = message(&self, self.advice());
         match self {
             Self::Memory { .. } => PyMemoryError::new_err(text),
+            _ => wrong(text),
+        }
+    }
+}
+
+impl Told for CgalError {
+    fn told(self) -> PyErr {
+        let text = message(&self, self.advice());
+        match self {
+            Self::Memory { .. } => PyMemoryError::new_err(text),
             Self::Thrown { .. } => PyRuntimeError::new_err(text),
             _ => wrong(text),
         }

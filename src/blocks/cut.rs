@@ -1,7 +1,8 @@
 //! Into which boxes a volume is cut.
 
+use walpha_base::memory;
+
 use super::{Cutting, Part};
-use crate::memory;
 use crate::shape::{AT_WORK, PlanError, ShapeError};
 
 /// Bytes of memory that blocks keep to where nothing is said.

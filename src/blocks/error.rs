@@ -1,10 +1,11 @@
 use std::path::PathBuf;
 
+use walpha_base::advice::Advice;
+use walpha_base::memory::NoMemory;
+
 use super::{Finding, Job};
-use crate::advice::Advice;
 use crate::export::TargetError;
 use crate::haar::HaarError;
-use crate::memory::NoMemory;
 use crate::pipeline::PipelineError;
 use crate::points::PointsError;
 use crate::shape::ShapeError;

@@ -141,7 +141,7 @@ impl Job {
 
 /// The rows of the inverse of the matrix of these columns, if there is one.
 fn inverse([a, b, c]: [[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
-    use crate::math::vector::{cross, dot};
+    use walpha_base::vector::{cross, dot};
     let volume = dot(a, cross(b, c));
     let rows = [cross(b, c), cross(c, a), cross(a, b)].map(|row| row.map(|v| v / volume));
     rows.as_flattened().iter().all(|v| v.is_finite()).then_some(rows)

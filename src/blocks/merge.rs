@@ -2,11 +2,11 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::Sum;
 
 use super::file::BlockFile;
 use super::run::{BlockComponent, BlockSheet, Facts, Met, Weights};
 use super::{BlocksError, Plan};
-use crate::math::Sum;
 use crate::points::WeightSummary;
 use crate::shape::{
     Betti, ByClass, Component, ComponentSums, Measures, SheetSums, UnionFind, told,

@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use walpha_base::setters;
 
 use super::cut::{Boxes, MOST};
 use super::digest::Digest;
@@ -13,7 +14,6 @@ use super::{Alone, BlocksError, Field, Job, Part, Team};
 use crate::Weighting;
 use crate::export::Target;
 use crate::points::{PointsError, Shares};
-use crate::setters::setters;
 use crate::shape::{Alpha, Balls};
 
 /// How a job is cut into blocks.

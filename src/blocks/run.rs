@@ -1,10 +1,10 @@
 use serde::{Deserialize, Serialize};
+use walpha_base::Sum;
 
 use super::field::{Field, Truncated};
 use super::file::{Arrays, BlockFile};
 use super::stamp::Stamp;
 use super::{BlockPlan, BlocksError, Plan};
-use crate::math::Sum;
 use crate::shape::{
     Balls, BlockShape, ByClass, Class, ComponentSums, Own, ShapeError, SheetSums, Side, block_shape,
 };

@@ -1,14 +1,18 @@
 //! Replaces the bridge where the crate is built without CGAL: every question is answered by
-//! [`TriangulationError::WithoutCgal`], and results have no values.
+//! [`CgalError::Absent`], and results have no values.
 
-use crate::triangulation::{Sites, TriangulationError};
+use walpha_regular::Sites;
 
-const ABSENT: TriangulationError = TriangulationError::WithoutCgal;
+use crate::shape::ShapeError;
+
+mod error;
+
+pub use error::CgalError;
 
 pub(crate) enum RawComplex {}
 
-pub(crate) fn shape(_: &Sites<'_>, _: f64) -> Result<RawComplex, TriangulationError> {
-    Err(ABSENT)
+pub(crate) fn shape(_: &Sites<'_>, _: f64) -> Result<RawComplex, ShapeError> {
+    Err(CgalError::Absent.into())
 }
 
 impl RawComplex {

@@ -4,9 +4,10 @@
 //! flat slices or a copy into slices that Rust made; input indices come back everywhere; every entry
 //! returns `Result`, and C++ catches whatever is thrown there. Rust refuses what CGAL cannot stand
 //! (NaN, infinities, duplicates, fewer than four points) before the call, in
-//! [`Sites`](crate::triangulation::Sites). C++ never calls back into Rust, because CGAL changes the
+//! [`Sites`](walpha_regular::Sites). C++ never calls back into Rust, because CGAL changes the
 //! rounding mode while it works.
 
+mod error;
 #[allow(unused_qualifications, reason = "in what the macro writes")]
 #[expect(unreachable_pub, reason = "cxx writes `pub`")]
 mod ffi;
@@ -15,18 +16,17 @@ mod ffi;
 mod plane;
 mod shape;
 
+pub use error::CgalError;
 #[cfg(feature = "paper")]
 pub(crate) use plane::{RawTriangulation, farthest_plane, regular_plane};
 pub(crate) use shape::{RawComplex, shape};
 
-use crate::triangulation::TriangulationError;
-
 /// What C++ threw in a stage.
-fn thrown(stage: &'static str) -> impl Fn(cxx::Exception) -> TriangulationError {
+fn thrown(stage: &'static str) -> impl Fn(cxx::Exception) -> CgalError {
     move |exception| match exception.what() {
         // Said by cpp/bridge.h for std::bad_alloc.
-        "out of memory" => TriangulationError::Memory { stage, needed: None },
-        text => TriangulationError::Thrown { stage, text: text.into() },
+        "out of memory" => CgalError::Memory { stage },
+        text => CgalError::Thrown { stage, text: text.into() },
     }
 }
 
@@ -41,7 +41,7 @@ mod tests {
 
     fn told(error: cxx::Exception) -> (&'static str, String) {
         match thrown("tried")(error) {
-            TriangulationError::Thrown { stage, text } => (stage, text),
+            CgalError::Thrown { stage, text } => (stage, text),
             other => panic!("{other}"),
         }
     }

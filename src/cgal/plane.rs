@@ -1,7 +1,7 @@
 use bridge::{PlaneTriangulation, farthest_plane as farthest, regular_plane as regular};
+use walpha_regular::Sites;
 
-use super::thrown;
-use crate::triangulation::{Sites, TriangulationError};
+use super::{CgalError, thrown};
 
 /// The entries of `cpp/plane.cc`, compiled with the feature `paper` alone.
 #[allow(unused_qualifications, reason = "in what the macro writes")]
@@ -37,7 +37,7 @@ pub(crate) struct RawTriangulation(cxx::UniquePtr<PlaneTriangulation>);
 ///
 /// # Errors
 /// No memory, or a fault of the program.
-pub(crate) fn regular_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, TriangulationError> {
+pub(crate) fn regular_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, CgalError> {
     regular(sites.positions().as_flattened(), sites.weights())
         .map(RawTriangulation)
         .map_err(thrown("regular triangulation of the plane"))
@@ -57,7 +57,7 @@ pub(crate) fn regular_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, Tr
 ///
 /// # Errors
 /// No memory, or a fault of the program.
-pub(crate) fn farthest_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, TriangulationError> {
+pub(crate) fn farthest_plane(sites: &Sites<'_, 2>) -> Result<RawTriangulation, CgalError> {
     farthest(sites.positions().as_flattened())
         .map(RawTriangulation)
         .map_err(thrown("farthest-point triangulation"))
@@ -89,7 +89,7 @@ mod tests {
         // Sites refuse an infinity, because CGAL throws where its exact numbers meet one.
         let infinite = [0., 0., 1., 0., 0., 1., f64::INFINITY, 0.];
         let Err(exception) = regular(&infinite, &[0.0; 4]) else { panic!("∞ was taken") };
-        let TriangulationError::Thrown { stage, text } = thrown("tried")(exception) else {
+        let CgalError::Thrown { stage, text } = thrown("tried")(exception) else {
             panic!("not what was thrown")
         };
         assert_eq!(stage, "tried");

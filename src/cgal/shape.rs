@@ -1,6 +1,8 @@
+use walpha_regular::{Sites, SitesError};
+
 use super::ffi::bridge;
 use super::thrown;
-use crate::triangulation::{Sites, SitesError, TriangulationError};
+use crate::shape::ShapeError;
 
 /// A classified complex as C++ lends it: rows of *site* indices and class numbers (0 exterior,
 /// 1 interior, 2 regular, 3 singular), in no particular order. Cells are positively oriented,
@@ -14,7 +16,7 @@ pub(crate) struct RawComplex(cxx::UniquePtr<bridge::Complex>);
 ///
 /// # Errors
 /// [`SitesError::Flat`] when the sites span no volume.
-pub(crate) fn shape(sites: &Sites<'_>, alpha: f64) -> Result<RawComplex, TriangulationError> {
+pub(crate) fn shape(sites: &Sites<'_>, alpha: f64) -> Result<RawComplex, ShapeError> {
     assert!(!alpha.is_nan(), "Alpha is never NaN");
     let (positions, weights) = (sites.positions().as_flattened(), sites.weights());
     let complex = bridge::shape(positions, weights, alpha).map_err(thrown("alpha shape"))?;

@@ -6,8 +6,9 @@ use serde::Serialize;
 
 use std::path::Path;
 
+use walpha_base::memory::readable;
+
 use crate::blocks::{Checked, Plan, Price};
-use crate::memory::readable;
 
 use super::output::name;
 

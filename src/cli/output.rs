@@ -4,8 +4,8 @@ use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 
 use serde::Serialize;
+use walpha_base::advice::Advice;
 
-use crate::advice::Advice;
 use crate::check::standard_output;
 use crate::shown::escaped;
 

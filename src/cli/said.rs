@@ -2,22 +2,23 @@
 
 use std::error::Error;
 
-use crate::advice::{Advice, Setting};
+use walpha_base::advice::{Advice, Setting};
+use walpha_base::memory::NoMemory;
+use walpha_regular::{SitesError, TriangulationError};
+
 use crate::blocks::BlocksError;
 use crate::check::schema::SchemaError;
 use crate::check::{CertifyError, CertifyFiltrationError, CompareError};
 use crate::export::TargetError;
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
-use crate::memory::NoMemory;
 use crate::pipeline::PipelineError;
 use crate::points::{UnknownColumns, UnknownWeighting};
 #[cfg(feature = "paper")]
 use crate::reproduce::ReproduceError;
 use crate::shape::{AlphaError, PlanError, ShapeError, TorusError};
-use crate::triangulation::{SitesError, TriangulationError};
 use crate::volume::{UnknownFormat, UnknownName};
-use crate::{PointsError, VolumeError};
+use crate::{CgalError, PointsError, VolumeError};
 
 use super::output::Unprinted;
 
@@ -90,6 +91,7 @@ macro_rules! advising {
 }
 advising![
     BlocksError,
+    CgalError,
     HaarError,
     InterpolateError,
     NoMemory,

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use walpha_base::memory;
 
 use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, Team, merge, run_missing};
 use crate::export::{NewFolder, Target};
-use crate::memory;
 use crate::progress::Stage;
 
 use super::args::{PipelineArgs, ShapeArgs};

@@ -2,9 +2,10 @@ use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 
+use walpha_base::advice::Advice;
+use walpha_base::setters;
+
 use super::{Glb, Json, Npz, Obj, Off, Ply, Stl, Vtp, Vtu};
-use crate::advice::Advice;
-use crate::setters::setters;
 use crate::shape::{AlphaShape, Surface};
 use crate::volume::UnknownFormat;
 

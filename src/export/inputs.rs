@@ -5,8 +5,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use walpha_base::advice::{Advice, Setting};
+
 use super::place::Key;
-use crate::advice::{Advice, Setting};
 use crate::volume::files_of;
 
 /// What is not to be replaced.

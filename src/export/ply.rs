@@ -1,7 +1,8 @@
 use std::io::{self, Write};
 
+use walpha_base::advice::Advice;
+
 use super::{ExportOptions, Exporter, colour};
-use crate::advice::Advice;
 use crate::shape::{AlphaShape, Class, Surface};
 use crate::volume::stated;
 

@@ -1,7 +1,8 @@
 use std::io::{self, Write};
 
+use walpha_base::advice::{Advice, Setting, advice};
+
 use super::{ExportOptions, Exporter};
-use crate::advice::{Advice, Setting, advice};
 use crate::shape::AlphaShape;
 use crate::volume::stated;
 

@@ -2,13 +2,14 @@ use std::fs::OpenOptions;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use walpha_base::advice::Advice;
+
 #[cfg(feature = "zarr")]
 use super::folder::PartFolder;
 use super::inputs::{self, Refused};
 use super::part::{Part, Whole};
 use super::place::{Claim, Key, Place};
 use super::unfinished::gate;
-use crate::advice::Advice;
 use crate::shown::shown;
 
 /// A file to be: opened before the long work, so that a bad place is known at once, and put under

@@ -33,10 +33,11 @@ pub use truncate::{HaarError, Tolerance, Truncation};
 pub use unnormalised::Unnormalised;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::memory;
+use walpha_base::setters;
 
-use crate::setters::setters;
+use crate::progress;
 use crate::volume::Volume;
-use crate::{memory, progress};
 
 /// How a volume is transformed and truncated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

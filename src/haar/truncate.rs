@@ -1,9 +1,9 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use walpha_base::advice::Advice;
+use walpha_base::memory::NoMemory;
 
 use super::Coefficients;
-use crate::advice::Advice;
-use crate::memory::NoMemory;
 use crate::select::{Budget, Cut, Dropped};
 use crate::volume::VolumeError;
 

@@ -2,8 +2,9 @@
 
 use std::cmp::Ordering;
 
+use walpha_regular::number::{cross, dot};
+
 use super::number::{Part, integer_offsets};
-use crate::math::number::{cross, dot};
 
 /// The coordinates of a place in a simplex of one to four corners, or `None` where it lies outside;
 /// its boundary is inside. Four corners turn positively: det(b−a, c−a, d−a) > 0. Coordinates beyond
@@ -172,8 +173,9 @@ fn magnitudes(u: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
+    use walpha_regular::Reach;
+
     use super::*;
-    use crate::math::Reach;
 
     const CELL: [[f64; 3]; 4] = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]];
 

@@ -2,12 +2,13 @@
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
+use walpha_regular::Reach;
+use walpha_regular::{Cell, Growing};
+
 use super::barycentric::coordinates;
 use super::interpolant::combine;
 use super::least_squares::Pieces;
-use crate::math::Reach;
 use crate::shape::smallest_even_permutation;
-use crate::triangulation::{Cell, Growing};
 
 /// The cells of a triangulation as an interpolant has them.
 pub(super) struct Cells<'a> {

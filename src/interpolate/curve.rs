@@ -3,6 +3,7 @@ use std::io::{self, Write};
 
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
+use walpha_regular::TriangulationError;
 
 use super::{Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels, fill};
 use crate::haar::{HaarOptions, Tolerance, smooth};
@@ -11,7 +12,6 @@ use crate::points::{
 };
 use crate::progress::{self, Share};
 use crate::shape::{Alpha, Engine, ShapeError, ShapeOptions, alpha_shape};
-use crate::triangulation::TriangulationError;
 use crate::volume::Volume;
 
 /// Where the numbers of an error curve come from.

@@ -1,6 +1,6 @@
 //! The samples in a cell whose corners are samples, too: in integers.
 
-use crate::math::number::{cross, dot};
+use walpha_regular::number::{cross, dot};
 
 /// Below so many samples along a row its ends are not looked for.
 const SHORT: i64 = 8;

@@ -1,6 +1,7 @@
-use crate::advice::{Advice, Setting, advice};
+use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::memory::NoMemory;
+
 use crate::haar::HaarError;
-use crate::memory::NoMemory;
 use crate::points::PointsError;
 use crate::shape::ShapeError;
 use crate::volume::VolumeError;

@@ -1,6 +1,7 @@
 use std::collections::HashSet;
 
 use rayon::prelude::*;
+use walpha_regular::Growing;
 
 use super::InterpolateError;
 use super::adaptive::worst;
@@ -10,7 +11,6 @@ use super::trial::{Gain, Loss, Trial};
 use crate::points::Units;
 use crate::progress::{Share, report, within};
 use crate::shape::ShapeError;
-use crate::triangulation::Growing;
 use crate::volume::Volume;
 
 /// Points exchanged in one round, at most, over those there are. Halved where a round gains nothing.

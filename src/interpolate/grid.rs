@@ -1,6 +1,7 @@
 use std::ops::Range;
 
-use crate::math::Reach;
+use walpha_regular::Reach;
+
 use crate::points::{SampleGrid, Units};
 use crate::volume::{Coordinates, Dims, Frame, Volume, inverse};
 

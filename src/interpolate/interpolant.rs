@@ -1,12 +1,12 @@
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
+use walpha_regular::Reach;
 
 use super::InterpolateError;
 use super::barycentric::coordinates;
 use super::least_squares::Pieces;
 use super::tree::Tree;
-use crate::math::Reach;
 use crate::shape::{AlphaShape, Class, Simplices};
 
 /// Places located as one piece of work, at least.

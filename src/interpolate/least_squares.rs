@@ -1,10 +1,10 @@
 //! The normal equations of the values of an interpolant, and conjugate gradients to solve them.
 
 use rayon::prelude::*;
+use walpha_base::memory::{NoMemory, afford};
 
 use super::lists::{Lists, samples_of};
 use super::{Grid, InterpolateError};
-use crate::memory::{NoMemory, afford};
 use crate::progress::report;
 use crate::volume::Volume;
 

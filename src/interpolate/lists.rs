@@ -1,7 +1,8 @@
 //! Lists of numbers side by side.
 
+use walpha_base::memory::{NoMemory, room};
+
 use super::raster::NOTHING;
-use crate::memory::{NoMemory, room};
 use crate::volume::Volume;
 
 /// The samples of each of so many simplices, ascending, by the simplex of each sample; missing ones are

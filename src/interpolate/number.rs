@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 
 use dashu_int::IBig;
 
-use crate::math::number::{Number, integer, lowest_bit};
+use walpha_regular::number::{Number, integer, lowest_bit};
 
-/// A number of which barycentric coordinates are made; doubles are exact only where a [`Reach`](crate::math::Reach) says
+/// A number of which barycentric coordinates are made; doubles are exact only where a [`Reach`](walpha_regular::Reach) says
 /// that no operation rounds.
 pub(super) trait Part: Number + Clone {
     fn zero() -> Self;

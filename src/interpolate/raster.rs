@@ -4,10 +4,10 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
+use walpha_base::memory::{NoMemory, room};
 
 use super::barycentric::Planes;
 use super::{Grid, Interpolant};
-use crate::memory::{NoMemory, room};
 
 /// What a sample outside the shape belongs to.
 pub(super) const NOTHING: u32 = u32::MAX;

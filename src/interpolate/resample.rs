@@ -1,9 +1,9 @@
 use ndarray::Array3;
 use rayon::prelude::*;
+use walpha_base::memory::room;
 
 use super::raster::{NOTHING, owners};
 use super::{Grid, Interpolant, InterpolateError};
-use crate::memory::room;
 use crate::volume::Volume;
 
 /// F on the samples of a grid.

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
+use walpha_regular::Growing;
 
 use super::cells::Cells;
 use super::drawn::for_each_inside;
@@ -13,7 +14,6 @@ use super::raster::{CHUNK, NOTHING, for_each_near};
 use super::{Deviation, Grid, InterpolateError};
 use crate::points::Units;
 use crate::shape::ShapeError;
-use crate::triangulation::Growing;
 use crate::volume::Volume;
 
 /// The interpolant of samples of a volume on their Delaunay triangulation, at all samples.

@@ -1,11 +1,12 @@
 //! What one point more or less would change, with everything else as it is.
 
+use walpha_base::memory::NoMemory;
+use walpha_regular::number::{cross, dot};
+use walpha_regular::{Digger, Growing, Screen};
+
 use super::lists::{Lists, samples_of};
 use super::sampled::Sampled;
-use crate::math::number::{cross, dot};
-use crate::memory::NoMemory;
 use crate::shape::ShapeError;
-use crate::triangulation::{Digger, Growing, Screen};
 use crate::volume::Volume;
 
 /// What the removal of a point would cost.

@@ -1,13 +1,13 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
+use walpha_base::memory;
+use walpha_regular::{Predicates, Torus};
 
 use super::incidence::Incidence;
-use crate::memory;
 use crate::points::WeightedPoints;
 use crate::progress::{Share, report, within};
 use crate::shape::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape};
-use crate::triangulation::{Predicates, Torus};
 
 /// All alpha shapes of a set of points at once: the regular triangulation, and for each simplex
 /// when it comes.

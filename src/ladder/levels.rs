@@ -1,10 +1,10 @@
 use rayon::prelude::*;
+use walpha_regular::{Interval, Predicates};
 
 use super::Filtration;
 use super::incidence::Incidence;
 use crate::points::WeightedPoints;
 use crate::shape::{Alpha, Class};
-use crate::triangulation::{Interval, Predicates};
 
 /// From which level on a simplex is what: levels count from 0, and as many as there are means
 /// never.

@@ -3,13 +3,13 @@
 use std::collections::HashMap;
 
 use rayon::prelude::*;
+use walpha_regular::number::lowest_bit;
+use walpha_regular::{Interval, Predicates, Torus};
 
 use super::Filtration;
 use super::filtration::Radius;
-use crate::math::number::lowest_bit;
 use crate::points::WeightedPoints;
 use crate::shape::Alpha;
-use crate::triangulation::{Interval, Predicates, Torus};
 
 /// A critical value of α, as far as it is known.
 #[derive(Clone, Copy, Debug)]

@@ -3,11 +3,12 @@
 
 use std::collections::BTreeMap;
 
+use walpha_regular::{Interval, Predicates, Torus};
+
 use super::Levels;
 use super::incidence::Incidence;
 use super::levels::ByLevel;
 use crate::shape::{Directions, Hollow, UnionFind, United, Void, WindingSets, between};
-use crate::triangulation::{Interval, Predicates, Torus};
 
 /// What a level leaves empty: the components of its complement.
 pub(super) struct Hollows<'a> {

@@ -1,4 +1,5 @@
-use crate::advice::{Advice, Setting, advice};
+use walpha_base::advice::{Advice, Setting, advice};
+
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
 use crate::points::PointsError;

@@ -1,12 +1,12 @@
 use std::path::PathBuf;
 
+use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::memory::NoMemory;
 use walpha_check::Alpha;
+use walpha_regular::TriangulationError;
 
 use super::Weighting;
-use crate::advice::{Advice, Setting, advice};
-use crate::memory::NoMemory;
 use crate::shown::shown;
-use crate::triangulation::TriangulationError;
 use crate::volume::{Reason, VolumeError};
 
 /// Why points or their weights cannot be had.

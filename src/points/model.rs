@@ -1,9 +1,9 @@
 use std::fmt;
 
+use walpha_base::setters;
 use walpha_check::Alpha;
 
 use super::Units;
-use crate::setters::setters;
 use crate::volume::{Coordinates, Dims, Frame, GrayRange};
 
 /// The grid that points are samples of.

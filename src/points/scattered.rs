@@ -1,5 +1,6 @@
+use walpha_regular::{Sites, Triangulation, TriangulationError, triangulate};
+
 use super::{Points, PointsError};
-use crate::triangulation::{Sites, Triangulation, TriangulationError, triangulate};
 
 /// The difference L of each scattered point: the mean of |F(point) − F(neighbour)| over its
 /// neighbours in the Delaunay triangulation of the places.

@@ -1,11 +1,11 @@
 use ndarray::Array3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use walpha_base::memory;
+use walpha_base::setters;
 
 use super::{Points, PointsError};
-use crate::memory;
 use crate::select::{Budget, Cut};
-use crate::setters::setters;
 use crate::volume::{Coordinates, Dims, Frame, Volume};
 
 /// Voxels looked at as one piece of work.

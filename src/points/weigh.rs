@@ -4,11 +4,11 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use walpha_base::Sum;
+use walpha_base::advice::Advice;
 use walpha_check::Alpha;
 
 use super::{Points, PointsError, WeightedPoints};
-use crate::advice::Advice;
-use crate::math::Sum;
 
 /// Where the weights ω of points come from. Weights are **squared** lengths, as α is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,4 +1,4 @@
-use crate::memory::NoMemory;
+use walpha_base::memory::NoMemory;
 
 /// Pixels along each side of a picture, at most.
 pub(super) const MOST_PIXELS: u32 = 1 << 14;

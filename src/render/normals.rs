@@ -1,4 +1,4 @@
-use crate::math::vector::{V3, add, along, cross, dot, length, scale, sub, unit};
+use walpha_base::vector::{V3, add, along, cross, dot, length, scale, sub, unit};
 
 /// Normals of the vertices of a triangle mesh: the unit normals of the triangles around each,
 /// weighed by their angle there, so that it does not matter how a flat part is cut into triangles

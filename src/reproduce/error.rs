@@ -1,6 +1,7 @@
+use walpha_base::advice::Advice;
+
 use super::OffError;
 use super::plane::{NotACurvature, PlaneError};
-use crate::advice::Advice;
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
 use crate::points::PointsError;
@@ -47,7 +48,8 @@ impl ReproduceError {
             Self::Haar(error) => error.advice(),
             Self::Points(error) => error.advice(),
             Self::Shape(error) => error.advice(),
-            Self::Plane(PlaneError::Triangulation(error)) => error.advice(),
+            Self::Plane(PlaneError::Sites(error)) => error.advice(),
+            Self::Plane(PlaneError::Cgal(error)) => Some(error.advice()),
             Self::Interpolate(error) => error.advice(),
             Self::Off(_) => Some("this is a fault of walpha, please report it".into()),
             Self::Plane(_) | Self::Curvature(_) | Self::Render(_) | Self::Io(_) => None,

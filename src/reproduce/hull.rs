@@ -1,6 +1,7 @@
 //! Whether a surface is the convex hull, from its definition alone.
 
-use crate::math::vector::{cross, dot, sub};
+use walpha_base::vector::{cross, dot, sub};
+
 use crate::shape::{AlphaShape, Class};
 
 /// A closed surface and the points it should be the hull of.

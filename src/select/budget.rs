@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
+use walpha_base::Sum;
 
 use super::EXPONENT;
-use crate::math::Sum;
 
 /// What may be dropped, smallest magnitudes first.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,7 +1,9 @@
+use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::memory::NoMemory;
+use walpha_regular::{SitesError, TriangulationError, is_flat};
+
 use super::PlanError;
-use crate::advice::{Advice, Setting, advice};
-use crate::memory::NoMemory;
-use crate::triangulation::{SitesError, TriangulationError, is_flat};
+use crate::CgalError;
 
 /// Why a shape cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -10,6 +12,9 @@ pub enum ShapeError {
     /// The points cannot be triangulated.
     #[error(transparent)]
     Triangulation(#[from] TriangulationError),
+    /// CGAL gave no answer.
+    #[error(transparent)]
+    Cgal(#[from] CgalError),
     /// The `radius` reading asks for a ball of negative or infinite radius.
     #[error(
         "point {index} would be a ball of radius α + ω = {radius}: where α + ω is a radius it must \
@@ -103,6 +108,7 @@ impl ShapeError {
     pub fn advice(&self) -> Option<Advice> {
         Some(match self {
             Self::Triangulation(error) => return error.advice(),
+            Self::Cgal(error) => error.advice(),
             Self::Radius { .. } => advice!["raise α, or use ", Setting::Balls, " power"],
             Self::Plan(error) => error.advice(),
             Self::Memory(lack) => lack.advice(),

@@ -3,9 +3,11 @@
 //! There are no cells. Classes are those of space: what is in the shape and a face of nothing there is
 //! singular, the faces of it are regular, and nothing is interior, as space is on both sides.
 
+use walpha_regular::{Predicates, Sites, triangulate_flat};
+
 use super::topology::flat_betti;
 use super::{Betti, Class, Complex, ShapeError, Simplices};
-use crate::triangulation::{Predicates, Sites, triangulate_flat};
+use crate::progress::Piece;
 
 /// What a flat shape is.
 pub(super) struct Found {
@@ -16,7 +18,8 @@ pub(super) struct Found {
 
 /// The α-complex of sites that span no volume, and the simplices that are not in it.
 pub(super) fn flat(sites: &Sites<'_>, alpha: f64) -> Result<Found, ShapeError> {
-    let tops = triangulate_flat(sites)?;
+    let work = Piece::new(sites.input().len() as u64);
+    let tops = triangulate_flat(sites, |more| work.add(more as u64))?;
     let plane = Plane { spheres: Predicates::new(sites.positions(), sites.weights()), alpha };
     // The sphere of a largest simplex is always empty.
     let facets = plane.classified(lone(&tops.triangles));

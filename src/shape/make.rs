@@ -1,6 +1,7 @@
 use std::num::NonZeroUsize;
 
 use rayon::prelude::*;
+use walpha_regular::{Sites, check_numbers, lattice};
 
 use super::blocks::{self, Limits, Plan, Question, Reach};
 use super::canonical::canonical;
@@ -13,7 +14,6 @@ use super::{
     Simplices,
 };
 use crate::points::WeightedPoints;
-use crate::triangulation::{Sites, check_numbers, lattice};
 use crate::volume::Coordinates;
 
 /// The alpha shape of weighted points.
@@ -35,7 +35,7 @@ use crate::volume::Coordinates;
 ///
 /// # Errors
 /// NaN or absurd numbers, no points, and with [`ShapeOptions::refuse_flat`] fewer than four different
-/// places and points in one plane or on one line: see [`SitesError`](crate::triangulation::SitesError); a negative radius:
+/// places and points in one plane or on one line: see [`SitesError`](walpha_regular::SitesError); a negative radius:
 /// [`ShapeError::Radius`]; options that do not go together: [`ShapeOptions::check`].
 pub fn alpha_shape(
     mut points: WeightedPoints,

@@ -1,10 +1,10 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use walpha_base::Sum;
+use walpha_base::vector::{cross, dot, length, sub};
+use walpha_regular::Torus;
 
 use super::{Class, Complex};
-use crate::math::Sum;
-use crate::math::vector::{cross, dot, length, sub};
-use crate::triangulation::Torus;
 
 /// Sizes of a shape in the units of its points, summed exactly and
 /// rounded once.

@@ -37,7 +37,6 @@ mod unwrapped;
 mod voids;
 mod winding;
 
-pub use crate::triangulation::{Torus, TorusError};
 pub use alpha_shape::AlphaShape;
 pub(crate) use alpha_shape::Assembled;
 pub use balls::Balls;
@@ -62,4 +61,5 @@ pub(crate) use union_find::UnionFind;
 pub(crate) use voids::Hollow;
 pub use voids::Void;
 pub use walpha_check::{Alpha, AlphaError, ByClass, Class, Complex, Simplices};
+pub use walpha_regular::{Torus, TorusError};
 pub(crate) use winding::{Directions, United, WindingSets};

@@ -1,9 +1,9 @@
 use std::num::NonZeroUsize;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::setters;
 
 use super::{Alpha, Balls, ShapeError, Torus, Whole};
-use crate::setters::setters;
 
 /// Which program computes the shape; all give the same answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

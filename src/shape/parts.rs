@@ -1,12 +1,12 @@
 //! Components of a shape.
 
 use serde::{Deserialize, Serialize};
+use walpha_regular::Torus;
 
 use super::sums::{ComponentSums, SheetSums, told};
 use super::union_find::UnionFind;
 use super::winding::WindingSets;
 use super::{AlphaShape, Class, Complex, Sheets};
-use crate::triangulation::Torus;
 
 /// A connected component of a shape.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,9 +1,9 @@
 //! What is summed over components and sheets, part by part.
 
 use serde::{Deserialize, Serialize};
+use walpha_base::Sum;
 
 use super::{Class, Component, Enclosed, Measures, facet_area, six_volumes};
-use crate::math::Sum;
 
 /// What is summed over a component, or over a part of one: parts [join](Self::join) in any order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use walpha_regular::Torus;
 
 use super::parts::connected;
 use super::union_find::UnionFind;
 use super::winding::{Winding, WindingSets, minus};
 use super::{Class, Complex, Sheets};
-use crate::triangulation::Torus;
 
 /// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`, of a torus
 /// `[b0, b1, b2, b3]`.

@@ -1,12 +1,12 @@
 use std::cmp::Ordering;
 
 use serde::{Deserialize, Serialize};
+use walpha_regular::{Interval, Predicates, Torus};
 
 use super::measure::six_volumes;
 use super::topology::{Complement, complement_on};
 use super::winding::{Winding, WindingSets};
 use super::{Alpha, AlphaShape, Class};
-use crate::triangulation::{Interval, Predicates, Torus};
 
 /// A void of a shape: a bounded component of its complement, made of exterior cells.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

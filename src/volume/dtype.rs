@@ -3,7 +3,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use crate::advice::Advice;
+use walpha_base::advice::Advice;
 
 /// How a file stores one sample.
 ///

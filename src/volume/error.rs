@@ -1,9 +1,10 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::memory::NoMemory;
+
 use super::{Dims, Reason, SAMPLES};
-use crate::advice::{Advice, Setting, advice};
-use crate::memory::NoMemory;
 use crate::shown::shown;
 
 /// What can be wrong with a volume or the file it comes from.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::advice::{Advice, Setting, advice};
+use walpha_base::advice::{Advice, Setting, advice};
 
 /// Why a file cannot be read, whatever its format. Its text follows the name of the file.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use walpha_base::advice::Setting;
+
 use super::read::CONVERT;
 use super::sample::PhantomParts;
 use super::{Dims, Dtype, Frame, ReadOptions, Reason, Volume, VolumeError, open};
-use crate::advice::Setting;
 
 /// A volume of which any box can be read without the rest.
 ///

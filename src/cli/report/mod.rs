@@ -7,13 +7,14 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 use serde::Serialize;
+use walpha_base::memory;
 
 use crate::blocks::{Merged, Plan};
 use crate::interpolate::{Adaptive, Fit, Refit};
 use crate::pipeline::{Model, Parameter, Weighed};
 use crate::points::WeightSummary;
 use crate::shape::{Cuts, Engine};
-use crate::{Coordinates, GrayRange, memory};
+use crate::{Coordinates, GrayRange};
 
 use super::output::name;
 use super::pipeline::VolumeFacts;

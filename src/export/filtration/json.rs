@@ -1,9 +1,10 @@
 use std::io::{self, Write};
 
+use walpha_base::memory;
+
 use super::lasting;
 use crate::check::schema::{Below, FiltrationFile, PairsFile, SchemaError, Values};
 use crate::ladder::{Entry, Ordered};
-use crate::memory;
 use crate::shape::Alpha;
 
 pub(super) fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {

@@ -12,14 +12,14 @@ use rayon::prelude::*;
 use super::filtration::Radius;
 use super::levels::Own;
 use super::{Filtration, Levels};
-use crate::memory;
 use crate::progress;
 use crate::shape::{Alpha, Betti, ShapeError};
-use crate::triangulation::TriangulationError;
 pub(super) use numbers::Numbers;
 pub use pairs::Pairs;
 use rank::{NONE, Ranks};
 use sort::by_rank;
+use walpha_base::memory;
+use walpha_regular::TriangulationError;
 
 /// Every simplex of a regular triangulation, and the α from which on it is in the shape, on its
 /// boundary, inside.

@@ -7,12 +7,12 @@
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
+use walpha_base::memory::{self, NoMemory};
+use walpha_regular::{Predicates, Ratio, SmallRadius};
 
 use super::Numbers;
 use crate::ladder::Filtration;
 use crate::ladder::values::{Key, is_small_lattice, key};
-use crate::memory::{self, NoMemory};
-use crate::triangulation::{Predicates, Ratio, SmallRadius};
 
 /// No sphere of its own.
 pub(super) const NONE: u32 = u32::MAX;

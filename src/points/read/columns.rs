@@ -1,7 +1,8 @@
 use std::str::FromStr;
 
+use walpha_base::advice::Advice;
+
 use super::COLUMNS;
-use crate::advice::Advice;
 
 /// What the columns of a table of points hold, in their order: of the names `x`, `y`, `z`, `weight`, `value`
 /// and `radius` each at most once, in any case; columns of other names are passed over. Where all names are

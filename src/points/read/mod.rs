@@ -29,12 +29,13 @@ pub use columns::{Columns, UnknownColumns};
 
 use std::path::Path;
 
+use walpha_base::advice::Setting;
+use walpha_base::setters;
+
 use super::formats::{FORMATS, PointFormat};
 #[cfg(feature = "formats")]
 use super::mesh::CellCount;
 use super::{ModelFacts, Points, PointsError};
-use crate::advice::Setting;
-use crate::setters::setters;
 #[cfg(feature = "formats")]
 use crate::shown::shown;
 use crate::volume::{Reason, begins_as_volume, start_of};

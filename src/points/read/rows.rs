@@ -1,7 +1,8 @@
 use std::path::Path;
 
+use walpha_base::advice::{Setting, advice};
+
 use super::{COLUMNS, Columns, Points, PointsError, RADIUS, format, take_radii};
-use crate::advice::{Setting, advice};
 use crate::volume::Reason;
 
 impl Columns {

@@ -4,14 +4,15 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use walpha_base::advice::{Setting, advice};
+use walpha_base::memory::room;
+
 use super::super::read::format;
 use super::super::{ModelFacts, Points, PointsError, SampleGrid, WeightedPoints};
 use super::coder::Decoder;
 use super::column;
 use super::header::{CHECKSUM, Header, Layer, Values, Weights, damaged, fits};
 use super::write::{Coders, in_order};
-use crate::advice::{Setting, advice};
-use crate::memory::room;
 use crate::volume::{Reason, io_error};
 
 /// Reads points without the last `level` layers, and what is known of them.

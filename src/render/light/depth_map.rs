@@ -1,5 +1,6 @@
+use walpha_base::vector::{V3, add, along, dot, length, scale, sub};
+
 use super::directions::across;
-use crate::math::vector::{V3, add, along, dot, length, scale, sub};
 use crate::render::scene::Scene;
 
 /// A place that asks for its light: raised a little along `normal` so that its own

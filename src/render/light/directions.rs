@@ -1,6 +1,6 @@
 //! Directions to look at a scene from, evenly spread without a sine at run time.
 
-use crate::math::vector::{V3, along, cross, unit};
+use walpha_base::vector::{V3, along, cross, unit};
 
 /// cos and sin of the golden angle π(3 − √5). Turning by it again and again, by complex
 /// multiplication, spreads directions evenly without a sine at run time.

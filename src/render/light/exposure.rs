@@ -4,11 +4,11 @@
 //! surrounds them, seen or not, and is free of noise.
 
 use rayon::prelude::*;
+use walpha_base::vector::{V3, along, dot, scale, unit};
 
 use super::depth_map::{DepthMap, Receiver, Space};
 use super::directions::{cone_directions, sphere_directions};
 use super::studio::Studio;
-use crate::math::vector::{V3, along, dot, scale, unit};
 use crate::progress;
 use crate::render::normals::vertex_normals;
 use crate::render::scene::{Mesh, Scene, Shading};

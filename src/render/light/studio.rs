@@ -1,4 +1,5 @@
-use crate::math::vector::{V3, add, dot, scale, sub, unit};
+use walpha_base::vector::{V3, add, dot, scale, sub, unit};
+
 use crate::render::scene::{Lens, Projection};
 
 /// The lamps, fixed to the camera as in a photographer's studio, so that every panel of a figure

@@ -3,11 +3,11 @@
 mod cases;
 
 use ndarray::{ArrayView2, ArrayView3, s};
+use walpha_base::vector::{cross, length, sub};
 
 use self::cases::{CASES, CORNERS, EDGES};
 use super::error::RenderError;
 use super::scene::Mesh;
-use crate::math::vector::{cross, length, sub};
 
 /// The surface that parts the samples at or above a value from those below it.
 ///

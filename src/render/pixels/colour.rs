@@ -1,4 +1,4 @@
-use crate::math::vector::saturate;
+use walpha_base::vector::saturate;
 
 /// A colour as files and screens have it: red, green, blue, 0 to 255 each (sRGB).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,7 @@
+use walpha_base::vector::{self, V3, along, dot, scale, sub, unit};
+
 use super::sphere;
 use super::stage::Stage;
-use crate::math::vector::{self, V3, along, dot, scale, sub, unit};
 use crate::render::pixels::{Patch, PixelBox, SAMPLES, Size, sample_position};
 use crate::render::scene::{Lens, Tube};
 

@@ -1,5 +1,6 @@
+use walpha_base::vector::{V3, add, along, dot, scale, sub, unit};
+
 use super::stage::Stage;
-use crate::math::vector::{V3, add, along, dot, scale, sub, unit};
 use crate::render::pixels::{Patch, PixelBox, SAMPLES, Size, sample_position};
 use crate::render::scene::{Ball, Lens, Projection};
 

@@ -1,5 +1,6 @@
+use walpha_base::vector::{V3, add, along, cross, dot, scale, sub, unit};
+
 use super::stage::Stage;
-use crate::math::vector::{V3, add, along, cross, dot, scale, sub, unit};
 use crate::render::light::Side;
 use crate::render::pixels::{Patch, PixelBox, SAMPLE, SAMPLES, STEPS, Size, sample_position};
 use crate::render::scene::{Colours, Lens, Mesh, Projection, Shading};

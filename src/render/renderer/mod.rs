@@ -7,13 +7,13 @@ mod tile;
 mod tiles;
 
 use rayon::prelude::*;
+use walpha_base::memory::room;
 
 use super::error::RenderError;
 use super::light::{Exposure, Studio};
 use super::pixels::{Picture, Size};
 use super::primitives::{Primitive, Stage};
 use super::scene::{Background, Camera, Lens, Scene};
-use crate::memory::room;
 use tile::draw;
 use tiles::Tiles;
 

@@ -1,4 +1,5 @@
-use crate::math::vector::{V3, add, cross, dot, length, scale, sub, unit};
+use walpha_base::vector::{V3, add, cross, dot, length, scale, sub, unit};
+
 use crate::render::error::RenderError;
 use crate::render::pixels::Size;
 

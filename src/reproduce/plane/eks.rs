@@ -1,8 +1,9 @@
+use walpha_regular::Sites;
+
 use super::contact::{self, Contacts, Diagram};
 use super::exact::Exact;
 use super::mesh::Mesh;
 use super::{Curvature, PlaneError};
-use crate::triangulation::Sites;
 
 /// The α-shape of a set of points in the plane after Edelsbrunner, Kirkpatrick and Seidel, "On the
 /// shape of a set of points in the plane", 1983, doi:10.1109/TIT.1983.1056714.

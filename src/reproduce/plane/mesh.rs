@@ -1,7 +1,10 @@
 use std::collections::HashMap;
 
+use walpha_regular::Sites;
+
 use crate::cgal;
-use crate::triangulation::{Sites, TriangulationError};
+
+use crate::CgalError;
 
 /// A triangulation of the plane with what lies on the two sides of each edge, by site index and in
 /// an order of its own: triangles counter-clockwise from their smallest vertex, edges with the
@@ -30,12 +33,12 @@ pub(super) struct Side {
 
 impl Mesh {
     /// The regular triangulation.
-    pub(super) fn closest(sites: &Sites<'_, 2>) -> Result<Self, TriangulationError> {
+    pub(super) fn closest(sites: &Sites<'_, 2>) -> Result<Self, CgalError> {
         Ok(Self::new(&cgal::regular_plane(sites)?))
     }
 
     /// The farthest-point Delaunay triangulation.
-    pub(super) fn farthest(sites: &Sites<'_, 2>) -> Result<Self, TriangulationError> {
+    pub(super) fn farthest(sites: &Sites<'_, 2>) -> Result<Self, CgalError> {
         Ok(Self::new(&cgal::farthest_plane(sites)?))
     }
 

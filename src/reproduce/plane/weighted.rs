@@ -1,8 +1,9 @@
+use walpha_regular::Sites;
+
 use super::PlaneError;
 use super::exact::Exact;
 use super::mesh::{Edge, Mesh};
 use crate::shape::{Alpha, Class, Simplices, UnionFind};
-use crate::triangulation::Sites;
 
 /// The weighted α-shape of points in the plane: discs of squared radius α + ω, and the complex
 /// dual to their union (Edelsbrunner 1992).

@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+use walpha_regular::Sites;
 
 use super::classify::{Dimension, Owned, Rows, Shelf, Shelves, Side};
 use super::{Answer, Partition, Plan, Question};
 use crate::shape::winding::{WindingSets, minus};
 use crate::shape::{Class, Complex, Simplices, UnionFind};
-use crate::triangulation::Sites;
 
 /// Sites merged by one thread at a time.
 const CHUNK: usize = 1 << 12;

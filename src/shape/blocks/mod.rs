@@ -24,13 +24,11 @@ mod spanning;
 mod torus;
 
 use rayon::prelude::*;
+use walpha_regular::Lattice;
+use walpha_regular::{Sites, Torus, Triangulation, TriangulationError, check_span, insert_all};
 
 use super::{Complex, ShapeError};
-use crate::math::Lattice;
 use crate::progress::Piece;
-use crate::triangulation::{
-    Sites, Torus, Triangulation, TriangulationError, check_span, incremental,
-};
 
 use classify::{Owned, Shelves, classify};
 use merge::merge;
@@ -180,7 +178,7 @@ const TRIANGULATION: u64 = 2;
 fn triangulate(points: &Block, work: &Piece) -> Result<Triangulation, TriangulationError> {
     let (own, all) = (TRIANGULATION * u64::from(points.own), points.input.len() as u64);
     let (mut inside, mut counted) = (0, 0);
-    let made = incremental(&points.positions, &points.weights, |more| {
+    let made = insert_all(&points.positions, &points.weights, |more| {
         inside += more as u64;
         let units = own * inside / all;
         work.add(units - counted);

@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+use walpha_regular::Sites;
 
 use super::{Block, Copies, Reach};
-use crate::triangulation::Sites;
 
 /// Boxes of about equally many sites: each cut across its longest side.
 pub(crate) struct Partition {

@@ -1,13 +1,14 @@
 //! A block alone: what it owns of a shape whose other blocks are elsewhere.
 
+use walpha_regular::Lattice;
+use walpha_regular::Sites;
+
 use super::classify::{Dimension, Owned, Shelves, classify};
 use super::partition::Neighbourhood;
 use super::spanning::spanning;
 use super::{Block, Question};
-use crate::math::Lattice;
 use crate::progress::Piece;
 use crate::shape::{Class, Complex, ShapeError, Simplices, UnionFind};
-use crate::triangulation::Sites;
 
 /// Points around a block, in the order of their indices in the whole set, with weights.
 #[derive(Clone, Copy)]

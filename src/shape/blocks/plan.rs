@@ -1,9 +1,10 @@
 //! Into how many blocks a set is cut.
 
+use walpha_base::advice::Advice;
+use walpha_base::memory::{self, NoMemory};
+use walpha_regular::Sites;
+
 use super::{Partition, Reach};
-use crate::advice::Advice;
-use crate::memory::{self, NoMemory};
-use crate::triangulation::Sites;
 
 /// The blocks, and how many are worked on at once.
 pub(crate) struct Plan {

@@ -1,6 +1,6 @@
 //! How far from a block what matters to it may be.
 
-use crate::triangulation::Sites;
+use walpha_regular::Sites;
 
 /// How far the halo of a block goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,8 +42,9 @@ impl Reach {
 
 #[cfg(test)]
 mod tests {
+    use walpha_regular::Torus;
+
     use super::*;
-    use crate::triangulation::Torus;
 
     /// Half of a diagonal of 13 is 6.5, whose square is 42.25.
     #[test]

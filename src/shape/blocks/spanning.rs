@@ -1,8 +1,9 @@
 //! Blocks whose points may span no volume: along a line of points, most do not.
 
+use walpha_regular::{SitesError, Triangulation, TriangulationError, beside};
+
 use super::{Block, triangulate};
 use crate::progress::Piece;
-use crate::triangulation::{SitesError, Triangulation, TriangulationError, beside};
 
 /// Triangulates a block, where its points span no volume with places beside them, numbered from `next`.
 /// Their balls at α are empty: they are in no simplex of the shape, and refute none.
@@ -27,10 +28,11 @@ pub(super) fn spanning(
 
 #[cfg(test)]
 mod tests {
+    use walpha_regular::Lattice;
+    use walpha_regular::Sites;
+
     use super::super::{Partition, Question, in_space};
     use super::*;
-    use crate::math::Lattice;
-    use crate::triangulation::Sites;
 
     /// Blocks of a line once took all points with them: quadratic in the number of blocks.
     #[test]

@@ -1,15 +1,15 @@
 //! How far a block of a torus looks: less than what is asked for, where that decides it.
 
 use rayon::prelude::*;
+use walpha_regular::Lattice;
+use walpha_regular::{
+    AXES, Predicates, Sites, SitesError, Torus, Triangulation, TriangulationError,
+};
 
 use super::classify::Long;
 use super::{Block, Partition, Question, Reach, triangulate};
-use crate::math::Lattice;
 use crate::progress::Piece;
 use crate::shape::ShapeError;
-use crate::triangulation::{
-    AXES, Predicates, Sites, SitesError, Torus, Triangulation, TriangulationError,
-};
 
 /// A block with what decides what it owns around it: as much as there are large empty spheres.
 pub(super) fn on_torus(

@@ -6,9 +6,11 @@ use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
+use walpha_base::advice::Setting;
+
 use super::{FORMATS, VolumeFormat};
-use crate::advice::Setting;
 use crate::near::nearest;
+
 #[cfg(feature = "formats")]
 use crate::volume::read::naming;
 use crate::volume::read::{format_error, io_error, raw};

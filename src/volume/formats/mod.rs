@@ -23,8 +23,9 @@ pub(crate) use built::built;
 pub(crate) use detect::{begins_as_volume, source, start_of};
 pub(crate) use files::files_of;
 
+use walpha_base::advice::Setting;
+
 use super::{ReadOptions, Source, Volume, VolumeError};
-use crate::advice::Setting;
 
 /// Reads a file or folder.
 type Read = fn(&Path, &ReadOptions) -> Result<Volume, VolumeError>;

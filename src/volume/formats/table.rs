@@ -1,8 +1,10 @@
+use walpha_base::advice::Setting;
+
 use super::begins::{is_dicom, is_metaimage, is_mgh, is_nifti, is_vtk, is_vtk_xml};
 use super::built;
 use super::{Keeps, VolumeFormat, VolumeWriter, detect};
-use crate::advice::Setting;
 use crate::volume::read::{NpyFile, inr, npy, raw, series};
+
 #[cfg(feature = "formats")]
 use crate::volume::read::{metaimage, mgh, nifti, npz, nrrd, slices, tiff, vti, vtk};
 use crate::volume::write;

@@ -1,6 +1,7 @@
 use std::path::Path;
 
-use crate::advice::Advice;
+use walpha_base::advice::Advice;
+
 use crate::near::nearest;
 use crate::shown::shown;
 

@@ -68,8 +68,9 @@ pub(crate) use vtk::VtkPoints;
 #[cfg(feature = "formats")]
 pub(crate) use vtk_xml::VtkXml;
 
+use walpha_base::setters;
+
 use super::{Dims, Dtype, Nan, Reason, Region, Volume, VolumeError, downsample};
-use crate::setters::setters;
 
 /// What a user says about a file beyond its name.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

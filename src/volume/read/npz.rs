@@ -2,13 +2,13 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
+use walpha_base::advice::{Setting, advice};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
 use super::npy::{self, NpyFile};
 use super::payload::MOST_EXPANSION;
 use super::{format_error, io_error};
-use crate::advice::{Setting, advice};
 use crate::volume::{Reason, Volume, VolumeError};
 
 /// Reads NPZ, `NumPy`'s archive of arrays (`savez`, `savez_compressed`): its only array of three axes, or

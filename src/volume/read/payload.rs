@@ -1,8 +1,8 @@
 use std::io::{self, Read};
 
 use rayon::prelude::*;
+use walpha_base::memory::asking;
 
-use crate::memory::asking;
 use crate::progress;
 use crate::volume::{Dtype, Endian};
 

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
+use walpha_base::advice::{Setting, advice};
+use walpha_base::setters;
 
 use super::payload::{Length, Payload, PayloadError};
 use super::rows::Rows;
 use super::{io_error, payload_error};
-use crate::advice::{Setting, advice};
-use crate::setters::setters;
 use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError, any_size};
 
 /// What a file of bare samples does not say of itself.

@@ -1,8 +1,9 @@
 use std::io::Read;
 use std::str::FromStr;
 
+use walpha_base::memory::{NoMemory, room};
+
 use super::payload::Element;
-use crate::memory::{NoMemory, room};
 use crate::volume::{Dtype, Reason};
 
 /// Reads exactly `count` numbers of a type, written as text with white space between them, from

@@ -8,8 +8,9 @@ use std::path::Path;
 pub(super) use phantom::PhantomParts;
 pub use phantom::phantom;
 
+use walpha_base::advice::Advice;
+
 use super::{Frame, ReadOptions, Volume, VolumeError, read};
-use crate::advice::Advice;
 use crate::near::nearest;
 
 /// The samples there are, as a user writes them.

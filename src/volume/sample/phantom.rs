@@ -1,7 +1,7 @@
 use ndarray::Array3;
 use rayon::prelude::*;
+use walpha_base::memory::room;
 
-use crate::memory::room;
 use crate::volume::source::{Parts, Source};
 use crate::volume::{Dims, Dtype, Frame, Volume, VolumeError};
 

@@ -12,9 +12,10 @@ mod rows;
 mod sheets;
 mod stars;
 
+use walpha_regular::{Predicates, Triangulation};
+
 use super::{Block, Question};
 use crate::shape::UnionFind;
-use crate::triangulation::{Predicates, Triangulation};
 
 use around::Walker;
 use cells::{Boundary, State};

@@ -1,7 +1,8 @@
 //! Cuts and halos, against every point.
 
+use walpha_regular::Torus;
+
 use super::*;
-use crate::triangulation::Torus;
 
 /// Points in a box of 4 by 8 by 2, on and between the places of a grid.
 fn points() -> (Vec<[f64; 3]>, Vec<f64>) {

@@ -1,8 +1,9 @@
 //! Plans against all that there are, and runs that do not keep to theirs.
 
+use walpha_regular::Lattice;
+
 use super::super::{Question, run as run_blocks};
 use super::*;
-use crate::math::Lattice;
 use crate::shape::ShapeError;
 
 /// Each cube of a grid has six cells: with their faces more than is reckoned with for each point.

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
+use walpha_base::advice::{Setting, advice};
 
 use super::slice::{Found, Slice};
-use crate::advice::{Setting, advice};
 use crate::shown::shown;
 use crate::volume::read::format_error;
 use crate::volume::read::series::{Files, files};

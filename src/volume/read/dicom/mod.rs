@@ -10,13 +10,13 @@ mod stack;
 use std::path::Path;
 
 use rayon::prelude::*;
+use walpha_base::advice::{Setting, advice};
+use walpha_base::memory::asking;
 
 use super::described::{Described, Encoding};
 use super::frames::Frames;
 use super::series::Series;
 use super::{ReadOptions, format_error};
-use crate::advice::{Setting, advice};
-use crate::memory::asking;
 use crate::progress;
 use crate::shown::shown;
 use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};

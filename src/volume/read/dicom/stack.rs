@@ -1,7 +1,8 @@
 use std::path::Path;
 
+use walpha_base::vector::{cross, dot};
+
 use super::slice::Slice;
-use crate::math::vector::{cross, dot};
 use crate::volume::read::format_error;
 use crate::volume::{Coordinates, Frame, Reason, VolumeError};
 

@@ -7,11 +7,12 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use walpha_base::advice::{Setting, advice};
+
 use super::described::{Described, Encoding, frame};
 use super::frames::Frames;
 use super::lines::Lines;
 use super::{format_error, io_error, text};
-use crate::advice::{Setting, advice};
 use crate::volume::{Coordinates, Dims, Dtype, Endian, Reason, Volume, VolumeError};
 
 use arrays::Array;

@@ -4,6 +4,7 @@ use std::path::{Component, Path};
 use std::sync::Arc;
 
 use serde_json::Value;
+use walpha_base::advice::{Setting, advice};
 use zarrs::array::Array;
 use zarrs::filesystem::FilesystemStore;
 use zarrs::group::Group;
@@ -13,7 +14,6 @@ use super::super::format_error;
 use super::super::frames::Frames;
 use super::super::series::is_zarr;
 use super::{Stored, damaged};
-use crate::advice::{Setting, advice};
 use crate::shown::shown;
 use crate::volume::{Coordinates, Dims, LengthUnit, Reason, VolumeError};
 

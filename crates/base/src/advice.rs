@@ -1,0 +1,170 @@
+//! What to do about an error: words, and the settings of the library they speak of.
+
+use std::borrow::Cow;
+use std::fmt;
+
+/// What to do about an error. Settings are named as the library has them; a program with other names
+/// for them, such as options of a command, words it with these ([`told`](Self::told)).
+///
+/// ```
+/// use walpha_base::advice::{Setting, advice};
+///
+/// let advice = advice!["lower ", Setting::Alpha];
+/// assert_eq!(advice.to_string(), "lower `alpha`");
+/// assert_eq!(advice.told(|setting| format!("--{}", setting.name())), "lower --alpha");
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Advice(Vec<Part>);
+
+/// A piece of advice, made of texts and settings side by side.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[doc(hidden)]
+pub enum Part {
+    Text(Cow<'static, str>),
+    Setting(Setting),
+}
+
+/// A setting that errors speak of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+#[allow(missing_docs, reason = "the fields of options say what they are")]
+pub enum Setting {
+    Alpha,
+    AlphaRef,
+    Array,
+    Balls,
+    Blocks,
+    Columns,
+    Dims,
+    Downsample,
+    Dtype,
+    Engine,
+    Exterior,
+    Format,
+    Frame,
+    GrayMin,
+    Hidden,
+    InPlace,
+    Level,
+    Memory,
+    Nan,
+    Offset,
+    Periodic,
+    Ratio,
+    Region,
+    Series,
+    SkipDamaged,
+    Solid,
+    Threshold,
+}
+
+impl Setting {
+    /// Its name, in lower case, with underscores.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Alpha => "alpha",
+            Self::AlphaRef => "alpha_ref",
+            Self::Array => "array",
+            Self::Balls => "balls",
+            Self::Blocks => "blocks",
+            Self::Columns => "columns",
+            Self::Dims => "dims",
+            Self::Downsample => "downsample",
+            Self::Dtype => "dtype",
+            Self::Engine => "engine",
+            Self::Exterior => "exterior",
+            Self::Format => "format",
+            Self::Frame => "frame",
+            Self::GrayMin => "gray_min",
+            Self::Hidden => "hidden",
+            Self::InPlace => "in_place",
+            Self::Level => "level",
+            Self::Memory => "memory",
+            Self::Nan => "nan",
+            Self::Offset => "offset",
+            Self::Periodic => "periodic",
+            Self::Ratio => "ratio",
+            Self::Region => "region",
+            Self::Series => "series",
+            Self::SkipDamaged => "skip_damaged",
+            Self::Solid => "solid",
+            Self::Threshold => "threshold",
+        }
+    }
+}
+
+impl Advice {
+    #[doc(hidden)]
+    pub fn new(parts: impl IntoIterator<Item = Part>) -> Self {
+        Self(parts.into_iter().collect())
+    }
+
+    /// The text, with each setting called as `name` calls it.
+    pub fn told(&self, name: impl Fn(Setting) -> String) -> String {
+        let part = |part: &Part| match part {
+            Part::Text(text) => text.to_string(),
+            Part::Setting(setting) => name(*setting),
+        };
+        self.0.iter().map(part).collect()
+    }
+}
+
+impl fmt::Display for Advice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.told(|setting| format!("`{}`", setting.name())))
+    }
+}
+
+impl From<&'static str> for Advice {
+    fn from(text: &'static str) -> Self {
+        Self::new([text.into()])
+    }
+}
+
+impl From<String> for Advice {
+    fn from(text: String) -> Self {
+        Self::new([text.into()])
+    }
+}
+
+impl From<&'static str> for Part {
+    fn from(text: &'static str) -> Self {
+        Self::Text(text.into())
+    }
+}
+
+impl From<String> for Part {
+    fn from(text: String) -> Self {
+        Self::Text(text.into())
+    }
+}
+
+impl From<Setting> for Part {
+    fn from(setting: Setting) -> Self {
+        Self::Setting(setting)
+    }
+}
+
+/// An [`Advice`] of texts and settings: `advice!["omit ", Setting::Frame]`.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __advice {
+    [$($part:expr),+ $(,)?] => {
+        $crate::advice::Advice::new([$($crate::advice::Part::from($part)),+])
+    };
+}
+#[doc(inline)]
+pub use __advice as advice;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_called_as_the_reader_calls_them() {
+        let advice = advice!["omit ", Setting::GrayMin, format!(", or give {}", 3)];
+        assert_eq!(advice.to_string(), "omit `gray_min`, or give 3");
+        let flag = |setting: Setting| format!("--{}", setting.name().replace('_', "-"));
+        assert_eq!(advice.told(flag), "omit --gray-min, or give 3");
+    }
+}

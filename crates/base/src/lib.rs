@@ -1,0 +1,26 @@
+//! What several crates of walpha need and none owns: what errors advise, memory that may be refused, sums of
+//! doubles that are rounded once, vectors.
+//!
+//! For walpha's own crates; other programs have no need of it.
+//!
+//! ```
+//! use walpha_base::Sum;
+//!
+//! let mut sum = Sum::default();
+//! [1e100, 1.0, -1e100].into_iter().for_each(|term| sum.add(term));
+//! assert_eq!(sum.value(), 1.0);
+//! ```
+
+pub mod advice;
+pub mod memory;
+mod setters;
+mod sum;
+pub mod vector;
+
+pub use setters::setters;
+pub use sum::Sum;
+
+/// The example in the README runs.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,137 @@
+/// A sum of doubles that is rounded once, when it is asked for: whatever the order of the terms, and however they
+/// were grouped, the result is the same double.
+///
+/// The sum so far is kept as doubles that do not overlap, the smallest first, two or three of them as a
+/// rule (Shewchuk, "Adaptive Precision Floating-Point Arithmetic", 1997,
+/// doi:10.1007/PL00009321, section 2.4).
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Sum {
+    parts: Vec<f64>,
+    /// What no double can hold: infinite and undefined terms.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    beyond: f64,
+}
+
+impl Sum {
+    /// Adds a term. O(parts).
+    pub fn add(&mut self, term: f64) {
+        if !term.is_finite() {
+            self.beyond += term;
+            return;
+        }
+        let mut carry = term;
+        let mut kept = 0;
+        for i in 0..self.parts.len() {
+            let part = self.parts[i];
+            let (large, small) =
+                if carry.abs() < part.abs() { (part, carry) } else { (carry, part) };
+            carry = large + small;
+            if carry.is_infinite() {
+                self.beyond += carry;
+                self.parts.clear();
+                return;
+            }
+            let rest = small - (carry - large);
+            if rest != 0.0 {
+                self.parts[kept] = rest;
+                kept += 1;
+            }
+        }
+        self.parts.truncate(kept);
+        if carry != 0.0 {
+            self.parts.push(carry);
+        }
+    }
+
+    /// Adds all that another sum has.
+    pub fn join(&mut self, other: &Self) {
+        other.parts.iter().for_each(|&part| self.add(part));
+        self.beyond += other.beyond;
+    }
+
+    /// The double nearest to the sum, of two the even one.
+    pub fn value(&self) -> f64 {
+        if self.beyond != 0.0 {
+            return self.beyond;
+        }
+        let Some((&last, rest)) = self.parts.split_last() else { return 0.0 };
+        let (mut high, mut low, mut left) = (last, 0.0, rest.len());
+        while left > 0 {
+            left -= 1;
+            let before = high;
+            high = before + rest[left];
+            low = rest[left] - (high - before);
+            if low != 0.0 {
+                break;
+            }
+        }
+        // What is left off lies half-way between two doubles, and what follows it decides.
+        if left > 0 && low != 0.0 && (low < 0.0) == (rest[left - 1] < 0.0) {
+            let doubled = 2.0 * low;
+            let next = high + doubled;
+            if next - high == doubled {
+                high = next;
+            }
+        }
+        high
+    }
+
+    /// Whether the sum is at most this, exactly.
+    pub fn is_at_most(&self, limit: f64) -> bool {
+        if self.beyond != 0.0 || limit.is_infinite() {
+            return self.beyond <= limit;
+        }
+        let mut difference = self.clone();
+        difference.add(-limit);
+        difference.parts.last().is_none_or(|&largest| largest <= 0.0)
+    }
+}
+
+impl FromIterator<f64> for Sum {
+    fn from_iter<I: IntoIterator<Item = f64>>(terms: I) -> Self {
+        let mut sum = Self::default();
+        terms.into_iter().for_each(|term| sum.add(term));
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_do_not_depend_on_their_order() {
+        let mut state = 1u64;
+        let mut random = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            let exponent = (state >> 58) as i32 - 32;
+            ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * 2f64.powi(exponent)
+        };
+        let terms: Vec<f64> = (0..1000).map(|_| random()).collect();
+        let sum: Sum = terms.iter().copied().collect();
+        let back: Sum = terms.iter().rev().copied().collect();
+        let mut halves: Sum = terms[..300].iter().copied().collect();
+        halves.join(&terms[300..].iter().copied().collect());
+        assert_eq!(sum.value().to_bits(), back.value().to_bits());
+        assert_eq!(sum.value().to_bits(), halves.value().to_bits());
+        let plain: f64 = terms.iter().sum();
+        assert!((sum.value() - plain).abs() < 1e-5 * plain.abs().max(1.0));
+    }
+
+    #[test]
+    fn sums_are_rounded_once() {
+        let half = 2f64.powi(-53);
+        let of = |terms: &[f64]| terms.iter().copied().collect::<Sum>().value();
+        // Half-way: to the even one, unless something is left beyond.
+        assert_eq!(of(&[1.0, half]), 1.0);
+        assert_eq!(of(&[1.0, half, 1e-300]), 1.0 + 2.0 * half);
+        assert_eq!(of(&[1.0, half, -1e-300]), 1.0);
+        assert_eq!(of(&[1e100, 1.0, -1e100]), 1.0);
+        assert_eq!(of(&[]), 0.0);
+        assert_eq!(of(&[f64::MAX, f64::MAX]), f64::INFINITY);
+        let sum: Sum = [1.0, 1e-300].into_iter().collect();
+        assert!(!sum.is_at_most(1.0) && sum.is_at_most(1.0f64.next_up()));
+        assert!(Sum::default().is_at_most(0.0) && sum.is_at_most(f64::INFINITY));
+    }
+}

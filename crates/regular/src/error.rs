@@ -1,0 +1,105 @@
+use walpha_base::advice::Advice;
+
+use super::Triangulation;
+
+/// Why points make no sites.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SitesError {
+    /// Positions and weights do not pair up.
+    #[error("{positions} positions but {weights} weights: each point needs one weight")]
+    Lengths {
+        /// Positions given.
+        positions: usize,
+        /// Weights given.
+        weights: usize,
+    },
+    /// More points than 32-bit indices.
+    #[error("{0} points are too many: at most {max} fit a 32-bit index", max = u32::MAX)]
+    TooMany(usize),
+    /// NaN, infinity or an absurd magnitude.
+    #[error(
+        "point {index} has {what} {value}: it must be a finite number of magnitude at most {limit:e}"
+    )]
+    Value {
+        /// Input index of the point.
+        index: usize,
+        /// Which of its numbers.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// The largest magnitude accepted.
+        limit: f64,
+    },
+    /// No point at all, where one would do.
+    #[error("there is no point: at least 1 is needed")]
+    Empty,
+    /// Fewer than four different places.
+    #[error("{distinct} distinct points cannot span a tetrahedron: at least 4 are needed")]
+    TooFew {
+        /// Different places among the input.
+        distinct: usize,
+    },
+    /// All points in one plane or on one line.
+    #[error("all {points} points lie {on}: a 3D triangulation needs points that span a volume")]
+    Flat {
+        /// Different places among the input.
+        points: usize,
+        /// "in one plane" or "on one line".
+        on: &'static str,
+    },
+}
+
+impl SitesError {
+    /// So many points whose affine hull has a dimension below 3.
+    #[doc(hidden)]
+    pub fn flat(points: usize, dimension: i32) -> Self {
+        Self::Flat { points, on: if dimension == 2 { "in one plane" } else { "on one line" } }
+    }
+}
+
+/// Why points cannot be triangulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TriangulationError {
+    /// The points cannot be triangulated.
+    #[error(transparent)]
+    Sites(#[from] SitesError),
+    /// More cells than the arrays can name.
+    #[error(
+        "the triangulation has more than {} cells: that is more than its arrays can name",
+        Triangulation::MOST_CELLS
+    )]
+    TooManyCells,
+    /// The system gives no more memory.
+    #[error("no memory for the triangulation: {} MiB are needed at once", bytes >> 20)]
+    Memory {
+        /// Bytes asked for.
+        bytes: usize,
+    },
+}
+
+impl SitesError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        Some(match self {
+            Self::Lengths { .. } => return None,
+            Self::TooMany(_) => "select fewer".into(),
+            Self::Value { .. } => "clean or rescale the input".into(),
+            Self::Empty => "select some".into(),
+            Self::TooFew { .. } => "select more points".into(),
+            Self::Flat { .. } => "select more points, or perturb them knowingly".into(),
+        })
+    }
+}
+
+impl TriangulationError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        Some(match self {
+            Self::Sites(error) => return error.advice(),
+            Self::TooManyCells => "use more blocks, or select fewer points".into(),
+            Self::Memory { .. } => "allow more, use more blocks, or select fewer points".into(),
+        })
+    }
+}

@@ -1,0 +1,109 @@
+//! The polynomials behind every geometric decision, written once for doubles and for integers.
+//!
+//! Orientation and power test are determinants of rays from one of the points to the others.
+//!
+//! Seen from a simplex's first vertex p, with rays a = q − p and powers t = |a|² + ω(p) − ω(q) of
+//! the others, the centre is p + c where 2c·a = t for each ray and c lies in the span of the rays;
+//! the squared radius is |c|² − ω(p). A point at the ray e is inside if its power < 2c·e.
+
+use crate::number::{Number, Scale, cross, dot};
+
+/// From the first vertex to another. Where a lattice makes vectors exact in doubles, only powers
+/// need more digits.
+#[derive(Clone, Copy)]
+pub(super) struct Ray<T, V = T> {
+    pub vector: [V; 3],
+    pub power: T,
+}
+
+/// The determinant of three vectors: positive if they turn like the axes x, y, z.
+#[inline(always)]
+pub(super) fn determinant<T: Number>([a, b, c]: [&[T; 3]; 3]) -> T {
+    dot(a, &cross(b, c))
+}
+
+/// The determinant of four rays as rows (x, y, z, power), by 2×2 minors. For the rays from a point t
+/// to the corners of a positively oriented cell it is negative if t lies strictly inside the cell's
+/// orthogonal sphere. Powers may also be differences of lifted heights |p|² − ω, which adds
+/// multiples of the other columns.
+#[inline(always)]
+pub(super) fn power_determinant<T: Number>([a, b, c, d]: &[Ray<T>; 4]) -> T {
+    // Laplace's expansion by two rows and the two others.
+    let terms = [
+        products(minors(a, b), minors(c, d)),
+        products(minors(a, c), minors(b, d)),
+        products(minors(a, d), minors(b, c)),
+    ];
+    let [x, y] = [0, 1].map(|i| terms[0][i].minus(&terms[1][i]).plus(&terms[2][i]));
+    x.plus(&y)
+}
+
+/// The minors of two rays in the columns (x, y) and (z, power), side by side: a processor computes
+/// both at once.
+#[inline(always)]
+fn minors<T: Number>(p: &Ray<T>, q: &Ray<T>) -> [T; 2] {
+    let (low_p, high_p) = ([&p.vector[0], &p.vector[2]], [&p.vector[1], &p.power]);
+    let (low_q, high_q) = ([&q.vector[0], &q.vector[2]], [&q.vector[1], &q.power]);
+    [0, 1].map(|i| low_p[i].times(high_q[i]).minus(&low_q[i].times(high_p[i])))
+}
+
+/// The products of the minors of two rays with the opposite ones of two others.
+#[inline(always)]
+fn products<T: Number>([u, v]: [T; 2], [x, y]: [T; 2]) -> [T; 2] {
+    [u.times(&y), v.times(&x)]
+}
+
+/// 4 d·|c|² and d, where d ≥ 0 depends on the rays alone: of degree 2 for one ray, 4 for two, 6
+/// for three.
+#[inline(always)]
+pub(super) fn quotient<T: Scale<V>, V: Number>(rays: &[Ray<T, V>]) -> (T, V) {
+    match rays {
+        [a] => (a.power.times(&a.power), dot(&a.vector, &a.vector)),
+        [a, b] => {
+            let ([u, v], d) = gram(a, b);
+            (u.times(&a.power).plus(&v.times(&b.power)), d)
+        }
+        [a, b, c] => {
+            let normal = |u: &Ray<T, V>, v: &Ray<T, V>| cross(&u.vector, &v.vector);
+            let normals = [normal(b, c), normal(c, a), normal(a, b)];
+            let component = |k: usize| {
+                let [x, y, z] = [0, 1, 2].map(|i| rays[i].power.scaled(&normals[i][k]));
+                x.plus(&y).plus(&z)
+            };
+            let twice = [component(0), component(1), component(2)];
+            let det = dot(&a.vector, &normals[0]);
+            (dot(&twice, &twice), det.times(&det))
+        }
+        _ => unreachable!("a simplex has one to three rays"),
+    }
+}
+
+/// A positive multiple of the power of the point at `e` less 2c·e: negative inside the sphere of a
+/// vertex, an edge or a facet.
+#[inline(always)]
+pub(super) fn side<T: Number>(rays: &[Ray<T>], e: &Ray<T>) -> T {
+    match rays {
+        [a] => {
+            let along = a.power.times(&dot(&e.vector, &a.vector));
+            e.power.times(&dot(&a.vector, &a.vector)).minus(&along)
+        }
+        [a, b] => {
+            let ([u, v], d) = gram(a, b);
+            let along = u.times(&dot(&e.vector, &a.vector));
+            let along = along.plus(&v.times(&dot(&e.vector, &b.vector)));
+            e.power.times(&d).minus(&along)
+        }
+        _ => unreachable!("only edges and facets are asked about"),
+    }
+}
+
+/// The Gram determinant d of two rays, and d times the coordinates of 2c in them.
+#[inline(always)]
+fn gram<T: Scale<V>, V: Number>(a: &Ray<T, V>, b: &Ray<T, V>) -> ([T; 2], V) {
+    let aa = dot(&a.vector, &a.vector);
+    let bb = dot(&b.vector, &b.vector);
+    let ab = dot(&a.vector, &b.vector);
+    let u = a.power.scaled(&bb).minus(&b.power.scaled(&ab));
+    let v = b.power.scaled(&aa).minus(&a.power.scaled(&ab));
+    ([u, v], aa.times(&bb).minus(&ab.times(&ab)))
+}

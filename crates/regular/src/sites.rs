@@ -1,0 +1,212 @@
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+
+use super::curve::{self, Keyed};
+use super::{SitesError, Torus};
+
+/// Weighted points of space (or, with `D` = 2, of the plane) that can be triangulated: all numbers
+/// finite and of sane magnitude, no two places equal. Checked once, then trusted. In space at least
+/// four points; in the plane one will do, and points on one line are welcome.
+#[derive(Clone, Debug)]
+pub struct Sites<'a, const D: usize = 3> {
+    positions: Cow<'a, [[f64; D]]>,
+    weights: Cow<'a, [f64]>,
+    /// Input index of each site.
+    input: Vec<u32>,
+    duplicates: Vec<[u32; 2]>,
+    /// The sites in an order in which neighbours are near each other in space.
+    curve: Vec<u32>,
+    /// The box that repeats, if one does: all positions are in it.
+    torus: Option<Torus>,
+}
+
+/// The largest coordinate accepted, 2⁵⁰⁰ ≈ 3.3e150: its square, and so every power distance, is still a
+/// finite double.
+pub const MAX_COORDINATE: f64 = f64::from_bits((1023 + 500) << 52);
+/// The largest weight accepted, 2¹⁰⁰⁰: a squared length.
+pub const MAX_WEIGHT: f64 = f64::from_bits((1023 + 1000) << 52);
+
+impl<'a> Sites<'a> {
+    /// Checks points and removes duplicates: of several at one place the largest weight stays, of
+    /// equal weights the lowest index. −0 and 0 are one place. O(n log n).
+    ///
+    /// # Errors
+    /// See [`SitesError`]; points in one plane are found later, by the triangulation.
+    pub fn new(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Result<Self, SitesError> {
+        let sites = Self::distinct(positions, weights)?;
+        if sites.input.len() < 4 {
+            return Err(SitesError::TooFew { distinct: sites.input.len() });
+        }
+        Ok(sites)
+    }
+
+    /// The same for points that may span no volume: one will do.
+    ///
+    /// # Errors
+    /// No point, and what [`SitesError`] says of numbers.
+    pub fn any(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Result<Self, SitesError> {
+        let sites = Self::distinct(positions, weights)?;
+        if sites.input.is_empty() { Err(SitesError::Empty) } else { Ok(sites) }
+    }
+
+    /// The same for points of a torus, all of them in its box: those of space are their copies.
+    ///
+    /// # Errors
+    /// No point, and what [`SitesError`] says of numbers.
+    pub fn on_torus(
+        positions: &'a [[f64; 3]],
+        weights: &'a [f64],
+        torus: Torus,
+    ) -> Result<Self, SitesError> {
+        debug_assert!(positions.iter().all(|&place| torus.wrap(place) == place));
+        Ok(Self { torus: Some(torus), ..Self::any(positions, weights)? })
+    }
+
+    /// The box that repeats, if one does.
+    pub fn torus(&self) -> Option<Torus> {
+        self.torus
+    }
+
+    /// The sites along a Hilbert curve.
+    pub fn curve(&self) -> &[u32] {
+        &self.curve
+    }
+}
+
+impl<'a> Sites<'a, 2> {
+    /// The same for points of the plane.
+    ///
+    /// # Errors
+    /// No point, and what [`SitesError`] says of numbers.
+    pub fn in_plane(positions: &'a [[f64; 2]], weights: &'a [f64]) -> Result<Self, SitesError> {
+        let sites = Self::distinct(positions, weights)?;
+        if sites.input.is_empty() { Err(SitesError::Empty) } else { Ok(sites) }
+    }
+}
+
+impl<'a, const D: usize> Sites<'a, D> {
+    fn distinct(positions: &'a [[f64; D]], weights: &'a [f64]) -> Result<Self, SitesError> {
+        check(positions, weights)?;
+        let mut curve = curve::keyed(positions);
+        let duplicates = duplicates(&mut curve, positions, weights);
+        if duplicates.is_empty() {
+            return Ok(Self {
+                positions: Cow::Borrowed(positions),
+                weights: Cow::Borrowed(weights),
+                input: (0..positions.len() as u32).collect(),
+                duplicates,
+                curve: curve.into_par_iter().map(|(_, point)| point).collect(),
+                torus: None,
+            });
+        }
+        const GONE: u32 = u32::MAX;
+        let mut site: Vec<u32> = vec![0; positions.len()];
+        duplicates.iter().for_each(|&[went, _]| site[went as usize] = GONE);
+        let stays = |i: &u32| site[*i as usize] != GONE;
+        let input: Vec<u32> = (0..positions.len() as u32).filter(stays).collect();
+        input.iter().enumerate().for_each(|(at, &i)| site[i as usize] = at as u32);
+        let along = curve.into_iter().map(|(_, point)| site[point as usize]);
+        Ok(Self {
+            positions: input.iter().map(|&i| positions[i as usize]).collect(),
+            weights: input.iter().map(|&i| weights[i as usize]).collect(),
+            curve: along.filter(|&at| at != GONE).collect(),
+            input,
+            duplicates,
+            torus: None,
+        })
+    }
+
+    /// Positions, one per site.
+    pub fn positions(&self) -> &[[f64; D]] {
+        &self.positions
+    }
+
+    /// Power weights, one per site.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// The input index of each site, ascending.
+    pub fn input(&self) -> &[u32] {
+        &self.input
+    }
+
+    /// Pairs of input indices: a point that went, and the one at the same place that stayed.
+    /// Ascending.
+    pub fn duplicates(&self) -> &[[u32; 2]] {
+        &self.duplicates
+    }
+}
+
+/// Whether every number is in the range of the predicates; coordinates are x, y and, in space, z.
+///
+/// # Errors
+/// [`SitesError::Lengths`] and [`SitesError::Value`].
+#[expect(clippy::missing_panics_doc, reason = "the point at fault has a number at fault")]
+pub fn check<const D: usize>(positions: &[[f64; D]], weights: &[f64]) -> Result<(), SitesError> {
+    if positions.len() != weights.len() {
+        return Err(SitesError::Lengths { positions: positions.len(), weights: weights.len() });
+    }
+    if positions.len() > u32::MAX as usize {
+        return Err(SitesError::TooMany(positions.len()));
+    }
+    let sane = |(p, w): (&[f64; D], &f64)| {
+        p.iter().all(|x| x.abs() <= MAX_COORDINATE) && w.abs() <= MAX_WEIGHT
+    };
+    let Some(index) = positions.par_iter().zip(weights).position_first(|point| !sane(point)) else {
+        return Ok(());
+    };
+    let coordinates = ["x", "y", "z"].into_iter().zip(positions[index]);
+    let mut numbers = coordinates.map(|(what, value)| (what, value, MAX_COORDINATE)).chain([(
+        "weight",
+        weights[index],
+        MAX_WEIGHT,
+    )]);
+    let insane = numbers.find(|(_, value, limit)| value.is_nan() || value.abs() > *limit);
+    let (what, value, limit) = insane.expect("one of the numbers of this point");
+    Err(SitesError::Value { index, what, value, limit })
+}
+
+/// Pairs (went, stayed) of points at one place, ascending. Equal places have equal keys; points of
+/// one key are left in the order of their places, then their indices.
+fn duplicates<const D: usize>(
+    curve: &mut [Keyed],
+    positions: &[[f64; D]],
+    weights: &[f64],
+) -> Vec<[u32; 2]> {
+    // Adding 0.0 turns −0.0 into 0.0, so equal numbers have equal bits.
+    let place = |i: u32| positions[i as usize].map(|v| (v + 0.0).to_bits());
+    let mut duplicates = Vec::new();
+    for same_key in curve.chunk_by_mut(|a, b| a.0 == b.0).filter(|points| points.len() > 1) {
+        same_key.sort_unstable_by_key(|&(_, i)| (place(i), i));
+        for equal in same_key.chunk_by(|a, b| place(a.1) == place(b.1)) {
+            let mut best = equal[0].1;
+            for &(_, i) in equal {
+                // Of equal weights the lowest index, which comes first.
+                if weights[i as usize] > weights[best as usize] {
+                    best = i;
+                }
+            }
+            duplicates.extend(equal.iter().filter(|(_, i)| *i != best).map(|&(_, i)| [i, best]));
+        }
+    }
+    duplicates.sort_unstable();
+    duplicates
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_duplicates_the_heaviest_stays() {
+        let at = |x: f64| [x, 0.0, 0.0];
+        let positions = [at(1.0), at(0.0), at(-0.0), at(1.0), at(2.0), at(0.0), at(1.0), at(3.0)];
+        let weights = [1.0, 5.0, 5.0, 2.0, 0.0, 4.0, 2.0, 0.0];
+        let sites = Sites::new(&positions, &weights).unwrap();
+        assert_eq!(sites.input(), [1, 3, 4, 7]);
+        assert_eq!(sites.duplicates(), [[0, 3], [2, 1], [5, 1], [6, 3]]);
+        assert_eq!(sites.weights(), [5.0, 2.0, 0.0, 0.0]);
+    }
+}
