@@ -215,6 +215,12 @@ fn damaged_files_are_named_and_mended() {
     ok(at, &args("blocks check work"));
     ok(at, &args("blocks merge work -o after.vtu"));
     assert!(fs::read(at.join("after.vtu")).unwrap() == fs::read(at.join("before.vtu")).unwrap());
+    // What lies beside blocks that are all there is mended, too.
+    flip("work/sums.f64", 11);
+    let (code, stdout, _) = run(at, &args("blocks check work"));
+    assert!(code == 3 && stdout.contains("sums.f64"), "{stdout}");
+    assert_eq!(json(at, &args("blocks run work"))["blocks"], serde_json::json!([]));
+    ok(at, &args("blocks check work"));
 
     flip("work/plan.json", 200);
     let (code, stdout, _) = run(at, &args("blocks check work"));

@@ -37,10 +37,14 @@ fn a_named_file_is_not_refused_for_its_neighbours() {
 #[test]
 fn damaged_slices_are_named_wherever_they_are() {
     type Damage = fn(&[u8]) -> Vec<u8>;
-    let damage: [(&str, Damage); 6] = [
+    let damage: [(&str, Damage); 7] = [
         ("empty", |_| Vec::new()),
         ("zeroed", |whole| vec![0; whole.len()]),
         ("cut before the mark", |whole| whole[..100].to_vec()),
+        ("cut before the series", |whole| {
+            let named = whole.windows(6).position(|start| start == b"\x20\0\x0e\0UI").unwrap();
+            whole[..named].to_vec()
+        }),
         ("cut in the header", |whole| whole[..400].to_vec()),
         ("cut in the pixels", |whole| whole[..whole.len() - 5].to_vec()),
         ("not DICOM", |_| b"<html>404</html>".to_vec()),
@@ -87,5 +91,10 @@ fn other_files_are_of_no_concern() {
     fs::write(f.join("._s0.dcm"), [0; 200]).unwrap();
     assert_eq!(open(f).unwrap().dims().xyz(), [3, 2, 5]);
     assert!(!ok(f, &["info", "."]).contains("left out"));
+    // Where slices have no extension, either, it takes more to look like one of them.
+    let bare = tempfile::tempdir().unwrap();
+    (0..3).for_each(|n| slice(n, f64::from(n)).save(bare.path(), &format!("IM{n}")));
+    fs::write(bare.path().join("README"), "slices of a phantom").unwrap();
+    assert_eq!(open(bare.path()).unwrap().dims().xyz(), [3, 2, 3]);
     fails(f, 2, "info notes.txt --skip-damaged --dims 1,1,1 --dtype u8", &["cannot be used with"]);
 }

@@ -80,6 +80,26 @@ fn what_cannot_be_judged_comes_with_advice() {
     }
 }
 
+/// A square cut along its other diagonal is right, unless the rule of ties is asked for.
+#[test]
+fn ties_are_findings_where_asked() {
+    let folder = folder("ties");
+    let square = |facets: &str| {
+        format!(
+            "{{\"points\":[[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0,0,9]],\"alpha\":0.5,\"facets\":{facets},\"vertices\":[0,1,2,3,4]}}"
+        )
+    };
+    std::fs::write(folder.join("one.json"), square("[[0,1,2],[1,2,3]]")).unwrap();
+    std::fs::write(folder.join("other.json"), square("[[0,1,3],[0,2,3]]")).unwrap();
+    let codes = |ties: &str| {
+        let mut codes =
+            ["one.json", "other.json"].map(|file| run(&folder, &[file, "--ties", ties]).0);
+        codes.sort_unstable();
+        codes
+    };
+    assert_eq!((codes("any"), codes("exact")), ([0, 0], [0, 3]));
+}
+
 /// What cannot be printed is lost, and the exit code says so.
 #[test]
 #[cfg(target_os = "linux")]

@@ -122,11 +122,11 @@ fn rules_of_the_plane() {
     assert!(
         found
             .iter()
-            .any(|f| matches!(f, Finding::NotRegular { cell, .. } if cell.vertices().len() == 3)),
+            .any(|f| matches!(f, Finding::NotRegular { cell, .. } if cell.vertices().len() == 3 && !f.is_tie())),
         "{found:?}"
     );
     let found = flat(&[[0, 1, 2], [1, 2, 3]], 0.0);
-    assert!(found.iter().any(|f| matches!(f, Finding::NotHidden { point: 4, cell, .. } if cell.vertices() == [0, 1, 2])), "{found:?}");
+    assert!(found.iter().any(|f| matches!(f, Finding::NotHidden { point: 4, cell, .. } if cell.vertices() == [0, 1, 2] && !f.is_tie())), "{found:?}");
     let found = flat(&[[0, 1, 2]], -20.0);
     assert!(found.iter().any(|f| matches!(f, Finding::OutsideHull { point: 3, .. })), "{found:?}");
     let found = flat(&[[0, 1, 4], [0, 2, 4], [1, 3, 4], [2, 3, 4]], 0.0);

@@ -174,6 +174,126 @@ fn a_square_is_cut_once() {
     }
 }
 
+/// A point inside the spheres of cells is named, and no tie, though others lie on them.
+#[test]
+fn a_point_inside_is_no_tie() {
+    let cube = Case { positions: grid(2), weights: vec![0.0; 8], alpha: 1.0 };
+    let whole = otherwise(&cube, [0, 1, 2], [-1.0, 1.0, 1.0]);
+    let shape = shape_of(&whole);
+    assert_eq!(verdict(&cube, &shape, Extent::Shape), Verdict::Valid);
+    for inside in [[0.5; 3], [0.5, 0.5, 1.25], [0.5, -0.25, 0.5], [1.25, 0.5, 0.5]] {
+        let mut case = cube.clone();
+        case.positions.push(inside);
+        case.weights.push(0.0);
+        let found = findings(&case, &shape, Extent::Shape);
+        let wrong = found.iter().filter(|f| !f.is_tie());
+        let refuters = wrong.filter_map(|f| match f {
+            Finding::NotRegular { point, .. } => Some(*point),
+            _ => None,
+        });
+        let cells = shape.complex.cells.len();
+        assert_eq!(refuters.collect::<Vec<_>>(), vec![8; cells], "{found:?}");
+        // Nor is it hidden in a whole triangulation.
+        assert_eq!(verdict(&case, &whole, Extent::Whole), Verdict::Wrong);
+    }
+}
+
+/// Of the cells on one sphere all are listed, or none: a valid choice in part is none.
+#[test]
+fn a_part_of_a_choice_is_wrong() {
+    let case = Case { positions: grid(2), weights: vec![0.0; 8], alpha: 0.75 };
+    let other = otherwise(&case, [0, 1, 2], [-1.0, 1.0, 1.0]);
+    let mut tied = 0;
+    for &cell in other.complex.cells.rows() {
+        let mut file = ComplexFile::of_points(case.positions.clone(), case.alpha());
+        file.cells = Some(vec![cell]);
+        file.vertices = Some((0..8).collect());
+        let part = Answer::of(file.into_complex().unwrap().complex);
+        let found = findings(&case, &part, Extent::Shape);
+        // Where the rule has this cell, nothing says that others are missing.
+        if !found.is_empty() {
+            let wrong: Vec<_> = found.iter().filter(|f| !f.is_tie()).collect();
+            assert!(matches!(wrong[..], [Finding::TiedSphere { listed: 1, .. }]), "{found:?}");
+            tied += 1;
+        }
+    }
+    assert!(tied > 0);
+}
+
+/// Where further points lie on the sphere of a simplex by itself and not in its span, a larger one is in the
+/// shape, too.
+#[test]
+fn what_spans_a_tied_sphere_is_listed() {
+    let check = |positions: &[[f64; 3]],
+                 weights: &[f64],
+                 alpha: f64,
+                 facets: &[[u32; 3]],
+                 edges: &[[u32; 2]]| {
+        let case = Case { positions: positions.to_vec(), weights: weights.to_vec(), alpha };
+        let own = shape_of(&definition(&case).unwrap());
+        assert_eq!(verdict(&case, &own, Extent::Shape), Verdict::Exact);
+        let mut file = ComplexFile::of_points(case.positions.clone(), case.alpha());
+        file.weights = Some(case.weights.clone());
+        file.facets = Some(facets.to_vec());
+        // Those of facets come by themselves.
+        file.edges = (!edges.is_empty()).then(|| edges.to_vec());
+        file.vertices = Some((0..positions.len() as u32).collect());
+        let less = Answer::of(file.into_complex().unwrap().complex);
+        let found = findings(&case, &less, Extent::Shape);
+        assert!(matches!(found[..], [Finding::SpannedSphere { .. }]), "{found:?}");
+    };
+    // A vertex whose sphere, a point, is on that of a heavier one.
+    check(
+        &[[0.0; 3], [1.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0]],
+        &[0.0, 1.0, 0.0, 0.0, 0.0],
+        0.0,
+        &[],
+        &[],
+    );
+    // The diagonal of a square.
+    check(
+        &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 9.0]],
+        &[0.0; 5],
+        0.5,
+        &[],
+        &[[0, 3]],
+    );
+    // A triangle around the middle of its sphere, and a fourth point above it.
+    check(
+        &[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        &[0.0; 4],
+        1.0,
+        &[[0, 1, 2]],
+        &[],
+    );
+}
+
+/// A square that cells have on one side, and facets of the other diagonal by themselves.
+#[test]
+fn a_face_is_cut_as_its_cells_are() {
+    let case = Case { positions: grid(2), weights: vec![0.0; 8], alpha: 0.75 };
+    let own = shape_of(&definition(&case).unwrap()).complex;
+    let cells = own.cells.rows().to_vec();
+    for square in
+        [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 4, 5], [2, 3, 6, 7], [0, 2, 4, 6], [1, 3, 5, 7]]
+    {
+        let [a, b, c, d] = square;
+        let cut = |facet: &[u32; 3]| own.facets.rows().iter().any(|row| sorted(*row) == *facet);
+        let other: Vec<_> = [[a, b, c], [b, c, d], [a, b, d], [a, c, d]]
+            .into_iter()
+            .filter(|facet| !cut(facet))
+            .collect();
+        assert_eq!(other.len(), 2);
+        let mut file = ComplexFile::of_points(case.positions.clone(), case.alpha());
+        file.cells = Some(cells.clone());
+        let own: Vec<_> = own.facets.rows().iter().map(|row| sorted(*row)).collect();
+        file.facets = Some([&own[..], &other].concat());
+        let crossed = Answer::of(file.into_complex().unwrap().complex);
+        let found = findings(&case, &crossed, Extent::Shape);
+        assert!(found.iter().any(|f| matches!(f, Finding::TiedFacets { .. })), "{found:?}");
+    }
+}
+
 /// Of two points at one place and with one weight either may stay; not both, and not a lighter one.
 #[test]
 fn either_of_equal_points_stays() {
@@ -184,13 +304,15 @@ fn either_of_equal_points_stays() {
     assert_eq!(own.duplicates, [[8, 3]]);
     assert_eq!(verdict(&case, &own, Extent::Whole), Verdict::Exact);
     let instead = |row: &mut u32| *row = if *row == 3 { 8 } else { *row };
-    let mut other = own.clone();
-    other.complex.cells.rows_mut().as_flattened_mut().iter_mut().for_each(instead);
-    other.complex.facets.rows_mut().as_flattened_mut().iter_mut().for_each(instead);
-    other.complex.edges.rows_mut().as_flattened_mut().iter_mut().for_each(instead);
-    other.complex.vertices.rows_mut().as_flattened_mut().iter_mut().for_each(instead);
-    other.duplicates = vec![[3, 8]];
-    let other = turned_back(&case, other);
+    let renumbered = |case: &Case, mut other: Answer| {
+        other.complex.cells.rows_mut().as_flattened_mut().iter_mut().for_each(instead);
+        other.complex.facets.rows_mut().as_flattened_mut().iter_mut().for_each(instead);
+        other.complex.edges.rows_mut().as_flattened_mut().iter_mut().for_each(instead);
+        other.complex.vertices.rows_mut().as_flattened_mut().iter_mut().for_each(instead);
+        other.duplicates = vec![[3, 8]];
+        turned_back(case, other)
+    };
+    let other = renumbered(&case, own.clone());
     let found = findings(&case, &other, Extent::Whole);
     assert_eq!(found, [Finding::EqualPoint { point: 8, first: 3 }]);
     assert_eq!(verdict(&case, &shape_of(&other), Extent::Shape), Verdict::Valid);
@@ -200,7 +322,11 @@ fn either_of_equal_points_stays() {
             case.claim(&other, Extent::Whole).with_duplicates(None).with_hidden(&hidden[..]);
         assert_eq!(claim.verdict().unwrap(), Verdict::Valid, "{hidden:?}");
     }
-    let lighter = Case { weights: [&[0.0; 8][..], &[-1.0]].concat(), ..case.clone() };
+    // What would be right if the heavier were not there.
+    let mut light = Case { weights: vec![0.0; 8], positions: grid(2), alpha: 0.75 };
+    light.weights[3] = -0.25;
+    let lighter = Case { weights: [&[0.0; 8][..], &[-0.25]].concat(), ..case.clone() };
+    let other = renumbered(&lighter, definition(&light).unwrap());
     assert_eq!(verdict(&lighter, &other, Extent::Whole), Verdict::Wrong);
     let mut both = own;
     both.complex.vertices.push([8], Class::Regular);
