@@ -59,9 +59,9 @@ pub use walpha_base::advice;
 /// Exact regular triangulations: a crate of its own, `walpha-regular`, for use in other programs.
 pub use walpha_regular as triangulation;
 
+pub use walpha_base::threads;
 /// The exact checker: a crate of its own, `walpha-check`, for use in other programs.
 pub use walpha_check as check;
-pub use walpha_check::threads;
 
 pub use cgal::CgalError;
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};

@@ -5,8 +5,8 @@ use std::io::{self, ErrorKind, Write};
 
 use serde::Serialize;
 use walpha_base::advice::Advice;
+use walpha_base::standard_output;
 
-use crate::check::standard_output;
 use crate::shown::escaped;
 
 use super::{Global, warnings};

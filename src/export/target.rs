@@ -106,7 +106,7 @@ impl Target {
     fn sink(path: &Path) -> io::Result<(Sink, Option<Claim>)> {
         if path == Path::new(Self::STDOUT) {
             #[cfg(feature = "cli")]
-            crate::check::standard_output::check()?;
+            walpha_base::standard_output::check()?;
             return Ok((Sink::Stdout, Some(Claim::of_stdout()?)));
         }
         let place = Place::of(path)?;

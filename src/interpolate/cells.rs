@@ -2,13 +2,13 @@
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
+use walpha_complex::canonical::smallest_even;
 use walpha_regular::Reach;
 use walpha_regular::{Cell, Growing};
 
 use super::barycentric::coordinates;
 use super::interpolant::combine;
 use super::least_squares::Pieces;
-use crate::shape::smallest_even_permutation;
 
 /// The cells of a triangulation as an interpolant has them.
 pub(super) struct Cells<'a> {
@@ -24,7 +24,7 @@ impl<'a> Cells<'a> {
 
     /// The corners of a cell in canonical order. Numbers of points are in the order of their indices.
     pub(super) fn row(&self, cell: u32) -> [u32; 4] {
-        smallest_even_permutation(self.growing.cells()[cell as usize].corners)
+        smallest_even(self.growing.cells()[cell as usize].corners)
     }
 
     pub(super) fn coordinates(&self, row: [u32; 4], place: [f64; 3]) -> Option<[f64; 4]> {

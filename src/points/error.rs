@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::memory::NoMemory;
-use walpha_check::Alpha;
+use walpha_complex::Alpha;
 use walpha_regular::TriangulationError;
 
 use super::Weighting;

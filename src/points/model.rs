@@ -1,7 +1,7 @@
 use std::fmt;
 
 use walpha_base::setters;
-use walpha_check::Alpha;
+use walpha_complex::Alpha;
 
 use super::Units;
 use crate::volume::{Coordinates, Dims, Frame, GrayRange};

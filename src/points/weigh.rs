@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use walpha_base::Sum;
 use walpha_base::advice::Advice;
-use walpha_check::Alpha;
+use walpha_complex::Alpha;
 
 use super::{Points, PointsError, WeightedPoints};
 

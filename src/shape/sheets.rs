@@ -1,9 +1,9 @@
 //! The sheets of a shape's boundary.
 
 use rayon::prelude::*;
+use walpha_complex::canonical::{smallest_even, sorted};
 
 use super::blocks::Answer;
-use super::canonical::smallest_even_permutation;
 use super::union_find::UnionFind;
 use super::{Class, Complex};
 
@@ -217,10 +217,5 @@ impl<'a> Outside<'a> {
 fn is_first(facet: [u32; 3], cell: [u32; 4]) -> bool {
     let [a, b, c] = facet;
     let d = cell.into_iter().find(|v| !facet.contains(v)).expect("a fourth corner");
-    smallest_even_permutation([a, b, c, d]) == smallest_even_permutation(cell)
-}
-
-fn sorted<const N: usize>(mut row: [u32; N]) -> [u32; N] {
-    row.sort_unstable();
-    row
+    smallest_even([a, b, c, d]) == smallest_even(cell)
 }

@@ -1,5 +1,5 @@
-//! What several crates of walpha need and none owns: what errors advise, memory that may be refused, sums of
-//! doubles that are rounded once, vectors.
+//! What several crates of walpha need and none owns: what errors advise, memory and threads that may be refused, sums of
+//! doubles that are rounded once, vectors, headers of NPY.
 //!
 //! For walpha's own crates; other programs have no need of it.
 //!
@@ -13,8 +13,12 @@
 
 pub mod advice;
 pub mod memory;
+pub mod npy;
 mod setters;
+#[cfg(feature = "cli")]
+pub mod standard_output;
 mod sum;
+pub mod threads;
 pub mod vector;
 
 pub use setters::setters;

@@ -27,6 +27,7 @@ pub fn readable(bytes: u64) -> String {
 pub fn give_back() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {
+        #[expect(unsafe_code, reason = "takes any number, at any time")]
         unsafe extern "C" {
             safe fn malloc_trim(pad: usize) -> std::ffi::c_int;
         }

@@ -2,8 +2,8 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashMap};
 
 use rayon::prelude::*;
+use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
-use crate::canonical::{outward_facets, smallest_even, sort, sorted};
 use crate::exact::{Side, WeightedPoint, in_conflict, orientation, radius, side};
 use crate::flat::{Flat, flat_simplices};
 use crate::{Alpha, Class, Complex};

@@ -3,7 +3,8 @@
 
 use std::cmp::Ordering;
 
-use crate::canonical::sorted;
+use walpha_complex::canonical::sorted;
+
 use crate::exact::{WeightedPoint, collinear, in_conflict, orientation};
 
 /// The largest simplices of points that span no volume; all of one kind.

@@ -26,22 +26,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod alpha;
-mod canonical;
 mod certify;
 mod compare;
-mod complex;
 mod enumerate;
 mod exact;
 mod flat;
-pub mod npy;
 mod placed;
 pub mod schema;
-#[cfg(feature = "cli")]
-pub mod standard_output;
-pub mod threads;
 
-pub use alpha::{Alpha, AlphaError};
 pub use certify::{
     Bound, Certificate, CertifyError, CertifyFiltrationError, Claim, Extent, FiltrationCertificate,
     FiltrationFinding, Finding, NotJudged, Simplex, Unjudged, Verdict, certify_filtration,
@@ -50,10 +42,10 @@ pub use compare::{
     ClassDifference, CompareError, Comparison, Differences, Domain, FiltrationComparison,
     ValueDifference, WeightDifference, compare, compare_filtrations,
 };
-pub use complex::{ByClass, Class, Complex, Simplices, SimplicesError};
 pub use enumerate::{EnumerateError, Enumeration, enumerate};
 pub use exact::Exact;
 pub use placed::Placed;
+pub use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Simplices, SimplicesError};
 
 /// The example in the README runs.
 #[cfg(all(doctest, feature = "json"))]

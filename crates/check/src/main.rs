@@ -6,10 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
+use walpha_base::{standard_output, threads};
 use walpha_check::schema::{AnyFile, SchemaError};
-use walpha_check::{
-    CertifyError, CertifyFiltrationError, Unjudged, certify_filtration, standard_output, threads,
-};
+use walpha_check::{CertifyError, CertifyFiltrationError, Unjudged, certify_filtration};
 
 /// Judge weighted alpha shapes exactly.
 ///

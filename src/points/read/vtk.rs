@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use walpha_check::schema::ComplexFile;
-use walpha_check::{Alpha, Class};
+use walpha_complex::{Alpha, Class};
 
 use super::{CellCount, Points, PointsError, format, take_radii};
 use crate::volume::{Reason, VtkPoints, VtkXml};

@@ -1,6 +1,6 @@
 //! The fields of a header, as bytes.
 
-use walpha_check::Alpha;
+use walpha_complex::Alpha;
 
 use super::header::Layer;
 use crate::volume::{Coordinates, Frame, LengthUnit, Reason, Space};

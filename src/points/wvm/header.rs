@@ -1,6 +1,6 @@
 //! The head of a file: what it holds, and the length of everything behind it.
 
-use walpha_check::Alpha;
+use walpha_complex::Alpha;
 
 use super::super::formats::MODEL;
 use super::super::{ModelFacts, SampleGrid, Units};

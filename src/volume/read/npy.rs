@@ -3,7 +3,7 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use ndarray::{Array3, ShapeBuilder};
-use walpha_check::npy::{Header, MAGIC, NpyError};
+use walpha_base::npy::{Header, MAGIC, NpyError};
 
 use super::frames::Frames;
 use super::payload::{Element, Length, Payload};

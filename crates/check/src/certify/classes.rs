@@ -1,13 +1,13 @@
 //! The rules on classes: what the definition makes of each simplex against what it was given.
 
 use rayon::prelude::*;
+use walpha_complex::canonical::smallest_even;
 
 use super::emptiness::Emptiness;
 use super::faces::Faces;
 use super::index::NONE;
 use super::structure::{Half, Structure};
 use super::{Extent, Finding, Points};
-use crate::canonical::smallest_even;
 use crate::exact::{Side, collinear, orientation, power_value, radius, radius_value, side};
 use crate::{Alpha, Class, Simplices};
 

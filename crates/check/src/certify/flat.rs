@@ -3,8 +3,9 @@
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
+use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
+
 use super::{Finding, Points};
-use crate::canonical::{outward_facets, smallest_even, sort, sorted};
 use crate::exact::orientation;
 use crate::{Class, Complex, Simplices};
 

@@ -1,12 +1,12 @@
 //! Cells that are not listed though all their faces are.
 
 use rayon::prelude::*;
+use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
 use super::emptiness::Emptiness;
 use super::index::NONE;
 use super::structure::Structure;
 use super::{Finding, Points};
-use crate::canonical::{outward_facets, smallest_even, sort, sorted};
 use crate::exact::{Side, orientation, radius, radius_value, side};
 use crate::{Alpha, Class, Complex};
 

@@ -1,7 +1,7 @@
 use rayon::prelude::*;
+use walpha_complex::canonical::sorted;
 
 use super::Finding;
-use crate::canonical::sorted;
 
 /// Marks a simplex or cell that is not there.
 pub(super) const NONE: u32 = u32::MAX;

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
+use walpha_complex::canonical::outward_facets;
 
 use super::emptiness::Emptiness;
 use super::near::Grid;
 use super::structure::{Half, Structure};
 use super::{Claim, Finding, Points};
 use crate::Complex;
-use crate::canonical::outward_facets;
 use crate::exact::{in_conflict, orientation, power_value, radius, radius_value, six_volume};
 
 /// For each point, the one that stays at its place by the rule: the heaviest, of equal weights the first.

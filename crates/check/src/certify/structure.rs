@@ -1,11 +1,11 @@
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
+use walpha_complex::canonical::outward_facets;
 
 use super::index::{Index, NONE};
 use super::{Finding, Points};
 use crate::Complex;
-use crate::canonical::outward_facets;
 
 /// The listed simplices, linked: cells to facets and back, and each found by its vertices.
 pub(super) struct Structure<'a> {

@@ -8,13 +8,13 @@
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
+use walpha_complex::canonical::{outward_facets, sorted};
 
 use super::emptiness::Emptiness;
 use super::flat::{Cone, closed};
 use super::rules::wrong_triangulation;
 use super::structure::Structure;
 use super::{Finding, Points};
-use crate::canonical::{outward_facets, sorted};
 use crate::exact::{collinear, orientation};
 use crate::flat::auxiliary;
 use crate::{Class, Complex, Simplices};

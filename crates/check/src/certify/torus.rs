@@ -8,10 +8,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use walpha_complex::canonical::sort;
+
 use super::{
     Certificate, CertifyError, Claim, Extent, Finding, NotJudged, Points, Verdict, hull, structure,
 };
-use crate::canonical::sort;
 use crate::exact::Exact;
 use crate::schema::PlacedComplex;
 use crate::{Alpha, Complex, Placed, Simplices};

@@ -3,9 +3,9 @@ use std::fmt;
 
 use dashu_int::IBig;
 use serde::Serialize;
+use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 
 use super::{Places, weights_by_place};
-use crate::canonical::{outward_facets, smallest_even, sorted};
 use crate::exact::{Exact, Lattice, Lift, WeightedPoint, orientation};
 use crate::schema::turn;
 use crate::{Claim, Class, Placed, Verdict};

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 use serde::Serialize;
+use walpha_complex::canonical::sorted;
 
 use super::text::{PRINTED, rows};
 use super::{Places, WeightDifference, weights_by_place};
-use crate::canonical::sorted;
 use crate::schema::{Below, FiltrationFile, SchemaError};
 use crate::{Alpha, Simplex};
 

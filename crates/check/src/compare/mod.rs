@@ -7,8 +7,8 @@ mod text;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use walpha_complex::canonical::sorted;
 
-use crate::canonical::sorted;
 use crate::{Alpha, Class, Placed, Simplex, Simplices};
 
 pub use domain::Domain;

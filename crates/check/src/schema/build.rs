@@ -1,7 +1,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
+use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
+
 use super::{ComplexFile, PlacedComplex, SchemaError};
-use crate::canonical::{outward_facets, smallest_even, sort, sorted};
 use crate::certify::torus::{moved, nearest};
 use crate::exact::orientation;
 use crate::{Class, Complex, Simplices};

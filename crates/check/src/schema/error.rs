@@ -1,6 +1,6 @@
 use std::io;
 
-use crate::npy::NpyError;
+use walpha_base::npy::NpyError;
 
 /// Why a file does not hold a complex.
 #[derive(Debug, thiserror::Error)]

@@ -1,10 +1,10 @@
 use std::io::{Read, Seek, SeekFrom};
 
+use walpha_base::npy::Header;
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
 use super::{Classes, ComplexFile, SchemaError, numbers};
-use crate::npy::Header;
 use crate::{Alpha, Class};
 
 /// Deflate expands by no more than this (zlib's technical details): a claim beyond is a lie.

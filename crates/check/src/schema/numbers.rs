@@ -2,8 +2,9 @@
 
 use std::io::Read;
 
+use walpha_base::npy::Header;
+
 use super::SchemaError;
-use crate::npy::Header;
 
 /// Bytes decoded at a time, so that an array and its numbers are not in memory together.
 const CHUNK_BYTES: usize = 8 << 20;

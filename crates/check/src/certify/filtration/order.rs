@@ -1,10 +1,11 @@
 //! The order in which simplices come.
 
+use walpha_complex::canonical::sorted;
+
 use super::finding::FiltrationFinding;
 use super::spans::Spans;
 use super::values::Ranks;
 use super::{FiltrationFile, Rows};
-use crate::canonical::sorted;
 use crate::certify::Simplex;
 
 /// Judges that each simplex is in the order once, and comes after the one before it: by the exact

@@ -1,14 +1,14 @@
 //! NPY, `NumPy`'s file of one array (versions 1 to 3 of `numpy.lib.format`).
 //!
 //! ```
-//! use walpha_check::npy::Header;
+//! use walpha_base::npy::Header;
 //!
 //! let mut file = b"\x93NUMPY\x01\x00\x3a\x00".to_vec();
 //! file.extend(b"{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3)}\n");
 //! let header = Header::read(&mut &file[..])?;
 //! assert_eq!((header.descr.as_str(), header.shape), ("<f8", vec![2, 3]));
 //! assert_eq!(header.length, file.len() as u64);
-//! # Ok::<(), walpha_check::npy::NpyError>(())
+//! # Ok::<(), walpha_base::npy::NpyError>(())
 //! ```
 
 use std::io::{self, ErrorKind, Read};

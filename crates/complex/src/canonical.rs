@@ -3,19 +3,19 @@
 use crate::{Complex, Simplices};
 
 /// The vertices in ascending order.
-pub(crate) fn sorted<const N: usize>(mut row: [u32; N]) -> [u32; N] {
+pub fn sorted<const N: usize>(mut row: [u32; N]) -> [u32; N] {
     row.sort_unstable();
     row
 }
 
 /// The faces of a positively oriented cell, each counter-clockwise seen from outside; the i-th is
 /// opposite to the i-th vertex.
-pub(crate) fn outward_facets([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
+pub fn outward_facets([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
     [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]
 }
 
 /// The lexicographically smallest even permutation of a row.
-pub(crate) fn smallest_even<const N: usize>(row: [u32; N]) -> [u32; N] {
+pub fn smallest_even<const N: usize>(row: [u32; N]) -> [u32; N] {
     let mut smallest = sorted(row);
     let inversions = |i: usize| (i + 1..N).filter(|&j| row[j] < row[i]).count();
     if (0..N).map(inversions).sum::<usize>() % 2 == 1 {
@@ -25,7 +25,7 @@ pub(crate) fn smallest_even<const N: usize>(row: [u32; N]) -> [u32; N] {
 }
 
 /// Puts rows into lexicographic order.
-pub(crate) fn sort(complex: &mut Complex) {
+pub fn sort(complex: &mut Complex) {
     sort_rows(&mut complex.cells);
     sort_rows(&mut complex.facets);
     sort_rows(&mut complex.edges);
@@ -36,4 +36,17 @@ fn sort_rows<const N: usize>(simplices: &mut Simplices<N>) {
     let mut rows: Vec<_> = std::mem::take(simplices).into_iter().collect();
     rows.sort_unstable();
     *simplices = rows.into_iter().collect();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn permutations_keep_their_parity() {
+        assert_eq!(smallest_even([3, 1, 2, 0]), [0, 1, 3, 2]);
+        assert_eq!(smallest_even([1, 0, 3, 2]), [0, 1, 2, 3]);
+        assert_eq!(smallest_even([7, 2, 5]), [2, 5, 7]);
+        assert_eq!(smallest_even([7, 5, 2]), [2, 7, 5]);
+    }
 }

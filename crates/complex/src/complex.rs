@@ -1,10 +1,6 @@
 //! Complexes: the plain result type, which engines return, writers write and the checker judges.
 
-mod class;
-mod simplices;
-
-pub use class::{ByClass, Class};
-pub use simplices::{Simplices, SimplicesError};
+use crate::{Class, Simplices};
 
 /// A classified simplicial complex over indexed points.
 ///
@@ -44,7 +40,7 @@ impl Complex {
     }
 
     /// Whether any simplex is exterior: the complex then claims to be a whole triangulation.
-    pub(crate) fn lists_exterior(&self) -> bool {
+    pub fn lists_exterior(&self) -> bool {
         self.cells.classes().contains(&Class::Exterior)
             || self.facets.classes().contains(&Class::Exterior)
             || self.edges.classes().contains(&Class::Exterior)
