@@ -41,7 +41,6 @@ pub mod export;
 pub mod haar;
 pub mod interpolate;
 pub mod ladder;
-mod near;
 pub mod pipeline;
 pub mod points;
 pub mod progress;
@@ -51,7 +50,6 @@ pub mod render;
 pub mod reproduce;
 mod select;
 pub mod shape;
-mod shown;
 pub mod volume;
 
 /// What errors advise.

@@ -5,10 +5,10 @@ use std::io;
 use std::path::PathBuf;
 
 use rayon::prelude::*;
+use walpha_base::shown::shown;
 
 use super::file::BlockFile;
 use super::{BlocksError, Plan};
-use crate::shown::shown;
 
 /// A file of a plan that does not verify.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use walpha_base::advice::Advice;
 use walpha_base::memory::NoMemory;
+use walpha_base::shown::shown;
 
 use super::{Finding, Job};
 use crate::export::TargetError;
@@ -9,7 +10,6 @@ use crate::haar::HaarError;
 use crate::pipeline::PipelineError;
 use crate::points::PointsError;
 use crate::shape::ShapeError;
-use crate::shown::shown;
 use crate::volume::VolumeError;
 
 /// Why work in blocks cannot be done.

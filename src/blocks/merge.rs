@@ -71,7 +71,7 @@ pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
             }
             Err(error) => return Err(error),
         }
-        crate::progress::report(block as u64 + 1, all as u64);
+        walpha_base::progress::report(block as u64 + 1, all as u64);
     }
     if !missing.is_empty() {
         return Err(BlocksError::Missing { missing, all });

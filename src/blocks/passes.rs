@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::progress;
+use walpha_base::progress;
 
 use super::{BlocksError, Part, Team};
 

@@ -6,9 +6,10 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use walpha_base::progress::{Piece, Share, within};
+
 use super::stamp::Stamp;
 use super::{Alone, BlocksError, Cutting, Job, Plan, Team, run};
-use crate::progress::{Piece, Share, within};
 
 impl Plan {
     /// The plan of a job in a folder, if it is there; else makes one. So work that was interrupted goes on

@@ -3,16 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use clap::{Args, Subcommand};
+use walpha_base::shown::shown;
+use walpha_files::{Working, fill_all, keep_input};
+
 use crate::blocks::{
     Alone, BlocksError, Checked, Cutting, Finding, Job, Merged, Pieces, Plan, Team, merge, price,
     run, run_all, whole,
 };
-use crate::export::{
-    Content, ExportOptions, Exporter, Format, NewFolder, Target, Working, fill_all, keep_input,
-};
+use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target};
 use crate::progress::Stage;
-use crate::shown::shown;
-use clap::{Args, Subcommand};
+use crate::volume::files_of;
 
 use super::args::{PipelineArgs, ShapeArgs};
 use super::block_facts::{CheckFacts, PlanFacts, PriceFacts, RunFacts};
@@ -179,7 +180,7 @@ impl MergeStep {
         // An output there would replace the plan.
         let _working = (!global.in_place).then(|| Working::folder(&self.folder));
         if !global.in_place {
-            keep_input(Path::new(&plan.job.input));
+            keep_input(Path::new(&plan.job.input), files_of);
         }
         let mut outputs = Outputs::default();
         for path in &self.output {

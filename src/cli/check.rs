@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use clap::{Args, Command, ValueEnum};
 use serde::Serialize;
+use walpha_base::shown::shown;
 
 use crate::Alpha;
 use crate::check::schema::{FiltrationFile, PlacedComplex};
@@ -15,7 +16,6 @@ use crate::pipeline::AlphaRule;
 use crate::points::{self, CellCount};
 use crate::progress::Stage;
 use crate::shape::ShapeOptions;
-use crate::shown::shown;
 
 use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::judged::{self, Judged};

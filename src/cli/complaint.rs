@@ -4,8 +4,8 @@ use std::error::Error;
 use std::io::IsTerminal;
 
 use clap::error::ErrorKind;
+use walpha_base::shown::escaped;
 
-use crate::shown::escaped;
 use crate::volume::UnknownFormat;
 
 use super::output::{Unprinted, is_broken_pipe, remark};

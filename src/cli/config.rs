@@ -12,8 +12,8 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 use toml::{Table, Value};
 
-use crate::near::nearest;
-use crate::shown::shown;
+use walpha_base::near::nearest;
+use walpha_base::shown::shown;
 
 use super::said::{Said, refused, said};
 

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
+use walpha_base::shown::shown;
 
 use crate::progress::Stage;
-use crate::shown::shown;
 use crate::volume::{Source, convert, open};
 
 use super::Global;

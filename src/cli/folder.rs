@@ -3,8 +3,9 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use walpha_base::shown::shown;
+
 use crate::export::{Filled, NewFolder, Target, put_all};
-use crate::shown::shown;
 
 use super::said::{Said, said};
 

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use clap::Args;
 use serde::Serialize;
+use walpha_base::shown::number;
 
 use crate::points::{Cell, CellCount, cells_of, read_model};
 use crate::progress::Stage;
-use crate::shown::number;
 use crate::volume::{self, Dtype, Extent, Nan, ReadOptions, Reason, Series, Source};
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
 

@@ -5,10 +5,11 @@ use std::path::Path;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Command};
 
-use crate::export::keep_input;
+use walpha_files::keep_input;
 
 use super::config;
 use super::said::misused;
+use crate::volume::files_of;
 
 /// Options that name files to read, as arguments without a name do.
 const READ: [&str; 2] = ["input", "points"];
@@ -38,7 +39,7 @@ pub(super) fn keep(command: &Command, matches: &ArgMatches) -> anyhow::Result<()
     let is_read = |id: &str, is_positional: bool| is_positional || READ.contains(&id);
     for arg in args().filter(|arg| is_read(arg.get_id().as_str(), arg.is_positional())) {
         let values = matches.try_get_raw(arg.get_id().as_str()).ok().flatten();
-        values.into_iter().flatten().for_each(|value| keep_input(Path::new(value)));
+        values.into_iter().flatten().for_each(|value| keep_input(Path::new(value), files_of));
     }
     Ok(())
 }

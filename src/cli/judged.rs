@@ -4,10 +4,10 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::Context;
+use walpha_base::shown::shown;
 
 use crate::check::schema::{AnyFile, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
 use crate::points::read_points;
-use crate::shown::shown;
 
 use super::said::{Said, refused, said};
 

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap_mangen::Man as Page;
+use walpha_base::shown::shown;
 
 use crate::export::Target;
-use crate::shown::shown;
 
 use super::output::print;
 use super::{Global, described};

@@ -7,7 +7,7 @@ use serde::Serialize;
 use walpha_base::advice::Advice;
 use walpha_base::standard_output;
 
-use crate::shown::escaped;
+use walpha_base::shown::escaped;
 
 use super::{Global, warnings};
 

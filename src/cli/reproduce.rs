@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::Args;
+use walpha_base::shown::shown;
 
 use crate::progress::Stage;
 use crate::reproduce::{File, Report, Subject, page, reproduce};
-use crate::shown::shown;
 use crate::volume::{ReadOptions, open};
 use crate::{Gray, Volume, VolumeError};
 

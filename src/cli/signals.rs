@@ -1,6 +1,6 @@
 //! What ends the command before its time, and how it goes then: no file is left half written.
 
-use crate::export::abandon;
+use walpha_files::abandon;
 
 use super::{INTERRUPTED, progress};
 

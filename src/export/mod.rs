@@ -26,48 +26,31 @@
 
 mod colour;
 mod filtration;
-#[cfg(feature = "zarr")]
-mod folder;
 mod format;
 mod glb;
-#[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "the command keeps its inputs"))]
-mod inputs;
 mod json;
 mod npz;
 mod obj;
 mod off;
-mod part;
-mod place;
 mod ply;
-mod scratch;
 mod stl;
-mod target;
-mod unfinished;
 mod vtp;
 mod vtu;
 
 pub use crate::volume::UnknownFormat;
 pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
-#[cfg(feature = "zarr")]
-pub(crate) use folder::{fill_folder, make_folder};
 pub use format::{ExportOptions, Exporter, FORMATS, Format};
 pub use glb::Glb;
-#[cfg(feature = "cli")]
-pub(crate) use inputs::{Working, keep_input};
 pub use json::Json;
 pub use npz::Npz;
 pub use obj::Obj;
 pub use off::Off;
 pub use ply::Ply;
-pub use scratch::Scratch;
 pub use stl::Stl;
-#[cfg(feature = "cli")]
-pub(crate) use target::fill_all;
-pub use target::{Content, Filled, Target, TargetError, put_all, write_all};
-#[cfg(feature = "cli")]
-pub(crate) use unfinished::abandon;
-pub use unfinished::{NewFolder, sweep};
 pub use vtp::Vtp;
 pub(crate) use vtp::{Parts, write_surface};
 pub use vtu::Vtu;
 pub(crate) use vtu::{Corners, Made, write_grid};
+pub use walpha_files::{
+    Content, Filled, NewFolder, Scratch, Target, TargetError, put_all, sweep, write_all,
+};

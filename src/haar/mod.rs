@@ -34,9 +34,9 @@ pub use unnormalised::Unnormalised;
 
 use serde::{Deserialize, Serialize};
 use walpha_base::memory;
+use walpha_base::progress;
 use walpha_base::setters;
 
-use crate::progress;
 use crate::volume::Volume;
 
 /// How a volume is transformed and truncated.

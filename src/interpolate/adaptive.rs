@@ -2,6 +2,7 @@ use std::collections::HashSet;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use rayon::prelude::*;
+use walpha_base::progress::report;
 use walpha_base::setters;
 
 use super::fill::corners;
@@ -9,7 +10,6 @@ use super::raster::NOTHING;
 use super::sampled::Sampled;
 use super::{Deviation, InterpolateError};
 use crate::points::Units;
-use crate::progress::report;
 use crate::volume::{Dims, Volume};
 
 /// When adaptive selection is done: as soon as one of these is reached.

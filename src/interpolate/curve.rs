@@ -3,6 +3,7 @@ use std::io::{self, Write};
 
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
+use walpha_base::progress::{self, Share};
 use walpha_regular::TriangulationError;
 
 use super::{Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels, fill};
@@ -10,7 +11,6 @@ use crate::haar::{HaarOptions, Tolerance, smooth};
 use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, points_at, select, weigh,
 };
-use crate::progress::{self, Share};
 use crate::shape::{Alpha, Engine, ShapeError, ShapeOptions, alpha_shape};
 use crate::volume::Volume;
 

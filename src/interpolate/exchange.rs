@@ -1,6 +1,7 @@
 use std::collections::HashSet;
 
 use rayon::prelude::*;
+use walpha_base::progress::{Share, report, within};
 use walpha_regular::Growing;
 
 use super::InterpolateError;
@@ -9,7 +10,6 @@ use super::fill::corners;
 use super::sampled::Sampled;
 use super::trial::{Gain, Loss, Trial};
 use crate::points::Units;
-use crate::progress::{Share, report, within};
 use crate::shape::ShapeError;
 use crate::volume::Volume;
 

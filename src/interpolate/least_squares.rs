@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 use walpha_base::memory::{NoMemory, afford};
+use walpha_base::progress::report;
 
 use super::lists::{Lists, samples_of};
 use super::{Grid, InterpolateError};
-use crate::progress::report;
 use crate::volume::Volume;
 
 /// Rows, or elements of a vector, worked on together. Fixed, so that sums are the same on any number

@@ -1,9 +1,9 @@
 use serde::{Deserialize, Serialize};
+use walpha_base::progress::{Share, within};
 
 use super::least_squares::{Normal, Solved};
 use super::{Grid, Interpolant, InterpolateError, fill};
 use crate::points::Units;
-use crate::progress::{Share, within};
 use crate::shape::AlphaShape;
 use crate::volume::Volume;
 

@@ -2,11 +2,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 use walpha_base::memory;
+use walpha_base::progress::{Share, report, within};
 use walpha_regular::{Predicates, Torus};
 
 use super::incidence::Incidence;
 use crate::points::WeightedPoints;
-use crate::progress::{Share, report, within};
 use crate::shape::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape};
 
 /// All alpha shapes of a set of points at once: the regular triangulation, and for each simplex

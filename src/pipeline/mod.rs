@@ -11,11 +11,12 @@ pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
 pub use weighed::{Origin, Weighed};
 
 use choice::Chosen;
+use walpha_base::progress::{Share, within};
 
 use crate::haar::{HaarOptions, smooth};
 use crate::interpolate::{Refit, refit};
 use crate::points::{ModelFacts, Points, SampleGrid, Units, Weighting};
-use crate::progress::{Share, Stage, within};
+use crate::progress::Stage;
 use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, alpha_shape};
 use crate::volume::{GrayRange, Volume};
 

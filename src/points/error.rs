@@ -2,11 +2,11 @@ use std::path::PathBuf;
 
 use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::memory::NoMemory;
+use walpha_base::shown::shown;
 use walpha_complex::Alpha;
 use walpha_regular::TriangulationError;
 
 use super::Weighting;
-use crate::shown::shown;
 use crate::volume::{Reason, VolumeError};
 
 /// Why points or their weights cannot be had.

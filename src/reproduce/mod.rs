@@ -27,7 +27,8 @@ pub use numbers::ShapeNumbers;
 pub use off::{OffError, OffMesh};
 pub use report::{Fact, Finding, Input, Item, Report, Table, Verdict};
 
-use crate::progress;
+use walpha_base::progress;
+
 use crate::volume::{GrayRange, Volume};
 use study::{Shapes, Study};
 

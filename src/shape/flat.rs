@@ -3,11 +3,11 @@
 //! There are no cells. Classes are those of space: what is in the shape and a face of nothing there is
 //! singular, the faces of it are regular, and nothing is interior, as space is on both sides.
 
+use walpha_base::progress::Piece;
 use walpha_regular::{Predicates, Sites, triangulate_flat};
 
 use super::topology::flat_betti;
 use super::{Betti, Class, Complex, ShapeError, Simplices};
-use crate::progress::Piece;
 
 /// What a flat shape is.
 pub(super) struct Found {

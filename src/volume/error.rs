@@ -3,9 +3,9 @@ use std::path::{Path, PathBuf};
 
 use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::memory::NoMemory;
+use walpha_base::shown::shown;
 
 use super::{Dims, Reason, SAMPLES};
-use crate::shown::shown;
 
 /// What can be wrong with a volume or the file it comes from.
 #[derive(Debug, thiserror::Error)]

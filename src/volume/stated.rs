@@ -1,7 +1,8 @@
 //! What a file says of its α and its coordinates, where the programs that read it look.
 
+use walpha_base::shown::{number, six_digits};
+
 use crate::shape::Alpha;
-use crate::shown::{number, six_digits};
 use crate::volume::{Coordinates, LengthUnit};
 
 /// For a comment: α as a squared length, and as a radius where it is one.

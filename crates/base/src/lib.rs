@@ -13,8 +13,13 @@
 
 pub mod advice;
 pub mod memory;
+#[cfg(feature = "near")]
+pub mod near;
 pub mod npy;
+#[cfg(feature = "progress")]
+pub mod progress;
 mod setters;
+pub mod shown;
 #[cfg(feature = "cli")]
 pub mod standard_output;
 mod sum;

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use serde_json::json;
+use walpha_base::progress;
+use walpha_files::{Filled, fill_folder};
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{Array, ArrayBuilder, DataType, Element, FillValue};
 use zarrs::array_subset::ArraySubset;
@@ -13,8 +15,6 @@ use zarrs::group::GroupBuilder;
 
 use super::Piece;
 use crate::blocks::{BlocksError, Merged, Plan};
-use crate::export::{Filled, fill_folder};
-use crate::progress;
 use crate::shape::Simplices;
 
 /// Rows of a chunk.

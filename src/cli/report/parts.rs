@@ -3,10 +3,10 @@
 use std::fmt::{self, Display};
 
 use serde::Serialize;
+use walpha_base::shown::number;
 
 use crate::pipeline::Weighed;
 use crate::points::WeightSummary;
-use crate::shown::number;
 use crate::{GrayRange, LengthUnit, Truncation, Weighting};
 
 use super::super::output::name;

@@ -5,12 +5,13 @@ mod outputs;
 use std::path::PathBuf;
 
 use clap::Args;
+use walpha_base::shown::shown;
+use walpha_files::Working;
 
 use crate::blocks::{Pieces, Team};
-use crate::export::{FORMATS, Format, Working};
+use crate::export::{FORMATS, Format};
 use crate::progress::Stage;
 use crate::shape::{ShapeOptions, Surface};
-use crate::shown::shown;
 
 use super::args::{OutputArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::formats::shape_output;

@@ -3,6 +3,8 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use walpha_base::shown::shown;
+
 use crate::AlphaShape;
 use crate::blocks::Pieces;
 use crate::cli::picture::PictureArgs;
@@ -11,7 +13,6 @@ use crate::export::{
     Content, ExportOptions, Exporter, FORMATS, Format, Target, TargetError, write_all,
 };
 use crate::points::{ModelFacts, Packing, PointWriter};
-use crate::shown::shown;
 use crate::volume::UnknownFormat;
 
 use super::Shape;

@@ -8,13 +8,13 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::Args;
+use walpha_base::shown::{number, shown};
 
 use crate::GrayRange;
 use crate::export::Target;
 use crate::pipeline::{AlphaRule, Parameter, Weighed};
 use crate::progress::Stage;
 use crate::render::{self, Original, Page, Subject};
-use crate::shown::{number, shown};
 use crate::volume::UnknownFormat;
 
 use super::Global;

@@ -1,11 +1,11 @@
 use std::io::{self, Write};
 
+use walpha_base::progress;
 use zip::ZipWriter;
 
 use super::lasting;
 use crate::export::npz::Archive;
 use crate::ladder::{Entry, Ordered};
-use crate::progress;
 
 /// Arrays of each dimension, by their names.
 const DIMENSIONS: [&str; 4] = ["vertex", "edge", "facet", "cell"];

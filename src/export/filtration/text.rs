@@ -1,7 +1,8 @@
 use std::io::{self, Write};
 
+use walpha_base::progress;
+
 use crate::ladder::Ordered;
-use crate::progress;
 
 /// Lines between two words on how far it is.
 const STEP: usize = 1 << 16;

@@ -8,11 +8,11 @@ mod sort;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
+use walpha_base::progress;
 
 use super::filtration::Radius;
 use super::levels::Own;
 use super::{Filtration, Levels};
-use crate::progress;
 use crate::shape::{Alpha, Betti, ShapeError};
 pub(super) use numbers::Numbers;
 pub use pairs::Pairs;

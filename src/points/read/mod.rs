@@ -31,13 +31,13 @@ use std::path::Path;
 
 use walpha_base::advice::Setting;
 use walpha_base::setters;
+#[cfg(feature = "formats")]
+use walpha_base::shown::shown;
 
 use super::formats::{FORMATS, PointFormat};
 #[cfg(feature = "formats")]
 use super::mesh::CellCount;
 use super::{ModelFacts, Points, PointsError};
-#[cfg(feature = "formats")]
-use crate::shown::shown;
 use crate::volume::{Reason, begins_as_volume, start_of};
 
 /// The columns of a point file that are read.

@@ -2,11 +2,12 @@
 
 use std::collections::HashSet;
 
+use walpha_base::progress::report;
+
 use super::around::{Windows, earlier_steps};
 use super::blocks::{Blocks, Cell, MIDDLE, SIDE, Shape, bit_of};
 use super::coder::Coder;
 use super::mixer::Mixer;
-use crate::progress::report;
 
 /// Blocks along the side of a superblock.
 const SUPER: u32 = 8;

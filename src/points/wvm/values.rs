@@ -1,10 +1,11 @@
 //! Whole numbers at the voxels of points, as differences from what is to be expected there.
 
+use walpha_base::progress::report;
+
 use super::blocks::{Blocks, Cell, SIDE, Shape, Window, bit_of, squared};
 use super::coder::Coder;
 use super::mixer::Mixer;
 use super::predict::{Guess, Known};
-use crate::progress::report;
 
 /// Differences up to this are counted one by one.
 const COUNTED: u64 = 12;

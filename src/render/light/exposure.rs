@@ -4,12 +4,12 @@
 //! surrounds them, seen or not, and is free of noise.
 
 use rayon::prelude::*;
+use walpha_base::progress;
 use walpha_base::vector::{V3, along, dot, scale, unit};
 
 use super::depth_map::{DepthMap, Receiver, Space};
 use super::directions::{cone_directions, sphere_directions};
 use super::studio::Studio;
-use crate::progress;
 use crate::render::normals::vertex_normals;
 use crate::render::scene::{Mesh, Scene, Shading};
 

@@ -169,7 +169,7 @@ fn significant(number: f64) -> String {
     }
     // Rounded by way of a text with an exponent; parsing gives the nearest double.
     let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
-    crate::shown::number(rounded)
+    walpha_base::shown::number(rounded)
 }
 
 fn escape(text: &str) -> String {

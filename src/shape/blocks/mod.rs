@@ -24,11 +24,11 @@ mod spanning;
 mod torus;
 
 use rayon::prelude::*;
+use walpha_base::progress::Piece;
 use walpha_regular::Lattice;
 use walpha_regular::{Sites, Torus, Triangulation, TriangulationError, check_span, insert_all};
 
 use super::{Complex, ShapeError};
-use crate::progress::Piece;
 
 use classify::{Owned, Shelves, classify};
 use merge::merge;

@@ -1,5 +1,6 @@
 //! A block alone: what it owns of a shape whose other blocks are elsewhere.
 
+use walpha_base::progress::Piece;
 use walpha_regular::Lattice;
 use walpha_regular::Sites;
 
@@ -7,7 +8,6 @@ use super::classify::{Dimension, Owned, Shelves, classify};
 use super::partition::Neighbourhood;
 use super::spanning::spanning;
 use super::{Block, Question};
-use crate::progress::Piece;
 use crate::shape::{Class, Complex, ShapeError, Simplices, UnionFind};
 
 /// Points around a block, in the order of their indices in the whole set, with weights.

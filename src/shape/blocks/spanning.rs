@@ -1,9 +1,9 @@
 //! Blocks whose points may span no volume: along a line of points, most do not.
 
+use walpha_base::progress::Piece;
 use walpha_regular::{SitesError, Triangulation, TriangulationError, beside};
 
 use super::{Block, triangulate};
-use crate::progress::Piece;
 
 /// Triangulates a block, where its points span no volume with places beside them, numbered from `next`.
 /// Their balls at α are empty: they are in no simplex of the shape, and refute none.

@@ -1,6 +1,7 @@
 //! How far a block of a torus looks: less than what is asked for, where that decides it.
 
 use rayon::prelude::*;
+use walpha_base::progress::Piece;
 use walpha_regular::Lattice;
 use walpha_regular::{
     AXES, Predicates, Sites, SitesError, Torus, Triangulation, TriangulationError,
@@ -8,7 +9,6 @@ use walpha_regular::{
 
 use super::classify::Long;
 use super::{Block, Partition, Question, Reach, triangulate};
-use crate::progress::Piece;
 use crate::shape::ShapeError;
 
 /// A block with what decides what it owns around it: as much as there are large empty spheres.

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use flate2::read::MultiGzDecoder;
 
 use walpha_base::advice::Setting;
+use walpha_base::near::nearest;
 
 use super::{FORMATS, VolumeFormat};
-use crate::near::nearest;
 
 #[cfg(feature = "formats")]
 use crate::volume::read::naming;

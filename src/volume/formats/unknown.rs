@@ -2,8 +2,8 @@ use std::path::Path;
 
 use walpha_base::advice::Advice;
 
-use crate::near::nearest;
-use crate::shown::shown;
+use walpha_base::near::nearest;
+use walpha_base::shown::shown;
 
 /// No writer has this extension.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -3,9 +3,10 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
+use walpha_base::shown::shown;
+
 use super::described::Described;
 use super::{format_error, io_error};
-use crate::shown::shown;
 use crate::volume::{Reason, Volume, VolumeError};
 
 /// The files that a header names, relative to its folder; they may be anywhere.

@@ -2,8 +2,8 @@ use std::io::{self, Read};
 
 use rayon::prelude::*;
 use walpha_base::memory::asking;
+use walpha_base::progress;
 
-use crate::progress;
 use crate::volume::{Dtype, Endian};
 
 /// Decoded at a time, so that a file is never held in memory along with its samples.

@@ -6,11 +6,11 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use walpha_base::shown::shown;
 
 #[cfg(feature = "dicom")]
 use super::format_error;
 use super::io_error;
-use crate::shown::shown;
 #[cfg(feature = "dicom")]
 use crate::volume::Reason;
 use crate::volume::VolumeError;

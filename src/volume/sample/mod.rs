@@ -9,9 +9,9 @@ pub(super) use phantom::PhantomParts;
 pub use phantom::phantom;
 
 use walpha_base::advice::Advice;
+use walpha_base::near::nearest;
 
 use super::{Frame, ReadOptions, Volume, VolumeError, read};
-use crate::near::nearest;
 
 /// The samples there are, as a user writes them.
 pub const SAMPLES: [&str; 3] = ["sample:skull", "sample:phantom", "sample:phantom@N"];

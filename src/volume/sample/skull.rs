@@ -3,8 +3,8 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use flate2::read::GzDecoder;
+use walpha_base::shown::shown;
 
-use crate::shown::shown;
 use crate::volume::read::{Length, io_error, read_inr};
 use crate::volume::{ReadOptions, Reason, Volume, VolumeError, read};
 

@@ -3,14 +3,14 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use serde_json::json;
+use walpha_base::progress;
+use walpha_files::make_folder;
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{Array, ArrayBuilder, DataType, Element, FillValue};
 use zarrs::array_subset::ArraySubset;
 use zarrs::filesystem::FilesystemStore;
 use zarrs::group::GroupBuilder;
 
-use crate::export::make_folder;
-use crate::progress;
 use crate::volume::{Dtype, Frame, LengthUnit, Source, VolumeError};
 
 /// Samples along an edge of a chunk.

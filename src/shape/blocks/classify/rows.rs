@@ -225,12 +225,12 @@ fn gathered<T: Copy>(from: &[T], ranges: impl Iterator<Item = Range<usize>> + Cl
 
 #[cfg(test)]
 mod tests {
+    use walpha_base::progress::Piece;
     use walpha_regular::Lattice;
     use walpha_regular::Sites;
 
     use super::super::super::{Limits, Plan, Question, Reach, decide, merge};
     use super::*;
-    use crate::progress::Piece;
 
     #[test]
     fn merged_rows_take_the_bytes_foreseen() {

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use walpha_base::advice::{Setting, advice};
+use walpha_base::shown::shown;
 
 use super::slice::{Found, Slice};
-use crate::shown::shown;
 use crate::volume::read::format_error;
 use crate::volume::read::series::{Files, files};
 use crate::volume::{Reason, VolumeError};

@@ -12,13 +12,13 @@ use std::path::Path;
 use rayon::prelude::*;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::asking;
+use walpha_base::progress;
+use walpha_base::shown::shown;
 
 use super::described::{Described, Encoding};
 use super::frames::Frames;
 use super::series::Series;
 use super::{ReadOptions, format_error};
-use crate::progress;
-use crate::shown::shown;
 use crate::volume::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 use gather::{Gathered, pattern, reason, skippable};
 use slice::{Found, Slice, pixels};

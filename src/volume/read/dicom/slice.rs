@@ -4,11 +4,11 @@ use dicom_encoding::{TransferSyntax, TransferSyntaxIndex};
 use dicom_object::{DefaultDicomObject, InMemDicomObject, OpenFileOptions, Tag};
 use dicom_pixeldata::PixelDecoder;
 use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
+use walpha_base::shown::shown;
 use walpha_base::vector::cross;
 
 use super::claims;
 use super::header::Header;
-use crate::shown::shown;
 use crate::volume::read::format_error;
 use crate::volume::read::payload::MOST_EXPANSION;
 use crate::volume::{Dtype, Reason, VolumeError};

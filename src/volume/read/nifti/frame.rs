@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use walpha_base::shown::{number, shown, six_digits};
+
 use super::super::described::{diagonal, frame};
 use super::header::Header;
-use crate::shown::{number, shown, six_digits};
 use crate::volume::{Coordinates, Dims, Frame, LengthUnit, Space, VolumeError};
 
 /// Frames that place a sample further apart than this share of the shortest spacing say different things.

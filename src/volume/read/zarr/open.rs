@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 use walpha_base::advice::{Setting, advice};
+use walpha_base::shown::shown;
 use zarrs::array::Array;
 use zarrs::filesystem::FilesystemStore;
 use zarrs::group::Group;
@@ -14,7 +15,6 @@ use super::super::format_error;
 use super::super::frames::Frames;
 use super::super::series::is_zarr;
 use super::{Stored, damaged};
-use crate::shown::shown;
 use crate::volume::{Coordinates, Dims, LengthUnit, Reason, VolumeError};
 
 pub(super) fn open(

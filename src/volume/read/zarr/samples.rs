@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::asking;
+use walpha_base::progress;
 use zarrs::array::{Array, DataType, ElementOwned};
 use zarrs::array_subset::ArraySubset;
 use zarrs::filesystem::FilesystemStore;
 
 use super::super::format_error;
 use super::{damaged, shards};
-use crate::progress;
 use crate::volume::source::Parts;
 use crate::volume::{Dims, Dtype, Reason, VolumeError};
 

@@ -3,10 +3,7 @@
 /// The known name most like `given`, if a slip or two of the fingers explains the difference: a letter
 /// left out, put in, wrong, or exchanged with its neighbour, one for every three letters. Letter case is
 /// passed over; the first of equals is taken. One comparison for each name.
-pub(crate) fn nearest<'a>(
-    given: &str,
-    known: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
+pub fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let given = given.to_lowercase();
     let slips = |name: &str| strsim::osa_distance(&given, &name.to_lowercase());
     let most = (given.chars().count() / 3).max(1);

@@ -102,8 +102,7 @@ pub fn sweep() {
 
 /// Removes what is not complete, and ends the process before another file can appear. For the handler
 /// of an interrupt, in a thread of its own: files under their final names are complete.
-#[cfg(feature = "cli")]
-pub(crate) fn abandon(code: i32) -> ! {
+pub fn abandon(code: i32) -> ! {
     let _for_good = gate();
     sweep();
     std::process::exit(code)

@@ -3,14 +3,13 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use walpha_base::advice::Advice;
+use walpha_base::shown::shown;
 
-#[cfg(feature = "zarr")]
-use super::folder::PartFolder;
-use super::inputs::{self, Refused};
-use super::part::{Part, Whole};
-use super::place::{Claim, Key, Place};
-use super::unfinished::gate;
-use crate::shown::shown;
+use crate::folder::PartFolder;
+use crate::inputs::{self, Refused};
+use crate::part::{Part, Whole};
+use crate::place::{Claim, Key, Place};
+use crate::unfinished::gate;
 
 /// A file to be: opened before the long work, so that a bad place is known at once, and put under
 /// its name only when it is complete. Dropped before that, it leaves nothing behind.
@@ -105,7 +104,6 @@ impl Target {
 
     fn sink(path: &Path) -> io::Result<(Sink, Option<Claim>)> {
         if path == Path::new(Self::STDOUT) {
-            #[cfg(feature = "cli")]
             walpha_base::standard_output::check()?;
             return Ok((Sink::Stdout, Some(Claim::of_stdout()?)));
         }
@@ -121,7 +119,7 @@ impl Target {
     ///
     /// # Errors
     /// It is.
-    pub(crate) fn check(path: &Path) -> Result<(), TargetError> {
+    pub fn check(path: &Path) -> Result<(), TargetError> {
         // Where there is no folder around it, nothing is read there.
         let checked = Key::of(path).map_or(Ok(()), |key| inputs::check(&key));
         checked.map_err(TargetError::of(path, ""))
@@ -182,14 +180,12 @@ pub struct Filled {
 #[expect(clippy::large_enum_variant, reason = "nearly all are files")]
 enum Output {
     File(Whole),
-    #[cfg(feature = "zarr")]
     Folder(PartFolder),
     /// It has taken all there is.
     Stream,
 }
 
 impl Filled {
-    #[cfg(feature = "zarr")]
     pub(super) fn folder(path: &Path, part: PartFolder) -> Self {
         Self { path: path.to_owned(), output: Output::Folder(part), bytes: 0, _claim: None }
     }
@@ -215,7 +211,6 @@ pub fn put_all(mut files: Vec<Filled>) -> Result<(), TargetError> {
         };
         let put = match output {
             Output::File(whole) => whole.put(&gate),
-            #[cfg(feature = "zarr")]
             Output::Folder(part) => part.put(path),
             Output::Stream => continue,
         };
@@ -237,13 +232,13 @@ pub fn write_all<'a>(
 }
 
 /// Outputs of which the files are complete, and wait to be put in their places.
-pub(crate) struct FilledAll<'a> {
+pub struct FilledAll<'a> {
     files: Vec<Filled>,
     streams: Vec<(Target, Content<'a>)>,
 }
 
 /// Fills all files; streams wait until these are in place.
-pub(crate) fn fill_all<'a>(
+pub fn fill_all<'a>(
     files: impl IntoIterator<Item = (Target, Content<'a>)>,
 ) -> Result<FilledAll<'a>, TargetError> {
     let is_part = |(target, _): &(Target, Content<'_>)| matches!(target.sink, Sink::Part(_));
@@ -254,7 +249,7 @@ pub(crate) fn fill_all<'a>(
 
 impl FilledAll<'_> {
     /// Puts all in their places, behind others that are complete, and writes the streams.
-    pub(crate) fn put(self, mut others: Vec<Filled>) -> Result<(), TargetError> {
+    pub fn put(self, mut others: Vec<Filled>) -> Result<(), TargetError> {
         others.extend(self.files);
         put_all(others)?;
         self.streams.into_iter().try_for_each(|(target, content)| target.write(content))
@@ -273,7 +268,7 @@ fn through(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::*;
 
     #[test]
     fn a_full_disk_names_the_file_and_leaves_nothing() {

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::Filled;
+use crate::Filled;
 
 /// A folder beside the one it is to become. Dropped before it is put there, it goes with all that is in it.
 #[derive(Debug)]
@@ -29,11 +29,11 @@ impl Drop for PartFolder {
 }
 
 /// Makes a folder that is not there yet: `fill` fills one beside it, which gets its name by
-/// [`put_all`](super::put_all). `failed` says what an error of the system is called.
+/// [`put_all`](crate::put_all). `failed` says what an error of the system is called.
 ///
 /// # Errors
 /// The folder is there, cannot be made, or what `fill` returns. Nothing is left behind then.
-pub(crate) fn fill_folder<E>(
+pub fn fill_folder<E>(
     folder: &Path,
     failed: impl Fn(io::Error) -> E,
     fill: impl FnOnce(&Path) -> Result<(), E>,
@@ -46,7 +46,7 @@ pub(crate) fn fill_folder<E>(
 ///
 /// # Errors
 /// As [`fill_folder`].
-pub(crate) fn make_folder<E>(
+pub fn make_folder<E>(
     folder: &Path,
     failed: impl Fn(io::Error) -> E,
     fill: impl FnOnce(&Path) -> Result<(), E>,

@@ -4,9 +4,10 @@ use std::fs::{self, Metadata, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use super::inputs;
-use super::unfinished::gate;
-use crate::shown::shown;
+use walpha_base::shown::shown;
+
+use crate::inputs;
+use crate::unfinished::gate;
 
 /// A place for a file, with all links followed, and what is there now.
 #[derive(Debug)]
@@ -119,7 +120,7 @@ impl Claim {
 
     /// The same for standard output.
     pub(super) fn of_stdout() -> io::Result<Self> {
-        Self::new(Key { path: super::Target::STDOUT.into(), file: None })
+        Self::new(Key { path: crate::Target::STDOUT.into(), file: None })
     }
 
     fn new(key: Key) -> io::Result<Self> {

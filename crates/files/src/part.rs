@@ -4,8 +4,8 @@ use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use super::place::Place;
-use super::unfinished::{Gate, Temporary};
+use crate::place::Place;
+use crate::unfinished::{Gate, Temporary};
 
 /// A temporary file to be filled.
 #[derive(Debug)]

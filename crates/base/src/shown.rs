@@ -4,13 +4,13 @@ use std::path::Path;
 
 /// A path for people to read: control characters, which could move a terminal's cursor or change its
 /// colours, are escaped.
-pub(crate) fn shown(path: &Path) -> String {
+pub fn shown(path: &Path) -> String {
     escaped(&path.to_string_lossy(), |_| false)
 }
 
 /// A number for people to read: as it is, or with an exponent where it would begin or end in many
 /// zeros.
-pub(crate) fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && size.is_finite() && !(1e-4..1e15).contains(&size) {
         format!("{value:e}")
@@ -20,12 +20,12 @@ pub(crate) fn number(value: f64) -> String {
 }
 
 /// A number rounded to six significant digits.
-pub(crate) fn six_digits(number: f64) -> f64 {
+pub fn six_digits(number: f64) -> f64 {
     format!("{number:.5e}").parse().unwrap_or(number)
 }
 
 /// A text with its control characters escaped, but for those `kept`.
-pub(crate) fn escaped(text: &str, kept: impl Fn(char) -> bool) -> String {
+pub fn escaped(text: &str, kept: impl Fn(char) -> bool) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
         if c.is_control() && !kept(c) {

@@ -7,16 +7,17 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use walpha_base::advice::{Advice, Setting};
 
-use super::place::Key;
-use crate::volume::files_of;
+use crate::place::Key;
+
+/// What lists the files that belong to an input: those that a header names, or those of a folder that are read.
+pub type FilesOf = fn(&Path) -> Vec<PathBuf>;
 
 /// What is not to be replaced.
-#[derive(Clone, Debug, PartialEq)]
 enum Kept {
     /// A file that is read.
     Input(Key),
-    /// A folder that is read: the files of its volume.
-    Folder(PathBuf),
+    /// A folder that is read, and what lists the files in it that are.
+    Folder(PathBuf, FilesOf),
     /// A folder that nothing else is to be written to.
     Working(PathBuf),
 }
@@ -43,12 +44,12 @@ impl Refused {
     }
 }
 
-/// Keeps an input from being replaced by any [`Target`](super::Target) from now on: a file, those that
-/// its header names, or the files of a volume in a folder; under all their names. What is not there is left out.
-pub(crate) fn keep_input(path: &Path) {
+/// Keeps an input from being replaced by any [`Target`](crate::Target) from now on: a file, those that
+/// its header names, or the files of a volume in a folder; under all their names. `files_of` lists the files that belong to it. What is not there is left out.
+pub fn keep_input(path: &Path, files_of: FilesOf) {
     let mut found = Vec::new();
     match fs::canonicalize(path) {
-        Ok(folder) if folder.is_dir() => found.push(Kept::Folder(folder)),
+        Ok(folder) if folder.is_dir() => found.push(Kept::Folder(folder, files_of)),
         Ok(_) => {
             let files = std::iter::once(path.to_owned()).chain(files_of(path));
             found.extend(files.filter_map(|file| Key::of_existing(&file)).map(Kept::Input));
@@ -60,11 +61,11 @@ pub(crate) fn keep_input(path: &Path) {
 
 /// A folder that no target is opened in, until this is dropped.
 #[derive(Debug)]
-pub(crate) struct Working(PathBuf);
+pub struct Working(PathBuf);
 
 impl Working {
     /// Of a folder, whether it is there or not.
-    pub(crate) fn folder(folder: &Path) -> Self {
+    pub fn folder(folder: &Path) -> Self {
         let folder = Key::of(folder).map_or_else(|_| folder.to_owned(), |key| key.path);
         let folder = fs::canonicalize(&folder).unwrap_or(folder);
         kept().push(Kept::Working(folder.clone()));
@@ -75,7 +76,9 @@ impl Working {
 impl Drop for Working {
     fn drop(&mut self) {
         let mut kept = kept();
-        if let Some(at) = kept.iter().position(|kept| *kept == Kept::Working(self.0.clone())) {
+        if let Some(at) =
+            kept.iter().position(|kept| matches!(kept, Kept::Working(folder) if *folder == self.0))
+        {
             kept.swap_remove(at);
         }
     }
@@ -84,7 +87,7 @@ impl Drop for Working {
 /// Refuses a place that is kept.
 pub(super) fn check(place: &Key) -> io::Result<()> {
     // Lists of folders are read when something in one of them would be replaced.
-    let is_of = |folder: &Path| {
+    let is_of = |folder: &Path, files_of: FilesOf| {
         place.path.starts_with(folder)
             && place.path.exists()
             && files_of(folder)
@@ -94,7 +97,7 @@ pub(super) fn check(place: &Key) -> io::Result<()> {
     };
     let refused = kept().iter().find_map(|kept| match kept {
         Kept::Input(file) => file.is(place).then_some(Refused::Input),
-        Kept::Folder(folder) => is_of(folder).then_some(Refused::Input),
+        Kept::Folder(folder, files_of) => is_of(folder, *files_of).then_some(Refused::Input),
         Kept::Working(folder) => place.path.starts_with(folder).then_some(Refused::Working),
     });
     refused.map_or(Ok(()), |why| Err(io::Error::other(why)))

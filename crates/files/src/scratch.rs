@@ -2,7 +2,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use super::unfinished::Temporary;
+use crate::unfinished::Temporary;
 
 /// A temporary file with a name, removed when it is dropped, and also when the process is
 /// interrupted.

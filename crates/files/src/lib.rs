@@ -1,0 +1,37 @@
+//! Files that appear under their names when they are complete, or not at all.
+//!
+//! What is written goes into a file beside its place first, or into one without a name, and gets its name when the last byte is
+//! written. Several outputs appear together. A file keeps the mode, owner and names of the one it replaces;
+//! inputs are not replaced. For the commands of walpha, and whoever writes shapes with it.
+//!
+//! ```
+//! use std::io::Write;
+//! use walpha_files::Target;
+//!
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("greeting");
+//! let failed = Target::open(&path)?.write(|_| Err::<(), _>(std::io::Error::other("no")));
+//! assert!(failed.is_err() && !path.exists());
+//! Target::open(&path)?.write(|out| out.write_all(b"hello"))?;
+//! assert_eq!(std::fs::read(&path)?, b"hello");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod folder;
+mod inputs;
+mod part;
+mod place;
+mod scratch;
+mod target;
+mod unfinished;
+
+pub use folder::{fill_folder, make_folder};
+pub use inputs::{FilesOf, Working, keep_input};
+pub use scratch::Scratch;
+pub use target::{Content, Filled, FilledAll, Target, TargetError, fill_all, put_all, write_all};
+pub use unfinished::{NewFolder, abandon, sweep};
+
+/// The example in the README runs.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
