@@ -50,12 +50,13 @@ pub mod render;
 pub mod reproduce;
 mod select;
 pub mod shape;
-pub mod volume;
 
 /// What errors advise.
 pub use walpha_base::advice;
 /// Exact regular triangulations: a crate of its own, `walpha-regular`, for use in other programs.
 pub use walpha_regular as triangulation;
+/// Volumes and their files: a crate of its own, `walpha-volume`, for use in other programs.
+pub use walpha_volume as volume;
 
 pub use walpha_base::threads;
 /// The exact checker: a crate of its own, `walpha-check`, for use in other programs.

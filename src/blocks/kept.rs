@@ -97,8 +97,7 @@ impl Plan {
     /// was read of it.
     pub(super) fn smoothed(folder: &Path, dims: Dims) -> Result<(Source, Seen), BlocksError> {
         let path = folder.join(Self::SMOOTHED);
-        let raw = Some(RawLayout::new(dims, Dtype::F32));
-        let options = ReadOptions { raw, ..ReadOptions::default() };
+        let options = ReadOptions::default().raw(RawLayout::new(dims, Dtype::F32));
         let source = Source::open(&path, &options)?;
         let dims = dims.xyz();
         Ok((source, Seen::none_of(&Part::whole(dims), Field::bricks_of(dims).side(), dims)))

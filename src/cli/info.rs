@@ -173,7 +173,7 @@ impl Info {
                     return Ok(Content::Unread { format, voxels: what.clone(), dims: *dims });
                 }
                 Some(&Reason::Several { count }) if options.frame.is_none() => {
-                    let first = ReadOptions { frame: Some(0), ..options.clone() };
+                    let first = options.clone().frame(0);
                     Seen { volumes: Some(count), ..Seen::of(input, &first)? }
                 }
                 _ => return Err(pipeline::with_points(error)),
@@ -221,7 +221,7 @@ impl Seen {
             (source, extent)
         } else {
             // It says what is wrong where something is.
-            let opened = |nan| volume::open(input, &ReadOptions { nan, ..options.clone() });
+            let opened = |nan| volume::open(input, &options.clone().nan(nan));
             match opened(options.nan.or(Some(Nan::Mask))) {
                 Ok(volume) => {
                     let extent = Extent::of_volume(&volume);

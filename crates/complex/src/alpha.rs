@@ -10,13 +10,13 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 /// As text, and in JSON, it is a number, `inf` or `-inf`:
 ///
 /// ```
-/// use walpha_check::Alpha;
+/// use walpha_complex::Alpha;
 ///
 /// let alpha: Alpha = "0.75".parse()?;
 /// assert_eq!(alpha, Alpha::from_squared(0.75)?);
 /// assert_eq!("inf".parse(), Ok(Alpha::INFINITE));
 /// assert_eq!(Alpha::INFINITE.to_string(), "inf");
-/// # Ok::<(), walpha_check::AlphaError>(())
+/// # Ok::<(), walpha_complex::AlphaError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Alpha(f64);

@@ -45,7 +45,7 @@ impl fmt::Display for Class {
 /// Something for each class: how many simplices there are, say.
 ///
 /// ```
-/// use walpha_check::{ByClass, Class};
+/// use walpha_complex::{ByClass, Class};
 ///
 /// let mut counts = ByClass::<usize>::default();
 /// counts[Class::Regular] += 12;

@@ -7,13 +7,13 @@ use super::{ByClass, Class};
 /// nothing; a regular facet that must be seen as 7 → 5 → 2 from outside is `[2, 7, 5]`.
 ///
 /// ```
-/// use walpha_check::{Class, Simplices};
+/// use walpha_complex::{Class, Simplices};
 ///
 /// let mut edges = Simplices::new(vec![[0, 1], [0, 2]], vec![Class::Regular; 2])?;
 /// edges.push([1, 2], Class::Singular);
 /// assert_eq!(edges.rows()[2], [1, 2]);
 /// assert_eq!(edges.of(Class::Singular).next(), Some(&[1, 2]));
-/// # Ok::<(), walpha_check::SimplicesError>(())
+/// # Ok::<(), walpha_complex::SimplicesError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Simplices<const N: usize> {

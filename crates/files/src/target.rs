@@ -238,6 +238,9 @@ pub struct FilledAll<'a> {
 }
 
 /// Fills all files; streams wait until these are in place.
+///
+/// # Errors
+/// [`TargetError`].
 pub fn fill_all<'a>(
     files: impl IntoIterator<Item = (Target, Content<'a>)>,
 ) -> Result<FilledAll<'a>, TargetError> {
@@ -249,6 +252,9 @@ pub fn fill_all<'a>(
 
 impl FilledAll<'_> {
     /// Puts all in their places, behind others that are complete, and writes the streams.
+    ///
+    /// # Errors
+    /// [`TargetError`].
     pub fn put(self, mut others: Vec<Filled>) -> Result<(), TargetError> {
         others.extend(self.files);
         put_all(others)?;
@@ -268,7 +274,7 @@ fn through(
 
 #[cfg(test)]
 mod tests {
-    use crate::*;
+    use super::*;
 
     #[test]
     fn a_full_disk_names_the_file_and_leaves_nothing() {

@@ -50,18 +50,17 @@ impl InputArgs {
     pub(crate) fn options(&self) -> ReadOptions {
         let PartArgs { level, array, frame, series, skip_damaged, nan, roi, downsample } =
             self.part.clone();
-        ReadOptions {
-            raw: self.raw.layout(),
-            format: self.input_format.clone(),
-            level,
-            array,
-            frame,
-            series,
-            skip_damaged,
-            nan,
-            region: roi,
-            downsample,
-        }
+        ReadOptions::default()
+            .raw(self.raw.layout())
+            .format(self.input_format.clone())
+            .level(level)
+            .array(array)
+            .frame(frame)
+            .series(series)
+            .skip_damaged(skip_damaged)
+            .nan(nan)
+            .region(roi)
+            .downsample(downsample)
     }
 
     /// What the name of standard input would end with.
@@ -167,9 +166,8 @@ impl RawArgs {
 
     /// How samples lie in the file, if it is raw.
     fn layout(&self) -> Option<RawLayout> {
-        let layout =
-            |(dims, dtype)| RawLayout { dims, dtype, endian: self.endian, offset: self.offset };
-        self.dims.zip(self.dtype).map(layout)
+        let layout = |(dims, dtype)| RawLayout::new(dims, dtype).endian(self.endian);
+        self.dims.zip(self.dtype).map(|of| layout(of).offset(self.offset))
     }
 }
 

@@ -11,7 +11,7 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let mut lines = Lines::new(BufReader::new(file));
     let mut points = Points::default();
     let mut number = 0;
-    while let Some(line) = lines.next().map_err(io_error(path))? {
+    while let Some(line) = lines.read_line().map_err(io_error(path))? {
         number += 1;
         let mut words = line.split_whitespace();
         if words.next() == Some("v") {
@@ -26,7 +26,7 @@ pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
     let file = std::fs::File::open(path).map_err(io_error(path))?;
     let mut lines = Lines::new(BufReader::new(file));
     let mut counts = [CellCount::new("faces", 0), CellCount::new("lines", 0)];
-    while let Some(line) = lines.next().map_err(io_error(path))? {
+    while let Some(line) = lines.read_line().map_err(io_error(path))? {
         match line.split_whitespace().next() {
             Some("f") => counts[0].count += 1,
             Some("l") => counts[1].count += 1,

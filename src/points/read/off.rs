@@ -91,7 +91,7 @@ struct Tokens<R> {
 
 impl<R: BufRead> Tokens<R> {
     fn next(&mut self, path: &Path) -> Result<Option<String>, PointsError> {
-        while let Some(line) = self.lines.next().map_err(io_error(path))? {
+        while let Some(line) = self.lines.read_line().map_err(io_error(path))? {
             self.number += 1;
             let text = line.split('#').next().unwrap_or_default().trim();
             if !text.is_empty() {

@@ -14,7 +14,7 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     let mut lines = Lines::new(BufReader::new(file));
     let mut header = Header::default();
     let data = loop {
-        let line = lines.next().map_err(io_error(path))?;
+        let line = lines.read_line().map_err(io_error(path))?;
         let line = line.ok_or_else(|| {
             said(Reason::truncated("ends inside its PCD header: it is truncated"))
         })?;

@@ -121,7 +121,7 @@ enum Property {
 impl Header {
     fn read(path: &Path, lines: &mut Lines<BufReader<std::fs::File>>) -> Result<Self, PointsError> {
         let said = |reason: Reason| format(path, reason);
-        let mut line = || lines.next().map_err(io_error(path));
+        let mut line = || lines.read_line().map_err(io_error(path));
         if line()?.as_deref() != Some("ply") {
             return Err(said(Reason::other("is no PLY file: it does not begin with a line ply")));
         }

@@ -56,7 +56,7 @@ pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
         let file = std::fs::File::open(path).map_err(io_error(path))?;
         let mut lines = Lines::new(BufReader::new(file));
         count = 0;
-        while let Some(line) = lines.next().map_err(io_error(path))? {
+        while let Some(line) = lines.read_line().map_err(io_error(path))? {
             count += u64::from(line.split_whitespace().next() == Some("facet"));
         }
     }
@@ -68,7 +68,7 @@ fn text(path: &Path) -> Result<Points, PointsError> {
     let mut lines = Lines::new(BufReader::new(file));
     let mut corners = Corners::default();
     let (mut number, mut ended) = (0, false);
-    while let Some(line) = lines.next().map_err(io_error(path))? {
+    while let Some(line) = lines.read_line().map_err(io_error(path))? {
         number += 1;
         let mut words = line.split_whitespace();
         match words.next() {

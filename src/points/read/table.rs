@@ -65,7 +65,7 @@ fn is_numbers(words: &[&str]) -> bool {
 /// What the first line has: a semicolon, a comma or a tab, in this order.
 fn delimiter(path: &Path) -> Result<u8, PointsError> {
     let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let line = Lines::new(BufReader::new(file)).next().map_err(io_error(path))?;
+    let line = Lines::new(BufReader::new(file)).read_line().map_err(io_error(path))?;
     let line = line.unwrap_or_default();
     Ok(*b";,\t".iter().find(|&&byte| line.contains(char::from(byte))).unwrap_or(&b','))
 }

@@ -45,7 +45,7 @@ pub(crate) fn read(
     let mut rows = Rows::new(path, columns.cloned());
     rows.usual = lay.usual();
     let (mut number, mut first, mut claimed) = (0, true, None);
-    while let Some(line) = lines.next().map_err(io_error(path))? {
+    while let Some(line) = lines.read_line().map_err(io_error(path))? {
         number += 1;
         let remark = line.trim_start().starts_with(['#', '/']);
         let words = words(line.trim_start_matches(['\u{feff}', '#', '/', ' ', '\t']));
@@ -123,13 +123,13 @@ fn atoms(
     mut lines: Lines<impl BufRead>,
     count: u64,
 ) -> Result<(Points, ModelFacts), PointsError> {
-    let line = lines.next().map_err(io_error(path))?.unwrap_or_default();
+    let line = lines.read_line().map_err(io_error(path))?.unwrap_or_default();
     let Comment { columns, cell } = Comment::read(path, &line)?;
     let facts = ModelFacts { cell, ..ModelFacts::default() };
     let mut points = Points::default();
     let mut rows = columns.map(|columns| Rows::new(path, Some(columns)));
     let mut number = 2;
-    while let Some(line) = lines.next().map_err(io_error(path))? {
+    while let Some(line) = lines.read_line().map_err(io_error(path))? {
         number += 1;
         let words: Vec<&str> = line.split_whitespace().collect();
         if words.is_empty() {
@@ -161,7 +161,7 @@ fn points_then_normals(
 ) -> Result<Points, PointsError> {
     let mut points = Points::default();
     let (mut number, mut found) = (1, 0);
-    while let Some(line) = lines.next().map_err(io_error(path))? {
+    while let Some(line) = lines.read_line().map_err(io_error(path))? {
         number += 1;
         let words = words(&line);
         if words.is_empty() {

@@ -1,0 +1,258 @@
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// Which way the axes of world coordinates run in a patient.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[non_exhaustive]
+pub enum Space {
+    /// x to the left, y to the back, z to the head: DICOM, ITK, `MetaImage`.
+    #[serde(rename = "LPS")]
+    Lps,
+    /// x to the right, y to the front, z to the head: `NIfTI`.
+    #[serde(rename = "RAS")]
+    Ras,
+    /// x to the left, y to the front, z to the head: some NRRD files.
+    #[serde(rename = "LAS")]
+    #[cfg_attr(feature = "clap", value(skip))]
+    Las,
+    /// Nobody says.
+    #[default]
+    #[serde(rename = "unknown")]
+    #[cfg_attr(feature = "clap", value(skip))]
+    Unknown,
+}
+
+/// What a length of 1 is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum LengthUnit {
+    /// A step from sample to sample: coordinates are indices.
+    #[serde(rename = "voxel")]
+    Voxel,
+    /// A length that nobody named.
+    #[default]
+    #[serde(rename = "unit")]
+    Unstated,
+    /// Metres.
+    #[serde(rename = "m")]
+    Metre,
+    /// Centimetres.
+    #[serde(rename = "cm")]
+    Centimetre,
+    /// Millimetres, the unit of DICOM and ITK.
+    #[serde(rename = "mm")]
+    Millimetre,
+    /// Micrometres.
+    #[serde(rename = "µm")]
+    Micrometre,
+    /// Nanometres.
+    #[serde(rename = "nm")]
+    Nanometre,
+    /// Ångströms.
+    #[serde(rename = "Å")]
+    Angstrom,
+}
+
+/// What coordinates mean: which way their axes run, and in what they are measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Coordinates {
+    /// Which way the axes run.
+    pub space: Space,
+    /// What a length of 1 is.
+    pub unit: LengthUnit,
+}
+
+impl Space {
+    /// The sign of each axis beside that of LPS; `None` where it is not known.
+    fn signs(self) -> Option<[f64; 3]> {
+        match self {
+            Self::Lps => Some([1.0, 1.0, 1.0]),
+            Self::Ras => Some([-1.0, -1.0, 1.0]),
+            Self::Las => Some([1.0, -1.0, 1.0]),
+            Self::Unknown => None,
+        }
+    }
+
+    /// Whether it is known which way the axes run.
+    pub fn is_known(self) -> bool {
+        self != Self::Unknown
+    }
+
+    /// Three letters, or `unknown`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lps => "LPS",
+            Self::Ras => "RAS",
+            Self::Las => "LAS",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+impl LengthUnit {
+    const ALL: [Self; 8] = [
+        Self::Voxel,
+        Self::Unstated,
+        Self::Metre,
+        Self::Centimetre,
+        Self::Millimetre,
+        Self::Micrometre,
+        Self::Nanometre,
+        Self::Angstrom,
+    ];
+
+    /// The unit as a power of ten metres; `None` if it is not a known length.
+    fn exponent(self) -> Option<i32> {
+        match self {
+            Self::Voxel | Self::Unstated => None,
+            Self::Metre => Some(0),
+            Self::Centimetre => Some(-2),
+            Self::Millimetre => Some(-3),
+            Self::Micrometre => Some(-6),
+            Self::Nanometre => Some(-9),
+            Self::Angstrom => Some(-10),
+        }
+    }
+
+    /// Whether it is a known length, which others can be converted to.
+    pub fn is_known(self) -> bool {
+        self.exponent().is_some()
+    }
+
+    /// The symbol after a number: `mm`, `voxel`; `unit` if it is not known.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Voxel => "voxel",
+            Self::Unstated => "unit",
+            Self::Metre => "m",
+            Self::Centimetre => "cm",
+            Self::Millimetre => "mm",
+            Self::Micrometre => "µm",
+            Self::Nanometre => "nm",
+            Self::Angstrom => "Å",
+        }
+    }
+
+    /// The same in letters that every file can hold: `um`.
+    pub fn ascii(self) -> &'static str {
+        match self {
+            Self::Micrometre => "um",
+            Self::Angstrom => "angstrom",
+            other => other.symbol(),
+        }
+    }
+
+    /// The unit that a file names, in the spellings of NRRD, `MetaImage`, `ImageJ`, OME-XML and OME-Zarr.
+    /// A name that is not understood is [`LengthUnit::Unstated`].
+    pub fn named(name: &str) -> Self {
+        let name = name.trim().trim_matches('"').trim().to_lowercase();
+        let of_symbol = |unit: &Self| unit.symbol().to_lowercase() == name;
+        match name.as_str() {
+            "voxels" | "pixel" | "pixels" => Self::Voxel,
+            "meter" | "metre" | "meters" | "metres" => Self::Metre,
+            "centimeter" | "centimetre" | "centimeters" => Self::Centimetre,
+            "millimeter" | "millimetre" | "millimeters" => Self::Millimetre,
+            // The Greek letter, the sign for "micro", and ImageJ's escape of it.
+            "um" | "μm" | "\\u00b5m" | "micron" | "microns" | "micrometer" | "micrometre"
+            | "micrometers" => Self::Micrometre,
+            "nanometer" | "nanometre" | "nanometers" => Self::Nanometre,
+            "angstrom" | "ångström" => Self::Angstrom,
+            _ => Self::ALL.into_iter().find(of_symbol).unwrap_or_default(),
+        }
+    }
+}
+
+impl Coordinates {
+    /// Indices of samples.
+    pub const VOXEL: Self = Self { space: Space::Unknown, unit: LengthUnit::Voxel };
+    /// A patient in DICOM's and ITK's way: LPS, in millimetres.
+    pub const PATIENT: Self = Self { space: Space::Lps, unit: LengthUnit::Millimetre };
+
+    /// The way from these coordinates to others, as far as both are known; what is not known stays as
+    /// it is.
+    pub fn to(self, other: Self) -> Conversion {
+        let mut to = self;
+        let mut signs = [1.0; 3];
+        if let (Some(from), Some(into)) = (self.space.signs(), other.space.signs()) {
+            signs = [0, 1, 2].map(|k| from[k] * into[k]);
+            to.space = other.space;
+        }
+        let mut power = 0;
+        if let (Some(from), Some(into)) = (self.unit.exponent(), other.unit.exponent()) {
+            power = from - into;
+            to.unit = other.unit;
+        }
+        Conversion { to, signs, power }
+    }
+}
+
+impl fmt::Display for Coordinates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.unit.symbol())?;
+        if self.space.is_known() { write!(f, ", {}", self.space.name()) } else { Ok(()) }
+    }
+}
+
+/// How coordinates become others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conversion {
+    /// What they become.
+    pub to: Coordinates,
+    signs: [f64; 3],
+    /// Of ten.
+    power: i32,
+}
+
+impl Conversion {
+    /// A length. Rounded once: a power of ten is a double, a part of ten is none.
+    pub fn length(&self, length: f64) -> f64 {
+        let factor = 10f64.powi(self.power.abs());
+        if self.power < 0 { length / factor } else { length * factor }
+    }
+
+    /// A position, or a vector from one to another.
+    pub fn position(&self, position: [f64; 3]) -> [f64; 3] {
+        self.direction(position).map(|component| self.length(component))
+    }
+
+    /// A vector without a length.
+    pub fn direction(&self, direction: [f64; 3]) -> [f64; 3] {
+        // Without a zero that is negative.
+        [0, 1, 2].map(|k| self.signs[k] * direction[k] + 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_units_are_understood() {
+        for unit in LengthUnit::ALL {
+            assert_eq!(LengthUnit::named(unit.symbol()), unit);
+            assert_eq!(LengthUnit::named(unit.ascii()), unit);
+            assert!(unit.ascii().is_ascii());
+        }
+        for name in ["um", "\"um\"", "Micron", "micrometer", "µm", "μm", "\\u00B5m"] {
+            assert_eq!(LengthUnit::named(name), LengthUnit::Micrometre, "{name}");
+        }
+        assert_eq!(LengthUnit::named("furlong"), LengthUnit::Unstated);
+    }
+
+    #[test]
+    fn only_what_is_known_is_converted() {
+        let nifti = Coordinates { space: Space::Ras, unit: LengthUnit::Micrometre };
+        let there = nifti.to(Coordinates::PATIENT);
+        assert_eq!(there.to, Coordinates::PATIENT);
+        assert_eq!(there.position([1.0, -2.0, 3.0]), [-0.001, 0.002, 0.003]);
+        assert_eq!(there.to.to(nifti).position([-0.001, 0.002, 0.003]), [1.0, -2.0, 3.0]);
+        let las = Coordinates { space: Space::Las, unit: LengthUnit::Millimetre };
+        assert_eq!(las.to(Coordinates::PATIENT).position([1.0, 2.0, 3.0]), [1.0, -2.0, 3.0]);
+        for unknown in [Coordinates::default(), Coordinates::VOXEL] {
+            let there = unknown.to(Coordinates::PATIENT);
+            assert_eq!((there.to, there.position([1.0; 3])), (unknown, [1.0; 3]));
+        }
+    }
+}

@@ -1,0 +1,177 @@
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use walpha_base::advice::Advice;
+
+/// How a file stores one sample.
+///
+/// Samples become `f32`. 8-bit and 16-bit integers and `f32` keep their exact value; `u32`, `i32`,
+/// `u64`, `i64` and `f64` are rounded to the nearest `f32` (24 significant bits), and an `f64`
+/// beyond its range becomes infinite, which [`Volume::new`](super::Volume::new) refuses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[allow(missing_docs, reason = "the names say all")]
+#[non_exhaustive]
+pub enum Dtype {
+    U8,
+    I8,
+    U16,
+    I16,
+    U32,
+    I32,
+    U64,
+    I64,
+    F32,
+    F64,
+}
+
+/// The order of the bytes of a sample in a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Endian {
+    /// Least significant byte first, as x86 and ARM machines write.
+    #[default]
+    Little,
+    /// Most significant byte first.
+    Big,
+}
+
+/// An unknown name of a sample type or byte order.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{given:?} is no {kind}")]
+pub struct UnknownName {
+    given: String,
+    kind: &'static str,
+    known: String,
+}
+
+impl UnknownName {
+    /// What to do about it.
+    pub fn advice(&self) -> Advice {
+        format!("give one of {}", self.known).into()
+    }
+}
+
+impl Dtype {
+    /// All types.
+    pub const ALL: [Self; 10] = [
+        Self::U8,
+        Self::I8,
+        Self::U16,
+        Self::I16,
+        Self::U32,
+        Self::I32,
+        Self::U64,
+        Self::I64,
+        Self::F32,
+        Self::F64,
+    ];
+
+    /// Bytes of one sample.
+    pub fn size(self) -> usize {
+        match self {
+            Self::U8 | Self::I8 => 1,
+            Self::U16 | Self::I16 => 2,
+            Self::U32 | Self::I32 | Self::F32 => 4,
+            Self::U64 | Self::I64 | Self::F64 => 8,
+        }
+    }
+
+    /// Whether a number read from text is one of this type.
+    #[cfg(feature = "formats")]
+    pub fn holds(self, value: f64) -> bool {
+        let (low, high) = match self {
+            Self::U8 => (0.0, f64::from(u8::MAX)),
+            Self::I8 => (f64::from(i8::MIN), f64::from(i8::MAX)),
+            Self::U16 => (0.0, f64::from(u16::MAX)),
+            Self::I16 => (f64::from(i16::MIN), f64::from(i16::MAX)),
+            Self::U32 => (0.0, f64::from(u32::MAX)),
+            Self::I32 => (f64::from(i32::MIN), f64::from(i32::MAX)),
+            // The ends of 64 bits are rounded up to a power of two, as the text's number is.
+            Self::U64 => (0.0, u64::MAX as f64),
+            Self::I64 => (i64::MIN as f64, i64::MAX as f64),
+            Self::F32 | Self::F64 => return true,
+        };
+        (low..=high).contains(&value) && value.fract() == 0.0
+    }
+
+    /// The short name, as in `u8`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::U8 => "u8",
+            Self::I8 => "i8",
+            Self::U16 => "u16",
+            Self::I16 => "i16",
+            Self::U32 => "u32",
+            Self::I32 => "i32",
+            Self::U64 => "u64",
+            Self::I64 => "i64",
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+}
+
+impl fmt::Display for Dtype {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Dtype {
+    type Err = UnknownName;
+
+    fn from_str(text: &str) -> Result<Self, UnknownName> {
+        Self::ALL.into_iter().find(|dtype| dtype.name() == text).ok_or_else(|| UnknownName {
+            given: text.into(),
+            kind: "sample type",
+            known: Self::ALL.map(Self::name).join(", "),
+        })
+    }
+}
+
+impl fmt::Display for Endian {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Little => "little",
+            Self::Big => "big",
+        })
+    }
+}
+
+impl FromStr for Endian {
+    type Err = UnknownName;
+
+    fn from_str(text: &str) -> Result<Self, UnknownName> {
+        match text {
+            "little" => Ok(Self::Little),
+            "big" => Ok(Self::Big),
+            _ => Err(UnknownName {
+                given: text.into(),
+                kind: "byte order",
+                known: "little, big".into(),
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_back() {
+        for dtype in Dtype::ALL {
+            assert_eq!(dtype.to_string().parse(), Ok(dtype));
+        }
+        for endian in [Endian::Little, Endian::Big] {
+            assert_eq!(endian.to_string().parse(), Ok(endian));
+        }
+        let error = "f16".parse::<Dtype>().unwrap_err();
+        assert!(error.to_string().contains("f16"), "{error}");
+        assert!(error.advice().to_string().contains("u8, i8"));
+        assert!("middle".parse::<Endian>().is_err());
+    }
+}

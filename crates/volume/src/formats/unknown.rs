@@ -1,0 +1,63 @@
+use std::path::Path;
+
+use walpha_base::advice::Advice;
+
+use walpha_base::near::nearest;
+use walpha_base::shown::shown;
+
+/// No writer has this extension.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{path}: no format has the extension `{extension}`, {thing} can be written as {known}")]
+pub struct UnknownFormat {
+    path: String,
+    extension: String,
+    thing: &'static str,
+    known: String,
+    near: Option<String>,
+}
+
+impl UnknownFormat {
+    /// Given pairs of an extension and its meaning, the meaning of the extension that ends a path.
+    ///
+    /// # Errors
+    /// The name has no extension that is known.
+    pub fn find<'a, F>(
+        path: &Path,
+        thing: &'static str,
+        mut all: impl Iterator<Item = (&'a str, F)> + Clone,
+    ) -> Result<F, Self> {
+        let known = all.clone().map(|(extension, _)| extension);
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let ends = |extension: &str| {
+            name.strip_suffix(extension).is_some_and(|stem| stem.len() > 1 && stem.ends_with('.'))
+        };
+        let found = all.find(|(extension, _)| ends(extension));
+        found.map(|(_, format)| format).ok_or_else(|| Self::new(path, thing, known))
+    }
+
+    /// Says that `thing` cannot be written to `path`, only under the `known` extensions (without their
+    /// dots).
+    pub fn new<'a>(
+        path: &Path,
+        thing: &'static str,
+        known: impl IntoIterator<Item = &'a str> + Clone,
+    ) -> Self {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().into_owned();
+        let dotted: Vec<String> = known.clone().into_iter().map(|e| format!(".{e}")).collect();
+        Self {
+            path: shown(path),
+            near: nearest(&extension, known).map(str::to_owned),
+            extension,
+            thing,
+            known: dotted.join(", "),
+        }
+    }
+
+    /// What to do about it.
+    pub fn advice(&self) -> Advice {
+        match &self.near {
+            Some(near) => format!("did you mean .{near}?").into(),
+            None => "choose one of these".into(),
+        }
+    }
+}

@@ -1,0 +1,237 @@
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::{Conversion, Coordinates, VolumeError};
+
+/// The number of samples along each axis of a volume, checked once: none is zero, and the volume
+/// has at most [`Dims::MAX_SAMPLES`] samples, so a voxel index fits `u32` and a byte count `u64`; more where it
+/// is read [part by part](Dims::unbounded).
+///
+/// Written (x, y, z), as points are; the underlying array is `[z, y, x]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked")]
+pub struct Dims {
+    x: usize,
+    y: usize,
+    z: usize,
+}
+
+/// Sizes as they are read.
+#[derive(Deserialize)]
+struct Unchecked {
+    x: u64,
+    y: u64,
+    z: u64,
+}
+
+impl TryFrom<Unchecked> for Dims {
+    type Error = VolumeError;
+
+    fn try_from(Unchecked { x, y, z }: Unchecked) -> Result<Self, VolumeError> {
+        Self::new(x, y, z)
+    }
+}
+
+/// Reads sizes of a volume that is read part by part. For `#[serde(deserialize_with)]`.
+///
+/// # Errors
+/// Those of the deserializer.
+pub fn any_size<'de, D: Deserializer<'de>>(reader: D) -> Result<Dims, D::Error> {
+    let Unchecked { x, y, z } = Unchecked::deserialize(reader)?;
+    Dims::unbounded(x, y, z).map_err(serde::de::Error::custom)
+}
+
+impl Dims {
+    /// 2³² − 1: simplices name their vertices by `u32` indices, and a 1625³ volume is the most a
+    /// machine that could triangulate its points would hold.
+    pub const MAX_SAMPLES: u64 = u32::MAX as u64;
+
+    /// Checks sizes along x, y and z as a file header or a user gives them.
+    ///
+    /// # Errors
+    /// [`VolumeError::EmptyAxis`] when one is zero, [`VolumeError::TooManySamples`] when the
+    /// product passes [`Dims::MAX_SAMPLES`]. Nothing is allocated.
+    pub fn new(x: u64, y: u64, z: u64) -> Result<Self, VolumeError> {
+        if x == 0 || y == 0 || z == 0 {
+            return Err(VolumeError::EmptyAxis { x, y, z });
+        }
+        let samples = x.checked_mul(y).and_then(|xy| xy.checked_mul(z));
+        match samples {
+            Some(n) if n <= Self::MAX_SAMPLES => {
+                Ok(Self { x: x as usize, y: y as usize, z: z as usize })
+            }
+            _ => Err(VolumeError::TooManySamples { x, y, z }),
+        }
+    }
+
+    /// The same without a limit to what can be read at once: for volumes that are read part by part.
+    ///
+    /// # Errors
+    /// [`VolumeError::EmptyAxis`]; [`VolumeError::TooManySamples`] when the bytes of the samples pass 2⁶³.
+    pub fn unbounded(x: u64, y: u64, z: u64) -> Result<Self, VolumeError> {
+        /// No sample has more bytes.
+        const WIDEST: u64 = 8;
+        if x == 0 || y == 0 || z == 0 {
+            return Err(VolumeError::EmptyAxis { x, y, z });
+        }
+        let bytes = x.checked_mul(y).and_then(|xy| xy.checked_mul(z)?.checked_mul(WIDEST));
+        match bytes.map(i64::try_from) {
+            Some(Ok(_)) => Ok(Self { x: x as usize, y: y as usize, z: z as usize }),
+            _ => Err(VolumeError::TooManySamples { x, y, z }),
+        }
+    }
+
+    /// The same sizes, if they are within [`Dims::MAX_SAMPLES`].
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn bounded(self) -> Result<Self, VolumeError> {
+        Self::new(self.x as u64, self.y as u64, self.z as u64)
+    }
+
+    /// Samples along x, the fastest axis in memory.
+    pub fn x(self) -> usize {
+        self.x
+    }
+
+    /// Samples along y.
+    pub fn y(self) -> usize {
+        self.y
+    }
+
+    /// Samples along z, the slowest axis in memory.
+    pub fn z(self) -> usize {
+        self.z
+    }
+
+    /// Samples in all.
+    pub fn samples(self) -> usize {
+        self.x * self.y * self.z
+    }
+
+    /// The array shape `[z, y, x]`.
+    pub fn shape(self) -> [usize; 3] {
+        [self.z, self.y, self.x]
+    }
+
+    /// Sizes as (x, y, z).
+    pub fn xyz(self) -> [usize; 3] {
+        [self.x, self.y, self.z]
+    }
+}
+
+impl std::fmt::Display for Dims {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}×{}×{}", self.x, self.y, self.z)
+    }
+}
+
+/// Where a grid lies in the world: sample (i, j, k) along (x, y, z) is at
+/// `origin + direction · (spacing ∘ (i, j, k))`, in coordinates that say of themselves what they mean.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// World position of the first sample, (x, y, z).
+    pub origin: [f64; 3],
+    /// Distance between neighbouring samples along the grid's x, y and z axes.
+    pub spacing: [f64; 3],
+    /// Unit vectors of the grid's axes: `direction[r][c]` is world component r of grid axis c.
+    pub direction: [[f64; 3]; 3],
+    /// What world positions mean; voxels where a file says nothing of its grid.
+    pub coordinates: Coordinates,
+}
+
+impl Frame {
+    /// Origin 0, spacing 1, axes along the world's: voxel units.
+    pub const VOXEL: Self = Self {
+        origin: [0.0; 3],
+        spacing: [1.0; 3],
+        direction: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        coordinates: Coordinates::VOXEL,
+    };
+
+    /// The frame whose grid axes step by these vectors from one sample to the next: `axes[c]` is
+    /// the step of grid axis c. Nothing is known of the space and the unit. `None` where an axis is
+    /// zero or not finite.
+    pub fn from_axes(origin: [f64; 3], axes: [[f64; 3]; 3]) -> Option<Self> {
+        let coordinates = Coordinates::default();
+        let mut frame = Self { origin, coordinates, ..Self::VOXEL };
+        for (c, axis) in axes.iter().enumerate() {
+            // Scaled, so that an axis along the world's has its length to the last bit.
+            let largest = axis.iter().fold(0f64, |so_far, v| so_far.max(v.abs()));
+            let squares: f64 = axis.iter().map(|v| (v / largest).powi(2)).sum();
+            frame.spacing[c] = largest * squares.sqrt();
+            for (row, component) in frame.direction.iter_mut().zip(axis) {
+                row[c] = component / frame.spacing[c];
+            }
+        }
+        // A zero axis has divided 0 by 0.
+        let numbers = origin.iter().chain(&frame.spacing).chain(frame.direction.as_flattened());
+        numbers.copied().all(f64::is_finite).then_some(frame)
+    }
+
+    /// The same numbers, declared to be in these coordinates.
+    #[must_use]
+    pub fn meaning(self, coordinates: Coordinates) -> Self {
+        Self { coordinates, ..self }
+    }
+
+    /// The same places in other coordinates, as far as both are known: axes are turned, and lengths
+    /// converted. What is not known stays as it is. Signs are exact, lengths rounded once.
+    #[must_use]
+    pub fn to(self, coordinates: Coordinates) -> Self {
+        let conversion: Conversion = self.coordinates.to(coordinates);
+        let columns = [0, 1, 2].map(|c| conversion.direction(self.direction.map(|row| row[c])));
+        Self {
+            origin: conversion.position(self.origin),
+            spacing: self.spacing.map(|length| conversion.length(length)),
+            direction: [0, 1, 2].map(|r| columns.map(|column| column[r])),
+            coordinates: conversion.to,
+        }
+    }
+
+    /// The grid of every `step`-th sample from the sample `first` on, both as (x, y, z); fractions
+    /// are places between samples.
+    #[must_use]
+    pub fn part(self, first: [f64; 3], step: [f64; 3]) -> Self {
+        let spacing = [0, 1, 2].map(|k| self.spacing[k] * step[k]);
+        Self { origin: self.to_world(first), spacing, ..self }
+    }
+
+    /// The volume of the cell between eight samples.
+    pub fn cell(&self) -> f64 {
+        let [a, b, c] = self.axes();
+        let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
+        (a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)).abs()
+    }
+
+    /// The steps of the grid's axes, as [`Frame::from_axes`] takes them.
+    pub fn axes(&self) -> [[f64; 3]; 3] {
+        [0, 1, 2].map(|c| [0, 1, 2].map(|r| self.direction[r][c] * self.spacing[c]))
+    }
+
+    /// The world position of a (fractional) sample index, both as (x, y, z).
+    pub fn to_world(&self, index: [f64; 3]) -> [f64; 3] {
+        let step = [0, 1, 2].map(|c| self.spacing[c] * index[c]);
+        [0, 1, 2].map(|r| {
+            let row = &self.direction[r];
+            self.origin[r] + row[0] * step[0] + row[1] * step[1] + row[2] * step[2]
+        })
+    }
+
+    /// The (fractional) index of a world position, both as (x, y, z): what
+    /// [`to_world`](Self::to_world) does, undone up to rounding. Not finite where axes lie in a plane.
+    pub fn to_index(&self, position: [f64; 3]) -> [f64; 3] {
+        let from = [0, 1, 2].map(|k| position[k] - self.origin[k]);
+        let dot = |row: [f64; 3]| row[0] * from[0] + row[1] * from[1] + row[2] * from[2];
+        inverse(self.axes()).map(dot)
+    }
+}
+
+/// The inverse of the matrix with these columns. Not finite where there is none.
+pub fn inverse([a, b, c]: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let cross = |u: [f64; 3], v: [f64; 3]| {
+        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    };
+    let rows = [cross(b, c), cross(c, a), cross(a, b)];
+    let determinant = a[0] * rows[0][0] + a[1] * rows[0][1] + a[2] * rows[0][2];
+    rows.map(|row| row.map(|v| v / determinant))
+}

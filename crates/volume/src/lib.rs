@@ -1,0 +1,64 @@
+//! Grids of samples: the files they come from, where they lie, and how their values become gray levels.
+//!
+//! ```
+//! use walpha_volume::{Gray, ReadOptions, open};
+//!
+//! // A sample by its name; a file or folder by its path.
+//! let volume = open("sample:phantom@16", &ReadOptions::default())?;
+//! assert_eq!(volume.dims().xyz(), [16, 16, 16]);
+//! let (volume, range) = volume.into_gray(Gray::Automatic)?;
+//! assert!(volume.value_range().1 <= 255.0 && range.low < range.high);
+//! # Ok::<(), walpha_volume::VolumeError>(())
+//! ```
+
+mod coordinates;
+mod dtype;
+mod error;
+mod extent;
+mod formats;
+mod gray;
+mod grid;
+mod part;
+mod read;
+mod reason;
+mod sample;
+mod source;
+#[doc(hidden)]
+pub mod stated;
+mod volume;
+mod write;
+
+pub use coordinates::{Conversion, Coordinates, LengthUnit, Space};
+pub use dtype::{Dtype, Endian, UnknownName};
+pub use error::VolumeError;
+pub use extent::Extent;
+pub use formats::{
+    FORMATS, Keeps, UnknownFormat, VolumeFormat, VolumeWriter, data_files, files_of, format_name,
+    read, series,
+};
+pub use gray::{Gray, GrayRange};
+pub use grid::{Dims, Frame};
+pub use part::{Region, downsample};
+pub use read::{RawLayout, ReadOptions, Series};
+pub use reason::Reason;
+pub use sample::{SAMPLES, open, phantom, sample};
+pub use source::Source;
+#[cfg(feature = "zarr")]
+pub use source::convert;
+pub use volume::{Nan, Volume};
+
+// What walpha reads points with: no promise to others.
+#[doc(hidden)]
+pub use formats::{begins_as_volume, built, is_vtk, is_vtk_xml, start_of};
+#[doc(hidden)]
+pub use grid::{any_size, inverse};
+#[cfg(feature = "formats")]
+#[doc(hidden)]
+pub use read::{Element, Lines, VtkPoints, VtkXml};
+#[doc(hidden)]
+pub use read::{NpyFile, io_error};
+
+/// The example in the README runs.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

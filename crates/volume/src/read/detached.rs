@@ -1,0 +1,101 @@
+use std::collections::VecDeque;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use walpha_base::shown::shown;
+
+use super::described::Described;
+use super::{format_error, io_error};
+use crate::{Reason, Volume, VolumeError};
+
+/// The files that a header names, relative to its folder; they may be anywhere.
+pub(super) fn beside(header: &Path, names: &[String]) -> Vec<PathBuf> {
+    let folder = header.parent().unwrap_or(Path::new(""));
+    names.iter().map(|name| folder.join(name)).collect()
+}
+
+/// Reads the volume that a header describes from these files; `skip` gives how much of a file of
+/// this length is passed over.
+pub(super) fn read(
+    header: &Path,
+    described: Described,
+    files: &[PathBuf],
+    skip: impl Fn(u64) -> u64,
+) -> Result<Volume, VolumeError> {
+    let source = Detached::new(files, skip)?;
+    let bytes = source.bytes;
+    described.read(header, source, bytes).map_err(naming(header, files))
+}
+
+/// Errors about samples in files separate from their header, with the names of both.
+pub(crate) fn naming<'a>(
+    header: &'a Path,
+    files: &'a [PathBuf],
+) -> impl Fn(VolumeError) -> VolumeError + 'a {
+    let first = files.first().map_or(String::new(), |file| shown(file));
+    let place = match files {
+        [.., last] if files.len() > 1 => format!("{first} to {}", shown(last)),
+        _ => first,
+    };
+    move |error| {
+        let reason = match error {
+            VolumeError::Format { reason, .. } => reason,
+            VolumeError::Io { .. } | VolumeError::InFile { .. } => return error,
+            other => Reason::content(
+                other.to_string(),
+                other.advice().unwrap_or_else(|| "correct the header".into()),
+            ),
+        };
+        let (part, reason) = (format!("(samples in {place})"), Box::new(reason));
+        format_error(header, Reason::Within { part, reason })
+    }
+}
+
+/// Samples in files separate from their header: these files one after the other, each
+/// without its first bytes. One is open at a time.
+#[derive(Debug)]
+struct Detached {
+    /// Those still to come, and the bytes to pass over in each.
+    files: VecDeque<(PathBuf, u64)>,
+    current: Option<(PathBuf, File)>,
+    /// Bytes in all, those skipped left out.
+    bytes: u64,
+}
+
+impl Detached {
+    fn new(files: &[PathBuf], skip: impl Fn(u64) -> u64) -> Result<Self, VolumeError> {
+        let mut detached = Self { files: VecDeque::new(), current: None, bytes: 0 };
+        for path in files {
+            let file = std::fs::metadata(path).map_err(io_error(path))?;
+            if file.is_dir() {
+                return Err(io_error(path)(io::ErrorKind::IsADirectory.into()));
+            }
+            let skip = skip(file.len());
+            detached.bytes += file.len().saturating_sub(skip);
+            detached.files.push_back((path.clone(), skip));
+        }
+        Ok(detached)
+    }
+}
+
+impl Read for Detached {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        // Whoever reads knows the header's name alone.
+        let named = |path: &Path, error: io::Error| {
+            io::Error::new(error.kind(), format!("{}: {error}", shown(path)))
+        };
+        loop {
+            if let Some((path, file)) = &mut self.current {
+                let found = file.read(buffer).map_err(|error| named(path, error))?;
+                if found > 0 || buffer.is_empty() {
+                    return Ok(found);
+                }
+            }
+            let Some((path, skip)) = self.files.pop_front() else { return Ok(0) };
+            let mut file = File::open(&path).map_err(|error| named(&path, error))?;
+            file.seek(SeekFrom::Start(skip)).map_err(|error| named(&path, error))?;
+            self.current = Some((path, file));
+        }
+    }
+}

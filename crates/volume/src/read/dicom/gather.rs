@@ -1,0 +1,118 @@
+//! The files of a series: which belong to it, and which cannot be read.
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use walpha_base::advice::{Setting, advice};
+use walpha_base::shown::shown;
+
+use super::slice::{Found, Slice};
+use crate::read::format_error;
+use crate::read::series::{Files, files};
+use crate::{Reason, VolumeError};
+
+/// What the files of a folder are.
+pub(super) struct Gathered {
+    pub found: Vec<Found>,
+    /// Files that may be slices and cannot be read, each with the reason.
+    damaged: Vec<(PathBuf, VolumeError)>,
+}
+
+impl Gathered {
+    /// Looks at the headers in a folder; indices of media (DICOMDIR) are passed over.
+    pub(super) fn of(folder: &Path, nested: bool) -> Result<Self, VolumeError> {
+        let is_index = |path: &PathBuf| path.file_name().is_some_and(|name| name == "DICOMDIR");
+        let Files { dicom, ruins } = files(folder, nested)?;
+        let open = |path: &PathBuf| (path.clone(), Found::open(path));
+        let opened: Vec<_> = dicom.par_iter().filter(|path| !is_index(path)).map(open).collect();
+        let mut gathered = Self { found: Vec::new(), damaged: Vec::new() };
+        for (path, opened) in opened {
+            match opened {
+                Ok(found) => gathered.found.push(found),
+                Err(error) => gathered.damaged.push((path, error)),
+            }
+        }
+        // A header that breaks off before it names its series.
+        let named = gathered.found.iter().any(|found| !found.series.is_empty());
+        for broken in gathered
+            .found
+            .extract_if(.., |found| named && found.series.is_empty() && found.slices.is_err())
+        {
+            if let Err(error) = broken.slices {
+                gathered.damaged.push((broken.path, error));
+            }
+        }
+        gathered.damaged.extend(ruins.into_iter().map(|path| {
+            let error = format_error(&path, ruined(&path));
+            (path, error)
+        }));
+        Ok(gathered)
+    }
+
+    /// The slices of a series, and those of its files that cannot be read dealt with: refused, or left out with
+    /// a warning where `skip` says so.
+    ///
+    /// Which series an unreadable file is of cannot be known. `near` says whether one may be of this: others are
+    /// left alone, with a warning.
+    pub(super) fn slices(
+        self,
+        skip: bool,
+        near: impl Fn(&Path) -> bool,
+    ) -> Result<Vec<Slice>, VolumeError> {
+        let mut slices = Vec::new();
+        let mut damaged = self.damaged;
+        let some = self.found.iter().any(|found| found.slices.is_ok());
+        for found in self.found {
+            match found.slices {
+                Ok(of_file) => slices.extend(of_file),
+                Err(error) if skip => damaged.push((found.path, error)),
+                Err(error) if some => return Err(skippable(error)),
+                Err(error) => return Err(error),
+            }
+        }
+        for (path, error) in damaged {
+            if near(&path) && !skip {
+                return Err(skippable(error));
+            }
+            tracing::warn!("{} is left out: {}", shown(&path), reason(&error));
+        }
+        Ok(slices)
+    }
+}
+
+/// The same error, with the advice that the rest can be read.
+pub(super) fn skippable(error: VolumeError) -> VolumeError {
+    match error {
+        VolumeError::Format { path, reason } => {
+            let next = advice!["copy it again, or go on without it: ", Setting::SkipDamaged];
+            VolumeError::Format { path, reason: Reason::content(reason.to_string(), next) }
+        }
+        other => other,
+    }
+}
+
+/// What is wrong with a file, without its name.
+pub(super) fn reason(error: &VolumeError) -> String {
+    match error {
+        VolumeError::Format { reason, .. } => format!("it {reason}"),
+        other => other.to_string(),
+    }
+}
+
+/// What is wrong with a file that has no mark of DICOM, and is named as if it had.
+fn ruined(path: &Path) -> Reason {
+    let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
+    Reason::damaged(if length == 0 {
+        "is empty, beside DICOM files".to_owned()
+    } else {
+        format!(
+            "has {length} bytes and no mark of DICOM (DICM at byte 128), beside DICOM files: it is damaged"
+        )
+    })
+}
+
+/// A name without its digits: what slices of one series are called.
+pub(super) fn pattern(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name.chars().filter(|c| !c.is_ascii_digit()).collect()
+}

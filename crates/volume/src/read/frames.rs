@@ -1,0 +1,64 @@
+use std::io::{self, Read};
+use std::path::Path;
+
+use super::payload::Length;
+use super::{format_error, io_error};
+use crate::{Reason, VolumeError};
+
+/// Which of the volumes of a file is read: those along a fourth axis (and further axes), one after the
+/// other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frames {
+    pub index: u64,
+    pub count: u64,
+}
+
+impl Frames {
+    /// The only one.
+    pub(super) const ONE: Self = Self { index: 0, count: 1 };
+
+    /// The one asked for, where the axes beyond the third have these sizes.
+    pub(super) fn choose(
+        path: &Path,
+        beyond: &[u64],
+        asked: Option<u64>,
+    ) -> Result<Self, VolumeError> {
+        let count = beyond.iter().try_fold(1u64, |product, &size| product.checked_mul(size));
+        let count = count.unwrap_or(u64::MAX);
+        match asked {
+            Some(index) if index < count => Ok(Self { index, count }),
+            None if count == 1 => Ok(Self::ONE),
+            None if count == 0 => {
+                Err(format_error(path, Reason::header("has an axis without samples")))
+            }
+            _ => Err(format_error(path, Reason::Several { count })),
+        }
+    }
+
+    /// From a reader of all volumes, of so many bytes each, to the one.
+    pub(super) fn one<R: Read>(
+        self,
+        path: &Path,
+        mut reader: R,
+        length: Length,
+        each: u64,
+    ) -> Result<(io::Take<R>, Length), VolumeError> {
+        let (skip, all) = (self.index.saturating_mul(each), self.count.saturating_mul(each));
+        let left = match length {
+            Length::Exactly(bytes) if self.count > 1 && bytes != all => {
+                let reason = Reason::truncated(format!(
+                    "its header claims {} volumes, {all} bytes, but {bytes} follow it: the \
+                         file is truncated or mislabelled",
+                    self.count
+                ));
+                return Err(format_error(path, reason));
+            }
+            Length::Exactly(_) if self.count > 1 => Length::Exactly(each),
+            other => other.minus(skip),
+        };
+        io::copy(&mut (&mut reader).take(skip), &mut io::sink()).map_err(io_error(path))?;
+        // A single volume must be all there is.
+        let most = if self.count > 1 { each } else { u64::MAX };
+        Ok((reader.take(most), left))
+    }
+}

@@ -1,0 +1,282 @@
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+use super::described::{self, Described, Encoding, diagonal};
+use super::detached::{self, beside};
+use super::frames::Frames;
+use super::lines::Lines;
+use super::nrrd::numbered;
+use super::rows::Rows;
+use super::{format_error, io_error};
+use crate::{Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume, VolumeError};
+
+/// Keys of the grid's place, each by its names.
+const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
+const ORIGIN: [&str; 3] = ["Offset", "Origin", "Position"];
+const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
+
+/// Reads `MetaImage`, the format of ITK's `MetaIO`, with its samples after the header (`.mha`) or in
+/// other files (`.mhd`: one, a `LIST`, or a numbered row), raw, zlib-compressed or text.
+///
+/// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame.
+/// A fourth axis counts volumes, of which `frame` is read; several channels are refused.
+pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+    let file = File::open(path).map_err(io_error(path))?;
+    let length = file.metadata().map_err(io_error(path))?.len();
+    let mut lines = Lines::new(BufReader::new(file));
+    let header = Header::read(path, &mut lines)?;
+    let described = header.described(path, frame)?;
+    let Some(names) = header.names(path, &mut lines)? else {
+        let bytes = length - lines.bytes();
+        return described.read(path, lines.into_inner(), bytes);
+    };
+    let each = described.bytes() / names.len() as u64;
+    let skip = header.skip(path)?;
+    let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
+    detached::read(path, described, &beside(path, &names), skip)
+}
+
+/// Where the samples of a volume lie, to be read part by part.
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+    let header = Header::read(path, &mut lines)?;
+    let described = header.described(path, frame)?;
+    match header.names(path, &mut lines)? {
+        None => Rows::behind(path, described, lines.bytes(), Some(0)),
+        Some(names) => Rows::beside(path, described, &beside(path, &names), header.skip(path)?),
+    }
+}
+
+/// The files that hold the samples, where the header does not.
+pub(crate) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
+    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+    let names = Header::read(path, &mut lines)?.names(path, &mut lines)?;
+    Ok(names.map_or_else(Vec::new, |names| beside(path, &names)))
+}
+
+struct Header {
+    fields: Vec<(String, String)>,
+    /// `ElementDataFile`, the last field.
+    data: String,
+}
+
+impl Header {
+    fn read(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Self, VolumeError> {
+        let mut fields = Vec::new();
+        while let Some(line) = lines.read_line().map_err(io_error(path))? {
+            if line.trim().is_empty() {
+                continue;
+            }
+            let Some((key, value)) = line.split_once('=') else {
+                let line: String = line.chars().take(40).collect();
+                let reason =
+                    Reason::other(format!("is no MetaImage file: its header has a line {line:?}"));
+                return Err(format_error(path, reason));
+            };
+            let (key, value) = (key.trim().to_owned(), value.trim().to_owned());
+            if key == "ElementDataFile" {
+                return Ok(Self { fields, data: value });
+            }
+            fields.push((key, value));
+        }
+        let reason =
+            Reason::truncated("ends before ElementDataFile: it is truncated, or no MetaImage file");
+        Err(format_error(path, reason))
+    }
+
+    /// The data files as they are named; `None` where the samples follow the header.
+    fn names(
+        &self,
+        path: &Path,
+        lines: &mut Lines<BufReader<File>>,
+    ) -> Result<Option<Vec<String>>, VolumeError> {
+        let words: Vec<&str> = self.data.split_whitespace().collect();
+        if words.first().is_some_and(|word| word.eq_ignore_ascii_case("local")) {
+            return Ok(None);
+        }
+        let names = if words.first() == Some(&"LIST") {
+            let mut names = Vec::new();
+            while let Some(line) = lines.read_line().map_err(io_error(path))? {
+                if !line.trim().is_empty() {
+                    names.push(line.trim().to_owned());
+                }
+            }
+            names
+        } else {
+            match numbered(&words) {
+                Some(names) => names.map_err(|reason| format_error(path, reason))?,
+                None => vec![self.data.clone()],
+            }
+        };
+        if names.iter().all(String::is_empty) {
+            return Err(format_error(
+                path,
+                Reason::damaged("names no data file: its header is damaged"),
+            ));
+        }
+        Ok(Some(names))
+    }
+
+    /// The value of the first of these keys that is there.
+    fn field(&self, keys: &[&str]) -> Option<&str> {
+        let of_key = |(key, _): &&(String, String)| keys.contains(&key.as_str());
+        self.fields.iter().find(of_key).map(|(_, value)| value.as_str())
+    }
+
+    fn flag(&self, keys: &[&str]) -> bool {
+        self.field(keys).is_some_and(|value| value.eq_ignore_ascii_case("true"))
+    }
+
+    /// As many numbers as the key should have; where it is not there, `silent` ones.
+    fn numbers(
+        &self,
+        path: &Path,
+        keys: &[&str],
+        count: usize,
+        silent: f64,
+    ) -> Result<Vec<f64>, VolumeError> {
+        let Some(text) = self.field(keys) else { return Ok(vec![silent; count]) };
+        let numbers: Option<Vec<f64>> =
+            text.split_whitespace().map(|number| number.parse().ok()).collect();
+        numbers.filter(|numbers| numbers.len() == count).ok_or_else(|| {
+            let reason = Reason::header(format!(
+                "{} = {text} in its header is not {count} numbers",
+                keys[0]
+            ));
+            format_error(path, reason)
+        })
+    }
+
+    fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
+        let said = |reason: Reason| format_error(path, reason);
+        if let Some(kind) = self.field(&["ObjectType"]).filter(|kind| *kind != "Image") {
+            return Err(said(Reason::unsupported(
+                format!("holds an object of type {kind}: only Image is read"),
+                "convert it first",
+            )));
+        }
+        let count = match self.needed(path, "NDims")? {
+            "2" => 2,
+            "3" => 3,
+            "4" => 4,
+            other => {
+                let what = format!("has NDims = {other}: a volume has 3 axes");
+                return Err(said(Reason::header(what)));
+            }
+        };
+        let sizes = self.needed(path, "DimSize")?;
+        let size: Option<Vec<u64>> = sizes.split_whitespace().map(|n| n.parse().ok()).collect();
+        let (dims, volumes) = match size.as_deref() {
+            Some(&[x, y]) if count == 2 => (Dims::unbounded(x, y, 1)?, 1),
+            Some(&[x, y, z]) if count == 3 => (Dims::unbounded(x, y, z)?, 1),
+            Some(&[x, y, z, t]) if count == 4 => (Dims::unbounded(x, y, z)?, t),
+            _ => {
+                return Err(said(Reason::header(format!(
+                    "DimSize = {sizes} is not {count} sizes"
+                ))));
+            }
+        };
+        let frames = Frames::choose(path, &[volumes], frame)?;
+        let dtype = self.dtype(path)?;
+        let big = self.flag(&["BinaryDataByteOrderMSB", "ElementByteOrderMSB"]);
+        let endian = if big { Endian::Big } else { Endian::Little };
+        let encoding = if self.field(&["BinaryData"]).is_some() && !self.flag(&["BinaryData"]) {
+            Encoding::Text
+        } else if self.flag(&["CompressedData"]) {
+            Encoding::Zlib
+        } else {
+            Encoding::Raw
+        };
+        let frame = self.frame(path, count)?;
+        Ok(Described { dims, dtype, endian, frame, encoding, frames })
+    }
+
+    fn needed(&self, path: &Path, key: &str) -> Result<&str, VolumeError> {
+        self.field(&[key]).ok_or_else(|| {
+            let what = format!("its MetaImage header has no {key}: it is damaged");
+            format_error(path, Reason::damaged(what))
+        })
+    }
+
+    /// The type of samples, one for each voxel.
+    fn dtype(&self, path: &Path) -> Result<Dtype, VolumeError> {
+        let channels = self.field(&["ElementNumberOfChannels"]).unwrap_or("1");
+        if channels != "1" {
+            let what = format!("{channels} values a voxel (ElementNumberOfChannels)");
+            let sizes = self.field(&["DimSize"]).unwrap_or_default();
+            let sizes: Vec<u64> = sizes.split_whitespace().map_while(|n| n.parse().ok()).collect();
+            let dims = <[u64; 3]>::try_from(sizes).ok();
+            return Err(format_error(path, Reason::not_scalar(what, dims)));
+        }
+        let name = self.needed(path, "ElementType")?;
+        scalar_type(name).ok_or_else(|| {
+            let what = format!("holds samples of type {name}, which is not read");
+            format_error(path, Reason::unsupported(what, "save it as MET_FLOAT"))
+        })
+    }
+
+    /// The place of a grid of `count` axes.
+    fn frame(&self, path: &Path, count: usize) -> Result<Frame, VolumeError> {
+        let spacing = self.numbers(path, &SPACING, count, 1.0)?;
+        let origin = self.numbers(path, &ORIGIN, count, 0.0)?;
+        let [origin, spacing] = [(origin, 0.0), (spacing, 1.0)].map(|(numbers, silent)| {
+            [0, 1, 2].map(|k: usize| numbers.get(k).copied().unwrap_or(silent))
+        });
+        // The rows of the matrix are the grid's axes, in as many dimensions as the image has.
+        let mut axes = diagonal([1.0; 3]);
+        if self.field(&MATRIX).is_some() {
+            let matrix = self.numbers(path, &MATRIX, count * count, 0.0)?;
+            for (axis, row) in axes.iter_mut().zip(matrix.chunks(count)) {
+                let components = count.min(3);
+                axis[..components].copy_from_slice(&row[..components]);
+            }
+        }
+        for (axis, length) in axes.iter_mut().zip(spacing) {
+            *axis = axis.map(|component| component * length);
+        }
+        described::frame(path, origin, axes, self.coordinates())
+    }
+
+    /// `MetaImage` is LPS, and in millimetres unless `DistanceUnits` say otherwise.
+    fn coordinates(&self) -> Coordinates {
+        let keys = [SPACING.as_slice(), &ORIGIN, &MATRIX].concat();
+        if self.field(&keys).is_none() {
+            return Coordinates::VOXEL;
+        }
+        match self.field(&["DistanceUnits"]).map(LengthUnit::named) {
+            Some(unit) if unit.is_known() => Coordinates { unit, ..Coordinates::PATIENT },
+            _ => Coordinates::PATIENT,
+        }
+    }
+
+    /// Bytes before the samples of each data file; `None` where they are at its end.
+    fn skip(&self, path: &Path) -> Result<Option<u64>, VolumeError> {
+        let text = self.field(&["HeaderSize"]).unwrap_or("0");
+        match text.parse::<i64>() {
+            Ok(-1) => Ok(None),
+            Ok(skip) if skip >= 0 => Ok(Some(skip as u64)),
+            _ => Err(format_error(
+                path,
+                Reason::header(format!("HeaderSize = {text} is not a number of bytes")),
+            )),
+        }
+    }
+}
+
+fn scalar_type(name: &str) -> Option<Dtype> {
+    Some(match name {
+        "MET_CHAR" => Dtype::I8,
+        "MET_UCHAR" => Dtype::U8,
+        "MET_SHORT" => Dtype::I16,
+        "MET_USHORT" => Dtype::U16,
+        // Four bytes in MetaIO, on any machine.
+        "MET_INT" | "MET_LONG" => Dtype::I32,
+        "MET_UINT" | "MET_ULONG" => Dtype::U32,
+        "MET_LONG_LONG" => Dtype::I64,
+        "MET_ULONG_LONG" => Dtype::U64,
+        "MET_FLOAT" => Dtype::F32,
+        "MET_DOUBLE" => Dtype::F64,
+        _ => return None,
+    })
+}

@@ -1,0 +1,114 @@
+//! `FreeSurfer`'s volumes: MGH, and MGZ, which is the same compressed with gzip.
+
+use std::io::Read;
+use std::path::Path;
+
+use super::described::{Described, Encoding, frame};
+use super::frames::Frames;
+use super::payload::{Length, Payload};
+use super::rows::Rows;
+use super::{format_error, io_error, payload_error, unpacked};
+use crate::{
+    Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Space, Volume, VolumeError,
+};
+
+/// Bytes before the samples.
+pub(crate) const HEADER: usize = 284;
+
+/// Reads an MGH file, or one of its frames: a header of 284 bytes, big-endian, then samples, x fastest, then
+/// perhaps what a scanner was set to, which is passed over.
+///
+/// The frame is RAS, in mm; the header places the centre of the grid. A header that says that its places are not
+/// good (`goodRASFlag`) has none.
+pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+    let (mut reader, length) = unpacked(path)?;
+    let described = described(path, &mut reader, frame)?;
+    described.dims.bounded()?;
+    let all = described.bytes();
+    // What follows the samples is none of them.
+    let length = match length.minus(HEADER as u64) {
+        Length::Exactly(bytes) => Length::Exactly(bytes.min(all)),
+        bounded @ Length::AtMost(_) => bounded,
+    };
+    let Described { dims, dtype, endian, frames, .. } = described;
+    let (reader, length) = frames.one(path, reader.take(all), length, described.each())?;
+    let samples = Payload { reader, length }
+        .samples(dtype, endian, dims.samples() as u64)
+        .map_err(payload_error(path, &dims, dtype))?;
+    described.volume(samples)
+}
+
+/// Where the samples of a volume that is not compressed lie, to be read part by part.
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+    let mut file = std::fs::File::open(path).map_err(io_error(path))?;
+    let length = file.metadata().map_err(io_error(path))?.len();
+    let described = described(path, &mut file, frame)?;
+    let (needed, found) = (described.bytes(), length.saturating_sub(HEADER as u64));
+    let Described { dims, dtype, endian, frames, frame, .. } = described;
+    if found < needed {
+        let claim = format!("a volume of {dims} samples of type {dtype}");
+        return Err(format_error(path, Reason::Length { claim, needed, found, bound: "" }));
+    }
+    let offset = HEADER as u64 + frames.index * described.each();
+    Ok(Rows::new(path, dims, frame, dtype, endian, offset))
+}
+
+/// Reads a header.
+fn described(
+    path: &Path,
+    reader: &mut dyn Read,
+    asked: Option<u64>,
+) -> Result<Described, VolumeError> {
+    let mut bytes = Vec::new();
+    reader.take(HEADER as u64).read_to_end(&mut bytes).map_err(io_error(path))?;
+    let Ok(bytes) = <[u8; HEADER]>::try_from(bytes) else {
+        let what = "ends inside its MGH header: it is truncated";
+        return Err(format_error(path, Reason::truncated(what)));
+    };
+    let whole = |place: usize| i32::from_be_bytes(bytes[place..place + 4].try_into().expect("4"));
+    let real = |place: usize| {
+        f64::from(f32::from_be_bytes(bytes[place..place + 4].try_into().expect("4")))
+    };
+    let version = whole(0);
+    if version != 1 {
+        let what = format!("is no MGH file: its version is {version}, and not 1");
+        return Err(format_error(path, Reason::other(what)));
+    }
+    let sizes = [4, 8, 12, 16].map(whole);
+    if sizes.iter().any(|&size| size < 1) {
+        let what = format!("has axes of {sizes:?} samples: its header is damaged");
+        return Err(format_error(path, Reason::damaged(what)));
+    }
+    let [x, y, z, count] = sizes.map(|size| size as u64);
+    let dtype = match whole(20) {
+        0 => Dtype::U8,
+        1 => Dtype::I32,
+        3 => Dtype::F32,
+        4 => Dtype::I16,
+        10 => Dtype::U16,
+        code => {
+            let what = format!(
+                "holds samples of type {code}: of MGH unsigned bytes, 16-bit and 32-bit integers and \
+                 float are read"
+            );
+            return Err(format_error(path, Reason::unsupported(what, "convert it")));
+        }
+    };
+    let dims = Dims::unbounded(x, y, z)?;
+    let frames = Frames::choose(path, &[count], asked)?;
+    let vector = |place: usize| [0, 4, 8].map(|k| real(place + k));
+    let placed = i16::from_be_bytes([bytes[28], bytes[29]]) != 0;
+    let frame = if placed {
+        let spacing = vector(30);
+        let axes = [0, 1, 2].map(|k| vector(42 + 12 * k).map(|step| step * spacing[k]));
+        let middle = [x, y, z].map(|n| n as f64 / 2.0);
+        let centre = vector(78);
+        let origin =
+            [0, 1, 2].map(|r| centre[r] - (0..3).map(|k| axes[k][r] * middle[k]).sum::<f64>());
+        frame(path, origin, axes, Coordinates { space: Space::Ras, unit: LengthUnit::Millimetre })?
+    } else {
+        Frame::VOXEL
+    };
+    let (endian, encoding) = (Endian::Big, Encoding::Raw);
+    Ok(Described { dims, dtype, endian, frame, encoding, frames })
+}

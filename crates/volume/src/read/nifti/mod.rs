@@ -1,0 +1,104 @@
+//! NIfTI-1 and NIfTI-2.
+
+mod frame;
+mod header;
+
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use super::described::Described;
+use super::detached::naming;
+use super::payload::{Length, Payload};
+use super::rows::Rows;
+use super::{format_error, io_error, payload_error, unpacked};
+use crate::formats::{nifti_version, start_of};
+use crate::{Dtype, Reason, Volume, VolumeError};
+
+use header::Header;
+
+/// Reads NIfTI-1 and NIfTI-2 (nifti.nimh.nih.gov): `.nii`, `.nii.gz`, or a pair `.hdr` and `.img`.
+///
+/// `scl_slope` and `scl_inter` are applied. The frame is that of `sform`, else of `qform`, else of
+/// `pixdim` alone, which says nothing of the space; the other two are RAS. Axes beyond
+/// the third count volumes, of which `frame` is read; colours and complex numbers are refused.
+pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+    let (mut reader, length) = unpacked(path)?;
+    let header = Header::read(path, &mut reader)?;
+    let described = header.described(path, frame)?;
+    let (slope, inter) = header.scaling();
+    if header.is_pair(path)? {
+        let image = path.with_extension("img");
+        let mut file = File::open(&image).map_err(io_error(&image))?;
+        let length = file.metadata().map_err(io_error(&image))?.len();
+        let offset = header.vox_offset().clamp(0.0, length as f64) as u64;
+        file.seek(SeekFrom::Start(offset)).map_err(io_error(&image))?;
+        let left = Length::Exactly(length - offset);
+        return samples(path, described, slope, inter, BufReader::new(file), left)
+            .map_err(naming(path, &[image]));
+    }
+    let offset = header.offset(path)?;
+    let skip = offset - header.bytes.len() as u64;
+    let skipped = std::io::copy(&mut (&mut reader).take(skip), &mut std::io::sink());
+    if skipped.map_err(io_error(path))? < skip {
+        return Err(format_error(
+            path,
+            Reason::truncated(format!("ends before its samples at byte {offset}")),
+        ));
+    }
+    samples(path, described, slope, inter, reader, length.minus(offset))
+}
+
+/// Where the samples of a volume lie, to be read part by part.
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+    let header = Header::read(path, &mut File::open(path).map_err(io_error(path))?)?;
+    let described = header.described(path, frame)?;
+    let scaling = header.scaling();
+    let rows = if header.is_pair(path)? {
+        let offset = header.vox_offset().max(0.0) as u64;
+        Rows::beside(path, described, &[path.with_extension("img")], Some(offset))?
+    } else {
+        Rows::behind(path, described, header.offset(path)?, Some(0))?
+    };
+    Ok(rows.scaled(scaling))
+}
+
+/// The file that holds the samples, where the header has one of its own.
+pub(crate) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
+    let start = start_of(path)?;
+    let Some((version, endian)) = nifti_version(&start) else { return Ok(Vec::new()) };
+    let header = Header { bytes: start, version, endian };
+    Ok(if header.is_pair(path)? { vec![path.with_extension("img")] } else { Vec::new() })
+}
+
+/// Reads samples and scales them, in doubles where `f32` does not hold the numbers of the file.
+fn samples(
+    path: &Path,
+    described: Described,
+    slope: f64,
+    inter: f64,
+    reader: impl Read,
+    length: Length,
+) -> Result<Volume, VolumeError> {
+    let Described { dims, dtype, endian, frames, .. } = described;
+    dims.bounded()?;
+    let each = (dims.samples() * dtype.size()) as u64;
+    let (reader, length) = frames.one(path, reader, length, each)?;
+    let payload = Payload { reader, length };
+    let fail = payload_error(path, &dims, dtype);
+    let count = dims.samples() as u64;
+    if (slope, inter) == (1.0, 0.0) {
+        let samples = payload.samples(dtype, endian, count).map_err(fail)?;
+        return described.volume(samples);
+    }
+    let scaled: Vec<f32> = if dtype.size() < 4 || dtype == Dtype::F32 {
+        let mut samples: Vec<f32> = payload.samples(dtype, endian, count).map_err(fail)?;
+        samples.iter_mut().for_each(|v| *v = (f64::from(*v) * slope + inter) as f32);
+        samples
+    } else {
+        let samples: Vec<f64> = payload.samples(dtype, endian, count).map_err(fail)?;
+        samples.iter().map(|v| (v * slope + inter) as f32).collect()
+    };
+    // Scaled bytes are not gray levels.
+    Ok(described.volume(scaled)?.with_dtype(Dtype::F32))
+}

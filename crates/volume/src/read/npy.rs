@@ -1,0 +1,182 @@
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use ndarray::{Array3, ShapeBuilder};
+use walpha_base::npy::{Header, MAGIC, NpyError};
+
+use super::frames::Frames;
+use super::payload::{Element, Length, Payload};
+use super::rows::Rows;
+use super::{io_error, payload_error_of};
+use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
+
+/// An array as NPY describes it (format versions 1 to 3, numpy.lib.format).
+pub struct NpyFile<R = BufReader<File>> {
+    /// Lengths of the axes.
+    pub shape: Vec<u64>,
+    /// The first axis is the fastest in the file.
+    pub fortran: bool,
+    dtype: Dtype,
+    endian: Endian,
+    /// Booleans are read as 0 and 1, not as gray levels.
+    boolean: bool,
+    payload: Payload<R>,
+}
+
+/// Reads an array of three axes `[z, y, x]`, in C or Fortran order, or the one numbered `frame` of an
+/// array of four, in C order.
+pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+    let file = NpyFile::open(path)?;
+    if let (&[count, z, y, x], false) = (file.shape.as_slice(), file.fortran) {
+        let each =
+            [z, y, x, file.dtype.size() as u64].iter().fold(1, |n: u64, m| n.saturating_mul(*m));
+        let frames = Frames::choose(path, &[count], frame)?;
+        let Payload { reader, length } = file.payload;
+        let (reader, length) = frames.one(path, reader, length, each)?;
+        let payload = Payload { reader, length };
+        let NpyFile { fortran, dtype, endian, boolean, .. } = file;
+        return volume(
+            path,
+            NpyFile { shape: vec![z, y, x], fortran, dtype, endian, boolean, payload },
+        );
+    }
+    Frames::choose(path, &[], frame)?;
+    volume(path, file)
+}
+
+/// Where the samples of a volume lie, to be read part by part: in C order.
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+    let said = |reason: Reason| VolumeError::Format { path: path.into(), reason };
+    let length = std::fs::metadata(path).map_err(io_error(path))?.len();
+    let file = NpyFile::open(path)?;
+    let (beyond, axes) = file.shape.split_at(file.shape.len().saturating_sub(3));
+    let (&[z, y, x], false) = (axes, file.fortran || beyond.len() > 1) else {
+        return Err(said(Reason::unsupported(
+            format!("holds an array of shape {:?} that is not read part by part", file.shape),
+            "save numpy.ascontiguousarray(a), of the axes [z, y, x]",
+        )));
+    };
+    let dims = Dims::unbounded(x, y, z)?;
+    let frames = Frames::choose(path, beyond, frame)?;
+    let each = (dims.samples() * file.dtype.size()) as u64;
+    let all = each.saturating_mul(frames.count);
+    let Length::Exactly(found) = file.payload.length else { unreachable!("of a file") };
+    if found != all {
+        let claim = format!("an array of shape {:?} and type {}", file.shape, file.dtype);
+        return Err(said(Reason::Length { claim, needed: all, found, bound: "" }));
+    }
+    let offset = length - found + frames.index * each;
+    // Booleans are bytes, and no gray levels.
+    let dtype = if file.boolean { Dtype::I8 } else { file.dtype };
+    Ok(Rows::new(path, dims, Frame::VOXEL, dtype, file.endian, offset))
+}
+
+/// The volume an array is.
+pub(super) fn volume<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Volume, VolumeError> {
+    let &[z, y, x] = file.shape.as_slice() else {
+        return Err(VolumeError::Format {
+            path: path.into(),
+            reason: Reason::unsupported(
+                format!(
+                    "holds an array of {} axes: a volume has three, [z, y, x]",
+                    file.shape.len()
+                ),
+                "save a.reshape(z, y, x)",
+            ),
+        });
+    };
+    let dims = Dims::new(x, y, z)?;
+    let dtype = file.dtype;
+    let gray_levels = dtype == Dtype::U8 && !file.boolean;
+    let shape = dims.shape().set_f(file.fortran);
+    let samples = Array3::from_shape_vec(shape, file.values(path)?).expect("count was checked");
+    let volume = Volume::of_file(samples, Frame::VOXEL)?;
+    // Booleans are bytes, and no gray levels.
+    Ok(volume.with_dtype(if gray_levels || dtype != Dtype::U8 { dtype } else { Dtype::I8 }))
+}
+
+impl NpyFile {
+    /// Whether a file begins as NPY does.
+    pub fn begins(start: &[u8]) -> bool {
+        start.starts_with(MAGIC)
+    }
+
+    /// Reads and checks the header.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn open(path: &Path) -> Result<Self, VolumeError> {
+        let file = File::open(path).map_err(io_error(path))?;
+        let length = file.metadata().map_err(io_error(path))?.len();
+        Self::of(path, BufReader::new(file), length)
+    }
+}
+
+impl<R: Read> NpyFile<R> {
+    /// Reads and checks the header of an array of so many bytes in a file.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn of(path: &Path, mut reader: R, length: u64) -> Result<Self, VolumeError> {
+        let said = |reason: Reason| VolumeError::Format { path: path.into(), reason };
+        let header = Header::read(&mut reader).map_err(|error| match error {
+            NpyError::Io(error) => io_error(path)(error),
+            NpyError::Truncated => {
+                said(Reason::truncated("ends inside its NPY header: it is truncated"))
+            }
+            error @ NpyError::Version(_) => {
+                said(Reason::unsupported(error.to_string(), "convert it first"))
+            }
+            error @ NpyError::Length(_) => said(Reason::damaged(error.to_string())),
+            error @ NpyError::Dictionary(_) => said(Reason::header(error.to_string())),
+            error => said(Reason::other(error.to_string())),
+        })?;
+        let Header { descr, fortran, shape, .. } = header;
+        let (dtype, endian, boolean) = element(&descr).ok_or_else(|| {
+            said(Reason::unsupported(format!(
+                "holds elements of type {descr}: only bool, integers of 8 to 64 bits, f4 and f8 \
+                 are read"), "save a.astype('f4')"))
+        })?;
+        let length = Length::Exactly(length).minus(header.length);
+        let payload = Payload { reader, length };
+        Ok(Self { shape, fortran, dtype, endian, boolean, payload })
+    }
+
+    /// All elements in the order of the file, which must hold exactly as many as it claims.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn values<T: Element>(self, path: &Path) -> Result<Vec<T>, VolumeError> {
+        let count = self.shape.iter().fold(1u64, |product, &n| product.saturating_mul(n));
+        let claim = format!("an array of shape {:?} and type {}", self.shape, self.dtype);
+        self.payload
+            .samples(self.dtype, self.endian, count)
+            .map_err(|error| payload_error_of(path, &claim, error))
+    }
+}
+
+/// Type, byte order and whether it is boolean, of a `NumPy` type string such as `<f4`.
+fn element(descr: &str) -> Option<(Dtype, Endian, bool)> {
+    let (order, kind) = descr.split_at_checked(1)?;
+    let dtype = match kind {
+        "b1" | "u1" => Dtype::U8,
+        "i1" => Dtype::I8,
+        "u2" => Dtype::U16,
+        "i2" => Dtype::I16,
+        "u4" => Dtype::U32,
+        "i4" => Dtype::I32,
+        "u8" => Dtype::U64,
+        "i8" => Dtype::I64,
+        "f4" => Dtype::F32,
+        "f8" => Dtype::F64,
+        _ => return None,
+    };
+    let endian = match order {
+        "<" => Endian::Little,
+        ">" => Endian::Big,
+        "|" if dtype.size() == 1 => Endian::Little,
+        _ => return None,
+    };
+    Some((dtype, endian, kind == "b1"))
+}

@@ -1,0 +1,273 @@
+mod files;
+mod space;
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+use super::described::{Described, Encoding};
+use super::detached::{self, beside};
+use super::frames::Frames;
+use super::lines::Lines;
+use super::rows::Rows;
+use super::{format_error, io_error};
+use crate::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
+use files::named;
+pub(super) use files::numbered;
+
+/// The first bytes of each NRRD file, before the digit of its version.
+pub(super) const MAGIC: &[u8] = b"NRRD000";
+
+/// Reads NRRD ("nearly raw raster data", teem.sourceforge.net/nrrd/format.html) with its samples
+/// behind the header (`.nrrd`) or in other files (`.nhdr`: one, a `LIST`, or a numbered row).
+///
+/// Encodings raw, gzip, bzip2 and text; every scalar type. `space directions` and `space origin`, or
+/// `spacings` and `axis mins`, give the frame, in the space the file names. Axes beyond the third count
+/// volumes, of which `frame` is read; axes of colours or vectors, `hex` and `line skip` are refused.
+pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+    let said = |reason: Reason| format_error(path, reason);
+    let file = File::open(path).map_err(io_error(path))?;
+    let length = file.metadata().map_err(io_error(path))?.len();
+    let mut lines = Lines::new(BufReader::new(file));
+    let header = Header::read(path, &mut lines)?;
+    let described = header.described(path, frame)?;
+    let skip = header.skip(path, &described)?;
+    match &header.files {
+        None => {
+            let behind = length - lines.bytes();
+            let skip = skip.unwrap_or(behind.saturating_sub(described.bytes()));
+            let mut reader = lines.into_inner();
+            let skipped =
+                std::io::copy(&mut std::io::Read::take(&mut reader, skip), &mut std::io::sink());
+            let bytes = behind - skipped.map_err(io_error(path))?;
+            described.read(path, reader, bytes)
+        }
+        Some(names) => {
+            if names.is_empty() {
+                return Err(said(Reason::damaged("names no data file: its header is damaged")));
+            }
+            let each = described.bytes() / names.len() as u64;
+            let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
+            detached::read(path, described, &beside(path, names), skip)
+        }
+    }
+}
+
+/// Where the samples of a volume lie, to be read part by part.
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+    let header = Header::read(path, &mut lines)?;
+    let described = header.described(path, frame)?;
+    let skip = header.skip(path, &described)?;
+    match &header.files {
+        None => Rows::behind(path, described, lines.bytes(), skip),
+        Some(names) => Rows::beside(path, described, &beside(path, names), skip),
+    }
+}
+
+/// The files that hold the samples, where the header does not.
+pub(crate) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
+    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+    let header = Header::read(path, &mut lines)?;
+    Ok(header.files.map_or_else(Vec::new, |names| beside(path, &names)))
+}
+
+struct Header {
+    /// By name, in lower case.
+    fields: HashMap<String, String>,
+    /// The files that hold the samples; `None` where they follow the header.
+    files: Option<Vec<String>>,
+}
+
+impl Header {
+    fn read(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Self, VolumeError> {
+        let said = |reason: Reason| format_error(path, reason);
+        let first = lines.read_line().map_err(io_error(path))?.unwrap_or_default();
+        if !first.as_bytes().starts_with(MAGIC) {
+            return Err(said(Reason::other("is no NRRD file: it does not begin with NRRD000")));
+        }
+        let mut header = Self { fields: HashMap::new(), files: None };
+        // A header alone may end with its file; samples need the blank line.
+        while let Some(line) = lines.read_line().map_err(io_error(path))? {
+            if line.is_empty() {
+                return Ok(header);
+            }
+            if line.starts_with('#') || line.contains(":=") {
+                continue;
+            }
+            let Some((name, value)) = line.split_once(':') else {
+                return Err(said(Reason::header(format!(
+                    "has a header line {line:?}, which is not a field"
+                ))));
+            };
+            let (name, value) = (name.trim().to_lowercase(), value.trim());
+            if name == "data file" || name == "datafile" {
+                header.files = Some(named(path, value, lines)?);
+                if value.starts_with("LIST") {
+                    return Ok(header);
+                }
+            } else if header.fields.insert(name.clone(), value.into()).is_some() {
+                return Err(said(Reason::header(format!("gives {name:?} twice in its header"))));
+            }
+        }
+        if header.files.is_some() {
+            return Ok(header);
+        }
+        Err(said(Reason::truncated("ends inside its NRRD header: it is truncated")))
+    }
+
+    fn field(&self, name: &str) -> Option<&str> {
+        self.fields.get(name).map(String::as_str)
+    }
+
+    fn needed(&self, path: &Path, name: &str) -> Result<&str, VolumeError> {
+        let missing = || {
+            format_error(
+                path,
+                Reason::damaged(format!("its NRRD header has no {name}: it is damaged")),
+            )
+        };
+        self.field(name).ok_or_else(missing)
+    }
+
+    fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
+        let sizes = self.sizes(path)?;
+        self.check_scalar(path, &sizes)?;
+        let mut axes: Vec<(usize, u64)> = sizes.iter().copied().enumerate().collect();
+        while axes.len() > 3 {
+            let Some(single) = axes.iter().position(|&(_, size)| size == 1) else { break };
+            axes.remove(single);
+        }
+        let beyond: Vec<u64> = axes.iter().skip(3).map(|&(_, size)| size).collect();
+        axes.truncate(3);
+        let size = |axis: usize| axes.get(axis).map_or(1, |&(_, size)| size);
+        let dims = Dims::unbounded(size(0), size(1), size(2))?;
+        let kept: Vec<usize> = axes.iter().map(|&(axis, _)| axis).collect();
+        let (dtype, encoding) = (self.dtype(path)?, self.encoding(path)?);
+        let endian = self.endian(path, dtype, encoding)?;
+        let frames = Frames::choose(path, &beyond, frame)?;
+        let frame = self.frame(path, sizes.len(), &kept, dims.xyz())?;
+        Ok(Described { dims, dtype, endian, frame, encoding, frames })
+    }
+
+    /// Samples along each axis, the fastest first.
+    fn sizes(&self, path: &Path) -> Result<Vec<u64>, VolumeError> {
+        let said = |what: String| format_error(path, Reason::header(what));
+        let text = self.needed(path, "sizes")?;
+        let sizes: Result<Vec<u64>, _> = text.split_whitespace().map(str::parse).collect();
+        let sizes = sizes.map_err(|_| said(format!("sizes: {text} are not numbers")))?;
+        let dimension = self.needed(path, "dimension")?;
+        if dimension.parse() != Ok(sizes.len()) {
+            let count = sizes.len();
+            return Err(said(format!("has dimension: {dimension}, but {count} sizes")));
+        }
+        Ok(sizes)
+    }
+
+    /// Refuses axes along which a voxel has several values.
+    fn check_scalar(&self, path: &Path, sizes: &[u64]) -> Result<(), VolumeError> {
+        let kinds: Vec<&str> =
+            self.field("kinds").map(|kinds| kinds.split_whitespace().collect()).unwrap_or_default();
+        for (axis, &size) in sizes.iter().enumerate() {
+            let kind = kinds.get(axis).copied().unwrap_or("none");
+            let scalar = ["domain", "space", "time", "none", "???", "scalar", "stub"];
+            if size > 1 && !scalar.contains(&kind.to_lowercase().as_str()) {
+                let what = format!("{size} values a voxel (axis {axis} is of kind {kind})");
+                let others = sizes.iter().enumerate().filter(|(other, _)| *other != axis);
+                let others: Vec<u64> = others.map(|(_, &size)| size).collect();
+                let dims = <[u64; 3]>::try_from(others).ok();
+                return Err(format_error(path, Reason::not_scalar(what, dims)));
+            }
+        }
+        Ok(())
+    }
+
+    fn dtype(&self, path: &Path) -> Result<Dtype, VolumeError> {
+        let name = self.needed(path, "type")?;
+        scalar_type(name).ok_or_else(|| {
+            let what = format!(
+                "holds samples of type {name}: integers of 8 to 64 bits, float and double are read"
+            );
+            format_error(path, Reason::unsupported(what, "convert it first"))
+        })
+    }
+
+    fn encoding(&self, path: &Path) -> Result<Encoding, VolumeError> {
+        Ok(match self.needed(path, "encoding")?.to_lowercase().as_str() {
+            "raw" => Encoding::Raw,
+            "gzip" | "gz" => Encoding::Gzip,
+            "bzip2" | "bz2" => Encoding::Bzip2,
+            "text" | "txt" | "ascii" => Encoding::Text,
+            other => {
+                let what = format!("is encoded as {other}, which is not read");
+                let reason = Reason::unsupported(what, "save it as raw or gzip");
+                return Err(format_error(path, reason));
+            }
+        })
+    }
+
+    fn endian(&self, path: &Path, dtype: Dtype, encoding: Encoding) -> Result<Endian, VolumeError> {
+        match self.field("endian").map(str::to_lowercase).as_deref() {
+            Some("little") => Ok(Endian::Little),
+            Some("big") => Ok(Endian::Big),
+            None if dtype.size() == 1 || encoding == Encoding::Text => Ok(Endian::Little),
+            other => {
+                let given = other.unwrap_or("(missing)");
+                let what = format!("endian: {given} is not a byte order");
+                Err(format_error(path, Reason::unsupported(what, "give little or big")))
+            }
+        }
+    }
+
+    /// Bytes before the samples; `None` where they are at the end of the file.
+    fn skip(&self, path: &Path, described: &Described) -> Result<Option<u64>, VolumeError> {
+        let said = |reason: Reason| format_error(path, reason);
+        let lines = self.field("line skip").or(self.field("lineskip")).unwrap_or("0");
+        if lines != "0" {
+            return Err(said(Reason::unsupported(
+                format!("line skip: {lines} is not read"),
+                "give byte skip instead",
+            )));
+        }
+        let bytes = self.field("byte skip").or(self.field("byteskip")).unwrap_or("0");
+        match bytes.parse::<u64>() {
+            Ok(0) => Ok(Some(0)),
+            _ if described.encoding != Encoding::Raw => Err(said(Reason::unsupported(
+                format!("byte skip: {bytes} is read only where the encoding is raw"),
+                "convert it first",
+            ))),
+            Ok(skip) => Ok(Some(skip)),
+            Err(_) if bytes == "-1" => Ok(None),
+            Err(_) => {
+                Err(said(Reason::header(format!("byte skip: {bytes} is not a number of bytes"))))
+            }
+        }
+    }
+}
+
+fn scalar_type(name: &str) -> Option<Dtype> {
+    Some(match name.to_lowercase().as_str() {
+        "signed char" | "int8" | "int8_t" => Dtype::I8,
+        "uchar" | "unsigned char" | "uint8" | "uint8_t" => Dtype::U8,
+        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => {
+            Dtype::I16
+        }
+        "ushort" | "unsigned short" | "unsigned short int" | "uint16" | "uint16_t" => Dtype::U16,
+        "int" | "signed int" | "int32" | "int32_t" => Dtype::I32,
+        "uint" | "unsigned int" | "uint32" | "uint32_t" => Dtype::U32,
+        "longlong"
+        | "long long"
+        | "long long int"
+        | "signed long long"
+        | "signed long long int"
+        | "int64"
+        | "int64_t" => Dtype::I64,
+        "ulonglong" | "unsigned long long" | "unsigned long long int" | "uint64" | "uint64_t" => {
+            Dtype::U64
+        }
+        "float" => Dtype::F32,
+        "double" => Dtype::F64,
+        _ => return None,
+    })
+}

@@ -1,0 +1,167 @@
+use std::io::{self, Read};
+
+use rayon::prelude::*;
+use walpha_base::memory::asking;
+use walpha_base::progress;
+
+use crate::{Dtype, Endian};
+
+/// Decoded at a time, so that a file is never held in memory along with its samples.
+const CHUNK_BYTES: usize = 8 << 20;
+
+/// What follows a header: a row of samples, and how many bytes of them there can be.
+pub(super) struct Payload<R> {
+    /// At the first sample.
+    pub reader: R,
+    /// What is known of the length before reading.
+    pub length: Length,
+}
+
+/// Deflate expands by no more than this (zlib's technical details), nor does another code that
+/// loses nothing: a claim beyond is a lie.
+pub(super) const MOST_EXPANSION: u64 = 1032;
+
+/// What is known of the number of bytes left to read.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Length {
+    /// An uncompressed file or archive member.
+    Exactly(u64),
+    /// A gzip stream, whose length is known only once it is read; this is the most it can hold.
+    AtMost(u64),
+}
+
+impl Length {
+    /// A small gzip file that claims a huge volume is refused before anything is allocated.
+    pub(crate) fn of_gzip(compressed: u64) -> Self {
+        Self::AtMost(compressed.saturating_mul(MOST_EXPANSION))
+    }
+
+    /// The same for bzip2, which packs 900 kB of runs, each of 255 bytes in 5, into as few as 40 bytes.
+    #[cfg(feature = "formats")]
+    pub(crate) fn of_bzip2(compressed: u64) -> Self {
+        Self::AtMost(compressed.saturating_mul(1 << 21))
+    }
+
+    /// What is left after a header.
+    pub(crate) fn minus(self, header: u64) -> Self {
+        match self {
+            Self::Exactly(bytes) => Self::Exactly(bytes.saturating_sub(header)),
+            Self::AtMost(bytes) => Self::AtMost(bytes.saturating_sub(header)),
+        }
+    }
+}
+
+/// Why a payload holds other than the samples its header claims.
+#[derive(Debug)]
+pub(super) enum PayloadError {
+    /// Bytes needed, and the bytes there are; `bound` is empty, "at most " or "at least ".
+    Length { needed: u64, found: u64, bound: &'static str },
+    /// The samples fit the file, but not the memory.
+    Memory { needed: u64 },
+    /// The system refused, or the gzip stream is damaged.
+    Io(io::Error),
+}
+
+impl<R: Read> Payload<R> {
+    /// Reads exactly `count` samples, which must be all there is. The length is compared with the
+    /// claim before anything is allocated; decoding runs in parallel, a few MB at a time.
+    pub(super) fn samples<T: Element>(
+        mut self,
+        dtype: Dtype,
+        endian: Endian,
+        count: u64,
+    ) -> Result<Vec<T>, PayloadError> {
+        let needed = count.saturating_mul(dtype.size() as u64);
+        match self.length {
+            Length::Exactly(found) if found != needed => {
+                return Err(PayloadError::Length { needed, found, bound: "" });
+            }
+            Length::AtMost(found) if found < needed => {
+                return Err(PayloadError::Length { needed, found, bound: "at most " });
+            }
+            _ => {}
+        }
+        let mut samples = Vec::<T>::new();
+        let memory =
+            |_| PayloadError::Memory { needed: count.saturating_mul(size_of::<T>() as u64) };
+        asking(|| samples.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX)))
+            .map_err(memory)?;
+        let mut bytes = vec![0; CHUNK_BYTES.min(needed as usize)];
+        let mut left = needed as usize;
+        while left > 0 {
+            let chunk = &mut bytes[..CHUNK_BYTES.min(left)];
+            let found = read_up_to(&mut self.reader, chunk).map_err(PayloadError::Io)?;
+            left -= found;
+            if found < chunk.len() {
+                let found = needed - left as u64;
+                return Err(PayloadError::Length { needed, found, bound: "" });
+            }
+            let start = samples.len();
+            samples.resize(start + chunk.len() / dtype.size(), T::default());
+            T::decode(chunk, dtype, endian, &mut samples[start..]);
+            progress::report(needed - left as u64, needed);
+        }
+        if read_up_to(&mut self.reader, &mut [0]).map_err(PayloadError::Io)? > 0 {
+            return Err(PayloadError::Length { needed, found: needed + 1, bound: "at least " });
+        }
+        Ok(samples)
+    }
+}
+
+/// Fills the buffer, or as much of it as there is.
+fn read_up_to(reader: &mut impl Read, buffer: &mut [u8]) -> io::Result<usize> {
+    let mut filled = 0;
+    while filled < buffer.len() {
+        match reader.read(&mut buffer[filled..]) {
+            Ok(0) => break,
+            Ok(n) => filled += n,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(filled)
+}
+
+/// The number type samples become: `f32` for volumes, `f64` for point columns.
+pub trait Element: Copy + Default + Send + Sync {
+    /// Decodes as many samples as `out` is long.
+    fn decode(bytes: &[u8], dtype: Dtype, endian: Endian, out: &mut [Self]);
+}
+
+/// Implements [`Element`] with the language's `as`, which rounds to nearest.
+macro_rules! element {
+    ($target:ty) => {
+        impl Element for $target {
+            fn decode(bytes: &[u8], dtype: Dtype, endian: Endian, out: &mut [Self]) {
+                macro_rules! each {
+                    ($source:ty) => {{
+                        const SIZE: usize = size_of::<$source>();
+                        let from: fn([u8; SIZE]) -> $source = match endian {
+                            Endian::Little => <$source>::from_le_bytes,
+                            Endian::Big => <$source>::from_be_bytes,
+                        };
+                        let (words, _) = bytes.as_chunks::<SIZE>();
+                        out.par_iter_mut()
+                            .with_min_len(1 << 14)
+                            .zip(words)
+                            .for_each(|(value, &word)| *value = from(word) as $target);
+                    }};
+                }
+                match dtype {
+                    Dtype::U8 => each!(u8),
+                    Dtype::I8 => each!(i8),
+                    Dtype::U16 => each!(u16),
+                    Dtype::I16 => each!(i16),
+                    Dtype::U32 => each!(u32),
+                    Dtype::I32 => each!(i32),
+                    Dtype::U64 => each!(u64),
+                    Dtype::I64 => each!(i64),
+                    Dtype::F32 => each!(f32),
+                    Dtype::F64 => each!(f64),
+                }
+            }
+        }
+    };
+}
+element!(f32);
+element!(f64);

@@ -1,0 +1,159 @@
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+#[cfg(feature = "formats")]
+use super::described::{Described, Encoding};
+#[cfg(feature = "formats")]
+use super::format_error;
+use super::io_error;
+use super::payload::Element;
+#[cfg(feature = "formats")]
+use crate::Reason;
+use crate::source::{Parts, Source};
+use crate::{Dims, Dtype, Endian, Frame, VolumeError};
+
+/// The samples of a volume as they lie in a file, x fastest, not compressed: any box of them can be read
+/// alone.
+pub(crate) struct Rows {
+    path: PathBuf,
+    dims: Dims,
+    frame: Frame,
+    dtype: Dtype,
+    endian: Endian,
+    /// The place of the first sample.
+    offset: u64,
+    /// What samples are multiplied by, and what is added then.
+    scaling: Option<(f64, f64)>,
+}
+
+impl Rows {
+    pub(crate) fn new(
+        path: &Path,
+        dims: Dims,
+        frame: Frame,
+        dtype: Dtype,
+        endian: Endian,
+        offset: u64,
+    ) -> Self {
+        Self { path: path.into(), dims, frame, dtype, endian, offset, scaling: None }
+    }
+
+    /// Scales samples, in doubles. Scaled bytes are not gray levels.
+    #[cfg(feature = "formats")]
+    pub(crate) fn scaled(self, (slope, inter): (f64, f64)) -> Self {
+        Self { scaling: ((slope, inter) != (1.0, 0.0)).then_some((slope, inter)), ..self }
+    }
+
+    /// Samples behind a header of so many bytes, of which further ones are skipped: `None` where the samples
+    /// are at the end of the file.
+    #[cfg(feature = "formats")]
+    pub(super) fn behind(
+        header: &Path,
+        described: Described,
+        after: u64,
+        skip: Option<u64>,
+    ) -> Result<Self, VolumeError> {
+        Self::within(header, header, described, after, skip)
+    }
+
+    /// Samples in a file of their own.
+    #[cfg(feature = "formats")]
+    pub(super) fn beside(
+        header: &Path,
+        described: Described,
+        files: &[PathBuf],
+        skip: Option<u64>,
+    ) -> Result<Self, VolumeError> {
+        match files {
+            [file] => Self::within(header, file, described, 0, skip),
+            _ => Err(format_error(
+                header,
+                Reason::unsupported(
+                    format!(
+                        "has its samples in {} files, which are not read in parts",
+                        files.len()
+                    ),
+                    CONVERT,
+                ),
+            )),
+        }
+    }
+
+    #[cfg(feature = "formats")]
+    fn within(
+        header: &Path,
+        file: &Path,
+        described: Described,
+        after: u64,
+        skip: Option<u64>,
+    ) -> Result<Self, VolumeError> {
+        if described.encoding != Encoding::Raw {
+            let what = "is compressed, or text: it cannot be read in parts";
+            return Err(format_error(header, Reason::unsupported(what, CONVERT)));
+        }
+        let length = std::fs::metadata(file).map_err(io_error(file))?.len();
+        let (needed, behind) = (described.bytes(), length.saturating_sub(after));
+        let skip = skip.unwrap_or(behind.saturating_sub(needed));
+        let found = behind.saturating_sub(skip);
+        let Described { dims, dtype, endian, frame, frames, .. } = described;
+        if found != needed {
+            let claim = format!("a volume of {dims} samples of type {dtype}");
+            let reason = Reason::Length { claim, needed, found, bound: "" };
+            return Err(format_error(header, reason));
+        }
+        let offset = after + skip + frames.index * described.each();
+        Ok(Self::new(file, dims, frame, dtype, endian, offset))
+    }
+
+    /// The volume they are.
+    pub(crate) fn source(self) -> Source {
+        let dtype = if self.scaling.is_some() { Dtype::F32 } else { self.dtype };
+        // Rows lie one behind the other: whole ones are read in one piece.
+        let grain = [self.dims.x(), 1, 1];
+        Source::new(self.dims, self.frame, dtype, grain, Box::new(self))
+    }
+}
+
+/// What to do about volumes that cannot be read in parts.
+pub(crate) const CONVERT: &str =
+    "convert it to uncompressed NRRD, MetaImage, NIfTI or NPY, or to Zarr";
+
+impl Parts for Rows {
+    fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
+        let Self { path, dims, dtype, offset, .. } = self;
+        let failed = io_error(path);
+        let mut file = File::open(path).map_err(&failed)?;
+        let [nx, ny, _] = dims.xyz();
+        // Whole rows lie side by side with the next ones.
+        let whole = size[0] == nx;
+        let (runs, run) = if whole { (1, size[0] * size[1]) } else { (size[1], size[0]) };
+        let mut bytes = vec![0; run * dtype.size()];
+        let mut samples = vec![0.0; size.iter().product()];
+        let mut to = samples.chunks_mut(run);
+        for z in first[2]..first[2] + size[2] {
+            for y in first[1]..first[1] + runs {
+                let at = ((z * ny + y) * nx + first[0]) * dtype.size();
+                file.seek(SeekFrom::Start(offset + at as u64)).map_err(&failed)?;
+                file.read_exact(&mut bytes).map_err(&failed)?;
+                self.decode(&bytes, to.next().expect("as many runs as there are"));
+            }
+        }
+        Ok(samples)
+    }
+}
+
+impl Rows {
+    fn decode(&self, bytes: &[u8], samples: &mut [f32]) {
+        let Self { dtype, endian, scaling, .. } = *self;
+        let Some((slope, inter)) = scaling else {
+            return f32::decode(bytes, dtype, endian, samples);
+        };
+        // In doubles where `f32` does not hold the numbers of the file.
+        let mut exact = vec![0.0; samples.len()];
+        f64::decode(bytes, dtype, endian, &mut exact);
+        for (sample, value) in samples.iter_mut().zip(exact) {
+            *sample = (value * slope + inter) as f32;
+        }
+    }
+}

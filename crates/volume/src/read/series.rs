@@ -1,0 +1,183 @@
+//! What is in a folder: a Zarr store, or the files of DICOM series.
+
+use std::fmt;
+use std::fs::{DirEntry, File, ReadDir};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use walpha_base::shown::shown;
+
+#[cfg(feature = "dicom")]
+use super::format_error;
+use super::io_error;
+#[cfg(feature = "dicom")]
+use crate::Reason;
+use crate::VolumeError;
+
+/// A series of slices in a folder (DICOM).
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Series {
+    /// Its place among those of the folder, from 1.
+    pub number: usize,
+    /// Its unique name.
+    pub uid: String,
+    /// As CT or MR.
+    pub modality: String,
+    /// What somebody called it.
+    pub description: String,
+    /// Columns and rows of the first slice.
+    pub size: [u64; 2],
+    /// How many slices it has.
+    pub slices: usize,
+    /// The first of its files.
+    pub file: PathBuf,
+}
+
+impl fmt::Display for Series {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { number, uid, modality, description, size: [columns, rows], slices, file } = self;
+        let called = [modality, description].map(String::as_str).join(" ");
+        let comma = if called.trim().is_empty() { "" } else { ", " };
+        let called = called.trim();
+        write!(f, "{number}: {called}{comma}{slices} slices of {columns}×{rows}, {uid}, as ")?;
+        f.write_str(&shown(file))
+    }
+}
+
+/// Whether a folder is a Zarr array or group.
+pub(crate) fn is_zarr(folder: &Path) -> bool {
+    [".zarray", ".zgroup", "zarr.json"].iter().any(|name| folder.join(name).is_file())
+}
+
+/// The first DICOM file that is found in a folder or those in it, among its first entries.
+pub(crate) fn first(folder: &Path) -> Result<Option<PathBuf>, VolumeError> {
+    Walk::new(folder, true).next().transpose()
+}
+
+/// The DICOM files of a folder, and files that may have been some.
+#[cfg(feature = "dicom")]
+pub(super) struct Files {
+    /// By content, in the order of their names.
+    pub dicom: Vec<PathBuf>,
+    /// Empty files, those that begin with nothing but zeros, and those called .dcm, where their names end as
+    /// those of the others do.
+    pub ruins: Vec<PathBuf>,
+}
+
+/// The DICOM files of a folder and, if wanted, of the folders in it.
+#[cfg(feature = "dicom")]
+pub(super) fn files(folder: &Path, nested: bool) -> Result<Files, VolumeError> {
+    let mut walk = Walk::new(folder, nested);
+    let mut dicom = walk.by_ref().collect::<Result<Vec<_>, _>>()?;
+    if walk.is_cut_short && !dicom.is_empty() {
+        let reason = Reason::unsupported(
+            format!(
+                "holds DICOM files among more than {MOST_OTHERS} others, which are not all looked at"
+            ),
+            "name the folder of the series",
+        );
+        return Err(format_error(folder, reason));
+    }
+    dicom.sort();
+    let mut ruins = walk.ruins;
+    ruins.retain(|ruin| dicom.iter().any(|other| other.extension() == ruin.extension()));
+    ruins.sort();
+    Ok(Files { dicom, ruins })
+}
+
+/// So many entries that are no DICOM files, one after the other, are looked at: a folder may be that of the
+/// whole disk.
+const MOST_OTHERS: usize = 10_000;
+
+/// Goes through DICOM files. Links to folders are not followed: they may lead round in circles.
+struct Walk {
+    nested: bool,
+    folders: Vec<PathBuf>,
+    /// What is left of the folder that is open.
+    entries: Option<(PathBuf, ReadDir)>,
+    /// Entries since the last DICOM file.
+    others: usize,
+    /// Whether there were too many.
+    is_cut_short: bool,
+    /// Files that may have been DICOM.
+    ruins: Vec<PathBuf>,
+}
+
+impl Walk {
+    fn new(folder: &Path, nested: bool) -> Self {
+        let (folders, ruins) = (vec![folder.to_owned()], Vec::new());
+        Self { nested, folders, entries: None, others: 0, is_cut_short: false, ruins }
+    }
+
+    /// The next entry, and the folder it is in.
+    fn entry(&mut self) -> Option<Result<DirEntry, VolumeError>> {
+        loop {
+            let (folder, entries) = if let Some(open) = &mut self.entries {
+                open
+            } else {
+                let folder = self.folders.pop()?;
+                match std::fs::read_dir(&folder) {
+                    Ok(entries) => self.entries.insert((folder, entries)),
+                    Err(error) => return Some(Err(io_error(&folder)(error))),
+                }
+            };
+            match entries.next() {
+                Some(entry) => return Some(entry.map_err(io_error(folder))),
+                None => self.entries = None,
+            }
+        }
+    }
+}
+
+impl Iterator for Walk {
+    type Item = Result<PathBuf, VolumeError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while self.others < MOST_OTHERS {
+            let entry = match self.entry()? {
+                Ok(entry) => entry,
+                Err(error) => return Some(Err(error)),
+            };
+            self.others += 1;
+            let path = entry.path();
+            if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+                if self.nested {
+                    self.folders.push(path);
+                }
+                continue;
+            }
+            match path.is_file().then(|| kind(&path)) {
+                Some(Ok(Kind::Dicom)) => {
+                    self.others = 0;
+                    return Some(Ok(path));
+                }
+                Some(Ok(Kind::Ruin)) => self.ruins.push(path),
+                _ => {}
+            }
+        }
+        self.is_cut_short = true;
+        None
+    }
+}
+
+/// What a file is, by how it begins.
+enum Kind {
+    Dicom,
+    /// It may have been.
+    Ruin,
+    Other,
+}
+
+fn kind(path: &Path) -> io::Result<Kind> {
+    let mut start = Vec::new();
+    File::open(path)?.take(132).read_to_end(&mut start)?;
+    if start.get(128..) == Some(b"DICM") {
+        return Ok(Kind::Dicom);
+    }
+    let is_hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
+    let is_called_so =
+        path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("dcm"));
+    let is_ruin = !is_hidden && (is_called_so || start.iter().all(|&byte| byte == 0));
+    Ok(if is_ruin { Kind::Ruin } else { Kind::Other })
+}

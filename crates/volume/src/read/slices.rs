@@ -1,0 +1,166 @@
+use std::cmp::Ordering;
+use std::path::{Path, PathBuf};
+
+use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
+
+use super::described::{Described, Encoding};
+use super::frames::Frames;
+use super::payload::MOST_EXPANSION;
+use super::tiff::{self, Page};
+use super::{format_error, io_error};
+use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
+
+/// What slices are called.
+const EXTENSIONS: [[&str; 2]; 3] = [["png", "png"], ["jpg", "jpeg"], ["tif", "tiff"]];
+
+/// Reads a folder of gray PNG, JPEG or TIFF slices, all of one kind and size, in the natural order
+/// of their names: `slice9` before `slice10`. Other files and hidden ones are passed over.
+pub(crate) fn read(folder: &Path) -> Result<Volume, VolumeError> {
+    let paths = slices(folder)?;
+    let mut stack = Vec::new();
+    let mut first: Option<([u64; 2], Dtype)> = None;
+    for path in &paths {
+        let Page { size, dtype, samples } = page(path)?;
+        let expected = *first.get_or_insert((size, dtype));
+        if (size, dtype) != expected {
+            let (sizes, other) = expected;
+            let reason = Reason::content(
+                format!(
+                    "has {size:?} samples of {dtype}, but the first slice {sizes:?} of {other}: \
+                     slices must be alike"
+                ),
+                "leave only the slices in the folder",
+            );
+            return Err(format_error(path, reason));
+        }
+        Dims::new(size[0], size[1], paths.len() as u64)?;
+        stack.extend(samples);
+    }
+    let Some((size, dtype)) = first else {
+        let reason = Reason::content(
+            "holds no PNG, JPEG or TIFF slices",
+            "name a file in it, or a folder of slices",
+        );
+        return Err(format_error(folder, reason));
+    };
+    let dims = Dims::new(size[0], size[1], paths.len() as u64)?;
+    let (endian, frame, encoding) = (Endian::Little, Frame::VOXEL, Encoding::Raw);
+    Described { dims, dtype, endian, frame, encoding, frames: Frames::ONE }.volume(stack)
+}
+
+/// The slices of a folder, in order.
+pub(crate) fn slices(folder: &Path) -> Result<Vec<PathBuf>, VolumeError> {
+    let mut found: [Vec<PathBuf>; 3] = Default::default();
+    for entry in std::fs::read_dir(folder).map_err(io_error(folder))? {
+        let path = entry.map_err(io_error(folder))?.path();
+        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes()[0] == b'.');
+        let kind = EXTENSIONS.iter().position(|names| names.iter().any(|&name| extension == name));
+        if let (Some(kind), false) = (kind, hidden) {
+            found[kind].push(path);
+        }
+    }
+    if found.iter().filter(|paths| !paths.is_empty()).count() > 1 {
+        let reason =
+            Reason::content("holds images of several kinds", "leave only the slices in it");
+        return Err(format_error(folder, reason));
+    }
+    let mut paths = found.concat();
+    paths.sort_by(|a, b| natural(&a.to_string_lossy(), &b.to_string_lossy()).then(a.cmp(b)));
+    Ok(paths)
+}
+
+fn page(path: &Path) -> Result<Page, VolumeError> {
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    if EXTENSIONS[2].iter().any(|&name| extension == name) {
+        return tiff::read_page(path);
+    }
+    let damaged = |error| match error {
+        ImageError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
+            io_error(path)(error)
+        }
+        other => format_error(
+            path,
+            Reason::damaged(format!("is not an image that can be read: {other}")),
+        ),
+    };
+    let length = std::fs::metadata(path).map_err(io_error(path))?.len();
+    let decoder = ImageReader::open(path)
+        .and_then(ImageReader::with_guessed_format)
+        .map_err(io_error(path))?
+        .into_decoder()
+        .map_err(damaged)?;
+    let (width, height) = decoder.dimensions();
+    let size = [width, height].map(u64::from);
+    // PNG may have eight samples in a byte; JPEG has 64 in two bits at best.
+    let most = length.saturating_mul(8 * MOST_EXPANSION);
+    if size[0] * size[1] > most {
+        let reason = Reason::truncated(format!(
+            "claims {width}×{height} pixels, which {length} bytes cannot hold: it is \
+                 truncated or damaged"
+        ));
+        return Err(format_error(path, reason));
+    }
+    let image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
+    match image {
+        DynamicImage::ImageLuma8(image) => {
+            let samples = image.into_raw().into_iter().map(f32::from).collect();
+            Ok(Page { size, dtype: Dtype::U8, samples })
+        }
+        DynamicImage::ImageLuma16(image) => {
+            let samples = image.into_raw().into_iter().map(f32::from).collect();
+            Ok(Page { size, dtype: Dtype::U16, samples })
+        }
+        other => {
+            let what = format!("pixels of {:?}: only gray is read", other.color());
+            Err(format_error(path, Reason::NotScalar { what, dims: None }))
+        }
+    }
+}
+
+/// Compares names, runs of digits by their number.
+fn natural(a: &str, b: &str) -> Ordering {
+    let (mut a, mut b) = (a.as_bytes(), b.as_bytes());
+    loop {
+        let (digits_a, digits_b) = (digits(a), digits(b));
+        let order = if digits_a > 0 && digits_b > 0 {
+            let ((number_a, rest_a), (number_b, rest_b)) =
+                (a.split_at(digits_a), b.split_at(digits_b));
+            (a, b) = (rest_a, rest_b);
+            let [x, y] = [number_a, number_b].map(significant);
+            x.len().cmp(&y.len()).then(x.cmp(y))
+        } else {
+            let (Some((x, rest_a)), Some((y, rest_b))) = (a.split_first(), b.split_first()) else {
+                return a.len().cmp(&b.len());
+            };
+            (a, b) = (rest_a, rest_b);
+            x.cmp(y)
+        };
+        if order != Ordering::Equal {
+            return order;
+        }
+    }
+}
+
+fn digits(text: &[u8]) -> usize {
+    text.iter().take_while(|byte| byte.is_ascii_digit()).count()
+}
+
+fn significant(number: &[u8]) -> &[u8] {
+    let zeros = number.iter().take_while(|&&digit| digit == b'0').count();
+    &number[zeros..]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_names_count() {
+        let mut names = ["s10.png", "s9.png", "s009.png", "s1b.png", "s1.png", "a.png", "s.png"];
+        names.sort_by(|a, b| natural(a, b).then(a.cmp(b)));
+        assert_eq!(names, ["a.png", "s.png", "s1.png", "s1b.png", "s009.png", "s9.png", "s10.png"]);
+        let huge = ["x99999999999999999999999", "x100000000000000000000000"];
+        assert_eq!(natural(huge[0], huge[1]), Ordering::Less);
+    }
+}

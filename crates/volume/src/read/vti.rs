@@ -1,0 +1,92 @@
+use std::path::Path;
+
+use super::described::{Described, Encoding, frame};
+use super::format_error;
+use super::frames::Frames;
+use super::vtk::{choice, to_centres};
+use super::vtk_xml::VtkXml;
+use crate::{Coordinates, Dims, Endian, LengthUnit, Reason, Space, Volume, VolumeError};
+
+/// Reads VTI, VTK's image data in XML, in one piece: the array of this name; or else the active scalars of
+/// its points, its first array of points, or of cells, whose samples are at the cells' centres.
+pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
+    let said = |reason: Reason| format_error(path, reason);
+    let file = VtkXml::open(path)?;
+    if file.kind() != "ImageData" {
+        let kind = file.kind();
+        return Err(said(Reason::header(format!(
+            "holds {kind}: a volume is ImageData (.vti) in one file"
+        ))));
+    }
+    let (image, piece) = file.piece()?;
+    let origin = file.numbers(image, "Origin", Some([0.0; 3]))?;
+    let spacing = file.numbers(image, "Spacing", Some([1.0; 3]))?;
+    let identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    let direction = file.numbers(image, "Direction", Some(identity))?;
+    let axes = [0, 1, 2].map(|c| [0, 1, 2].map(|r| direction[3 * r + c] * spacing[c]));
+    let extent: [f64; 6] = file.numbers(piece, "Extent", None)?;
+    let whole = file.numbers(image, "WholeExtent", Some(extent))?;
+    if whole != extent {
+        return Err(said(Reason::unsupported("is a piece of a larger image", "write it whole")));
+    }
+
+    let mut dims = [0; 3];
+    let mut corner = origin;
+    for axis in 0..3 {
+        let (first, last) = (extent[2 * axis], extent[2 * axis + 1]);
+        if first.fract() != 0.0 || last.fract() != 0.0 || last < first || last - first > 4e9 {
+            return Err(said(Reason::header(format!(
+                "has Extent {extent:?}: it is not a grid of samples"
+            ))));
+        }
+        dims[axis] = (last - first) as u64 + 1;
+        for (component, step) in corner.iter_mut().zip(axes[axis]) {
+            *component += first * step;
+        }
+    }
+
+    let (array, cells) = choose(&file, piece, wanted).map_err(said)?;
+    if cells {
+        to_centres(&mut dims, &mut corner, axes);
+    }
+    let components = file.components(array);
+    if components != "1" {
+        return Err(said(Reason::not_scalar(format!("{components} values a voxel"), Some(dims))));
+    }
+    let dims = Dims::new(dims[0], dims[1], dims[2])?;
+    let (frame, dtype) =
+        (frame(path, corner, axes, coordinates(&file, image)?)?, file.dtype(array)?);
+    let samples = file.values(array, dims.samples() as u64)?;
+    let (endian, encoding, frames) = (Endian::Little, Encoding::Raw, Frames::ONE);
+    Described { dims, dtype, endian, frame, encoding, frames }.volume(samples)
+}
+
+/// The array to read, and whether it is one of cells. Those of points come first; which one was taken is
+/// said where there are others.
+fn choose(file: &VtkXml, piece: usize, wanted: Option<&str>) -> Result<(usize, bool), Reason> {
+    let name = |array: usize| file.attribute(array, "Name").unwrap_or_default();
+    let mut arrays = Vec::new();
+    for (data, cells) in [("PointData", false), ("CellData", true)] {
+        let Some(data) = file.children(piece, data).next() else { continue };
+        let active = file.attribute(data, "Scalars");
+        let mut here: Vec<usize> = file.children(data, "DataArray").collect();
+        // The sort keeps the order of the others.
+        here.sort_by_key(|&array| active != Some(name(array)));
+        arrays.extend(here.into_iter().map(|array| (array, cells)));
+    }
+    let names: Vec<(&str, bool)> =
+        arrays.iter().map(|&(array, cells)| (name(array), cells)).collect();
+    let place = choice(&names, wanted)?;
+    Ok(arrays[place])
+}
+
+/// What the field data `SPACE` and `UNIT` say, as our own files have them.
+fn coordinates(file: &VtkXml, image: usize) -> Result<Coordinates, VolumeError> {
+    let space = match file.field_text(image, "SPACE")?.as_deref() {
+        Some("LPS") => Space::Lps,
+        Some("RAS") => Space::Ras,
+        _ => Space::Unknown,
+    };
+    let unit = file.field_text(image, "UNIT")?.map(|name| LengthUnit::named(&name));
+    Ok(Coordinates { space, unit: unit.unwrap_or_default() })
+}

@@ -1,0 +1,304 @@
+//! The arrays of a legacy VTK file, found before one is read.
+
+use std::io::BufRead;
+use std::path::Path;
+
+use super::super::lines::Lines;
+use super::super::{format_error, io_error};
+use crate::{Dtype, Reason, VolumeError};
+
+/// Keywords that begin a section after the grid.
+pub(super) const KEYWORDS: [&str; 14] = [
+    "METADATA",
+    "SCALARS",
+    "COLOR_SCALARS",
+    "LOOKUP_TABLE",
+    "VECTORS",
+    "NORMALS",
+    "TEXTURE_COORDINATES",
+    "TENSORS",
+    "TENSORS6",
+    "FIELD",
+    "GLOBAL_IDS",
+    "PEDIGREE_IDS",
+    "POINT_DATA",
+    "CELL_DATA",
+];
+
+/// The name of the array of places.
+pub(super) const POINTS: &str = "POINTS";
+
+/// An array of points or cells.
+#[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
+pub(super) struct Array {
+    pub name: String,
+    pub cells: bool,
+    /// Values for each point or cell.
+    pub components: u64,
+    /// In all.
+    pub values: u64,
+    /// The type, as VTK calls it.
+    pub kind: String,
+    /// `COLOR_SCALARS`, as VTK calls bytes, which text gives as shares of 255.
+    pub colours: bool,
+    /// `SCALARS`, as VTK calls what it shows.
+    pub active: bool,
+    /// Where the values begin, and where they end as far as that is known.
+    pub start: u64,
+    pub end: Option<u64>,
+    /// No other array follows without a keyword before it.
+    pub last: bool,
+}
+
+/// Finds the arrays; `line` begins the data of points or cells.
+///
+/// The search ends at whatever cannot be parsed after the first array.
+pub(super) fn find(
+    path: &Path,
+    lines: &mut Lines<impl BufRead>,
+    line: &str,
+    text: bool,
+) -> Result<Vec<Array>, VolumeError> {
+    let mut search = Search::new(path, lines, text, false);
+    search.all(Some(line.to_owned()))?;
+    Ok(search.found)
+}
+
+/// How many cells a keyword lists, in the plural.
+pub(super) type CellList = (&'static str, u64);
+
+/// Finds the places and the arrays that lie behind the line DATASET, and the cells, single points aside. Where
+/// cells come as `offsets` and corners, as from version 5 on, each of these is an array of its own.
+pub(super) fn find_all(
+    path: &Path,
+    lines: &mut Lines<impl BufRead>,
+    text: bool,
+    offsets: bool,
+) -> Result<(Vec<Array>, Vec<CellList>), VolumeError> {
+    let line = lines.read_line().map_err(io_error(path))?;
+    let mut search = Search::new(path, lines, text, offsets);
+    search.all(line)?;
+    Ok((search.found, search.listed))
+}
+
+struct Search<'a, R> {
+    path: &'a Path,
+    lines: &'a mut Lines<R>,
+    text: bool,
+    /// Whether cells are two arrays.
+    offsets: bool,
+    /// The lengths of these.
+    lists: [u64; 2],
+    cells: bool,
+    /// Points or cells.
+    count: u64,
+    found: Vec<Array>,
+    listed: Vec<CellList>,
+}
+
+impl<'a, R: BufRead> Search<'a, R> {
+    fn new(path: &'a Path, lines: &'a mut Lines<R>, text: bool, offsets: bool) -> Self {
+        let (lists, cells, count, found, listed) = ([0; 2], false, 0, Vec::new(), Vec::new());
+        Self { path, lines, text, offsets, lists, cells, count, found, listed }
+    }
+
+    /// Finds them all, from a line on.
+    fn all(&mut self, mut line: Option<String>) -> Result<(), VolumeError> {
+        let search = self;
+        let path = search.path;
+        while let Some(words) = line {
+            match search.section(&words) {
+                Ok(true) => {}
+                Ok(false) => break,
+                Err(_) if !search.found.is_empty() => break,
+                Err(error) => return Err(error),
+            }
+            line = match search.lines.read_line() {
+                Err(_) if !search.found.is_empty() => break,
+                next => next.map_err(io_error(path))?,
+            };
+        }
+        if search.found.is_empty() {
+            let reason =
+                Reason::truncated("ends before any SCALARS: it is truncated, or holds no samples");
+            return Err(format_error(path, reason));
+        }
+        Ok(())
+    }
+
+    /// Goes over what a line begins; `false` where it begins nothing that is known.
+    fn section(&mut self, line: &str) -> Result<bool, VolumeError> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let Some(keyword) = words.first() else { return Ok(true) };
+        let word = |i: usize| words.get(i).copied().unwrap_or("(missing)");
+        let number = |i: usize| word(i).parse::<u64>().unwrap_or(0);
+        let keyword = keyword.to_ascii_uppercase();
+        match keyword.as_str() {
+            "POINT_DATA" | "CELL_DATA" => {
+                (self.cells, self.count) = (keyword == "CELL_DATA", number(1));
+            }
+            "SCALARS" => {
+                let components = words.get(3).map_or(Some(1), |n| n.parse().ok()).unwrap_or(0);
+                let table =
+                    self.lines.read_line().map_err(io_error(self.path))?.unwrap_or_default();
+                if !table.starts_with("LOOKUP_TABLE") {
+                    let reason =
+                        Reason::damaged("has no LOOKUP_TABLE line below SCALARS: it is damaged");
+                    return Err(format_error(self.path, reason));
+                }
+                self.array(word(1), word(2), components, self.count, true)?;
+                if let Some(array) = self.found.last_mut() {
+                    array.active = true;
+                }
+            }
+            // What lies between the line DATASET and the data of points.
+            POINTS => self.array(POINTS, word(2), 3, number(1), true)?,
+            "DIMENSIONS" => {}
+            "VERTICES" | "LINES" | "POLYGONS" | "TRIANGLE_STRIPS" | "CELLS" => {
+                let [first, second] = [number(1), number(2)];
+                // Numbers of offsets and corners, or of cells and of these with their corners.
+                let (cells, corners) = if self.offsets {
+                    (first.saturating_sub(1), second)
+                } else {
+                    (first, second.saturating_sub(first))
+                };
+                let kind = match keyword.as_str() {
+                    "LINES" => Some("lines"),
+                    "POLYGONS" => Some("polygons"),
+                    "TRIANGLE_STRIPS" => Some("strips"),
+                    "CELLS" if corners > cells => Some("cells"),
+                    _ => None,
+                };
+                self.listed.extend(kind.map(|kind| (kind, cells)));
+                if self.offsets {
+                    self.lists = [first, second];
+                } else {
+                    self.pass("int", second)?;
+                }
+            }
+            "OFFSETS" => self.pass(word(1), self.lists[0])?,
+            "CONNECTIVITY" => self.pass(word(1), self.lists[1])?,
+            "CELL_TYPES" => self.pass("int", number(1))?,
+            "COLOR_SCALARS" => {
+                self.array(word(1), "unsigned_char", number(2), self.count, true)?;
+                if let Some(array) = self.found.last_mut() {
+                    array.colours = true;
+                }
+            }
+            "LOOKUP_TABLE" => self.pass("unsigned_char", number(2) * 4)?,
+            "VECTORS" | "NORMALS" => self.array(word(1), word(2), 3, self.count, true)?,
+            "TENSORS" => self.array(word(1), word(2), 9, self.count, true)?,
+            "TENSORS6" => self.array(word(1), word(2), 6, self.count, true)?,
+            "TEXTURE_COORDINATES" => self.array(word(1), word(3), number(2), self.count, true)?,
+            "GLOBAL_IDS" | "PEDIGREE_IDS" => self.array(word(1), word(2), 1, self.count, true)?,
+            "FIELD" => return self.field(number(2)),
+            "METADATA" => {
+                let mut next = || self.lines.read_line().map_err(io_error(self.path));
+                while next()?.is_some_and(|line| !line.is_empty()) {}
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// So many arrays with a line each. VTK writes here whatever is not its active attribute.
+    fn field(&mut self, count: u64) -> Result<bool, VolumeError> {
+        let mut left = count;
+        while left > 0 {
+            let line = self.lines.read_line().map_err(io_error(self.path))?.unwrap_or_default();
+            if line.is_empty() {
+                // VTK ends what it knows of an array with an empty line; a file ends without one.
+                if self.lines.at_end().map_err(io_error(self.path))? {
+                    break;
+                }
+                continue;
+            }
+            if line.starts_with("METADATA") {
+                self.section(&line)?;
+                continue;
+            }
+            let words: Vec<&str> = line.split_whitespace().collect();
+            let &[name, components, count, kind] = words.as_slice() else {
+                let reason =
+                    Reason::damaged(format!("has a FIELD with a line {line:?}: it is damaged"));
+                return Err(format_error(self.path, reason));
+            };
+            let [components, count] = [components, count].map(|n| n.parse().unwrap_or(0));
+            left -= 1;
+            self.array(name, kind, components, count, left == 0)?;
+        }
+        Ok(true)
+    }
+
+    fn array(
+        &mut self,
+        name: &str,
+        kind: &str,
+        components: u64,
+        count: u64,
+        last: bool,
+    ) -> Result<(), VolumeError> {
+        let values = components.saturating_mul(count);
+        let start = self.lines.bytes();
+        let (name, kind) = (name.to_owned(), kind.to_owned());
+        let (cells, colours, active, end) = (self.cells, false, false, None);
+        let array =
+            Array { name, cells, components, values, kind, colours, active, start, end, last };
+        let kind = array.kind.clone();
+        self.found.push(array);
+        self.pass(&kind, values)?;
+        if let (true, Some(array)) = (self.text, self.found.last_mut()) {
+            array.end = Some(self.lines.bytes());
+        }
+        Ok(())
+    }
+
+    /// Passes over so many numbers.
+    fn pass(&mut self, kind: &str, values: u64) -> Result<(), VolumeError> {
+        if !self.text {
+            let bytes = match kind {
+                "bit" => values.div_ceil(8),
+                _ => values.saturating_mul(scalar(self.path, kind, 1)?.size() as u64),
+            };
+            return self.lines.skip(bytes).map_err(io_error(self.path));
+        }
+        let mut left = values;
+        while left > 0 {
+            let Some(line) = self.lines.read_line().map_err(io_error(self.path))? else { break };
+            left = left.saturating_sub(line.split_whitespace().count() as u64);
+        }
+        Ok(())
+    }
+}
+
+/// The type of one number, by its name.
+pub(super) fn scalar(path: &Path, name: &str, components: u64) -> Result<Dtype, VolumeError> {
+    if components != 1 {
+        return Err(format_error(
+            path,
+            Reason::not_scalar(format!("{components} values a voxel"), None),
+        ));
+    }
+    Ok(match name {
+        "unsigned_char" => Dtype::U8,
+        "char" | "signed_char" => Dtype::I8,
+        "unsigned_short" => Dtype::U16,
+        "short" => Dtype::I16,
+        "unsigned_int" => Dtype::U32,
+        "int" => Dtype::I32,
+        // As on all systems but Windows; there VTK writes vtktypeint64.
+        "unsigned_long" | "vtktypeuint64" => Dtype::U64,
+        "long" | "vtktypeint64" | "vtkIdType" => Dtype::I64,
+        "float" => Dtype::F32,
+        "double" => Dtype::F64,
+        _ => {
+            return Err(format_error(
+                path,
+                Reason::unsupported(
+                    format!("holds samples of type {name}, which is not read"),
+                    "convert it first",
+                ),
+            ));
+        }
+    })
+}

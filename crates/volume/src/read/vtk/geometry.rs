@@ -1,0 +1,156 @@
+//! Points of legacy VTK files: those of polygons, unstructured and curved grids.
+
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use super::super::lines::Lines;
+use super::super::payload::{Length, Payload};
+use super::super::{format_error, io_error, payload_error_of, text};
+use super::MAGIC;
+use super::arrays::{self, Array, CellList, POINTS};
+use crate::{Endian, Reason, VolumeError};
+
+/// The datasets whose points are listed.
+const LISTED: [&str; 3] = ["POLYDATA", "UNSTRUCTURED_GRID", "STRUCTURED_GRID"];
+
+/// A legacy VTK file that lists points.
+pub struct VtkPoints<'a> {
+    path: &'a Path,
+    text: bool,
+    arrays: Vec<Array>,
+    /// How many cells it lists, single points aside.
+    pub cells: Vec<CellList>,
+}
+
+/// What a legacy VTK file begins with.
+struct Head {
+    /// Whether cells are two arrays, as from version 5 on.
+    offsets: bool,
+    text: bool,
+    dataset: String,
+}
+
+impl<'a> VtkPoints<'a> {
+    /// Whether a file lists points.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn are_in(path: &Path) -> Result<bool, VolumeError> {
+        let head = head(path, &mut lines(path)?)?;
+        Ok(LISTED.contains(&head.dataset.as_str()))
+    }
+
+    /// Finds the points and their data.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn open(path: &'a Path) -> Result<Self, VolumeError> {
+        let mut lines = lines(path)?;
+        let Head { offsets, text, dataset } = head(path, &mut lines)?;
+        if !LISTED.contains(&dataset.as_str()) {
+            let what = format!("holds {dataset}: points are read from {}", LISTED.join(", "));
+            return Err(format_error(path, Reason::unsupported(what, "convert it first")));
+        }
+        let (arrays, cells) = arrays::find_all(path, &mut lines, text, offsets)?;
+        match arrays.first() {
+            Some(Array { name, components: 3, .. }) if name == POINTS => {
+                Ok(Self { path, text, arrays, cells })
+            }
+            _ => Err(format_error(path, Reason::damaged("has no POINTS: it is damaged"))),
+        }
+    }
+
+    /// How many points there are.
+    fn count(&self) -> u64 {
+        self.arrays[0].values / 3
+    }
+
+    /// The coordinates, three for each point.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn places(&self) -> Result<Vec<f64>, VolumeError> {
+        self.values(&self.arrays[0])
+    }
+
+    /// A number for each point, by the name of the array in any case.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn named(&self, name: &str) -> Result<Option<Vec<f64>>, VolumeError> {
+        self.one(|array| array.name.eq_ignore_ascii_case(name))
+    }
+
+    /// The first active scalars whose name is none of these.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn active(&self, but: &[&str]) -> Result<Option<Vec<f64>>, VolumeError> {
+        let is_among = |name: &str| but.iter().any(|but| but.eq_ignore_ascii_case(name));
+        self.one(|array| array.active && !is_among(&array.name))
+    }
+
+    fn one(&self, is_it: impl Fn(&Array) -> bool) -> Result<Option<Vec<f64>>, VolumeError> {
+        let mut of_points = self.arrays[1..].iter().filter(|a| !a.cells && a.components == 1);
+        of_points.find(|array| is_it(array)).map(|array| self.values(array)).transpose()
+    }
+
+    fn values(&self, array: &Array) -> Result<Vec<f64>, VolumeError> {
+        let (path, count) = (self.path, array.values);
+        if count != self.count().saturating_mul(array.components) {
+            let (name, points) = (&array.name, self.count());
+            let what = format!("has {count} values {name} for {points} points");
+            return Err(format_error(path, Reason::header(what)));
+        }
+        let dtype = arrays::scalar(path, &array.kind, 1)?;
+        let mut file = File::open(path).map_err(io_error(path))?;
+        let length = file.metadata().map_err(io_error(path))?.len();
+        file.seek(SeekFrom::Start(array.start)).map_err(io_error(path))?;
+        let left = array.end.unwrap_or(length).saturating_sub(array.start);
+        if self.text {
+            return text::numbers(file.take(left), left, dtype, count)
+                .map_err(|reason| format_error(path, reason));
+        }
+        let bytes = count.saturating_mul(dtype.size() as u64).min(left);
+        let length = Length::Exactly(bytes);
+        let payload = Payload { reader: BufReader::new(file).take(bytes), length };
+        let claim = format!("{count} numbers {} of type {dtype}", array.name);
+        payload
+            .samples(dtype, Endian::Big, count)
+            .map_err(|error| payload_error_of(path, &claim, error))
+    }
+}
+
+fn lines(path: &Path) -> Result<Lines<BufReader<File>>, VolumeError> {
+    Ok(Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?)))
+}
+
+/// Reads up to the line that names the dataset.
+fn head(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Head, VolumeError> {
+    let mut next = || lines.read_line().map_err(io_error(path));
+    let first = next()?.unwrap_or_default();
+    if !first.as_bytes().starts_with(MAGIC) {
+        let what = "is not a legacy VTK file: it does not begin with # vtk DataFile";
+        return Err(format_error(path, Reason::other(what)));
+    }
+    let version = first.split_whitespace().next_back().and_then(|word| word.parse::<f64>().ok());
+    let offsets = version.is_some_and(|version| version >= 5.0);
+    // The title.
+    next()?;
+    let mut text = None;
+    while let Some(line) = next()? {
+        let words: Vec<String> = line.split_whitespace().map(str::to_ascii_uppercase).collect();
+        match (words.first().map(String::as_str), words.get(1), text) {
+            (Some("ASCII"), ..) => text = Some(true),
+            (Some("BINARY"), ..) => text = Some(false),
+            (Some("DATASET"), Some(dataset), Some(text)) => {
+                return Ok(Head { offsets, text, dataset: dataset.clone() });
+            }
+            (None, ..) => {}
+            _ => break,
+        }
+    }
+    let what = "has no line ASCII or BINARY, or no line DATASET, where these belong";
+    Err(format_error(path, Reason::header(what)))
+}

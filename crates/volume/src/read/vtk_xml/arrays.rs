@@ -1,0 +1,246 @@
+//! The arrays of a file, in each of their codings.
+
+use std::io::{self, Read, Take};
+use std::str::FromStr;
+
+use flate2::read::ZlibDecoder;
+
+use super::{Appended, Compressor, VtkXml, XmlElement};
+use crate::read::base64::Base64;
+use crate::read::payload::{Element, Length, MOST_EXPANSION, Payload};
+use crate::read::{payload_error_of, text};
+use crate::{Endian, Reason, VolumeError};
+
+impl VtkXml {
+    /// Reads an array, which must have exactly `count` numbers.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn values<T: Element + FromStr + Into<f64>>(
+        &self,
+        array: usize,
+        count: u64,
+    ) -> Result<Vec<T>, VolumeError> {
+        let dtype = self.dtype(array)?;
+        let XmlElement { text: start, text_end, .. } = self.elements[array];
+        let end = text_end.unwrap_or(start);
+        let of_array = |reason: Reason| {
+            let part = format!("its array {}", self.name(array));
+            self.said(Reason::Within { part, reason: Box::new(reason) })
+        };
+        match self.attribute(array, "format") {
+            Some("ascii") => {
+                text::numbers(self.part(start, end)?, end - start, dtype, count).map_err(of_array)
+            }
+            Some("binary") => {
+                let text = Base64::new(self.part(start, end)?);
+                self.decoded(array, text, (end - start) / 4 * 3, count)
+            }
+            Some("appended") => {
+                let Some(Appended { start, base64 }) = self.appended else {
+                    return Err(of_array(Reason::header(
+                        "is appended, but there are no appended data",
+                    )));
+                };
+                let offset = self.attribute(array, "offset").and_then(|text| text.parse().ok());
+                let Some(from) = offset.and_then(|offset: u64| start.checked_add(offset)) else {
+                    return Err(of_array(Reason::header("has no offset in the appended data")));
+                };
+                let left = self.length.saturating_sub(from);
+                let data = self.part(from, self.length)?;
+                if base64 {
+                    self.decoded(array, Base64::new(data), left / 4 * 3, count)
+                } else {
+                    self.decoded(array, data, left, count)
+                }
+            }
+            other => {
+                let given = other.unwrap_or("(missing)");
+                Err(of_array(Reason::header(format!(
+                    "has format {given}, not ascii, binary or appended"
+                ))))
+            }
+        }
+    }
+
+    /// A text of the field data of a dataset: the first string of an array of strings, which VTK writes
+    /// as the numbers of its characters, up to a 0.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn field_text(&self, dataset: usize, name: &str) -> Result<Option<String>, VolumeError> {
+        /// Nothing that is looked for is longer.
+        const LONGEST: u64 = 1000;
+        let Some(fields) = self.children(dataset, "FieldData").next() else { return Ok(None) };
+        let named = |&array: &usize| self.attribute(array, "Name") == Some(name);
+        let Some(array) = self.children(fields, "Array").find(named) else { return Ok(None) };
+        if self.attribute(array, "format") != Some("ascii") {
+            return Ok(None);
+        }
+        let XmlElement { text: start, text_end, .. } = self.elements[array];
+        let end = text_end.unwrap_or(start).min(start + LONGEST);
+        let mut text = String::new();
+        let read = self.part(start, end)?.read_to_string(&mut text);
+        read.map_err(|error| {
+            self.said(Reason::damaged(format!("has damaged field data {name}: {error}")))
+        })?;
+        let bytes: Vec<u8> = text.split_whitespace().map_while(|byte| byte.parse().ok()).collect();
+        let first = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
+        Ok(Some(String::from_utf8_lossy(first).into_owned()))
+    }
+
+    /// Reads an array that follows its length, or the lengths of its compressed blocks; there are
+    /// at most `most` bytes.
+    fn decoded<T: Element>(
+        &self,
+        array: usize,
+        mut data: impl Read,
+        most: u64,
+        count: u64,
+    ) -> Result<Vec<T>, VolumeError> {
+        let dtype = self.dtype(array)?;
+        let claim = format!("an array {} of {count} numbers of type {dtype}", self.name(array));
+        let located = |error| payload_error_of(&self.path, &claim, error);
+        let cut = |error: io::Error| match error.kind() {
+            io::ErrorKind::UnexpectedEof => self.said(Reason::truncated(format!(
+                "ends before its array {}: it is truncated",
+                self.name(array)
+            ))),
+            _ => self.said(Reason::damaged(format!(
+                "has a damaged array {}: {error}",
+                self.name(array)
+            ))),
+        };
+        let first = self.word(&mut data).map_err(cut)?;
+        let Some(compressor) = self.compressor else {
+            if first > most {
+                return Err(self.said(Reason::truncated(format!(
+                    "claims {first} bytes for its array {}, but at most {most} follow: it is \
+                     truncated",
+                    self.name(array)
+                ))));
+            }
+            let payload = Payload { reader: data.take(first), length: Length::Exactly(first) };
+            return payload.samples(dtype, self.endian, count).map_err(located);
+        };
+        let [block, last] =
+            [self.word(&mut data).map_err(cut)?, self.word(&mut data).map_err(cut)?];
+        if first > most / self.word as u64 {
+            return Err(self.said(Reason::header(format!(
+                "claims {first} compressed blocks for its array {}, which it cannot hold",
+                self.name(array)
+            ))));
+        }
+        let whole = if last > 0 { first.saturating_sub(1) } else { first };
+        let bytes = whole.checked_mul(block).and_then(|bytes| bytes.checked_add(last));
+        let bytes = bytes.filter(|&bytes| bytes <= most.saturating_mul(MOST_EXPANSION));
+        let Some(bytes) = bytes else {
+            return Err(self.said(Reason::header(format!(
+                "claims {first} compressed blocks of {block} bytes for its array {}, more than \
+                 it can hold",
+                self.name(array)
+            ))));
+        };
+        let sizes = (0..first).map(|_| self.word(&mut data)).collect::<io::Result<Vec<u64>>>();
+        let sizes = sizes.map_err(cut)?;
+        let packed = sizes.iter().fold(0u64, |sum, &size| sum.saturating_add(size));
+        if packed > most {
+            return Err(self.said(Reason::truncated(format!(
+                "claims {packed} compressed bytes for its array {}, but at most {most} follow: it is \
+                 truncated",
+                self.name(array)
+            ))));
+        }
+        if bytes > packed.saturating_mul(MOST_EXPANSION) {
+            return Err(self.said(Reason::header(format!(
+                "claims that {packed} compressed bytes of its array {} hold {bytes}, which they cannot",
+                self.name(array)
+            ))));
+        }
+        let reader = Blocks {
+            data: Some(data),
+            compressor,
+            sizes: sizes.into_iter(),
+            block: block.max(last),
+            at: At::End,
+        };
+        let payload = Payload { reader, length: Length::Exactly(bytes) };
+        payload.samples(dtype, self.endian, count).map_err(located)
+    }
+
+    /// A length in front of an array.
+    fn word(&self, data: &mut impl Read) -> io::Result<u64> {
+        let mut bytes = [0; 8];
+        let bytes = &mut bytes[..self.word];
+        data.read_exact(bytes)?;
+        let add = |sum: u64, &byte: &u8| sum << 8 | u64::from(byte);
+        Ok(match self.endian {
+            Endian::Big => bytes.iter().fold(0, add),
+            Endian::Little => bytes.iter().rev().fold(0, add),
+        })
+    }
+}
+
+/// Blocks compressed one by one.
+struct Blocks<R> {
+    /// What follows, where no block is being read.
+    data: Option<R>,
+    compressor: Compressor,
+    /// Compressed bytes of those to come.
+    sizes: std::vec::IntoIter<u64>,
+    /// The most bytes of one.
+    block: u64,
+    at: At<R>,
+}
+
+/// Where in a block we are.
+enum At<R> {
+    /// A block that is unpacked as it is read: it may be as large as the array.
+    Within(Take<ZlibDecoder<Take<R>>>),
+    /// What is left of a block that was unpacked at once.
+    Ready(io::Cursor<Vec<u8>>),
+    /// At its end.
+    End,
+}
+
+impl<R: Read> Read for Blocks<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            let found = match &mut self.at {
+                At::Within(block) => block.read(buffer)?,
+                At::Ready(bytes) => bytes.read(buffer)?,
+                At::End => 0,
+            };
+            if found > 0 || buffer.is_empty() {
+                return Ok(found);
+            }
+            if let At::Within(block) = std::mem::replace(&mut self.at, At::End) {
+                let mut packed = block.into_inner().into_inner();
+                // The decoder reads ahead, but not beyond the block.
+                io::copy(&mut packed, &mut io::sink())?;
+                if packed.limit() > 0 {
+                    return Err(io::ErrorKind::UnexpectedEof.into());
+                }
+                self.data = Some(packed.into_inner());
+            }
+            let Some(size) = self.sizes.next() else { return Ok(0) };
+            let mut packed = self.data.take().expect("no block is being read").take(size);
+            self.at = match self.compressor {
+                Compressor::Zlib => At::Within(ZlibDecoder::new(packed).take(self.block)),
+                Compressor::Lz4 => {
+                    let mut code = Vec::new();
+                    packed.read_to_end(&mut code)?;
+                    if packed.limit() > 0 {
+                        return Err(io::ErrorKind::UnexpectedEof.into());
+                    }
+                    self.data = Some(packed.into_inner());
+                    // LZ4 repeats a byte for each byte of 255 in its code, so this much may be true.
+                    let most = self.block.min(size.saturating_mul(256)) as usize;
+                    let bytes = lz4_flex::block::decompress(&code, most)
+                        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
+                    At::Ready(io::Cursor::new(bytes))
+                }
+            };
+        }
+    }
+}

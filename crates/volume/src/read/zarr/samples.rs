@@ -1,0 +1,231 @@
+//! Samples: all of them, or part by part.
+
+use std::num::NonZeroU64;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use walpha_base::advice::{Setting, advice};
+use walpha_base::memory::asking;
+use walpha_base::progress;
+use zarrs::array::{Array, DataType, ElementOwned};
+use zarrs::array_subset::ArraySubset;
+use zarrs::filesystem::FilesystemStore;
+
+use super::super::format_error;
+use super::{damaged, shards};
+use crate::source::Parts;
+use crate::{Dims, Dtype, Reason, VolumeError};
+
+/// Calls a method with what turns samples of this type into `f32`.
+macro_rules! by_type {
+    ($dtype:expr, $object:ident.$read:ident $(, $argument:expr)*) => {
+        match $dtype {
+            Dtype::U8 => $object.$read($($argument,)* |v: u8| v.into()),
+            Dtype::I8 => $object.$read($($argument,)* |v: i8| v.into()),
+            Dtype::U16 => $object.$read($($argument,)* |v: u16| v.into()),
+            Dtype::I16 => $object.$read($($argument,)* |v: i16| v.into()),
+            Dtype::U32 => $object.$read($($argument,)* |v: u32| v as f32),
+            Dtype::I32 => $object.$read($($argument,)* |v: i32| v as f32),
+            Dtype::U64 => $object.$read($($argument,)* |v: u64| v as f32),
+            Dtype::I64 => $object.$read($($argument,)* |v: i64| v as f32),
+            Dtype::F32 => $object.$read($($argument,)* |v: f32| v),
+            Dtype::F64 => $object.$read($($argument,)* |v: f64| v as f32),
+        }
+    };
+}
+
+pub(super) fn samples(
+    path: &Path,
+    array: &Array<FilesystemStore>,
+    dims: Dims,
+    leading: &[u64],
+) -> Result<(Dtype, Vec<f32>), VolumeError> {
+    let dtype = dtype(path, array.data_type())?;
+    let read = Read { path, array, dims, leading };
+    Ok((dtype, by_type!(dtype, read.all)?))
+}
+
+/// The type of samples.
+pub(super) fn dtype(path: &Path, stored: &DataType) -> Result<Dtype, VolumeError> {
+    Ok(match stored {
+        DataType::UInt8 => Dtype::U8,
+        DataType::Int8 => Dtype::I8,
+        DataType::UInt16 => Dtype::U16,
+        DataType::Int16 => Dtype::I16,
+        DataType::UInt32 => Dtype::U32,
+        DataType::Int32 => Dtype::I32,
+        DataType::UInt64 => Dtype::U64,
+        DataType::Int64 => Dtype::I64,
+        DataType::Float32 => Dtype::F32,
+        DataType::Float64 => Dtype::F64,
+        other => {
+            let reason = Reason::unsupported(
+                format!(
+                    "holds samples of type {other}: integers of 8 to 64 bits, float32 and \
+                         float64 are read"
+                ),
+                "convert it first",
+            );
+            return Err(format_error(path, reason));
+        }
+    })
+}
+
+/// Samples read at a time, or one row of chunks if that is more.
+const PIECE: u64 = 1 << 22;
+/// A chunk is decoded as a whole; larger ones must be of an array of their size.
+const MOST_IN_CHUNK: u64 = 1 << 26;
+
+pub(super) fn check_chunk(
+    path: &Path,
+    chunk: &[NonZeroU64],
+    dims: Dims,
+) -> Result<(), VolumeError> {
+    let in_chunk = chunk.iter().fold(1u64, |product, size| product.saturating_mul(size.get()));
+    if in_chunk > MOST_IN_CHUNK.max(8 * dims.samples() as u64) {
+        let what = format!(
+            "has chunks of {in_chunk} samples, far more than the array: it is damaged, or store it \
+             in smaller chunks"
+        );
+        return Err(format_error(path, Reason::damaged(what)));
+    }
+    Ok(())
+}
+
+/// An array that is read part by part.
+pub(super) struct ZarrParts {
+    pub path: PathBuf,
+    pub array: Array<FilesystemStore>,
+    /// Indices along the axes before the last three.
+    pub leading: Vec<u64>,
+}
+
+impl Parts for ZarrParts {
+    fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
+        let dtype = dtype(&self.path, self.array.data_type())?;
+        let mut ranges: Vec<_> = self.leading.iter().map(|&i| i..i + 1).collect();
+        ranges.extend([2, 1, 0].map(|k| first[k] as u64..(first[k] + size[k]) as u64));
+        let part = ArraySubset::new_with_ranges(&ranges);
+        by_type!(dtype, self.part, &part)
+    }
+}
+
+impl ZarrParts {
+    fn part<T: ElementOwned + Copy>(
+        &self,
+        part: &ArraySubset,
+        convert: impl Fn(T) -> f32,
+    ) -> Result<Vec<f32>, VolumeError> {
+        shards::check(&self.array, part).map_err(|error| damaged(&self.path, &error))?;
+        let read = self.array.retrieve_array_subset_elements::<T>(part);
+        let samples = read.map_err(|error| damaged(&self.path, &error))?;
+        Ok(samples.into_iter().map(convert).collect())
+    }
+}
+
+struct Read<'a> {
+    path: &'a Path,
+    array: &'a Array<FilesystemStore>,
+    dims: Dims,
+    /// Along the axes before the last three.
+    leading: &'a [u64],
+}
+
+/// Zarr leaves out chunks of nothing but the fill value, so an array may be larger than what is stored of it; so many
+/// bytes are believed without any.
+const MOST_UNSTORED: u64 = 1 << 28;
+/// No codec expands by more: zstd repeats a byte 128 KiB long for 4 bytes of code.
+const MOST_EXPANSION: u64 = 1 << 15;
+
+/// The bytes in a folder and those in it, as far as `enough`.
+fn stored(folder: &Path, enough: u64) -> u64 {
+    let (mut folders, mut bytes) = (vec![folder.to_owned()], 0u64);
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+            match entry.metadata() {
+                Ok(about) if about.is_dir() => folders.push(entry.path()),
+                Ok(about) => bytes = bytes.saturating_add(about.len()),
+                Err(_) => {}
+            }
+            if bytes >= enough {
+                return bytes;
+            }
+        }
+    }
+    bytes
+}
+
+impl Read<'_> {
+    /// Refuses an array that claims far more than what is stored can hold, before memory is asked for.
+    fn check_stored(&self) -> Result<(), VolumeError> {
+        let Self { path, dims, .. } = self;
+        let needed = (dims.samples() as u64).saturating_mul(size_of::<f32>() as u64);
+        if needed <= MOST_UNSTORED {
+            return Ok(());
+        }
+        let enough = needed.div_ceil(MOST_EXPANSION);
+        let found = stored(path, enough);
+        if found < enough {
+            return Err(format_error(
+                path,
+                Reason::truncated(format!(
+                    "claims {dims} samples and holds {found} bytes: nearly all its chunks are missing"
+                )),
+            ));
+        }
+        Ok(())
+    }
+
+    /// All samples, by as many slices at once as a chunk is thick, and as many rows as fit a piece.
+    fn all<T: ElementOwned + Copy + Send + Sync>(
+        &self,
+        convert: impl Fn(T) -> f32 + Send + Sync,
+    ) -> Result<Vec<f32>, VolumeError> {
+        let Self { path, array, dims, leading } = self;
+        let said = |reason: Reason| format_error(path, reason);
+        let axes = array.dimensionality();
+        let damaged = |error: &dyn std::fmt::Display| {
+            said(Reason::damaged(format!("is a Zarr array that cannot be read ({error})")))
+        };
+        let chunk = array.chunk_shape(&vec![0; axes]).map_err(|error| damaged(&error))?;
+        check_chunk(path, &chunk, *dims)?;
+        self.check_stored()?;
+        let [thick, high] = [3, 2].map(|axis| chunk[axes - axis].get());
+        let mut samples = Vec::new();
+        asking(|| samples.try_reserve_exact(dims.samples())).map_err(|_| {
+            let bytes = dims.samples() * size_of::<f32>();
+            said(Reason::choice(
+                Setting::Level,
+                format!("needs {bytes} bytes of memory, which cannot be had"),
+                advice!["choose a coarser ", Setting::Level],
+            ))
+        })?;
+        let [x, y, z] = dims.xyz().map(|size| size as u64);
+        samples.resize(dims.samples(), 0.0);
+        // Whole chunks, so that none is decoded twice.
+        let row_of_chunks = thick.saturating_mul(high).saturating_mul(x);
+        let high = high.saturating_mul((PIECE / row_of_chunks).max(1));
+        let steps = |size: u64, step: u64| {
+            let step = step.min(size);
+            (0..size.div_ceil(step)).map(move |k| k * step..((k + 1) * step).min(size))
+        };
+        for (slices, rows) in steps(z, thick)
+            .flat_map(|slices| steps(y, high).map(move |rows| (slices.clone(), rows)))
+        {
+            let mut ranges: Vec<_> = leading.iter().map(|&i| i..i + 1).collect();
+            ranges.extend([slices.clone(), rows.clone(), 0..x]);
+            let part = ArraySubset::new_with_ranges(&ranges);
+            shards::check(array, &part).map_err(|error| damaged(&error))?;
+            let part: Vec<T> =
+                array.retrieve_array_subset_elements(&part).map_err(|error| damaged(&error))?;
+            let in_slice = ((rows.end - rows.start) * x) as usize;
+            for (slice, part) in slices.clone().zip(part.chunks(in_slice)) {
+                let at = ((slice * y + rows.start) * x) as usize;
+                let samples = &mut samples[at..at + in_slice];
+                samples.par_iter_mut().zip(part).for_each(|(sample, &v)| *sample = convert(v));
+            }
+            progress::report(slices.start * y + rows.end * (slices.end - slices.start), z * y);
+        }
+        Ok(samples)
+    }
+}

@@ -1,0 +1,235 @@
+//! Why a file cannot be read as a volume or as points.
+
+use std::fmt;
+
+use walpha_base::advice::{Advice, Setting, advice};
+
+/// Why a file cannot be read, whatever its format. Its text follows the name of the file.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// It is of no format known.
+    Unknown {
+        /// The formats that would be read.
+        known: String,
+        /// An extension like its own.
+        near: Option<&'static str>,
+    },
+    /// It is not of the format that its name or its place says.
+    Other {
+        /// What it is not, and by what one sees that.
+        what: String,
+    },
+    /// It ends too early.
+    Truncated {
+        /// Where it ends, or what it claims.
+        what: String,
+    },
+    /// Its header claims more or fewer bytes than follow it.
+    Length {
+        /// What is claimed.
+        claim: String,
+        /// The bytes that it takes.
+        needed: u64,
+        /// The bytes there are.
+        found: u64,
+        /// "", "at most " or "at least ", where they are not counted.
+        bound: &'static str,
+    },
+    /// Its header misses something or contradicts itself.
+    Header {
+        /// The field, and what is wrong with it.
+        what: String,
+    },
+    /// A line or number in it is invalid.
+    Value {
+        /// Where it is, and what it is.
+        what: String,
+    },
+    /// Its content is damaged.
+    Damaged {
+        /// What cannot be.
+        what: String,
+    },
+    /// It is right, but what it holds is not read.
+    Unsupported {
+        /// What it holds, and what would be read.
+        what: String,
+        /// What to do instead.
+        advice: Advice,
+    },
+    /// The feature that reads it was left out when the program was built.
+    Without {
+        /// What it is.
+        what: &'static str,
+        /// The feature's name.
+        feature: &'static str,
+    },
+    /// It holds no samples, no points, or ones that make no whole.
+    Content {
+        /// What it holds.
+        what: String,
+        /// What to do about it.
+        advice: Advice,
+    },
+    /// It has several values in each voxel: colours, vectors or tensors.
+    NotScalar {
+        /// Which, and what would be read.
+        what: String,
+        /// Samples along x, y and z, where they are known.
+        dims: Option<[u64; 3]>,
+    },
+    /// It holds several volumes, and the one asked for is none of them, or none was asked for.
+    Several {
+        /// How many.
+        count: u64,
+    },
+    /// A setting says nothing about it, is missing, or names what it does not have.
+    Setting {
+        /// The setting.
+        setting: Setting,
+        /// What the file is or has.
+        what: String,
+        /// What to do with the setting.
+        advice: Advice,
+    },
+    /// The same for a part of it: an array, or the data files that a header names.
+    Within {
+        /// The part.
+        part: String,
+        /// What is wrong with it.
+        reason: Box<Reason>,
+    },
+    /// What it holds needs memory that cannot be had.
+    Memory {
+        /// What it holds.
+        claim: String,
+        /// The bytes that it takes.
+        needed: u64,
+    },
+}
+
+impl Reason {
+    /// [`Reason::Other`].
+    pub fn other(what: impl Into<String>) -> Self {
+        Self::Other { what: what.into() }
+    }
+
+    /// [`Reason::Truncated`].
+    pub fn truncated(what: impl Into<String>) -> Self {
+        Self::Truncated { what: what.into() }
+    }
+
+    /// [`Reason::Header`].
+    pub fn header(what: impl Into<String>) -> Self {
+        Self::Header { what: what.into() }
+    }
+
+    /// [`Reason::Value`].
+    pub fn value(what: impl Into<String>) -> Self {
+        Self::Value { what: what.into() }
+    }
+
+    /// [`Reason::Damaged`].
+    pub fn damaged(what: impl Into<String>) -> Self {
+        Self::Damaged { what: what.into() }
+    }
+
+    /// [`Reason::Unsupported`].
+    pub fn unsupported(what: impl Into<String>, advice: impl Into<Advice>) -> Self {
+        Self::Unsupported { what: what.into(), advice: advice.into() }
+    }
+
+    /// [`Reason::Content`].
+    pub fn content(what: impl Into<String>, advice: impl Into<Advice>) -> Self {
+        Self::Content { what: what.into(), advice: advice.into() }
+    }
+
+    /// Several values in each voxel.
+    pub fn not_scalar(what: impl Into<String>, dims: Option<[u64; 3]>) -> Self {
+        let what = format!("{}: only scalar volumes are read", what.into());
+        Self::NotScalar { what, dims }
+    }
+
+    /// A setting that has no meaning for the file.
+    pub fn needless(setting: Setting, what: impl Into<String>) -> Self {
+        Self::Setting { setting, what: what.into(), advice: advice!["omit ", setting] }
+    }
+
+    /// A setting that is missing or names nothing.
+    pub fn choice(setting: Setting, what: impl Into<String>, advice: Advice) -> Self {
+        Self::Setting { setting, what: what.into(), advice }
+    }
+
+    /// What to do about it.
+    pub fn advice(&self) -> Advice {
+        match self {
+            Self::Unknown { near, .. } => {
+                let near = near.map(|near| format!("is .{near} meant? ")).unwrap_or_default();
+                advice![
+                    near,
+                    "for raw samples give ",
+                    Setting::Dims,
+                    " X,Y,Z and ",
+                    Setting::Dtype
+                ]
+            }
+            Self::Other { .. } => "check its name and what is in it".into(),
+            Self::Truncated { .. } | Self::Damaged { .. } => "copy it again".into(),
+            Self::Length { .. } | Self::Header { .. } => {
+                "copy it again, or correct its header".into()
+            }
+            Self::Value { .. } => "correct it".into(),
+            Self::Without { feature, .. } => format!(
+                "build it with `cargo install --path . --features {feature}`, or convert the file to \
+                 another format"
+            )
+            .into(),
+            Self::Memory { .. } => "crop it first".into(),
+            Self::NotScalar { .. } => "extract one first".into(),
+            Self::Several { count } => {
+                let last = count.saturating_sub(1);
+                advice!["choose one with ", Setting::Frame, format!(", from 0 to {last}")]
+            }
+            Self::Within { reason, .. } => reason.advice(),
+            Self::Unsupported { advice, .. }
+            | Self::Content { advice, .. }
+            | Self::Setting { advice, .. } => advice.clone(),
+        }
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown { known, .. } => {
+                write!(f, "is of no format known by content: {known} are read as volumes")
+            }
+            Self::Length { claim, needed, found, bound } => {
+                let state = if found < needed { "truncated" } else { "too long" };
+                write!(
+                    f,
+                    "its header claims {claim}, {needed} bytes, but {bound}{found} follow it: the \
+                     file is {state} or mislabelled"
+                )
+            }
+            Self::Memory { claim, needed } => {
+                write!(f, "{claim} needs {needed} bytes of memory, which cannot be had")
+            }
+            Self::Within { part, reason } => write!(f, "{part} {reason}"),
+            Self::NotScalar { what, .. } => write!(f, "has {what}"),
+            Self::Several { count } => write!(f, "holds {count} volumes"),
+            Self::Without { what, .. } => {
+                write!(f, "is {what}, which this walpha was built without")
+            }
+            Self::Other { what }
+            | Self::Truncated { what }
+            | Self::Header { what }
+            | Self::Value { what }
+            | Self::Damaged { what }
+            | Self::Unsupported { what, .. }
+            | Self::Content { what, .. }
+            | Self::Setting { what, .. } => f.write_str(what),
+        }
+    }
+}

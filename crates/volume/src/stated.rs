@@ -1,0 +1,68 @@
+//! What a file says of its α and its coordinates, where the programs that read it look.
+
+use walpha_base::shown::{number, six_digits};
+
+use crate::{Coordinates, LengthUnit};
+use walpha_complex::Alpha;
+
+/// For a comment: α as a squared length, and as a radius where it is one.
+pub fn alpha(alpha: Alpha) -> String {
+    let squared = number(alpha.squared());
+    match alpha.radius().map(six_digits).map(number) {
+        Some(radius) => format!("α = {squared} (squared length; √α = {radius})"),
+        None => format!("α = {squared} (squared length; negative, so no radius)"),
+    }
+}
+
+/// For the comments of a file, appended to what is there: ` SPACE=LPS UNIT=mm`, as 3D Slicer looks for
+/// it; `UNIT` alone where the space is not known, and nothing where nothing is.
+pub fn comment(coordinates: Coordinates) -> String {
+    pairs(coordinates).into_iter().map(|(name, value)| format!(" {name}={value}")).collect()
+}
+
+/// The same on a line of its own, after the word or sign that begins a comment; none where nothing is
+/// known.
+pub fn line(sign: &str, coordinates: Coordinates) -> String {
+    match comment(coordinates) {
+        comment if comment.is_empty() => comment,
+        comment => format!("{sign}{comment}\n"),
+    }
+}
+
+/// The same as VTK's field data in XML: arrays of one string each, in the numbers of its characters.
+#[cfg(feature = "formats")]
+pub fn field_data(coordinates: Coordinates) -> String {
+    let told = pairs(coordinates);
+    if told.is_empty() {
+        return String::new();
+    }
+    let array = |(name, value): &(&str, &str)| {
+        let bytes: Vec<String> = value.bytes().map(|byte| byte.to_string()).collect();
+        format!(
+            "<Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">{} \
+                 0</Array>\n",
+            bytes.join(" ")
+        )
+    };
+    format!("<FieldData>\n{}</FieldData>\n", told.iter().map(array).collect::<String>())
+}
+
+/// The names and texts of what is known.
+pub fn pairs(Coordinates { space, unit }: Coordinates) -> Vec<(&'static str, &'static str)> {
+    let space = space.is_known().then(|| ("SPACE", space.name()));
+    let unit = (unit != LengthUnit::Unstated).then(|| ("UNIT", unit.ascii()));
+    space.into_iter().chain(unit).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn alpha_is_a_squared_length() {
+        let told = [10.0, -1e300, f64::INFINITY].map(|x| alpha(Alpha::from_squared(x).unwrap()));
+        assert_eq!(told[0], "α = 10 (squared length; √α = 3.16228)");
+        assert_eq!(told[1], "α = -1e300 (squared length; negative, so no radius)");
+        assert_eq!(told[2], "α = inf (squared length; √α = inf)");
+    }
+}

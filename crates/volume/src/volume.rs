@@ -1,0 +1,258 @@
+use ndarray::{Array3, ArrayView3};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::{Dims, Dtype, Frame, Gray, GrayRange, VolumeError};
+
+/// A grid of finite samples, stored `[z, y, x]` (x fastest) in standard layout.
+///
+/// # Example
+/// ```
+/// use ndarray::Array3;
+/// use walpha_volume::{Frame, Volume};
+///
+/// // Two slices of 3 rows of 4 samples: 4 along x, 3 along y, 2 along z.
+/// let volume = Volume::new(Array3::zeros((2, 3, 4)), Frame::VOXEL)?;
+/// assert_eq!(volume.dims().xyz(), [4, 3, 2]);
+/// # Ok::<(), walpha_volume::VolumeError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Volume {
+    samples: Array3<f32>,
+    dims: Dims,
+    frame: Frame,
+    /// Whether values are gray levels already, as those of unsigned 8-bit files are.
+    gray_levels: bool,
+    /// How the file stores a sample; `f32` if there is no file.
+    dtype: Dtype,
+    /// Samples that the file has no number for, if there are any.
+    missing: Option<Vec<bool>>,
+}
+
+/// What becomes of samples that are no finite numbers: NaN and infinities.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Nan {
+    /// This value replaces them.
+    Value(f32),
+    /// They are masked: the least of the other values replaces them, and they take no part where
+    /// points are selected and errors measured.
+    Mask,
+}
+
+impl Volume {
+    /// Checks samples of any meaning. See [`Volume::with_gray_levels`] for 8-bit data.
+    ///
+    /// # Errors
+    /// An axis of length zero, more than [`Dims::MAX_SAMPLES`] samples, or a NaN or infinity
+    /// ([`VolumeError::NotFinite`] names the first).
+    pub fn new(samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
+        Self::of_file(samples, frame)?.settled(None)
+    }
+
+    /// The same for readers: NaN and infinities may be among the samples until [`Volume::settled`] has seen
+    /// them.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn of_file(samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
+        let (z, y, x) = samples.dim();
+        let dims = Dims::new(x as u64, y as u64, z as u64)?;
+        let samples = if samples.is_standard_layout() {
+            samples
+        } else {
+            samples.as_standard_layout().into_owned()
+        };
+        let (gray_levels, dtype, missing) = (false, Dtype::F32, None);
+        Ok(Self { samples, dims, frame, gray_levels, dtype, missing })
+    }
+
+    /// Applies the rule for samples that are not finite, and refuses what is left of them.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn settled(mut self, nan: Option<Nan>) -> Result<Self, VolumeError> {
+        let value = match nan {
+            Some(Nan::Value(value)) => value,
+            Some(Nan::Mask) if self.as_slice().par_iter().any(|v| !v.is_finite()) => {
+                self.missing = Some(self.as_slice().par_iter().map(|v| !v.is_finite()).collect());
+                // Infinite where none is finite, which is refused below.
+                self.value_range().0
+            }
+            _ => f32::NAN,
+        };
+        if nan.is_some() {
+            self.samples.par_mapv_inplace(|v| if v.is_finite() { v } else { value });
+        }
+        self.refuse(|v| !v.is_finite())?;
+        Ok(self)
+    }
+
+    /// Refuses samples that are wrong, with the place of the first.
+    fn refuse(&self, wrong: impl Fn(f32) -> bool + Sync) -> Result<(), VolumeError> {
+        let Some(index) = first(self.as_slice(), wrong) else { return Ok(()) };
+        let [x, y, _] = self.dims.xyz();
+        let at = [index % x, index / x % y, index / (x * y)];
+        Err(VolumeError::NotFinite { value: self.as_slice()[index], at })
+    }
+
+    /// Says how the file stores a sample. Unsigned 8-bit samples are gray levels.
+    #[must_use]
+    pub fn with_dtype(self, dtype: Dtype) -> Self {
+        Self { dtype, gray_levels: dtype == Dtype::U8, ..self }
+    }
+
+    /// How the file stores a sample; `f32` if there is no file.
+    pub fn dtype(&self) -> Dtype {
+        self.dtype
+    }
+
+    /// Whether the file has no number for a sample, by its index in memory order; the least of all
+    /// values stands in for it.
+    pub fn is_missing(&self, sample: usize) -> bool {
+        self.missing.as_ref().is_some_and(|missing| missing[sample])
+    }
+
+    /// How many samples are not missing.
+    pub fn samples_there(&self) -> usize {
+        let missing =
+            self.missing.as_deref().map_or(0, |missing| missing.par_iter().filter(|&&m| m).count());
+        self.dims.samples() - missing
+    }
+
+    /// Whether there are such samples.
+    pub fn has_missing(&self) -> bool {
+        self.missing.is_some()
+    }
+
+    /// Which samples are missing, if any are.
+    #[expect(
+        clippy::missing_panics_doc,
+        reason = "a mask has as many entries as there are samples"
+    )]
+    pub fn missing(&self) -> Option<ArrayView3<'_, bool>> {
+        let view = |missing| ArrayView3::from_shape(self.dims.shape(), missing);
+        self.missing.as_deref().map(|missing| view(missing).expect("one for each sample"))
+    }
+
+    /// Other samples of the same kind.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn like(&self, samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
+        let (gray_levels, dtype) = (self.gray_levels, self.dtype);
+        Ok(Self { gray_levels, dtype, ..Self::new(samples, frame)? })
+    }
+
+    /// The same volume where these samples are missing.
+    #[must_use]
+    pub fn with_missing(self, missing: Option<Vec<bool>>) -> Self {
+        Self { missing, ..self }
+    }
+
+    /// Says that the samples are gray levels 0..255 already, as those of unsigned 8-bit files are.
+    #[must_use]
+    pub fn with_gray_levels(mut self) -> Self {
+        self.gray_levels = true;
+        self
+    }
+
+    /// Whether the samples are gray levels 0..255 already, so that [`Gray::Automatic`] keeps them.
+    pub fn has_gray_levels(&self) -> bool {
+        self.gray_levels
+    }
+
+    /// Sizes along the axes.
+    pub fn dims(&self) -> Dims {
+        self.dims
+    }
+
+    /// Where the grid lies in the world.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// The same samples on another grid, or in other coordinates.
+    #[must_use]
+    pub fn with_frame(self, frame: Frame) -> Self {
+        Self { frame, ..self }
+    }
+
+    /// The samples, `[z, y, x]`.
+    pub fn samples(&self) -> ArrayView3<'_, f32> {
+        self.samples.view()
+    }
+
+    /// The samples in memory order: voxel (x, y, z) at `x + X·(y + Y·z)`.
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
+    pub fn as_slice(&self) -> &[f32] {
+        self.samples.as_slice().expect("standard layout is an invariant of Volume")
+    }
+
+    /// Gives the samples away, `[z, y, x]`.
+    pub fn into_samples(self) -> Array3<f32> {
+        self.samples
+    }
+
+    /// The smallest and the largest sample. One pass.
+    pub fn value_range(&self) -> (f32, f32) {
+        let ends = |a: (f32, f32), b: (f32, f32)| (a.0.min(b.0), a.1.max(b.1));
+        self.as_slice()
+            .par_iter()
+            // Readers have others until they are settled.
+            .filter(|v| v.is_finite())
+            .map(|&v| (v, v))
+            .reduce(|| (f32::INFINITY, f32::NEG_INFINITY), ends)
+    }
+
+    /// The volume with gray levels 0..255 as samples, and the range they came from. In place.
+    ///
+    /// # Errors
+    /// [`VolumeError::GrayRange`] when the given range is empty, reversed or not finite, or so narrow
+    /// that the gray level of a sample passes the range of `f32`.
+    pub fn into_gray(mut self, gray: Gray) -> Result<(Self, GrayRange), VolumeError> {
+        let range = match gray {
+            Gray::Automatic if self.gray_levels => GrayRange::IDENTITY,
+            Gray::Automatic => {
+                let (low, high) = self.value_range();
+                GrayRange { low: low.into(), high: high.into() }
+            }
+            Gray::Range(range) => {
+                let (low, high) = self.value_range();
+                let fits = |sample: f32| (range.gray(sample.into()) as f32).is_finite();
+                let finite = range.low.is_finite() && range.high.is_finite();
+                if !(range.low < range.high && finite && fits(low) && fits(high)) {
+                    return Err(VolumeError::GrayRange { low: range.low, high: range.high });
+                }
+                range
+            }
+        };
+        if !range.is_identity() {
+            self.samples.par_mapv_inplace(|v| range.gray(v.into()) as f32);
+        }
+        Ok((self.with_gray_levels(), range))
+    }
+}
+
+impl Volume {
+    /// The volume with the values that its gray levels represent: the inverse of [`Volume::into_gray`].
+    /// In place.
+    #[must_use]
+    pub fn into_values(mut self, range: &GrayRange) -> Self {
+        if !range.is_identity() {
+            self.samples.par_mapv_inplace(|gray| range.value(gray.into()) as f32);
+            self.gray_levels = false;
+        }
+        self
+    }
+}
+
+/// The first index of a wrong value: whole chunks are judged at once, and only one with such a value is
+/// searched.
+fn first(values: &[f32], wrong: impl Fn(f32) -> bool + Sync) -> Option<usize> {
+    const CHUNK: usize = 1 << 14;
+    let has_one = |chunk: &[f32]| chunk.iter().fold(false, |found, &v| found | wrong(v));
+    let chunk = values.par_chunks(CHUNK).position_first(has_one)?;
+    let inside = values[chunk * CHUNK..].iter().position(|&v| wrong(v))?;
+    Some(chunk * CHUNK + inside)
+}
