@@ -1,4 +1,4 @@
-//! Floor 6: one shape in blocks that need not know each other, on one machine in turn or on many.
+//! One shape in blocks that need not know each other, on one machine in turn or on many.
 //!
 //! Everything from a volume to its shape is local once a few numbers are known, so the work is three
 //! functions on files. [`Plan::make`] surveys the volume, cuts it into boxes and writes a plan into a folder. [`run`]

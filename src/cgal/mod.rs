@@ -1,4 +1,4 @@
-//! Floor 2: the private bridge to CGAL and its safe wrapper.
+//! The private bridge to CGAL and its safe wrapper.
 //!
 //! Rules of the bridge: one call per stage; flat slices in, and out either an opaque result that lends
 //! flat slices or a copy into slices that Rust made; input indices come back everywhere; every entry

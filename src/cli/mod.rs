@@ -1,4 +1,4 @@
-//! Floor 7: the command. It parses, calls the library, prints, and chooses an exit code.
+//! The command. It parses, calls the library, prints, and chooses an exit code.
 
 mod args;
 mod block_facts;

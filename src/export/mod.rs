@@ -1,4 +1,4 @@
-//! Floor 5: shapes as files for other programs.
+//! Shapes as files for other programs.
 //!
 //! A writer turns a shape into bytes behind one trait and knows no paths; [`Target`] gives it a
 //! file that appears under its name only when it is complete.

@@ -1,4 +1,4 @@
-//! Floor 1: the orthonormal Haar transform of a volume, its truncation, and back.
+//! The orthonormal Haar transform of a volume, its truncation, and back.
 //!
 //! Steps 1 to 5 of the paper, equations 3.1 to 3.3; the truncation rule is that of Stollnitz,
 //! `DeRose` and Salesin, "Wavelets for computer graphics: a primer" (IEEE CG&A 15(3), 1995,

@@ -1,4 +1,4 @@
-//! Floor 4: the function F on a shape, what it misses of the volume, and points that miss less.
+//! The function F on a shape, what it misses of the volume, and points that miss less.
 //!
 //! F is linear on each simplex of the shape: on interior cells, and on the facets, edges and
 //! vertices that are faces of none, at places exactly on them. Which simplex holds a place is

@@ -1,4 +1,4 @@
-//! Floor 4: many α from one triangulation, and levels of detail.
+//! Many α from one triangulation, and levels of detail.
 //!
 //! With frozen weights the alpha shapes of a set of points are nested: one regular triangulation
 //! and, for each simplex, the α at which it comes, hold them all.

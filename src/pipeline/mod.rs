@@ -1,4 +1,4 @@
-//! Floor 5: all stages in one call, from a volume or points to the shape. The crate's first page has an example.
+//! All stages in one call, from a volume or points to the shape. The crate's first page has an example.
 
 mod choice;
 mod error;

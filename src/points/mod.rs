@@ -1,4 +1,4 @@
-//! Floor 2: from a volume to weighted points.
+//! From a volume to weighted points.
 //!
 //! Steps 5 to 7 of the paper: the difference L of each voxel of the truncated volume, the voxels
 //! of the largest, and their weights (equations 4.1 and 4.2).

@@ -1,4 +1,4 @@
-//! Floor 5: pictures. A scene of triangles, balls and tubes becomes a [`Picture`]; pictures and
+//! Pictures. A scene of triangles, balls and tubes becomes a [`Picture`]; pictures and
 //! vector [`Drawing`]s become a [`Figure`] with panels, labels and a colour bar.
 //!
 //! Every picture is a function of its description alone: the same bytes on any number of threads

@@ -1,4 +1,4 @@
-//! Floor 6: the paper, made again: Table 1, Figures 1 to 11, and a report that says of each claim
+//! The paper, made again: Table 1, Figures 1 to 11, and a report that says of each claim
 //! whether our numbers bear it out.
 //!
 //! Every verdict is a comparison of computed numbers; the paper's own numbers and words stand

@@ -1,4 +1,4 @@
-//! Floor 0: the largest of many values, as few or as many as a budget allows; of values in memory at once
+//! The largest of many values, as few or as many as a budget allows; of values in memory at once
 //! ([`Cut::new`]), or piece by piece ([`Search`]). Energies are summed exactly, so both find the same.
 
 mod budget;

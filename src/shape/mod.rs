@@ -1,4 +1,4 @@
-//! Floor 3: the alpha shape of weighted points, its topology and its measures.
+//! The alpha shape of weighted points, its topology and its measures.
 //!
 //! ```
 //! use walpha::WeightedPoints;
