@@ -7,7 +7,6 @@ use pyo3::exceptions::{
     PyFileNotFoundError, PyIsADirectoryError, PyMemoryError, PyOSError, PyPermissionError,
     PyRuntimeError, PyValueError,
 };
-use walpha::NoMemory;
 use walpha::advice::Advice;
 use walpha::check::schema::SchemaError;
 use walpha::check::{AlphaError, CertifyError, CompareError};
@@ -19,6 +18,7 @@ use walpha::points::{PointsError, UnknownWeighting};
 use walpha::shape::{ShapeError, TorusError};
 use walpha::triangulation::TriangulationError;
 use walpha::volume::VolumeError;
+use walpha::{CgalError, NoMemory};
 
 /// An error that can be raised in Python.
 pub trait Told {
@@ -91,6 +91,7 @@ impl Told for ShapeError {
     fn told(self) -> PyErr {
         match self {
             Self::Triangulation(error) => error.told(),
+            Self::Cgal(error) => error.told(),
             Self::Memory(error) => error.told(),
             other => wrong(message(&other, other.advice())),
         }

@@ -11,11 +11,11 @@ use super::{Alpha, Balls, ShapeError, Torus, Whole};
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Engine {
-    /// CGAL for up to [`Engine::MOST_FOR_CGAL`] points, native beyond and for what only it can do: blocks,
-    /// a limit on memory, periodic boxes, a build without CGAL.
+    /// CGAL for up to 20 000 points, native beyond and for what only it can do: blocks, a limit on memory,
+    /// periodic boxes, a build without CGAL.
     #[default]
     Auto,
-    /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper. On one thread.
+    /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper, on one thread.
     Cgal,
     /// Our own triangulation and classes: no C++, on all cores, in bounded memory, and the fastest.
     Native,
@@ -138,5 +138,27 @@ pub(super) fn power_alpha(options: &ShapeOptions) -> Alpha {
     match options.balls {
         Balls::Power => options.alpha,
         Balls::Radius => Alpha::ZERO,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_engine_suits_the_size_and_what_is_asked_for() {
+        let options = ShapeOptions::new(Alpha::ZERO);
+        let small = if cfg!(feature = "cgal") { Engine::Cgal } else { Engine::Native };
+        let chosen = |points, options: ShapeOptions| Engine::chosen(points, &options);
+        assert_eq!(chosen(20_000, options), small);
+        assert_eq!(chosen(20_001, options), Engine::Native);
+        let blocks = |count| options.blocks(NonZeroUsize::new(count));
+        assert_eq!((chosen(9, blocks(1)), chosen(9, blocks(2))), (small, Engine::Native));
+        assert_eq!(chosen(9, options.memory(1 << 30)), Engine::Native);
+        assert_eq!(chosen(9, options.periodic(Torus::new([1.0; 3]).unwrap())), Engine::Native);
+        for engine in [Engine::Cgal, Engine::Native] {
+            assert_eq!(chosen(9, options.engine(engine)), engine);
+            assert_eq!(chosen(1 << 20, options.engine(engine)), engine);
+        }
     }
 }
