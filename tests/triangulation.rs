@@ -147,8 +147,8 @@ fn check_neighbours(triangulation: &Triangulation) {
         facet.sort_unstable();
         facet
     };
-    for (side, &across) in (0..).zip(triangulation.beside().as_flattened()) {
-        assert_eq!(triangulation.beside()[across as usize / 4][across as usize % 4], side);
+    for (side, &across) in (0..).zip(triangulation.neighbors().as_flattened()) {
+        assert_eq!(triangulation.neighbors()[across as usize / 4][across as usize % 4], side);
         assert_eq!(facet(side), facet(across));
     }
 }

@@ -58,9 +58,9 @@ impl<'a> Cells<'a> {
     fn first_across(&self, cell: u32, shares: &[f64; 4], holds: impl Fn([u32; 4]) -> bool) -> u32 {
         let row = self.row(cell);
         let apex = (0..4).find(|&k| shares[k] == 0.0).expect("a share is 0");
-        let Cell { corners, beside } = self.growing.cells()[cell as usize];
+        let Cell { corners, neighbors } = self.growing.cells()[cell as usize];
         let k = (0..4).find(|&k| corners[k] == row[apex]).expect("a corner");
-        let next = beside[k] / 4;
+        let next = neighbors[k] / 4;
         if !self.growing.is_cell(next) {
             return cell;
         }
@@ -79,9 +79,9 @@ impl<'a> Cells<'a> {
         let mut at = 0;
         while let Some(&cell) = seen.get(at) {
             at += 1;
-            let Cell { corners, beside } = self.growing.cells()[cell as usize];
+            let Cell { corners, neighbors } = self.growing.cells()[cell as usize];
             for k in 0..4 {
-                let next = beside[k] / 4;
+                let next = neighbors[k] / 4;
                 if on(corners[k]) || !self.growing.is_cell(next) || seen.contains(&next) {
                     continue;
                 }

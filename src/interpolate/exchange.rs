@@ -112,7 +112,7 @@ fn choose(
     let trial = Trial::new(volume, sampled, &screen)?;
     let mut gains: Vec<Gain> = named.par_iter().filter_map(|&v| trial.gain(v)).collect();
     let losses: Result<Vec<Option<Loss>>, ShapeError> = (may_leave.par_iter())
-        .map_init(|| trial.digger(), |digger, &v| trial.loss(v, digger))
+        .map_init(|| trial.workspace(), |workspace, &v| trial.loss(v, workspace))
         .collect();
     let mut losses: Vec<Loss> = losses?.into_iter().flatten().collect();
     gains.par_sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.point.cmp(&b.point)));
@@ -131,14 +131,14 @@ fn pair(gains: &[Gain], losses: &[Loss], most: usize) -> Swap {
         if swap.join.len() == most {
             break;
         }
-        let apart = gain.goes.iter().all(|cell| !cells.contains(cell));
+        let apart = gain.removed.iter().all(|cell| !cells.contains(cell));
         if !apart || gain.around.iter().any(|v| leave.contains(v)) {
             continue;
         }
         let here: HashSet<u32> = gain.around.iter().copied().collect();
         let free = |loss: &&Loss| !stay.contains(&loss.point) && !here.contains(&loss.point);
         let Some(loss) = losses.find(free).filter(|loss| loss.loss < gain.gain) else { break };
-        cells.extend(&gain.goes);
+        cells.extend(&gain.removed);
         stay.extend(&gain.around);
         stay.extend(&loss.around);
         leave.insert(loss.point);

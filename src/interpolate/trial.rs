@@ -2,7 +2,7 @@
 
 use walpha_base::memory::NoMemory;
 use walpha_regular::number::{cross, dot};
-use walpha_regular::{Digger, Growing, Screen};
+use walpha_regular::{Growing, Screen, Workspace};
 
 use super::lists::{Lists, samples_of};
 use super::sampled::Sampled;
@@ -26,7 +26,7 @@ pub(super) struct Gain {
     /// The squared error taken away.
     pub gain: f64,
     /// The cells that would go.
-    pub goes: Vec<u32>,
+    pub removed: Vec<u32>,
     /// The points that would be beside it.
     pub around: Vec<u32>,
 }
@@ -51,18 +51,20 @@ impl<'a> Trial<'a> {
     }
 
     /// What [`Self::loss`] works with.
-    pub(super) fn digger(&self) -> Result<Digger, ShapeError> {
-        Ok(Digger::new(self.sampled.voxels().len())?)
+    pub(super) fn workspace(&self) -> Result<Workspace, ShapeError> {
+        Ok(Workspace::new(self.sampled.voxels().len())?)
     }
 
     /// What the removal of a vertex costs, where it can be removed.
     pub(super) fn loss(
         &self,
         point: u32,
-        digger: &mut Result<Digger, ShapeError>,
+        workspace: &mut Result<Workspace, ShapeError>,
     ) -> Result<Option<Loss>, ShapeError> {
-        let digger = digger.as_mut().map_err(|error| error.clone())?;
-        let Some(hole) = self.growing().hole(self.screen, point, digger)? else { return Ok(None) };
+        let workspace = workspace.as_mut().map_err(|error| error.clone())?;
+        let Some(hole) = self.growing().hole(self.screen, point, workspace)? else {
+            return Ok(None);
+        };
         let rows = hole.filling.iter().map(|cell| cell.corners);
         let cells = Pieces::of(rows.filter(|row| row.iter().all(|&v| v >= Growing::FIRST)), self);
         let mut loss = 0.0;
@@ -79,11 +81,11 @@ impl<'a> Trial<'a> {
     /// What a point gains that is a sample and no vertex, with the value that gains most.
     pub(super) fn gain(&self, point: u32) -> Option<Gain> {
         let cell = self.sampled.owners()[self.sampled.voxels()[point as usize] as usize];
-        let crown = self.growing().crown(self.screen, point, cell);
-        let cells = Pieces::of(crown.cells.iter().copied(), self);
+        let insertion = self.growing().insertion(self.screen, point, cell);
+        let cells = Pieces::of(insertion.cells.iter().copied(), self);
         // Of the errors without the new value, e, and its shares φ: Σe², Σφe, Σφ².
         let (mut before, mut errors, mut products, mut squares) = (0.0, 0.0, 0.0, 0.0);
-        for &sample in crown.goes.iter().flat_map(|&cell| self.samples.of(cell)) {
+        for &sample in insertion.removed.iter().flat_map(|&cell| self.samples.of(cell)) {
             let (row, shares) = cells.at(self.sampled.place(sample))?;
             let mut error = self.gray(sample);
             for (v, share) in row.into_iter().zip(shares) {
@@ -102,7 +104,7 @@ impl<'a> Trial<'a> {
             point,
             gain: before - (errors - products * products / squares),
             around: cells.vertices(point),
-            goes: crown.goes,
+            removed: insertion.removed,
         })
     }
 

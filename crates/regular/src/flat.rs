@@ -28,7 +28,7 @@ pub fn triangulate_flat(
     sites: &Sites<'_>,
     inserted: impl FnMut(usize),
 ) -> Result<Flat, TriangulationError> {
-    let added = beside(sites.positions());
+    let added = auxiliary_places(sites.positions());
     let along = sites.curve();
     let extra = added.len() as u32;
     let mut positions = added;
@@ -95,7 +95,7 @@ fn is_independent(spanning: &[[f64; 3]], place: [f64; 3]) -> bool {
 
 /// Places beside others that span a volume with them: along the axes from the first, farther away than any
 /// other, towards the origin. None if these span one.
-pub fn beside(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
+pub fn auxiliary_places(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let mut spanning = spanning(all);
     let given = spanning.len();
     let largest = all.as_flattened().iter().fold(0f64, |most, x| most.max(x.abs()));

@@ -41,9 +41,9 @@ pub use torus::{Torus, TorusError};
 
 // What walpha makes shapes of: no promise to others.
 #[doc(hidden)]
-pub use flat::{Flat, beside, check_span, is_flat, triangulate_flat};
+pub use flat::{Flat, auxiliary_places, check_span, is_flat, triangulate_flat};
 #[doc(hidden)]
-pub use incremental::{Digger, Growing, insert_all};
+pub use incremental::{Growing, Workspace, insert_all};
 #[doc(hidden)]
 pub use lattice::{Lattice, Reach};
 #[doc(hidden)]
@@ -58,20 +58,20 @@ pub use torus::AXES;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// A regular triangulation: its cells, and which lie beside each other.
+/// A regular triangulation: its cells and their neighbours.
 ///
 /// The outside of the convex hull is made of infinite cells, one on each facet of the hull, whose
 /// fourth corner is the *ghost*, the number one past the last point. Cells are positively oriented:
 /// a, b, c turn counter-clockwise seen from d, where the ghost counts as a point far outside.
 ///
 /// Four points may have the cell `[0, 1, 2, 3]` and four infinite ones, among them
-/// `[0, 2, 1, 4]` with the ghost 4 as its corner 3. If that one has number 2, `beside()[0][3]` is
+/// `[0, 2, 1, 4]` with the ghost 4 as its corner 3. If that one has number 2, `neighbors()[0][3]` is
 /// 4·2 + 3: across the facet opposite corner 3 of cell 0 lies cell 2, of which it is opposite
 /// corner 3.
 #[derive(Clone, Debug)]
 pub struct Triangulation {
     cells: Vec<[u32; 4]>,
-    beside: Vec<[u32; 4]>,
+    neighbors: Vec<[u32; 4]>,
     ghost: u32,
 }
 
@@ -107,14 +107,14 @@ impl Triangulation {
             *place += 1;
         }
         // In place: half the memory of the old cells comes free.
-        let mut across: Vec<_> = old.into_iter().map(|cell| cell.beside).collect();
+        let mut across: Vec<_> = old.into_iter().map(|cell| cell.neighbors).collect();
         across.shrink_to_fit();
-        let mut beside = filled(count, [0; 4])?;
+        let mut neighbors = filled(count, [0; 4])?;
         for (&number, [a, b, c, d]) in numbers.iter().zip(across).filter(|(n, _)| **n != GONE) {
             let to = |side: u32| 4 * numbers[side as usize / 4] + side % 4;
-            beside[number as usize] = [to(a), to(b), to(c), to(d)];
+            neighbors[number as usize] = [to(a), to(b), to(c), to(d)];
         }
-        Ok(Self { cells, beside, ghost })
+        Ok(Self { cells, neighbors, ghost })
     }
 
     /// The corners of each cell, infinite cells included, in no particular order.
@@ -122,10 +122,10 @@ impl Triangulation {
         &self.cells
     }
 
-    /// What lies across the facet opposite each corner of each cell: 4·cell + corner, that cell and
+    /// The neighbour across the facet opposite each corner of each cell, as 4·cell + corner: that cell, and
     /// its own corner opposite the facet.
-    pub fn beside(&self) -> &[[u32; 4]] {
-        &self.beside
+    pub fn neighbors(&self) -> &[[u32; 4]] {
+        &self.neighbors
     }
 
     /// The corner of infinite cells that is not a point: the number of points.
@@ -133,9 +133,9 @@ impl Triangulation {
         self.ghost
     }
 
-    /// Cells, what lies beside them, and the ghost, to be given back one after the other.
+    /// Cells, their neighbours, and the ghost, to be given back one after the other.
     pub fn into_parts(self) -> (Vec<[u32; 4]>, Vec<[u32; 4]>, u32) {
-        (self.cells, self.beside, self.ghost)
+        (self.cells, self.neighbors, self.ghost)
     }
 
     /// The points that are not vertices, ascending. O(cells).
@@ -173,7 +173,7 @@ fn no_memory(bytes: usize) -> TriangulationError {
 #[derive(Clone, Copy, Default)]
 pub struct Cell {
     pub corners: [u32; 4],
-    pub beside: [u32; 4],
+    pub neighbors: [u32; 4],
 }
 
 /// The first corner of a cell that is none.

@@ -1,6 +1,6 @@
 //! The cells that go when a point comes, and those that take their place.
 
-use super::{Mesh, Native};
+use super::{Builder, Mesh};
 use crate::predicates::Screen;
 use crate::{Cell, Triangulation, TriangulationError, filled};
 
@@ -13,13 +13,13 @@ pub(super) struct Cavity {
     cells: Vec<u32>,
     /// The facets of its boundary, and room for those of one more cell.
     boundary: Vec<Facet>,
-    /// How many there are.
+    /// Number of facets of the boundary.
     facets: usize,
     /// Corners of the boundary have numbers of their own, from 0: this is `base` plus that for those
     /// that have been met in this insertion, less than `base` for all others.
     names: Vec<u32>,
     base: u32,
-    /// How many there are.
+    /// Number of distinct corners of the boundary.
     corners: u32,
     /// By the own numbers of two corners x, y: 4·cell + corner of the new facet that holds v, x, y.
     table: Box<[u32; TABLE * TABLE]>,
@@ -84,7 +84,7 @@ impl Cavity {
     }
 }
 
-impl Native {
+impl Builder {
     /// Collects the cells in conflict with a point, beginning with one, and their boundary.
     pub(super) fn dig(&mut self, screen: &Screen<'_>, start: u32, v: u32) {
         let Self { mesh, marks, cavity, .. } = self;
@@ -95,7 +95,7 @@ impl Native {
         let mut at = 0;
         while let Some(&cell) = cavity.cells.get(at) {
             at += 1;
-            let across = mesh.cells[cell as usize].beside;
+            let across = mesh.cells[cell as usize].neighbors;
             let mut stays = 0;
             for (corner, outside) in across.into_iter().enumerate() {
                 let next = outside / 4;
@@ -167,7 +167,7 @@ impl Native {
         for (facet, &place) in boundary[..*facets].iter().zip(&*cells) {
             let Facet { corners: [a, b, c], outside } = *facet;
             mesh.cells[place as usize].corners = [a, b, c, v];
-            mesh.cells[outside as usize / 4].beside[outside as usize % 4] = 4 * place + APEX;
+            mesh.cells[outside as usize / 4].neighbors[outside as usize % 4] = 4 * place + APEX;
             let (a, b, c) = (number(a), number(b), number(c));
             for (corner, x, y) in [(0, b, c), (1, c, a), (2, a, b)] {
                 table[slot(x, y)] = 4 * place + corner;
@@ -208,8 +208,9 @@ impl Cavity {
             let Facet { corners: [a, b, c], outside } = *facet;
             let number = |v: u32| self.names[v as usize] - self.base;
             let (a, b, c) = (number(a), number(b), number(c));
-            let beside = |x: u32, y: u32| self.table[slot(x, y)];
-            mesh.cells[place as usize].beside = [beside(c, b), beside(a, c), beside(b, a), outside];
+            let neighbors = |x: u32, y: u32| self.table[slot(x, y)];
+            mesh.cells[place as usize].neighbors =
+                [neighbors(c, b), neighbors(a, c), neighbors(b, a), outside];
         }
     }
 
@@ -219,7 +220,7 @@ impl Cavity {
         let mut edges = Vec::with_capacity(3 * self.facets);
         for (facet, &place) in self.boundary[..self.facets].iter().zip(&self.cells) {
             let [a, b, c] = facet.corners;
-            mesh.cells[place as usize].beside[APEX as usize] = facet.outside;
+            mesh.cells[place as usize].neighbors[APEX as usize] = facet.outside;
             for (corner, x, y) in [(0, b, c), (1, c, a), (2, a, b)] {
                 edges.push(((x.min(y), x.max(y)), 4 * place + corner));
             }

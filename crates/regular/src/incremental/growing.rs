@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use super::leave::{Digger, Hole};
-use super::{Native, rounds};
+use super::leave::{Hole, Workspace};
+use super::{Builder, rounds};
 use crate::predicates::{Predicates, Screen};
 use crate::{Cell, GONE, Sites, TriangulationError, curve};
 
@@ -16,20 +16,20 @@ use crate::{Cell, GONE, Sites, TriangulationError, curve};
 pub struct Growing {
     positions: Vec<[f64; 3]>,
     weights: Vec<f64>,
-    body: Body,
+    state: State,
 }
 
-/// What would come with a point.
-pub struct Crown {
-    /// Cells that would go, infinite ones among them.
-    pub goes: Vec<u32>,
-    /// The finite cells that would come.
+/// What the insertion of a point would change.
+pub struct Insertion {
+    /// Cells in conflict with it, infinite ones among them.
+    pub removed: Vec<u32>,
+    /// The finite cells that would take their places.
     pub cells: Vec<[u32; 4]>,
 }
 
-/// What changes when a point comes or leaves.
-pub(super) struct Body {
-    pub native: Native,
+/// What insertions and removals change.
+pub(super) struct State {
+    pub builder: Builder,
     /// The places of vertices, so that no two stand at one.
     taken: HashSet<[u64; 3]>,
     /// A cell at each vertex; [`NONE`] at other points.
@@ -53,24 +53,24 @@ impl Growing {
     /// Points that are not sites or span no volume; no memory.
     pub fn new(positions: &[[f64; 3]]) -> Result<Self, TriangulationError> {
         Sites::new(positions, &vec![0.0; positions.len()])?;
-        let native = Native::empty(positions.len(), positions.len() + 1, GHOST)?;
+        let builder = Builder::empty(positions.len(), positions.len() + 1, GHOST)?;
         let (taken, at, fresh) = (HashSet::new(), vec![NONE], Vec::new());
         let mut growing = Self {
             // A place for the ghost, which makes no bound wider.
             positions: vec![positions[0]],
             weights: vec![0.0],
-            body: Body { native, taken, at, fresh },
+            state: State { builder, taken, at, fresh },
         };
         let all = growing.name(positions);
-        let Self { positions, weights, body } = &mut growing;
+        let Self { positions, weights, state } = &mut growing;
         let predicates = Predicates::new(positions, weights);
         let screen = Screen::with_ghost(&predicates, GHOST)?;
-        body.native.begin(&screen, all.clone())?;
-        (0..body.native.mesh.cells.len() as u32).for_each(|cell| body.note(cell));
-        for v in body.native.first {
-            body.taken.insert(place(positions[v as usize]));
+        state.builder.begin(&screen, all.clone())?;
+        (0..state.builder.mesh.cells.len() as u32).for_each(|cell| state.note(cell));
+        for v in state.builder.first {
+            state.taken.insert(place(positions[v as usize]));
         }
-        body.insert_all(positions, &screen, &all.collect::<Vec<_>>())?;
+        state.insert_all(positions, &screen, &all.collect::<Vec<_>>())?;
         Ok(growing)
     }
 
@@ -80,8 +80,8 @@ impl Growing {
         self.positions.extend_from_slice(positions);
         let count = self.positions.len();
         self.weights.resize(count, 0.0);
-        self.body.at.resize(count, NONE);
-        self.body.native.cavity.admit(count);
+        self.state.at.resize(count, NONE);
+        self.state.builder.cavity.admit(count);
         first..count as u32
     }
 
@@ -90,9 +90,9 @@ impl Growing {
     /// # Errors
     /// Too many cells, no memory.
     pub fn insert(&mut self, points: &[u32]) -> Result<(), TriangulationError> {
-        let Self { positions, weights, body } = self;
+        let Self { positions, weights, state } = self;
         let predicates = Predicates::new(positions, weights);
-        body.insert_all(positions, &Screen::with_ghost(&predicates, GHOST)?, points)
+        state.insert_all(positions, &Screen::with_ghost(&predicates, GHOST)?, points)
     }
 
     /// Removes vertices, other than those around which no triangulation would be left. Gives the number of
@@ -101,19 +101,19 @@ impl Growing {
     /// # Errors
     /// Too many cells, no memory.
     pub fn remove(&mut self, points: &[u32]) -> Result<usize, TriangulationError> {
-        let Self { positions, weights, body } = self;
+        let Self { positions, weights, state } = self;
         let predicates = Predicates::new(positions, weights);
         let screen = Screen::with_ghost(&predicates, GHOST)?;
-        let mut digger = Digger::new(positions.len())?;
+        let mut workspace = Workspace::new(positions.len())?;
         let mut left = 0;
         for &v in points {
-            if let Some(hole) = body.hole(&screen, v, &mut digger)? {
-                body.close(v, &hole)?;
-                body.taken.remove(&place(positions[v as usize]));
+            if let Some(hole) = state.hole(&screen, v, &mut workspace)? {
+                state.close(v, &hole)?;
+                state.taken.remove(&place(positions[v as usize]));
                 left += 1;
             }
         }
-        body.mark_gone();
+        state.mark_gone();
         Ok(left)
     }
 
@@ -122,7 +122,7 @@ impl Growing {
         Predicates::new(&self.positions, &self.weights)
     }
 
-    /// Tests for [`Self::hole`] and [`Self::crown`].
+    /// Tests for [`Self::hole`] and [`Self::insertion`].
     ///
     /// # Errors
     /// No memory.
@@ -138,26 +138,26 @@ impl Growing {
         &self,
         screen: &Screen<'_>,
         v: u32,
-        digger: &mut Digger,
+        workspace: &mut Workspace,
     ) -> Result<Option<Hole>, TriangulationError> {
-        self.body.hole(screen, v, digger)
+        self.state.hole(screen, v, workspace)
     }
 
     /// What would come with a point that lies in a cell, and is not a vertex.
-    pub fn crown(&self, screen: &Screen<'_>, v: u32, cell: u32) -> Crown {
-        let mesh = &self.body.native.mesh;
-        let (mut goes, mut stays, mut cells) = (vec![cell], Vec::new(), Vec::new());
+    pub fn insertion(&self, screen: &Screen<'_>, v: u32, cell: u32) -> Insertion {
+        let mesh = &self.state.builder.mesh;
+        let (mut removed, mut stays, mut cells) = (vec![cell], Vec::new(), Vec::new());
         let mut at = 0;
-        while let Some(&cell) = goes.get(at) {
+        while let Some(&cell) = removed.get(at) {
             at += 1;
-            let Cell { corners, beside } = mesh.cells[cell as usize];
+            let Cell { corners, neighbors } = mesh.cells[cell as usize];
             for k in 0..4 {
-                let next = beside[k] / 4;
-                if goes.contains(&next) {
+                let next = neighbors[k] / 4;
+                if removed.contains(&next) {
                     continue;
                 }
                 if !stays.contains(&next) && mesh.conflicts(screen, next, v) {
-                    goes.push(next);
+                    removed.push(next);
                 } else {
                     stays.push(next);
                     let mut joined = corners;
@@ -167,17 +167,17 @@ impl Growing {
             }
         }
         cells.retain(|cell| !cell.contains(&GHOST));
-        Crown { goes, cells }
+        Insertion { removed, cells }
     }
 
     /// Whether a point is a vertex.
     pub fn is_vertex(&self, v: u32) -> bool {
-        self.body.at[v as usize] != NONE
+        self.state.at[v as usize] != NONE
     }
 
     /// The corners of each cell and 4·cell + corner across each facet. Some are gone.
     pub fn cells(&self) -> &[Cell] {
-        &self.body.native.mesh.cells
+        &self.state.builder.mesh.cells
     }
 
     /// Whether there is a finite cell of this number.
@@ -189,7 +189,7 @@ impl Growing {
     /// The finite cells made since this was last asked, ascending.
     pub fn take_fresh(&mut self) -> Vec<u32> {
         let mut made = vec![false; self.cells().len()];
-        std::mem::take(&mut self.body.fresh).iter().for_each(|&cell| made[cell as usize] = true);
+        std::mem::take(&mut self.state.fresh).iter().for_each(|&cell| made[cell as usize] = true);
         let fresh = (0..).zip(made).filter(|&(cell, made)| made && self.is_cell(cell));
         fresh.map(|(cell, _)| cell).collect()
     }
@@ -200,7 +200,7 @@ impl Growing {
     }
 }
 
-impl Body {
+impl State {
     fn insert_all(
         &mut self,
         positions: &[[f64; 3]],
@@ -211,9 +211,9 @@ impl Body {
         let along = curve::keyed(&places);
         for i in rounds(points.len() as u32) {
             let v = points[along[i as usize].1 as usize];
-            if self.taken.insert(place(positions[v as usize])) && self.native.insert(screen, v)? {
-                for at in 0..self.native.cavity.made().len() {
-                    self.note(self.native.cavity.made()[at]);
+            if self.taken.insert(place(positions[v as usize])) && self.builder.insert(screen, v)? {
+                for at in 0..self.builder.cavity.made().len() {
+                    self.note(self.builder.cavity.made()[at]);
                 }
             }
         }
@@ -223,14 +223,14 @@ impl Body {
 
     /// Marks the places of cells that are gone.
     fn mark_gone(&mut self) {
-        let Native { free, mesh, .. } = &mut self.native;
+        let Builder { free, mesh, .. } = &mut self.builder;
         free.iter().for_each(|&place| mesh.cells[place as usize].corners[0] = GONE);
     }
 
     /// Takes note of a new cell.
     pub(super) fn note(&mut self, cell: u32) {
         self.fresh.push(cell);
-        for v in self.native.mesh.cells[cell as usize].corners {
+        for v in self.builder.mesh.cells[cell as usize].corners {
             self.at[v as usize] = cell;
         }
     }

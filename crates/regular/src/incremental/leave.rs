@@ -1,8 +1,8 @@
 //! How a point leaves: the cells around it go, and what the other points around it would have had
 //! without it comes in their place.
 
-use super::Native;
-use super::growing::{Body, GHOST, NONE};
+use super::Builder;
+use super::growing::{GHOST, NONE, State};
 use crate::predicates::Screen;
 use crate::{Cell, GONE, Triangulation, TriangulationError};
 
@@ -10,15 +10,15 @@ use crate::{Cell, GONE, Triangulation, TriangulationError};
 pub struct Hole {
     /// The cells around the point.
     pub star: Vec<u32>,
-    /// The cells that fill the hole, beside each other by 4·place in this list + corner.
+    /// The cells that fill the hole; neighbours are 4·place in this list + corner.
     pub filling: Vec<Cell>,
     /// What lies outside: 4·place + corner, and 4·cell + corner of the triangulation.
     walls: Vec<[u32; 2]>,
 }
 
 /// What a look into a hole works with; kept so that the next need not allocate.
-pub struct Digger {
-    native: Native,
+pub struct Workspace {
+    builder: Builder,
     /// The facets of its cells: corners as [`facets`] has them, the smallest first, and 4·cell + corner.
     facets: Vec<([u32; 3], u32)>,
     /// By 4·cell + corner: what lies beyond, outside the hole, or [`NONE`].
@@ -30,14 +30,14 @@ pub struct Digger {
 /// Points around a point, by and large.
 const AROUND: usize = 32;
 
-impl Digger {
+impl Workspace {
     /// For points with numbers below one.
     ///
     /// # Errors
     /// No memory.
     pub fn new(below: usize) -> Result<Self, TriangulationError> {
-        let native = Native::empty(AROUND, below, GHOST)?;
-        Ok(Self { native, facets: Vec::new(), beyond: Vec::new(), places: Vec::new() })
+        let builder = Builder::empty(AROUND, below, GHOST)?;
+        Ok(Self { builder, facets: Vec::new(), beyond: Vec::new(), places: Vec::new() })
     }
 
     /// Triangulates the points around a hole; `false` if these span no volume.
@@ -46,17 +46,17 @@ impl Digger {
         screen: &Screen<'_>,
         points: &[u32],
     ) -> Result<bool, TriangulationError> {
-        match self.native.begin(screen, points.iter().copied()) {
+        match self.builder.begin(screen, points.iter().copied()) {
             Err(TriangulationError::Sites(_)) => return Ok(false),
             begun => begun?,
         }
         for &v in points {
-            if !self.native.first.contains(&v) {
-                self.native.insert(screen, v)?;
+            if !self.builder.first.contains(&v) {
+                self.builder.insert(screen, v)?;
             }
         }
-        let cells = &mut self.native.mesh.cells;
-        self.native.free.iter().for_each(|&gone| cells[gone as usize].corners[0] = GONE);
+        let cells = &mut self.builder.mesh.cells;
+        self.builder.free.iter().for_each(|&gone| cells[gone as usize].corners[0] = GONE);
         self.facets.clear();
         for (number, cell) in cells.iter().enumerate().filter(|(_, cell)| cell.corners[0] != GONE) {
             let codes = (4 * number as u32..).zip(facets(cell.corners));
@@ -70,7 +70,7 @@ impl Digger {
         Ok(true)
     }
 
-    /// Collects the cells between the walls, and what lies beside each.
+    /// Collects the cells between the walls, and their neighbours.
     fn fill(&mut self, star: Vec<u32>, walls: &[([u32; 3], u32)]) -> Option<Hole> {
         let mut inside = Vec::new();
         for &(facet, outside) in walls {
@@ -81,8 +81,8 @@ impl Digger {
         }
         let (mut filling, mut walls) = (Vec::new(), Vec::new());
         while let Some(&cell) = inside.get(filling.len()) {
-            let Cell { corners, mut beside } = self.native.mesh.cells[cell as usize];
-            for (corner, side) in (0..).zip(&mut beside) {
+            let Cell { corners, mut neighbors } = self.builder.mesh.cells[cell as usize];
+            for (corner, side) in (0..).zip(&mut neighbors) {
                 let outside = self.beyond[4 * cell as usize + corner as usize];
                 if outside == NONE {
                     *side = 4 * self.take(*side / 4, &mut inside) + *side % 4;
@@ -90,7 +90,7 @@ impl Digger {
                     walls.push([4 * filling.len() as u32 + corner, outside]);
                 }
             }
-            filling.push(Cell { corners, beside });
+            filling.push(Cell { corners, neighbors });
         }
         Some(Hole { star, filling, walls })
     }
@@ -106,7 +106,7 @@ impl Digger {
     }
 }
 
-impl Body {
+impl State {
     /// What would come in the place of a vertex; `None` if the points around it span no volume.
     ///
     /// A cell in the hole has no other point in its sphere, so none of those around the hole: it is one of
@@ -115,28 +115,28 @@ impl Body {
         &self,
         screen: &Screen<'_>,
         v: u32,
-        digger: &mut Digger,
+        workspace: &mut Workspace,
     ) -> Result<Option<Hole>, TriangulationError> {
         let (star, walls) = self.star(v);
         let corners = walls.iter().flat_map(|wall| wall.0);
         let mut around: Vec<u32> = corners.filter(|&w| w != GHOST).collect();
         around.sort_unstable();
         around.dedup();
-        if !digger.triangulate(screen, &around)? {
+        if !workspace.triangulate(screen, &around)? {
             return Ok(None);
         }
-        Ok(digger.fill(star, &walls))
+        Ok(workspace.fill(star, &walls))
     }
 
     /// The cells at a vertex, and for each their facet opposite to it with what lies beyond.
     fn star(&self, v: u32) -> (Vec<u32>, Vec<([u32; 3], u32)>) {
         let (mut star, mut walls) = (vec![self.at[v as usize]], Vec::new());
         while let Some(&cell) = star.get(walls.len()) {
-            let Cell { corners, beside } = self.native.mesh.cells[cell as usize];
+            let Cell { corners, neighbors } = self.builder.mesh.cells[cell as usize];
             for k in 0..4 {
-                let next = beside[k] / 4;
+                let next = neighbors[k] / 4;
                 if corners[k] == v {
-                    walls.push((smallest_first(facets(corners)[k]), beside[k]));
+                    walls.push((smallest_first(facets(corners)[k]), neighbors[k]));
                 } else if !star.contains(&next) {
                     star.push(next);
                 }
@@ -149,35 +149,35 @@ impl Body {
     pub(super) fn close(&mut self, v: u32, hole: &Hole) -> Result<(), TriangulationError> {
         let Hole { star, filling, walls } = hole;
         let mut places = star.clone();
-        let native = &mut self.native;
+        let builder = &mut self.builder;
         if places.len() > filling.len() {
-            native.free.extend(places.drain(filling.len()..));
+            builder.free.extend(places.drain(filling.len()..));
         }
         while places.len() < filling.len() {
-            places.push(match native.free.pop() {
+            places.push(match builder.free.pop() {
                 Some(place) => place,
-                None => native.new_cell()?,
+                None => builder.new_cell()?,
             });
         }
-        for (Cell { corners, beside }, &place) in filling.iter().zip(&places) {
-            let beside = beside.map(|side| match places.get(side as usize / 4) {
+        for (Cell { corners, neighbors }, &place) in filling.iter().zip(&places) {
+            let neighbors = neighbors.map(|side| match places.get(side as usize / 4) {
                 Some(next) => 4 * next + side % 4,
                 // Across a wall, which is joined below.
                 None => 0,
             });
-            native.mesh.cells[place as usize] = Cell { corners: *corners, beside };
+            builder.mesh.cells[place as usize] = Cell { corners: *corners, neighbors };
         }
         for &[inside, outside] in walls {
-            native.mesh.join(4 * places[inside as usize / 4] + inside % 4, outside);
+            builder.mesh.join(4 * places[inside as usize / 4] + inside % 4, outside);
         }
-        native.near = places[0];
+        builder.near = places[0];
         self.at[v as usize] = NONE;
         places.into_iter().for_each(|place| self.note(place));
         Ok(())
     }
 }
 
-impl Native {
+impl Builder {
     fn new_cell(&mut self) -> Result<u32, TriangulationError> {
         let count = self.mesh.cells.len();
         if count == Triangulation::MOST_CELLS {

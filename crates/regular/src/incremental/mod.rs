@@ -21,7 +21,7 @@ use super::rounds::rounds;
 use super::{Cell, GONE, Triangulation, TriangulationError};
 use cavity::Cavity;
 pub use growing::Growing;
-pub use leave::Digger;
+pub use leave::Workspace;
 
 /// So many insertions are counted at once: some milliseconds.
 const TOGETHER: usize = 4096;
@@ -39,21 +39,21 @@ pub fn insert_all(
     let predicates = Predicates::new(positions, weights);
     let screen = Screen::new(&predicates)?;
     let count = screen.count() as u32;
-    let mut native = Native::empty(screen.count(), screen.count() + 1, count)?;
-    native.begin(&screen, 0..count)?;
+    let mut builder = Builder::empty(screen.count(), screen.count() + 1, count)?;
+    builder.begin(&screen, 0..count)?;
     for (i, v) in rounds(count).enumerate() {
         if i % TOGETHER == TOGETHER - 1 {
             inserted(TOGETHER);
         }
-        if !native.first.contains(&v) {
-            native.insert(&screen, v)?;
+        if !builder.first.contains(&v) {
+            builder.insert(&screen, v)?;
         }
     }
-    native.finish()
+    builder.finish()
 }
 
 /// A triangulation that grows.
-struct Native {
+struct Builder {
     mesh: Mesh,
     /// What the last insertions said of each cell, see [`Cavity`].
     marks: Vec<u32>,
@@ -66,7 +66,7 @@ struct Native {
     cavity: Cavity,
 }
 
-impl Native {
+impl Builder {
     /// Makes a point a vertex, or leaves it hidden; returns which.
     fn insert(&mut self, screen: &Screen<'_>, v: u32) -> Result<bool, TriangulationError> {
         let cell = self.locate(screen, v);
@@ -115,7 +115,7 @@ impl Mesh {
             Ordering::Less => false,
             Ordering::Equal => {
                 let behind =
-                    self.cells[self.cells[cell as usize].beside[corner] as usize / 4].corners;
+                    self.cells[self.cells[cell as usize].neighbors[corner] as usize / 4].corners;
                 let quick = screen.conflicts(behind, v);
                 quick.unwrap_or_else(|| screen.conflicts_closely(behind, v))
             }
@@ -131,7 +131,7 @@ impl Mesh {
     /// Joins two facets, each 4·cell + corner.
     #[inline(always)]
     fn join(&mut self, a: u32, b: u32) {
-        self.cells[a as usize / 4].beside[a as usize % 4] = b;
-        self.cells[b as usize / 4].beside[b as usize % 4] = a;
+        self.cells[a as usize / 4].neighbors[a as usize % 4] = b;
+        self.cells[b as usize / 4].neighbors[b as usize % 4] = a;
     }
 }

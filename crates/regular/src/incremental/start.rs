@@ -2,12 +2,12 @@
 
 use std::cmp::Ordering;
 
-use super::{Cavity, Mesh, Native};
+use super::{Builder, Cavity, Mesh};
 use crate::predicates::Screen;
 use crate::{Cell, SitesError, TriangulationError, no_memory};
 use walpha_base::memory::asking;
 
-impl Native {
+impl Builder {
     /// Nothing yet, with room for a triangulation of so many of the points below a number, which no
     /// point has or which is the ghost's own.
     pub(super) fn empty(
@@ -17,7 +17,7 @@ impl Native {
     ) -> Result<Self, TriangulationError> {
         // About 6.8 cells a point, of which a few more come and go.
         let expected = (points + points / 16).saturating_mul(7).max(64);
-        let mut native = Self {
+        let mut builder = Self {
             mesh: Mesh { cells: Vec::new(), ghost },
             marks: Vec::new(),
             free: Vec::new(),
@@ -25,8 +25,8 @@ impl Native {
             near: 0,
             cavity: Cavity::new(below)?,
         };
-        native.reserve(expected)?;
-        Ok(native)
+        builder.reserve(expected)?;
+        Ok(builder)
     }
 
     /// Begins with four of some points that span a volume. O(n) if the first ones do not.
@@ -41,19 +41,19 @@ impl Native {
         free.clear();
         marks.clear();
         *near = 0;
-        cells.push(Cell { corners: *first, beside: [0; 4] });
+        cells.push(Cell { corners: *first, neighbors: [0; 4] });
         for corner in 0..4 {
             let mut infinite = *first;
             infinite[corner] = *ghost;
             // Seen from outside the facet turns the other way.
             infinite.swap((corner + 1) % 4, (corner + 2) % 4);
-            cells.push(Cell { corners: infinite, beside: [0; 4] });
+            cells.push(Cell { corners: infinite, neighbors: [0; 4] });
         }
         marks.resize(5, 0);
         for a in 0..5 {
             for b in 0..5 {
                 if let Some([from, to]) = common_facet(cells[a].corners, cells[b].corners) {
-                    cells[a].beside[from] = (4 * b + to) as u32;
+                    cells[a].neighbors[from] = (4 * b + to) as u32;
                 }
             }
         }

@@ -103,7 +103,7 @@ impl<'a> Predicates<'a> {
 
     /// A point beside a simplex.
     #[inline(always)]
-    fn beside(&self, p: Site, v: u32) -> Site {
+    fn nearest_copy(&self, p: Site, v: u32) -> Site {
         let site = self.site(v);
         match &self.torus {
             None => site,
@@ -165,7 +165,7 @@ impl<'a> Predicates<'a> {
     pub fn inside<const N: usize>(&self, simplex: [u32; N], x: u32) -> bool {
         let sites = self.sites(simplex);
         let p = sites[0];
-        let x = self.beside(p, x);
+        let x = self.nearest_copy(p, x);
         let View { rays, size } = View::<N>::of(p, sites);
         let (ray, reach) = ray(p, x);
         let size = size.larger(reach);
@@ -201,7 +201,7 @@ impl<'a> Predicates<'a> {
     /// positively oriented cell. Exact.
     pub fn power(&self, cell: [u32; 4], t: u32) -> Ordering {
         let sites = self.sites(cell);
-        let t = self.beside(sites[0], t);
+        let t = self.nearest_copy(sites[0], t);
         let View { rays, size } = View::of(t, sites);
         let value = power_determinant(&rays);
         let bound = 24.0 * size.length * size.length * size.length * size.power;

@@ -99,7 +99,7 @@ impl Local<'_> {
     /// Classifies each facet that has an owned corner, and unites what it says of the outside.
     pub(super) fn classify_facets(
         &self,
-        beside: &[[u32; 4]],
+        neighbors: &[[u32; 4]],
         states: &mut [State],
         sheets: &mut Sheets,
         owned: &mut Owned,
@@ -110,7 +110,7 @@ impl Local<'_> {
             if state.is_far() {
                 continue;
             }
-            let across = beside[cell as usize];
+            let across = neighbors[cell as usize];
             for (here, there) in (4 * cell..).zip(across) {
                 let next = states[there as usize / 4];
                 // Each pair once. No facet of a cell that is far has an owned corner.

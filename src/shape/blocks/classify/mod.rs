@@ -31,7 +31,7 @@ pub(super) fn classify(
     question: &Question,
     shelves: Shelves,
 ) -> Owned {
-    let (cells, beside, ghost) = mesh.into_parts();
+    let (cells, neighbors, ghost) = mesh.into_parts();
     let local = Local {
         block,
         cells: &cells,
@@ -43,8 +43,8 @@ pub(super) fn classify(
     let mut states = local.classify_cells();
     let mut sheets = Sheets::new(&states);
     let mut owned = Owned::default();
-    let boundary = local.classify_facets(&beside, &mut states, &mut sheets, &mut owned);
-    drop(beside);
+    let boundary = local.classify_facets(&neighbors, &mut states, &mut sheets, &mut owned);
+    drop(neighbors);
     owned.reserve(&states, block.own as usize);
     let stars = Stars::new(&cells, block.own, &states);
     let mut walker = Walker::new(&local, &states, &stars, &boundary, &mut sheets, &mut owned);

@@ -77,7 +77,7 @@ proptest! {
             panic!("one point");
         };
         growing.take_fresh();
-        let crowns: Vec<Crown> = {
+        let crowns: Vec<Insertion> = {
             let predicates = growing.predicates();
             let screen = Growing::screen(&predicates).unwrap();
             let holds = |cell: &u32| {
@@ -89,22 +89,22 @@ proptest! {
                 })
             };
             let finite = (0..growing.cells().len() as u32).filter(|&cell| growing.is_cell(cell));
-            finite.filter(holds).map(|cell| growing.crown(&screen, v, cell)).collect()
+            finite.filter(holds).map(|cell| growing.insertion(&screen, v, cell)).collect()
         };
         growing.insert(&[v]).unwrap();
         let fresh = growing.take_fresh();
         let rows = fresh.iter().map(|&cell| growing.cells()[cell as usize].corners);
         let come = cells(rows, growing.positions());
-        for crown in &crowns {
-            let foreseen = cells(crown.cells.iter().copied(), growing.positions());
+        for insertion in &crowns {
+            let foreseen = cells(insertion.cells.iter().copied(), growing.positions());
             prop_assert_eq!(&foreseen, &come);
         }
         let leaves = Growing::FIRST + 8 + pick.index(points.len() - 8) as u32;
         let foreseen = {
             let predicates = growing.predicates();
             let screen = Growing::screen(&predicates).unwrap();
-            let mut digger = Digger::new(growing.positions().len()).unwrap();
-            let hole = growing.hole(&screen, leaves, &mut digger).unwrap();
+            let mut workspace = Workspace::new(growing.positions().len()).unwrap();
+            let hole = growing.hole(&screen, leaves, &mut workspace).unwrap();
             hole.map(|hole| {
                 let rows = hole.filling.iter().map(|cell| cell.corners);
                 cells(rows.filter(|row| !row.contains(&GHOST)), growing.positions())
