@@ -1,4 +1,4 @@
-// The numbers of `Class` in crates/check/src/complex/class.rs.
+// The numbers of `Class` in crates/complex/src/class.rs.
 #pragma once
 
 #include <cstdint>

@@ -119,7 +119,7 @@ std::unique_ptr<Complex> copy(const Triangulation &triangulation, const Classify
 }  // namespace
 
 std::unique_ptr<Complex> shape(rust::Slice<const double> positions,
-                                   rust::Slice<const double> weights, double alpha) {
+                               rust::Slice<const double> weights, double alpha) {
   throw_quietly();
   std::vector<std::pair<Triangulation::Weighted_point, std::uint32_t>> points;
   points.reserve(weights.size());

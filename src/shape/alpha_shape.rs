@@ -151,7 +151,7 @@ impl AlphaShape {
         self.hidden.as_deref()
     }
 
-    /// Betti numbers of the shape; `None` when the engine cannot know them.
+    /// Betti numbers of the shape; `None` where whoever made it did not count them.
     pub fn betti(&self) -> Option<Betti> {
         self.betti
     }

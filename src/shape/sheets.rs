@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use walpha_complex::canonical::{smallest_even, sorted};
 
 use super::blocks::Answer;
+use super::topology::sides;
 use super::union_find::UnionFind;
 use super::{Class, Complex};
 
@@ -99,12 +100,7 @@ struct Outside<'a> {
 
 impl<'a> Outside<'a> {
     fn of(whole: &'a Complex) -> Self {
-        let cells = whole.cells.rows();
-        let of_cell = |(cell, &[a, b, c, d]): (usize, &[u32; 4])| {
-            [[b, c, d], [a, c, d], [a, b, d], [a, b, c]].map(|facet| (sorted(facet), cell as u32))
-        };
-        let mut sides: Vec<_> = cells.par_iter().enumerate().flat_map_iter(of_cell).collect();
-        sides.par_sort_unstable();
+        let sides = sides(whole, |_| true);
         let alone = sides.chunk_by(|a, b| a.0 == b.0).filter(|cells| cells.len() == 1);
         let hull: Vec<_> = alone.map(|cells| cells[0].0).collect();
         let points = whole.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
@@ -112,7 +108,7 @@ impl<'a> Outside<'a> {
         for (&[v], class) in whole.vertices.iter() {
             vertices[v as usize] = class != Class::Exterior;
         }
-        let sets = UnionFind::new(4 * (cells.len() + hull.len()));
+        let sets = UnionFind::new(4 * (whole.cells.len() + hull.len()));
         Self { whole, sides, hull, vertices, sets }
     }
 

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use walpha_complex::canonical::sorted;
 use walpha_regular::Torus;
 
 use super::parts::connected;
@@ -122,21 +123,18 @@ pub(super) fn components(complex: &Complex) -> u64 {
     of_shape.filter(|&(&[v], _)| sets.find(v) == v).count() as u64
 }
 
-/// The sides of exterior cells, so that those at one facet are neighbours.
-fn exterior_sides(whole: &Complex) -> Vec<([u32; 3], u32)> {
+/// The facets of the cells of some classes as sorted rows, ascending, so that those at one facet are
+/// neighbours; each with its cell.
+pub(super) fn sides(whole: &Complex, of: impl Fn(Class) -> bool + Sync) -> Vec<([u32; 3], u32)> {
     let mut sides: Vec<([u32; 3], u32)> = whole
         .cells
         .rows()
         .par_iter()
         .zip(whole.cells.classes())
         .enumerate()
-        .filter(|(_, (_, class))| **class == Class::Exterior)
-        .flat_map_iter(|(id, (&cell, _))| {
-            (0..4).map(move |skip| {
-                let mut facet = [1, 2, 3].map(|step| cell[(skip + step) % 4]);
-                facet.sort_unstable();
-                (facet, id as u32)
-            })
+        .filter(|(_, (_, class))| of(**class))
+        .flat_map_iter(|(id, (&[a, b, c, d], _))| {
+            [[b, c, d], [a, c, d], [a, b, d], [a, b, c]].map(|facet| (sorted(facet), id as u32))
         })
         .collect();
     sides.par_sort_unstable();
@@ -148,7 +146,7 @@ fn exterior_sides(whole: &Complex) -> Vec<([u32; 3], u32)> {
 pub(super) fn complement_on(torus: Torus, whole: &Complex, positions: &[[f64; 3]]) -> WindingSets {
     let cells = whole.cells.rows();
     let mut sets = WindingSets::new(cells.len());
-    let sides = exterior_sides(whole);
+    let sides = sides(whole, |class| class == Class::Exterior);
     let mut pairs = sides.chunk_by(|a, b| a.0 == b.0);
     // Exterior facets are sorted rows in ascending order, so both lists run side by side.
     for facet in whole.facets.of(Class::Exterior) {
@@ -197,7 +195,7 @@ impl Complement {
 
     /// Finds the components. O(n log n).
     pub(super) fn of(whole: &Complex) -> Self {
-        let sides = exterior_sides(whole);
+        let sides = sides(whole, |class| class == Class::Exterior);
         let outside = whole.cells.len() as u32;
         let mut sets = UnionFind::new(whole.cells.len() + 1);
         let exterior_cells = whole.cells.counts().exterior;

@@ -1,5 +1,5 @@
 //! What several crates of walpha need and none owns: what errors advise, memory and threads that may be refused, sums of
-//! doubles that are rounded once, vectors, headers of NPY.
+//! doubles that are rounded once, vectors, headers of NPY, names and numbers as messages show them, progress.
 //!
 //! For walpha's own crates; other programs have no need of it.
 //!
