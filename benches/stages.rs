@@ -6,7 +6,7 @@ use divan::Bencher;
 use walpha::haar::{HaarOptions, smooth};
 use walpha::ladder::Filtration;
 use walpha::points::{Selection, Units, difference, select, weigh};
-use walpha::shape::{Engine, ShapeOptions};
+use walpha::shape::{Engine, ShapeOptions, claim};
 use walpha::{
     Alpha, AlphaShape, Gray, Points, Volume, WeightedPoints, Weighting, alpha_shape, volume,
 };
@@ -97,7 +97,7 @@ fn whole(bencher: Bencher) {
 #[divan::bench]
 fn certify(bencher: Bencher) {
     let shape = whole_shape(heavy());
-    bencher.bench_local(|| shape.claim().findings());
+    bencher.bench_local(|| claim(&shape).findings());
 }
 
 /// The whole triangulation, as a shape.

@@ -33,14 +33,13 @@
 pub use ndarray;
 
 pub mod blocks;
-#[cfg_attr(not(feature = "cgal"), path = "cgal/absent.rs")]
+#[cfg(feature = "cgal")]
 mod cgal;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod export;
 pub mod haar;
 pub mod interpolate;
-pub mod ladder;
 pub mod pipeline;
 pub mod points;
 pub mod progress;
@@ -55,6 +54,8 @@ pub mod shape;
 pub use walpha_base::advice;
 /// Exact regular triangulations: a crate of its own, `walpha-regular`, for use in other programs.
 pub use walpha_regular as triangulation;
+/// Many α from one triangulation, and levels of detail.
+pub use walpha_shape::ladder;
 /// Volumes and their files: a crate of its own, `walpha-volume`, for use in other programs.
 pub use walpha_volume as volume;
 
@@ -62,12 +63,13 @@ pub use walpha_base::threads;
 /// The exact checker: a crate of its own, `walpha-check`, for use in other programs.
 pub use walpha_check as check;
 
-pub use cgal::CgalError;
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
 pub use interpolate::Interpolant;
 pub use pipeline::Pipeline;
-pub use points::{Points, PointsError, Selection, SelectionRule, Units, WeightedPoints, Weighting};
-pub use shape::{Alpha, AlphaShape, Balls, Class, Complex, Simplices, alpha_shape};
+pub use points::{Points, PointsError, Selection, SelectionRule, Units, Weighting};
+pub use shape::{
+    Alpha, AlphaShape, Balls, CgalError, Class, Complex, Simplices, WeightedPoints, alpha_shape,
+};
 pub use volume::{
     Coordinates, Dims, Frame, Gray, GrayRange, LengthUnit, Space, Volume, VolumeError,
 };

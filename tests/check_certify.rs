@@ -6,7 +6,7 @@ use std::num::NonZeroUsize;
 
 use check_common::{Answer, Case, Random, engine, grid, shape_of};
 use walpha::check::{Extent, Finding, NotJudged};
-use walpha::shape::{Engine, ShapeOptions};
+use walpha::shape::{Engine, ShapeOptions, claim};
 use walpha::{Alpha, WeightedPoints, alpha_shape};
 
 fn whole(case: &Case, answer: &Answer) -> Vec<Finding> {
@@ -69,7 +69,7 @@ fn shapes_made_slab_by_slab_are_certified() {
         (options.engine, options.blocks) = (Engine::Native, NonZeroUsize::new(blocks));
         let points = WeightedPoints::new(positions, weights).unwrap();
         let shape = alpha_shape(points, &options).unwrap();
-        let (findings, certificate) = shape.claim().findings().unwrap();
+        let (findings, certificate) = claim(&shape).findings().unwrap();
         assert_eq!(findings, []);
         assert!(certificate.not_judged.contains(&NotJudged::HiddenAndHull));
         assert!(shape.complex().cells.len() > 1000);

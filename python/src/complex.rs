@@ -8,6 +8,7 @@ use walpha::Class;
 use walpha::check::schema::{ComplexFile, PlacedComplex};
 use walpha::check::{Alpha, CertifyError, CompareError};
 use walpha::progress::Stage;
+use walpha::shape::placed_complex;
 
 use crate::arrays::{numbers, rows};
 use crate::errors::{Told, wrong};
@@ -62,7 +63,7 @@ impl Complex {
     #[staticmethod]
     fn of(py: Python<'_>, shape: &Bound<'_, Shape>) -> PyResult<Self> {
         let shape = Arc::clone(shape.get().shape());
-        let placed = run(py, None, move |_| Ok::<_, CertifyError>(placed(&shape)))?;
+        let placed = run(py, None, move |_| Ok::<_, CertifyError>(placed_complex(&shape)))?;
         Ok(Self(Arc::new(placed)))
     }
 
@@ -89,11 +90,6 @@ impl Complex {
             Ok::<_, CertifyError>((verdict, ties, total, told, json(&unjudged)))
         })
     }
-}
-
-fn placed(shape: &walpha::AlphaShape) -> PlacedComplex {
-    let sides = shape.options().periodic.map(|torus| torus.sides());
-    PlacedComplex::from(shape.claim()).with_periodic(sides)
 }
 
 /// How B differs from A: whether they are equal, in words, and as JSON.

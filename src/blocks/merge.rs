@@ -2,14 +2,14 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use serde::{Deserialize, Serialize};
-use walpha_base::Sum;
+use walpha_base::{Sum, UnionFind};
 
 use super::file::BlockFile;
 use super::run::{BlockComponent, BlockSheet, Facts, Met, Weights};
 use super::{BlocksError, Plan};
 use crate::points::WeightSummary;
 use crate::shape::{
-    Betti, ByClass, Component, ComponentSums, Measures, SheetSums, UnionFind, told,
+    Betti, ByClass, Component, ComponentSums, Measures, SheetSums, components_of_sums,
 };
 
 /// What a shape in blocks is as a whole.
@@ -162,7 +162,7 @@ impl Union {
             vertices: totals.vertices,
             betti: Betti::in_space(b0, b1, b2),
             measures,
-            components: told(components, Some(with_facets.collect())),
+            components: components_of_sums(components, Some(with_facets.collect())),
             halo: totals.halo,
             numbers,
             sheets: count,
@@ -190,7 +190,7 @@ fn number_components<'a>(
     parts: impl Iterator<Item = &'a BlockComponent>,
     mut sets: UnionFind,
 ) -> (Vec<u32>, Vec<ComponentSums>) {
-    let mut whole: Vec<Option<BlockComponent>> = vec![None; sets.len()];
+    let mut whole: Vec<Option<BlockComponent>> = vec![None; sets.members()];
     for (part, i) in parts.zip(0..) {
         match &mut whole[sets.find(i) as usize] {
             Some(whole) => {
@@ -205,9 +205,9 @@ fn number_components<'a>(
         .filter_map(|(root, whole)| whole.map(|whole| (whole.first, root, whole.sums)))
         .collect();
     order.sort_unstable_by_key(|&(first, ..)| first);
-    let mut numbers = vec![0; sets.len()];
+    let mut numbers = vec![0; sets.members()];
     order.iter().zip(0..).for_each(|(&(_, root, _), number)| numbers[root as usize] = number);
-    let numbers = (0..sets.len() as u32).map(|i| numbers[sets.find(i) as usize]).collect();
+    let numbers = (0..sets.members() as u32).map(|i| numbers[sets.find(i) as usize]).collect();
     (numbers, order.into_iter().map(|(_, _, sums)| sums).collect())
 }
 
@@ -218,7 +218,7 @@ fn number_sheets(
     mut sets: UnionFind,
     components: &[u32],
 ) -> (Vec<u32>, Vec<(u32, usize, SheetSums)>) {
-    let mut whole: Vec<Option<(Met, usize, SheetSums)>> = vec![None; sets.len()];
+    let mut whole: Vec<Option<(Met, usize, SheetSums)>> = vec![None; sets.members()];
     for (&(part, offset), i) in parts.iter().zip(0..) {
         // A part without rows of its own was named by a neighbour that has some.
         let Some(met) = part.met else { continue };
@@ -236,9 +236,9 @@ fn number_sheets(
         .filter_map(|(root, whole)| whole.map(|(met, c, sums)| (met, root, c, sums)))
         .collect();
     order.sort_unstable_by_key(|&(met, ..)| met);
-    let mut numbers = vec![0; sets.len()];
+    let mut numbers = vec![0; sets.members()];
     order.iter().zip(0..).for_each(|(&(_, root, ..), number)| numbers[root as usize] = number);
-    let numbers = (0..sets.len() as u32).map(|i| numbers[sets.find(i) as usize]).collect();
+    let numbers = (0..sets.members() as u32).map(|i| numbers[sets.find(i) as usize]).collect();
     let sheets =
         (0..).zip(order).map(|(number, (_, _, component, sums))| (number, component, sums));
     (numbers, sheets.collect())

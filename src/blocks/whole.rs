@@ -40,19 +40,18 @@ pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
     let (complex, sheets) = rows.finish(merged.sheets);
     let job = &plan.job;
     let place = |voxel: u64| job.units.place(&job.frame, job.dims, voxel);
+    let points = WeightedPoints {
+        positions: points.iter().map(|&(voxel, ..)| place(voxel)).collect(),
+        weights: points.iter().map(|&(.., weight)| weight).collect(),
+        values: Some(points.iter().map(|&(_, value, _)| value).collect()),
+    };
     let assembled = Assembled {
-        points: WeightedPoints {
-            positions: points.iter().map(|&(voxel, ..)| place(voxel)).collect(),
-            weights: points.iter().map(|&(.., weight)| weight).collect(),
-            values: Some(points.iter().map(|&(_, value, _)| value).collect()),
-        },
+        points,
         coordinates: job.units.coordinates_of(&job.frame),
-        options: ShapeOptions {
-            balls: job.balls,
-            engine: Engine::Native,
-            refuse_flat: true,
-            ..ShapeOptions::new(plan.alpha())
-        },
+        options: ShapeOptions::new(plan.alpha())
+            .balls(job.balls)
+            .engine(Engine::Native)
+            .refuse_flat(true),
         complex,
         hidden: None,
         betti: merged.betti,

@@ -7,7 +7,7 @@
 //! [`Sites`](walpha_regular::Sites). C++ never calls back into Rust, because CGAL changes the
 //! rounding mode while it works.
 
-mod error;
+mod canonical;
 #[allow(unused_qualifications, reason = "in what the macro writes")]
 #[expect(unreachable_pub, reason = "cxx writes `pub`")]
 mod ffi;
@@ -16,10 +16,11 @@ mod ffi;
 mod plane;
 mod shape;
 
-pub use error::CgalError;
 #[cfg(feature = "paper")]
 pub(crate) use plane::{RawTriangulation, farthest_plane, regular_plane};
-pub(crate) use shape::{RawComplex, shape};
+pub(crate) use shape::complex;
+
+use crate::shape::CgalError;
 
 /// What C++ threw in a stage.
 fn thrown(stage: &'static str) -> impl Fn(cxx::Exception) -> CgalError {

@@ -1,7 +1,8 @@
 use bridge::{PlaneTriangulation, farthest_plane as farthest, regular_plane as regular};
 use walpha_regular::Sites;
 
-use super::{CgalError, thrown};
+use super::thrown;
+use crate::CgalError;
 
 /// The entries of `cpp/plane.cc`, compiled with the feature `paper` alone.
 #[allow(unused_qualifications, reason = "in what the macro writes")]

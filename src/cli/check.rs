@@ -15,7 +15,7 @@ use crate::check::{Comparison, Extent, Verdict, certify_filtration, compare, enu
 use crate::pipeline::AlphaRule;
 use crate::points::{self, CellCount};
 use crate::progress::Stage;
-use crate::shape::ShapeOptions;
+use crate::shape::placed_complex;
 
 use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::judged::{self, Judged};
@@ -215,7 +215,7 @@ impl Check {
         }
         let given = &self.pipeline.input.given;
         given.refuse(&["refit"], "values are not judged")?;
-        let mut options = ShapeOptions { periodic, refuse_flat: false, ..self.shape.options() };
+        let mut options = self.shape.options().periodic(periodic);
         let stages = pipeline::stages(&self.pipeline);
         let (weighed, _) = pipeline::weighted_points(&self.pipeline, stages, progress)?;
         // The whole triangulation can be judged wholly. Several blocks are judged as they are; and of a
@@ -224,8 +224,7 @@ impl Check {
             && options.memory.is_none()
             && periodic.is_none();
         let model = pipeline::shape(weighed, options, progress)?;
-        let sides = periodic.map(|torus| torus.sides());
-        Ok(PlacedComplex::from(model.shape.claim()).with_periodic(sides))
+        Ok(placed_complex(&model.shape))
     }
 
     /// Judges a complex.

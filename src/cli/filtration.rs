@@ -103,7 +103,7 @@ impl Filtration {
         let mut progress = Progress::new(global);
         input.given.refuse(&["refit"], "a filtration has no values")?;
         let torus = self.periodic.periodic;
-        let options = ShapeOptions { periodic: torus, ..ShapeOptions::new(Alpha::INFINITE) };
+        let options = ShapeOptions::new(Alpha::INFINITE).periodic(torus);
         let stages = pipeline::stages(&self.pipeline).shape(options);
         let (mut weighed, _) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
         weighed.on_torus(torus)?;

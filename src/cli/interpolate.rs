@@ -11,9 +11,9 @@ use crate::export::{Content, Target, TargetError, write_all};
 use crate::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
 use crate::pipeline::Weighed;
 use crate::progress::Stage;
-use crate::shape::number_or_null_or_name;
 use crate::volume::VolumeWriter;
 use crate::{AlphaShape, Dims, GrayRange, Units, Volume};
+use walpha_base::number_or_null_or_name;
 
 use super::args::{OutputArgs, PipelineArgs, ShapeArgs};
 use super::formats::volume_output;

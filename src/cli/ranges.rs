@@ -1,6 +1,6 @@
 //! Ranges along x, y and z: X0:X1,Y0:Y1,Z0:Z1.
 
-use crate::ladder;
+use crate::points;
 use crate::volume::Region;
 
 use super::said::{Said, refused, said};
@@ -39,8 +39,8 @@ pub(super) fn samples(text: &str) -> Result<Region, Said> {
 }
 
 /// A box in the units of the points, borders included.
-pub(super) fn places(text: &str) -> Result<ladder::Region, Said> {
-    let mut region = ladder::Region { low: [0.0; 3], high: [0.0; 3] };
+pub(super) fn places(text: &str) -> Result<points::Region, Said> {
+    let mut region = points::Region { low: [0.0; 3], high: [0.0; 3] };
     for (k, [low, high]) in ends(text)?.into_iter().enumerate() {
         let finite = |text: &str| match text.parse() {
             Ok(number) if f64::is_finite(number) => Ok(number),

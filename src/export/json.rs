@@ -2,7 +2,7 @@ use std::io::{self, Write};
 
 use super::Exporter;
 use crate::check::schema::{ComplexFile, SchemaError};
-use crate::shape::AlphaShape;
+use crate::shape::{AlphaShape, claim};
 
 /// JSON: the complex with its points, power weights and α, in the [`schema`](crate::check::schema)
 /// that `walpha check` and `walpha compare` read. α and the weights are those that simplices were
@@ -16,7 +16,7 @@ impl Exporter for Json {
     }
 
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let mut file = ComplexFile::new(shape.claim());
+        let mut file = ComplexFile::new(claim(shape));
         file.periodic = shape.options().periodic.map(|torus| torus.sides());
         file.info = Some(serde_json::json!({
             "program": concat!("walpha ", env!("CARGO_PKG_VERSION")),

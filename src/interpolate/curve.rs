@@ -200,8 +200,7 @@ impl Bench<'_> {
     ) -> Result<Option<CurvePoint>, InterpolateError> {
         let Self { volume, options: &CurveOptions { alpha, units, .. }, .. } = *self;
         let weighted = weigh(points, weighting, alpha)?;
-        let solid =
-            ShapeOptions { refuse_flat: true, engine: Engine::Native, ..ShapeOptions::new(alpha) };
+        let solid = ShapeOptions::new(alpha).refuse_flat(true).engine(Engine::Native);
         let shape = match alpha_shape(weighted, &solid) {
             Err(ShapeError::Triangulation(TriangulationError::Sites(_))) => return Ok(None),
             other => other?,

@@ -1,6 +1,6 @@
 use super::InterpolateError;
 use crate::points::{Units, WeightedPoints};
-use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, alpha_shape};
+use crate::shape::{Alpha, AlphaShape, ShapeOptions, alpha_shape};
 use crate::volume::Volume;
 
 /// The whole regular triangulation of a shape's points (α = ∞) and, given their volume, of its
@@ -25,12 +25,7 @@ pub fn fill(
         add_corners(&mut points, volume, units)?;
     }
     let engine = shape.options().engine;
-    let options = ShapeOptions {
-        balls: Balls::Power,
-        engine,
-        hidden: true,
-        ..ShapeOptions::new(Alpha::INFINITE)
-    };
+    let options = ShapeOptions::new(Alpha::INFINITE).engine(engine).hidden(true);
     Ok(alpha_shape(points, &options)?)
 }
 

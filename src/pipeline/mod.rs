@@ -229,7 +229,7 @@ impl Pipeline {
         if self.shape.balls == Balls::Radius && parameter.is_found() {
             return Err(PipelineError::Radii { radius: parameter.alpha.squared().abs().sqrt() });
         }
-        Ok(ShapeOptions { alpha: parameter.alpha, ..self.shape })
+        Ok(self.shape.alpha(parameter.alpha))
     }
 
     /// Fits the values of weighted points to their volume.

@@ -2,12 +2,13 @@ use std::fmt::{self, Display};
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::number_or_null_or_name;
 use walpha_base::shown::{number, six_digits};
 
 use super::PipelineError;
 use crate::ladder::Filtration;
 use crate::points::{Points, Units, WeightedPoints, Weighting, weigh};
-use crate::shape::{Alpha, AlphaError, ShapeError, Torus, number_or_null_or_name};
+use crate::shape::{Alpha, AlphaError, ShapeError, Torus};
 use crate::volume::{Frame, LengthUnit, Volume};
 
 /// Which α a shape is made at.

@@ -7,6 +7,7 @@ use walpha_complex::Alpha;
 use walpha_regular::TriangulationError;
 
 use super::Weighting;
+use crate::shape::LengthsError;
 use crate::volume::{Reason, VolumeError};
 
 /// Why points or their weights cannot be had.
@@ -24,15 +25,8 @@ pub enum PointsError {
         need: &'static str,
     },
     /// A column of another length than the points.
-    #[error("{given} {column} for {points} points: each point needs one")]
-    Lengths {
-        /// Which column: "weights", "values" or "differences".
-        column: &'static str,
-        /// How many it has.
-        given: usize,
-        /// How many points there are.
-        points: usize,
-    },
+    #[error(transparent)]
+    Lengths(#[from] LengthsError),
     /// More voxels asked for than there are, or none.
     #[error("{asked} points cannot be selected")]
     Count {
@@ -112,7 +106,7 @@ impl PointsError {
     pub fn advice(&self) -> Option<Advice> {
         Some(match self {
             Self::Number { need, .. } => format!("give {need}").into(),
-            Self::Lengths { .. } => return None,
+            Self::Lengths(_) => return None,
             Self::Count { available, .. } => {
                 format!("give a count from 1 to {available}, the voxels that take part").into()
             }

@@ -20,6 +20,7 @@
 
 mod difference;
 mod error;
+mod focus;
 mod formats;
 mod mesh;
 mod model;
@@ -32,8 +33,10 @@ mod write;
 #[cfg(feature = "formats")]
 mod wvm;
 
+pub use crate::shape::{WeightSummary, WeightedPoints};
 pub use difference::{difference, difference_row};
 pub use error::PointsError;
+pub use focus::{Region, focus};
 pub use formats::{FORMATS, PointFormat, PointWriter};
 pub use mesh::{CellCount, cells_of, read_complex};
 pub use model::{Cell, ModelFacts, Packing, SampleGrid};
@@ -41,6 +44,6 @@ pub use read::{Columns, PointOptions, UnknownColumns, is_point_file, read_model,
 pub use scattered::scattered_difference;
 pub(crate) use select::{Asked, check_least};
 pub use select::{Selection, SelectionRule, Units, points_at, select};
-pub use sets::{Points, WeightedPoints};
+pub use sets::Points;
 pub(crate) use weigh::{Differences, Shares};
-pub use weigh::{UnknownWeighting, WeightSummary, Weighting, weigh};
+pub use weigh::{UnknownWeighting, Weighting, weigh};

@@ -1,4 +1,5 @@
 use super::PointsError;
+use crate::shape::LengthsError;
 
 /// Points with what is known of them: columns of one length.
 ///
@@ -22,18 +23,6 @@ pub struct Points {
     pub weights: Option<Vec<f64>>,
     /// Whether the weights are squares of radii, which the input has in place of weights.
     pub of_radii: bool,
-}
-
-/// What a shape is made of: places, their weights, and values where they are known.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub struct WeightedPoints {
-    /// Coordinates (x, y, z).
-    pub positions: Vec<[f64; 3]>,
-    /// Weights ω, squared lengths, one for each point.
-    pub weights: Vec<f64>,
-    /// Values F, one for each point.
-    pub values: Option<Vec<f64>>,
 }
 
 impl Points {
@@ -80,47 +69,8 @@ impl Points {
     }
 }
 
-impl WeightedPoints {
-    /// Points at these places (x, y, z) with weights ω, squared lengths.
-    ///
-    /// # Errors
-    /// [`PointsError::Lengths`] unless there is a weight for each point.
-    pub fn new(positions: Vec<[f64; 3]>, weights: Vec<f64>) -> Result<Self, PointsError> {
-        let weights = column("weights", weights, positions.len())?;
-        Ok(Self { positions, weights, values: None })
-    }
-
-    /// Points whose weights are all 0.
-    pub fn unweighted(positions: Vec<[f64; 3]>) -> Self {
-        Self { weights: vec![0.0; positions.len()], positions, values: None }
-    }
-
-    /// The same points with values F.
-    ///
-    /// # Errors
-    /// [`PointsError::Lengths`] unless there is one for each point.
-    pub fn with_values(self, values: Vec<f64>) -> Result<Self, PointsError> {
-        let values = column("values", values, self.len())?;
-        Ok(Self { values: Some(values), ..self })
-    }
-
-    /// The number of points.
-    pub fn len(&self) -> usize {
-        self.positions.len()
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.positions.is_empty()
-    }
-}
-
 /// A column, if it has an entry for each point.
 fn column(name: &'static str, column: Vec<f64>, points: usize) -> Result<Vec<f64>, PointsError> {
-    let given = column.len();
-    if given == points {
-        Ok(column)
-    } else {
-        Err(PointsError::Lengths { column: name, given, points })
-    }
+    LengthsError::unless_equal(name, column.len(), points)?;
+    Ok(column)
 }

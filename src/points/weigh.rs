@@ -28,35 +28,10 @@ pub enum Weighting {
     Column,
 }
 
-/// The range of weights.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct WeightSummary {
-    /// The smallest.
-    pub min: f64,
-    /// The mean.
-    pub mean: f64,
-    /// The largest.
-    pub max: f64,
-}
-
 impl Weighting {
     /// Whether weights come from the differences L.
     pub fn needs_differences(self) -> bool {
         matches!(self.kind().rule, Rule::Proportional(_))
-    }
-}
-
-impl WeightedPoints {
-    /// Smallest, mean and largest weight; all 0 without points.
-    pub fn summary(&self) -> WeightSummary {
-        if self.weights.is_empty() {
-            return WeightSummary { min: 0.0, mean: 0.0, max: 0.0 };
-        }
-        let (min, max) = range(&self.weights);
-        // Summed exactly, so that it does not matter in what order, or how many at a time.
-        let sum: Sum = self.weights.iter().copied().collect();
-        let mean = sum.value() / self.weights.len() as f64;
-        WeightSummary { min, mean, max }
     }
 }
 

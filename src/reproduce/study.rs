@@ -78,13 +78,8 @@ impl<'a> Study<'a> {
         let weighted = weigh(&self.points, weighting, alpha)?;
         // CGAL as the paper used it.
         let engine = Engine::Cgal;
-        let options = ShapeOptions {
-            balls,
-            engine,
-            exterior: true,
-            refuse_flat: true,
-            ..ShapeOptions::new(alpha)
-        };
+        let options =
+            ShapeOptions::new(alpha).balls(balls).engine(engine).exterior(true).refuse_flat(true);
         let shape = alpha_shape(weighted, &options)?;
         let mut command = self.command("shape");
         command += &format!(" --weights {weighting} --alpha {}", alpha.squared());

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use walpha::ladder::{Region, focus};
+use walpha::points::{Region, focus};
 use walpha::points::{Selection, SelectionRule, Units, difference, select};
 use walpha::shape::Engine;
 use walpha::{Class, WeightedPoints};

@@ -3,14 +3,9 @@
 use walpha::check::schema::{ComplexFile, PlacedComplex};
 use walpha::check::{CertifyError, Finding, NotJudged};
 use walpha::export::{Exporter, Json, Npz};
-use walpha::shape::{AlphaShape, Class};
+use walpha::shape::{Class, placed_complex};
 
 use crate::{CUBIC, WeightedPoints, alpha_shape, crystal, dense, options, sets, shape};
-
-fn placed(shape: &AlphaShape) -> PlacedComplex {
-    let sides = shape.options().periodic.unwrap().sides();
-    PlacedComplex::from(shape.claim()).with_periodic(Some(sides))
-}
 
 fn findings(placed: &PlacedComplex) -> Vec<Finding> {
     placed.findings().unwrap().0
@@ -22,7 +17,7 @@ fn shapes_of_a_torus_are_certified() {
     for (points, sides) in sets(36) {
         for squared in [0.5, 1.0] {
             let Ok(shape) = shape(&points, sides, squared) else { continue };
-            assert_eq!(findings(&placed(&shape)), []);
+            assert_eq!(findings(&placed_complex(&shape)), []);
             judged += 1;
         }
     }
@@ -31,7 +26,7 @@ fn shapes_of_a_torus_are_certified() {
         for squared in [0.2, f64::INFINITY] {
             let whole = options(sides, squared).exterior(true);
             let shape = alpha_shape(points.clone(), &whole).unwrap();
-            let (found, certificate) = placed(&shape).findings().unwrap();
+            let (found, certificate) = placed_complex(&shape).findings().unwrap();
             assert_eq!(found, []);
             assert!(!certificate.not_judged.contains(&NotJudged::MissingSimplices));
             judged += 1;
@@ -54,7 +49,7 @@ fn large_spheres_of_a_torus_are_judged() {
         let full = squared + weight >= 768.0;
         let class = if full { Class::Interior } else { Class::Exterior };
         assert!(shape.complex().cells.classes().iter().all(|&found| found == class));
-        assert_eq!(findings(&placed(&shape)), []);
+        assert_eq!(findings(&placed_complex(&shape)), []);
     }
 }
 
@@ -67,7 +62,7 @@ fn hidden_points_of_a_torus_are_judged() {
     weights.extend([-100.0, -1.0]);
     let points = WeightedPoints::new(positions, weights).unwrap();
     let whole = options([96.0; 3], 768.0).exterior(true);
-    let right = placed(&alpha_shape(points, &whole).unwrap());
+    let right = placed_complex(&alpha_shape(points, &whole).unwrap());
     assert_eq!(
         (right.hidden.as_deref(), right.duplicates.as_deref()),
         (Some(&[27][..]), Some(&[[28, 19]][..]))
@@ -86,7 +81,7 @@ fn hidden_points_of_a_torus_are_judged() {
 fn what_is_wrong_on_a_torus_is_found() {
     let (points, sides) = dense(3);
     let whole = options(sides, 0.3).exterior(true);
-    let right = placed(&alpha_shape(points, &whole).unwrap());
+    let right = placed_complex(&alpha_shape(points, &whole).unwrap());
     let count = right.complex.cells.len();
     // Cells at the sides of the box as well as within.
     for at in [0, count / 3, count / 2, count - 1] {
@@ -143,5 +138,5 @@ fn files_hold_the_box() {
     let json = ComplexFile::read_json(&json[..]).unwrap().into_complex().unwrap();
     let npz = ComplexFile::read_npz(std::io::Cursor::new(npz)).unwrap().into_complex().unwrap();
     assert_eq!(json.periodic, Some(sides));
-    assert_eq!((&json, &json), (&npz, &placed(&shape)));
+    assert_eq!((&json, &json), (&npz, &placed_complex(&shape)));
 }

@@ -12,6 +12,10 @@
 //! ```
 
 pub mod advice;
+#[cfg(feature = "serde")]
+mod coordinates;
+#[cfg(feature = "serde")]
+mod infinite;
 pub mod memory;
 #[cfg(feature = "near")]
 pub mod near;
@@ -24,10 +28,16 @@ pub mod shown;
 pub mod standard_output;
 mod sum;
 pub mod threads;
+mod union_find;
 pub mod vector;
 
+#[cfg(feature = "serde")]
+pub use coordinates::{Conversion, Coordinates, LengthUnit, Space};
+#[cfg(feature = "serde")]
+pub use infinite::number_or_null_or_name;
 pub use setters::setters;
 pub use sum::Sum;
+pub use union_find::UnionFind;
 
 /// The example in the README runs.
 #[cfg(doctest)]

@@ -31,7 +31,6 @@ mod compare;
 mod enumerate;
 mod exact;
 mod flat;
-mod placed;
 pub mod schema;
 
 pub use certify::{
@@ -44,8 +43,9 @@ pub use compare::{
 };
 pub use enumerate::{EnumerateError, Enumeration, enumerate};
 pub use exact::Exact;
-pub use placed::Placed;
-pub use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Simplices, SimplicesError};
+pub use walpha_complex::{
+    Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices, SimplicesError,
+};
 
 /// The example in the README runs.
 #[cfg(all(doctest, feature = "json"))]

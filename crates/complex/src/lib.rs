@@ -17,11 +17,13 @@ mod alpha;
 pub mod canonical;
 mod class;
 mod complex;
+mod placed;
 mod simplices;
 
 pub use alpha::{Alpha, AlphaError};
 pub use class::{ByClass, Class};
 pub use complex::Complex;
+pub use placed::Placed;
 pub use simplices::{Simplices, SimplicesError};
 
 /// The example in the README runs.

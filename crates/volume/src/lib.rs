@@ -11,7 +11,6 @@
 //! # Ok::<(), walpha_volume::VolumeError>(())
 //! ```
 
-mod coordinates;
 mod dtype;
 mod error;
 mod extent;
@@ -28,7 +27,6 @@ pub mod stated;
 mod volume;
 mod write;
 
-pub use coordinates::{Conversion, Coordinates, LengthUnit, Space};
 pub use dtype::{Dtype, Endian, UnknownName};
 pub use error::VolumeError;
 pub use extent::Extent;
@@ -46,6 +44,7 @@ pub use source::Source;
 #[cfg(feature = "zarr")]
 pub use source::convert;
 pub use volume::{Nan, Volume};
+pub use walpha_base::{Conversion, Coordinates, LengthUnit, Space};
 
 // What walpha reads points with: no promise to others.
 #[doc(hidden)]

@@ -13,7 +13,7 @@ use walpha::export::{ExportOptions, Format, Target};
 use walpha::interpolate::{Grid, Interpolant, InterpolateError};
 use walpha::pipeline::Model;
 use walpha::progress::Stage;
-use walpha::shape::Engine;
+use walpha::shape::{Engine, LengthsError};
 use walpha::volume::Dims;
 use walpha::{AlphaShape, PointsError, Simplices, Weighting};
 
@@ -60,10 +60,8 @@ impl Shape {
         match given {
             Some(given) => {
                 let (values, points) = (numbers(&given)?, self.shape.points().len());
-                if values.len() != points {
-                    let (column, given) = ("values", values.len());
-                    return Err(Told::told(PointsError::Lengths { column, given, points }));
-                }
+                LengthsError::unless_equal("values", values.len(), points)
+                    .map_err(|error| Told::told(PointsError::from(error)))?;
                 Ok(values)
             }
             None => copied(self.shape.points().values.as_ref().ok_or_else(|| {

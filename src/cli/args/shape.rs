@@ -47,23 +47,19 @@ impl ShapeArgs {
             AlphaRule::Given(alpha) => alpha,
             _ => Alpha::from_squared(0.0)?,
         };
-        let options = ShapeOptions { alpha, periodic, ..self.options() };
+        let options = self.options().alpha(alpha).periodic(periodic);
         Ok(options.check().map_err(|error| Said::usage_of(&error))?)
     }
 
     /// The stage's options, at α = ∞.
     pub(crate) fn options(&self) -> ShapeOptions {
         let Self { balls, engine, exterior, hidden, blocks, memory } = *self;
-        ShapeOptions {
-            alpha: Alpha::INFINITE,
-            balls,
-            engine,
-            exterior,
-            hidden,
-            blocks,
-            memory,
-            refuse_flat: false,
-            periodic: None,
-        }
+        ShapeOptions::new(Alpha::INFINITE)
+            .balls(balls)
+            .engine(engine)
+            .exterior(exterior)
+            .hidden(hidden)
+            .blocks(blocks)
+            .memory(memory)
     }
 }

@@ -13,8 +13,9 @@ use crate::Coordinates;
 use crate::cli::ranges;
 use crate::cli::said::{Said, misused};
 use crate::export::{ExportOptions, Exporter, Format};
-use crate::ladder::{Filtration, Ladder as Levels, Level, Region};
+use crate::ladder::{Filtration, Ladder as Levels, Level};
 use crate::pipeline::Parameter;
+use crate::points::Region;
 use crate::progress::Stage;
 #[cfg(feature = "render")]
 use crate::render::ladder_figure;

@@ -11,7 +11,7 @@ use walpha_files::Working;
 use crate::blocks::{Pieces, Team};
 use crate::export::{FORMATS, Format};
 use crate::progress::Stage;
-use crate::shape::{ShapeOptions, Surface};
+use crate::shape::Surface;
 
 use super::args::{OutputArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::formats::shape_output;
@@ -171,7 +171,7 @@ impl Shape {
     ) -> anyhow::Result<Report> {
         let refuse_flat = self.dimension.is_some();
         let periodic = self.periodic.periodic;
-        let options = ShapeOptions { refuse_flat, periodic, ..self.shape.options() };
+        let options = self.shape.options().refuse_flat(refuse_flat).periodic(periodic);
         let stages = pipeline::stages_to(&self.pipeline, options)?;
         let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, progress)?;
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());

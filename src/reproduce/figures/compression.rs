@@ -151,7 +151,7 @@ fn points_at(volume: &Volume, voxels: &[u32]) -> WeightedPoints {
 
 /// How far F on the whole triangulation is from the volume.
 fn deviation(volume: &Volume, points: WeightedPoints) -> Result<Deviation, ReproduceError> {
-    let options = ShapeOptions { refuse_flat: true, ..ShapeOptions::new(Alpha::INFINITE) };
+    let options = ShapeOptions::new(Alpha::INFINITE).refuse_flat(true);
     let shape = alpha_shape(points, &options).map_err(InterpolateError::from)?;
     let resampled = Interpolant::new(&shape)?.resample(&Grid::of(volume, Units::Voxel))?;
     Ok(Deviation::of(volume, &resampled))

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::exact::{Curve, Exact};
 use super::mesh::{Edge, Mesh, Side};
-use crate::shape::UnionFind;
+use walpha_base::UnionFind;
 
 /// Contacts of all generalised discs for one α ≠ 0, or of half-planes; by site, sorted.
 #[derive(Default)]

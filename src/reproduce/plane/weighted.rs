@@ -3,7 +3,8 @@ use walpha_regular::Sites;
 use super::PlaneError;
 use super::exact::Exact;
 use super::mesh::{Edge, Mesh};
-use crate::shape::{Alpha, Class, Simplices, UnionFind};
+use crate::shape::{Alpha, Class, Simplices};
+use walpha_base::UnionFind;
 
 /// The weighted α-shape of points in the plane: discs of squared radius α + ω, and the complex
 /// dual to their union (Edelsbrunner 1992).

@@ -3,8 +3,8 @@
 mod facts;
 
 use crate::cli::said::refused;
-use crate::ladder::{Region, focus};
 use crate::points::{Points, Units, difference, select, weigh};
+use crate::points::{Region, focus};
 use crate::progress::Stage;
 use crate::shape::{AlphaShape, ShapeOptions};
 use crate::{

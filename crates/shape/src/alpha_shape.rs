@@ -1,0 +1,173 @@
+use walpha_base::Coordinates;
+use walpha_complex::Placed;
+
+use super::make::squared_radii;
+use super::measure::together;
+use super::options::power_alpha;
+use super::{
+    Alpha, Balls, Betti, Complex, Measures, ShapeError, ShapeOptions, Sheets, WeightedPoints,
+};
+
+/// The weighted alpha shape of a set of points: a classified subcomplex of their regular
+/// triangulation, by input index.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlphaShape {
+    pub(super) points: WeightedPoints,
+    pub(super) coordinates: Coordinates,
+    pub(super) options: ShapeOptions,
+    /// Weights (α + ω)², where the balls are read so.
+    pub(super) squared: Option<Vec<f64>>,
+    pub(super) complex: Complex,
+    /// What the last points are copies of, where a torus is laid out in space.
+    pub(super) copies: Vec<u32>,
+    pub(super) duplicates: Vec<[u32; 2]>,
+    pub(super) hidden: Option<Vec<u32>>,
+    pub(super) betti: Option<Betti>,
+    pub(super) sheets: Option<Sheets>,
+    pub(super) measures: Measures,
+}
+
+/// A shape as others found it, in canonical order.
+#[doc(hidden)]
+pub struct Assembled {
+    pub points: WeightedPoints,
+    pub coordinates: Coordinates,
+    pub options: ShapeOptions,
+    pub complex: Complex,
+    pub hidden: Option<Vec<u32>>,
+    pub betti: Betti,
+    pub sheets: Sheets,
+    pub measures: Measures,
+}
+
+impl AlphaShape {
+    /// A shape that is all known already, of points no two of which are at one place.
+    ///
+    /// # Errors
+    /// A negative radius.
+    #[doc(hidden)]
+    pub fn assembled(parts: Assembled) -> Result<Self, ShapeError> {
+        let Assembled { points, coordinates, options, complex, hidden, .. } = parts;
+        let squared = match options.balls {
+            Balls::Power => None,
+            Balls::Radius => Some(squared_radii(&points.weights, options.alpha)?),
+        };
+        Ok(Self {
+            points,
+            coordinates,
+            options,
+            squared,
+            complex,
+            copies: Vec::new(),
+            duplicates: Vec::new(),
+            hidden,
+            betti: Some(parts.betti),
+            sheets: Some(parts.sheets),
+            measures: parts.measures,
+        })
+    }
+
+    /// The shape of the same points with the same power weights at another α, which the caller has
+    /// found within this one's triangulation.
+    pub(crate) fn at(&self, alpha: Alpha, exterior: bool, complex: Complex, betti: Betti) -> Self {
+        let measures = Measures::of(&complex, &self.points.positions, self.options.periodic);
+        Self {
+            points: self.points.clone(),
+            coordinates: self.coordinates,
+            options: ShapeOptions { alpha, exterior, ..self.options },
+            squared: self.squared.clone(),
+            complex,
+            copies: Vec::new(),
+            duplicates: self.duplicates.clone(),
+            hidden: self.hidden.clone(),
+            betti: Some(betti),
+            sheets: None,
+            measures,
+        }
+    }
+
+    /// The same shape, whose numbers are declared to be in these coordinates.
+    #[must_use]
+    pub fn meaning(self, coordinates: Coordinates) -> Self {
+        Self { coordinates, ..self }
+    }
+
+    /// What the coordinates of the points mean, as far as it is known.
+    pub fn coordinates(&self) -> Coordinates {
+        self.coordinates
+    }
+
+    /// The points as they were given, duplicates and hidden ones included; of a torus, in its box.
+    pub fn points(&self) -> &WeightedPoints {
+        &self.points
+    }
+
+    /// The places of a simplex's vertices; on a torus the first is in the box, and the others are the
+    /// copies nearest to it.
+    pub fn corners<const N: usize>(&self, row: [u32; N]) -> [[f64; 3]; N] {
+        together(self.options.periodic, row.map(|v| self.points.positions[v as usize]))
+    }
+
+    /// What points are copies of, in a shape that is [laid out](Self::unwrapped): of the last points, in
+    /// their order.
+    pub fn copies(&self) -> &[u32] {
+        &self.copies
+    }
+
+    /// How the shape was made.
+    pub fn options(&self) -> &ShapeOptions {
+        &self.options
+    }
+
+    /// The weights the triangulation is regular for: ω, or (α + ω)² for [`Balls::Radius`].
+    pub fn power_weights(&self) -> &[f64] {
+        self.squared.as_deref().unwrap_or(&self.points.weights)
+    }
+
+    /// The squared radius simplices are compared with: α, or 0 for [`Balls::Radius`].
+    pub fn power_alpha(&self) -> Alpha {
+        power_alpha(&self.options)
+    }
+
+    /// The complex with the power weights and the α that it is judged with, to be compared and checked.
+    pub fn placed(&self) -> Placed<'_> {
+        let (positions, weights) = (&self.points.positions, self.power_weights());
+        Placed::new(positions, weights, self.power_alpha(), &self.complex)
+    }
+
+    /// The simplices and their classes, in canonical order; exterior ones only if asked for.
+    pub fn complex(&self) -> &Complex {
+        &self.complex
+    }
+
+    /// Pairs of input indices: a point that went, and the one at the same place that stayed.
+    pub fn duplicates(&self) -> &[[u32; 2]] {
+        &self.duplicates
+    }
+
+    /// Points that are not vertices of the regular triangulation, ascending; `None` unless they were asked for
+    /// ([`ShapeOptions::hidden`], [`ShapeOptions::exterior`]).
+    pub fn hidden(&self) -> Option<&[u32]> {
+        self.hidden.as_deref()
+    }
+
+    /// Betti numbers of the shape; `None` where whoever made it did not count them.
+    pub fn betti(&self) -> Option<Betti> {
+        self.betti
+    }
+
+    /// The sheets that boundary facets and singular edges are part of; `None` of a flat shape.
+    pub fn sheets(&self) -> Option<&Sheets> {
+        self.sheets.as_ref()
+    }
+
+    /// Volume and areas.
+    pub fn measures(&self) -> &Measures {
+        &self.measures
+    }
+
+    /// How many points are vertices of the shape.
+    pub fn points_in_shape(&self) -> usize {
+        self.complex.vertices.counts().in_shape()
+    }
+}

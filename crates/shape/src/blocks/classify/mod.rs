@@ -1,0 +1,117 @@
+//! What a block owns of the shape, from its triangulation.
+//!
+//! 1. [`cells`]: which cells are inside, then the class of each facet, by the two cells beside it or,
+//!    where both are outside, by its own sphere.
+//! 2. [`sheets`]: while facets are classified, the corners of exterior cells are united into sheets.
+//! 3. [`around`]: one walk around each of the block's points gives edges, the point's class, and the
+//!    rows of the simplices that it is the smallest vertex of.
+
+mod around;
+mod cells;
+mod rows;
+mod sheets;
+mod stars;
+
+use walpha_base::UnionFind;
+use walpha_regular::{Predicates, Triangulation};
+
+use super::{Block, Question};
+use around::Walker;
+use cells::{Boundary, State};
+pub use rows::Side;
+pub(super) use rows::{Dimension, Long, Owned, Rows, Shelf, Shelves};
+use sheets::Sheets;
+use stars::Stars;
+
+/// Classifies the simplices whose smallest vertex is the block's own. O(cells).
+pub(super) fn classify(
+    block: &Block,
+    mesh: Triangulation,
+    question: &Question,
+    shelves: Shelves,
+) -> Owned {
+    let (cells, neighbors, ghost) = mesh.into_parts();
+    let local = Local {
+        block,
+        cells: &cells,
+        ghost,
+        predicates: Predicates::on(question.lattice, &block.positions, &block.weights),
+        alpha: question.alpha,
+        exterior: question.exterior,
+    };
+    let mut states = local.classify_cells();
+    let mut sheets = Sheets::new(&states);
+    let mut owned = Owned::default();
+    let boundary = local.classify_facets(&neighbors, &mut states, &mut sheets, &mut owned);
+    drop(neighbors);
+    owned.reserve(&states, block.own as usize);
+    let stars = Stars::new(&cells, block.own, &states);
+    let mut walker = Walker::new(&local, &states, &stars, &boundary, &mut sheets, &mut owned);
+    (0..block.own).for_each(|v| walker.visit(v));
+    let mut components = walker.finish();
+    owned.joined = joined(&mut components, &block.input);
+    sheets.number(&mut owned);
+    drop((cells, states, stars));
+    owned.shelve(shelves, &block.input[..block.own as usize]);
+    owned
+}
+
+/// A block with its triangulation, and what is asked about it. Vertices are its points' numbers.
+struct Local<'a> {
+    block: &'a Block,
+    cells: &'a [[u32; 4]],
+    ghost: u32,
+    predicates: Predicates<'a>,
+    alpha: f64,
+    exterior: bool,
+}
+
+impl Local<'_> {
+    /// Whether a vertex is one of the block's own points; the ghost is nobody's.
+    #[inline(always)]
+    fn owned(&self, v: u32) -> bool {
+        v < self.block.own
+    }
+
+    /// The place of simplices is decided by input indices.
+    #[inline(always)]
+    fn input(&self, v: u32) -> u32 {
+        self.block.input[v as usize]
+    }
+
+    fn fits<const N: usize>(&self, simplex: [u32; N]) -> bool {
+        self.alpha == f64::INFINITY || self.predicates.fits(simplex, self.alpha)
+    }
+}
+
+impl Local<'_> {
+    /// Whether an edge spans half of the box of a torus or more, along one axis at least. Exact.
+    fn is_long(&self, [v, u]: [u32; 2]) -> bool {
+        self.block.copies.as_ref().is_some_and(|copies| {
+            let [p, q] = [v, u].map(|v| self.block.positions[v as usize]);
+            (0..3).any(|k| 2.0 * (p[k] - q[k]).abs() >= copies.torus.sides()[k])
+        })
+    }
+}
+
+/// Points and the representative of their component, by input index.
+fn joined(components: &mut UnionFind, input: &[u32]) -> Vec<[u32; 2]> {
+    let pair = |v: u32| {
+        let root = components.find(v);
+        (root != v).then(|| [input[v as usize], input[root as usize]])
+    };
+    (0..input.len() as u32).filter_map(pair).collect()
+}
+
+/// Whether a permutation of 0..4 that begins with three places is even.
+#[inline(always)]
+fn even(a: usize, b: usize, c: usize) -> bool {
+    let d = 6 - a - b - c;
+    let inversions = u8::from(a > b)
+        + u8::from(a > c)
+        + u8::from(a > d)
+        + u8::from(b > c)
+        + u8::from(b > d)
+        + u8::from(c > d);
+    inversions % 2 == 0
+}

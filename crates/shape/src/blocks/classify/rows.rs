@@ -1,0 +1,275 @@
+//! What a block gives out.
+
+use std::ops::Range;
+
+use super::State;
+use crate::Class;
+
+/// What a block owns.
+#[derive(Default)]
+pub(in super::super) struct Owned {
+    /// All its simplices, while it is at work.
+    pub(super) rows: Shelf,
+    /// Later these, by the shelf of their smallest vertices.
+    pub shelves: Vec<Shelf>,
+    /// How many sheets there are.
+    pub sheets: u32,
+    /// Sides of facets, and singular edges, that touch points of this block and of others.
+    pub shared: Vec<Side>,
+    /// Points, each with another one of its component.
+    pub joined: Vec<[u32; 2]>,
+    /// The ends of edges of the shape between points of this block and of others, some of them several
+    /// times.
+    pub border: Vec<u32>,
+    /// On a torus: an edge that spans half of the box or more.
+    pub long: Option<Long>,
+}
+
+/// An edge by its input indices, and its ends.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Long {
+    pub edge: [u32; 2],
+    pub ends: [[f64; 3]; 2],
+}
+
+/// Input indices in runs of about equal length, so that the rows of one run can be merged, and given
+/// back, before those of the next.
+#[derive(Clone, Copy)]
+pub(in super::super) struct Shelves {
+    pub count: usize,
+    length: u32,
+}
+
+impl Shelves {
+    /// So many for these input indices, which ascend.
+    pub(crate) fn new(input: &[u32], count: usize) -> Self {
+        let end = input.last().map_or(0, |&last| last as usize + 1);
+        Self { count, length: end.div_ceil(count).max(1) as u32 }
+    }
+
+    /// The shelf of the point with an input index.
+    pub(crate) fn at(self, input: u32) -> usize {
+        (input / self.length) as usize
+    }
+
+    /// Which of these input indices, which ascend, are on each shelf.
+    pub(crate) fn ranges(self, input: &[u32]) -> Vec<Range<usize>> {
+        let start = |shelf| input.partition_point(|&i| self.at(i) < shelf);
+        (0..self.count).map(|shelf| start(shelf)..start(shelf + 1)).collect()
+    }
+}
+
+/// The simplices that a block owns whose smallest vertices are on one shelf, around one of these after
+/// the other. That point is left out of the rows: a quarter to a half of the memory that they take
+/// while blocks wait for each other.
+#[derive(Default)]
+pub(in super::super) struct Shelf {
+    pub cells: Rows<3>,
+    pub facets: Rows<2>,
+    pub edges: Rows<1>,
+    /// The class of each point, `None` for those that are not vertices.
+    pub vertices: Vec<Option<Class>>,
+    /// Where the rows and sheets of each point begin, see [`Dimension`], and where the last ones end.
+    pub starts: Vec<[u32; 5]>,
+    /// The sheet of each regular facet, and the two of each singular facet: first that on the side where
+    /// the facet's sorted row turns clockwise. Numbered from 0 within the block.
+    pub facet_sheets: Vec<u32>,
+    /// The sheet of each singular edge.
+    pub edge_sheets: Vec<u32>,
+}
+
+/// Columns of [`Owned::starts`].
+#[derive(Clone, Copy)]
+pub(in super::super) enum Dimension {
+    Cells,
+    Facets,
+    Edges,
+    FacetSheets,
+    EdgeSheets,
+}
+
+/// Simplices of `M` + 1 vertices, by input index.
+pub(in super::super) struct Rows<const M: usize> {
+    pub vertices: Vec<[u32; M]>,
+    pub classes: Vec<Class>,
+}
+
+impl<const M: usize> Default for Rows<M> {
+    fn default() -> Self {
+        Self { vertices: Vec::new(), classes: Vec::new() }
+    }
+}
+
+impl<const M: usize> Rows<M> {
+    /// Makes room for so many rows at the most, so that growing copies nothing.
+    fn reserve(&mut self, most: usize) {
+        self.vertices.reserve_exact(most);
+        self.classes.reserve_exact(most);
+    }
+
+    pub(crate) fn push(&mut self, row: [u32; M], class: Class) {
+        self.vertices.push(row);
+        self.classes.push(class);
+    }
+
+    fn of(&self, ranges: impl Iterator<Item = Range<usize>> + Clone) -> Self {
+        let vertices = gathered(&self.vertices, ranges.clone());
+        Self { vertices, classes: gathered(&self.classes, ranges) }
+    }
+}
+
+/// One side of a facet, or a singular edge, that several blocks know.
+pub struct Side {
+    /// Sorted input indices; an edge repeats its last.
+    pub simplex: [u32; 3],
+    /// Its side.
+    pub side: u32,
+    /// Its sheet within the block.
+    pub sheet: u32,
+    /// On a torus: by how many sides its smallest vertex is moved.
+    pub windings: [i32; 3],
+}
+
+impl Owned {
+    /// Makes room for the rows of a block with these classes, some of them other blocks'.
+    pub(super) fn reserve(&mut self, states: &[State], points: usize) {
+        let (mut cells, mut facets) = (0, 0);
+        for state in states {
+            cells += usize::from(state.is_inside());
+            facets += state.given();
+        }
+        self.rows.cells.reserve(cells);
+        self.rows.facets.reserve(facets);
+        // In a triangulated ball there is an edge for each cell and for each point, less a few.
+        self.rows.edges.reserve(cells + points);
+        self.rows.starts.reserve_exact(points + 1);
+        self.rows.vertices.reserve_exact(points);
+    }
+
+    /// The number of points.
+    pub(crate) fn points(&self) -> usize {
+        self.shelves.iter().map(|shelf| shelf.vertices.len()).sum()
+    }
+
+    /// What the rows, classes and sheets will take when they are whole.
+    pub(crate) fn merged_bytes(&self) -> u64 {
+        let bytes = |shelf: &Shelf| {
+            let rows = 17 * shelf.cells.classes.len()
+                + 13 * shelf.facets.classes.len()
+                + 9 * shelf.edges.classes.len()
+                + 5 * shelf.vertices.len();
+            rows + 4 * (shelf.facet_sheets.len() + shelf.edge_sheets.len())
+        };
+        self.shelves.iter().map(bytes).sum::<usize>() as u64
+    }
+
+    /// Puts the rows of points with these input indices on shelves.
+    pub(super) fn shelve(&mut self, shelves: Shelves, input: &[u32]) {
+        let rows = std::mem::take(&mut self.rows);
+        self.shelves = if shelves.count == 1 {
+            vec![rows]
+        } else {
+            let mut points = vec![Vec::new(); shelves.count];
+            (0..).zip(input).for_each(|(v, &i)| points[shelves.at(i)].push(v));
+            points.iter().map(|points| rows.of(points)).collect()
+        };
+    }
+}
+
+impl Shelf {
+    /// Notes that the rows of the next point begin here.
+    pub(super) fn begin(&mut self) {
+        self.starts.push(
+            [
+                self.cells.classes.len(),
+                self.facets.classes.len(),
+                self.edges.classes.len(),
+                self.facet_sheets.len(),
+                self.edge_sheets.len(),
+            ]
+            .map(|len| len as u32),
+        );
+    }
+
+    /// The rows of some of the points.
+    fn of(&self, points: &[u32]) -> Self {
+        let ranges = |dimension: Dimension| {
+            let start = move |v: u32| self.starts[v as usize][dimension as usize] as usize;
+            points.iter().map(move |&v| start(v)..start(v + 1))
+        };
+        let mut shelf = Self {
+            cells: self.cells.of(ranges(Dimension::Cells)),
+            facets: self.facets.of(ranges(Dimension::Facets)),
+            edges: self.edges.of(ranges(Dimension::Edges)),
+            vertices: points.iter().map(|&v| self.vertices[v as usize]).collect(),
+            starts: Vec::with_capacity(points.len() + 1),
+            facet_sheets: gathered(&self.facet_sheets, ranges(Dimension::FacetSheets)),
+            edge_sheets: gathered(&self.edge_sheets, ranges(Dimension::EdgeSheets)),
+        };
+        let mut end = [0; 5];
+        shelf.starts.push(end);
+        for &v in points {
+            let [from, to] = [self.starts[v as usize], self.starts[v as usize + 1]];
+            (0..5).for_each(|k| end[k] += to[k] - from[k]);
+            shelf.starts.push(end);
+        }
+        shelf
+    }
+}
+
+/// Elements from these places, in memory of just their number.
+fn gathered<T: Copy>(from: &[T], ranges: impl Iterator<Item = Range<usize>> + Clone) -> Vec<T> {
+    let mut to = Vec::with_capacity(ranges.clone().map(|range| range.len()).sum());
+    ranges.for_each(|range| to.extend_from_slice(&from[range]));
+    to
+}
+
+#[cfg(test)]
+mod tests {
+    use walpha_base::progress::Piece;
+    use walpha_regular::Lattice;
+    use walpha_regular::Sites;
+
+    use super::super::super::{Limits, Plan, Question, Reach, decide, merge};
+    use super::*;
+
+    #[test]
+    fn merged_rows_take_the_bytes_foreseen() {
+        let axis = || (0..5).map(f64::from);
+        let rows = axis().flat_map(|z| axis().flat_map(move |y| axis().map(move |x| [x, y, z])));
+        // Points of which facets and edges dangle.
+        let apart =
+            [[9.0, 0.0, 0.0], [9.5, 0.0, 0.0], [8.7, 0.3, 0.0], [9.0, 0.0, 3.0], [9.0, 0.5, 3.0]];
+        let positions: Vec<_> = rows.chain(apart).collect();
+        let weights = vec![0.0; positions.len()];
+        let sites = Sites::new(&positions, &weights).unwrap();
+        let lattice = Lattice::of(&positions, &weights);
+        let question = Question { alpha: 0.75, lattice, exterior: false };
+        for blocks in [1, 7] {
+            let limits = Limits { blocks: Some(blocks), memory: None };
+            let plan = Plan::new(&sites, Reach::Balls(0.75), limits).unwrap();
+            let shelves = Shelves::new(sites.input(), 1);
+            let work = Piece::new(1);
+            let owned: Vec<_> = (0..plan.partition.len())
+                .map(|block| decide(&sites, &plan.partition, block, &question, shelves, &work))
+                .collect::<Result<_, _>>()
+                .unwrap();
+            assert_eq!(owned.iter().map(Owned::points).sum::<usize>(), positions.len());
+            let foreseen: u64 = owned.iter().map(Owned::merged_bytes).sum();
+            let made = merge(&sites, &plan, owned, &question, shelves);
+            let complex = &made.complex;
+            assert!(made.facet_sheets.len() > 2 && !made.edge_sheets.is_empty());
+            let bytes = size_of_val(complex.cells.rows())
+                + size_of_val(complex.cells.classes())
+                + size_of_val(complex.facets.rows())
+                + size_of_val(complex.facets.classes())
+                + size_of_val(complex.edges.rows())
+                + size_of_val(complex.edges.classes())
+                + size_of_val(complex.vertices.rows())
+                + size_of_val(complex.vertices.classes())
+                + size_of_val(&made.facet_sheets[..])
+                + size_of_val(&made.edge_sheets[..]);
+            assert_eq!(foreseen, bytes as u64, "{blocks}");
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! The α-complex block by block.
+//!
+//! It is local. A simplex of the shape has an orthogonal sphere of squared radius at most α, so each
+//! of its vertices v lies within √(α + ω(v)) of the sphere's centre, and a point q that could refute
+//! it, by lying inside, within √(α + ω(q)). The points of a block and those within
+//! √(α + ω(q)) + √(α + max ω of the block) of its box, its *halo*, therefore decide every simplex that
+//! has a vertex in the block. Ties too: a face of the lower hull of all lifted points is one of any
+//! subset that has its vertices, and ties are broken by raising lifted points in an order of their
+//! coordinates, which does not depend on what other points there are.
+//!
+//! With `Balls::Radius` the weights are (α + ω)² and α is 0, and the same bound reads: the sum of
+//! the two radii.
+//!
+//! A block owns the simplices whose smallest input index lies in it. [`partition`] cuts, [`plan`]
+//! says into how many, [`classify`] finds what a block owns, and [`merge`] puts that together.
+
+mod classify;
+mod merge;
+mod partition;
+mod piece;
+mod plan;
+mod reach;
+mod spanning;
+mod torus;
+
+use rayon::prelude::*;
+use walpha_base::progress::Piece;
+use walpha_regular::Lattice;
+use walpha_regular::{Sites, Torus, Triangulation, TriangulationError, check_span, insert_all};
+
+use super::{Complex, ShapeError};
+
+use classify::{Owned, Shelves, classify};
+use merge::merge;
+pub(super) use partition::Partition;
+pub use piece::{BlockShape, Own, Side, block_shape};
+pub use plan::AT_WORK;
+pub use plan::PlanError;
+pub(super) use plan::{Limits, Plan};
+pub(crate) use reach::Reach;
+use spanning::spanning;
+use torus::{on_torus, too_long};
+
+/// What is asked about all blocks of a set.
+#[derive(Clone, Copy)]
+pub(super) struct Question {
+    /// A squared length or +∞.
+    pub alpha: f64,
+    /// The lattice of the whole set.
+    pub lattice: Lattice,
+    /// Whether exterior simplices are wanted too, which mean something in a triangulation of all
+    /// points only.
+    pub exterior: bool,
+}
+
+/// What the blocks say together.
+pub(super) struct Answer {
+    pub complex: Complex,
+    /// Components.
+    pub b0: u64,
+    /// The sheet of each regular facet, in the order of the facets, two of each singular one.
+    pub facet_sheets: Vec<u32>,
+    /// The sheet of each singular edge, in their order.
+    pub edge_sheets: Vec<u32>,
+    /// Input indices of sites that are not vertices, where the whole triangulation was made.
+    pub hidden: Option<Vec<u32>>,
+    /// In how many directions loops on the sheets go round a torus.
+    pub sheet_windings: usize,
+}
+
+/// Some sites and those around them, each along the curve.
+pub(super) struct Block {
+    /// The block's own points, then its halo.
+    pub positions: Vec<[f64; 3]>,
+    /// Power weights.
+    pub weights: Vec<f64>,
+    /// Input indices.
+    pub input: Vec<u32>,
+    /// How many are the block's own.
+    pub own: u32,
+    /// On a torus: what the points of the halo are copies of.
+    pub copies: Option<Copies>,
+}
+
+/// Where the points of a halo come from, on a torus.
+pub(super) struct Copies {
+    pub torus: Torus,
+    /// By how many sides each is moved.
+    pub windings: Vec<[i32; 3]>,
+}
+
+impl Block {
+    /// By how many sides a point is moved.
+    pub(super) fn windings(&self, v: u32) -> [i32; 3] {
+        let beyond = v.checked_sub(self.own).zip(self.copies.as_ref());
+        beyond.map_or([0; 3], |(at, copies)| copies.windings[at as usize])
+    }
+}
+
+/// The α-complex of sites; with exterior simplices, which need one block, the whole triangulation.
+pub(super) fn run(
+    sites: &Sites<'_>,
+    plan: &Plan,
+    question: &Question,
+) -> Result<Answer, ShapeError> {
+    let partition = &plan.partition;
+    if sites.torus().is_none() {
+        check_span(sites).map_err(TriangulationError::from)?;
+    }
+    tracing::debug!(blocks = partition.len(), at_once = plan.at_once, "cut");
+    // So many blocks at once, each giving its memory back before the next.
+    let shelves = Shelves::new(sites.input(), plan.shelves());
+    let blocks: Vec<usize> = (0..partition.len()).collect();
+    let mut owned: Vec<Owned> = Vec::with_capacity(blocks.len());
+    let (mut bytes, mut points) = (0, 0);
+    let work = Piece::new(WORK * sites.input().len() as u64);
+    for batch in blocks.chunks(plan.at_once) {
+        let done: Result<Vec<_>, ShapeError> = batch
+            .par_iter()
+            .map(|&block| decide(sites, partition, block, question, shelves, &work))
+            .collect();
+        for done in done? {
+            bytes += done.merged_bytes();
+            points += done.points();
+            owned.push(done);
+        }
+        plan.keeps(bytes, points, sites.input().len())?;
+        plan.give_back();
+    }
+    Ok(merge(sites, plan, owned, question, shelves))
+}
+
+/// What a block owns.
+fn decide(
+    sites: &Sites<'_>,
+    partition: &Partition,
+    block: usize,
+    question: &Question,
+    shelves: Shelves,
+    work: &Piece,
+) -> Result<Owned, ShapeError> {
+    let (points, made, lattice) = match sites.torus() {
+        None => in_space(sites, partition, block, question, work)?,
+        Some(torus) => on_torus(sites, torus, partition, block, question, work)?,
+    };
+    let owned = classify(&points, made, &Question { lattice, ..*question }, shelves);
+    work.add((WORK - TRIANGULATION) * u64::from(points.own));
+    match (owned.long, sites.torus()) {
+        (Some(edge), Some(torus)) => Err(too_long(torus, edge)),
+        _ => Ok(owned),
+    }
+}
+
+/// A block with what decides what it owns around it, and the lattice of all that.
+fn in_space(
+    sites: &Sites<'_>,
+    partition: &Partition,
+    block: usize,
+    question: &Question,
+    work: &Piece,
+) -> Result<(Block, Triangulation, Lattice), ShapeError> {
+    let mut points = partition.block(sites, Reach::Balls(question.alpha), block);
+    let (inside, next) = (points.input.len(), sites.input().last().map_or(0, |last| last + 1));
+    let made = spanning(&mut points, question.alpha, next, work)?;
+    // Places beside the points need not be on the lattice of the set.
+    let lattice = if points.input.len() > inside {
+        Lattice::of(&points.positions, &points.weights)
+    } else {
+        question.lattice
+    };
+    Ok((points, made, lattice))
+}
+
+/// What a point counts for as work, and the part of that which its triangulation takes.
+const WORK: u64 = 3;
+const TRIANGULATION: u64 = 2;
+
+fn triangulate(points: &Block, work: &Piece) -> Result<Triangulation, TriangulationError> {
+    let (own, all) = (TRIANGULATION * u64::from(points.own), points.input.len() as u64);
+    let (mut inside, mut counted) = (0, 0);
+    let made = insert_all(&points.positions, &points.weights, |more| {
+        inside += more as u64;
+        let units = own * inside / all;
+        work.add(units - counted);
+        counted = units;
+    })?;
+    work.add(own - counted);
+    Ok(made)
+}

@@ -1,0 +1,250 @@
+//! Sites cut into blocks by a k-d tree.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+use walpha_regular::Sites;
+
+use super::{Block, Copies, Reach};
+
+/// Boxes of about equally many sites: each cut across its longest side.
+pub(crate) struct Partition {
+    /// A tree in which children come after their parents; the first is the root.
+    nodes: Vec<Node>,
+    /// The leaf of each block.
+    leaves: Vec<usize>,
+    /// Places on the curve, those of a block side by side and ascending.
+    members: Vec<u32>,
+}
+
+struct Node {
+    members: Range<usize>,
+    low: [f64; 3],
+    high: [f64; 3],
+    /// The largest weight.
+    heaviest: f64,
+    /// The nodes it is cut into; none for a block.
+    halves: Option<[usize; 2]>,
+}
+
+impl Partition {
+    /// Cuts sites into so many blocks, but no more than there are sites. O(n log blocks).
+    pub(crate) fn new(sites: &Sites<'_>, blocks: usize) -> Self {
+        let count = sites.curve().len();
+        let mut members: Vec<u32> = (0..count as u32).collect();
+        let mut nodes = vec![Node::around(sites, &members, 0)];
+        let mut leaves = Vec::new();
+        // From the last to the first, so that blocks are numbered from low to high.
+        let mut pending = vec![(0, blocks.clamp(1, count.max(1)))];
+        while let Some((at, blocks)) = pending.pop() {
+            let Range { start, end } = nodes[at].members;
+            let here = &mut members[start..end];
+            if blocks == 1 {
+                here.par_sort_unstable();
+                leaves.push(at);
+                continue;
+            }
+            let axis = nodes[at].longest_side();
+            let left = blocks / 2;
+            let middle = here.len() * left / blocks;
+            let along =
+                |&place: &u32| sites.positions()[sites.curve()[place as usize] as usize][axis];
+            here.select_nth_unstable_by(middle, |a, b| {
+                along(a).total_cmp(&along(b)).then(a.cmp(b))
+            });
+            let (low, high) = here.split_at(middle);
+            let halves = [nodes.len(), nodes.len() + 1];
+            nodes.push(Node::around(sites, low, start));
+            nodes.push(Node::around(sites, high, start + middle));
+            nodes[at].halves = Some(halves);
+            pending.extend([(halves[1], blocks - left), (halves[0], left)]);
+        }
+        Self { nodes, leaves, members }
+    }
+
+    /// The number of blocks.
+    pub(crate) fn len(&self) -> usize {
+        self.leaves.len()
+    }
+
+    /// The sites of a block, along the curve.
+    pub(crate) fn own<'a>(
+        &'a self,
+        sites: &'a Sites<'_>,
+        block: usize,
+    ) -> impl Iterator<Item = u32> + 'a {
+        let members = &self.members[self.nodes[self.leaves[block]].members.clone()];
+        members.iter().map(|&place| sites.curve()[place as usize])
+    }
+
+    /// How many points the largest block has, those around it included.
+    pub(crate) fn largest(&self, sites: &Sites<'_>, reach: Reach) -> usize {
+        let size = |block: usize| self.size(sites, reach, block);
+        (0..self.len()).into_par_iter().map(size).max().unwrap_or(0)
+    }
+
+    /// How many points a block has, those around it included.
+    pub(crate) fn size(&self, sites: &Sites<'_>, reach: Reach, block: usize) -> usize {
+        let mut count = self.nodes[self.leaves[block]].members.len();
+        self.halo(sites, reach, block, |_, _| count += 1);
+        count
+    }
+
+    /// The points of a block and of its halo. Copies of points come copy by copy, each along the curve.
+    pub(crate) fn block(&self, sites: &Sites<'_>, reach: Reach, block: usize) -> Block {
+        let own = self.nodes[self.leaves[block]].members.clone();
+        let mut halo = Vec::new();
+        self.halo(sites, reach, block, |place, windings| halo.push((windings, place)));
+        halo.sort_unstable();
+        let places = || self.members[own.clone()].iter().chain(halo.iter().map(|(_, place)| place));
+        let site = |&place: &u32| sites.curve()[place as usize] as usize;
+        let mut positions: Vec<_> = places().map(|place| sites.positions()[site(place)]).collect();
+        let copies = sites.torus().map(|torus| {
+            let windings: Vec<_> = halo.iter().map(|&(windings, _)| windings).collect();
+            for (position, &windings) in positions[own.len()..].iter_mut().zip(&windings) {
+                *position = torus.moved(*position, windings);
+            }
+            Copies { torus, windings }
+        });
+        Block {
+            positions,
+            weights: places().map(|place| sites.weights()[site(place)]).collect(),
+            input: places().map(|place| sites.input()[site(place)]).collect(),
+            own: own.len() as u32,
+            copies,
+        }
+    }
+
+    /// Visits the places on the curve of the points around a block, in no particular order, each with
+    /// the sides of the box that it is moved by.
+    ///
+    /// Points with α + ω < 0 have no ball and refute nothing: they are left out.
+    fn halo(
+        &self,
+        sites: &Sites<'_>,
+        reach: Reach,
+        block: usize,
+        mut visit: impl FnMut(u32, [i32; 3]),
+    ) {
+        let leaf = self.leaves[block];
+        let own = &self.nodes[leaf];
+        let near = |low, high, heaviest| own.reaches(low, high, reach.from(own.heaviest, heaviest));
+        for windings in self.windings(sites, own, reach) {
+            let moved = |place| match sites.torus() {
+                None => place,
+                Some(torus) => torus.moved(place, windings),
+            };
+            let mut pending = vec![0];
+            while let Some(at) = pending.pop() {
+                let node = &self.nodes[at];
+                if (at == leaf && windings == [0; 3])
+                    || !near(moved(node.low), moved(node.high), node.heaviest)
+                {
+                    continue;
+                }
+                if let Some(halves) = node.halves {
+                    pending.extend(halves);
+                    continue;
+                }
+                for &place in &self.members[node.members.clone()] {
+                    let site = sites.curve()[place as usize] as usize;
+                    let at = moved(sites.positions()[site]);
+                    if near(at, at, sites.weights()[site]) {
+                        visit(place, windings);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The multiples of the sides of the box by which points near a block may have been moved.
+    fn windings(&self, sites: &Sites<'_>, own: &Node, reach: Reach) -> Vec<[i32; 3]> {
+        let Some(torus) = sites.torus() else { return vec![[0; 3]] };
+        let all = &self.nodes[0];
+        let reach = reach.from(own.heaviest, all.heaviest).max(0.0);
+        let along = |k: usize| {
+            let side = torus.sides()[k];
+            // One more than may reach, for roundings.
+            let below = ((own.low[k] - all.high[k] - reach) / side).floor() as i32;
+            let above = ((own.high[k] - all.low[k] + reach) / side).ceil() as i32;
+            below..=above
+        };
+        let mut windings = Vec::new();
+        for x in along(0) {
+            for y in along(1) {
+                windings.extend(along(2).map(|z| [x, y, z]));
+            }
+        }
+        windings
+    }
+}
+
+/// The ball of points around some points of their own: what reaches it is their halo.
+pub(super) struct Neighbourhood {
+    own: Node,
+    reach: Reach,
+}
+
+impl Neighbourhood {
+    /// Of points with their weights.
+    pub(super) fn of(points: impl Iterator<Item = ([f64; 3], f64)>, alpha: f64) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        let mut heaviest = f64::NEG_INFINITY;
+        for (at, weight) in points {
+            for k in 0..3 {
+                (low[k], high[k]) = (low[k].min(at[k]), high[k].max(at[k]));
+            }
+            heaviest = heaviest.max(weight);
+        }
+        let own = Node { members: 0..0, low, high, heaviest, halves: None };
+        Self { reach: Reach::Balls(alpha), own }
+    }
+
+    /// Whether a point is in the halo.
+    pub(super) fn holds(&self, at: [f64; 3], weight: f64) -> bool {
+        self.own.reaches(at, at, self.reach.from(self.own.heaviest, weight))
+    }
+}
+
+/// The lowest and highest corner of a box, and the largest weight in it.
+type Extent = ([f64; 3], [f64; 3], f64);
+
+impl Node {
+    fn around(sites: &Sites<'_>, members: &[u32], start: usize) -> Self {
+        let nowhere = || ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], f64::NEG_INFINITY);
+        let union = |(a, b, u): Extent, (c, d, v): Extent| {
+            let (mut low, mut high) = (a, b);
+            for k in 0..3 {
+                low[k] = low[k].min(c[k]);
+                high[k] = high[k].max(d[k]);
+            }
+            (low, high, u.max(v))
+        };
+        let extent = |&place: &u32| {
+            let site = sites.curve()[place as usize] as usize;
+            let at = sites.positions()[site];
+            (at, at, sites.weights()[site])
+        };
+        let (low, high, heaviest) =
+            members.par_iter().with_min_len(1 << 12).map(extent).reduce(nowhere, union);
+        Self { members: start..start + members.len(), low, high, heaviest, halves: None }
+    }
+
+    fn longest_side(&self) -> usize {
+        let side = |k: usize| self.high[k] - self.low[k];
+        // Of equals the last, the slowest in a volume's memory.
+        (0..3).max_by(|&a, &b| side(a).total_cmp(&side(b))).unwrap_or(2)
+    }
+
+    /// Whether a box is within reach of this one; not where the reach is NaN.
+    fn reaches(&self, low: [f64; 3], high: [f64; 3], reach: f64) -> bool {
+        let away = |k: usize| (low[k] - self.high[k]).max(self.low[k] - high[k]).max(0.0);
+        let apart = away(0) * away(0) + away(1) * away(1) + away(2) * away(2);
+        // NaN compares false. Both sides come out of a few
+        // operations, each off by at most 2⁻⁵³ of its result: a point too many does no harm.
+        apart <= reach * reach * (1.0 + 16.0 * f64::EPSILON)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,211 @@
+//! Into how many blocks a set is cut.
+
+use walpha_base::advice::Advice;
+use walpha_base::memory::{self, NoMemory};
+use walpha_regular::Sites;
+
+use super::{Partition, Reach};
+
+/// The blocks, and how many are worked on at once.
+pub(crate) struct Plan {
+    pub partition: Partition,
+    pub at_once: usize,
+    /// Points in the blocks worked on at once, their halos' included.
+    at_work: usize,
+    /// Bytes allowed, and held when the plan was made. Memory that comes free then goes back to the
+    /// system at once, which takes a tenth of the time, as it must be asked for again.
+    bound: Option<Bound>,
+}
+
+#[derive(Clone, Copy)]
+struct Bound {
+    asked: u64,
+    resident: u64,
+}
+
+/// What a plan keeps to.
+#[derive(Clone, Copy)]
+pub(crate) struct Limits {
+    /// Blocks asked for.
+    pub blocks: Option<usize>,
+    /// Bytes allowed.
+    pub memory: Option<u64>,
+}
+
+/// The memory allowed is not enough.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{} of memory is not enough: with {blocks} blocks, one at a time, about {} are needed",
+    memory::readable(*asked),
+    memory::readable(*needed)
+)]
+pub struct PlanError {
+    /// Bytes allowed.
+    pub asked: u64,
+    /// Bytes that the smallest plan needs.
+    pub needed: u64,
+    /// Its number of blocks.
+    pub blocks: usize,
+}
+
+impl PlanError {
+    /// What to do about it.
+    pub fn advice(&self) -> Advice {
+        "allow more, or select fewer points".into()
+    }
+}
+
+/// Bytes for each point of blocks that are done: the rows and classes of about 5 cells, 11 facets and 7
+/// edges, without their smallest vertices, and the sides that blocks share. A shape without any outside
+/// has up to 7, 14 and 8, for which [`Plan::keeps`] watches.
+const DONE: u64 = 215;
+/// Bytes for each point when blocks are merged: whole rows.
+const MERGED: u64 = 320;
+/// Bytes for each point that merging takes beside the rows: where the rows of each are.
+const PLACES: u64 = 16;
+/// Steps in which rows are merged where memory is bounded: so little of them is there twice.
+const SHELVES: usize = 32;
+/// Blocks are made no smaller for the sake of threads: halos would cost more than a thread gains.
+const WORTHWHILE: usize = 2000;
+/// No set has use for more blocks.
+const MOST: usize = 1 << 12;
+
+/// Bytes for each point of a block at work, its halo's included: 6 to 7 cells of 36 bytes while they are
+/// made; then of 32, with stars and rows.
+pub const AT_WORK: u64 = 600;
+
+/// Bytes that a shape of so many points takes, with so many of them and of halos at work.
+fn taken(points: usize, at_work: usize) -> u64 {
+    let working = DONE * points as u64 + AT_WORK * at_work as u64;
+    working.max(MERGED * points as u64)
+}
+
+/// The number of blocks to begin with.
+fn fewest(points: usize, threads: usize) -> usize {
+    threads.min(points / WORTHWHILE).max(1)
+}
+
+impl Plan {
+    /// All sites as one block.
+    pub(crate) fn whole(sites: &Sites<'_>) -> Self {
+        let at_work = sites.input().len();
+        Self { partition: Partition::new(sites, 1), at_once: 1, at_work, bound: None }
+    }
+
+    /// As many blocks as there are threads; with a bound on memory, those that keep it and take the
+    /// least time. O(n log n).
+    ///
+    /// # Errors
+    /// [`PlanError`] when the bound cannot be kept.
+    pub(crate) fn new(sites: &Sites<'_>, reach: Reach, limits: Limits) -> Result<Self, PlanError> {
+        let threads = rayon::current_num_threads();
+        let resident = memory::resident_bytes().unwrap_or(0);
+        let bound = limits.memory.map(|asked| Bound { asked, resident });
+        match (limits.blocks, bound) {
+            (Some(blocks), _) => {
+                let partition = Partition::new(sites, blocks);
+                let at_once = partition.len().min(threads);
+                let at_work = at_once * partition.largest(sites, reach);
+                Ok(Self { partition, at_once, at_work, bound })
+            }
+            (None, Some(bound)) => Self::within(bound, sites, reach, threads),
+            (None, None) => Ok(Self::fast(sites, reach, threads)),
+        }
+    }
+
+    /// As many blocks as there are threads, if that pays.
+    fn fast(sites: &Sites<'_>, reach: Reach, threads: usize) -> Self {
+        let points = sites.input().len();
+        let at_once = fewest(points, threads);
+        let partition = Partition::new(sites, at_once);
+        // More blocks than one pay only if none of them is nearly the whole.
+        let largest = partition.largest(sites, reach);
+        if largest > points - points / 8 {
+            return Self::whole(sites);
+        }
+        Self { partition, at_once, at_work: at_once * largest, bound: None }
+    }
+
+    /// The blocks that keep a bound and take the least time.
+    fn within(
+        bound: Bound,
+        sites: &Sites<'_>,
+        reach: Reach,
+        threads: usize,
+    ) -> Result<Self, PlanError> {
+        let Bound { asked, resident } = bound;
+        let points = sites.input().len();
+        let needs = |at_once: usize, largest: usize| resident + taken(points, at_once * largest);
+        let mut blocks = fewest(points, threads);
+        let mut least = PlanError { asked, needed: u64::MAX, blocks };
+        let mut best: Option<(f64, Self)> = None;
+        loop {
+            let partition = Partition::new(sites, blocks);
+            // The largest block has no fewer points than this one. Where that is too many already, and no news
+            // for the least that is needed, the others are not counted: with a long reach each has nearly all.
+            let some = partition.size(sites, reach, partition.len() / 2);
+            let hopeless = needs(1, some) > asked && needs(1, some) >= least.needed;
+            let largest = if hopeless { some } else { partition.largest(sites, reach) };
+            // The time of a plan is that of its blocks with their halos, shared among threads.
+            let work = (blocks * largest) as f64;
+            let time = |at_once: usize| work / at_once as f64;
+            let shortest = best.as_ref().map_or(f64::INFINITY, |(time, _)| *time);
+            let at_once = (1..=threads.min(blocks)).rev().find(|&at_once| {
+                let needed = needs(at_once, largest);
+                if needed < least.needed {
+                    least = PlanError { asked, needed, blocks };
+                }
+                needed <= asked
+            });
+            if let Some(at_once) = at_once.filter(|&at_once| time(at_once) < shortest) {
+                let (at_work, bound) = (at_once * largest, Some(bound));
+                best = Some((time(at_once), Self { partition, at_once, at_work, bound }));
+            }
+            blocks *= 2;
+            // More blocks have more of a halo: with all threads at work they are slower.
+            if at_once == Some(threads)
+                || (best.is_some() && time(threads) >= shortest)
+                || blocks > MOST.min(points)
+            {
+                return best.map(|(_, plan)| plan).ok_or(least);
+            }
+        }
+    }
+
+    /// Whether the memory for it can be had, as far as can be said before.
+    ///
+    /// # Errors
+    /// [`NoMemory`] when not.
+    pub(crate) fn afford(&self, points: usize) -> Result<(), NoMemory> {
+        let bytes = usize::try_from(taken(points, self.at_work)).unwrap_or(usize::MAX);
+        memory::afford(bytes, || format!("the shape of {points} points"))
+    }
+
+    /// In how many steps the rows of blocks are merged.
+    pub(crate) fn shelves(&self) -> usize {
+        if self.bound.is_some() { SHELVES } else { 1 }
+    }
+
+    /// Whether the bound will be kept if all points have as much to merge as some of them have.
+    ///
+    /// # Errors
+    /// [`PlanError`] when not.
+    pub(crate) fn keeps(&self, bytes: u64, points: usize, all: usize) -> Result<(), PlanError> {
+        let Some(Bound { asked, resident }) = self.bound else { return Ok(()) };
+        let rows = (bytes as f64 * all as f64 / points as f64) as u64;
+        let needed = resident + rows + PLACES * all as u64;
+        let error = PlanError { asked, needed, blocks: self.partition.len() };
+        if needed <= asked { Ok(()) } else { Err(error) }
+    }
+
+    /// Gives freed memory back to the system, where memory matters more than time and the allocator
+    /// would keep it for itself (glibc).
+    pub(crate) fn give_back(&self) {
+        if self.bound.is_some() {
+            memory::give_back();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

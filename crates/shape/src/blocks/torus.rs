@@ -1,0 +1,140 @@
+//! How far a block of a torus looks: less than what is asked for, where that decides it.
+
+use rayon::prelude::*;
+use walpha_base::progress::Piece;
+use walpha_regular::Lattice;
+use walpha_regular::{
+    AXES, Predicates, Sites, SitesError, Torus, Triangulation, TriangulationError,
+};
+
+use super::classify::Long;
+use super::{Block, Partition, Question, Reach, triangulate};
+use crate::ShapeError;
+
+/// A block with what decides what it owns around it: as much as there are large empty spheres.
+pub(super) fn on_torus(
+    sites: &Sites<'_>,
+    torus: Torus,
+    partition: &Partition,
+    block: usize,
+    question: &Question,
+    work: &Piece,
+) -> Result<(Block, Triangulation, Lattice), ShapeError> {
+    for reach in question.reaches(sites, torus) {
+        let points = partition.block(sites, reach, block);
+        match triangulate(&points, work) {
+            Err(TriangulationError::Sites(SitesError::Flat { .. })) => {}
+            Ok(made) if !question.decides(reach, &points, &made) => {}
+            made => return Ok((points, made?, question.lattice)),
+        }
+    }
+    let points = partition.block(sites, Reach::whole(sites), block);
+    let made = triangulate(&points, work)?;
+    Ok((points, made, question.lattice))
+}
+
+impl Question {
+    /// How far to look on a torus before all is looked at.
+    fn reaches(&self, sites: &Sites<'_>, torus: Torus) -> Vec<Reach> {
+        let heaviest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let wanted = if self.exterior { f64::INFINITY } else { self.alpha };
+        // The largest empty spheres of points of even density are twice as large as what each point has
+        // of the box, or less: then all is known with less around it than a large α asks for.
+        let spacing = (torus.volume() / sites.input().len() as f64).cbrt();
+        let squares = [4.0, 16.0, 64.0].map(|times| times * spacing * spacing);
+        let fewer = squares.into_iter().filter(|square| 4.0 * square <= wanted + heaviest);
+        let reaches = fewer.map(|square| square - heaviest).chain([wanted]);
+        reaches.map(|alpha| Reach::at(sites, alpha, heaviest)).collect()
+    }
+
+    /// Whether the triangulation of a block with a halo decides what is asked. If the halo is for a smaller
+    /// α, it does where no sphere at the block's points is larger: all of them are empty, then.
+    fn decides(&self, reach: Reach, points: &Block, made: &Triangulation) -> bool {
+        let Reach::Balls(alpha) = reach else { return true };
+        if alpha >= self.alpha && !self.exterior {
+            return true;
+        }
+        let spheres = Predicates::on(self.lattice, &points.positions, &points.weights);
+        made.cells().par_iter().all(|&cell| {
+            !cell.iter().any(|&v| v < points.own)
+                || (!cell.contains(&made.ghost()) && spheres.fits(cell, alpha))
+        })
+    }
+}
+
+/// The error for an edge that spans half of the box.
+pub(super) fn too_long(torus: Torus, Long { edge, ends }: Long) -> ShapeError {
+    let spans = |k: usize| (ends[1][k] - ends[0][k]).abs() / torus.sides()[k];
+    let axis = (0..3).max_by(|&a, &b| spans(a).total_cmp(&spans(b))).unwrap_or(0);
+    let span = spans(axis) * torus.sides()[axis];
+    ShapeError::Wraps { edge, axis: AXES[axis], span, side: torus.sides()[axis] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn question(alpha: f64, exterior: bool, sites: &Sites<'_>) -> Question {
+        let lattice = Lattice::of(sites.positions(), sites.weights());
+        Question { alpha, lattice, exterior }
+    }
+
+    /// Points of even density in a box of 8: a point to each cube of side 1, and not at its centre.
+    fn even() -> Vec<[f64; 3]> {
+        let cube = |i: u32| [i % 8, i / 8 % 8, i / 64].map(f64::from);
+        let within = |i: u32| [i * 7 % 13, i * 11 % 17, i * 5 % 19].map(|k| f64::from(k) / 32.0);
+        (0..512).map(|i| std::array::from_fn(|k| cube(i)[k] + within(i)[k])).collect()
+    }
+
+    /// As many, all in one corner of an eighth of the box.
+    fn corner() -> Vec<[f64; 3]> {
+        even().into_iter().map(|point| point.map(|x| x / 2.0)).collect()
+    }
+
+    /// A point to each unit of volume, the heaviest of weight ½; half of a diagonal is 6.93.
+    #[test]
+    fn small_halos_come_first_and_what_is_asked_last() {
+        let weights: Vec<f64> = (0..512).map(|i| f64::from(i % 4) / 6.0).collect();
+        let (positions, torus) = (even(), Torus::new([8.0; 3]).unwrap());
+        let sites = Sites::on_torus(&positions, &weights, torus).unwrap();
+        let all = Reach::whole(&sites);
+        let (one, two) = (Reach::Balls(3.5), Reach::Balls(15.5));
+        for (alpha, exterior, expected) in [
+            (1.0, false, vec![Reach::Balls(1.0)]),
+            (15.49, false, vec![Reach::Balls(15.49)]),
+            (15.5, false, vec![one, two]),
+            (f64::INFINITY, false, vec![one, two, all, all]),
+            (1.0, true, vec![one, two, all, all]),
+        ] {
+            assert_eq!(question(alpha, exterior, &sites).reaches(&sites, torus), expected);
+        }
+    }
+
+    /// The largest sphere beside the corner has a squared radius of about 12.
+    #[test]
+    fn a_block_looks_as_far_as_empty_spheres_are_large() {
+        let torus = Torus::new([8.0; 3]).unwrap();
+        for (positions, decided) in [(even(), true), (corner(), false)] {
+            let sites = Sites::on_torus(&positions, &[0.0; 512], torus).unwrap();
+            let partition = Partition::new(&sites, 8);
+            let one = Reach::Balls(4.0);
+            let points = partition.block(&sites, one, 3);
+            let made = triangulate(&points, &Piece::new(1)).unwrap();
+            for (alpha, exterior, expected) in [
+                (4.0, false, true),
+                (16.0, false, decided),
+                (f64::INFINITY, false, decided),
+                (4.0, true, decided),
+            ] {
+                let asked = question(alpha, exterior, &sites);
+                assert_eq!(asked.decides(one, &points, &made), expected, "{alpha} {exterior}");
+                assert!(asked.decides(Reach::whole(&sites), &points, &made));
+            }
+            let asked = question(4.0, true, &sites);
+            let (looked, ..) =
+                on_torus(&sites, torus, &partition, 3, &asked, &Piece::new(1)).unwrap();
+            let reach = if decided { one } else { Reach::Balls(16.0) };
+            assert_eq!(looked.positions.len(), partition.block(&sites, reach, 3).positions.len());
+        }
+    }
+}

@@ -1,0 +1,156 @@
+use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::memory::NoMemory;
+use walpha_regular::{SitesError, TriangulationError, is_flat};
+
+use super::{CgalError, PlanError};
+
+/// Why a shape cannot be computed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShapeError {
+    /// The points cannot be triangulated.
+    #[error(transparent)]
+    Triangulation(#[from] TriangulationError),
+    /// CGAL gave no answer.
+    #[error(transparent)]
+    Cgal(#[from] CgalError),
+    /// The `radius` reading asks for a ball of negative or infinite radius.
+    #[error(
+        "point {index} would be a ball of radius α + ω = {radius}: where α + ω is a radius it must \
+         be finite and not negative"
+    )]
+    Radius {
+        /// Input index of the point.
+        index: usize,
+        /// Its α + ω.
+        radius: f64,
+    },
+    /// The memory allowed is not enough for any number of blocks.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// Memory for what is known of the simplices cannot be had.
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
+    /// Memory is bounded by cutting the points into blocks, which this shape is not made in.
+    #[error(
+        "a bound on memory cannot be kept {}: that takes the whole triangulation at once",
+        by.when()
+    )]
+    Unbounded {
+        /// What asks for the whole triangulation.
+        by: Whole,
+    },
+    /// Two points at one place, of a set that is never in one place.
+    #[error("two points are at one place, {at:?}, which is not sorted out in separate blocks")]
+    Coincident {
+        /// The place.
+        at: [f64; 3],
+    },
+    /// Blocks were asked for, and something that takes the whole triangulation.
+    #[error("a shape {} takes the whole triangulation, and {blocks} blocks were asked for", by.when())]
+    Divided {
+        /// What takes it.
+        by: Whole,
+        /// The blocks asked for.
+        blocks: usize,
+    },
+    /// CGAL's alpha shapes know no periodic boxes with weights.
+    #[error(
+        "the engine cgal is CGAL's alpha shape of points in space, which knows no periodic box"
+    )]
+    Unrepeated,
+    /// An edge is so long that its ends do not say which of their copies it joins.
+    #[error(
+        "the edge between points {} and {} spans {span} along {axis}, half of the periodic box ({side}) or \
+         more: its ends would not say which of their copies it joins",
+        edge[0], edge[1]
+    )]
+    Wraps {
+        /// Input indices; equal for an edge from a point to its own copy.
+        edge: [u32; 2],
+        /// The axis along which it spans most of the box.
+        axis: char,
+        /// How much it spans.
+        span: f64,
+        /// The side of the box along that axis.
+        side: f64,
+    },
+}
+
+/// What takes the whole triangulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Whole {
+    /// The engine cgal.
+    Cgal,
+    /// The simplices outside the shape.
+    Exterior,
+    /// The hidden points.
+    Hidden,
+    /// α = ∞.
+    Hull,
+}
+
+impl Whole {
+    fn when(self) -> &'static str {
+        match self {
+            Self::Cgal => "by the engine cgal",
+            Self::Exterior => "with the simplices outside the shape",
+            Self::Hidden => "with its hidden points",
+            Self::Hull => "at α = inf, the convex hull",
+        }
+    }
+}
+
+impl ShapeError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<Advice> {
+        Some(match self {
+            Self::Triangulation(error) => return error.advice(),
+            Self::Cgal(error) => error.advice(),
+            Self::Radius { .. } => advice!["raise α, or use ", Setting::Balls, " power"],
+            Self::Plan(error) => error.advice(),
+            Self::Memory(lack) => lack.advice(),
+            Self::Unbounded { by: Whole::Exterior } => {
+                advice!["omit ", Setting::Memory, ", or omit ", Setting::Exterior]
+            }
+            Self::Unbounded { by: Whole::Hidden } => {
+                advice!["omit ", Setting::Memory, ", or omit ", Setting::Hidden]
+            }
+            Self::Unbounded { by: Whole::Hull } => {
+                advice!["omit ", Setting::Memory, ", or give a finite ", Setting::Alpha]
+            }
+            Self::Unbounded { by: Whole::Cgal } => {
+                advice!["omit ", Setting::Memory, ", or use ", Setting::Engine, " native"]
+            }
+            Self::Unrepeated => advice!["use ", Setting::Engine, " native"],
+            Self::Wraps { axis, .. } => advice![
+                "lower ",
+                Setting::Alpha,
+                format!(
+                    ", or repeat the points along {axis}, and make the box as many times as long"
+                )
+            ],
+            Self::Coincident { .. } => {
+                "correct the spacing and directions of the grid, or use voxels as units".into()
+            }
+            Self::Divided { by: Whole::Hidden, .. } => {
+                advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Hidden]
+            }
+            Self::Divided { .. } => {
+                advice!["give ", Setting::Blocks, " 1, or omit ", Setting::Exterior]
+            }
+        })
+    }
+
+    /// Whether it says that points span no volume, though there is one at least.
+    pub fn is_flat(&self) -> bool {
+        matches!(self, Self::Triangulation(error) if is_flat(error))
+    }
+}
+
+impl From<SitesError> for ShapeError {
+    fn from(error: SitesError) -> Self {
+        Self::Triangulation(error.into())
+    }
+}

@@ -1,0 +1,204 @@
+use std::num::NonZeroU64;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::levels::ByLevel;
+use super::stops::Sight;
+use super::values::Value;
+use super::{Filtration, Levels};
+use crate::{Alpha, Betti};
+
+/// The topology of a filtration at every α at which a simplex comes.
+///
+/// Critical values are distinguished exactly; those for which the same double is the first not below
+/// are one entry, as no double separates them. On a voxel grid, where values are equal by the thousand,
+/// that leaves few.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    pub(super) values: Vec<Value>,
+    /// The Betti numbers from each value on.
+    pub betti: Vec<Betti>,
+    /// The solid components from each value on.
+    pub solid_components: Vec<u64>,
+    /// Vertices of the triangulation that no cell of the shape has, from each value on; where points span no
+    /// volume, no triangle, or no edge.
+    pub loose: Vec<u64>,
+    /// What can be seen from each value on.
+    pub(super) sights: Vec<Sight>,
+    largest_weight: f64,
+}
+
+/// Values of α to try, squared lengths, each the first double at which the shape has the property.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Suggestions {
+    /// Every vertex of the triangulation is one of a cell: MATLAB's
+    /// `criticalAlpha(shp, 'all-points')`, CGAL's `Alpha_shape_3::find_alpha_solid`.
+    pub all_points: Alpha,
+    /// That, and the cells are one solid component: MATLAB's `criticalAlpha(shp, 'one-region')`,
+    /// CGAL's `Alpha_shape_3::find_optimal_alpha(1)`, which searches by halving and may find a
+    /// larger one. This is the smallest α with the property, not one from which it lasts: the
+    /// number of components rises and falls.
+    pub one_region: Alpha,
+    /// The same, and without voids.
+    pub no_void: Alpha,
+    /// From where to where the Betti numbers stay the same longest, as a ratio of the squared radii
+    /// of the largest balls, looked for from `all_points` on. The second is the α at which they
+    /// change again; ∞, the string "inf" in JSON, if from `all_points` on they never change.
+    pub plateau: [Alpha; 2],
+}
+
+impl Filtration {
+    /// The topology at all critical values. O(n log n).
+    pub fn curve(&self) -> Curve {
+        let values = self.values();
+        let levels = self.levels_of(&values);
+        let (betti, solid_components) =
+            rayon::join(|| levels.betti(), || levels.solid_components());
+        let weights = &self.points().weights;
+        Curve {
+            betti,
+            solid_components,
+            loose: self.loose(&levels),
+            sights: levels.sights(),
+            largest_weight: weights.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            values,
+        }
+    }
+
+    /// The smallest α at which all points are in one solid component ([`Levels::solid_components`]): [`Suggestions::one_region`],
+    /// for less than half of what a [`Curve`] costs. O(n log n).
+    pub fn one_region(&self) -> Alpha {
+        self.optimal_alpha(NonZeroU64::MIN)
+    }
+
+    /// The smallest α at which all points are in at most so many solid components; as
+    /// [`Filtration::one_region`], of CGAL's `Alpha_shape_3::find_optimal_alpha`. O(n log n).
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
+    pub fn optimal_alpha(&self, components: NonZeroU64) -> Alpha {
+        let values = self.values();
+        let levels = self.levels_of(&values);
+        let (loose, solid) = rayon::join(|| self.loose(&levels), || levels.solid_components());
+        let first = (0..values.len()).find(|&k| loose[k] == 0 && solid[k] <= components.get());
+        let first = values[first.expect("the whole triangulation is one solid")];
+        self.first_alpha(first)
+    }
+
+    /// A level for each critical value.
+    fn levels_of(&self, values: &[Value]) -> Levels<'_> {
+        let alpha = |value: &Value| Alpha::from_squared(value.above()).expect("radii are numbers");
+        let levels = self.levels(&values.iter().map(alpha).collect::<Vec<_>>());
+        assert_eq!(levels.len(), values.len(), "one level for each value");
+        levels
+    }
+
+    /// Vertices that no largest simplex has, at each level.
+    fn loose(&self, levels: &Levels<'_>) -> Vec<u64> {
+        let (firsts, levels) = (levels.of_largest(), levels.len());
+        let vertices = self.whole.complex().vertices.len();
+        let mut covered = vec![levels as u32; vertices];
+        for (row, &level) in firsts.iter().enumerate() {
+            for &v in self.largest(row) {
+                let at = &mut covered[self.incidence.vertex_rows[v as usize] as usize];
+                *at = level.min(*at);
+            }
+        }
+        let by_level = ByLevel::new(levels, covered.iter().copied());
+        let mut loose = vertices as u64;
+        let less = |level| {
+            loose -= by_level.at(level).len() as u64;
+            loose
+        };
+        (0..levels).map(less).collect()
+    }
+
+    /// What α to try. O(n).
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
+    pub fn suggest(&self, curve: &Curve) -> Suggestions {
+        let last = curve.values.len() - 1;
+        let from = |start: usize, holds: &dyn Fn(usize) -> bool| {
+            (start..=last).find(|&k| holds(k)).expect("the whole triangulation is one solid")
+        };
+        let all_points = from(0, &|k| curve.loose[k] == 0);
+        let one_region = from(all_points, &|k| curve.solid_components[k] == 1);
+        let no_void = from(one_region, &|k| curve.betti[k].b2 == 0);
+        let (from, to) = curve.plateau(all_points);
+        let [all_points, one_region, no_void, low] =
+            [all_points, one_region, no_void, from].map(|k| self.first_alpha(curve.values[k]));
+        let high = to.map_or(Alpha::INFINITE, |to| self.first_alpha(curve.values[to]));
+        Suggestions { all_points, one_region, no_void, plateau: [low, high] }
+    }
+
+    /// At most `count` critical values at which Betti numbers change, as evenly as they come in the
+    /// logarithm of the squared radius α + max ω of the largest balls. Each is the first double
+    /// at which the shape is the new one. O(n·count).
+    ///
+    /// # Panics
+    /// When `count` is less than 2.
+    pub fn readable(&self, curve: &Curve, count: usize) -> Vec<Alpha> {
+        assert!(count >= 2, "two ends are needed");
+        let changes: Vec<usize> = (0..curve.values.len())
+            .filter(|&k| curve.size(k) > 0.0 && (k == 0 || curve.betti[k] != curve.betti[k - 1]))
+            .collect();
+        let (Some(&first), Some(&last)) = (changes.first(), changes.last()) else {
+            return Vec::new();
+        };
+        let (low, high) = (curve.size(first).ln(), curve.size(last).ln());
+        let nearest = |step: usize| {
+            let wanted = low + (high - low) * step as f64 / (count - 1) as f64;
+            let away = |k: usize| (curve.size(k).ln() - wanted).abs();
+            let above = changes.partition_point(|&k| curve.size(k).ln() < wanted);
+            let sides = [above.saturating_sub(1), above.min(changes.len() - 1)];
+            let [a, b] = sides.map(|at| changes[at]);
+            if away(a) <= away(b) { a } else { b }
+        };
+        let mut chosen: Vec<usize> = (0..count).map(nearest).collect();
+        chosen.dedup();
+        chosen.par_iter().map(|&k| self.first_alpha(curve.values[k])).collect()
+    }
+}
+
+impl Curve {
+    /// The number of critical values.
+    pub fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// α just above each critical value, ascending: the rest of a step of the curve lies between.
+    pub fn alphas(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        self.values.iter().map(|value| value.above())
+    }
+
+    /// The largest weight: what α must be raised by to have the squared radius of the largest balls.
+    pub fn largest_weight(&self) -> f64 {
+        self.largest_weight
+    }
+
+    /// The squared radius of the largest balls at a value.
+    pub(super) fn size(&self, k: usize) -> f64 {
+        self.values[k].above() + self.largest_weight
+    }
+
+    /// The value at which the longest stretch without a change begins, and the one that ends it;
+    /// none if nothing changes from the start on. The last stretch of several has no end, and is
+    /// none of them.
+    fn plateau(&self, start: usize) -> (usize, Option<usize>) {
+        let ratio = |(a, b): (usize, usize)| self.size(b) / self.size(a);
+        let mut best: Option<(usize, usize)> = None;
+        let mut begin = start;
+        for k in start + 1..self.values.len() {
+            if self.betti[k] != self.betti[begin] {
+                if best.is_none_or(|best| ratio((begin, k)) > ratio(best)) {
+                    best = Some((begin, k));
+                }
+                begin = k;
+            }
+        }
+        best.map_or((start, None), |(from, to)| (from, Some(to)))
+    }
+}

@@ -1,0 +1,264 @@
+//! Every simplex of a filtration and when it comes, in order.
+
+mod numbers;
+mod pairs;
+mod rank;
+mod sort;
+
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+use walpha_base::progress;
+
+use super::filtration::Radius;
+use super::levels::Own;
+use super::{Filtration, Levels};
+use crate::{Alpha, Betti, ShapeError};
+pub(super) use numbers::Numbers;
+pub use pairs::Pairs;
+use rank::{NONE, Ranks};
+use sort::by_rank;
+use walpha_base::memory;
+use walpha_regular::TriangulationError;
+
+/// Every simplex of a regular triangulation, and the α from which on it is in the shape, on its
+/// boundary, inside.
+///
+/// A *value* is a squared radius, given as the nearest double of the exact number (of two, the one
+/// whose last digit is even). The order is by the exact number, then by dimension, then by vertices;
+/// so faces come before what they are faces of, and simplices whose values differ by less than
+/// doubles can resolve are in the right order all the same.
+///
+/// A double nearest to a value may be below it: the shape at this very α, [`Filtration::shape`], may
+/// have the simplex or not. [`Filtration::curve`] has doubles that are not below.
+///
+/// Simplices have *numbers*: vertices first, then edges, facets, cells; those of one dimension in
+/// lexicographic order of their vertices, which ascend in each.
+pub struct Ordered<'a> {
+    /// A level for each value.
+    pub(super) levels: Levels<'a>,
+    pub(super) numbers: Numbers,
+    cells: Vec<[u32; 4]>,
+    /// The row of each of them in the triangulation.
+    cell_rows: Vec<u32>,
+    order: Vec<u32>,
+    pairs: OnceLock<Pairs>,
+}
+
+/// A simplex and when it comes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry<'a> {
+    /// Input indices, ascending.
+    pub vertices: &'a [u32],
+    /// The α, a squared length, from which on it is in the shape, rounded to the nearest double.
+    pub value: f64,
+    /// The place of that number among all values, from 0: equal for equal numbers only.
+    pub rank: u32,
+    /// Whether no point lies inside its smallest orthogonal sphere, so that the value is the squared
+    /// radius of this; else it comes with a simplex that it is a face of, and is *attached*.
+    pub gabriel: bool,
+    /// From which on it is a face of another simplex of the shape; singular before. Of cells, ∞.
+    pub regular: f64,
+    /// From which on it is off the boundary; ∞ on the convex hull. Of cells, the value.
+    pub interior: f64,
+}
+
+impl Filtration {
+    /// All simplices with their values, in order. O(n log n), and exact arithmetic where two values
+    /// are, or nearly are, equal.
+    ///
+    /// # Errors
+    /// No memory; more simplices than numbers of 32 bits.
+    pub fn simplices(&self) -> Result<Ordered<'_>, ShapeError> {
+        let complex = self.whole.complex();
+        let numbers = Numbers::of(complex).ok_or(TriangulationError::TooManyCells)?;
+        memory::afford(Ordered::bytes(numbers), || {
+            format!("the order of {} simplices", numbers.all())
+        })?;
+        let done = |parts| progress::report(parts, 4);
+        let (levels, (cells, cell_rows)) = rayon::join(
+            || {
+                let Ranks { values, of } = Ranks::of(self, numbers)?;
+                done(2);
+                Ok::<_, ShapeError>(self.levels_by_rank(&values, &of, numbers))
+            },
+            || sorted_cells(complex.cells.rows()),
+        );
+        let levels = levels?;
+        done(3);
+        let mut ordered = Ordered {
+            levels,
+            numbers,
+            cells,
+            cell_rows,
+            order: Vec::new(),
+            pairs: OnceLock::new(),
+        };
+        ordered.order =
+            by_rank(numbers.all(), ordered.levels.len(), |simplex| ordered.rank(simplex));
+        done(4);
+        Ok(ordered)
+    }
+
+    /// A level for each rank.
+    fn levels_by_rank(&self, values: &[f64], ranks: &[u32], numbers: Numbers) -> Levels<'_> {
+        let of = |from: u32| {
+            move |row: usize| Some(ranks[from as usize + row]).filter(|&rank| rank != NONE)
+        };
+        let [vertices, edges, facets, cells] = numbers.first;
+        let cells = ranks[cells as usize..].to_vec();
+        let own = Own { facets: of(facets), edges: of(edges), vertices: of(vertices) };
+        let (facets, edges, vertices) = self.spans(values.len() as u32, &cells, own);
+        let alpha = |&value: &f64| Alpha::from_squared(value).expect("radii are numbers");
+        let alphas = values.iter().map(alpha).collect();
+        Levels { filtration: self, alphas, cells, facets, edges, vertices }
+    }
+}
+
+/// Cells with ascending vertices in lexicographic order, and the row of each. They come in the
+/// order of rows whose last two vertices may be exchanged.
+fn sorted_cells(rows: &[[u32; 4]]) -> (Vec<[u32; 4]>, Vec<u32>) {
+    let sorted = |row: &[u32; 4]| {
+        let mut row = *row;
+        row.sort_unstable();
+        row
+    };
+    let mut numbered: Vec<_> = rows.par_iter().map(sorted).zip(0..rows.len() as u32).collect();
+    for near in numbered.chunk_by_mut(|(a, _), (b, _)| a[..2] == b[..2]) {
+        near.sort_unstable();
+    }
+    numbered.into_par_iter().unzip()
+}
+
+impl Ordered<'_> {
+    /// What is needed at once.
+    fn bytes(numbers: Numbers) -> usize {
+        let span = 3 * size_of::<u32>();
+        Ranks::bytes(numbers.all())
+            + numbers.all() * (span + size_of::<u32>())
+            + numbers.count(3) * 2 * (size_of::<[u32; 4]>() + size_of::<u32>())
+    }
+
+    /// The filtration.
+    pub fn filtration(&self) -> &Filtration {
+        self.levels.filtration
+    }
+
+    /// How many simplices there are.
+    pub fn len(&self) -> usize {
+        self.numbers.all()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// How many there are of a dimension.
+    ///
+    /// # Panics
+    /// When it is above 3.
+    pub fn count(&self, dimension: usize) -> usize {
+        self.numbers.count(dimension)
+    }
+
+    /// How many of a dimension are Gabriel.
+    ///
+    /// # Panics
+    /// When it is above 3.
+    pub fn gabriel(&self, dimension: usize) -> usize {
+        let Filtration { vertices, edges, facets, .. } = self.filtration();
+        let own = |radii: &[Radius]| radii.iter().filter(|radius| radius.known().is_some()).count();
+        match dimension {
+            0 => own(vertices),
+            1 => own(edges),
+            2 => own(facets),
+            _ => self.numbers.count(dimension),
+        }
+    }
+
+    /// The vertices, a row each.
+    pub fn vertices(&self) -> &[[u32; 1]] {
+        self.filtration().whole.complex().vertices.rows()
+    }
+
+    /// The edges.
+    pub fn edges(&self) -> &[[u32; 2]] {
+        self.filtration().whole.complex().edges.rows()
+    }
+
+    /// The facets.
+    pub fn facets(&self) -> &[[u32; 3]] {
+        &self.filtration().incidence.facets
+    }
+
+    /// The cells.
+    pub fn cells(&self) -> &[[u32; 4]] {
+        &self.cells
+    }
+
+    /// The values that are different numbers, ascending, by rank: two neighbours may be one double.
+    pub fn values(&self) -> &[Alpha] {
+        self.levels.alphas()
+    }
+
+    /// The numbers of all simplices in the order in which they come.
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// A simplex by its number.
+    ///
+    /// # Panics
+    /// When there is no such number.
+    pub fn simplex(&self, number: u32) -> Entry<'_> {
+        let filtration = self.filtration();
+        let value = |rank: u32| {
+            self.values().get(rank as usize).map_or(f64::INFINITY, |value| value.squared())
+        };
+        let (vertices, span, gabriel) = match self.numbers.row(number) {
+            (0, row) => {
+                let gabriel = filtration.vertices[row].known().is_some();
+                (&self.vertices()[row][..], self.levels.vertices[row], gabriel)
+            }
+            (1, row) => (
+                &self.edges()[row][..],
+                self.levels.edges[row],
+                filtration.edges[row].known().is_some(),
+            ),
+            (2, row) => (
+                &self.facets()[row][..],
+                self.levels.facets[row],
+                filtration.facets[row].known().is_some(),
+            ),
+            (_, row) => {
+                let first = self.levels.cells[self.cell_rows[row] as usize];
+                let (value, vertices) = (value(first), &self.cells[row]);
+                let (regular, interior) = (f64::INFINITY, value);
+                return Entry { vertices, value, rank: first, gabriel: true, regular, interior };
+            }
+        };
+        let [value, regular, interior] = [span.first, span.regular, span.interior].map(value);
+        Entry { vertices, value, rank: span.first, gabriel, regular, interior }
+    }
+
+    /// All simplices in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Entry<'_>> + '_ {
+        self.order.iter().map(|&number| self.simplex(number))
+    }
+
+    /// The Betti numbers from each value on, by rank. O(n α(n)).
+    pub fn betti_curve(&self) -> Vec<Betti> {
+        self.levels.betti()
+    }
+
+    /// The rank of a simplex's value.
+    fn rank(&self, simplex: u32) -> u32 {
+        match self.numbers.row(simplex) {
+            (0, row) => self.levels.vertices[row].first,
+            (1, row) => self.levels.edges[row].first,
+            (2, row) => self.levels.facets[row].first,
+            (_, row) => self.levels.cells[self.cell_rows[row] as usize],
+        }
+    }
+}

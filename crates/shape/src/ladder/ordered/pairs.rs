@@ -1,0 +1,176 @@
+//! Persistence pairs from unions of sets (Edelsbrunner, Letscher and Zomorodian 2002,
+//! doi:10.1007/s00454-002-2885-2; dimension 2 by duality, after Delfinado and Edelsbrunner 1995,
+//! doi:10.1016/0167-8396(94)00016-Y).
+
+use walpha_base::UnionFind;
+
+use super::Ordered;
+use crate::ladder::Filtration;
+use crate::ladder::incidence::Incidence;
+use crate::{Directions, Torus, United, WindingSets, between};
+
+/// What comes and goes, by numbers of simplices: those that make a component, or shut in a void, and
+/// those that unite it with an older one, or fill it.
+///
+/// All pairs are there, also those that last no time at all, as both simplices have one value.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Pairs {
+    /// Components: a vertex, and the edge that unites its component with one that came before; in
+    /// the order of edges. All vertices but one have such an edge.
+    pub components: Vec<[u32; 2]>,
+    /// The vertices whose components last for ever: one.
+    pub lasting: Vec<u32>,
+    /// Voids: a facet, and the cell that fills what it has shut in; in the order of facets. All
+    /// cells have such a facet, on a torus all but one.
+    pub voids: Vec<[u32; 2]>,
+    /// Of a torus: the facets with which its own surfaces come that nothing fills: three.
+    pub lasting_voids: Vec<u32>,
+    /// Of a torus: the cell that makes it whole, and that is in none of the pairs above.
+    pub last: Option<u32>,
+}
+
+impl Ordered<'_> {
+    /// Persistence pairs of dimensions 0 and 2. O(n α(n)). Those of dimension 1, between the edges and
+    /// facets that are in none of these, take a reduction of matrices. Computed once.
+    pub fn pairs(&self) -> &Pairs {
+        self.pairs.get_or_init(|| {
+            let ((components, lasting), voids) =
+                rayon::join(|| self.component_pairs(), || self.void_pairs());
+            Pairs { components, lasting, ..voids }
+        })
+    }
+
+    /// Whether the two simplices of a pair have different values.
+    pub fn lasts(&self, [birth, death]: [u32; 2]) -> bool {
+        self.rank(birth) != self.rank(death)
+    }
+
+    /// Of two components that an edge unites, the younger ends.
+    fn component_pairs(&self) -> (Vec<[u32; 2]>, Vec<u32>) {
+        let rows = &self.filtration().incidence.vertex_rows;
+        let [of_vertices, of_edges, of_facets, _] = self.numbers.first;
+        let mut sets = Eldest::new(self.vertices().len());
+        let mut pairs = Vec::with_capacity(self.vertices().len());
+        let mut lasting = Vec::new();
+        for (age, &simplex) in (0..).zip(&self.order) {
+            if (of_vertices..of_edges).contains(&simplex) {
+                sets.come(simplex - of_vertices, age);
+            } else if (of_edges..of_facets).contains(&simplex) {
+                let ends = self.edges()[(simplex - of_edges) as usize];
+                let [a, b] = ends.map(|v| rows[v as usize]);
+                if let Some(younger) = sets.unite(a, b) {
+                    pairs.push([of_vertices + younger, simplex]);
+                }
+            }
+        }
+        for v in 0..self.vertices().len() as u32 {
+            if sets.eldest_of(v) == v {
+                lasting.push(of_vertices + v);
+            }
+        }
+        (pairs, lasting)
+    }
+
+    /// The same of the complement, backwards: there a cell makes a component, and a facet unites two; or, on a
+    /// torus, it opens a way round in a new direction.
+    fn void_pairs(&self) -> Pairs {
+        let incidence = &self.filtration().incidence;
+        let [_, _, of_facets, of_cells] = self.numbers.first;
+        let cells = self.cells.len();
+        let mut sorted = vec![0; cells];
+        self.cell_rows.iter().zip(0..).for_each(|(&row, at): (_, u32)| sorted[row as usize] = at);
+        let mut sets = Eldest::new(cells + 1);
+        let mut ways = self.filtration().torus().map(|torus| Ways::new(torus, self.filtration()));
+        let mut found = Pairs { voids: Vec::with_capacity(cells), ..Pairs::default() };
+        match ways {
+            // The outside was there before all.
+            None => sets.come(cells as u32, 0),
+            Some(_) => found.last = self.order.iter().rev().copied().find(|&s| s >= of_cells),
+        }
+        for (age, &simplex) in (1..).zip(self.order.iter().rev()) {
+            if simplex >= of_cells {
+                sets.come(self.cell_rows[(simplex - of_cells) as usize], age);
+            } else if simplex >= of_facets {
+                let row = (simplex - of_facets) as usize;
+                let sides = incidence.facet_cells[row];
+                let [a, b] =
+                    sides.map(|side| if side == Incidence::OUTSIDE { cells as u32 } else { side });
+                let round = ways.as_mut().is_some_and(|ways| ways.open(row, [a, b]));
+                if let Some(younger) = sets.unite(a, b) {
+                    found.voids.push([simplex, of_cells + sorted[younger as usize]]);
+                } else if round {
+                    found.lasting_voids.push(simplex);
+                }
+            }
+        }
+        found.voids.reverse();
+        found.lasting_voids.reverse();
+        found
+    }
+}
+
+/// In which directions the complement goes round a torus.
+struct Ways<'a> {
+    torus: Torus,
+    filtration: &'a Filtration,
+    sets: WindingSets,
+    rounds: Directions,
+}
+
+impl<'a> Ways<'a> {
+    fn new(torus: Torus, filtration: &'a Filtration) -> Self {
+        let sets = WindingSets::new(filtration.whole.complex().cells.len());
+        Self { torus, filtration, sets, rounds: Directions::default() }
+    }
+
+    /// Opens a facet; says whether there is a way round now in a direction that is new.
+    fn open(&mut self, facet: usize, sides: [u32; 2]) -> bool {
+        let Filtration { whole, incidence, .. } = self.filtration;
+        let cells = sides.map(|side| whole.complex().cells.rows()[side as usize]);
+        let vertex = incidence.facets[facet][0];
+        let way = between(self.torus, cells, vertex, &whole.points().positions);
+        match self.sets.unite(sides[0], sides[1], way) {
+            United::Round(way) => self.rounds.add(way),
+            _ => false,
+        }
+    }
+}
+
+/// Disjoint sets that know which of their members came first.
+struct Eldest {
+    sets: UnionFind,
+    /// When each came.
+    ages: Vec<u32>,
+    /// Of each set, at its root.
+    eldest: Vec<u32>,
+}
+
+impl Eldest {
+    fn new(members: usize) -> Self {
+        Self {
+            sets: UnionFind::new(members),
+            ages: vec![0; members],
+            eldest: (0..members as u32).collect(),
+        }
+    }
+
+    fn come(&mut self, member: u32, age: u32) {
+        self.ages[member as usize] = age;
+    }
+
+    fn eldest_of(&mut self, member: u32) -> u32 {
+        self.eldest[self.sets.find(member) as usize]
+    }
+
+    /// Makes one set of two, and gives the younger of their eldest members; none if they were one.
+    fn unite(&mut self, a: u32, b: u32) -> Option<u32> {
+        let [a, b] = [self.eldest_of(a), self.eldest_of(b)];
+        if !self.sets.unite(a, b) {
+            return None;
+        }
+        let younger = if self.ages[a as usize] > self.ages[b as usize] { a } else { b };
+        let root = self.sets.find(a);
+        self.eldest[root as usize] = if younger == a { b } else { a };
+        Some(younger)
+    }
+}

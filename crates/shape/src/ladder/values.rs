@@ -1,0 +1,159 @@
+//! The critical values of a filtration, distinguished exactly.
+
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+use walpha_regular::number::lowest_bit;
+use walpha_regular::{Interval, Predicates, Torus};
+
+use super::Filtration;
+use super::filtration::Radius;
+use crate::Alpha;
+use crate::WeightedPoints;
+
+/// A critical value of α, as far as it is known.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Value {
+    /// The first double that is not below it.
+    First(f64),
+    /// That of a simplex whose radius has an interval of its own, which ends here.
+    Of(Row, f64),
+}
+
+/// A simplex of the whole triangulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Row {
+    Cell(u32),
+    Facet(u32),
+    Edge(u32),
+    Vertex(u32),
+}
+
+impl Value {
+    /// A double at or above the value, and below the next.
+    pub(super) fn above(self) -> f64 {
+        match self {
+            Self::First(alpha) | Self::Of(_, alpha) => alpha,
+        }
+    }
+}
+
+impl Filtration {
+    /// All critical values, ascending; those between the same two doubles are one. Radii whose
+    /// intervals meet no other are ordered by these, all others by exact arithmetic.
+    pub(super) fn values(&self) -> Vec<Value> {
+        let own = |radii: &[Radius], row: fn(u32) -> Row| -> Vec<(Interval, Row)> {
+            let known = radii.par_iter().enumerate();
+            known
+                .filter_map(|(i, radius)| Some((Interval::around(radius.known()?), row(i as u32))))
+                .collect()
+        };
+        let mut radii = own(&self.facets, Row::Facet);
+        radii.extend(own(&self.edges, Row::Edge));
+        radii.extend(own(&self.vertices, Row::Vertex));
+        let cells = (0..).zip(&self.cells);
+        radii.extend(cells.map(|(i, &radius)| (Interval::around(radius), Row::Cell(i))));
+        radii.par_sort_unstable_by(|(a, i), (b, j)| {
+            a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)).then(i.cmp(j))
+        });
+        let mut high = f64::NEG_INFINITY;
+        let mut clusters: Vec<usize> = Vec::new();
+        for (at, (radius, _)) in radii.iter().enumerate() {
+            if clusters.is_empty() || radius.low > high {
+                clusters.push(at);
+            }
+            high = high.max(radius.high);
+        }
+        let ends = clusters.iter().copied().skip(1).chain([radii.len()]);
+        let clusters: Vec<_> =
+            clusters.iter().zip(ends).map(|(&from, to)| &radii[from..to]).collect();
+        let spheres = self.spheres();
+        let exact = is_small_lattice(self.points(), self.torus());
+        let firsts = Firsts { filtration: self, spheres: &spheres, exact };
+        let split = |known: &mut HashMap<Key, f64>, cluster: &&[(Interval, Row)]| match cluster {
+            [(radius, row)] => vec![Value::Of(*row, radius.high)],
+            several => {
+                let first = |(_, row): &(Interval, Row)| firsts.of(*row, known);
+                let mut alphas: Vec<f64> = several.iter().map(first).collect();
+                alphas.sort_by(f64::total_cmp);
+                alphas.dedup();
+                alphas.into_iter().map(Value::First).collect()
+            }
+        };
+        clusters.par_iter().map_init(HashMap::new, split).flatten_iter().collect()
+    }
+
+    /// The first double that is not below a value.
+    pub(super) fn first_alpha(&self, value: Value) -> Alpha {
+        let first = match value {
+            Value::First(alpha) => alpha,
+            Value::Of(row, _) => {
+                let spheres = self.spheres();
+                Firsts { filtration: self, spheres: &spheres, exact: false }
+                    .of(row, &mut HashMap::new())
+            }
+        };
+        Alpha::from_squared(first).expect("radii are numbers")
+    }
+}
+
+/// Weights and squared distances of the corners, which determine the radius.
+pub(super) type Key = [u64; 10];
+
+struct Firsts<'a> {
+    filtration: &'a Filtration,
+    spheres: &'a Predicates<'a>,
+    /// Whether squared distances are exact in doubles.
+    exact: bool,
+}
+
+impl Firsts<'_> {
+    /// The first double that is not below the squared radius of a simplex. On a lattice most are
+    /// congruent to one seen before.
+    fn of(&self, row: Row, known: &mut HashMap<Key, f64>) -> f64 {
+        let Filtration { whole, incidence, .. } = self.filtration;
+        let complex = whole.complex();
+        match row {
+            Row::Cell(i) => self.first(complex.cells.rows()[i as usize], known),
+            Row::Facet(i) => self.first(incidence.facets[i as usize], known),
+            Row::Edge(i) => self.first(complex.edges.rows()[i as usize], known),
+            Row::Vertex(i) => self.first(complex.vertices.rows()[i as usize], known),
+        }
+    }
+
+    fn first<const N: usize>(&self, simplex: [u32; N], known: &mut HashMap<Key, f64>) -> f64 {
+        // Not −0, of which no one has heard.
+        let exactly = || self.spheres.first_alpha(simplex) + 0.0;
+        if !self.exact || N == 1 {
+            return exactly();
+        }
+        *known.entry(key(self.filtration, simplex)).or_insert_with(exactly)
+    }
+}
+
+/// What the squared radius of a simplex is a function of. Exact on a small lattice only.
+pub(super) fn key<const N: usize>(filtration: &Filtration, mut simplex: [u32; N]) -> Key {
+    let weights = &filtration.points().weights;
+    // By weight: congruent simplices may have their vertices in another order.
+    simplex.sort_unstable_by(|&a, &b| weights[a as usize].total_cmp(&weights[b as usize]));
+    let corners = filtration.whole.corners(simplex);
+    let pairs = (0..N).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let distances =
+        pairs.map(|(i, j)| (0..3).map(|k| (corners[i][k] - corners[j][k]).powi(2)).sum::<f64>());
+    let mut key = [u64::MAX; 10];
+    let numbers = simplex.iter().map(|&v| weights[v as usize]).chain(distances);
+    key.iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number.to_bits());
+    key
+}
+
+/// Whether coordinates are multiples of a power of two below 2²⁵, so that squared distances are
+/// integers below 2⁵³ in its square.
+pub(super) fn is_small_lattice(points: &WeightedPoints, torus: Option<Torus>) -> bool {
+    let sides = torus.map(|torus| torus.sides());
+    let sides = sides.as_slice().as_flattened();
+    let coordinates = || points.positions.as_flattened().par_iter().chain(sides).copied();
+    let lowest = coordinates().filter_map(lowest_bit).min().unwrap_or(0);
+    let largest = coordinates().map(f64::abs).reduce(|| 0.0, f64::max);
+    // Squares of units must not be lost below the smallest double.
+    lowest > -500 && largest < 2f64.powi(lowest.saturating_add(25))
+}

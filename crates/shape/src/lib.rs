@@ -1,0 +1,84 @@
+//! Weighted alpha shapes of points in space, exact, in Rust alone: simplices with their classes, topology,
+//! measures, parts, and the filtration of all α with its persistence.
+//!
+//! The weighted alpha shape at α is the part of the regular (weighted Delaunay) triangulation whose simplices
+//! have an empty orthogonal sphere of squared radius α or less, with their faces (Edelsbrunner 1992; Edelsbrunner and Mücke
+//! 1994, doi:10.1145/174462.156635). Every decision is exact, from the input doubles on, and degenerate input is decided
+//! like any other. α and weights are squared lengths.
+//!
+//! ```
+//! use walpha_shape::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
+//!
+//! // The corners of a cube lie on a sphere of squared radius 3/4: at this α, and no less, it is full.
+//! let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|c| c as f64);
+//! let cube = WeightedPoints::unweighted((0..8).map(corner).collect());
+//! let shape = alpha_shape(cube, &ShapeOptions::new(Alpha::from_squared(0.75)?))?;
+//! assert_eq!(shape.measures().volume, 1.0);
+//! assert_eq!(shape.complex().facets.counts().regular, 12);
+//! let betti = shape.betti().expect("counted");
+//! assert_eq!((betti.b0, betti.b1, betti.b2), (1, 0, 0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod alpha_shape;
+mod balls;
+mod blocks;
+mod cgal_error;
+mod error;
+mod flat;
+pub mod ladder;
+mod make;
+mod manifold;
+mod measure;
+mod options;
+mod parts;
+mod points;
+mod sheets;
+mod solid;
+mod sums;
+mod surface;
+mod topology;
+mod unwrapped;
+mod voids;
+mod winding;
+
+pub use alpha_shape::AlphaShape;
+pub use balls::Balls;
+pub use blocks::PlanError;
+pub use cgal_error::CgalError;
+pub use error::{ShapeError, Whole};
+pub use make::{alpha_shape, alpha_shape_by};
+pub use manifold::ManifoldDefects;
+pub use measure::Measures;
+pub use options::{Engine, ShapeOptions};
+pub use parts::{Component, Enclosed, NO_COMPONENT};
+pub use points::{LengthsError, WeightSummary, WeightedPoints};
+pub use sheets::Sheets;
+pub use solid::Cuts;
+pub use surface::Surface;
+pub use topology::{Betti, direct_betti};
+pub use voids::Void;
+pub use walpha_base::{Coordinates, LengthUnit, Space};
+pub use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices};
+pub use walpha_regular::{Torus, TorusError};
+
+// What walpha makes shapes of in blocks, from file to file: no promise to others.
+#[doc(hidden)]
+pub use alpha_shape::Assembled;
+#[doc(hidden)]
+pub use blocks::{AT_WORK, BlockShape, Own, Side, block_shape};
+#[doc(hidden)]
+pub use measure::{facet_area, six_volumes};
+#[doc(hidden)]
+pub use sums::{ComponentSums, SheetSums, components_of_sums};
+#[doc(hidden)]
+pub use topology::between;
+#[doc(hidden)]
+pub use voids::Hollow;
+#[doc(hidden)]
+pub use winding::{Directions, United, WindingSets};
+
+/// The example in the README runs.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,224 @@
+use std::num::NonZeroUsize;
+
+use rayon::prelude::*;
+use walpha_base::Coordinates;
+use walpha_regular::{Sites, check_numbers, lattice};
+
+use super::blocks::{self, Limits, Plan, Question, Reach};
+use super::flat::{self, flat};
+use super::options::power_alpha;
+use super::parts::wound;
+use super::topology::{components, sheet_betti, torus_betti};
+use super::{
+    Alpha, AlphaShape, Balls, Betti, CgalError, Complex, Engine, Measures, ShapeError,
+    ShapeOptions, Sheets, Simplices, WeightedPoints,
+};
+
+/// The alpha shape of weighted points.
+///
+/// Of several points at one place the heaviest stays ([`AlphaShape::duplicates`]). An empty shape
+/// is a result, not an error. At α = ∞ the shape is the convex hull.
+///
+/// Points in one plane or on one line, which is decided exactly, have their shape there: there are no
+/// cells, what is in the shape and a face of nothing else there is singular, its faces are regular,
+/// and nothing is interior. Ties are broken as in space. It is made in one piece, whatever blocks were
+/// asked for.
+///
+/// With [`ShapeOptions::periodic`] the shape is that of a torus. Its points are those given, moved into the
+/// box and rounded as [`Torus::wrap`](super::Torus::wrap) does. A simplex of the torus is listed once, by the input indices of
+/// its vertices; its copies in space are those that have all other vertices nearer to the first than half of
+/// the box, along each axis ([`AlphaShape::corners`]). Where an edge that is to be listed is longer, that
+/// would not be so: [`ShapeError::Wraps`]. With 4 √(α + max ω) less than the shortest side there is no
+/// such edge. At α = ∞ the shape is the whole torus.
+///
+/// # Errors
+/// [`CgalError::Absent`] for [`Engine::Cgal`], which the crate `walpha` has; NaN or absurd numbers, no points, and with [`ShapeOptions::refuse_flat`] fewer than four different
+/// places and points in one plane or on one line: see [`SitesError`](walpha_regular::SitesError); a negative radius:
+/// [`ShapeError::Radius`]; options that do not go together: [`ShapeOptions::check`].
+pub fn alpha_shape(
+    points: WeightedPoints,
+    options: &ShapeOptions,
+) -> Result<AlphaShape, ShapeError> {
+    if options.engine == Engine::Cgal {
+        options.check()?;
+        return Err(CgalError::Absent.into());
+    }
+    made(points, options.engine(Engine::Native), &by_blocks)
+}
+
+/// The same, where the simplices of the sites and their classes at a squared α are computed by another program:
+/// the whole triangulation, in canonical order, by input indices. Components, topology, measures and all
+/// else are found on this complex. Points in one plane or on one line are not handed over.
+///
+/// # Errors
+/// As [`alpha_shape`], and those of the other program.
+pub fn alpha_shape_by(
+    points: WeightedPoints,
+    options: &ShapeOptions,
+    classify: impl Fn(&Sites<'_>, f64) -> Result<Complex, ShapeError>,
+) -> Result<AlphaShape, ShapeError> {
+    made(points, *options, &|sites, options| {
+        let complex = classify(sites, power_alpha(options).squared())?;
+        let hidden = Some(hidden(sites.input(), &complex.vertices));
+        let boundary = Some((components(&complex), Sheets::of_whole(&complex), 0));
+        let duplicates = sites.duplicates().to_vec();
+        Ok(Found { complex, boundary, hidden, duplicates, betti: None })
+    })
+}
+
+/// The simplices in space, as an engine finds them.
+type Find<'a> = dyn Fn(&Sites<'_>, &ShapeOptions) -> Result<Found, ShapeError> + 'a;
+
+fn made(
+    mut points: WeightedPoints,
+    mut options: ShapeOptions,
+    find: &Find<'_>,
+) -> Result<AlphaShape, ShapeError> {
+    options.check()?;
+    if let Some(torus) = options.periodic {
+        check_numbers(&points.positions, &points.weights)?;
+        points.positions.par_iter_mut().for_each(|place| *place = torus.wrap(*place));
+    }
+    let squared = match options.balls {
+        Balls::Power => None,
+        Balls::Radius => Some(squared_radii(&points.weights, options.alpha)?),
+    };
+    let weights = squared.as_deref().unwrap_or(&points.weights);
+    let found = match in_space(&points.positions, weights, &options, find) {
+        Err(error) if !options.refuse_flat && error.is_flat() => {
+            options.engine = Engine::Native;
+            in_plane(&points.positions, weights, &options)?
+        }
+        found => found?,
+    };
+    let Found { mut complex, boundary, hidden, duplicates, betti } = found;
+    // Only who saw the whole triangulation lists what is outside.
+    if hidden.is_some() && !options.exterior {
+        complex.retain_shape();
+    }
+    let hidden = hidden.filter(|_| options.exterior || options.hidden);
+    let (counted, measures) = rayon::join(
+        || {
+            let (b0, sheets, windings) = boundary.as_ref()?;
+            Some(match options.periodic {
+                None => sheet_betti(&complex, *b0, sheets),
+                Some(torus) => {
+                    let wound = wound(&complex, &points.positions, torus);
+                    torus_betti(&complex, wound.directions().rank(), sheets, *windings)
+                }
+            })
+        },
+        || Measures::of(&complex, &points.positions, options.periodic),
+    );
+    Ok(AlphaShape {
+        points,
+        coordinates: Coordinates::default(),
+        options,
+        squared,
+        complex,
+        copies: Vec::new(),
+        duplicates,
+        hidden,
+        betti: betti.or(counted),
+        sheets: boundary.map(|(_, sheets, _)| sheets),
+        measures,
+    })
+}
+
+/// What an engine found.
+struct Found {
+    complex: Complex,
+    /// The number of components and the sheets of the boundary, where the engine knows them, and in how
+    /// many directions the sheets go round a torus.
+    boundary: Option<(u64, Sheets, usize)>,
+    /// Sites that are not vertices, where the engine saw the whole triangulation.
+    hidden: Option<Vec<u32>>,
+    duplicates: Vec<[u32; 2]>,
+    /// Betti numbers, where they are not counted by sheets.
+    betti: Option<Betti>,
+}
+
+fn in_space(
+    positions: &[[f64; 3]],
+    weights: &[f64],
+    options: &ShapeOptions,
+    find: &Find<'_>,
+) -> Result<Found, ShapeError> {
+    let sites = match options.periodic {
+        None => Sites::new(positions, weights)?,
+        Some(torus) => Sites::on_torus(positions, weights, torus)?,
+    };
+    find(&sites, options)
+}
+
+/// The shape of points that span no volume.
+fn in_plane(
+    positions: &[[f64; 3]],
+    weights: &[f64],
+    options: &ShapeOptions,
+) -> Result<Found, ShapeError> {
+    let sites = Sites::any(positions, weights)?;
+    let flat::Found { complex, betti } = flat(&sites, power_alpha(options).squared())?;
+    let hidden = Some(hidden(sites.input(), &complex.vertices));
+    let duplicates = sites.duplicates().to_vec();
+    Ok(Found { complex, boundary: None, hidden, duplicates, betti: Some(betti) })
+}
+
+fn by_blocks(sites: &Sites<'_>, options: &ShapeOptions) -> Result<Found, ShapeError> {
+    let asked = options.blocks.map(NonZeroUsize::get);
+    // Any α below −max ω asks for the empty shape, and doubles hold one.
+    let largest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let alpha = power_alpha(options).squared().max(-2.0 * largest.abs() - 1.0);
+    // Of a torus, the whole triangulation is that with its exterior simplices.
+    let exterior = options.exterior || (options.hidden && sites.torus().is_some());
+    let plan = if exterior || options.hidden || alpha.is_infinite() {
+        Plan::whole(sites)
+    } else {
+        let reach = Reach::at(sites, alpha, largest);
+        Plan::new(sites, reach, Limits { blocks: asked, memory: options.memory })?
+    };
+    plan.afford(sites.input().len())?;
+    let lattice = lattice(sites.positions(), sites.weights(), sites.torus());
+    let question = Question { alpha, lattice, exterior };
+    let answer = blocks::run(sites, &plan, &question)?;
+    let boundary = Some((answer.b0, Sheets::of(&answer), answer.sheet_windings));
+    let duplicates = sites.duplicates().to_vec();
+    Ok(Found { complex: answer.complex, boundary, hidden: answer.hidden, duplicates, betti: None })
+}
+
+pub(super) fn squared_radii(weights: &[f64], alpha: Alpha) -> Result<Vec<f64>, ShapeError> {
+    let radius = |(index, weight): (usize, &f64)| {
+        let radius = alpha.squared() + weight;
+        // NaN compares false: it is refused too.
+        if radius >= 0.0 && radius.is_finite() {
+            Ok(radius * radius)
+        } else {
+            Err(ShapeError::Radius { index, radius })
+        }
+    };
+    weights.iter().enumerate().map(radius).collect()
+}
+
+/// Sites that are not vertices. Both lists ascend.
+fn hidden(sites: &[u32], vertices: &Simplices<1>) -> Vec<u32> {
+    let mut vertices = vertices.rows().iter().peekable();
+    sites.iter().copied().filter(|&site| vertices.next_if(|v| v[0] == site).is_none()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ball may be a point, and no less.
+    #[test]
+    fn weights_of_radii_are_their_squares() {
+        let squared = |weights: &[f64]| squared_radii(weights, Alpha::from_squared(1.0).unwrap());
+        assert_eq!(squared(&[0.5, -1.0, 2.0]).unwrap(), [2.25, 0.0, 9.0]);
+        for (weight, radius) in [(-1.5, -0.5), (f64::INFINITY, f64::INFINITY)] {
+            match squared(&[0.0, weight]) {
+                Err(ShapeError::Radius { index: 1, radius: found }) => assert_eq!(found, radius),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+use walpha_base::UnionFind;
+
+use super::Surface;
+
+/// Where the boundary of a shape is not a manifold: a solid in the sense of other programs has none of
+/// these, an alpha shape often has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ManifoldDefects {
+    /// Edges on more than two regular facets, where parts of the shape touch along a line.
+    pub edges: usize,
+    /// Other vertices around which the regular facets make more than one fan, where parts touch at
+    /// a point.
+    pub vertices: usize,
+}
+
+impl ManifoldDefects {
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl Surface {
+    /// Where the regular facets do not make a manifold. Singular simplices, which bound nothing, are not
+    /// looked at. O(n log n).
+    pub fn manifold_defects(&self) -> ManifoldDefects {
+        let sides = self.sides();
+        let mut fans = UnionFind::new(3 * self.regular.len());
+        let mut on_defect = vec![false; self.vertex_count()];
+        let mut edges = 0;
+        for around in sides.chunk_by(|a, b| a.0 == b.0) {
+            if let [(_, a), (_, b)] = around {
+                fans.unite(a[0], b[0]);
+                fans.unite(a[1], b[1]);
+            } else {
+                edges += 1;
+                around[0].0.iter().for_each(|&v| on_defect[v as usize] = true);
+            }
+        }
+        let mut fans_of = vec![0usize; self.vertex_count()];
+        for (corner, &v) in self.regular.as_flattened().iter().enumerate() {
+            let corner = corner as u32;
+            fans_of[v as usize] += usize::from(fans.find(corner) == corner);
+        }
+        let pinched = |(&fans, &defect): (&usize, &bool)| fans > 1 && !defect;
+        let vertices = fans_of.iter().zip(&on_defect).filter(|&pair| pinched(pair)).count();
+        ManifoldDefects { edges, vertices }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The facets of a tetrahedron, outward.
+    fn tetrahedron([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
+        [[a, c, b], [a, b, d], [b, c, d], [a, d, c]]
+    }
+
+    fn defects(facets: &[[u32; 3]]) -> [usize; 2] {
+        let vertices = facets.as_flattened().iter().max().map_or(0, |&v| v + 1);
+        let surface = Surface {
+            vertices: (0..vertices).collect(),
+            regular: facets.to_vec(),
+            ..Surface::default()
+        };
+        let ManifoldDefects { edges, vertices } = surface.manifold_defects();
+        [edges, vertices]
+    }
+
+    #[test]
+    fn touching_solids_are_found() {
+        let one = tetrahedron([0, 1, 2, 3]);
+        assert_eq!(defects(&[]), [0, 0]);
+        assert_eq!(defects(&one), [0, 0]);
+        assert_eq!(defects(&[one, tetrahedron([4, 5, 6, 7])].concat()), [0, 0]);
+        assert_eq!(defects(&[one, tetrahedron([3, 4, 5, 6])].concat()), [0, 1]);
+        assert_eq!(defects(&[one, tetrahedron([2, 3, 4, 5])].concat()), [1, 0]);
+        assert_eq!(defects(&one[..3]), [3, 0], "an open boundary");
+    }
+}

@@ -1,0 +1,186 @@
+//! Components of a shape.
+
+use serde::{Deserialize, Serialize};
+use walpha_base::UnionFind;
+use walpha_regular::Torus;
+
+use super::sums::{ComponentSums, SheetSums, components_of_sums};
+use super::winding::WindingSets;
+use super::{AlphaShape, Class, Complex, Sheets};
+
+/// A connected component of a shape.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Component {
+    /// Its vertices.
+    pub vertices: usize,
+    /// Its cells; 0 for one that is nowhere solid.
+    pub cells: usize,
+    /// The volume of its cells, in cubed units of the points.
+    pub volume: f64,
+    /// The area of its regular facets, the boundary of its solid part.
+    pub area: f64,
+    /// The area of its singular facets, one side of each.
+    pub singular_area: f64,
+    /// The smallest coordinates of its box, (x, y, z).
+    pub low: [f64; 3],
+    /// The largest coordinates of its box, (x, y, z).
+    pub high: [f64; 3],
+    /// What its boundary encloses, largest first; `None` where sheets are not known, and on a torus, where
+    /// not every sheet encloses something ([`AlphaShape::voids`]).
+    pub voids: Option<Vec<Enclosed>>,
+    /// On a torus: in how many independent directions it goes round. Its box is that of one of its copies, and
+    /// along axes that it goes round the whole side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rounds: Option<usize>,
+}
+
+/// A void by the sheet around it. Another component may float in it: its volume counts here.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Enclosed {
+    /// The number of the sheet.
+    pub sheet: u32,
+    /// What the sheet encloses, in cubed units of the points.
+    pub volume: f64,
+    /// The smallest coordinates of its box, (x, y, z).
+    pub low: [f64; 3],
+    /// The largest coordinates of its box, (x, y, z).
+    pub high: [f64; 3],
+}
+
+/// What [`AlphaShape::component_numbers`] says of points that are not vertices of the shape.
+pub const NO_COMPONENT: u32 = u32::MAX;
+
+impl AlphaShape {
+    /// For each input point the number of its component, [`NO_COMPONENT`] if it is not in the shape.
+    /// Components are numbered in the order of their smallest vertices. O(n).
+    pub fn component_numbers(&self) -> Vec<u32> {
+        let mut sets = connected(self.complex());
+        // Copies of a point are where the point is.
+        let first_copy = (self.points().len() - self.copies.len()) as u32;
+        for (copy, &of) in (first_copy..).zip(&self.copies) {
+            sets.unite(copy, of);
+        }
+        let mut numbers = vec![NO_COMPONENT; self.points().len()];
+        let mut count = 0;
+        for (&[v], class) in self.complex().vertices.iter() {
+            if class == Class::Exterior {
+                continue;
+            }
+            let root = sets.find(v);
+            if root == v {
+                numbers[v as usize] = count;
+                count += 1;
+            } else {
+                numbers[v as usize] = numbers[root as usize];
+            }
+        }
+        numbers
+    }
+
+    /// The components of the shape by their numbers, as many as b0. Sums are exact, and rounded once. O(n).
+    pub fn components(&self) -> Vec<Component> {
+        let numbers = self.component_numbers();
+        let positions = &self.points().positions;
+        let torus = self.options().periodic;
+        let mut wound = torus.map(|torus| (torus, wound(self.complex(), positions, torus)));
+        let number = |v: u32| numbers[v as usize] as usize;
+        let mut components: Vec<ComponentSums> = Vec::new();
+        for &[v] in self.complex().vertices.rows() {
+            let mut point = positions[v as usize];
+            if let Some((torus, wound)) = &mut wound {
+                point = torus.moved(point, wound.find(v).1);
+            }
+            match number(v) {
+                n if n == NO_COMPONENT as usize => {}
+                n if n == components.len() => components.push(ComponentSums::at(point)),
+                n => components[n].reach(point),
+            }
+        }
+        for cell in self.complex().cells.of(Class::Interior) {
+            components[number(cell[0])].add_cell(self.corners(*cell));
+        }
+        for (facet, class) in self.complex().facets.iter() {
+            // The ends of others may be in no component.
+            if let Class::Regular | Class::Singular = class {
+                components[number(facet[0])].add_facet(self.corners(*facet), class);
+            }
+        }
+        // What a surface of a torus encloses is not its sheets' to say.
+        let sheets = self.sheets().filter(|_| torus.is_none());
+        let sheets = sheets.map(|sheets| self.sheet_sums(sheets, &numbers));
+        let mut components = components_of_sums(components, sheets);
+        if let Some((torus, wound)) = wound {
+            self.go_round(&mut components, &numbers, torus, wound);
+        }
+        components
+    }
+
+    /// Says how components go round a torus.
+    fn go_round(
+        &self,
+        components: &mut [Component],
+        numbers: &[u32],
+        torus: Torus,
+        mut wound: WindingSets,
+    ) {
+        components.iter_mut().for_each(|component| component.rounds = Some(0));
+        for &[v] in self.complex().vertices.rows() {
+            let (root, _) = wound.find(v);
+            let Some(directions) = wound.rounds(root).filter(|_| root == v) else { continue };
+            let component = &mut components[numbers[v as usize] as usize];
+            component.rounds = Some(directions.rank());
+            for axis in (0..3).filter(|&axis| directions.has(axis)) {
+                (component.low[axis], component.high[axis]) = (0.0, torus.sides()[axis]);
+            }
+        }
+    }
+
+    /// Each sheet that has facets, with its component.
+    fn sheet_sums(&self, sheets: &Sheets, numbers: &[u32]) -> Vec<(u32, usize, SheetSums)> {
+        let positions = &self.points().positions;
+        let complex = self.complex();
+        let mut found: Vec<Option<(usize, SheetSums)>> = vec![None; sheets.count as usize];
+        let mut add = |sheet: u32, side: [u32; 3]| {
+            let corners = side.map(|v| positions[v as usize]);
+            let (_, sums) = found[sheet as usize]
+                .get_or_insert_with(|| (numbers[side[0] as usize] as usize, SheetSums::default()));
+            sums.add(positions[0], corners);
+        };
+        for (&sheet, &side) in sheets.regular.iter().zip(complex.facets.of(Class::Regular)) {
+            add(sheet, side);
+        }
+        for (&[clockwise, counter], &[a, b, c]) in
+            sheets.singular.iter().zip(complex.facets.of(Class::Singular))
+        {
+            add(clockwise, [a, c, b]);
+            add(counter, [a, b, c]);
+        }
+        let numbered = (0..).zip(found);
+        numbered.filter_map(|(sheet, found)| found.map(|(c, sums)| (sheet, c, sums))).collect()
+    }
+}
+
+/// The vertices of a shape of a torus, united by its edges.
+pub(super) fn wound(complex: &Complex, positions: &[[f64; 3]], torus: Torus) -> WindingSets {
+    let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
+    let mut sets = WindingSets::new(points);
+    for (&[a, b], class) in complex.edges.iter() {
+        if class != Class::Exterior {
+            let [from, to] = [a, b].map(|v| positions[v as usize]);
+            sets.unite(a, b, torus.windings(from, to));
+        }
+    }
+    sets
+}
+
+/// The vertices of a shape, united by its edges.
+pub(super) fn connected(complex: &Complex) -> UnionFind {
+    let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
+    let mut sets = UnionFind::new(points);
+    for (&[a, b], class) in complex.edges.iter() {
+        if class != Class::Exterior {
+            sets.unite(a, b);
+        }
+    }
+    sets
+}

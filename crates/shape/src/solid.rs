@@ -1,0 +1,184 @@
+//! A boundary that other programs take for a solid's: closed, oriented, and a manifold.
+
+use std::collections::{BTreeMap, HashMap};
+
+use serde::Serialize;
+use walpha_base::UnionFind;
+
+use super::{AlphaShape, Surface};
+
+/// Where a boundary was cut apart to become a manifold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Cuts {
+    /// Edges on more than two facets, along which parts of the shape touch.
+    pub edges: usize,
+    /// Vertices that now occur more than once.
+    pub vertices: usize,
+    /// Vertices in the middle of an edge, at which one of two sheets that share both of its ends
+    /// was bent apart from the other.
+    pub midpoints: usize,
+}
+
+/// A corner of a facet: three times its row, and which.
+type Corner = u32;
+
+impl Surface {
+    /// The regular facets alone, as the boundary of a solid: each edge is on two facets, which go
+    /// along it in opposite directions, and the facets around a vertex are one fan. Where the shape
+    /// is not a manifold, its parts are cut apart: facets that bound the same cells stay together, and
+    /// vertices between others occur once for each fan. Where that leaves an edge on four facets, as both
+    /// of its ends are in one fan, two of them get a vertex in its middle. No place moves, but for the
+    /// rounding of such middles. O(n log n).
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
+    pub fn solid(shape: &AlphaShape) -> (Self, Cuts) {
+        let whole = Self::of(shape);
+        let pairs = Pairs::of(shape, &whole);
+        let mut fans = UnionFind::new(3 * whole.regular.len());
+        for [a, b] in &pairs.corners {
+            fans.unite(a[0], b[0]);
+            fans.unite(a[1], b[1]);
+        }
+        // A fan's number is that of its vertex, if it is the first there.
+        let mut vertices = Vec::new();
+        let mut number = HashMap::new();
+        let mut order: Vec<(u32, Corner)> =
+            whole.regular.as_flattened().iter().copied().zip(0..).collect();
+        order.sort_unstable();
+        for &(v, corner) in &order {
+            number.entry(fans.find(corner)).or_insert_with(|| {
+                vertices.push(whole.vertices[v as usize]);
+                vertices.len() as u32 - 1
+            });
+        }
+        let first_ones = order.chunk_by(|a, b| a.0 == b.0).count();
+        let mut corner = 0..;
+        let mut named = || number[&fans.find(corner.next().expect("endless"))];
+        let regular = whole.regular.iter().map(|facet| facet.map(|_| named())).collect();
+        let mut cuts =
+            Cuts { edges: pairs.touching, vertices: vertices.len() - first_ones, midpoints: 0 };
+        let mut solid = Self { vertices, regular, ..Self::default() };
+        solid.bend(&pairs.corners);
+        cuts.midpoints = solid.midpoints.len();
+        (solid, cuts)
+    }
+
+    /// Parts sheets that share both ends of an edge, by vertices in its middle.
+    fn bend(&mut self, pairs: &[[[Corner; 2]; 2]]) {
+        let mut sheets: BTreeMap<[u32; 2], Vec<[Corner; 2]>> = BTreeMap::new();
+        for [[a, other], [b, _]] in pairs {
+            let ends = [a, other].map(|&corner| self.regular.as_flattened()[corner as usize]);
+            let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            sheets.entry(key).or_default().push([a / 3, b / 3]);
+        }
+        // Edges of each facet that get a middle, by their ends.
+        let mut middles: BTreeMap<u32, Vec<([u32; 2], u32)>> = BTreeMap::new();
+        for (ends, sheets) in &sheets {
+            for facets in &sheets[1..] {
+                let middle = (self.vertices.len() + self.midpoints.len()) as u32;
+                self.midpoints.push(*ends);
+                for &facet in facets {
+                    middles.entry(facet).or_default().push((*ends, middle));
+                }
+            }
+        }
+        for (facet, edges) in middles {
+            let row = self.regular[facet as usize];
+            let middle = |i: usize| {
+                let ends = [row[i].min(row[(i + 1) % 3]), row[i].max(row[(i + 1) % 3])];
+                edges.iter().find(|edge| edge.0 == ends).map(|edge| edge.1)
+            };
+            let mut pieces = divided(row, [middle(0), middle(1), middle(2)]);
+            self.regular[facet as usize] = pieces.pop().expect("one at least");
+            self.regular.extend(pieces);
+        }
+    }
+}
+
+/// A triangle cut into triangles, by vertices in the middle of some of its edges: the one behind each corner.
+fn divided(row: [u32; 3], middles: [Option<u32>; 3]) -> Vec<[u32; 3]> {
+    let around: Vec<u32> = (0..3).flat_map(|i| [Some(row[i]), middles[i]]).flatten().collect();
+    // From a vertex in a middle, no piece is flat: its two neighbours are on one line with it.
+    let Some(from) = (0..3).find_map(|i| middles[i]) else { return vec![row] };
+    let at = around.iter().position(|&v| v == from).expect("it is one of them");
+    let turned: Vec<u32> = around[at..].iter().chain(&around[..at]).copied().collect();
+    turned[1..].windows(2).map(|pair| [from, pair[0], pair[1]]).collect()
+}
+
+/// Facets that meet along edges of the boundary of the same cells.
+struct Pairs {
+    /// For two facets, their corners at the ends of the edge, in the same order.
+    corners: Vec<[[Corner; 2]; 2]>,
+    /// Edges on more than two facets.
+    touching: usize,
+}
+
+impl Pairs {
+    fn of(shape: &AlphaShape, surface: &Surface) -> Self {
+        let sides = surface.sides();
+        let around: Vec<_> = sides.chunk_by(|a, b| a.0 == b.0).collect();
+        let number = |end: u32| surface.vertices[end as usize];
+        let touching: HashMap<[u32; 2], usize> = (around.iter().enumerate())
+            .filter(|(_, sides)| sides.len() > 2)
+            .map(|(k, sides)| (sides[0].0.map(number), k))
+            .collect();
+        let wedges = wedges(shape, &touching);
+        let mut corners = Vec::new();
+        for sides in &around {
+            if let [(_, a), (_, b)] = sides {
+                corners.push([*a, *b]);
+                continue;
+            }
+            // By the third corner of each facet, which is that of the first or last cell between.
+            let third = |corners: &[Corner; 2]| {
+                let row = surface.regular[corners[0] as usize / 3];
+                let ends = sides[0].0;
+                number(*row.iter().find(|v| !ends.contains(v)).expect("a third corner"))
+            };
+            let by_third: HashMap<u32, [Corner; 2]> =
+                sides.iter().map(|(_, corners)| (third(corners), *corners)).collect();
+            let links = &wedges[&sides[0].0.map(number)];
+            for (&from, &corners_from) in &by_third {
+                let to = last(links, from);
+                if from < to {
+                    corners.push([corners_from, by_third[&to]]);
+                }
+            }
+        }
+        corners.sort_unstable();
+        Self { corners, touching: touching.len() }
+    }
+}
+
+/// Around each of these edges, the third and fourth corners of the cells of the shape.
+fn wedges(
+    shape: &AlphaShape,
+    edges: &HashMap<[u32; 2], usize>,
+) -> HashMap<[u32; 2], Vec<[u32; 2]>> {
+    let mut wedges: HashMap<[u32; 2], Vec<[u32; 2]>> = HashMap::new();
+    if edges.is_empty() {
+        return wedges;
+    }
+    for cell in shape.complex().cells.of(super::Class::Interior) {
+        for (i, j, k, l) in
+            [(0, 1, 2, 3), (0, 2, 1, 3), (0, 3, 1, 2), (1, 2, 0, 3), (1, 3, 0, 2), (2, 3, 0, 1)]
+        {
+            let edge = [cell[i].min(cell[j]), cell[i].max(cell[j])];
+            if edges.contains_key(&edge) {
+                wedges.entry(edge).or_default().push([cell[k], cell[l]]);
+            }
+        }
+    }
+    wedges
+}
+
+/// The other end of the row of cells that begins at a facet with this third corner.
+fn last(links: &[[u32; 2]], from: u32) -> u32 {
+    let (mut at, mut before) = (from, None);
+    loop {
+        let next =
+            links.iter().enumerate().find(|&(k, link)| Some(k) != before && link.contains(&at));
+        let Some((k, link)) = next else { return at };
+        at = if link[0] == at { link[1] } else { link[0] };
+        before = Some(k);
+    }
+}

@@ -1,0 +1,163 @@
+//! What is summed over components and sheets, part by part.
+
+use serde::{Deserialize, Serialize};
+use walpha_base::Sum;
+
+use super::{Class, Component, Enclosed, Measures, facet_area, six_volumes};
+
+/// What is summed over a component, or over a part of one: parts [join](Self::join) in any order.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ComponentSums {
+    /// Vertices so far.
+    pub vertices: usize,
+    /// Cells so far.
+    pub cells: usize,
+    six_volumes: Sum,
+    area: Sum,
+    singular_area: Sum,
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl ComponentSums {
+    /// One of its vertices.
+    pub fn at(point: [f64; 3]) -> Self {
+        Self {
+            vertices: 1,
+            cells: 0,
+            six_volumes: Sum::default(),
+            area: Sum::default(),
+            singular_area: Sum::default(),
+            low: point,
+            high: point,
+        }
+    }
+
+    /// Another vertex.
+    pub fn reach(&mut self, point: [f64; 3]) {
+        self.vertices += 1;
+        widen(&mut self.low, &mut self.high, point);
+    }
+
+    /// A cell that is in the shape.
+    pub fn add_cell(&mut self, corners: [[f64; 3]; 4]) {
+        self.cells += 1;
+        self.six_volumes.add(six_volumes(corners));
+    }
+
+    /// A facet of some class.
+    pub fn add_facet(&mut self, corners: [[f64; 3]; 3], class: Class) {
+        match class {
+            Class::Regular => self.area.add(facet_area(corners)),
+            Class::Singular => self.singular_area.add(facet_area(corners)),
+            _ => {}
+        }
+    }
+
+    /// Takes in another part.
+    pub fn join(&mut self, other: &Self) {
+        self.vertices += other.vertices;
+        self.cells += other.cells;
+        self.six_volumes.join(&other.six_volumes);
+        self.area.join(&other.area);
+        self.singular_area.join(&other.singular_area);
+        widen(&mut self.low, &mut self.high, other.low);
+        widen(&mut self.low, &mut self.high, other.high);
+    }
+
+    /// What all of these have, which is what the shape has.
+    pub fn measures<'a>(all: impl Iterator<Item = &'a Self> + Clone) -> Measures {
+        let sum = |of: fn(&Self) -> &Sum| {
+            let mut sum = Sum::default();
+            all.clone().for_each(|sums| sum.join(of(sums)));
+            sum.value()
+        };
+        Measures {
+            volume: sum(|sums| &sums.six_volumes) / 6.0,
+            area: sum(|sums| &sums.area),
+            singular_area: sum(|sums| &sums.singular_area),
+        }
+    }
+
+    fn component(self) -> Component {
+        let Self { vertices, cells, low, high, .. } = self;
+        Component {
+            vertices,
+            cells,
+            // Divided last: sums of determinants on a lattice are whole numbers.
+            volume: self.six_volumes.value() / 6.0,
+            area: self.area.value(),
+            singular_area: self.singular_area.value(),
+            low,
+            high,
+            voids: None,
+            rounds: None,
+        }
+    }
+}
+
+/// What is summed over the sides of facets that are on one sheet, or over some of them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SheetSums {
+    six_volumes: Sum,
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Default for SheetSums {
+    fn default() -> Self {
+        let (low, high) = ([f64::MAX; 3], [f64::MIN; 3]);
+        Self { six_volumes: Sum::default(), low, high }
+    }
+}
+
+impl SheetSums {
+    /// A side of a facet, whose corners turn counter-clockwise seen from outside the shape. `apex` is one
+    /// place for all: of the cones over the sides of a sheet from it, signed, the sheet's inside remains.
+    pub fn add(&mut self, apex: [f64; 3], corners: [[f64; 3]; 3]) {
+        let [a, b, c] = corners;
+        self.six_volumes.add(-six_volumes([apex, a, b, c]));
+        corners.iter().for_each(|&corner| widen(&mut self.low, &mut self.high, corner));
+    }
+
+    /// Takes in other sides.
+    pub fn join(&mut self, other: &Self) {
+        self.six_volumes.join(&other.six_volumes);
+        widen(&mut self.low, &mut self.high, other.low);
+        widen(&mut self.low, &mut self.high, other.high);
+    }
+
+    fn enclosed(self, sheet: u32) -> Enclosed {
+        let Self { six_volumes, low, high } = self;
+        Enclosed { sheet, volume: six_volumes.value() / 6.0, low, high }
+    }
+}
+
+/// Components by their numbers, with the voids that their sheets enclose; sheets ascend by number, each
+/// with its component.
+pub fn components_of_sums(
+    components: Vec<ComponentSums>,
+    sheets: Option<Vec<(u32, usize, SheetSums)>>,
+) -> Vec<Component> {
+    let mut components: Vec<Component> =
+        components.into_iter().map(ComponentSums::component).collect();
+    let Some(sheets) = sheets else { return components };
+    components.iter_mut().for_each(|component| component.voids = Some(Vec::new()));
+    let enclosed =
+        |(sheet, component, sums): (u32, usize, SheetSums)| (component, sums.enclosed(sheet));
+    let mut found: Vec<(usize, Enclosed)> = sheets.into_iter().map(enclosed).collect();
+    // The sheet around a component has what it encloses behind it: least, and first.
+    found.sort_by(|(a, first), (b, second)| a.cmp(b).then(first.volume.total_cmp(&second.volume)));
+    let voids = found.chunk_by(|a, b| a.0 == b.0).flat_map(|of_one| of_one[1..].iter().rev());
+    for &(component, void) in voids {
+        components[component].voids.get_or_insert_default().push(void);
+    }
+    components
+}
+
+fn widen(low: &mut [f64; 3], high: &mut [f64; 3], point: [f64; 3]) {
+    for k in 0..3 {
+        low[k] = low[k].min(point[k]);
+        high[k] = high[k].max(point[k]);
+    }
+}

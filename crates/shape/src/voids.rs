@@ -1,0 +1,242 @@
+use std::cmp::Ordering;
+
+use serde::{Deserialize, Serialize};
+use walpha_regular::{Interval, Predicates, Torus};
+
+use super::measure::six_volumes;
+use super::topology::{Complement, complement_on};
+use super::winding::{Winding, WindingSets};
+use super::{Alpha, AlphaShape, Class};
+
+/// A void of a shape: a bounded component of its complement, made of exterior cells.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Void {
+    /// Cells of the triangulation that fill it.
+    pub cells: usize,
+    /// Its volume, in cubed units of the points.
+    pub volume: f64,
+    /// The smallest coordinates of its box, (x, y, z).
+    pub low: [f64; 3],
+    /// The largest coordinates of its box, (x, y, z).
+    pub high: [f64; 3],
+    /// The α that fills it, a squared length: the first double that is not below the squared radius
+    /// of the largest orthogonal sphere of its cells, exactly. It may fall into several voids before. With
+    /// [`Balls::Radius`](super::Balls::Radius), where weights follow α, it is the parameter of the
+    /// power weights instead, as [`AlphaShape::power_alpha`].
+    pub filling_alpha: Alpha,
+}
+
+impl Void {
+    /// Largest first, ties by box.
+    pub fn order(&self, other: &Self) -> Ordering {
+        let boxes = || self.low.partial_cmp(&other.low).unwrap_or(Ordering::Equal);
+        other.volume.total_cmp(&self.volume).then_with(boxes)
+    }
+}
+
+/// A component of the complement, and what is summed over its cells.
+#[derive(Clone, Copy, Debug)]
+pub struct Hollow {
+    cells: usize,
+    /// Divided last: sums of determinants on a lattice are whole numbers.
+    six_volumes: f64,
+    low: [f64; 3],
+    high: [f64; 3],
+    /// Around the largest squared radius of the cells.
+    radius: Interval,
+}
+
+impl Hollow {
+    /// One cell, with its squared radius.
+    pub fn of(radius: Interval, corners: [[f64; 3]; 4]) -> Self {
+        let end = |choose: fn(f64, f64) -> f64| {
+            [0, 1, 2]
+                .map(|k| corners[1..].iter().fold(corners[0][k], |so_far, p| choose(so_far, p[k])))
+        };
+        let six_volumes = six_volumes(corners);
+        Self { cells: 1, six_volumes, low: end(f64::min), high: end(f64::max), radius }
+    }
+
+    /// The same at another copy of it on a torus.
+    pub fn moved(&mut self, torus: Torus, way: Winding) {
+        (self.low, self.high) = (torus.moved(self.low, way), torus.moved(self.high, way));
+    }
+
+    /// Takes in another.
+    pub fn join(&mut self, other: &Self) {
+        self.cells += other.cells;
+        self.six_volumes += other.six_volumes;
+        for k in 0..3 {
+            self.low[k] = self.low[k].min(other.low[k]);
+            self.high[k] = self.high[k].max(other.high[k]);
+        }
+        self.radius.low = self.radius.low.max(other.radius.low);
+        self.radius.high = self.radius.high.max(other.radius.high);
+    }
+
+    /// How many cells there are.
+    pub fn cells(&self) -> usize {
+        self.cells
+    }
+
+    /// Raises α to the first double at which one of the cells fits.
+    pub fn raise(
+        &self,
+        alpha: &mut f64,
+        spheres: &Predicates<'_>,
+        cell: [u32; 4],
+        radius: Interval,
+    ) {
+        // What surely comes before another needs no look.
+        if radius.high >= self.radius.low && !spheres.fits_by(cell, radius, *alpha) {
+            *alpha = spheres.first_alpha(cell);
+        }
+    }
+
+    /// As a void that is filled at this α.
+    pub(crate) fn void(&self, filling_alpha: f64) -> Void {
+        let Self { cells, six_volumes, low, high, .. } = *self;
+        let filling_alpha = Alpha::from_squared(filling_alpha).expect("radii are numbers");
+        Void { cells, volume: six_volumes / 6.0, low, high, filling_alpha }
+    }
+}
+
+impl AlphaShape {
+    /// The voids of the shape, as many as its second Betti number: largest first, ties by box. Of a torus those
+    /// components of the complement that do not go round it, so that they are bounded in space, too; each lies
+    /// where one of its copies does. What goes round is not a void, and the second Betti number is another.
+    /// `None` unless the shape was made with its exterior simplices
+    /// ([`ShapeOptions::exterior`](super::ShapeOptions::exterior)): voids are made of them.
+    ///
+    /// Volumes are rounded sums in a fixed order. O(n log n).
+    pub fn voids(&self) -> Option<Vec<Void>> {
+        // A flat shape shuts nothing in.
+        let flat = self.complex().cells.is_empty();
+        self.options().exterior.then(|| if flat { Vec::new() } else { voids(self) })
+    }
+}
+
+/// What is bounded of a complement, by cells.
+enum Bounded {
+    InSpace(Complement),
+    OnTorus(Torus, WindingSets),
+}
+
+impl Bounded {
+    fn of(shape: &AlphaShape) -> Self {
+        let (whole, positions) = (shape.complex(), &shape.points().positions);
+        match shape.options().periodic {
+            None => Self::InSpace(Complement::of(whole)),
+            Some(torus) => Self::OnTorus(torus, complement_on(torus, whole, positions)),
+        }
+    }
+
+    /// The component of an exterior cell, named by its first cell, if it is bounded; and the cell's corners,
+    /// where it lies beside the component's others.
+    fn place(&mut self, cell: u32, corners: [[f64; 3]; 4]) -> Option<(u32, [[f64; 3]; 4])> {
+        match self {
+            Self::InSpace(complement) => {
+                let component = complement.component(cell);
+                (component != complement.outside()).then_some((component, corners))
+            }
+            Self::OnTorus(torus, sets) => {
+                let (component, way) = sets.find(cell);
+                let bounded = sets.rounds(component).is_none();
+                bounded.then(|| (component, corners.map(|corner| torus.moved(corner, way))))
+            }
+        }
+    }
+}
+
+fn voids(shape: &AlphaShape) -> Vec<Void> {
+    let cells = &shape.complex().cells;
+    let mut bounded = Bounded::of(shape);
+    let (positions, weights) = (&shape.points().positions, shape.power_weights());
+    let spheres = Predicates::on_torus(positions, weights, shape.options().periodic);
+    // By the component's number, which is its first cell's.
+    let mut found: Vec<Option<Hollow>> = vec![None; cells.len() + 1];
+    let mut inside = Vec::new();
+    for (id, (&cell, class)) in cells.iter().enumerate() {
+        if class != Class::Exterior {
+            continue;
+        }
+        let Some((component, corners)) = bounded.place(id as u32, shape.corners(cell)) else {
+            continue;
+        };
+        let radius = spheres.squared_radius(cell);
+        let hollow = Hollow::of(radius, corners);
+        match &mut found[component as usize] {
+            Some(found) => found.join(&hollow),
+            empty => *empty = Some(hollow),
+        }
+        inside.push((component as usize, cell, radius));
+    }
+    let mut filling = vec![f64::NEG_INFINITY; found.len()];
+    for (component, cell, radius) in inside {
+        let hollow = found[component].expect("it has this cell");
+        hollow.raise(&mut filling[component], &spheres, cell, radius);
+    }
+    let void = |(hollow, alpha): (Option<Hollow>, f64)| Some(hollow?.void(alpha));
+    let mut voids: Vec<Void> = found.into_iter().zip(filling).filter_map(void).collect();
+    voids.sort_by(Void::order);
+    voids
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{ShapeOptions, WeightedPoints, alpha_shape};
+    use super::*;
+
+    /// A 7³ lattice without its inner 3³ and without one more point far from them.
+    fn hollow(alpha: f64, exterior: bool) -> AlphaShape {
+        let mut positions = Vec::new();
+        for i in 0..12 * 7 * 7 {
+            let p = [i % 12, i / 12 % 7, i / 84];
+            let inner = p.iter().all(|k| (2..5).contains(k));
+            if !inner && p != [9, 3, 3] {
+                positions.push(p.map(f64::from));
+            }
+        }
+        let weights = vec![0.0; positions.len()];
+        let points = WeightedPoints { positions, weights, values: None };
+        let alpha = Alpha::from_squared(alpha).unwrap();
+        let options = ShapeOptions { exterior, ..ShapeOptions::new(alpha) };
+        alpha_shape(points, &options).unwrap()
+    }
+
+    #[test]
+    fn hollows_of_a_lattice_are_found_with_their_sizes() {
+        let shape = hollow(0.75, true);
+        let voids = shape.voids().unwrap();
+        assert_eq!(voids.len() as u64, shape.betti().unwrap().b2);
+        let [large, small] = voids[..] else { panic!("{voids:?}") };
+        assert_eq!((large.low, large.high), ([1.0; 3], [5.0; 3]));
+        // One missing point leaves the octahedron of its neighbours.
+        assert_eq!((small.low, small.high), ([8.0, 2.0, 2.0], [10.0, 4.0, 4.0]));
+        assert!((small.volume - 4.0 / 3.0).abs() < 1e-12, "{small:?}");
+        let whole = 11.0 * 6.0 * 6.0;
+        let filled = shape.measures().volume + large.volume + small.volume;
+        assert!((filled - whole).abs() < 1e-9, "{filled} of {whole}");
+        // The octahedron's sphere; and one that touches what remains around the large hollow.
+        assert_eq!(small.filling_alpha.squared(), 1.0);
+        for void in [large, small] {
+            let left = |alpha| hollow(alpha, true).voids().unwrap();
+            let inside = |other: &Void| {
+                (0..3).all(|k| other.low[k] >= void.low[k] && other.high[k] <= void.high[k])
+            };
+            assert!(!left(void.filling_alpha.squared()).iter().any(inside));
+            assert!(left(void.filling_alpha.squared().next_down()).iter().any(inside));
+        }
+    }
+
+    #[test]
+    fn a_filled_shape_has_no_void_and_a_partial_one_does_not_know() {
+        assert_eq!(hollow(100.0, true).voids(), Some(Vec::new()));
+        assert_eq!(hollow(0.75, false).voids(), None);
+    }
+
+    #[test]
+    fn an_empty_shape_has_no_void() {
+        assert_eq!(hollow(-1.0, true).voids(), Some(Vec::new()));
+    }
+}

@@ -1,0 +1,84 @@
+use super::Points;
+
+/// A box in which full detail is wanted, borders included, in the units of the points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region {
+    /// The smallest coordinates, (x, y, z).
+    pub low: [f64; 3],
+    /// The largest coordinates, (x, y, z).
+    pub high: [f64; 3],
+}
+
+impl Region {
+    /// Whether a place is in it.
+    pub fn contains(&self, place: [f64; 3]) -> bool {
+        (0..3).all(|k| (self.low[k]..=self.high[k]).contains(&place[k]))
+    }
+}
+
+/// Fine points in a region, coarse ones everywhere; ascending in z, then y, then x, as voxels are
+/// selected. Where both have a point it is the fine one, and a region is never coarser than what is
+/// around it.
+///
+/// What is triangulated is this one set, so there is no seam at which two meshes could part: cells
+/// that cross the border of the region join fine points to coarse ones. A column (values, differences,
+/// weights) is kept if both have it. O(n log n).
+pub fn focus(fine: &Points, coarse: &Points, region: &Region) -> Points {
+    let inside = (0..fine.len()).filter(|&i| region.contains(fine.positions[i]));
+    let coarse_ones = (0..coarse.len()).map(|i| (coarse, i));
+    let mut chosen: Vec<(&Points, usize)> = inside.map(|i| (fine, i)).chain(coarse_ones).collect();
+    let key = |&(points, i): &(&Points, usize)| {
+        let [x, y, z] = points.positions[i];
+        [z, y, x]
+    };
+    chosen.sort_by(|a, b| {
+        let (a, b) = (key(a), key(b));
+        a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
+    });
+    // The sort is stable: of two at one place the fine one is first.
+    chosen.dedup_by_key(|&mut (points, i)| points.positions[i]);
+    let column = |of: fn(&Points) -> Option<&Vec<f64>>| {
+        let both = of(fine).is_some() && of(coarse).is_some();
+        both.then(|| chosen.iter().filter_map(|&(points, i)| Some(of(points)?[i])).collect())
+    };
+    Points {
+        positions: chosen.iter().map(|&(points, i)| points.positions[i]).collect(),
+        values: column(|points| points.values.as_ref()),
+        differences: column(|points| points.differences.as_ref()),
+        weights: column(|points| points.weights.as_ref()),
+        of_radii: fine.of_radii && coarse.of_radii,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fine_inside_and_coarse_outside() {
+        let points = |xs: &[f64], value: f64| Points {
+            positions: xs.iter().map(|&x| [x, 0.0, 0.0]).collect(),
+            values: Some(vec![value; xs.len()]),
+            ..Points::default()
+        };
+        let (fine, coarse) =
+            (points(&[0.0, 1.0, 2.0, 3.0, 4.0], 1.0), points(&[0.0, 2.0, 4.0], 2.0));
+        let region = Region { low: [1.0, -1.0, 0.0], high: [3.0, 1.0, 0.0] };
+        let both = focus(&fine, &coarse, &region);
+        assert_eq!(both.positions, fine.positions);
+        assert_eq!(both.values, Some(vec![2.0, 1.0, 1.0, 1.0, 2.0]));
+        assert_eq!(both.differences, None);
+    }
+
+    #[test]
+    fn a_region_is_never_coarser_than_what_is_around_it() {
+        let points = |xs: &[f64]| Points {
+            positions: xs.iter().map(|&x| [x, 0.0, 0.0]).collect(),
+            ..Points::default()
+        };
+        let (few, many) = (points(&[1.0, 2.5]), points(&[0.0, 1.0, 2.0, 3.0, 4.0]));
+        let region = Region { low: [1.0, -1.0, 0.0], high: [3.0, 1.0, 0.0] };
+        let xs: Vec<f64> = focus(&few, &many, &region).positions.iter().map(|p| p[0]).collect();
+        assert_eq!(xs, [0.0, 1.0, 2.0, 2.5, 3.0, 4.0]);
+    }
+}
