@@ -42,8 +42,7 @@ impl Surface {
             .copied()
             .collect();
         let vertices: Vec<u32> = used.into_iter().collect();
-        let number =
-            |v: u32| vertices.partition_point(|&used| used < v) as u32;
+        let number = |v: u32| vertices.partition_point(|&used| used < v) as u32;
         Self {
             regular: regular.into_iter().map(|row| row.map(number)).collect(),
             singular: singular.into_iter().map(|row| row.map(number)).collect(),
