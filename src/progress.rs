@@ -1,10 +1,6 @@
-//! Progress of long work, for programs that show it.
-//!
-//! Loops that may take long say now and then how much is done, as `tracing` events of the target
-//! [`TARGET`] with the fields `done` and `total` (both `u64`). Without a listener this costs a few
-//! nanoseconds. The command shows a bar with the rate and the remaining time.
+//! Progress and cancelling of long work: its [`Monitor`], and the stages that it hears of.
 
-pub use walpha_base::progress::TARGET;
+pub use walpha_base::monitor::{Cancelled, Listener, Monitor};
 
 /// What a command or a [`Pipeline`](crate::Pipeline) does at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -47,6 +43,14 @@ pub enum Stage {
 }
 
 impl Stage {
+    /// Reports that the stage begins.
+    ///
+    /// # Errors
+    /// The work was cancelled.
+    pub fn begin(self, monitor: &Monitor) -> Result<(), Cancelled> {
+        monitor.stage(self.name())
+    }
+
     /// A word for it, as reports have it.
     pub fn name(self) -> &'static str {
         match self {

@@ -2,6 +2,8 @@
 
 pub use walpha_shape::*;
 
+use walpha_base::Monitor;
+
 use crate::check::Claim;
 use crate::check::schema::PlacedComplex;
 
@@ -18,12 +20,24 @@ pub fn alpha_shape(
     points: WeightedPoints,
     options: &ShapeOptions,
 ) -> Result<AlphaShape, ShapeError> {
+    alpha_shape_monitored(points, options, &Monitor::silent())
+}
+
+/// The same, which says how far it is and can be cancelled. CGAL works to its end.
+///
+/// # Errors
+/// Those of [`alpha_shape`], and [`ShapeError::Cancelled`].
+pub fn alpha_shape_monitored(
+    points: WeightedPoints,
+    options: &ShapeOptions,
+    monitor: &Monitor,
+) -> Result<AlphaShape, ShapeError> {
     let options = options.engine(chosen(points.len(), options));
     #[cfg(feature = "cgal")]
     if options.engine == Engine::Cgal {
-        return alpha_shape_by(points, &options, crate::cgal::complex);
+        return alpha_shape_by(points, &options, crate::cgal::complex, monitor);
     }
-    walpha_shape::alpha_shape(points, &options)
+    walpha_shape::alpha_shape_monitored(points, &options, monitor)
 }
 
 /// The engine that runs: what was asked for, or what [`Engine::Auto`] takes for so many points.

@@ -1,69 +1,54 @@
-//! Stages that may take long say how far they are.
+//! Stages that may take long report how far they are, and end where they are cancelled.
 
-use std::fmt::Debug;
 use std::sync::{Arc, Mutex};
 
-use tracing::field::{Field, Visit};
-use tracing::span::{Attributes, Id, Record};
-use tracing::{Event, Metadata, Subscriber};
-use walpha::interpolate::{Adaptive, adaptive_voxels};
+use walpha::haar::{HaarError, smooth_monitored};
+use walpha::interpolate::{Adaptive, InterpolateError, adaptive_voxels_monitored};
 use walpha::ladder::Filtration;
-use walpha::progress::TARGET;
-use walpha::shape::{Engine, ShapeOptions};
-use walpha::{Alpha, Gray, HaarOptions, Units, Volume, WeightedPoints, alpha_shape, haar, volume};
+use walpha::pipeline::PipelineError;
+use walpha::progress::{Cancelled, Listener, Monitor, Stage};
+use walpha::shape::{Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
+use walpha::volume::{ReadOptions, VolumeError, VolumeWriter, open_monitored};
+use walpha::{Alpha, Gray, HaarOptions, Pipeline, Units, Volume, WeightedPoints, volume};
 
 /// Keeps what is reported.
 #[derive(Clone, Default)]
-struct Listener(Arc<Mutex<Vec<Parts>>>);
+struct Heard(Arc<Mutex<Vec<[u64; 2]>>>);
 
-#[derive(Clone, Copy, Debug, Default)]
-struct Parts {
-    done: u64,
-    total: u64,
+impl Listener for Heard {
+    fn progress(&self, done: u64, total: u64) {
+        self.0.lock().unwrap().push([done, total]);
+    }
 }
 
-impl Visit for Parts {
-    fn record_u64(&mut self, field: &Field, value: u64) {
-        match field.name() {
-            "done" => self.done = value,
-            "total" => self.total = value,
-            other => panic!("{other}"),
+/// Asserts that work moves forward on one scale, at least so often; and that, cancelled at its second report, it
+/// ends with that.
+fn assert_moves<T, E: std::fmt::Debug>(
+    least: usize,
+    work: impl Fn(&Monitor) -> Result<T, E>,
+    cancelled: impl Fn(&E) -> bool,
+) {
+    let heard = Heard::default();
+    work(&Monitor::new(heard.clone())).map(drop).unwrap();
+    let reports = heard.0.lock().unwrap();
+    assert!(reports.len() >= least, "{reports:?}");
+    assert!(reports.iter().all(|[_, total]| *total == reports[0][1]), "{reports:?}");
+    assert!(reports.windows(2).all(|pair| pair[0][0] < pair[1][0]), "{reports:?}");
+    assert!(reports.last().is_some_and(|[done, total]| done <= total), "{reports:?}");
+
+    let this = Arc::new(Mutex::new(None::<Monitor>));
+    let (count, inside) = (Mutex::new(0), Arc::clone(&this));
+    let monitor = Monitor::new(move |_, _| {
+        let mut count = count.lock().unwrap();
+        *count += 1;
+        assert!(*count <= 2, "it goes on");
+        if *count == 2 {
+            inside.lock().unwrap().as_ref().unwrap().cancel();
         }
-    }
-
-    fn record_debug(&mut self, _: &Field, _: &dyn Debug) {}
-}
-
-impl Subscriber for Listener {
-    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
-        metadata.target() == TARGET
-    }
-
-    fn event(&self, event: &Event<'_>) {
-        let mut parts = Parts::default();
-        event.record(&mut parts);
-        self.0.lock().unwrap().push(parts);
-    }
-
-    fn new_span(&self, _: &Attributes<'_>) -> Id {
-        Id::from_u64(1)
-    }
-
-    fn record(&self, _: &Id, _: &Record<'_>) {}
-    fn record_follows_from(&self, _: &Id, _: &Id) {}
-    fn enter(&self, _: &Id) {}
-    fn exit(&self, _: &Id) {}
-}
-
-/// Asserts that work moves forward on one scale, at least so often.
-fn assert_moves(least: usize, work: impl FnOnce()) {
-    let listener = Listener::default();
-    tracing::subscriber::with_default(listener.clone(), work);
-    let told = listener.0.lock().unwrap();
-    assert!(told.len() >= least, "{told:?}");
-    assert!(told.iter().all(|parts| parts.total == told[0].total), "{told:?}");
-    assert!(told.windows(2).all(|pair| pair[0].done < pair[1].done), "{told:?}");
-    assert!(told.last().is_some_and(|last| last.done <= last.total), "{told:?}");
+    });
+    *this.lock().unwrap() = Some(monitor.clone());
+    let error = work(&monitor).map(drop).unwrap_err();
+    assert!(cancelled(&error), "{error:?}");
 }
 
 fn phantom() -> Volume {
@@ -73,7 +58,12 @@ fn phantom() -> Volume {
 
 #[test]
 fn the_wavelet_stage_moves() {
-    assert_moves(2, || drop(haar::smooth(&phantom(), &HaarOptions::default()).unwrap()));
+    let options = HaarOptions::default();
+    assert_moves(
+        2,
+        |monitor| smooth_monitored(&phantom(), &options, monitor),
+        |error| matches!(error, HaarError::Cancelled(_)),
+    );
 }
 
 /// The points of a lattice.
@@ -83,27 +73,89 @@ fn lattice(side: usize) -> WeightedPoints {
     WeightedPoints::unweighted(positions)
 }
 
+fn is_cancelled(error: &ShapeError) -> bool {
+    match error {
+        ShapeError::Triangulation(error) => error.to_string() == Cancelled.to_string(),
+        error => matches!(error, ShapeError::Cancelled(_)),
+    }
+}
+
 #[test]
 fn a_filtration_moves() {
-    assert_moves(5, || drop(Filtration::new(lattice(5)).unwrap()));
+    let points = lattice(5);
+    assert_moves(5, |monitor| Filtration::monitored(None, points.clone(), monitor), is_cancelled);
+    let filtration = Filtration::new(points).unwrap();
+    // Two threads sort side by side; the first report is the first that is heard of.
+    assert_moves(3, |monitor| filtration.simplices_monitored(monitor), is_cancelled);
 }
 
 #[test]
 fn a_shape_moves_within_its_blocks() {
-    // Threads of other names would report to nobody.
-    let here = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread();
-    let here = here.build().unwrap();
     let (alpha, engine) = (Alpha::from_squared(1.0).unwrap(), Engine::Native);
     for blocks in [1, 3] {
         let blocks = std::num::NonZeroUsize::new(blocks);
         let options = ShapeOptions::new(alpha).engine(engine).blocks(blocks);
-        let work = || drop(alpha_shape(lattice(27), &options).unwrap());
-        here.install(|| assert_moves(4 + 2 * blocks.unwrap().get(), work));
+        let work = |monitor: &Monitor| alpha_shape_monitored(lattice(27), &options, monitor);
+        // On one thread, as others may be in the middle of a report.
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        one.install(|| assert_moves(4 + 2 * blocks.unwrap().get(), work, is_cancelled));
     }
 }
 
 #[test]
 fn adaptive_selection_moves() {
     let goal = Adaptive::new(300);
-    assert_moves(4, || drop(adaptive_voxels(&phantom(), &goal, Units::Voxel).unwrap()));
+    assert_moves(
+        4,
+        |monitor| adaptive_voxels_monitored(&phantom(), &goal, Units::Voxel, monitor),
+        |error| matches!(error, InterpolateError::Cancelled(_)),
+    );
+}
+
+/// Bytes are read by the megabyte.
+#[test]
+fn reading_moves() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("v.npy");
+    let volume = volume::sample("sample:phantom@128").unwrap();
+    let format = VolumeWriter::of(&path).unwrap();
+    format.write(&volume, &mut std::fs::File::create(&path).unwrap()).unwrap();
+    assert_moves(
+        2,
+        |monitor| open_monitored(&path, &ReadOptions::default(), monitor),
+        |error| matches!(error, VolumeError::Cancelled(_)),
+    );
+}
+
+/// Each stage is heard of in its turn, and a cancelled pipeline has no further one.
+#[test]
+fn a_pipeline_announces_its_stages_until_it_is_cancelled() {
+    struct Until(&'static str, Arc<Mutex<(Vec<&'static str>, Option<Monitor>)>>);
+    impl Listener for Until {
+        fn stage(&self, name: &'static str) {
+            let mut heard = self.1.lock().unwrap();
+            heard.0.push(name);
+            if name == self.0 {
+                heard.1.as_ref().unwrap().cancel();
+            }
+        }
+        fn progress(&self, _: u64, _: u64) {}
+    }
+    let pipeline = Pipeline::new();
+    for (last, expected) in [("", 4), ("points", 2), ("shape", 4)] {
+        let heard = Arc::default();
+        let monitor = Monitor::new(Until(last, Arc::clone(&heard)));
+        heard.lock().unwrap().1 = Some(monitor.clone());
+        let volume = phantom();
+        let model = pipeline
+            .weighed(&volume, &monitor)
+            .and_then(|weighed| pipeline.finish(weighed, &monitor));
+        assert_eq!(model.is_ok(), last.is_empty());
+        if let Err(error) = model {
+            assert!(matches!(error, PipelineError::Cancelled(_)), "{error:?}");
+        }
+        let heard = &heard.lock().unwrap().0;
+        let all = [Stage::Haar, Stage::Points, Stage::Points, Stage::Shape].map(Stage::name);
+        assert_eq!(heard[..], all[..expected]);
+    }
 }

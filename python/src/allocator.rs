@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::thread;
 use std::time::Duration;
 
-use crate::listen::Call;
+use crate::call::Call;
 
 /// The system's allocator, with patience.
 ///

@@ -77,8 +77,8 @@ impl Complex {
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Judged> {
         let placed = Arc::clone(&self.0);
-        run(py, progress.as_ref(), move |call| {
-            call.begin(Stage::Certify);
+        run(py, progress.as_ref(), move |monitor| {
+            let _ = Stage::Certify.begin(monitor);
             let (mut findings, certificate) = placed.findings()?;
             findings.retain(|finding| ties_too || !finding.is_tie());
             let told =

@@ -33,13 +33,13 @@ impl Filtration {
     ) -> PyResult<Self> {
         let torus = torus(periodic)?;
         let points = weighted(&points, weights.as_ref(), None)?;
-        let made = run(py, progress.as_ref(), move |call| {
-            call.begin(Stage::Filtration);
+        let made = run(py, progress.as_ref(), move |monitor| {
+            Stage::Filtration.begin(monitor)?;
             let positions = points.positions;
             let weights = points.weights.unwrap_or_else(|| vec![0.0; positions.len()]);
             let points =
                 WeightedPoints::new(positions, weights).expect("as many weights as points");
-            ladder::Filtration::on(torus, points)
+            ladder::Filtration::monitored(torus, points, monitor)
         })?;
         Ok(Self(Arc::new(made)))
     }
@@ -61,8 +61,8 @@ impl Filtration {
     ) -> PyResult<Shape> {
         let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
         let filtration = Arc::clone(&self.0);
-        let shape = run(py, progress.as_ref(), move |call| {
-            call.begin(Stage::Ladder);
+        let shape = run(py, progress.as_ref(), move |monitor| {
+            Stage::Ladder.begin(monitor)?;
             let levels = filtration.levels(&[alpha]);
             Ok::<_, ShapeError>(levels.shape(0, exterior, levels.betti()[0]))
         })?;
@@ -79,8 +79,8 @@ impl Filtration {
         let alphas = numbers(&alphas)?.into_iter().map(Alpha::from_squared);
         let alphas: Vec<Alpha> = alphas.collect::<Result<_, _>>().map_err(Told::told)?;
         let filtration = Arc::clone(&self.0);
-        run(py, progress.as_ref(), move |call| {
-            call.begin(Stage::Ladder);
+        run(py, progress.as_ref(), move |monitor| {
+            Stage::Ladder.begin(monitor)?;
             let hull = filtration.whole().measures().volume;
             Ok::<_, ShapeError>(json(&filtration.ladder(&alphas, hull).levels))
         })
@@ -93,8 +93,8 @@ impl Filtration {
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Columns<'py>> {
         let filtration = Arc::clone(&self.0);
-        let (alphas, columns) = run(py, progress.as_ref(), move |call| {
-            call.begin(Stage::Curve);
+        let (alphas, columns) = run(py, progress.as_ref(), move |monitor| {
+            Stage::Curve.begin(monitor)?;
             let curve = filtration.curve();
             let alphas: Vec<f64> = curve.alphas().collect();
             let column = |k: usize| curve.betti.iter().map(|&b| <[u64; 3]>::from(b)[k]).collect();
@@ -118,17 +118,17 @@ impl Filtration {
     /// All simplices, their values and order, and the persistence pairs.
     fn simplices(&self, py: Python<'_>, progress: Option<Bound<'_, PyAny>>) -> PyResult<Simplices> {
         let filtration = Arc::clone(&self.0);
-        run(py, progress.as_ref(), move |call| {
-            call.begin(Stage::Order);
-            Ok::<_, ShapeError>(Simplices::of(&filtration.simplices()?))
+        run(py, progress.as_ref(), move |monitor| {
+            Stage::Order.begin(monitor)?;
+            Ok::<_, ShapeError>(Simplices::of(&filtration.simplices_monitored(monitor)?))
         })
     }
 
     /// Values of α to try, as JSON.
     fn suggestions(&self, py: Python<'_>, progress: Option<Bound<'_, PyAny>>) -> PyResult<String> {
         let filtration = Arc::clone(&self.0);
-        run(py, progress.as_ref(), move |call| {
-            call.begin(Stage::Curve);
+        run(py, progress.as_ref(), move |monitor| {
+            Stage::Curve.begin(monitor)?;
             Ok::<_, ShapeError>(json(&filtration.suggest(&filtration.curve())))
         })
     }
@@ -143,8 +143,8 @@ impl Filtration {
         let components = NonZeroU64::new(components)
             .ok_or_else(|| wrong("components=0 makes no sense: give a number from 1 up"))?;
         let filtration = Arc::clone(&self.0);
-        run(py, progress.as_ref(), move |call| {
-            call.begin(Stage::Alpha);
+        run(py, progress.as_ref(), move |monitor| {
+            Stage::Alpha.begin(monitor)?;
             Ok::<_, ShapeError>(filtration.optimal_alpha(components).squared())
         })
     }

@@ -6,10 +6,10 @@
 
 mod allocator;
 mod arrays;
+mod call;
 mod complex;
 mod errors;
 mod filtration;
-mod listen;
 mod points;
 mod shape;
 mod volume;
@@ -33,7 +33,6 @@ mod _walpha {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        super::listen::listen();
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 

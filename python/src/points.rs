@@ -26,8 +26,8 @@ type Read<'py> = (
 /// A file of points, without so many of its last layers.
 #[pyfunction]
 pub fn read_points<'py>(py: Python<'py>, path: PathBuf, level: Option<u32>) -> PyResult<Read<'py>> {
-    let (points, facts) = run(py, None, move |call| {
-        call.begin(Stage::Read);
+    let (points, facts) = run(py, None, move |monitor| {
+        let _ = Stage::Read.begin(monitor);
         read_model(&path, &PointOptions::default().level(level))
     })?;
     let rows = points.positions.len();

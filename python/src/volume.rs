@@ -3,12 +3,14 @@
 use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::prelude::*;
-use walpha::haar::{Decomposition, HaarOptions, Tolerance, smooth};
+use walpha::haar::{Decomposition, HaarOptions, Tolerance, smooth_monitored};
 use walpha::interpolate::{Adaptive, Refit};
 use walpha::pipeline::{Choice, PipelineError};
 use walpha::points::{self, PointsError, Weighting};
 use walpha::progress::Stage;
-use walpha::volume::{Coordinates, Frame, Gray, GrayRange, ReadOptions, Space, Volume, open};
+use walpha::volume::{
+    Coordinates, Frame, Gray, GrayRange, ReadOptions, Space, Volume, open_monitored,
+};
 use walpha::{Alpha, Pipeline, Points, Selection, SelectionRule, Units};
 
 use crate::arrays::{numbers, samples as owned};
@@ -24,9 +26,9 @@ pub fn read<'py>(
     input: String,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<(Bound<'py, PyArray3<f32>>, bool, String)> {
-    let volume = run(py, progress.as_ref(), move |call| {
-        call.begin(Stage::Read);
-        open(&input, &ReadOptions::default())
+    let volume = run(py, progress.as_ref(), move |monitor| {
+        Stage::Read.begin(monitor)?;
+        open_monitored(&input, &ReadOptions::default(), monitor)
     })?;
     let mut frame = *volume.frame();
     if frame.coordinates.space.is_known() {
@@ -47,9 +49,9 @@ pub fn haar<'py>(
 ) -> PyResult<(Bound<'py, PyArray3<f32>>, String)> {
     let options = haar_options(&tolerance, decomposition)?;
     let samples = owned(&samples)?;
-    let (smoothed, truncation) = run(py, progress.as_ref(), move |call| {
-        call.begin(Stage::Haar);
-        smooth(&Volume::new(samples, Frame::VOXEL)?, &options)
+    let (smoothed, truncation) = run(py, progress.as_ref(), move |monitor| {
+        Stage::Haar.begin(monitor)?;
+        smooth_monitored(&Volume::new(samples, Frame::VOXEL)?, &options, monitor)
     })?;
     Ok((smoothed.into_samples().into_pyarray(py), json(&truncation)))
 }
@@ -91,8 +93,8 @@ pub fn select<'py>(
     let (samples, smoothed) = (owned(&samples)?, owned(&smoothed)?);
     let (frame, units) = place(frame)?;
     let selection = Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min);
-    let found = run(py, None, move |call| {
-        call.begin(Stage::Points);
+    let found = run(py, None, move |monitor| {
+        let _ = Stage::Points.begin(monitor);
         let (volume, smoothed) = (Volume::new(samples, frame)?, Volume::new(smoothed, frame)?);
         let differences = points::difference(&smoothed);
         points::select(&volume, &smoothed, &differences, &selection, units)
@@ -171,13 +173,12 @@ pub fn pipeline(
     };
     let gray = gray.map_or(Gray::Automatic, |(low, high)| Gray::Range(GrayRange { low, high }));
     let samples = owned(&samples)?;
-    let model = run(py, progress.as_ref(), move |call| {
+    let model = run(py, progress.as_ref(), move |monitor| {
         let volume = grays(samples, frame, is_gray)?.into_gray(gray).map_err(PointsError::from)?;
         let (volume, range) = volume;
         let pipeline = pipeline.values(range);
-        let mut hear = |stage: Stage| call.begin(stage);
-        let weighed = pipeline.weighed(&volume, &mut hear)?;
-        pipeline.finish(weighed, &mut hear)
+        let weighed = pipeline.weighed(&volume, monitor)?;
+        pipeline.finish(weighed, monitor)
     })?;
     Ok(Shape::of(model))
 }

@@ -9,10 +9,11 @@ use std::time::{Duration, Instant};
 use pyo3::exceptions::{PyMemoryError, PyOSError};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use walpha::progress::Monitor;
 use walpha::threads;
 
+use crate::call::Call;
 use crate::errors::Told;
-use crate::listen::Call;
 
 /// How often the interpreter is asked for an interrupt and progress is passed on.
 const TICK: Duration = Duration::from_millis(50);
@@ -24,24 +25,24 @@ const STACK: usize = 8 << 20;
 /// Does work in threads of its own while other threads of Python run, and returns its result.
 ///
 /// This thread waits; it asks Python for interrupts and calls `progress(stage, done, total)`. After an
-/// interrupt, or an exception of `progress`, it returns at once, and with `MemoryError` soon after memory ran out. The work then owns all that it works on, and
-/// ends when it next says how far it is.
+/// interrupt, or an exception of `progress`, it returns at once, and with `MemoryError` soon after memory ran out. The work is
+/// cancelled then; it owns all that it works on, and ends when it next asks its monitor.
 pub fn run<T, E>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
-    work: impl FnOnce(&Call) -> Result<T, E> + Send + 'static,
+    work: impl FnOnce(&Monitor) -> Result<T, E> + Send + 'static,
 ) -> PyResult<T>
 where
     T: Send + 'static,
     E: Told + Send + 'static,
 {
-    let call = Arc::new(Call::default());
+    let call = Arc::new(Call::new());
     let wanted = Wanted(Arc::clone(&call));
     let threads = pool(&call)?;
     let (sender, mut receiver) = sync_channel(1);
     let mut starved = None;
     thread::Builder::new().name("walpha".into()).spawn(move || {
-        let outcome = catch_unwind(AssertUnwindSafe(|| threads.install(|| work(&call))));
+        let outcome = catch_unwind(AssertUnwindSafe(|| threads.install(|| work(call.monitor()))));
         // Nobody waits after an interrupt.
         let _ = sender.send(outcome);
     })?;
@@ -58,8 +59,8 @@ where
             }
         }
         match received {
+            Ok(Ok(Err(_)) | Err(_)) if wanted.0.is_starved() => return Err(no_memory()),
             Ok(Ok(result)) => return result.map_err(Told::told),
-            Ok(Err(_)) if wanted.0.is_starved() => return Err(no_memory()),
             Ok(Err(panic)) => resume_unwind(panic),
             Err(RecvTimeoutError::Timeout) => {
                 py.check_signals()?;

@@ -1,5 +1,6 @@
 use std::path::PathBuf;
 
+use walpha_base::Cancelled;
 use walpha_base::advice::Advice;
 use walpha_base::memory::NoMemory;
 use walpha_base::shown::shown;
@@ -34,6 +35,9 @@ pub enum BlocksError {
     /// A file cannot be written.
     #[error(transparent)]
     Target(#[from] TargetError),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// Memory cannot be had.
     #[error(transparent)]
     Memory(#[from] NoMemory),
@@ -163,6 +167,7 @@ impl BlocksError {
             Self::Shape(error) => error.advice(),
             Self::Target(error) => Some(error.advice()),
             Self::Memory(lack) => Some(lack.advice()),
+            Self::Cancelled(_) => None,
             Self::Io { .. } => Some("name a folder that `walpha blocks plan` made".into()),
             Self::Written { source, .. } => match source.kind() {
                 std::io::ErrorKind::AlreadyExists => Some("remove it, or name another".into()),

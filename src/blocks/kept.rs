@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use serde::{Deserialize, Serialize};
+use walpha_base::Monitor;
 
 use super::digest::Digest;
 use super::field::{Field, Truncated};
@@ -126,7 +127,8 @@ impl Plan {
         let mut field = Field::open(&self.job, None)?;
         (field.range, field.least) = (self.survey.range, self.survey.least);
         let tiles = Part::whole(field.dims).tiles(field.tile());
-        let mut passes = Passes::new(&Alone, &tiles);
+        let silent = Monitor::silent();
+        let mut passes = Passes::new(&Alone, &tiles, &silent);
         let (_, truncated, mut made) = truncated(&self.job, &field, &self.folder, &mut passes)?;
         if let Truncated::Bricks { sums, .. } = &truncated {
             made.push(Kept::write_sums(sums, &self.folder)?);

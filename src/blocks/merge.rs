@@ -2,7 +2,7 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use serde::{Deserialize, Serialize};
-use walpha_base::{Sum, UnionFind};
+use walpha_base::{Monitor, Sum, UnionFind};
 
 use super::file::BlockFile;
 use super::run::{BlockComponent, BlockSheet, Facts, Met, Weights};
@@ -57,6 +57,14 @@ pub(super) struct Numbers {
 /// # Errors
 /// Blocks are missing, belong to another plan, or what is read of them does not verify.
 pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
+    merge_monitored(plan, &Monitor::silent())
+}
+
+/// The same, which says how far it is and can be cancelled.
+///
+/// # Errors
+/// Those of [`merge`], and [`BlocksError::Cancelled`].
+pub fn merge_monitored(plan: &Plan, monitor: &Monitor) -> Result<Merged, BlocksError> {
     let all = plan.blocks.len();
     let mut missing = Vec::new();
     let mut union = Union::default();
@@ -71,7 +79,7 @@ pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
             }
             Err(error) => return Err(error),
         }
-        walpha_base::progress::report(block as u64 + 1, all as u64);
+        monitor.report(block as u64 + 1, all as u64)?;
     }
     if !missing.is_empty() {
         return Err(BlocksError::Missing { missing, all });

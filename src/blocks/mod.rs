@@ -52,7 +52,7 @@ pub use check::{Checked, Finding};
 pub use error::BlocksError;
 use field::Field;
 pub use job::Job;
-pub use merge::{Merged, merge};
+pub use merge::{Merged, merge, merge_monitored};
 pub use part::Part;
 pub use pieces::Pieces;
 pub use plan::{BlockPlan, Cutting, Plan};

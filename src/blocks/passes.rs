@@ -1,14 +1,14 @@
 //! Passes over a volume, tile by tile.
 
 use rayon::prelude::*;
-
-use walpha_base::progress;
+use walpha_base::Monitor;
 
 use super::{BlocksError, Part, Team};
 
 /// Passes over all tiles.
 pub(super) struct Passes<'a> {
     pub team: &'a dyn Team,
+    monitor: &'a Monitor,
     /// Those of this process.
     tiles: Vec<Part>,
     done: u64,
@@ -16,9 +16,9 @@ pub(super) struct Passes<'a> {
 
 impl<'a> Passes<'a> {
     /// Those of a process of a team, none of them done.
-    pub(super) fn new(team: &'a dyn Team, tiles: &[Part]) -> Self {
+    pub(super) fn new(team: &'a dyn Team, tiles: &[Part], monitor: &'a Monitor) -> Self {
         let tiles = team.own(tiles.len()).map(|tile| tiles[tile]).collect();
-        Self { team, tiles, done: 0 }
+        Self { team, monitor, tiles, done: 0 }
     }
 
     /// How many are usual.
@@ -37,7 +37,7 @@ impl<'a> Passes<'a> {
             let results: Result<Vec<T>, _> = batch.par_iter().map(&work).collect();
             results?.into_iter().for_each(&mut join);
             tiles_done += batch.len() as u64;
-            progress::report(self.done * all + tiles_done, total);
+            self.monitor.report(self.done * all + tiles_done, total)?;
         }
         self.done += 1;
         Ok(())
@@ -53,7 +53,7 @@ impl<'a> Passes<'a> {
         let total = Self::USUAL.max(self.done + 1) * all;
         for (piece, done) in pieces.iter().zip(1..) {
             work(piece)?;
-            progress::report(self.done * all + done, total);
+            self.monitor.report(self.done * all + done, total)?;
         }
         self.done += 1;
         Ok(())

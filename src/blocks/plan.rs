@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use walpha_base::Monitor;
 use walpha_base::setters;
 
 use super::cut::{Boxes, MOST};
@@ -88,7 +89,7 @@ impl Plan {
     /// # Errors
     /// What a stage refuses; what is not local ([`Job::check`]); a folder that cannot be written to.
     pub fn make(job: Job, cutting: Cutting, folder: &Path) -> Result<Self, BlocksError> {
-        Self::make_with(job, cutting, folder, &Alone)
+        Self::make_with(job, cutting, folder, &Alone, &Monitor::silent())
     }
 
     /// The same as one of a team: each process surveys its share of the volume, the first writes the plan, and
@@ -101,12 +102,13 @@ impl Plan {
         cutting: Cutting,
         folder: &Path,
         team: &dyn Team,
+        monitor: &Monitor,
     ) -> Result<Self, BlocksError> {
         job.check()?;
         // Before it is read, so that what is written while it is read is newer.
         let stamp = Stamp::of(&job);
         let mut field = Field::open(&job, None)?;
-        let surveyed = survey(&job, &mut field, folder, team)?;
+        let surveyed = survey(&job, &mut field, folder, team, monitor)?;
         let plan = if team.is_first() {
             let plan = Self::cut(job, cutting, stamp, folder, &field, surveyed, team.size())?;
             plan.write()?;

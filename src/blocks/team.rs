@@ -120,6 +120,7 @@ mod tests {
 
     use super::*;
     use crate::blocks::{Cutting, Job, Pieces, Plan, merge, run_all, run_missing};
+    use crate::progress::Monitor;
     use crate::volume::ReadOptions;
     use crate::{GrayRange, Weighting};
 
@@ -190,7 +191,7 @@ mod tests {
         let cutting = Cutting { blocks: Some(3), ..Cutting::default() };
         let folder = tempfile::tempdir().unwrap();
         let expected = Plan::make(job.clone(), cutting, folder.path()).unwrap();
-        run_all(&expected, &[0, 1, 2]).unwrap();
+        run_all(&expected, &[0, 1, 2], &Monitor::silent()).unwrap();
         let merged = merge(&expected).unwrap();
         let bytes = |at: &Path, file: &str| std::fs::read(at.join(file)).unwrap();
         for size in [2, 3, 5] {
@@ -200,10 +201,15 @@ mod tests {
                     let (job, at, expected) = (job.clone(), other.path(), &expected);
                     scope.spawn(move || {
                         let team: &dyn Team = &member;
-                        let plan = Plan::resume_with(job.clone(), cutting, at, team).unwrap();
+                        let plan =
+                            Plan::resume_with(job.clone(), cutting, at, team, &Monitor::silent())
+                                .unwrap();
                         assert_eq!(plan.digest(), expected.digest());
-                        assert_eq!(Plan::resume_with(job, cutting, at, team).unwrap(), plan);
-                        run_missing(&plan, team).unwrap();
+                        assert_eq!(
+                            Plan::resume_with(job, cutting, at, team, &Monitor::silent()).unwrap(),
+                            plan
+                        );
+                        run_missing(&plan, team, &Monitor::silent()).unwrap();
                         let merged = team.is_first().then(|| merge(&plan).unwrap());
                         let (kind, path) = (Pieces::Surface, at.join("out.pvtp"));
                         kind.write_with(&plan, merged.as_ref(), &path, team).unwrap();

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use walpha_base::progress::{Piece, Share, within};
+use walpha_base::Monitor;
 
 use super::stamp::Stamp;
 use super::{Alone, BlocksError, Cutting, Job, Plan, Team, run};
@@ -18,7 +18,7 @@ impl Plan {
     /// # Errors
     /// As [`Plan::make`].
     pub fn resume(job: Job, cutting: Cutting, folder: &Path) -> Result<Self, BlocksError> {
-        Self::resume_with(job, cutting, folder, &Alone)
+        Self::resume_with(job, cutting, folder, &Alone, &Monitor::silent())
     }
 
     /// The same as one of a team, which may be of another size than the one that was interrupted.
@@ -30,6 +30,7 @@ impl Plan {
         cutting: Cutting,
         folder: &Path,
         team: &dyn Team,
+        monitor: &Monitor,
     ) -> Result<Self, BlocksError> {
         // An input whose files look otherwise is planned again. Where it is what it was, that is the same plan,
         // and the blocks that are there are its.
@@ -40,7 +41,7 @@ impl Plan {
         if team.told(there.as_ref().map(Option::is_some)) {
             Self::told(there.flatten(), folder, team)
         } else {
-            Self::make_with(job, cutting, folder, team)
+            Self::make_with(job, cutting, folder, team, monitor)
         }
     }
 
@@ -68,11 +69,11 @@ impl Plan {
 /// Runs some blocks of a plan, as many at a time as there are threads. Those that are there are left alone.
 ///
 /// # Errors
-/// As [`run()`], of the first block that fails; those that are done stay.
-pub fn run_all(plan: &Plan, blocks: &[usize]) -> Result<(), BlocksError> {
+/// As [`run()`], of the first block that fails; [`BlocksError::Cancelled`]. Those that are done stay.
+pub fn run_all(plan: &Plan, blocks: &[usize], monitor: &Monitor) -> Result<(), BlocksError> {
     let size =
         |&block: &usize| plan.blocks.get(block).map_or(0, |planned| planned.points + planned.halo);
-    let work = Piece::new(blocks.iter().map(size).sum());
+    let work = monitor.units(blocks.iter().map(size).sum());
     let next = AtomicUsize::new(0);
     let failed = Mutex::new(None);
     let is_over = || failed.lock().is_ok_and(|failed| failed.is_some());
@@ -81,14 +82,12 @@ pub fn run_all(plan: &Plan, blocks: &[usize]) -> Result<(), BlocksError> {
         for _ in 0..rayon::current_num_threads().min(blocks.len()) {
             scope.spawn(|| {
                 while let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    match within(Share::NONE, || run(plan, *block)) {
-                        Ok(()) => work.add(size(block)),
-                        Err(error) => {
-                            failed
-                                .lock()
-                                .unwrap_or_else(std::sync::PoisonError::into_inner)
-                                .get_or_insert(error);
-                        }
+                    let done = run(plan, *block).and_then(|()| Ok(work.add(size(block))?));
+                    if let Err(error) = done {
+                        failed
+                            .lock()
+                            .unwrap_or_else(std::sync::PoisonError::into_inner)
+                            .get_or_insert(error);
                     }
                     if is_over() {
                         break;
@@ -105,11 +104,11 @@ pub fn run_all(plan: &Plan, blocks: &[usize]) -> Result<(), BlocksError> {
 ///
 /// # Errors
 /// As [`run_all`]. The others of the team would wait for a process that ends with an error.
-pub fn run_missing(plan: &Plan, team: &dyn Team) -> Result<(), BlocksError> {
+pub fn run_missing(plan: &Plan, team: &dyn Team, monitor: &Monitor) -> Result<(), BlocksError> {
     let missing = if team.is_first() { Some(plan.missing()?) } else { None };
     let missing = team.told(missing);
     let size = |block: usize| plan.blocks[block].points + plan.blocks[block].halo;
-    run_all(plan, &shared(missing, size, team.size())[team.rank()])?;
+    run_all(plan, &shared(missing, size, team.size())[team.rank()], monitor)?;
     team.meet();
     Ok(())
 }

@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
+use walpha_base::Monitor;
 use walpha_base::shown::shown;
 use walpha_files::{Working, fill_all, keep_input};
 
+use crate::blocks::merge_monitored;
 use crate::blocks::{
-    Alone, BlocksError, Checked, Cutting, Finding, Job, Merged, Pieces, Plan, Team, merge, price,
-    run, run_all, whole,
+    Alone, BlocksError, Checked, Cutting, Finding, Job, Merged, Pieces, Plan, Team, price, run,
+    run_all, whole,
 };
 use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target};
 use crate::progress::Stage;
@@ -135,14 +137,16 @@ impl CheckStep {
 impl PlanStep {
     fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
+        let monitor = progress.monitor();
         let job = job(&self.pipeline, &self.shape)?;
         let Some(folder) = self.output else {
             progress.finish();
             return tell(global, &PriceFacts(price(&job, cutting(&self.shape))?));
         };
         let new = folder::make(&folder, "with --output")?;
-        let plan =
-            progress.stage(Stage::Points, || Plan::make(job, cutting(&self.shape), &folder))?;
+        let plan = progress.stage(Stage::Points, || {
+            Plan::make_with(job, cutting(&self.shape), &folder, &Alone, &monitor)
+        })?;
         if let Some(new) = new {
             new.keep();
         }
@@ -154,6 +158,7 @@ impl PlanStep {
 impl RunStep {
     fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
+        let monitor = progress.monitor();
         let plan = Plan::open(&self.folder)?;
         let blocks = if self.blocks.is_empty() {
             plan.restore()?;
@@ -163,7 +168,7 @@ impl RunStep {
         };
         progress.stage(Stage::Shape, || match blocks[..] {
             [one] => run(&plan, one),
-            _ => run_all(&plan, &blocks),
+            _ => run_all(&plan, &blocks, &monitor),
         })?;
         let seconds = progress.total();
         let folder = self.folder.display().to_string();
@@ -174,6 +179,7 @@ impl RunStep {
 impl MergeStep {
     fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
+        let monitor = progress.monitor();
         let plan = Plan::open(&self.folder)?;
         let input = Some(plan.job.input.clone());
         let export = ExportOptions { input, ..ExportOptions::default() };
@@ -194,10 +200,10 @@ impl MergeStep {
         }
         let merged = progress.stage(Stage::Shape, || {
             plan.verify_blocks()?;
-            merge(&plan)
+            merge_monitored(&plan, &monitor)
         })?;
         let mut report = Report::of_blocks(&plan, &merged);
-        progress.stage(Stage::Write, || outputs.write(&plan, Some(&merged), &Alone))?;
+        progress.stage(Stage::Write, || outputs.write(&plan, Some(&merged), &Alone, &monitor))?;
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         tell(global, &report)
@@ -220,11 +226,12 @@ impl Outputs {
         plan: &Plan,
         merged: Option<&Merged>,
         team: &dyn Team,
+        monitor: &Monitor,
     ) -> anyhow::Result<()> {
         // Dropped in the reverse order: folders go when they are empty.
         let (mut folders, mut files) = (Vec::new(), Vec::new());
         for (pieces, path) in &self.pieces {
-            let written = pieces.fill(plan, merged, path, team)?;
+            let written = pieces.fill(plan, merged, path, team, monitor)?;
             files.extend(written.files);
             folders.extend(written.new);
         }

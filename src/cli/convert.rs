@@ -7,7 +7,7 @@ use serde::Serialize;
 use walpha_base::shown::shown;
 
 use crate::progress::Stage;
-use crate::volume::{Source, convert, open};
+use crate::volume::{Source, convert_monitored, open};
 
 use super::Global;
 use super::args::InputArgs;
@@ -58,6 +58,7 @@ impl Convert {
         let meaningless = ["gray", "gray_out", "columns", "nan"];
         self.input.given.refuse(&meaningless, "values are converted as they are")?;
         let mut progress = Progress::new(global);
+        let monitor = progress.monitor();
         let options = self.input.options();
         let dims = with_file(&self.input, |input| {
             let source = match Source::open(input, &options) {
@@ -66,7 +67,7 @@ impl Convert {
                     progress.stage(Stage::Read, || open(input, &options)).map_err(with_points)?,
                 ),
             };
-            progress.stage(Stage::Write, || convert(&source, &self.output))?;
+            progress.stage(Stage::Write, || convert_monitored(&source, &self.output, &monitor))?;
             Ok(source.dims().xyz())
         })?;
         let seconds = progress.total();

@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::export::{Content, NewFolder, Target, write_all};
-use crate::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
+use crate::haar::smooth_monitored;
+use crate::interpolate::{CurveOptions, CurvePoint, error_curve, write_curve_csv};
 use crate::progress::Stage;
 #[cfg(feature = "render")]
 use crate::render::error_figure;
-use crate::{LengthUnit, SelectionRule, Volume, Weighting, haar};
+use crate::{LengthUnit, SelectionRule, Volume, Weighting};
 
 use super::args::{PipelineArgs, SelectArgs};
 use super::output::{name, tell};
@@ -43,22 +44,17 @@ pub(super) fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyho
         refused!("{} holds points, and --curve needs a volume", input.input);
     };
     let (volume, units) = select.place(volume)?;
-    let (smoothed, _) = progress.stage(Stage::Haar, || haar::smooth(&volume, &haar.options()))?;
+    let monitor = progress.monitor();
+    let (smoothed, _) =
+        progress.stage(Stage::Haar, || smooth_monitored(&volume, &haar.options(), &monitor))?;
     let options = CurveOptions {
         counts: counts(&volume, select)?,
         weightings: vec![Weighting::Common(0.0), Weighting::MinMax, Weighting::Barycentric],
         alpha: weights.of_volume(&volume, units)?.alpha,
         units,
     };
-    let show = |method: Method| match method {
-        Method::Difference => "points of largest difference",
-        Method::Threshold => "points above thresholds",
-        Method::Adaptive => "adaptive points",
-        Method::Lattice => "uniform lattices",
-        Method::Haar => "truncated Haar",
-    };
     let curve =
-        error_curve(&volume, &smoothed, &options, &mut |method| Progress::show(show(method)))?;
+        progress.stage(Stage::Curve, || error_curve(&volume, &smoothed, &options, &monitor))?;
     let mut csv = Vec::new();
     write_curve_csv(&curve, range.step(), &mut csv)?;
     let alpha = options.alpha.squared();

@@ -9,7 +9,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::export::{Content, FiltrationFormat, Target, write_all};
-use crate::ladder::{self, Ordered};
+use crate::ladder::Ordered;
 use crate::pipeline::{Parameter, Weighed};
 use crate::progress::Stage;
 use crate::shape::ShapeOptions;
@@ -107,13 +107,14 @@ impl Filtration {
         let stages = pipeline::stages(&self.pipeline).shape(options);
         let (mut weighed, _) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
         weighed.on_torus(torus)?;
-        let filtration = progress
-            .stage(Stage::Filtration, || ladder::Filtration::on(torus, weighed.points.clone()))?;
-        let ordered = progress.stage(Stage::Order, || filtration.simplices())?;
+        let filtration =
+            progress.watch(|monitor| pipeline::filtration(torus, &weighed, monitor))?;
+        let monitor = progress.monitor();
+        let ordered = progress.stage(Stage::Order, || filtration.simplices_monitored(&monitor))?;
         progress.stage(Stage::Write, || {
             write_all(targets.into_iter().map(|(target, format)| {
-                let ordered = &ordered;
-                let content = move |out: &mut dyn Write| format.write(ordered, out);
+                let (ordered, monitor) = (&ordered, &monitor);
+                let content = move |out: &mut dyn Write| format.write(ordered, out, monitor);
                 (target, Box::new(content) as Content<'_>)
             }))
         })?;

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::export::Target;
-use crate::haar::smooth;
+use crate::haar::smooth_monitored;
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
 
@@ -61,7 +61,9 @@ impl Haar {
             refused!("{} holds points", self.input.input => "name a volume");
         };
         let options = self.haar.options();
-        let (smoothed, truncation) = progress.stage(Stage::Haar, || smooth(&volume, &options))?;
+        let monitor = progress.monitor();
+        let (smoothed, truncation) =
+            progress.stage(Stage::Haar, || smooth_monitored(&volume, &options, &monitor))?;
         if let Some((format, target)) = target {
             let smoothed = smoothed.into_values(&written);
             progress.stage(Stage::Write, || target.write(|out| format.write(&smoothed, out)))?;

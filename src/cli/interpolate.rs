@@ -8,7 +8,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::export::{Content, Target, TargetError, write_all};
-use crate::interpolate::{Deviation, Grid, Interpolant, Resampled, fill};
+use crate::interpolate::{Deviation, Grid, Interpolant, Resampled, fill_monitored};
 use crate::pipeline::Weighed;
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
@@ -175,8 +175,9 @@ impl Interpolate {
         let mask = mask.map(|open| anyhow::Ok((open, sampled.resampled.mask()?))).transpose()?;
         let (inside, filled, resampled) = if self.fill {
             let units = original.map_or(Units::Voxel, |original| original.units);
+            let monitor = progress.monitor();
             let whole = progress.stage(Stage::Fill, || {
-                fill(&shape, original.map(|original| original.volume), units)
+                fill_monitored(&shape, original.map(|original| original.volume), units, &monitor)
             })?;
             let filled = progress.stage(Stage::Interpolate, || sample(&whole, &grid, original))?;
             (sampled.error, filled.error, filled.resampled)

@@ -43,19 +43,15 @@ mod view;
 mod warnings;
 
 use std::ffi::OsString;
-use std::io::IsTerminal;
 use std::process::ExitCode;
 
 use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
-use tracing::Level;
 use tracing::level_filters::LevelFilter;
 use tracing_subscriber::Layer;
-use tracing_subscriber::filter::Targets;
 use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::util::SubscriberInitExt;
 
 use crate::export::Target;
-use crate::progress::TARGET;
 use crate::threads;
 
 use output::{print, print_with};
@@ -206,6 +202,9 @@ fn lead(
         Ok(code) => code,
         Err(error) => {
             progress::clear();
+            if progress::is_cancelled() {
+                return Err(INTERRUPTED as u8);
+            }
             complaint::tell(name, &error);
             return Err(complaint::code(&error));
         }
@@ -266,8 +265,6 @@ fn start_threads(asked: Option<u16>) -> anyhow::Result<()> {
 }
 
 fn execute(global: Global, command: Command, ranks: &Ranks) -> anyhow::Result<ExitCode> {
-    let listener = (!global.quiet && std::io::stderr().is_terminal())
-        .then(|| progress::Listener.with_filter(Targets::new().with_target(TARGET, Level::TRACE)));
     let level = match global {
         Global { quiet: true, .. } => LevelFilter::ERROR,
         Global { verbose: true, .. } => LevelFilter::DEBUG,
@@ -278,7 +275,7 @@ fn execute(global: Global, command: Command, ranks: &Ranks) -> anyhow::Result<Ex
     let log = log.log_internal_errors(false);
     let log = log.with_writer(std::io::stderr).without_time().with_filter(level);
     let warnings = warnings::Listener.with_filter(LevelFilter::WARN);
-    tracing_subscriber::registry().with(listener).with(warnings).with(log).init();
+    tracing_subscriber::registry().with(warnings).with(log).init();
     let alone = ranks.team().size() == 1;
     start_threads(global.threads.or((!alone).then_some(1)))?;
     match command {

@@ -2,16 +2,13 @@
 
 use std::fmt;
 use std::io::{self, IsTerminal};
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
-use tracing::field::{Field, Visit};
-use tracing_subscriber::layer::Context;
-
-use crate::progress::Stage;
 
 use super::{Global, STACK};
+use crate::progress::{Listener, Monitor, Stage};
 use crate::threads;
 
 /// What a terminal shows. There is one, as there is one standard error.
@@ -26,10 +23,31 @@ const PART: &str = "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left,
 
 /// Times stages by name and shows the running one on a terminal.
 pub(super) struct Progress {
+    times: Arc<Mutex<Times>>,
+    monitor: Monitor,
+}
+
+/// Seconds of stages that ended, and the one at work.
+struct Times {
     started: Instant,
     stages: Vec<(&'static str, f64)>,
     /// What is at work, and since when.
-    running: Option<(Stage, Instant)>,
+    running: Option<(&'static str, Instant)>,
+}
+
+/// The work that an interrupt cancels: that which began last.
+static WORK: Mutex<Option<Monitor>> = Mutex::new(None);
+
+/// Cancels what is at work. Says whether there is anything.
+pub(super) fn cancel() -> bool {
+    let work = WORK.lock().unwrap_or_else(PoisonError::into_inner);
+    work.as_ref().inspect(|monitor| monitor.cancel()).is_some()
+}
+
+/// Whether it was cancelled.
+pub(super) fn is_cancelled() -> bool {
+    let work = WORK.lock().unwrap_or_else(PoisonError::into_inner);
+    work.as_ref().is_some_and(|monitor| monitor.check().is_err())
 }
 
 /// The stage that was announced last, or "".
@@ -47,51 +65,41 @@ impl Progress {
     pub(super) fn new(global: Global) -> Self {
         // What draws is a thread of its own, which cannot always be had.
         let watched = !global.quiet && !global.verbose && io::stderr().is_terminal();
-        if watched && threads::available(1, STACK) == 1 {
+        let watched = watched && threads::available(1, STACK) == 1;
+        if watched {
             BAR.set_draw_target(ProgressDrawTarget::stderr());
             BAR.enable_steady_tick(Duration::from_millis(100));
         }
-        Self { started: Instant::now(), stages: Vec::new(), running: None }
+        let times = Times { started: Instant::now(), stages: Vec::new(), running: None };
+        let times = Arc::new(Mutex::new(times));
+        let monitor = Monitor::new(Shown { times: Arc::clone(&times), drawn: watched });
+        *WORK.lock().unwrap_or_else(PoisonError::into_inner) = Some(monitor.clone());
+        Self { times, monitor }
+    }
+
+    /// The monitor of the work: what it hears of stages is shown and timed.
+    pub(super) fn monitor(&self) -> Monitor {
+        self.monitor.clone()
     }
 
     /// Runs a stage. Calls with the same stage add up.
     pub(super) fn stage<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
-        self.watch(|hear| {
-            hear(stage);
+        self.watch(|monitor| {
+            // Work that was cancelled ends when it asks.
+            let _ = stage.begin(monitor);
             work()
         })
     }
 
-    /// Runs work that says which stage begins.
-    pub(super) fn watch<T>(&mut self, work: impl FnOnce(&mut dyn FnMut(Stage)) -> T) -> T {
-        let result = work(&mut |stage| self.begin(stage));
-        self.end();
+    /// Runs work that reports which stage begins.
+    pub(super) fn watch<T>(&mut self, work: impl FnOnce(&Monitor) -> T) -> T {
+        let result = work(&self.monitor);
+        self.lock().end();
         result
     }
 
-    fn begin(&mut self, stage: Stage) {
-        self.end();
-        // In this order: each of them draws.
-        BAR.set_style(style(STAGE));
-        Self::show(stage.name());
-        BAR.unset_length();
-        BAR.reset();
-        self.running = Some((stage, Instant::now()));
-    }
-
-    fn end(&mut self) {
-        let Some((stage, started)) = self.running.take() else { return };
-        let (name, seconds) = (stage.name(), started.elapsed().as_secs_f64());
-        tracing::debug!(stage = name, seconds);
-        match self.stages.iter_mut().find(|stage| stage.0 == name) {
-            Some(stage) => stage.1 += seconds,
-            None => self.stages.push((name, seconds)),
-        }
-    }
-
-    /// Shows what is at work, without timing it: a step of the stage before.
-    pub(super) fn show(name: &'static str) {
-        BAR.set_message(name);
+    fn lock(&self) -> MutexGuard<'_, Times> {
+        self.times.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Ends the show: seconds in all.
@@ -102,8 +110,9 @@ impl Progress {
     /// Ends the show: seconds per stage, and in all.
     pub(super) fn finish(self) -> Vec<(&'static str, f64)> {
         clear();
-        let mut stages = self.stages;
-        stages.push(("total", self.started.elapsed().as_secs_f64()));
+        let times = self.lock();
+        let mut stages = times.stages.clone();
+        stages.push(("total", times.started.elapsed().as_secs_f64()));
         stages
     }
 }
@@ -122,37 +131,47 @@ fn style(template: &str) -> ProgressStyle {
     style.with_key("rate", rate).progress_chars("=> ")
 }
 
-/// Hears how far the library is: events of the target [`crate::progress::TARGET`].
-pub(super) struct Listener;
+impl Times {
+    fn begin(&mut self, name: &'static str) {
+        self.end();
+        self.running = Some((name, Instant::now()));
+    }
 
-impl<S: tracing::Subscriber> tracing_subscriber::Layer<S> for Listener {
-    fn on_event(&self, event: &tracing::Event<'_>, _: Context<'_, S>) {
-        let mut amount = Amount::default();
-        event.record(&mut amount);
-        let Amount { done, total } = amount;
+    fn end(&mut self) {
+        let Some((name, started)) = self.running.take() else { return };
+        let seconds = started.elapsed().as_secs_f64();
+        tracing::debug!(stage = name, seconds);
+        match self.stages.iter_mut().find(|stage| stage.0 == name) {
+            Some(stage) => stage.1 += seconds,
+            None => self.stages.push((name, seconds)),
+        }
+    }
+}
+
+/// Times the stages, and moves the bar where it is drawn.
+struct Shown {
+    times: Arc<Mutex<Times>>,
+    drawn: bool,
+}
+
+impl Listener for Shown {
+    fn stage(&self, name: &'static str) {
+        self.times.lock().unwrap_or_else(PoisonError::into_inner).begin(name);
+        // In this order: each of them draws.
+        BAR.set_style(style(STAGE));
+        BAR.set_message(name);
+        BAR.unset_length();
+        BAR.reset();
+    }
+
+    fn progress(&self, done: u64, total: u64) {
+        if !self.drawn {
+            return;
+        }
         if BAR.length() != Some(total) {
             BAR.set_style(style(PART));
             BAR.set_length(total);
         }
         BAR.set_position(done);
     }
-}
-
-/// So much is done of so much.
-#[derive(Default)]
-struct Amount {
-    done: u64,
-    total: u64,
-}
-
-impl Visit for Amount {
-    fn record_u64(&mut self, field: &Field, value: u64) {
-        match field.name() {
-            "done" => self.done = value,
-            "total" => self.total = value,
-            _ => {}
-        }
-    }
-
-    fn record_debug(&mut self, _: &Field, _: &dyn fmt::Debug) {}
 }

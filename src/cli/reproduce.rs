@@ -49,7 +49,7 @@ impl Reproduce {
         let (volume, range) = volume.into_gray(Gray::Automatic)?;
         let date = today();
         let subject = Subject { volume: &volume, range, name: &name, date: &date };
-        let made = reproduce(&subject, &mut |stage| Progress::show(stage))?;
+        let made = progress.watch(|monitor| reproduce(&subject, monitor))?;
         let mut files = made.files;
         files.push(File {
             name: "report.html".into(),

@@ -1,8 +1,21 @@
 //! What ends the command before its time, and how it goes then: no file is left half written.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
 use walpha_files::abandon;
 
 use super::{INTERRUPTED, progress};
+
+/// How long work that was cancelled may take to end.
+const GRACE: Duration = Duration::from_secs(1);
+
+/// Ends the process without what it was about to write.
+fn leave() -> ! {
+    progress::clear();
+    abandon(INTERRUPTED)
+}
 
 /// Prepares for Ctrl-C, for a file that may not grow, and for a lack of memory.
 ///
@@ -13,8 +26,17 @@ use super::{INTERRUPTED, progress};
 pub(super) fn prepare() {
     // A handler that cannot be set leaves the system's own.
     let _ = ctrlc::set_handler(|| {
-        progress::clear();
-        abandon(INTERRUPTED)
+        // What is cancelled ends soon, and the command with it. What does not look (CGAL) is abandoned, as it is
+        // when nothing is at work, and on the second Ctrl-C.
+        static AGAIN: AtomicBool = AtomicBool::new(false);
+        if progress::cancel() && !AGAIN.swap(true, Ordering::Relaxed) {
+            thread::spawn(|| {
+                thread::sleep(GRACE);
+                leave();
+            });
+        } else {
+            leave();
+        }
     });
     #[cfg(unix)]
     unix::prepare();

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use walpha_base::memory;
 
-use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, Team, merge, run_missing};
+use crate::blocks::merge_monitored;
+use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, Team, run_missing};
 use crate::export::{NewFolder, Target};
 use crate::progress::Stage;
 
@@ -66,16 +67,17 @@ impl Work {
         progress: &mut Progress,
         team: &dyn Team,
     ) -> anyhow::Result<(Plan, Option<Merged>)> {
+        let monitor = progress.monitor();
         let plan = progress.stage(Stage::Points, || {
-            Plan::resume_with(self.job.clone(), self.cutting, &self.folder, team)
+            Plan::resume_with(self.job.clone(), self.cutting, &self.folder, team, &monitor)
         })?;
         if let Some(new) = new {
             new.keep();
         }
-        progress.stage(Stage::Shape, || run_missing(&plan, team))?;
-        let merge = || team.is_first().then(|| merge(&plan)).transpose();
+        progress.stage(Stage::Shape, || run_missing(&plan, team, &monitor))?;
+        let merge = || team.is_first().then(|| merge_monitored(&plan, &monitor)).transpose();
         let merged = progress.stage(Stage::Shape, merge)?;
-        progress.stage(Stage::Write, || outputs.write(&plan, merged.as_ref(), team))?;
+        progress.stage(Stage::Write, || outputs.write(&plan, merged.as_ref(), team, &monitor))?;
         Ok((plan, merged))
     }
 }

@@ -33,8 +33,8 @@ pub use truncate::{HaarError, Tolerance, Truncation};
 pub use unnormalised::Unnormalised;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::Monitor;
 use walpha_base::memory;
-use walpha_base::progress;
 use walpha_base::setters;
 
 use crate::volume::Volume;
@@ -62,15 +62,27 @@ impl HaarOptions {
 /// A tolerance that is none (see [`Coefficients::truncate`]), samples so large that f̂ passes
 /// the range of `f32`, or no memory.
 pub fn smooth(volume: &Volume, options: &HaarOptions) -> Result<(Volume, Truncation), HaarError> {
+    smooth_monitored(volume, options, &Monitor::silent())
+}
+
+/// The same, which says how far it is and can be cancelled.
+///
+/// # Errors
+/// Those of [`smooth`], and [`HaarError::Cancelled`].
+pub fn smooth_monitored(
+    volume: &Volume,
+    options: &HaarOptions,
+    monitor: &Monitor,
+) -> Result<(Volume, Truncation), HaarError> {
     options.tolerance.check()?;
     let dims = volume.dims();
     let bytes = (size_of::<f64>() + size_of::<f32>()) * dims.samples();
     memory::afford(bytes, || format!("transforming {dims} samples"))?;
     // Each way takes as long, and truncation a little.
     let mut coefficients = forward(volume.samples(), options.decomposition);
-    progress::report(4, 9);
+    monitor.report(4, 9)?;
     let truncation = coefficients.truncate(options.tolerance)?;
-    progress::report(5, 9);
+    monitor.report(5, 9)?;
     if truncation.epsilon == 0.0 {
         drop(coefficients);
         return Ok((volume.clone(), truncation));

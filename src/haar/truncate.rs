@@ -1,5 +1,6 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use walpha_base::Cancelled;
 use walpha_base::advice::Advice;
 use walpha_base::memory::NoMemory;
 
@@ -63,6 +64,9 @@ pub enum HaarError {
     /// The truncated samples make no volume: they passed the range of `f32`.
     #[error("after truncation: {0}")]
     Volume(#[from] VolumeError),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// Memory for the coefficients cannot be had.
     #[error(transparent)]
     Memory(#[from] NoMemory),
@@ -74,6 +78,7 @@ impl HaarError {
         match self {
             Self::Tolerance { .. } => Some("give a number from 0 up".into()),
             Self::Volume(error) => error.advice(),
+            Self::Cancelled(_) => None,
             Self::Memory(lack) => Some(lack.advice()),
         }
     }

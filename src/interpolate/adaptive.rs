@@ -2,7 +2,7 @@ use std::collections::HashSet;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use rayon::prelude::*;
-use walpha_base::progress::report;
+use walpha_base::Monitor;
 use walpha_base::setters;
 
 use super::fill::corners;
@@ -72,6 +72,19 @@ pub fn adaptive_voxels(
     goal: &Adaptive,
     units: Units,
 ) -> Result<Vec<u32>, InterpolateError> {
+    adaptive_voxels_monitored(volume, goal, units, &Monitor::silent())
+}
+
+/// The same, which says how far it is and can be cancelled.
+///
+/// # Errors
+/// Those of [`adaptive_voxels`], and [`InterpolateError::Cancelled`].
+pub fn adaptive_voxels_monitored(
+    volume: &Volume,
+    goal: &Adaptive,
+    units: Units,
+    monitor: &Monitor,
+) -> Result<Vec<u32>, InterpolateError> {
     let available = volume.dims().samples() as u64;
     let mut voxels = corners(volume);
     if goal.count < voxels.len().max(8) as u64 || goal.count > available {
@@ -91,7 +104,7 @@ pub fn adaptive_voxels(
             return Ok(voxels);
         };
         tracing::debug!(points = voxels.len(), rmse, "adaptive");
-        report(voxels.len() as u64, goal.count);
+        monitor.report(voxels.len() as u64, goal.count)?;
         let room = goal.count as usize - voxels.len();
         let batch = ((voxels.len() as f64 * BATCH).ceil() as usize).max(FIRST_BATCH).min(room);
         let within = goal.max_error.is_some_and(|bound| max <= bound);

@@ -3,15 +3,18 @@ use std::io::{self, Write};
 
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
-use walpha_base::progress::{self, Share};
+use walpha_base::Monitor;
 use walpha_regular::TriangulationError;
 
-use super::{Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels, fill};
+use super::{
+    Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels_monitored,
+    fill_monitored,
+};
 use crate::haar::{HaarOptions, Tolerance, smooth};
 use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, points_at, select, weigh,
 };
-use crate::shape::{Alpha, Engine, ShapeError, ShapeOptions, alpha_shape};
+use crate::shape::{Alpha, Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
 use crate::volume::Volume;
 
 /// Where the numbers of an error curve come from.
@@ -84,7 +87,7 @@ pub struct CurvePoint {
 /// `smoothed` is the truncated volume, whose differences choose and weigh points; error is always
 /// measured from `volume`. Where so few points span no volume, or there are not so many, the
 /// measurement is left out. Two triangulations for each point of the curve, and one adaptive
-/// selection of the largest count. `announce` hears what is being measured.
+/// selection of the largest count.
 ///
 /// # Errors
 /// Whatever a stage refuses, other than points that span no volume.
@@ -92,15 +95,14 @@ pub fn error_curve(
     volume: &Volume,
     smoothed: &Volume,
     options: &CurveOptions,
-    announce: &mut dyn FnMut(Method),
+    monitor: &Monitor,
 ) -> Result<Vec<CurvePoint>, InterpolateError> {
     let differences = difference(smoothed);
-    let bench = Bench { volume, smoothed, differences, options };
+    let bench = Bench { volume, smoothed, differences, options, monitor: monitor.unheard() };
     let mut curve = Vec::new();
     for (done, method) in Method::ALL.into_iter().enumerate() {
-        announce(method);
-        progress::report(done as u64, Method::ALL.len() as u64);
-        progress::within(Share::NONE, || bench.add(method, &mut curve))?;
+        monitor.report(done as u64, Method::ALL.len() as u64)?;
+        bench.add(method, &mut curve)?;
     }
     Ok(curve)
 }
@@ -110,6 +112,7 @@ struct Bench<'a> {
     smoothed: &'a Volume,
     differences: Array3<f64>,
     options: &'a CurveOptions,
+    monitor: Monitor,
 }
 
 impl Bench<'_> {
@@ -154,7 +157,12 @@ impl Bench<'_> {
                     return Ok(Vec::new());
                 };
                 let goal = Adaptive::new(most);
-                let voxels = adaptive_voxels(self.volume, &goal, self.options.units)?;
+                let voxels = adaptive_voxels_monitored(
+                    self.volume,
+                    &goal,
+                    self.options.units,
+                    &self.monitor,
+                )?;
                 let first = |count: u64| voxels.get(..count as usize);
                 Ok(self.counts().filter_map(first).map(|voxels| self.at(voxels)).collect())
             }
@@ -201,11 +209,11 @@ impl Bench<'_> {
         let Self { volume, options: &CurveOptions { alpha, units, .. }, .. } = *self;
         let weighted = weigh(points, weighting, alpha)?;
         let solid = ShapeOptions::new(alpha).refuse_flat(true).engine(Engine::Native);
-        let shape = match alpha_shape(weighted, &solid) {
+        let shape = match alpha_shape_monitored(weighted, &solid, &self.monitor) {
             Err(ShapeError::Triangulation(TriangulationError::Sites(_))) => return Ok(None),
             other => other?,
         };
-        let whole = fill(&shape, Some(volume), units)?;
+        let whole = fill_monitored(&shape, Some(volume), units, &self.monitor)?;
         let grid = Grid::of(volume, units);
         let deviation = |shape| -> Result<Deviation, InterpolateError> {
             Ok(Deviation::of(volume, &Interpolant::new(shape)?.resample(&grid)?))

@@ -1,3 +1,4 @@
+use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::memory::NoMemory;
 
@@ -62,6 +63,9 @@ pub enum InterpolateError {
     /// The volume cannot be truncated.
     #[error(transparent)]
     Haar(#[from] HaarError),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// Memory for the samples cannot be had.
     #[error(transparent)]
     Memory(#[from] NoMemory),
@@ -87,6 +91,7 @@ impl InterpolateError {
             Self::Points(error) => return error.advice(),
             Self::Haar(error) => return error.advice(),
             Self::Memory(lack) => lack.advice(),
+            Self::Cancelled(_) => return None,
             Self::Volume(error) => return error.advice(),
         })
     }

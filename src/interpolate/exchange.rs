@@ -1,7 +1,7 @@
 use std::collections::HashSet;
 
 use rayon::prelude::*;
-use walpha_base::progress::{Share, report, within};
+use walpha_base::Monitor;
 use walpha_regular::Growing;
 
 use super::InterpolateError;
@@ -47,12 +47,25 @@ pub fn exchange(
     voxels: &[u32],
     units: Units,
 ) -> Result<Vec<u32>, InterpolateError> {
+    exchange_monitored(volume, voxels, units, &Monitor::silent())
+}
+
+/// The same, which says how far it is and can be cancelled.
+///
+/// # Errors
+/// Those of [`exchange`], and [`InterpolateError::Cancelled`].
+pub fn exchange_monitored(
+    volume: &Volume,
+    voxels: &[u32],
+    units: Units,
+    monitor: &Monitor,
+) -> Result<Vec<u32>, InterpolateError> {
     if volume.has_missing() {
         return Err(InterpolateError::Missing);
     }
     let fitted = |voxels: &[u32]| -> Result<Sampled<'_>, InterpolateError> {
         let mut sampled = Sampled::new(volume, units, voxels)?;
-        within(Share::NONE, || sampled.refit())?;
+        sampled.refit(&monitor.unheard())?;
         Ok(sampled)
     };
     let mut sampled = fitted(voxels)?;
@@ -60,14 +73,14 @@ pub fn exchange(
     let mut rmse = sampled.deviation().rmse.unwrap_or(0.0);
     let mut share = MOST;
     for round in 0..ROUNDS {
-        report(round, ROUNDS);
+        monitor.report(round, ROUNDS)?;
         let most = (share * best.len() as f64) as usize;
         let swap = choose(volume, &mut sampled, most)?;
         if swap.leave.is_empty() {
             break;
         }
         sampled.change(&swap.leave, &swap.join)?;
-        within(Share::NONE, || sampled.refit())?;
+        sampled.refit(&monitor.unheard())?;
         let now = sampled.deviation().rmse.unwrap_or(0.0);
         tracing::debug!(round, exchanged = swap.leave.len(), rmse = now, "exchange");
         if now < rmse {

@@ -1,6 +1,8 @@
+use walpha_base::Monitor;
+
 use super::InterpolateError;
 use crate::points::{Units, WeightedPoints};
-use crate::shape::{Alpha, AlphaShape, ShapeOptions, alpha_shape};
+use crate::shape::{Alpha, AlphaShape, ShapeOptions, alpha_shape_monitored};
 use crate::volume::Volume;
 
 /// The whole regular triangulation of a shape's points (α = ∞) and, given their volume, of its
@@ -19,6 +21,19 @@ pub fn fill(
     volume: Option<&Volume>,
     units: Units,
 ) -> Result<AlphaShape, InterpolateError> {
+    fill_monitored(shape, volume, units, &Monitor::silent())
+}
+
+/// The same, which says how far it is and can be cancelled.
+///
+/// # Errors
+/// Those of [`fill`], and [`InterpolateError::Cancelled`].
+pub fn fill_monitored(
+    shape: &AlphaShape,
+    volume: Option<&Volume>,
+    units: Units,
+    monitor: &Monitor,
+) -> Result<AlphaShape, InterpolateError> {
     let mut points = shape.points().clone();
     points.weights = shape.power_weights().to_vec();
     if let Some(volume) = volume {
@@ -26,7 +41,7 @@ pub fn fill(
     }
     let engine = shape.options().engine;
     let options = ShapeOptions::new(Alpha::INFINITE).engine(engine).hidden(true);
-    Ok(alpha_shape(points, &options)?)
+    Ok(alpha_shape_monitored(points, &options, monitor)?)
 }
 
 fn add_corners(

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use walpha_base::memory::{NoMemory, afford};
-use walpha_base::progress::report;
+use walpha_base::{Cancelled, Monitor};
 
 use super::lists::{Lists, samples_of};
 use super::{Grid, InterpolateError};
@@ -114,7 +114,7 @@ impl Normal {
     }
 
     /// Conjugate gradients with the diagonal as preconditioner, from 0.
-    pub(super) fn solve(&self) -> Result<Solved, InterpolateError> {
+    pub(super) fn solve(&self, monitor: &Monitor) -> Result<Solved, InterpolateError> {
         let n = self.diagonal.len();
         let scaled = |r: &[f64]| -> Vec<f64> {
             let one = |(r, d): (&f64, &f64)| if *d > 0.0 { r / d } else { 0.0 };
@@ -131,7 +131,7 @@ impl Normal {
                 let residual = if whole > 0.0 { rest / whole } else { 0.0 };
                 return Ok(Solved { change, steps: step, residual });
             }
-            report_fall(rest / whole);
+            report_fall(rest / whole, monitor)?;
             let image = self.times(&direction);
             let length = along / dot(&direction, &image);
             add(&mut change, length, &direction);
@@ -159,9 +159,9 @@ impl Normal {
 const LEAST_STEPS: usize = 100;
 
 /// Progress on a logarithmic scale, in percent.
-fn report_fall(residual: f64) {
+fn report_fall(residual: f64, monitor: &Monitor) -> Result<(), Cancelled> {
     let share = residual.log10() / TOLERANCE.log10();
-    report((100.0 * share.clamp(0.0, 1.0)) as u64, 100);
+    monitor.report((100.0 * share.clamp(0.0, 1.0)) as u64, 100)
 }
 
 impl Row {

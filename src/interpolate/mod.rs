@@ -52,13 +52,13 @@ mod sampled;
 mod tree;
 mod trial;
 
-pub use adaptive::{Adaptive, adaptive_voxels};
+pub use adaptive::{Adaptive, adaptive_voxels, adaptive_voxels_monitored};
 pub use curve::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
 pub use deviation::Deviation;
 pub use error::InterpolateError;
-pub use exchange::exchange;
-pub use fill::fill;
+pub use exchange::{exchange, exchange_monitored};
+pub use fill::{fill, fill_monitored};
 pub use grid::Grid;
 pub use interpolant::{Interpolant, Place};
-pub use refit::{Fit, Refit, Refitted, refit};
+pub use refit::{Fit, Refit, Refitted, refit, refit_monitored};
 pub use resample::Resampled;

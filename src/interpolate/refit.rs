@@ -1,8 +1,8 @@
 use serde::{Deserialize, Serialize};
-use walpha_base::progress::{Share, within};
+use walpha_base::Monitor;
 
 use super::least_squares::{Normal, Solved};
-use super::{Grid, Interpolant, InterpolateError, fill};
+use super::{Grid, Interpolant, InterpolateError, fill_monitored};
 use crate::points::Units;
 use crate::shape::AlphaShape;
 use crate::volume::Volume;
@@ -61,8 +61,22 @@ pub fn refit(
     units: Units,
     to: Refit,
 ) -> Result<Refitted, InterpolateError> {
+    refit_monitored(shape, volume, units, to, &Monitor::silent())
+}
+
+/// The same, which says how far it is and can be cancelled.
+///
+/// # Errors
+/// Those of [`refit`], and [`InterpolateError::Cancelled`].
+pub fn refit_monitored(
+    shape: &AlphaShape,
+    volume: &Volume,
+    units: Units,
+    to: Refit,
+    monitor: &Monitor,
+) -> Result<Refitted, InterpolateError> {
     let filled = match to {
-        Refit::Whole => Some(within(Share::NONE, || fill(shape, Some(volume), units))?),
+        Refit::Whole => Some(fill_monitored(shape, Some(volume), units, &monitor.unheard())?),
         Refit::Shape => None,
     };
     let interpolant = Interpolant::new(filled.as_ref().unwrap_or(shape))?;
@@ -71,7 +85,7 @@ pub fn refit(
     // The corners that were added come last.
     let free = shape.points().len();
     let normal = Normal::assemble(&interpolant, &resampled.owners, &grid, volume, free)?;
-    let Solved { change, steps, residual } = normal.solve()?;
+    let Solved { change, steps, residual } = normal.solve(monitor)?;
     tracing::debug!(steps, residual, "refit");
     let values = interpolant.values()[..free].iter().zip(change).map(|(v, d)| v + d).collect();
     Ok(Refitted { values, fit: Fit { to, steps, residual } })

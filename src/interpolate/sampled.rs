@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
+use walpha_base::Monitor;
 use walpha_regular::Growing;
 
 use super::cells::Cells;
@@ -102,11 +103,11 @@ impl<'a> Sampled<'a> {
     ///
     /// # Errors
     /// No memory.
-    pub(super) fn refit(&mut self) -> Result<(), InterpolateError> {
+    pub(super) fn refit(&mut self, monitor: &Monitor) -> Result<(), InterpolateError> {
         let pieces = Cells::of(&self.growing, &self.values);
         let free = self.values.len();
         let normal = Normal::assemble(&pieces, &self.owners, &self.grid, self.volume, free)?;
-        let Solved { change, .. } = normal.solve()?;
+        let Solved { change, .. } = normal.solve(monitor)?;
         self.values.iter_mut().zip(change).for_each(|(value, change)| *value += change);
         self.evaluate(|_, _| true);
         Ok(())

@@ -1,6 +1,8 @@
+use walpha_base::Monitor;
+
 use super::PipelineError;
 use super::weighed::Importance;
-use crate::interpolate::{Adaptive, adaptive_voxels, exchange};
+use crate::interpolate::{Adaptive, adaptive_voxels_monitored, exchange_monitored};
 use crate::points::{Points, Selection, Units, difference, points_at, select};
 use crate::volume::Volume;
 
@@ -38,6 +40,7 @@ impl Choice {
         volume: &Volume,
         smoothed: &Volume,
         units: Units,
+        monitor: &Monitor,
     ) -> Result<Chosen, PipelineError> {
         let differences = difference(smoothed);
         let goal = match self {
@@ -49,9 +52,9 @@ impl Choice {
             }
             Self::Adaptive(goal) | Self::Exchanged(goal) => goal,
         };
-        let mut voxels = adaptive_voxels(volume, goal, units)?;
+        let mut voxels = adaptive_voxels_monitored(volume, goal, units, monitor)?;
         if matches!(self, Self::Exchanged(_)) {
-            voxels = exchange(volume, &voxels, units)?;
+            voxels = exchange_monitored(volume, &voxels, units, monitor)?;
         }
         // Points are in the order of their voxels; the order of importance is kept beside them.
         let chosen = voxels.clone();

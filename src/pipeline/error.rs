@@ -1,3 +1,4 @@
+use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Setting, advice};
 
 use crate::haar::HaarError;
@@ -24,6 +25,9 @@ pub enum PipelineError {
     /// A voxel so large that 10 h² is not finite.
     #[error(transparent)]
     Alpha(#[from] AlphaError),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// With [`Balls::Radius`](crate::shape::Balls) α is a radius, and the α that was found is a squared one.
     #[error("with balls of radius α + ω, α is a radius, and the one found is a squared one")]
     Radii {
@@ -46,6 +50,7 @@ impl PipelineError {
             Self::Interpolate(error) => error.advice(),
             Self::Shape(error) => error.advice(),
             Self::Alpha(error) => Some(error.advice().into()),
+            Self::Cancelled(_) => None,
             Self::PeriodicWeights => {
                 Some(advice!["give weights as a column of the input, or omit ", Setting::Periodic])
             }

@@ -11,13 +11,13 @@ pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
 pub use weighed::{Origin, Weighed};
 
 use choice::Chosen;
-use walpha_base::progress::{Share, within};
+use walpha_base::Monitor;
 
-use crate::haar::{HaarOptions, smooth};
-use crate::interpolate::{Refit, refit};
+use crate::haar::{HaarOptions, smooth_monitored};
+use crate::interpolate::{Refit, refit_monitored};
 use crate::points::{ModelFacts, Points, SampleGrid, Units, Weighting};
 use crate::progress::Stage;
-use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, alpha_shape};
+use crate::shape::{Alpha, AlphaShape, Balls, ShapeOptions, alpha_shape_monitored};
 use crate::volume::{GrayRange, Volume};
 
 /// How a volume or points become a shape: the options of every stage. By default those of the paper, without weights.
@@ -115,7 +115,7 @@ impl Pipeline {
     /// # Errors
     /// Whatever a stage refuses.
     pub fn run(&self, volume: &Volume) -> Result<Model, PipelineError> {
-        self.finish(self.weighed(volume, &mut ignore)?, &mut ignore)
+        self.finish(self.weighed(volume, &Monitor::silent())?, &Monitor::silent())
     }
 
     /// The shape of scattered points.
@@ -123,24 +123,20 @@ impl Pipeline {
     /// # Errors
     /// Whatever a stage refuses.
     pub fn run_points(&self, points: Points) -> Result<Model, PipelineError> {
-        self.finish(self.weighed_points(points, &mut ignore)?, &mut ignore)
+        self.finish(self.weighed_points(points, &Monitor::silent())?, &Monitor::silent())
     }
 
-    /// The weighted points of a volume of gray levels. `hear` is called with each stage as it begins.
+    /// The weighted points of a volume of gray levels. The monitor hears of each stage.
     ///
     /// # Errors
     /// Whatever a stage refuses.
-    pub fn weighed(
-        &self,
-        volume: &Volume,
-        hear: &mut dyn FnMut(Stage),
-    ) -> Result<Weighed, PipelineError> {
+    pub fn weighed(&self, volume: &Volume, monitor: &Monitor) -> Result<Weighed, PipelineError> {
         let parameter = self.alpha.of_volume(volume, self.units)?;
-        hear(Stage::Haar);
-        let (smoothed, truncation) = smooth(volume, &self.haar)?;
-        hear(Stage::Points);
+        Stage::Haar.begin(monitor)?;
+        let (smoothed, truncation) = smooth_monitored(volume, &self.haar, monitor)?;
+        Stage::Points.begin(monitor)?;
         let Chosen { points, importance, ended } =
-            self.choice.points(volume, &smoothed, self.units)?;
+            self.choice.points(volume, &smoothed, self.units, monitor)?;
         let (dims, frame, units) = (volume.dims(), *volume.frame(), self.units);
         let origin = Origin {
             coordinates: units.coordinates(volume),
@@ -153,27 +149,27 @@ impl Pipeline {
             folded: None,
             fit: None,
         };
-        let mut weighed = Weighed::new(points, origin, parameter, hear)?.ordered(importance);
+        let mut weighed = Weighed::new(points, origin, parameter, monitor)?.ordered(importance);
         if let Some(to) = self.refit {
-            self.fit(&mut weighed, volume, to, hear)?;
+            self.fit(&mut weighed, volume, to, monitor)?;
         }
         Ok(self.written(weighed))
     }
 
-    /// Scattered points, weighted. `hear` is called with each stage as it begins.
+    /// Scattered points, weighted. The monitor hears of each stage.
     ///
     /// # Errors
     /// Whatever a stage refuses.
     pub fn weighed_points(
         &self,
         points: Points,
-        hear: &mut dyn FnMut(Stage),
+        monitor: &Monitor,
     ) -> Result<Weighed, PipelineError> {
-        self.weighed_model(points, &ModelFacts::default(), hear)
+        self.weighed_model(points, &ModelFacts::default(), monitor)
     }
 
-    /// The points of a file, with what it states about them: α by default is the one there. `hear` is called
-    /// with each stage as it begins.
+    /// The points of a file, with what it states about them: α by default is the one there. The monitor hears
+    /// of each stage.
     ///
     /// # Errors
     /// Whatever a stage refuses.
@@ -181,7 +177,7 @@ impl Pipeline {
         &self,
         points: Points,
         facts: &ModelFacts,
-        hear: &mut dyn FnMut(Stage),
+        monitor: &Monitor,
     ) -> Result<Weighed, PipelineError> {
         let origin = Origin {
             coordinates: facts.coordinates,
@@ -203,24 +199,20 @@ impl Pipeline {
         let stored = facts.alpha.filter(|_| self.alpha == AlphaRule::Default);
         let stored = stored.map(|alpha| Parameter { alpha, unit, origin: ParameterOrigin::Stored });
         let parameter = stored.or_else(|| self.alpha.given(unit));
-        Ok(self.written(Weighed::new(points, origin, parameter, hear)?))
+        Ok(self.written(Weighed::new(points, origin, parameter, monitor)?))
     }
 
-    /// The shape of weighted points. `hear` is called with each stage as it begins.
+    /// The shape of weighted points. The monitor hears of each stage.
     ///
     /// # Errors
     /// Whatever the stage refuses, and [`PipelineError::Radii`].
-    pub fn finish(
-        &self,
-        mut weighed: Weighed,
-        hear: &mut dyn FnMut(Stage),
-    ) -> Result<Model, PipelineError> {
+    pub fn finish(&self, mut weighed: Weighed, monitor: &Monitor) -> Result<Model, PipelineError> {
         weighed.on_torus(self.shape.periodic)?;
-        let parameter = weighed.find_on(self.shape.periodic, hear)?;
+        let parameter = weighed.find_on(self.shape.periodic, monitor)?;
         let options = self.options(parameter)?;
-        hear(Stage::Shape);
+        Stage::Shape.begin(monitor)?;
         let Weighed { points, origin, .. } = weighed;
-        let shape = alpha_shape(points, &options)?.meaning(origin.coordinates);
+        let shape = alpha_shape_monitored(points, &options, monitor)?.meaning(origin.coordinates);
         Ok(Model { shape, parameter, origin })
     }
 
@@ -238,15 +230,13 @@ impl Pipeline {
         weighed: &mut Weighed,
         volume: &Volume,
         to: Refit,
-        hear: &mut dyn FnMut(Stage),
+        monitor: &Monitor,
     ) -> Result<(), PipelineError> {
-        let parameter = weighed.find_parameter(hear)?;
-        hear(Stage::Refit);
-        let shape = within(Share::NONE, || {
-            alpha_shape(weighed.points.clone(), &self.options(parameter)?)
-                .map_err(PipelineError::from)
-        })?;
-        let fitted = refit(&shape, volume, self.units, to)?;
+        let parameter = weighed.find_parameter(monitor)?;
+        Stage::Refit.begin(monitor)?;
+        let options = self.options(parameter)?;
+        let shape = alpha_shape_monitored(weighed.points.clone(), &options, &monitor.unheard())?;
+        let fitted = refit_monitored(&shape, volume, self.units, to, monitor)?;
         weighed.points.values = Some(fitted.values);
         weighed.origin.fit = Some(fitted.fit);
         Ok(())
@@ -266,6 +256,3 @@ impl Pipeline {
         self.weighting.unwrap_or(silent)
     }
 }
-
-/// Hears which stage begins, and does nothing.
-fn ignore(_: Stage) {}

@@ -2,6 +2,7 @@ use std::fmt::{self, Display};
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::Monitor;
 use walpha_base::number_or_null_or_name;
 use walpha_base::shown::{number, six_digits};
 
@@ -131,17 +132,19 @@ impl Parameter {
         points: &WeightedPoints,
         torus: Option<Torus>,
         unit: LengthUnit,
+        monitor: &Monitor,
     ) -> Result<Self, ShapeError> {
-        Ok(Self::of_filtration(&Filtration::on(torus, points.clone())?, unit))
+        Ok(Self::of_filtration(&Filtration::monitored(torus, points.clone(), monitor)?, unit))
     }
 
     /// The α that weights are to be in proportion to: that of the points alone.
     pub(super) fn find_unweighted(
         points: &Points,
         unit: LengthUnit,
+        monitor: &Monitor,
     ) -> Result<Self, PipelineError> {
         let points = weigh(points, Weighting::Common(0.0), Alpha::INFINITE)?;
-        let found = Self::find(&points, None, unit)?;
+        let found = Self::find(&points, None, unit, monitor)?;
         Ok(Self { origin: ParameterOrigin::AutoUnweighted, ..found })
     }
 

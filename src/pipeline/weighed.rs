@@ -1,4 +1,5 @@
 use rayon::prelude::*;
+use walpha_base::Monitor;
 
 use super::{Parameter, PipelineError};
 use crate::haar::Truncation;
@@ -63,9 +64,9 @@ impl Weighed {
         mut points: Points,
         origin: Origin,
         mut parameter: Option<Parameter>,
-        hear: &mut dyn FnMut(Stage),
+        monitor: &Monitor,
     ) -> Result<Self, PipelineError> {
-        hear(Stage::Points);
+        Stage::Points.begin(monitor)?;
         let Origin { weighting, coordinates, .. } = origin;
         let scattered = points.differences.is_none() && points.values.is_some();
         if scattered && weighting.needs_differences() {
@@ -74,9 +75,9 @@ impl Weighed {
         if parameter.is_none() && weighting.needs_differences() {
             // Weights are checked before the search.
             weigh(&points, weighting, Alpha::from_squared(0.0)?)?;
-            hear(Stage::Alpha);
-            parameter = Some(Parameter::find_unweighted(&points, coordinates.unit)?);
-            hear(Stage::Points);
+            Stage::Alpha.begin(monitor)?;
+            parameter = Some(Parameter::find_unweighted(&points, coordinates.unit, monitor)?);
+            Stage::Points.begin(monitor)?;
         }
         // Weights that do not depend on α are the same at ∞.
         let alpha = parameter.map_or(Alpha::INFINITE, |parameter| parameter.alpha);
@@ -102,24 +103,21 @@ impl Weighed {
     ///
     /// # Errors
     /// What a [`Filtration`](crate::ladder::Filtration) refuses.
-    pub fn find_parameter(
-        &mut self,
-        hear: &mut dyn FnMut(Stage),
-    ) -> Result<Parameter, PipelineError> {
-        self.find_on(None, hear)
+    pub fn find_parameter(&mut self, monitor: &Monitor) -> Result<Parameter, PipelineError> {
+        self.find_on(None, monitor)
     }
 
     /// The same of a torus, if there is one.
     pub(super) fn find_on(
         &mut self,
         torus: Option<Torus>,
-        hear: &mut dyn FnMut(Stage),
+        monitor: &Monitor,
     ) -> Result<Parameter, PipelineError> {
         if let Some(parameter) = self.parameter {
             return Ok(parameter);
         }
-        hear(Stage::Alpha);
-        let found = Parameter::find(&self.points, torus, self.origin.coordinates.unit)?;
+        Stage::Alpha.begin(monitor)?;
+        let found = Parameter::find(&self.points, torus, self.origin.coordinates.unit, monitor)?;
         self.parameter = Some(found);
         Ok(found)
     }

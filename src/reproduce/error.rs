@@ -1,3 +1,4 @@
+use walpha_base::Cancelled;
 use walpha_base::advice::Advice;
 
 use super::OffError;
@@ -36,6 +37,9 @@ pub enum ReproduceError {
     /// A file just written does not read back.
     #[error("an OFF file does not read back: {0}")]
     Off(#[from] OffError),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// Memory for a file cannot be had.
     #[error("cannot write a file into memory: {0}")]
     Io(#[from] std::io::Error),
@@ -52,7 +56,11 @@ impl ReproduceError {
             Self::Plane(PlaneError::Cgal(error)) => Some(error.advice()),
             Self::Interpolate(error) => error.advice(),
             Self::Off(_) => Some("this is a fault of walpha, please report it".into()),
-            Self::Plane(_) | Self::Curvature(_) | Self::Render(_) | Self::Io(_) => None,
+            Self::Plane(_)
+            | Self::Curvature(_)
+            | Self::Render(_)
+            | Self::Io(_)
+            | Self::Cancelled(_) => None,
         }
     }
 }

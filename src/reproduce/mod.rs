@@ -27,7 +27,8 @@ pub use numbers::ShapeNumbers;
 pub use off::{OffError, OffMesh};
 pub use report::{Fact, Finding, Input, Item, Report, Table, Verdict};
 
-use walpha_base::progress;
+use walpha_base::Cancelled;
+use walpha_base::Monitor;
 
 use crate::volume::{GrayRange, Volume};
 use study::{Shapes, Study};
@@ -65,25 +66,22 @@ pub struct File {
 
 /// Makes the table and all figures, and judges the paper's claims.
 ///
-/// `announce` hears what is being worked at. Everything but [`Report::seconds`] is a function of
+/// The monitor hears what is being worked at. Everything but [`Report::seconds`] is a function of
 /// the subject alone. Half a minute for 64³ samples on two cores; memory for one whole
 /// triangulation of the points and for the files.
 ///
 /// # Errors
 /// When the subject yields no points, or points that span no volume.
-pub fn reproduce(
-    subject: &Subject<'_>,
-    announce: &mut dyn FnMut(&'static str),
-) -> Result<Reproduction, ReproduceError> {
-    let mut clock = Clock::new(announce);
-    clock.enter("wavelets and points");
+pub fn reproduce(subject: &Subject<'_>, monitor: &Monitor) -> Result<Reproduction, ReproduceError> {
+    let mut clock = Clock::new(monitor);
+    clock.enter("wavelets and points")?;
     let study = Study::new(subject)?;
     let shapes = Shapes::new(&study, &mut clock)?;
-    let mut bench = figures::Bench::new(&study, &shapes);
+    let mut bench = figures::Bench::new(&study, &shapes, monitor);
     let mut items = Vec::new();
     for (done, (name, make)) in figures::ALL.into_iter().enumerate() {
-        clock.enter(name);
-        progress::report(done as u64, figures::ALL.len() as u64);
+        clock.enter(name)?;
+        monitor.report(done as u64, figures::ALL.len() as u64)?;
         items.push(make(&mut bench)?);
     }
     let files = bench.files;
@@ -93,22 +91,23 @@ pub fn reproduce(
 
 /// Times stages, and logs them.
 pub(crate) struct Clock<'a> {
-    announce: &'a mut dyn FnMut(&'static str),
+    monitor: &'a Monitor,
     running: Option<(&'static str, Instant)>,
     started: Instant,
     seconds: Vec<(&'static str, f64)>,
 }
 
 impl<'a> Clock<'a> {
-    fn new(announce: &'a mut dyn FnMut(&'static str)) -> Self {
-        Self { announce, running: None, started: Instant::now(), seconds: Vec::new() }
+    fn new(monitor: &'a Monitor) -> Self {
+        Self { monitor, running: None, started: Instant::now(), seconds: Vec::new() }
     }
 
     /// Ends the running stage and starts another. Stages of the same name add up.
-    fn enter(&mut self, name: &'static str) {
+    fn enter(&mut self, name: &'static str) -> Result<(), Cancelled> {
         self.end();
-        (self.announce)(name);
+        self.monitor.stage(name)?;
         self.running = Some((name, Instant::now()));
+        Ok(())
     }
 
     fn end(&mut self) {

@@ -158,7 +158,7 @@ const LADDER: [f64; 5] = [1.0, 3.0, 50.0, 200.0, f64::INFINITY];
 impl Shapes {
     pub(super) fn new(study: &Study<'_>, clock: &mut Clock<'_>) -> Result<Self, ReproduceError> {
         let mut make = |name, recipe| {
-            clock.enter(name);
+            clock.enter(name)?;
             study.shape(recipe)
         };
         let min_max = make("shape: min-max", Recipe::weighted(Weighting::MinMax))?;

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 /// Which way the axes of world coordinates run in a patient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-#[non_exhaustive]
 pub enum Space {
     /// x to the left, y to the back, z to the head: DICOM, ITK, `MetaImage`.
     #[serde(rename = "LPS")]
@@ -26,7 +25,6 @@ pub enum Space {
 
 /// What a length of 1 is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[non_exhaustive]
 pub enum LengthUnit {
     /// A step from sample to sample: coordinates are indices.
     #[serde(rename = "voxel")]

@@ -17,11 +17,10 @@ mod coordinates;
 #[cfg(feature = "serde")]
 mod infinite;
 pub mod memory;
+pub mod monitor;
 #[cfg(feature = "near")]
 pub mod near;
 pub mod npy;
-#[cfg(feature = "progress")]
-pub mod progress;
 mod setters;
 pub mod shown;
 #[cfg(feature = "cli")]
@@ -35,6 +34,7 @@ pub mod vector;
 pub use coordinates::{Conversion, Coordinates, LengthUnit, Space};
 #[cfg(feature = "serde")]
 pub use infinite::number_or_null_or_name;
+pub use monitor::{Cancelled, Monitor};
 pub use setters::setters;
 pub use sum::Sum;
 pub use union_find::UnionFind;

@@ -1,3 +1,4 @@
+use walpha_base::Cancelled;
 use walpha_base::advice::Advice;
 
 use super::Triangulation;
@@ -65,6 +66,9 @@ pub enum TriangulationError {
     /// The points cannot be triangulated.
     #[error(transparent)]
     Sites(#[from] SitesError),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// More cells than the arrays can name.
     #[error(
         "the triangulation has more than {} cells: that is more than its arrays can name",
@@ -98,6 +102,7 @@ impl TriangulationError {
     pub fn advice(&self) -> Option<Advice> {
         Some(match self {
             Self::Sites(error) => return error.advice(),
+            Self::Cancelled(_) => return None,
             Self::TooManyCells => "use more blocks, or select fewer points".into(),
             Self::Memory { .. } => "allow more, use more blocks, or select fewer points".into(),
         })

@@ -8,6 +8,7 @@
 //! Each of its largest simplices is in one finite cell, with all the points added.
 
 use super::{Predicates, Sites, SitesError, TriangulationError, insert_all};
+use walpha_base::Cancelled;
 
 /// The largest simplices of a flat triangulation, by site index, each ascending: all of one kind.
 #[derive(Debug, Default)]
@@ -26,7 +27,7 @@ pub struct Flat {
 /// No memory.
 pub fn triangulate_flat(
     sites: &Sites<'_>,
-    inserted: impl FnMut(usize),
+    inserted: impl FnMut(usize) -> Result<(), Cancelled>,
 ) -> Result<Flat, TriangulationError> {
     let added = auxiliary_places(sites.positions());
     let along = sites.curve();
@@ -127,7 +128,7 @@ mod tests {
     fn flat(positions: &[[f64; 3]]) -> Flat {
         let weights = vec![0.0; positions.len()];
         let sites = Sites::any(positions, &weights).unwrap();
-        triangulate_flat(&sites, |_| {}).unwrap()
+        triangulate_flat(&sites, |_| Ok(())).unwrap()
     }
 
     #[test]

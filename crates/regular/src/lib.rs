@@ -187,7 +187,7 @@ pub fn triangulate(sites: &Sites<'_>) -> Result<Triangulation, TriangulationErro
     let along = sites.curve();
     let positions: Vec<_> = along.iter().map(|&i| sites.positions()[i as usize]).collect();
     let weights: Vec<_> = along.iter().map(|&i| sites.weights()[i as usize]).collect();
-    let mut triangulation = insert_all(&positions, &weights, |_| {})?;
+    let mut triangulation = insert_all(&positions, &weights, |_| Ok(()))?;
     for v in triangulation.cells.as_flattened_mut() {
         *v = along.get(*v as usize).copied().unwrap_or(*v);
     }

@@ -1,3 +1,4 @@
+use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::memory::NoMemory;
 use walpha_regular::{SitesError, TriangulationError, is_flat};
@@ -28,6 +29,9 @@ pub enum ShapeError {
     /// The memory allowed is not enough for any number of blocks.
     #[error(transparent)]
     Plan(#[from] PlanError),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// Memory for what is known of the simplices cannot be had.
     #[error(transparent)]
     Memory(#[from] NoMemory),
@@ -110,6 +114,7 @@ impl ShapeError {
             Self::Cgal(error) => error.advice(),
             Self::Radius { .. } => advice!["raise α, or use ", Setting::Balls, " power"],
             Self::Plan(error) => error.advice(),
+            Self::Cancelled(_) => return None,
             Self::Memory(lack) => lack.advice(),
             Self::Unbounded { by: Whole::Exterior } => {
                 advice!["omit ", Setting::Memory, ", or omit ", Setting::Exterior]

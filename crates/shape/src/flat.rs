@@ -3,7 +3,7 @@
 //! There are no cells. Classes are those of space: what is in the shape and a face of nothing there is
 //! singular, the faces of it are regular, and nothing is interior, as space is on both sides.
 
-use walpha_base::progress::Piece;
+use walpha_base::Monitor;
 use walpha_regular::{Predicates, Sites, triangulate_flat};
 
 use super::topology::flat_betti;
@@ -17,8 +17,8 @@ pub(super) struct Found {
 }
 
 /// The α-complex of sites that span no volume, and the simplices that are not in it.
-pub(super) fn flat(sites: &Sites<'_>, alpha: f64) -> Result<Found, ShapeError> {
-    let work = Piece::new(sites.input().len() as u64);
+pub(super) fn flat(sites: &Sites<'_>, alpha: f64, monitor: &Monitor) -> Result<Found, ShapeError> {
+    let work = monitor.units(sites.input().len() as u64);
     let tops = triangulate_flat(sites, |more| work.add(more as u64))?;
     let plane = Plane { spheres: Predicates::new(sites.positions(), sites.weights()), alpha };
     // The sphere of a largest simplex is always empty.

@@ -47,7 +47,7 @@ pub use balls::Balls;
 pub use blocks::PlanError;
 pub use cgal_error::CgalError;
 pub use error::{ShapeError, Whole};
-pub use make::{alpha_shape, alpha_shape_by};
+pub use make::{alpha_shape, alpha_shape_by, alpha_shape_monitored};
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;
 pub use options::{Engine, ShapeOptions};

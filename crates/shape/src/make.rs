@@ -1,7 +1,7 @@
 use std::num::NonZeroUsize;
 
 use rayon::prelude::*;
-use walpha_base::Coordinates;
+use walpha_base::{Coordinates, Monitor};
 use walpha_regular::{Sites, check_numbers, lattice};
 
 use super::blocks::{self, Limits, Plan, Question, Reach};
@@ -39,11 +39,24 @@ pub fn alpha_shape(
     points: WeightedPoints,
     options: &ShapeOptions,
 ) -> Result<AlphaShape, ShapeError> {
+    alpha_shape_monitored(points, options, &Monitor::silent())
+}
+
+/// The same, which says how far it is and can be cancelled.
+///
+/// # Errors
+/// Those of [`alpha_shape`], and [`ShapeError::Cancelled`].
+pub fn alpha_shape_monitored(
+    points: WeightedPoints,
+    options: &ShapeOptions,
+    monitor: &Monitor,
+) -> Result<AlphaShape, ShapeError> {
     if options.engine == Engine::Cgal {
         options.check()?;
         return Err(CgalError::Absent.into());
     }
-    made(points, options.engine(Engine::Native), &by_blocks)
+    let find = |sites: &Sites<'_>, options: &ShapeOptions| by_blocks(sites, options, monitor);
+    made(points, options.engine(Engine::Native), &find, monitor)
 }
 
 /// The same, where the simplices of the sites and their classes at a squared α are computed by another program:
@@ -56,14 +69,17 @@ pub fn alpha_shape_by(
     points: WeightedPoints,
     options: &ShapeOptions,
     classify: impl Fn(&Sites<'_>, f64) -> Result<Complex, ShapeError>,
+    monitor: &Monitor,
 ) -> Result<AlphaShape, ShapeError> {
-    made(points, *options, &|sites, options| {
+    let find = |sites: &Sites<'_>, options: &ShapeOptions| {
+        monitor.check()?;
         let complex = classify(sites, power_alpha(options).squared())?;
         let hidden = Some(hidden(sites.input(), &complex.vertices));
         let boundary = Some((components(&complex), Sheets::of_whole(&complex), 0));
         let duplicates = sites.duplicates().to_vec();
         Ok(Found { complex, boundary, hidden, duplicates, betti: None })
-    })
+    };
+    made(points, *options, &find, monitor)
 }
 
 /// The simplices in space, as an engine finds them.
@@ -73,6 +89,7 @@ fn made(
     mut points: WeightedPoints,
     mut options: ShapeOptions,
     find: &Find<'_>,
+    monitor: &Monitor,
 ) -> Result<AlphaShape, ShapeError> {
     options.check()?;
     if let Some(torus) = options.periodic {
@@ -87,7 +104,7 @@ fn made(
     let found = match in_space(&points.positions, weights, &options, find) {
         Err(error) if !options.refuse_flat && error.is_flat() => {
             options.engine = Engine::Native;
-            in_plane(&points.positions, weights, &options)?
+            in_plane(&points.positions, weights, &options, monitor)?
         }
         found => found?,
     };
@@ -156,15 +173,20 @@ fn in_plane(
     positions: &[[f64; 3]],
     weights: &[f64],
     options: &ShapeOptions,
+    monitor: &Monitor,
 ) -> Result<Found, ShapeError> {
     let sites = Sites::any(positions, weights)?;
-    let flat::Found { complex, betti } = flat(&sites, power_alpha(options).squared())?;
+    let flat::Found { complex, betti } = flat(&sites, power_alpha(options).squared(), monitor)?;
     let hidden = Some(hidden(sites.input(), &complex.vertices));
     let duplicates = sites.duplicates().to_vec();
     Ok(Found { complex, boundary: None, hidden, duplicates, betti: Some(betti) })
 }
 
-fn by_blocks(sites: &Sites<'_>, options: &ShapeOptions) -> Result<Found, ShapeError> {
+fn by_blocks(
+    sites: &Sites<'_>,
+    options: &ShapeOptions,
+    monitor: &Monitor,
+) -> Result<Found, ShapeError> {
     let asked = options.blocks.map(NonZeroUsize::get);
     // Any α below −max ω asks for the empty shape, and doubles hold one.
     let largest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -180,7 +202,7 @@ fn by_blocks(sites: &Sites<'_>, options: &ShapeOptions) -> Result<Found, ShapeEr
     plan.afford(sites.input().len())?;
     let lattice = lattice(sites.positions(), sites.weights(), sites.torus());
     let question = Question { alpha, lattice, exterior };
-    let answer = blocks::run(sites, &plan, &question)?;
+    let answer = blocks::run(sites, &plan, &question, monitor)?;
     let boundary = Some((answer.b0, Sheets::of(&answer), answer.sheet_windings));
     let duplicates = sites.duplicates().to_vec();
     Ok(Found { complex: answer.complex, boundary, hidden: answer.hidden, duplicates, betti: None })

@@ -1,6 +1,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::memory::NoMemory;
 use walpha_base::shown::shown;
@@ -60,6 +61,9 @@ pub enum VolumeError {
         /// The volume.
         dims: Dims,
     },
+    /// Reading was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// The operating system refused.
     #[error("cannot read {}: {source}", shown(path))]
     Io {
@@ -133,7 +137,7 @@ impl VolumeError {
     /// What to do about it, where there is something.
     pub fn advice(&self) -> Option<Advice> {
         Some(match self {
-            Self::EmptyAxis { .. } => return None,
+            Self::EmptyAxis { .. } | Self::Cancelled(_) => return None,
             Self::TooManySamples { .. } => "crop or downsample first".into(),
             Self::NotFinite { .. } => {
                 advice![

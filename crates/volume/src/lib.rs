@@ -32,17 +32,17 @@ pub use error::VolumeError;
 pub use extent::Extent;
 pub use formats::{
     FORMATS, Keeps, UnknownFormat, VolumeFormat, VolumeWriter, data_files, files_of, format_name,
-    read, series,
+    read, read_monitored, series,
 };
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
 pub use part::{Region, downsample};
 pub use read::{RawLayout, ReadOptions, Series};
 pub use reason::Reason;
-pub use sample::{SAMPLES, open, phantom, sample};
+pub use sample::{SAMPLES, open, open_monitored, phantom, sample};
 pub use source::Source;
 #[cfg(feature = "zarr")]
-pub use source::convert;
+pub use source::{convert, convert_monitored};
 pub use volume::{Nan, Volume};
 pub use walpha_base::{Conversion, Coordinates, LengthUnit, Space};
 

@@ -158,7 +158,20 @@ impl Parts for Volume {
 /// `folder` is there already or cannot be made; the volume cannot be read. Nothing is left behind then.
 #[cfg(feature = "zarr")]
 pub fn convert(source: &Source, folder: &Path) -> Result<(), VolumeError> {
-    super::write::zarr(source, folder)
+    convert_monitored(source, folder, &walpha_base::Monitor::silent())
+}
+
+/// The same, which says how far it is and can be cancelled.
+///
+/// # Errors
+/// Those of [`convert`], and [`VolumeError::Cancelled`].
+#[cfg(feature = "zarr")]
+pub fn convert_monitored(
+    source: &Source,
+    folder: &Path,
+    monitor: &walpha_base::Monitor,
+) -> Result<(), VolumeError> {
+    super::write::zarr(source, folder, monitor)
 }
 
 /// The error for a format that is not read in parts.

@@ -3,7 +3,6 @@
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::pipeline::AlphaRule;
-use walpha::progress::Stage;
 use walpha::shape::{Balls, Engine, ShapeOptions, Torus};
 use walpha::{Alpha, Pipeline, Points};
 
@@ -66,10 +65,9 @@ pub fn alpha_shape(
     let options = options(&how)?.periodic(torus(periodic)?);
     let points = weighted(&points, weights.as_ref(), values.as_ref())?;
     let pipeline = Pipeline::new().alpha(alpha_rule(alpha)).shape(options);
-    let model = run(py, progress.as_ref(), move |call| {
-        let mut hear = |stage: Stage| call.begin(stage);
-        let weighed = pipeline.weighed_points(points, &mut hear)?;
-        pipeline.finish(weighed, &mut hear)
+    let model = run(py, progress.as_ref(), move |monitor| {
+        let weighed = pipeline.weighed_points(points, monitor)?;
+        pipeline.finish(weighed, monitor)
     })?;
     Ok(Shape::of(model))
 }

@@ -249,8 +249,8 @@ impl Shape {
         let [nx, ny, nz] = sizes;
         let grid = Grid::spanning(low, high, Dims::new(nx, ny, nz).map_err(Told::told)?);
         let (values, shape) = (self.values(values)?, Arc::clone(&self.shape));
-        let samples = run(py, progress.as_ref(), move |call| {
-            call.begin(Stage::Interpolate);
+        let samples = run(py, progress.as_ref(), move |monitor| {
+            Stage::Interpolate.begin(monitor)?;
             let found = Interpolant::with_values(&shape, &values)?.resample(&grid)?;
             Ok::<_, InterpolateError>(with_nan(found))
         })?;

@@ -8,6 +8,7 @@ mod zarr;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::Monitor;
 
 use super::file::BlockFile;
 use super::merge::Numbers;
@@ -91,7 +92,7 @@ impl Pieces {
         path: &Path,
         team: &dyn Team,
     ) -> Result<(), BlocksError> {
-        let Written { new, files } = self.fill(plan, merged, path, team)?;
+        let Written { new, files } = self.fill(plan, merged, path, team, &Monitor::silent())?;
         // The first process has the file that names the others.
         team.meet();
         let put = || -> Result<(), BlocksError> {
@@ -118,13 +119,15 @@ impl Pieces {
         merged: Option<&Merged>,
         path: &Path,
         team: &dyn Team,
+        monitor: &Monitor,
     ) -> Result<Written, BlocksError> {
         match self {
-            Self::Grid => Kind::Grid.fill(plan, merged, path, team),
-            Self::Surface => Kind::Surface.fill(plan, merged, path, team),
+            Self::Grid => Kind::Grid.fill(plan, merged, path, team, monitor),
+            Self::Surface => Kind::Surface.fill(plan, merged, path, team, monitor),
             #[cfg(feature = "zarr")]
             Self::Arrays => {
-                let arrays = merged.map(|merged| zarr::write(plan, merged, path)).transpose()?;
+                let arrays =
+                    merged.map(|merged| zarr::write(plan, merged, path, monitor)).transpose()?;
                 Ok(Written { files: arrays.into_iter().collect(), new: None })
             }
         }

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
+use walpha_base::Monitor;
 
 use super::{Piece, Written};
 use crate::blocks::{BlocksError, Merged, Plan, Team};
@@ -38,6 +39,7 @@ impl Kind {
         merged: Option<&Merged>,
         path: &Path,
         team: &dyn Team,
+        monitor: &Monitor,
     ) -> Result<Written, BlocksError> {
         let index = if team.is_first() { Some(Target::open(path)?) } else { None };
         let told;
@@ -52,7 +54,10 @@ impl Kind {
         let new = NewFolder::make(&folder)
             .map_err(|source| BlocksError::Written { path: folder.clone(), source })?;
         let name = |block: usize| format!("{stem}_{block}.{}", self.extension());
+        let own: Vec<usize> = team.own(plan.blocks.len()).collect();
+        let work = monitor.units(own.len() as u64);
         let fill = |block: usize| -> Result<Option<(usize, Filled)>, BlocksError> {
+            work.add(1)?;
             let piece = Piece::read(plan, block, &numbers[block])?;
             if piece.complex.vertices.is_empty() && piece.complex.edges.is_empty() {
                 return Ok(None);
@@ -61,7 +66,6 @@ impl Kind {
             let filled = Target::open(&file)?.fill(|out| piece.write(self, plan, out))?;
             Ok(Some((block, filled)))
         };
-        let own: Vec<usize> = team.own(plan.blocks.len()).collect();
         let filled: Result<Vec<_>, _> = own.into_par_iter().map(fill).collect();
         let (blocks, files): (Vec<usize>, Vec<Filled>) = filled?.into_iter().flatten().unzip();
         let mut written = Written { files, new };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use serde_json::json;
-use walpha_base::progress;
+use walpha_base::Monitor;
 use walpha_files::{Filled, fill_folder};
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{Array, ArrayBuilder, DataType, Element, FillValue};
@@ -21,15 +21,20 @@ use crate::shape::Simplices;
 const ROWS: u64 = 1 << 18;
 
 /// Fills a folder that is not there yet.
-pub(super) fn write(plan: &Plan, merged: &Merged, path: &Path) -> Result<Filled, BlocksError> {
+pub(super) fn write(
+    plan: &Plan,
+    merged: &Merged,
+    path: &Path,
+    monitor: &Monitor,
+) -> Result<Filled, BlocksError> {
     let failed = |source| BlocksError::Written { path: path.into(), source };
-    fill_folder(path, failed, |part| fill(plan, merged, part))
+    fill_folder(path, failed, |part| fill(plan, merged, part, monitor))
 }
 
 /// Fills a folder: a group for each dimension, with the rows of all blocks, the first block first. Corners are
 /// named by their index in the volume, which `vertices/corners` and `vertices/positions` tie to places. A block
 /// for each thread is in memory.
-fn fill(plan: &Plan, merged: &Merged, folder: &Path) -> Result<(), BlocksError> {
+fn fill(plan: &Plan, merged: &Merged, folder: &Path, monitor: &Monitor) -> Result<(), BlocksError> {
     let failed = |error: &dyn std::fmt::Display| BlocksError::Written {
         path: folder.into(),
         source: std::io::Error::other(error.to_string()),
@@ -62,7 +67,7 @@ fn fill(plan: &Plan, merged: &Merged, folder: &Path) -> Result<(), BlocksError> 
             facets.push(&file, &piece.complex.facets, &piece.voxels)?;
             cells.push(&file, &piece.complex.cells, &piece.voxels)?;
         }
-        progress::report(batch.last().map_or(0, |&last| last as u64 + 1), blocks.len() as u64);
+        monitor.report(batch.last().map_or(0, |&last| last as u64 + 1), blocks.len() as u64)?;
     }
     Ok(())
 }

@@ -9,6 +9,7 @@ mod truncate;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::Monitor;
 
 use super::field::{Field, Truncated};
 use super::kept::Kept;
@@ -64,9 +65,10 @@ pub(super) fn survey(
     field: &mut Field,
     folder: &Path,
     team: &dyn Team,
+    monitor: &Monitor,
 ) -> Result<Surveyed, BlocksError> {
     let tiles = Part::whole(field.dims).tiles(field.tile());
-    let mut passes = Passes::new(team, &tiles);
+    let mut passes = Passes::new(team, &tiles, monitor);
     gray_levels(job, field, &mut passes)?;
     let (truncation, mut truncated, kept) = truncated(job, field, folder, &mut passes)?;
     let choice = choose(job, field, &truncated, &mut passes)?;

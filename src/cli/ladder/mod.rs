@@ -13,7 +13,7 @@ use crate::Coordinates;
 use crate::cli::ranges;
 use crate::cli::said::{Said, misused};
 use crate::export::{ExportOptions, Exporter, Format};
-use crate::ladder::{Filtration, Ladder as Levels, Level};
+use crate::ladder::{Ladder as Levels, Level};
 use crate::pipeline::Parameter;
 use crate::points::Region;
 use crate::progress::Stage;
@@ -121,8 +121,7 @@ impl Ladder {
         let stages = pipeline::stages(&self.pipeline);
         let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
         let domain = pipeline::domain(&weighed, volume.as_ref());
-        let filtration =
-            progress.stage(Stage::Filtration, || Filtration::new(weighed.points.clone()))?;
+        let filtration = progress.watch(|monitor| pipeline::filtration(None, &weighed, monitor))?;
         let coordinates = weighed.origin.coordinates;
         let found = || Parameter::of_filtration(&filtration, coordinates.unit);
         let reference = weighed.parameter.unwrap_or_else(found);

@@ -32,6 +32,7 @@ pub(in crate::cli) struct Grays {
 
 /// Reads INPUT.
 pub(in crate::cli) fn read(args: &InputArgs, progress: &mut Progress) -> anyhow::Result<Input> {
+    let monitor = progress.monitor();
     progress.stage(Stage::Read, || {
         with_file(args, |input| {
             if is_points(args, input)? {
@@ -45,7 +46,8 @@ pub(in crate::cli) fn read(args: &InputArgs, progress: &mut Progress) -> anyhow:
                 }
                 return Ok(Input::Points(points, facts));
             }
-            let volume = volume::open(input, &args.options()).map_err(with_points)?;
+            let options = args.options();
+            let volume = volume::open_monitored(input, &options, &monitor).map_err(with_points)?;
             let (volume, range) = volume.into_gray(args.gray())?;
             Ok(Input::Volume(Grays { volume, range, written: args.written(range) }))
         })

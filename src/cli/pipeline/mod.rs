@@ -4,12 +4,14 @@ mod domain;
 mod input;
 
 use clap::Args;
+use walpha_base::Monitor;
 
 use crate::interpolate::Refit;
 use crate::ladder::{Curve, Filtration};
 use crate::pipeline::{Model, PipelineError, Weighed};
 use crate::points::ModelFacts;
-use crate::shape::ShapeOptions;
+use crate::progress::Stage;
+use crate::shape::{ShapeError, ShapeOptions, Torus};
 use crate::{Alpha, GrayRange, Pipeline, Units, Volume};
 
 use super::args::{PipelineArgs, SelectArgs, WeightArgs};
@@ -107,7 +109,8 @@ pub(super) fn weigh_input(
             if let (Values::Gray, Some(range)) = (values, facts.range) {
                 to_gray(&mut points, &range);
             }
-            let weighed = progress.watch(|hear| pipeline.weighed_model(points, &facts, hear))?;
+            let weighed =
+                progress.watch(|monitor| pipeline.weighed_model(points, &facts, monitor))?;
             return Ok((weighed, None));
         }
         Input::Volume(grays) => grays,
@@ -139,7 +142,7 @@ pub(super) fn weigh_source(
     if values == Values::Written {
         pipeline = pipeline.values(facts.written);
     }
-    Ok(progress.watch(|hear| pipeline.weighed(volume, hear))?)
+    Ok(progress.watch(|monitor| pipeline.weighed(volume, monitor))?)
 }
 
 /// What a file of a model keeps besides its points, but for their order.
@@ -162,10 +165,20 @@ pub(super) fn shape(
     progress: &mut Progress,
 ) -> anyhow::Result<Model> {
     let pipeline = Pipeline::new().shape(options);
-    progress.watch(|hear| pipeline.finish(weighed, hear)).map_err(|error| match &error {
+    progress.watch(|monitor| pipeline.finish(weighed, monitor)).map_err(|error| match &error {
         PipelineError::Radii { .. } => Said::usage_of(&error).into(),
         _ => error.into(),
     })
+}
+
+/// All shapes of weighted points with the weights that they have; of a torus, if there is one.
+pub(super) fn filtration(
+    torus: Option<Torus>,
+    weighed: &Weighed,
+    monitor: &Monitor,
+) -> Result<Filtration, ShapeError> {
+    Stage::Filtration.begin(monitor)?;
+    Filtration::monitored(torus, weighed.points.clone(), monitor)
 }
 
 /// Readable critical values, those suggested, and the α that the weights are meant for.

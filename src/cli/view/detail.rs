@@ -26,8 +26,7 @@ impl Detail {
         source: Option<&Source>,
         progress: &mut Progress,
     ) -> anyhow::Result<Self> {
-        let filtration =
-            progress.stage(Stage::Filtration, || Filtration::new(weighed.points.clone()))?;
+        let filtration = progress.watch(|monitor| pipeline::filtration(None, &weighed, monitor))?;
         let differences = match source {
             Some(source) => {
                 progress.stage(Stage::Interpolate, || differences(&weighed, source, &filtration))?

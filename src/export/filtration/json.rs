@@ -1,5 +1,6 @@
 use std::io::{self, Write};
 
+use walpha_base::Monitor;
 use walpha_base::memory;
 
 use super::lasting;
@@ -7,7 +8,7 @@ use crate::check::schema::{Below, FiltrationFile, PairsFile, SchemaError, Values
 use crate::ladder::{Entry, Ordered};
 use crate::shape::Alpha;
 
-pub(super) fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write(ordered: &Ordered<'_>, out: &mut dyn Write, _: &Monitor) -> io::Result<()> {
     // Rows, four numbers each, and a place in the order.
     let bytes = ordered.len() * (size_of::<[u32; 4]>() + size_of::<[f64; 3]>() + size_of::<u32>());
     memory::afford(bytes, || format!("the JSON of {} simplices", ordered.len()))

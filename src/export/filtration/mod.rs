@@ -10,6 +10,7 @@ use std::path::Path;
 
 use crate::ladder::Ordered;
 use crate::volume::UnknownFormat;
+use walpha_base::Monitor;
 
 /// A format that filtrations are written in, chosen by file name extension.
 #[derive(Clone, Copy)]
@@ -20,7 +21,7 @@ pub struct FiltrationFormat {
     pub extension: &'static str,
     /// What it holds.
     pub about: &'static str,
-    write: fn(&Ordered<'_>, &mut dyn Write) -> io::Result<()>,
+    write: fn(&Ordered<'_>, &mut dyn Write, &Monitor) -> io::Result<()>,
 }
 
 /// The formats there are. The [`schema`](crate::check::schema::FiltrationFile) of NPZ and JSON is that
@@ -60,9 +61,14 @@ impl FiltrationFormat {
     /// whose simplices have different values.
     ///
     /// # Errors
-    /// Whatever `out` returns; no memory.
-    pub fn write(&self, ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
-        (self.write)(ordered, out)
+    /// Whatever `out` returns; no memory; [`Cancelled`](crate::progress::Cancelled) within an error of the kind `Other`.
+    pub fn write(
+        &self,
+        ordered: &Ordered<'_>,
+        out: &mut dyn Write,
+        monitor: &Monitor,
+    ) -> io::Result<()> {
+        (self.write)(ordered, out, monitor)
     }
 }
 

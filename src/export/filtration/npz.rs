@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use walpha_base::progress;
+use walpha_base::Monitor;
 use zip::ZipWriter;
 
 use super::lasting;
@@ -10,7 +10,11 @@ use crate::ladder::{Entry, Ordered};
 /// Arrays of each dimension, by their names.
 const DIMENSIONS: [&str; 4] = ["vertex", "edge", "facet", "cell"];
 
-pub(super) fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write(
+    ordered: &Ordered<'_>,
+    out: &mut dyn Write,
+    monitor: &Monitor,
+) -> io::Result<()> {
     let pairs = ordered.pairs();
     let mut archive = Archive::compressed(ZipWriter::new_stream(out));
     let whole = ordered.filtration().whole();
@@ -22,7 +26,7 @@ pub(super) fn write(ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()
     archive.rows("cells", ordered.cells())?;
     let mut first = 0;
     for (dimension, name) in DIMENSIONS.into_iter().enumerate() {
-        progress::report(dimension as u64, DIMENSIONS.len() as u64);
+        monitor.report(dimension as u64, DIMENSIONS.len() as u64).map_err(io::Error::other)?;
         let count = ordered.count(dimension) as u32;
         let numbers = first..first + count;
         first += count;

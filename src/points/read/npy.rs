@@ -2,6 +2,7 @@ use std::path::Path;
 
 use super::{Points, PointsError, format};
 use crate::volume::{NpyFile, Reason};
+use walpha_base::Monitor;
 
 /// Reads an array n×3 (x, y, z), n×4 (…, weight) or n×5 (…, value).
 pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
@@ -16,7 +17,7 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
         }
     };
     let (fortran, rows) = (file.fortran, file.shape[0] as usize);
-    let numbers: Vec<f64> = file.values(path)?;
+    let numbers: Vec<f64> = file.values(path, &Monitor::silent())?;
     let at = |row: usize, column: usize| {
         numbers[if fortran { column * rows + row } else { row * columns + column }]
     };

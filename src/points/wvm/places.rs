@@ -2,8 +2,6 @@
 
 use std::collections::HashSet;
 
-use walpha_base::progress::report;
-
 use super::around::{Windows, earlier_steps};
 use super::blocks::{Blocks, Cell, MIDDLE, SIDE, Shape, bit_of};
 use super::coder::Coder;
@@ -178,9 +176,6 @@ impl Places {
                     around[MIDDLE] |= 1 << bit;
                     voxels.push(voxel);
                 }
-            }
-            if y % SIDE == 0 && z % SIDE == 0 {
-                report(voxels.len() as u64, count as u64);
             }
             (voxels.len() <= count).then_some(())
         })?;

@@ -1,7 +1,5 @@
 //! Whole numbers at the voxels of points, as differences from what is to be expected there.
 
-use walpha_base::progress::report;
-
 use super::blocks::{Blocks, Cell, SIDE, Shape, Window, bit_of, squared};
 use super::coder::Coder;
 use super::mixer::Mixer;
@@ -56,9 +54,6 @@ impl Values {
     ) -> Option<Vec<u32>> {
         let mut coded = Vec::new();
         for (k, &voxel) in voxels.iter().enumerate() {
-            if k % 1024 == 0 {
-                report(k as u64, voxels.len() as u64);
-            }
             let around = self.around(voxel, occupied);
             let value = self.value(coder, &around, values.get(k).map_or(0, |&v| v.into()))?;
             self.known.add(&self.shape, voxel, value);

@@ -4,7 +4,6 @@
 //! surrounds them, seen or not, and is free of noise.
 
 use rayon::prelude::*;
-use walpha_base::progress;
 use walpha_base::vector::{V3, along, dot, scale, unit};
 
 use super::depth_map::{DepthMap, Receiver, Space};
@@ -116,7 +115,6 @@ fn measure(scene: &Scene, studio: &Studio, receivers: &[Receiver]) -> Vec<Light>
     let mut light = vec![Light { mean: 0.0, toward: [0.0; 3], key: 0.0 }; receivers.len()];
     let space = Space::around(scene);
     for (chunk, some) in directions.chunks(MAPS_AT_ONCE).enumerate() {
-        progress::report((chunk * MAPS_AT_ONCE) as u64, directions.len() as u64);
         let maps: Option<Vec<DepthMap>> = space
             .as_ref()
             .map(|space| some.par_iter().map(|&d| DepthMap::new(scene, space, d)).collect());

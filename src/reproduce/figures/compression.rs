@@ -3,7 +3,7 @@ use super::super::{Fact, Item, ReproduceError, Table, text};
 use super::Bench;
 use crate::export::Scratch;
 use crate::interpolate::{
-    Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels,
+    Adaptive, Deviation, Grid, Interpolant, InterpolateError, adaptive_voxels_monitored,
 };
 use crate::points::{
     ModelFacts, Packing, PointOptions, PointWriter, SampleGrid, Units, WeightedPoints, read_model,
@@ -11,6 +11,7 @@ use crate::points::{
 use crate::render::{RateCurve, rate_figure};
 use crate::shape::{Alpha, ShapeOptions, alpha_shape};
 use crate::volume::{Coordinates, Volume};
+use walpha_base::Monitor;
 
 /// Points of the largest model, of all samples.
 const MOST: f64 = 0.08;
@@ -38,7 +39,7 @@ impl Measured {
 /// What the paper does not measure: how few bytes stand for the volume, beside compressors of volumes.
 pub(super) fn bytes_against_error(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let subject = bench.study.subject;
-    let measured = models(subject.volume)?;
+    let measured = models(subject.volume, &bench.monitor)?;
     let others: &[Compressor] =
         if subject.name == "sample:skull" { &compressors::SKULL } else { &[] };
     let ours = measured.iter().map(|model| [model.rmse, model.bits(subject.volume)]).collect();
@@ -120,10 +121,10 @@ fn verdict(curves: &[RateCurve]) -> String {
 }
 
 /// Models of an eighth, a quarter, a half and all of the points.
-fn models(volume: &Volume) -> Result<Vec<Measured>, ReproduceError> {
+fn models(volume: &Volume, monitor: &Monitor) -> Result<Vec<Measured>, ReproduceError> {
     let samples = volume.dims().samples();
     let count = ((MOST * samples as f64) as u64).max(8);
-    let voxels = adaptive_voxels(volume, &Adaptive::new(count), Units::Voxel)?;
+    let voxels = adaptive_voxels_monitored(volume, &Adaptive::new(count), Units::Voxel, monitor)?;
     let counts = [8, 4, 2, 1].map(|part| (voxels.len() / part).max(8).min(voxels.len()));
     let mut measured = Vec::new();
     for count in counts {

@@ -21,6 +21,7 @@ use super::study::{Shaped, Shapes, Study};
 use super::{File, Item, ReproduceError, text};
 use crate::export::{Exporter, Ply};
 use crate::render::{Figure, Panel, Picture, plain_colours};
+use walpha_base::Monitor;
 
 /// Makes one item, and leaves its files with the bench.
 type Make = fn(&mut Bench<'_>) -> Result<Item, ReproduceError>;
@@ -47,14 +48,17 @@ pub(super) const ALL: [(&str, Make); 14] = [
 pub(super) struct Bench<'a> {
     pub study: &'a Study<'a>,
     pub shapes: &'a Shapes,
+    /// Of what a figure does, whose progress is not shown.
+    pub monitor: Monitor,
     pub files: Vec<File>,
     /// Pictures of shapes, by label: several figures show the same.
     views: BTreeMap<(String, Eye), Picture>,
 }
 
 impl<'a> Bench<'a> {
-    pub(super) fn new(study: &'a Study<'a>, shapes: &'a Shapes) -> Self {
-        Self { study, shapes, files: Vec::new(), views: BTreeMap::new() }
+    pub(super) fn new(study: &'a Study<'a>, shapes: &'a Shapes, monitor: &Monitor) -> Self {
+        let monitor = monitor.unheard();
+        Self { study, shapes, monitor, files: Vec::new(), views: BTreeMap::new() }
     }
 
     /// Adds a file; gives its name.

@@ -22,6 +22,7 @@ use super::{Cell, GONE, Triangulation, TriangulationError};
 use cavity::Cavity;
 pub use growing::Growing;
 pub use leave::Workspace;
+use walpha_base::Cancelled;
 
 /// So many insertions are counted at once: some milliseconds.
 const TOGETHER: usize = 4096;
@@ -30,11 +31,11 @@ const TOGETHER: usize = 4096;
 /// Expected O(n log n) for points of even density.
 ///
 /// # Errors
-/// Points that span no volume, too many cells, no memory.
+/// Points that span no volume, too many cells, no memory; what `inserted` returns.
 pub fn insert_all(
     positions: &[[f64; 3]],
     weights: &[f64],
-    mut inserted: impl FnMut(usize),
+    mut inserted: impl FnMut(usize) -> Result<(), Cancelled>,
 ) -> Result<Triangulation, TriangulationError> {
     let predicates = Predicates::new(positions, weights);
     let screen = Screen::new(&predicates)?;
@@ -43,7 +44,7 @@ pub fn insert_all(
     builder.begin(&screen, 0..count)?;
     for (i, v) in rounds(count).enumerate() {
         if i % TOGETHER == TOGETHER - 1 {
-            inserted(TOGETHER);
+            inserted(TOGETHER)?;
         }
         if !builder.first.contains(&v) {
             builder.insert(&screen, v)?;

@@ -24,7 +24,8 @@ mod spanning;
 mod torus;
 
 use rayon::prelude::*;
-use walpha_base::progress::Piece;
+use walpha_base::Monitor;
+use walpha_base::monitor::Units;
 use walpha_regular::Lattice;
 use walpha_regular::{Sites, Torus, Triangulation, TriangulationError, check_span, insert_all};
 
@@ -102,6 +103,7 @@ pub(super) fn run(
     sites: &Sites<'_>,
     plan: &Plan,
     question: &Question,
+    monitor: &Monitor,
 ) -> Result<Answer, ShapeError> {
     let partition = &plan.partition;
     if sites.torus().is_none() {
@@ -113,7 +115,7 @@ pub(super) fn run(
     let blocks: Vec<usize> = (0..partition.len()).collect();
     let mut owned: Vec<Owned> = Vec::with_capacity(blocks.len());
     let (mut bytes, mut points) = (0, 0);
-    let work = Piece::new(WORK * sites.input().len() as u64);
+    let work = monitor.units(WORK * sites.input().len() as u64);
     for batch in blocks.chunks(plan.at_once) {
         let done: Result<Vec<_>, ShapeError> = batch
             .par_iter()
@@ -137,14 +139,14 @@ fn decide(
     block: usize,
     question: &Question,
     shelves: Shelves,
-    work: &Piece,
+    work: &Units<'_>,
 ) -> Result<Owned, ShapeError> {
     let (points, made, lattice) = match sites.torus() {
         None => in_space(sites, partition, block, question, work)?,
         Some(torus) => on_torus(sites, torus, partition, block, question, work)?,
     };
     let owned = classify(&points, made, &Question { lattice, ..*question }, shelves);
-    work.add((WORK - TRIANGULATION) * u64::from(points.own));
+    work.add((WORK - TRIANGULATION) * u64::from(points.own))?;
     match (owned.long, sites.torus()) {
         (Some(edge), Some(torus)) => Err(too_long(torus, edge)),
         _ => Ok(owned),
@@ -157,7 +159,7 @@ fn in_space(
     partition: &Partition,
     block: usize,
     question: &Question,
-    work: &Piece,
+    work: &Units<'_>,
 ) -> Result<(Block, Triangulation, Lattice), ShapeError> {
     let mut points = partition.block(sites, Reach::Balls(question.alpha), block);
     let (inside, next) = (points.input.len(), sites.input().last().map_or(0, |last| last + 1));
@@ -175,15 +177,16 @@ fn in_space(
 const WORK: u64 = 3;
 const TRIANGULATION: u64 = 2;
 
-fn triangulate(points: &Block, work: &Piece) -> Result<Triangulation, TriangulationError> {
+fn triangulate(points: &Block, work: &Units<'_>) -> Result<Triangulation, TriangulationError> {
     let (own, all) = (TRIANGULATION * u64::from(points.own), points.input.len() as u64);
     let (mut inside, mut counted) = (0, 0);
     let made = insert_all(&points.positions, &points.weights, |more| {
         inside += more as u64;
         let units = own * inside / all;
-        work.add(units - counted);
+        let fresh = units - counted;
         counted = units;
+        work.add(fresh)
     })?;
-    work.add(own - counted);
+    work.add(own - counted)?;
     Ok(made)
 }

@@ -1,7 +1,7 @@
 //! A block alone: what it owns of a shape whose other blocks are elsewhere.
 
+use walpha_base::Monitor;
 use walpha_base::UnionFind;
-use walpha_base::progress::Piece;
 use walpha_regular::Lattice;
 use walpha_regular::Sites;
 
@@ -60,7 +60,7 @@ pub fn block_shape(points: Own<'_>, alpha: f64) -> Result<BlockShape, ShapeError
     let largest = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // Any α below −max ω asks for the empty shape, and doubles hold one.
     let alpha = alpha.max(-2.0 * largest.abs() - 1.0);
-    let made = spanning(&mut block, alpha, positions.len() as u32, &Piece::new(1))?;
+    let made = spanning(&mut block, alpha, positions.len() as u32, &Monitor::silent().units(1))?;
     let lattice = Lattice::of(&block.positions, &block.weights);
     let question = Question { alpha, lattice, exterior: false };
     let owned = classify(&block, made, &question, Shelves::new(&[], 1));

@@ -1,6 +1,6 @@
 //! Blocks whose points may span no volume: along a line of points, most do not.
 
-use walpha_base::progress::Piece;
+use walpha_base::monitor::Units;
 use walpha_regular::{SitesError, Triangulation, TriangulationError, auxiliary_places};
 
 use super::{Block, triangulate};
@@ -11,7 +11,7 @@ pub(super) fn spanning(
     block: &mut Block,
     alpha: f64,
     next: u32,
-    work: &Piece,
+    work: &Units<'_>,
 ) -> Result<Triangulation, TriangulationError> {
     match triangulate(block, work) {
         Err(TriangulationError::Sites(SitesError::Flat { .. } | SitesError::TooFew { .. })) => {
@@ -28,6 +28,7 @@ pub(super) fn spanning(
 
 #[cfg(test)]
 mod tests {
+    use walpha_base::Monitor;
     use walpha_regular::Lattice;
     use walpha_regular::Sites;
 
@@ -46,7 +47,8 @@ mod tests {
         let question = Question { alpha: 1024.0 * 1024.0, lattice, exterior: false };
         let mut flat = 0;
         for block in 0..partition.len() {
-            let work = Piece::new(1);
+            let silent = Monitor::silent();
+            let work = silent.units(1);
             let (points, made, lattice_of_block) =
                 in_space(&sites, &partition, block, &question, &work).unwrap();
             assert!(points.positions.len() < 110, "{}", points.positions.len());

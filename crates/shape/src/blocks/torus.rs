@@ -1,7 +1,7 @@
 //! How far a block of a torus looks: less than what is asked for, where that decides it.
 
 use rayon::prelude::*;
-use walpha_base::progress::Piece;
+use walpha_base::monitor::Units;
 use walpha_regular::Lattice;
 use walpha_regular::{
     AXES, Predicates, Sites, SitesError, Torus, Triangulation, TriangulationError,
@@ -18,7 +18,7 @@ pub(super) fn on_torus(
     partition: &Partition,
     block: usize,
     question: &Question,
-    work: &Piece,
+    work: &Units<'_>,
 ) -> Result<(Block, Triangulation, Lattice), ShapeError> {
     for reach in question.reaches(sites, torus) {
         let points = partition.block(sites, reach, block);
@@ -119,7 +119,7 @@ mod tests {
             let partition = Partition::new(&sites, 8);
             let one = Reach::Balls(4.0);
             let points = partition.block(&sites, one, 3);
-            let made = triangulate(&points, &Piece::new(1)).unwrap();
+            let made = triangulate(&points, &Monitor::silent().units(1)).unwrap();
             for (alpha, exterior, expected) in [
                 (4.0, false, true),
                 (16.0, false, decided),
@@ -132,7 +132,8 @@ mod tests {
             }
             let asked = question(4.0, true, &sites);
             let (looked, ..) =
-                on_torus(&sites, torus, &partition, 3, &asked, &Piece::new(1)).unwrap();
+                on_torus(&sites, torus, &partition, 3, &asked, &Monitor::silent().units(1))
+                    .unwrap();
             let reach = if decided { one } else { Reach::Balls(16.0) };
             assert_eq!(looked.positions.len(), partition.block(&sites, reach, 3).positions.len());
         }

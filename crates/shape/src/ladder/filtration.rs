@@ -1,13 +1,12 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
-use walpha_base::memory;
-use walpha_base::progress::{Share, report, within};
+use walpha_base::{Monitor, memory};
 use walpha_regular::{Predicates, Torus};
 
 use super::incidence::Incidence;
 use crate::WeightedPoints;
-use crate::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape};
+use crate::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
 
 /// All alpha shapes of a set of points at once: the regular triangulation, and for each simplex
 /// when it comes.
@@ -64,31 +63,43 @@ impl Filtration {
     /// # Errors
     /// As [`alpha_shape`] at α = ∞; so no edge of the whole triangulation may span half of the box.
     pub fn on(torus: Option<Torus>, points: WeightedPoints) -> Result<Self, ShapeError> {
+        Self::monitored(torus, points, &Monitor::silent())
+    }
+
+    /// The same, which says how far it is and can be cancelled.
+    ///
+    /// # Errors
+    /// Those of [`on`](Self::on), and [`ShapeError::Cancelled`].
+    pub fn monitored(
+        torus: Option<Torus>,
+        points: WeightedPoints,
+        monitor: &Monitor,
+    ) -> Result<Self, ShapeError> {
         let options = ShapeOptions {
             engine: Engine::Native,
             exterior: true,
             periodic: torus,
             ..ShapeOptions::new(Alpha::INFINITE)
         };
-        let share = |from, to| Share { from, to, of: 8 };
-        let whole = within(share(0, 4), || alpha_shape(points, &options))?;
+        let whole = alpha_shape_monitored(points, &options, &monitor.part(0, 4, 8))?;
         let complex = whole.complex();
         memory::afford(Self::bytes(complex), || {
             format!("the filtration of {} cells", complex.cells.len())
         })?;
-        let done = |parts| within(share(4, 8), || report(parts, 4));
+        let rest = monitor.part(4, 8, 8);
+        let done = |parts| rest.report(parts, 4);
         let WeightedPoints { positions, weights, .. } = whole.points();
         let spheres = Predicates::on_torus(positions, weights, torus);
         let (incidence, cells) = rayon::join(
             || Incidence::of(complex, positions.len()),
             || complex.cells.rows().par_iter().map(|&cell| spheres.nearest_radius(cell)).collect(),
         );
-        done(2);
+        done(2)?;
         let facets = gabriel_facets(complex, &incidence, &spheres);
-        done(3);
+        done(3)?;
         let edges = gabriel_edges(complex, &incidence, &spheres);
         let vertices = gabriel_vertices(complex, &incidence, &spheres);
-        done(4);
+        done(4)?;
         Ok(Self { whole, incidence, cells, facets, edges, vertices })
     }
 

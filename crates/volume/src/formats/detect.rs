@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
+use walpha_base::Monitor;
 use walpha_base::advice::Setting;
 use walpha_base::near::nearest;
 
@@ -48,15 +49,30 @@ const REFUSED: [(&[u8], &str, &str); 8] = [
 /// otherwise not what it says, has an empty axis or too many samples, or holds a NaN or infinity.
 /// Every message names the file.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
+    read_monitored(path, options, &Monitor::silent())
+}
+
+/// The same, which says how far it is and can be cancelled.
+///
+/// # Errors
+/// Those of [`read`], and [`VolumeError::Cancelled`].
+pub fn read_monitored(
+    path: &Path,
+    options: &ReadOptions,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let volume = match &options.raw {
-        Some(layout) => raw::read(path, layout),
-        None => found(path, options).and_then(|found| found.read(path, options)),
+        Some(layout) => raw::read(path, layout, monitor),
+        None => found(path, options).and_then(|found| found.read(path, options, monitor)),
     };
     let settled =
         |volume: Volume| volume.settled(options.nan).map_err(|error| beside(path, options, error));
     let volume = volume.and_then(|volume| options.part(settled(volume)?));
     volume.map_err(|error| match error {
-        VolumeError::Io { .. } | VolumeError::Format { .. } | VolumeError::InFile { .. } => error,
+        VolumeError::Io { .. }
+        | VolumeError::Format { .. }
+        | VolumeError::InFile { .. }
+        | VolumeError::Cancelled(_) => error,
         other => VolumeError::InFile { path: path.into(), source: Box::new(other) },
     })
 }
@@ -166,11 +182,16 @@ struct Found {
 }
 
 impl Found {
-    fn read(&self, path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
+    fn read(
+        &self,
+        path: &Path,
+        options: &ReadOptions,
+        monitor: &Monitor,
+    ) -> Result<Volume, VolumeError> {
         let Self { format, .. } = self;
         self.accepts(path, options)?;
         match (format.read, format.feature) {
-            (Some(read), _) => read(path, options),
+            (Some(read), _) => read(path, options, monitor),
             (None, feature) => {
                 let (what, feature) = (format.name, feature.unwrap_or_default());
                 Err(format_error(path, Reason::Without { what, feature }))
@@ -184,9 +205,10 @@ impl Found {
         match format.parts {
             Some(parts) if !gzip => parts(path, options),
             // It says what is missing where the format was left out.
-            _ if !format.is_built_in() => {
-                Err(self.read(path, options).err().unwrap_or_else(|| whole_only(path, format.name)))
-            }
+            _ if !format.is_built_in() => Err(self
+                .read(path, options, &Monitor::silent())
+                .err()
+                .unwrap_or_else(|| whole_only(path, format.name))),
             _ => Err(whole_only(path, format.name)),
         }
     }

@@ -12,7 +12,7 @@ use std::fmt;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-pub use detect::{data_files, format_name, read, series};
+pub use detect::{data_files, format_name, read, read_monitored, series};
 pub use table::FORMATS;
 pub use unknown::UnknownFormat;
 
@@ -24,12 +24,13 @@ pub(crate) use detect::source;
 pub use detect::{begins_as_volume, start_of};
 pub use files::files_of;
 
+use walpha_base::Monitor;
 use walpha_base::advice::Setting;
 
 use super::{ReadOptions, Source, Volume, VolumeError};
 
 /// Reads a file or folder.
-type Read = fn(&Path, &ReadOptions) -> Result<Volume, VolumeError>;
+type Read = fn(&Path, &ReadOptions, &Monitor) -> Result<Volume, VolumeError>;
 /// Opens a file or folder to be read part by part.
 type PartsOf = fn(&Path, &ReadOptions) -> Result<Source, VolumeError>;
 /// Names the files that hold the samples.

@@ -70,8 +70,8 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["zarr"],
         folder_name: "Zarr",
         is_folder: |folder| Ok(series::is_zarr(folder)),
-        read: built!("zarr", |path, options| {
-            crate::read::zarr::read(path, options.level, options.frame)
+        read: built!("zarr", |path, options, monitor| {
+            crate::read::zarr::read(path, options.level, options.frame, monitor)
         }),
         parts: built!("zarr", |path, options| {
             crate::read::zarr::source(path, options.level, options.frame)
@@ -87,7 +87,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["nrrd"],
         writers: writers!["nrrd": write::nrrd],
         begins: |start| start.starts_with(b"NRRD000"),
-        read: built!("formats", |path, options| nrrd::read(path, options.frame)),
+        read: built!("formats", |path, options, monitor| nrrd::read(path, options.frame, monitor)),
         parts: built!("formats", |path, options| Ok(nrrd::rows(path, options.frame)?.source())),
         data_files: built!("formats", nrrd::data_files),
         ..PLAIN
@@ -102,7 +102,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         writers: writers!["nii": write::nifti, "nii.gz": write::nifti_gzip],
         gzip: true,
         begins: is_nifti,
-        read: built!("formats", |path, options| nifti::read(path, options.frame)),
+        read: built!("formats", |path, options, monitor| nifti::read(path, options.frame, monitor)),
         parts: built!("formats", |path, options| Ok(nifti::rows(path, options.frame)?.source())),
         data_files: built!("formats", nifti::data_files),
         ..PLAIN
@@ -116,7 +116,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["mgh"],
         gzip: true,
         begins: is_mgh,
-        read: built!("formats", |path, options| mgh::read(path, options.frame)),
+        read: built!("formats", |path, options, monitor| mgh::read(path, options.frame, monitor)),
         parts: built!("formats", |path, options| Ok(mgh::rows(path, options.frame)?.source())),
         ..PLAIN
     },
@@ -129,7 +129,11 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["metaimage"],
         writers: writers!["mha": write::metaimage],
         begins: is_metaimage,
-        read: built!("formats", |path, options| metaimage::read(path, options.frame)),
+        read: built!("formats", |path, options, monitor| metaimage::read(
+            path,
+            options.frame,
+            monitor
+        )),
         parts: built!(
             "formats",
             |path, options| Ok(metaimage::rows(path, options.frame)?.source())
@@ -146,7 +150,11 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["vti"],
         writers: writers!["vti": write::vti],
         begins: is_vtk_xml,
-        read: built!("formats", |path, options| vti::read(path, options.array.as_deref())),
+        read: built!("formats", |path, options, monitor| vti::read(
+            path,
+            options.array.as_deref(),
+            monitor
+        )),
         ..PLAIN
     },
     VolumeFormat {
@@ -157,7 +165,11 @@ pub static FORMATS: [VolumeFormat; 14] = [
         feature: Some("formats"),
         fuzzed_by: &["vtk_legacy"],
         begins: is_vtk,
-        read: built!("formats", |path, options| vtk::read(path, options.array.as_deref())),
+        read: built!("formats", |path, options, monitor| vtk::read(
+            path,
+            options.array.as_deref(),
+            monitor
+        )),
         ..PLAIN
     },
     VolumeFormat {
@@ -169,7 +181,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["tiff"],
         writers: writers!["tif": write::tiff, "tiff": write::tiff],
         begins: |start| TIFF.iter().any(|magic| start.starts_with(magic)),
-        read: built!("formats", |path, options| tiff::read(path, options.frame)),
+        read: built!("formats", |path, options, monitor| tiff::read(path, options.frame, monitor)),
         ..PLAIN
     },
     VolumeFormat {
@@ -179,7 +191,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["inrimage"],
         gzip: true,
         begins: |start| start.starts_with(b"#INRIMAGE-4#{"),
-        read: Some(|path, _| inr::open(path)),
+        read: Some(|path, _, monitor| inr::open(path, monitor)),
         ..PLAIN
     },
     VolumeFormat {
@@ -189,7 +201,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["npy"],
         writers: &[VolumeWriter { extension: "npy", write: write::npy }],
         begins: NpyFile::begins,
-        read: Some(|path, options| npy::read(path, options.frame)),
+        read: Some(|path, options, monitor| npy::read(path, options.frame, monitor)),
         parts: Some(|path, options| Ok(npy::rows(path, options.frame)?.source())),
         ..PLAIN
     },
@@ -200,7 +212,11 @@ pub static FORMATS: [VolumeFormat; 14] = [
         feature: Some("formats"),
         fuzzed_by: &["npz"],
         begins: |start| start.starts_with(b"PK\x03\x04") || start.starts_with(b"PK\x05\x06"),
-        read: built!("formats", |path, options| npz::read(path, options.array.as_deref())),
+        read: built!("formats", |path, options, monitor| npz::read(
+            path,
+            options.array.as_deref(),
+            monitor
+        )),
         ..PLAIN
     },
     VolumeFormat {
@@ -209,7 +225,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["slices"],
         folder_name: "folder of slices",
         is_folder: |_| Ok(true),
-        read: built!("formats", |path, _| slices::read(path)),
+        read: built!("formats", |path, _, _| slices::read(path)),
         ..PLAIN
     },
     // Bare samples cannot be recognised: the user describes them.
@@ -217,8 +233,8 @@ pub static FORMATS: [VolumeFormat; 14] = [
         name: "raw samples",
         keeps: Keeps { dtype: false, ..SAMPLES },
         writers: &[VolumeWriter { extension: "raw", write: write::raw }],
-        read: Some(|path, options| match &options.raw {
-            Some(layout) => raw::read(path, layout),
+        read: Some(|path, options, monitor| match &options.raw {
+            Some(layout) => raw::read(path, layout, monitor),
             None => Err(detect::unknown(path)),
         }),
         ..PLAIN

@@ -4,6 +4,7 @@ use std::path::Path;
 use bzip2::read::MultiBzDecoder;
 use flate2::read::{MultiGzDecoder, ZlibDecoder};
 use ndarray::Array3;
+use walpha_base::Monitor;
 
 use super::frames::Frames;
 use super::payload::{Length, Payload};
@@ -53,19 +54,20 @@ impl Described {
         path: &Path,
         source: impl Read,
         bytes: u64,
+        monitor: &Monitor,
     ) -> Result<Volume, VolumeError> {
         self.dims.bounded()?;
         let compressed = BufReader::new(source);
         match self.encoding {
-            Encoding::Raw => self.decode(path, compressed, Length::Exactly(bytes)),
+            Encoding::Raw => self.decode(path, compressed, Length::Exactly(bytes), monitor),
             Encoding::Gzip => {
-                self.decode(path, MultiGzDecoder::new(compressed), Length::of_gzip(bytes))
+                self.decode(path, MultiGzDecoder::new(compressed), Length::of_gzip(bytes), monitor)
             }
             Encoding::Zlib => {
-                self.decode(path, ZlibDecoder::new(compressed), Length::of_gzip(bytes))
+                self.decode(path, ZlibDecoder::new(compressed), Length::of_gzip(bytes), monitor)
             }
             Encoding::Bzip2 => {
-                self.decode(path, MultiBzDecoder::new(compressed), Length::of_bzip2(bytes))
+                self.decode(path, MultiBzDecoder::new(compressed), Length::of_bzip2(bytes), monitor)
             }
             Encoding::Text => {
                 let count = self.dims.samples();
@@ -79,10 +81,16 @@ impl Described {
         }
     }
 
-    fn decode(self, path: &Path, reader: impl Read, length: Length) -> Result<Volume, VolumeError> {
+    fn decode(
+        self,
+        path: &Path,
+        reader: impl Read,
+        length: Length,
+        monitor: &Monitor,
+    ) -> Result<Volume, VolumeError> {
         let (reader, length) = self.frames.one(path, reader, length, self.each())?;
         let samples = Payload { reader, length }
-            .samples(self.dtype, self.endian, self.dims.samples() as u64)
+            .samples(self.dtype, self.endian, self.dims.samples() as u64, monitor)
             .map_err(payload_error(path, &self.dims, self.dtype))?;
         self.volume(samples)
     }

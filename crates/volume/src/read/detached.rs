@@ -3,6 +3,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
+use walpha_base::Monitor;
 use walpha_base::shown::shown;
 
 use super::described::Described;
@@ -22,10 +23,11 @@ pub(super) fn read(
     described: Described,
     files: &[PathBuf],
     skip: impl Fn(u64) -> u64,
+    monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let source = Detached::new(files, skip)?;
     let bytes = source.bytes;
-    described.read(header, source, bytes).map_err(naming(header, files))
+    described.read(header, source, bytes, monitor).map_err(naming(header, files))
 }
 
 /// Errors about samples in files separate from their header, with the names of both.
@@ -41,7 +43,9 @@ pub(crate) fn naming<'a>(
     move |error| {
         let reason = match error {
             VolumeError::Format { reason, .. } => reason,
-            VolumeError::Io { .. } | VolumeError::InFile { .. } => return error,
+            VolumeError::Io { .. } | VolumeError::InFile { .. } | VolumeError::Cancelled(_) => {
+                return error;
+            }
             other => Reason::content(
                 other.to_string(),
                 other.advice().unwrap_or_else(|| "correct the header".into()),

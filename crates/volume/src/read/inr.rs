@@ -2,6 +2,7 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use ndarray::Array3;
+use walpha_base::Monitor;
 
 use super::payload::{Length, Payload};
 use super::{io_error, payload_error, unpacked};
@@ -15,9 +16,9 @@ const END: &[u8] = b"\n##}\n";
 const MAX_HEADER: usize = 1 << 14;
 
 /// Reads a file, gzipped or not.
-pub(crate) fn open(path: &Path) -> Result<Volume, VolumeError> {
+pub(crate) fn open(path: &Path, monitor: &Monitor) -> Result<Volume, VolumeError> {
     let (reader, length) = unpacked(path)?;
-    read(path, reader, length)
+    read(path, reader, length, monitor)
 }
 
 /// Reads an INRIMAGE-4 image, INRIA's format in which CGAL ships its sample volumes: lines
@@ -30,13 +31,14 @@ pub(crate) fn read(
     path: &Path,
     mut reader: impl Read,
     length: Length,
+    monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let text = header(path, &mut reader)?;
     let Header { dims, dtype, endian, frame } =
         parse(&text).map_err(|error| error.located(path))?;
     let payload = Payload { reader, length: length.minus(text.len() as u64) };
     let samples = payload
-        .samples(dtype, endian, dims.samples() as u64)
+        .samples(dtype, endian, dims.samples() as u64, monitor)
         .map_err(payload_error(path, &dims, dtype))?;
     let samples = Array3::from_shape_vec(dims.shape(), samples).expect("count was checked");
     Ok(Volume::of_file(samples, frame)?.with_dtype(dtype))

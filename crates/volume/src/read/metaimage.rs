@@ -10,6 +10,7 @@ use super::nrrd::numbered;
 use super::rows::Rows;
 use super::{format_error, io_error};
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume, VolumeError};
+use walpha_base::Monitor;
 
 /// Keys of the grid's place, each by its names.
 const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
@@ -21,7 +22,11 @@ const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
 ///
 /// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame.
 /// A fourth axis counts volumes, of which `frame` is read; several channels are refused.
-pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(
+    path: &Path,
+    frame: Option<u64>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut lines = Lines::new(BufReader::new(file));
@@ -29,12 +34,12 @@ pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
     let described = header.described(path, frame)?;
     let Some(names) = header.names(path, &mut lines)? else {
         let bytes = length - lines.bytes();
-        return described.read(path, lines.into_inner(), bytes);
+        return described.read(path, lines.into_inner(), bytes, monitor);
     };
     let each = described.bytes() / names.len() as u64;
     let skip = header.skip(path)?;
     let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
-    detached::read(path, described, &beside(path, &names), skip)
+    detached::read(path, described, &beside(path, &names), skip, monitor)
 }
 
 /// Where the samples of a volume lie, to be read part by part.

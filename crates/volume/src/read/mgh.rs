@@ -11,6 +11,7 @@ use super::{format_error, io_error, payload_error, unpacked};
 use crate::{
     Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Space, Volume, VolumeError,
 };
+use walpha_base::Monitor;
 
 /// Bytes before the samples.
 pub(crate) const HEADER: usize = 284;
@@ -20,7 +21,11 @@ pub(crate) const HEADER: usize = 284;
 ///
 /// The frame is RAS, in mm; the header places the centre of the grid. A header that says that its places are not
 /// good (`goodRASFlag`) has none.
-pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(
+    path: &Path,
+    frame: Option<u64>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let (mut reader, length) = unpacked(path)?;
     let described = described(path, &mut reader, frame)?;
     described.dims.bounded()?;
@@ -33,7 +38,7 @@ pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
     let Described { dims, dtype, endian, frames, .. } = described;
     let (reader, length) = frames.one(path, reader.take(all), length, described.each())?;
     let samples = Payload { reader, length }
-        .samples(dtype, endian, dims.samples() as u64)
+        .samples(dtype, endian, dims.samples() as u64, monitor)
         .map_err(payload_error(path, &dims, dtype))?;
     described.volume(samples)
 }

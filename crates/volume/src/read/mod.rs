@@ -68,6 +68,7 @@ pub use vtk::VtkPoints;
 #[cfg(feature = "formats")]
 pub use vtk_xml::VtkXml;
 
+use walpha_base::Cancelled;
 use walpha_base::setters;
 
 use super::{Dims, Dtype, Nan, Reason, Region, Volume, VolumeError, downsample};
@@ -178,6 +179,7 @@ fn payload_error_of(path: &Path, claim: &str, error: PayloadError) -> VolumeErro
             ))
         }
         PayloadError::Io(source) => return VolumeError::Io { path: path.into(), source },
+        PayloadError::Cancelled => return Cancelled.into(),
         PayloadError::Memory { needed } => Reason::Memory { claim: claim.into(), needed },
         PayloadError::Length { needed, found, bound } => {
             Reason::Length { claim: claim.into(), needed, found, bound }

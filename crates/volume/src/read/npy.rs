@@ -3,6 +3,7 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use ndarray::{Array3, ShapeBuilder};
+use walpha_base::Monitor;
 use walpha_base::npy::{Header, MAGIC, NpyError};
 
 use super::frames::Frames;
@@ -26,7 +27,11 @@ pub struct NpyFile<R = BufReader<File>> {
 
 /// Reads an array of three axes `[z, y, x]`, in C or Fortran order, or the one numbered `frame` of an
 /// array of four, in C order.
-pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(
+    path: &Path,
+    frame: Option<u64>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let file = NpyFile::open(path)?;
     if let (&[count, z, y, x], false) = (file.shape.as_slice(), file.fortran) {
         let each =
@@ -39,10 +44,11 @@ pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
         return volume(
             path,
             NpyFile { shape: vec![z, y, x], fortran, dtype, endian, boolean, payload },
+            monitor,
         );
     }
     Frames::choose(path, &[], frame)?;
-    volume(path, file)
+    volume(path, file, monitor)
 }
 
 /// Where the samples of a volume lie, to be read part by part: in C order.
@@ -73,7 +79,11 @@ pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError>
 }
 
 /// The volume an array is.
-pub(super) fn volume<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Volume, VolumeError> {
+pub(super) fn volume<R: Read>(
+    path: &Path,
+    file: NpyFile<R>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let &[z, y, x] = file.shape.as_slice() else {
         return Err(VolumeError::Format {
             path: path.into(),
@@ -90,7 +100,8 @@ pub(super) fn volume<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Volume, V
     let dtype = file.dtype;
     let gray_levels = dtype == Dtype::U8 && !file.boolean;
     let shape = dims.shape().set_f(file.fortran);
-    let samples = Array3::from_shape_vec(shape, file.values(path)?).expect("count was checked");
+    let samples =
+        Array3::from_shape_vec(shape, file.values(path, monitor)?).expect("count was checked");
     let volume = Volume::of_file(samples, Frame::VOXEL)?;
     // Booleans are bytes, and no gray levels.
     Ok(volume.with_dtype(if gray_levels || dtype != Dtype::U8 { dtype } else { Dtype::I8 }))
@@ -147,11 +158,11 @@ impl<R: Read> NpyFile<R> {
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn values<T: Element>(self, path: &Path) -> Result<Vec<T>, VolumeError> {
+    pub fn values<T: Element>(self, path: &Path, monitor: &Monitor) -> Result<Vec<T>, VolumeError> {
         let count = self.shape.iter().fold(1u64, |product, &n| product.saturating_mul(n));
         let claim = format!("an array of shape {:?} and type {}", self.shape, self.dtype);
         self.payload
-            .samples(self.dtype, self.endian, count)
+            .samples(self.dtype, self.endian, count, monitor)
             .map_err(|error| payload_error_of(path, &claim, error))
     }
 }

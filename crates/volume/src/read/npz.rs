@@ -2,6 +2,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
+use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 use zip::ZipArchive;
 use zip::result::ZipError;
@@ -13,7 +14,11 @@ use crate::{Reason, Volume, VolumeError};
 
 /// Reads NPZ, `NumPy`'s archive of arrays (`savez`, `savez_compressed`): its only array of three axes, or
 /// the one of this name.
-pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(
+    path: &Path,
+    wanted: Option<&str>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let mut archive = ZipArchive::new(BufReader::new(file)).map_err(damaged(path))?;
@@ -26,7 +31,7 @@ pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeEr
         }
     }
     match found.as_slice() {
-        [(i, _)] => npy::volume(path, member(path, &mut archive, *i, length)?.1),
+        [(i, _)] => npy::volume(path, member(path, &mut archive, *i, length)?.1, monitor),
         [] => Err(format_error(
             path,
             match wanted {

@@ -1,8 +1,8 @@
 use std::io::{self, Read};
 
 use rayon::prelude::*;
+use walpha_base::Monitor;
 use walpha_base::memory::asking;
-use walpha_base::progress;
 
 use crate::{Dtype, Endian};
 
@@ -58,6 +58,8 @@ pub(super) enum PayloadError {
     Length { needed: u64, found: u64, bound: &'static str },
     /// The samples fit the file, but not the memory.
     Memory { needed: u64 },
+    /// Nobody wants them any more.
+    Cancelled,
     /// The system refused, or the gzip stream is damaged.
     Io(io::Error),
 }
@@ -70,6 +72,7 @@ impl<R: Read> Payload<R> {
         dtype: Dtype,
         endian: Endian,
         count: u64,
+        monitor: &Monitor,
     ) -> Result<Vec<T>, PayloadError> {
         let needed = count.saturating_mul(dtype.size() as u64);
         match self.length {
@@ -99,7 +102,7 @@ impl<R: Read> Payload<R> {
             let start = samples.len();
             samples.resize(start + chunk.len() / dtype.size(), T::default());
             T::decode(chunk, dtype, endian, &mut samples[start..]);
-            progress::report(needed - left as u64, needed);
+            monitor.report(needed - left as u64, needed).map_err(|_| PayloadError::Cancelled)?;
         }
         if read_up_to(&mut self.reader, &mut [0]).map_err(PayloadError::Io)? > 0 {
             return Err(PayloadError::Length { needed, found: needed + 1, bound: "at least " });

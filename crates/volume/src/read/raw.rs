@@ -4,6 +4,7 @@ use std::path::Path;
 
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
+use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::setters;
 
@@ -37,21 +38,26 @@ impl RawLayout {
 }
 
 /// Reads a file that holds `offset` bytes and then exactly the samples of the layout.
-pub(crate) fn read(path: &Path, layout: &RawLayout) -> Result<Volume, VolumeError> {
+pub(crate) fn read(
+    path: &Path,
+    layout: &RawLayout,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let RawLayout { dims, dtype, endian, offset } = *layout;
     dims.bounded()?;
     let mut reader = File::open(path).map_err(io_error(path))?;
     let length = reader.metadata().map_err(io_error(path))?.len();
     reader.seek(SeekFrom::Start(offset.min(length))).map_err(io_error(path))?;
     let payload = Payload { reader, length: Length::Exactly(length.saturating_sub(offset)) };
-    let samples =
-        payload.samples(dtype, endian, dims.samples() as u64).map_err(|error| match error {
+    let samples = payload.samples(dtype, endian, dims.samples() as u64, monitor).map_err(
+        |error| match error {
             PayloadError::Length { needed, .. } => VolumeError::Format {
                 path: path.into(),
                 reason: wrong_length(layout, needed, length),
             },
             other => payload_error(path, &dims, dtype)(other),
-        })?;
+        },
+    )?;
     let samples = Array3::from_shape_vec(dims.shape(), samples).expect("count was checked");
     Ok(Volume::of_file(samples, Frame::VOXEL)?.with_dtype(dtype))
 }

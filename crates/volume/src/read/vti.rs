@@ -6,12 +6,17 @@ use super::frames::Frames;
 use super::vtk::{choice, to_centres};
 use super::vtk_xml::VtkXml;
 use crate::{Coordinates, Dims, Endian, LengthUnit, Reason, Space, Volume, VolumeError};
+use walpha_base::Monitor;
 
 /// Reads VTI, VTK's image data in XML, in one piece: the array of this name; or else the active scalars of
 /// its points, its first array of points, or of cells, whose samples are at the cells' centres.
-pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(
+    path: &Path,
+    wanted: Option<&str>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let said = |reason: Reason| format_error(path, reason);
-    let file = VtkXml::open(path)?;
+    let file = VtkXml::open(path)?.monitored(monitor);
     if file.kind() != "ImageData" {
         let kind = file.kind();
         return Err(said(Reason::header(format!(

@@ -8,10 +8,11 @@ use std::path::Path;
 pub(super) use phantom::PhantomParts;
 pub use phantom::phantom;
 
+use walpha_base::Monitor;
 use walpha_base::advice::Advice;
 use walpha_base::near::nearest;
 
-use super::{Frame, ReadOptions, Volume, VolumeError, read};
+use super::{Frame, ReadOptions, Volume, VolumeError, read_monitored};
 
 /// The samples there are, as a user writes them.
 pub const SAMPLES: [&str; 3] = ["sample:skull", "sample:phantom", "sample:phantom@N"];
@@ -23,10 +24,22 @@ const PHANTOM_SIZE: u64 = 64;
 /// # Errors
 /// Those of [`sample`] and [`read()`].
 pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Volume, VolumeError> {
+    open_monitored(input, options, &Monitor::silent())
+}
+
+/// The same, which says how far it is and can be cancelled.
+///
+/// # Errors
+/// Those of [`open`], and [`VolumeError::Cancelled`].
+pub fn open_monitored(
+    input: impl AsRef<Path>,
+    options: &ReadOptions,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let input = input.as_ref();
     match input.to_str() {
         Some(name) if name.starts_with("sample:") => options.part(sample(name)?),
-        _ => read(input, options),
+        _ => read_monitored(input, options, monitor),
     }
 }
 

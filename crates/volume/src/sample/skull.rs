@@ -3,6 +3,7 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use flate2::read::GzDecoder;
+use walpha_base::Monitor;
 use walpha_base::shown::shown;
 
 use crate::read::{Length, io_error, read_inr};
@@ -42,7 +43,7 @@ fn from_archive(path: &Path) -> Result<Volume, VolumeError> {
         let entry = entry.map_err(io_error(path))?;
         if entry.path().is_ok_and(|p| p.ends_with(MEMBER)) {
             let length = Length::Exactly(entry.size());
-            return read_inr(&path.join(MEMBER), entry, length);
+            return read_inr(&path.join(MEMBER), entry, length, &Monitor::silent());
         }
     }
     Err(VolumeError::Format {

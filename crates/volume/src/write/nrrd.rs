@@ -37,8 +37,8 @@ fn space(frame: &Frame) -> String {
         Space::Lps => "space: left-posterior-superior",
         Space::Ras => "space: right-anterior-superior",
         Space::Las => "space: left-anterior-superior",
-        _ if *frame == Frame::VOXEL => return String::new(),
-        _ => "space dimension: 3",
+        Space::Unknown if *frame == Frame::VOXEL => return String::new(),
+        Space::Unknown => "space dimension: 3",
     };
     let unit = if frame.coordinates == Coordinates::default() { "" } else { unit.ascii() };
     format!("{space}\nspace units: \"{unit}\" \"{unit}\" \"{unit}\"\n")

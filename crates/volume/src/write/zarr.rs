@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use serde_json::json;
-use walpha_base::progress;
+use walpha_base::Monitor;
 use walpha_files::make_folder;
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{Array, ArrayBuilder, DataType, Element, FillValue};
@@ -25,12 +25,12 @@ const CHUNK: usize = 64;
 ///
 /// # Errors
 /// `folder` is there already, cannot be made, or the volume cannot be read. Nothing is left behind then.
-pub(crate) fn zarr(source: &Source, folder: &Path) -> Result<(), VolumeError> {
+pub(crate) fn zarr(source: &Source, folder: &Path, monitor: &Monitor) -> Result<(), VolumeError> {
     let failed = |source| VolumeError::Written { path: folder.into(), source };
-    make_folder(folder, failed, |part| fill(source, part))
+    make_folder(folder, failed, |part| fill(source, part, monitor))
 }
 
-fn fill(source: &Source, folder: &Path) -> Result<(), VolumeError> {
+fn fill(source: &Source, folder: &Path, monitor: &Monitor) -> Result<(), VolumeError> {
     let failed = |error: &dyn std::fmt::Display| VolumeError::Written {
         path: folder.into(),
         source: std::io::Error::other(error.to_string()),
@@ -72,7 +72,7 @@ fn fill(source: &Source, folder: &Path) -> Result<(), VolumeError> {
             store_part(&array, &at, source.dtype(), &samples).map_err(|error| failed(&error))
         })?;
         done += batch.len();
-        progress::report(done as u64, rows.len() as u64);
+        monitor.report(done as u64, rows.len() as u64)?;
     }
     Ok(())
 }

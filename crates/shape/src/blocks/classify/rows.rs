@@ -226,7 +226,7 @@ fn gathered<T: Copy>(from: &[T], ranges: impl Iterator<Item = Range<usize>> + Cl
 
 #[cfg(test)]
 mod tests {
-    use walpha_base::progress::Piece;
+    use walpha_base::Monitor;
     use walpha_regular::Lattice;
     use walpha_regular::Sites;
 
@@ -249,7 +249,8 @@ mod tests {
             let limits = Limits { blocks: Some(blocks), memory: None };
             let plan = Plan::new(&sites, Reach::Balls(0.75), limits).unwrap();
             let shelves = Shelves::new(sites.input(), 1);
-            let work = Piece::new(1);
+            let silent = Monitor::silent();
+            let work = silent.units(1);
             let owned: Vec<_> = (0..plan.partition.len())
                 .map(|block| decide(&sites, &plan.partition, block, &question, shelves, &work))
                 .collect::<Result<_, _>>()

@@ -8,7 +8,7 @@ mod sort;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
-use walpha_base::progress;
+use walpha_base::Monitor;
 
 use super::filtration::Radius;
 use super::levels::Own;
@@ -70,22 +70,30 @@ impl Filtration {
     /// # Errors
     /// No memory; more simplices than numbers of 32 bits.
     pub fn simplices(&self) -> Result<Ordered<'_>, ShapeError> {
+        self.simplices_monitored(&Monitor::silent())
+    }
+
+    /// The same, which says how far it is and can be cancelled.
+    ///
+    /// # Errors
+    /// Those of [`simplices`](Self::simplices), and [`ShapeError::Cancelled`].
+    pub fn simplices_monitored(&self, monitor: &Monitor) -> Result<Ordered<'_>, ShapeError> {
         let complex = self.whole.complex();
         let numbers = Numbers::of(complex).ok_or(TriangulationError::TooManyCells)?;
         memory::afford(Ordered::bytes(numbers), || {
             format!("the order of {} simplices", numbers.all())
         })?;
-        let done = |parts| progress::report(parts, 4);
+        let done = |parts| monitor.report(parts, 4);
         let (levels, (cells, cell_rows)) = rayon::join(
             || {
                 let Ranks { values, of } = Ranks::of(self, numbers)?;
-                done(2);
+                done(2)?;
                 Ok::<_, ShapeError>(self.levels_by_rank(&values, &of, numbers))
             },
             || sorted_cells(complex.cells.rows()),
         );
         let levels = levels?;
-        done(3);
+        done(3)?;
         let mut ordered = Ordered {
             levels,
             numbers,
@@ -96,7 +104,7 @@ impl Filtration {
         };
         ordered.order =
             by_rank(numbers.all(), ordered.levels.len(), |simplex| ordered.rank(simplex));
-        done(4);
+        done(4)?;
         Ok(ordered)
     }
 

@@ -10,9 +10,9 @@ mod stack;
 use std::path::Path;
 
 use rayon::prelude::*;
+use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::asking;
-use walpha_base::progress;
 use walpha_base::shown::shown;
 
 use super::described::{Described, Encoding};
@@ -25,12 +25,24 @@ use slice::{Found, Slice, pixels};
 use stack::stacked;
 
 /// Reads the series that a file belongs to, or one in a folder.
-pub(crate) fn read(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
-    if path.is_dir() { read_folder(path, options) } else { read_series_of(path, options) }
+pub(crate) fn read(
+    path: &Path,
+    options: &ReadOptions,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
+    if path.is_dir() {
+        read_folder(path, options, monitor)
+    } else {
+        read_series_of(path, options, monitor)
+    }
 }
 
 /// Reads the series that a file belongs to: all slices of it in the same folder.
-fn read_series_of(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
+fn read_series_of(
+    path: &Path,
+    options: &ReadOptions,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     if options.series.is_some() {
         let reason = Reason::choice(
             Setting::Series,
@@ -51,17 +63,21 @@ fn read_series_of(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeEr
     let names: Vec<String> = gathered.found.iter().map(|found| pattern(&found.path)).collect();
     let near = |other: &Path| names.contains(&pattern(other));
     let skip = options.skip_damaged;
-    assemble(path, gathered.slices(skip, near)?, skip)
+    assemble(path, gathered.slices(skip, near)?, skip, monitor)
 }
 
 /// Reads the one series in a folder, or the one wanted.
-fn read_folder(folder: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
+fn read_folder(
+    folder: &Path,
+    options: &ReadOptions,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let (wanted, skip) = (options.series.as_deref(), options.skip_damaged);
     let mut gathered = Gathered::of(folder, true)?;
     let listed = listed(&gathered.found);
     let list = || listed.iter().map(Series::to_string).collect::<Vec<_>>().join("; ");
     let chosen = match (wanted, &listed[..]) {
-        (None, []) => return assemble(folder, gathered.slices(skip, |_| true)?, skip),
+        (None, []) => return assemble(folder, gathered.slices(skip, |_| true)?, skip, monitor),
         (None, [one]) => one,
         (None, several) => {
             let count = several.len();
@@ -91,7 +107,7 @@ fn read_folder(folder: &Path, options: &ReadOptions) -> Result<Volume, VolumeErr
         }
     };
     gathered.found.retain(|one| one.series == chosen.uid);
-    assemble(folder, gathered.slices(skip, |_| true)?, skip)
+    assemble(folder, gathered.slices(skip, |_| true)?, skip, monitor)
 }
 
 /// The series in a folder that have images, in the order of the names of their files.
@@ -125,10 +141,15 @@ fn listed(found: &[Found]) -> Vec<Series> {
 
 /// The volume of slices of one series. Those whose pixels cannot be read are refused, or left out with a warning
 /// where `skip` says so.
-fn assemble(path: &Path, mut slices: Vec<Slice>, skip: bool) -> Result<Volume, VolumeError> {
+fn assemble(
+    path: &Path,
+    mut slices: Vec<Slice>,
+    skip: bool,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     loop {
         let (stack, frame) = stacked(path, slices.clone())?;
-        let error = match volume(path, &stack, frame) {
+        let error = match volume(path, &stack, frame, monitor) {
             Err(error) => error,
             done => return done,
         };
@@ -150,7 +171,12 @@ fn assemble(path: &Path, mut slices: Vec<Slice>, skip: bool) -> Result<Volume, V
 }
 
 /// The volume of a stack of slices that can all be read.
-fn volume(path: &Path, slices: &[Slice], frame: Frame) -> Result<Volume, VolumeError> {
+fn volume(
+    path: &Path,
+    slices: &[Slice],
+    frame: Frame,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let first = &slices[0];
     let dims = Dims::new(first.columns, first.rows, slices.len() as u64)?;
     let mut samples = Vec::new();
@@ -179,7 +205,7 @@ fn volume(path: &Path, slices: &[Slice], frame: Frame) -> Result<Volume, VolumeE
                 .for_each(|((_, place), pixels)| place.copy_from_slice(&pixels));
             Ok::<_, VolumeError>(())
         })?;
-        progress::report((16 * done + batch.len()) as u64, count as u64);
+        monitor.report((16 * done + batch.len()) as u64, count as u64)?;
     }
     let dtype =
         slices.iter().map(|slice| slice.dtype).reduce(|a, b| if a == b { a } else { Dtype::F32 });

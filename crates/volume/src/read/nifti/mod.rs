@@ -14,6 +14,7 @@ use super::rows::Rows;
 use super::{format_error, io_error, payload_error, unpacked};
 use crate::formats::{nifti_version, start_of};
 use crate::{Dtype, Reason, Volume, VolumeError};
+use walpha_base::Monitor;
 
 use header::Header;
 
@@ -22,7 +23,11 @@ use header::Header;
 /// `scl_slope` and `scl_inter` are applied. The frame is that of `sform`, else of `qform`, else of
 /// `pixdim` alone, which says nothing of the space; the other two are RAS. Axes beyond
 /// the third count volumes, of which `frame` is read; colours and complex numbers are refused.
-pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(
+    path: &Path,
+    frame: Option<u64>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let (mut reader, length) = unpacked(path)?;
     let header = Header::read(path, &mut reader)?;
     let described = header.described(path, frame)?;
@@ -34,7 +39,7 @@ pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
         let offset = header.vox_offset().clamp(0.0, length as f64) as u64;
         file.seek(SeekFrom::Start(offset)).map_err(io_error(&image))?;
         let left = Length::Exactly(length - offset);
-        return samples(path, described, slope, inter, BufReader::new(file), left)
+        return samples(path, described, slope, inter, BufReader::new(file), left, monitor)
             .map_err(naming(path, &[image]));
     }
     let offset = header.offset(path)?;
@@ -46,7 +51,7 @@ pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
             Reason::truncated(format!("ends before its samples at byte {offset}")),
         ));
     }
-    samples(path, described, slope, inter, reader, length.minus(offset))
+    samples(path, described, slope, inter, reader, length.minus(offset), monitor)
 }
 
 /// Where the samples of a volume lie, to be read part by part.
@@ -79,6 +84,7 @@ fn samples(
     inter: f64,
     reader: impl Read,
     length: Length,
+    monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let Described { dims, dtype, endian, frames, .. } = described;
     dims.bounded()?;
@@ -88,15 +94,15 @@ fn samples(
     let fail = payload_error(path, &dims, dtype);
     let count = dims.samples() as u64;
     if (slope, inter) == (1.0, 0.0) {
-        let samples = payload.samples(dtype, endian, count).map_err(fail)?;
+        let samples = payload.samples(dtype, endian, count, monitor).map_err(fail)?;
         return described.volume(samples);
     }
     let scaled: Vec<f32> = if dtype.size() < 4 || dtype == Dtype::F32 {
-        let mut samples: Vec<f32> = payload.samples(dtype, endian, count).map_err(fail)?;
+        let mut samples: Vec<f32> = payload.samples(dtype, endian, count, monitor).map_err(fail)?;
         samples.iter_mut().for_each(|v| *v = (f64::from(*v) * slope + inter) as f32);
         samples
     } else {
-        let samples: Vec<f64> = payload.samples(dtype, endian, count).map_err(fail)?;
+        let samples: Vec<f64> = payload.samples(dtype, endian, count, monitor).map_err(fail)?;
         samples.iter().map(|v| (v * slope + inter) as f32).collect()
     };
     // Scaled bytes are not gray levels.

@@ -15,6 +15,7 @@ use super::{format_error, io_error};
 use crate::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
 use files::named;
 pub(super) use files::numbered;
+use walpha_base::Monitor;
 
 /// The first bytes of each NRRD file, before the digit of its version.
 pub(super) const MAGIC: &[u8] = b"NRRD000";
@@ -25,7 +26,11 @@ pub(super) const MAGIC: &[u8] = b"NRRD000";
 /// Encodings raw, gzip, bzip2 and text; every scalar type. `space directions` and `space origin`, or
 /// `spacings` and `axis mins`, give the frame, in the space the file names. Axes beyond the third count
 /// volumes, of which `frame` is read; axes of colours or vectors, `hex` and `line skip` are refused.
-pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(
+    path: &Path,
+    frame: Option<u64>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let said = |reason: Reason| format_error(path, reason);
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
@@ -41,7 +46,7 @@ pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
             let skipped =
                 std::io::copy(&mut std::io::Read::take(&mut reader, skip), &mut std::io::sink());
             let bytes = behind - skipped.map_err(io_error(path))?;
-            described.read(path, reader, bytes)
+            described.read(path, reader, bytes, monitor)
         }
         Some(names) => {
             if names.is_empty() {
@@ -49,7 +54,7 @@ pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
             }
             let each = described.bytes() / names.len() as u64;
             let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
-            detached::read(path, described, &beside(path, names), skip)
+            detached::read(path, described, &beside(path, names), skip, monitor)
         }
     }
 }

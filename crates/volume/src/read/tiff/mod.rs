@@ -7,6 +7,7 @@ use std::path::Path;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::{ByteOrder, Tag};
 use tiff::{ColorType, TiffError};
+use walpha_base::Monitor;
 
 use super::frames::Frames;
 use super::{format_error, io_error};
@@ -25,14 +26,19 @@ const IMAGE_DEPTH: Tag = Tag::Unknown(32997);
 /// Large stacks that `ImageJ` writes after a single page are read too. Of a stack with several channels or
 /// times, `frame` chooses one volume, channels counted first. Colours, palettes and samples of fewer
 /// than 8 bits are refused.
-pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(
+    path: &Path,
+    frame: Option<u64>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let mut pages = Pages::open(path)?;
     let about = About::of(path, &mut pages.decoder)?;
     let wanted = about.wanted(path, frame)?;
     let alone = !pages.decoder.more_images();
     if alone && about.images.is_some_and(|images| images > 1) {
         let first = pages.page()?;
-        return behind_one_page(path, pages, &about, wanted, first.size, first.dtype);
+        let (size, dtype) = (first.size, first.dtype);
+        return behind_one_page(path, pages, &about, wanted, size, dtype, monitor);
     }
     pages.skip(wanted.first)?;
     let first = pages.page()?;
@@ -61,6 +67,10 @@ pub(crate) fn read(path: &Path, frame: Option<u64>) -> Result<Volume, VolumeErro
         }
         stack.extend(page.samples);
         slices += 1;
+        match wanted.count {
+            Some(count) => monitor.report(slices, count)?,
+            None => monitor.check()?,
+        }
     }
     let dims = Dims::new(first.size[0], first.size[1], slices)?;
     about.described(path, dims, first.dtype, Endian::Little, Frames::ONE)?.volume(stack)
@@ -198,6 +208,7 @@ fn behind_one_page(
     wanted: Wanted,
     size: [u64; 2],
     dtype: Dtype,
+    monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let slices = wanted.count.or(about.images).unwrap_or(1);
     if wanted.step > 1 {
@@ -229,7 +240,7 @@ fn behind_one_page(
     file.seek(SeekFrom::Start(offset)).map_err(io_error(path))?;
     // Tags may follow the samples.
     let bytes = described.bytes().min(length.saturating_sub(offset));
-    described.read(path, std::io::Read::take(file, bytes), bytes)
+    described.read(path, std::io::Read::take(file, bytes), bytes, monitor)
 }
 
 fn damaged(path: &Path) -> impl Fn(TiffError) -> VolumeError {

@@ -10,6 +10,7 @@ use super::super::{format_error, io_error, payload_error_of, text};
 use super::MAGIC;
 use super::arrays::{self, Array, CellList, POINTS};
 use crate::{Endian, Reason, VolumeError};
+use walpha_base::Monitor;
 
 /// The datasets whose points are listed.
 const LISTED: [&str; 3] = ["POLYDATA", "UNSTRUCTURED_GRID", "STRUCTURED_GRID"];
@@ -117,7 +118,7 @@ impl<'a> VtkPoints<'a> {
         let payload = Payload { reader: BufReader::new(file).take(bytes), length };
         let claim = format!("{count} numbers {} of type {dtype}", array.name);
         payload
-            .samples(dtype, Endian::Big, count)
+            .samples(dtype, Endian::Big, count, &Monitor::silent())
             .map_err(|error| payload_error_of(path, &claim, error))
     }
 }

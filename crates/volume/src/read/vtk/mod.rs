@@ -7,6 +7,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 
 use super::described::{Described, Encoding, frame};
@@ -24,7 +25,11 @@ pub(super) const MAGIC: &[u8] = b"# vtk DataFile";
 /// Reads the legacy VTK format (VTK User's Guide, "VTK File Formats"), text or binary (big endian):
 /// the scalars of this name of a `STRUCTURED_POINTS` dataset; or else the first ones of its points, or of
 /// its cells, located at the cells' centres.
-pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeError> {
+pub(crate) fn read(
+    path: &Path,
+    wanted: Option<&str>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let said = |reason: Reason| format_error(path, reason);
     let file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
@@ -49,8 +54,8 @@ pub(crate) fn read(path: &Path, wanted: Option<&str>) -> Result<Volume, VolumeEr
     reader.seek(SeekFrom::Start(array.start)).map_err(io_error(path))?;
     let left = array.end.unwrap_or(length).saturating_sub(array.start);
     match described.encoding {
-        Encoding::Text => read_text(path, described, &array, reader.take(left)),
-        _ => read_binary(path, described, &array, reader, length - array.start),
+        Encoding::Text => read_text(path, described, &array, reader.take(left), monitor),
+        _ => read_binary(path, described, &array, reader, length - array.start, monitor),
     }
 }
 
@@ -59,12 +64,13 @@ fn read_text(
     described: Described,
     array: &Array,
     mut reader: impl Read,
+    monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let mut text = Vec::new();
     reader.read_to_end(&mut text).map_err(io_error(path))?;
     let end = end_of_numbers(&text);
     if !array.colours {
-        return described.read(path, &text[..end], end as u64);
+        return described.read(path, &text[..end], end as u64, monitor);
     }
     let count = described.dims.samples() as u64;
     let mut shares: Vec<f32> = text::numbers(&text[..end], end as u64, Dtype::F32, count)
@@ -79,12 +85,13 @@ fn read_binary(
     array: &Array,
     mut reader: impl BufRead,
     left: u64,
+    monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let bytes = described.bytes();
     if left < bytes {
-        return described.read(path, reader, left);
+        return described.read(path, reader, left, monitor);
     }
-    let volume = described.read(path, (&mut reader).take(bytes), bytes)?;
+    let volume = described.read(path, (&mut reader).take(bytes), bytes, monitor)?;
     if array.last && !at_keyword(&mut reader).map_err(io_error(path))? {
         let reason = Reason::header(format!(
             "has {} bytes behind the {bytes} of its samples: it is too long or mislabelled",

@@ -121,7 +121,7 @@ impl VtkXml {
                 ))));
             }
             let payload = Payload { reader: data.take(first), length: Length::Exactly(first) };
-            return payload.samples(dtype, self.endian, count).map_err(located);
+            return payload.samples(dtype, self.endian, count, &self.monitor).map_err(located);
         };
         let [block, last] =
             [self.word(&mut data).map_err(cut)?, self.word(&mut data).map_err(cut)?];
@@ -165,7 +165,7 @@ impl VtkXml {
             at: At::End,
         };
         let payload = Payload { reader, length: Length::Exactly(bytes) };
-        payload.samples(dtype, self.endian, count).map_err(located)
+        payload.samples(dtype, self.endian, count, &self.monitor).map_err(located)
     }
 
     /// A length in front of an array.

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
+use walpha_base::Monitor;
 
 use super::{format_error, io_error};
 use crate::{Endian, Reason, VolumeError};
@@ -24,6 +25,7 @@ pub struct VtkXml {
     compressor: Option<Compressor>,
     elements: Vec<XmlElement>,
     appended: Option<Appended>,
+    monitor: Monitor,
 }
 
 /// An element with what it says of itself.
@@ -75,6 +77,7 @@ impl VtkXml {
             compressor: None,
             elements: Vec::new(),
             appended: None,
+            monitor: Monitor::silent(),
         };
         let mut file = BufReader::new(file);
         // Before a search for the first element, which may go through all of a huge file.
@@ -86,6 +89,12 @@ impl VtkXml {
         this.scan(file)?;
         this.root()?;
         Ok(this)
+    }
+
+    /// The same file, whose arrays are read under this monitor.
+    #[must_use]
+    pub fn monitored(self, monitor: &Monitor) -> Self {
+        Self { monitor: monitor.clone(), ..self }
     }
 
     fn said(&self, reason: Reason) -> VolumeError {

@@ -6,6 +6,7 @@ mod shards;
 
 use std::path::Path;
 
+use walpha_base::Monitor;
 use zarrs::array::Array;
 use zarrs::filesystem::FilesystemStore;
 
@@ -28,9 +29,10 @@ pub(crate) fn read(
     path: &Path,
     level: Option<u32>,
     frame_index: Option<u64>,
+    monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let Stored { array, leading, dims, frame } = open(path, level, frame_index)?;
-    let (dtype, samples) = samples(path, &array, dims.bounded()?, &leading)?;
+    let (dtype, samples) = samples(path, &array, dims.bounded()?, &leading, monitor)?;
     let (endian, encoding) = (Endian::Little, Encoding::Raw);
     Described { dims, dtype, endian, frame, encoding, frames: Frames::ONE }.volume(samples)
 }

@@ -4,9 +4,9 @@ use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
+use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::asking;
-use walpha_base::progress;
 use zarrs::array::{Array, DataType, ElementOwned};
 use zarrs::array_subset::ArraySubset;
 use zarrs::filesystem::FilesystemStore;
@@ -39,9 +39,10 @@ pub(super) fn samples(
     array: &Array<FilesystemStore>,
     dims: Dims,
     leading: &[u64],
+    monitor: &Monitor,
 ) -> Result<(Dtype, Vec<f32>), VolumeError> {
     let dtype = dtype(path, array.data_type())?;
-    let read = Read { path, array, dims, leading };
+    let read = Read { path, array, dims, leading, monitor };
     Ok((dtype, by_type!(dtype, read.all)?))
 }
 
@@ -129,6 +130,7 @@ struct Read<'a> {
     dims: Dims,
     /// Along the axes before the last three.
     leading: &'a [u64],
+    monitor: &'a Monitor,
 }
 
 /// Zarr leaves out chunks of nothing but the fill value, so an array may be larger than what is stored of it; so many
@@ -181,7 +183,7 @@ impl Read<'_> {
         &self,
         convert: impl Fn(T) -> f32 + Send + Sync,
     ) -> Result<Vec<f32>, VolumeError> {
-        let Self { path, array, dims, leading } = self;
+        let Self { path, array, dims, leading, monitor } = self;
         let said = |reason: Reason| format_error(path, reason);
         let axes = array.dimensionality();
         let damaged = |error: &dyn std::fmt::Display| {
@@ -224,7 +226,7 @@ impl Read<'_> {
                 let samples = &mut samples[at..at + in_slice];
                 samples.par_iter_mut().zip(part).for_each(|(sample, &v)| *sample = convert(v));
             }
-            progress::report(slices.start * y + rows.end * (slices.end - slices.start), z * y);
+            monitor.report(slices.start * y + rows.end * (slices.end - slices.start), z * y)?;
         }
         Ok(samples)
     }

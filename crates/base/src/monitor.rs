@@ -1,0 +1,240 @@
+//! Progress and cancelling of long work.
+
+use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Where long work says how far it is, and learns that it is no longer wanted.
+///
+/// A clone, and a [part](Self::part), belong to the same work: who cancels one cancels all. Long functions take a
+/// `&Monitor`; with a [silent](Self::silent) one nobody hears them, and nothing stops them.
+///
+/// ```
+/// use walpha_base::{Cancelled, Monitor};
+///
+/// let monitor = Monitor::new(|done, total| eprintln!("{done} of {total}"));
+/// monitor.report(1, 2)?;
+/// monitor.clone().cancel();
+/// assert_eq!(monitor.report(2, 2), Err(Cancelled));
+/// # Ok::<(), Cancelled>(())
+/// ```
+#[derive(Clone, Default)]
+pub struct Monitor {
+    shared: Option<Arc<Shared>>,
+    scale: Scale,
+}
+
+/// What the clones of a monitor share.
+struct Shared {
+    cancelled: AtomicBool,
+    listener: Box<dyn Listener>,
+}
+
+/// Hears of the progress of work, from any of its threads.
+pub trait Listener: Send + Sync + 'static {
+    /// A stage begins: a word for it.
+    fn stage(&self, name: &'static str) {
+        let _ = name;
+    }
+
+    /// So many of so many equal parts of the stage are done. Threads may report out of order.
+    fn progress(&self, done: u64, total: u64);
+}
+
+impl<F: Fn(u64, u64) + Send + Sync + 'static> Listener for F {
+    fn progress(&self, done: u64, total: u64) {
+        self(done, total);
+    }
+}
+
+/// The work was cancelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled")]
+pub struct Cancelled;
+
+/// What the reports of a monitor are parts of.
+#[derive(Clone, Copy, Default)]
+enum Scale {
+    /// Of the stage.
+    #[default]
+    Stage,
+    /// Of a part of the stage: from one place to another, in [`STEPS`].
+    Part { from: u64, to: u64 },
+    /// Of something whose progress is not reported.
+    Unheard,
+}
+
+/// A stage that is reported by its parts has so many steps.
+const STEPS: u64 = 1_000_000;
+
+impl Monitor {
+    /// A monitor whose listener hears of the progress: a function of how many of how many equal parts of a stage are
+    /// done, or a [`Listener`].
+    pub fn new(listener: impl Listener) -> Self {
+        let shared = Shared { cancelled: AtomicBool::new(false), listener: Box::new(listener) };
+        Self { shared: Some(Arc::new(shared)), scale: Scale::Stage }
+    }
+
+    /// A monitor that nobody listens to and nobody cancels. It costs nothing.
+    pub const fn silent() -> Self {
+        Self { shared: None, scale: Scale::Stage }
+    }
+
+    /// Ends the work with [`Cancelled`] the next time it asks. Without effect on a silent monitor.
+    pub fn cancel(&self) {
+        if let Some(shared) = &self.shared {
+            shared.cancelled.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Whether the work goes on.
+    ///
+    /// # Errors
+    /// It was cancelled.
+    pub fn check(&self) -> Result<(), Cancelled> {
+        match &self.shared {
+            Some(shared) if shared.cancelled.load(Ordering::Relaxed) => Err(Cancelled),
+            _ => Ok(()),
+        }
+    }
+
+    /// Reports that a stage begins.
+    ///
+    /// # Errors
+    /// It was cancelled.
+    pub fn stage(&self, name: &'static str) -> Result<(), Cancelled> {
+        if let (Some(shared), Scale::Stage) = (&self.shared, self.scale) {
+            shared.listener.stage(name);
+        }
+        self.check()
+    }
+
+    /// Reports that `done` of `total` equal parts are done. Of work in one part nothing is reported.
+    ///
+    /// # Errors
+    /// It was cancelled.
+    pub fn report(&self, done: u64, total: u64) -> Result<(), Cancelled> {
+        let Some(shared) = &self.shared else { return Ok(()) };
+        match self.scale {
+            Scale::Stage if total > 1 => shared.listener.progress(done, total),
+            Scale::Part { from, to } => {
+                let way = u128::from(to - from) * u128::from(done) / u128::from(total.max(1));
+                shared.listener.progress(from + way as u64, STEPS);
+            }
+            Scale::Stage | Scale::Unheard => {}
+        }
+        self.check()
+    }
+
+    /// A monitor for a part of this one's work: from one place to another on a scale of so many equal parts.
+    #[must_use]
+    pub fn part(&self, from: u64, to: u64, of: u64) -> Self {
+        let (low, high) = match self.scale {
+            Scale::Stage => (0, STEPS),
+            Scale::Part { from, to } => (from, to),
+            Scale::Unheard => return self.clone(),
+        };
+        let at = |place: u64| {
+            low + (u128::from(high - low) * u128::from(place.min(of)) / u128::from(of.max(1)))
+                as u64
+        };
+        Self { shared: self.shared.clone(), scale: Scale::Part { from: at(from), to: at(to) } }
+    }
+
+    /// A monitor for work whose progress is not reported, and which is cancelled with this one's.
+    #[must_use]
+    pub fn unheard(&self) -> Self {
+        Self { shared: self.shared.clone(), scale: Scale::Unheard }
+    }
+
+    /// A count of the units of work that several threads do together.
+    pub fn units(&self, total: u64) -> Units<'_> {
+        Units { monitor: self, total, done: Mutex::default() }
+    }
+}
+
+impl fmt::Debug for Monitor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let cancelled = self.check().is_err();
+        f.debug_struct("Monitor").field("cancelled", &cancelled).finish_non_exhaustive()
+    }
+}
+
+/// Units of work that several threads do together ([`Monitor::units`]).
+#[derive(Debug)]
+pub struct Units<'a> {
+    monitor: &'a Monitor,
+    total: u64,
+    /// Units that are done, and thousandths that were reported.
+    done: Mutex<[u64; 2]>,
+}
+
+impl Units<'_> {
+    /// Counts units that are done. Progress is reported a thousand times at most.
+    ///
+    /// # Errors
+    /// The work was cancelled.
+    pub fn add(&self, units: u64) -> Result<(), Cancelled> {
+        let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
+        let [all, reported] = &mut *done;
+        *all = self.total.min(*all + units);
+        let thousandth = (1000 * u128::from(*all) / u128::from(self.total.max(1))) as u64;
+        if thousandth > *reported {
+            *reported = thousandth;
+            // While the lock is held, so that reports come in order.
+            self.monitor.report(*all, self.total)
+        } else {
+            self.monitor.check()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A monitor, and what it hears.
+    fn heard() -> (Monitor, Arc<Mutex<Vec<[u64; 2]>>>) {
+        let heard = Arc::new(Mutex::new(Vec::new()));
+        let list = Arc::clone(&heard);
+        (Monitor::new(move |done, total| list.lock().unwrap().push([done, total])), heard)
+    }
+
+    #[test]
+    fn parts_of_parts_are_on_one_scale() {
+        let (monitor, heard) = heard();
+        monitor.report(1, 3).unwrap();
+        monitor.report(1, 1).unwrap();
+        let second = monitor.part(1, 2, 2);
+        second.report(0, 7).unwrap();
+        second.part(1, 2, 4).report(1, 2).unwrap();
+        second.unheard().part(0, 1, 2).report(1, 2).unwrap();
+        second.report(7, 7).unwrap();
+        assert_eq!(
+            *heard.lock().unwrap(),
+            [[1, 3], [500_000, STEPS], [687_500, STEPS], [STEPS; 2]]
+        );
+    }
+
+    #[test]
+    fn units_are_reported_a_thousand_times_at_most() {
+        let (monitor, heard) = heard();
+        let units = monitor.units(10_000);
+        (0..10_000).for_each(|_| units.add(1).unwrap());
+        let heard = heard.lock().unwrap();
+        assert_eq!((heard.len(), heard[0], heard[999]), (1000, [10, 10_000], [10_000; 2]));
+    }
+
+    #[test]
+    fn whoever_cancels_cancels_all() {
+        let (monitor, _) = heard();
+        let part = monitor.part(0, 1, 2).unheard();
+        part.units(3).add(1).unwrap();
+        monitor.clone().cancel();
+        assert_eq!(part.units(3).add(1), Err(Cancelled));
+        assert_eq!((monitor.check(), monitor.stage("shape")), (Err(Cancelled), Err(Cancelled)));
+        let silent = Monitor::silent();
+        silent.cancel();
+        assert_eq!((silent.check(), silent.report(1, 2)), (Ok(()), Ok(())));
+    }
+}

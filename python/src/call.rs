@@ -1,0 +1,111 @@
+//! One call from Python: how far it is, and whether it is still wanted.
+
+use std::cell::RefCell;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use walpha::progress::{Listener, Monitor};
+
+thread_local! {
+    /// The call that this thread works for, which the allocator ends where memory runs out.
+    static CALL: RefCell<Option<Arc<Call>>> = const { RefCell::new(None) };
+}
+
+/// How far one call from Python is, and whether it is still wanted.
+#[derive(Debug)]
+pub struct Call {
+    steps: Arc<Steps>,
+    monitor: Monitor,
+    starved: AtomicBool,
+}
+
+/// The reports that Python does not know of yet.
+#[derive(Debug, Default)]
+struct Steps(Mutex<Vec<Step>>);
+
+/// So many of so many equal parts of a stage; of a total of 0 nothing is known.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    pub stage: &'static str,
+    pub done: u64,
+    pub total: u64,
+    /// Whether Python knows.
+    told: bool,
+}
+
+impl Call {
+    /// A call that nothing was heard of.
+    pub fn new() -> Self {
+        let steps = Arc::<Steps>::default();
+        let monitor = Monitor::new(Heard(Arc::clone(&steps)));
+        Self { steps, monitor, starved: AtomicBool::new(false) }
+    }
+
+    /// The monitor of the work.
+    pub fn monitor(&self) -> &Monitor {
+        &self.monitor
+    }
+
+    /// From now on this thread works for this call.
+    pub fn enter(self: Arc<Self>) {
+        CALL.set(Some(self));
+    }
+
+    /// Ends the work the next time it asks.
+    pub fn stop(&self) {
+        self.monitor.cancel();
+    }
+
+    /// Says that memory has run out for the call that this thread works for, if there is one, and ends it. Allocates
+    /// nothing.
+    pub fn starve() -> bool {
+        let starve = |call: &RefCell<Option<Arc<Self>>>| {
+            let call = call.try_borrow().ok()?;
+            let call = call.as_ref()?;
+            call.starved.store(true, Ordering::Relaxed);
+            call.stop();
+            Some(())
+        };
+        CALL.try_with(starve).is_ok_and(|starved| starved.is_some())
+    }
+
+    /// Whether memory has run out.
+    pub fn is_starved(&self) -> bool {
+        self.starved.load(Ordering::Relaxed)
+    }
+
+    /// The reports since the last time: the last of each stage.
+    pub fn take(&self) -> Vec<Step> {
+        let mut steps = self.steps.lock();
+        let Some(&last) = steps.last() else { return Vec::new() };
+        // The stage goes on.
+        let taken = std::mem::replace(&mut *steps, vec![Step { told: true, ..last }]);
+        taken.into_iter().filter(|step| !step.told).collect()
+    }
+}
+
+impl Steps {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<Step>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Keeps what the work reports.
+struct Heard(Arc<Steps>);
+
+impl Listener for Heard {
+    fn stage(&self, name: &'static str) {
+        self.0.lock().push(Step { stage: name, done: 0, total: 0, told: false });
+    }
+
+    fn progress(&self, done: u64, total: u64) {
+        if let Some(last) = self.0.lock().last_mut() {
+            // Threads may report their parts out of order.
+            let further = u128::from(done) * u128::from(last.total)
+                >= u128::from(last.done) * u128::from(total);
+            if further {
+                *last = Step { done, total, told: false, ..*last };
+            }
+        }
+    }
+}
