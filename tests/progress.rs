@@ -117,7 +117,7 @@ fn adaptive_selection_moves() {
 fn reading_moves() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("v.npy");
-    let volume = volume::sample("sample:phantom@128").unwrap();
+    let volume = volume::sample("sample:phantom@200").unwrap();
     let format = VolumeWriter::of(&path).unwrap();
     format.write(&volume, &mut std::fs::File::create(&path).unwrap()).unwrap();
     assert_moves(

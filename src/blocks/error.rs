@@ -167,7 +167,6 @@ impl BlocksError {
             Self::Shape(error) => error.advice(),
             Self::Target(error) => Some(error.advice()),
             Self::Memory(lack) => Some(lack.advice()),
-            Self::Cancelled(_) => None,
             Self::Io { .. } => Some("name a folder that `walpha blocks plan` made".into()),
             Self::Written { source, .. } => match source.kind() {
                 std::io::ErrorKind::AlreadyExists => Some("remove it, or name another".into()),
@@ -180,7 +179,7 @@ impl BlocksError {
                 Some("compute it again by `walpha blocks run`, then merge again".into())
             }
             Self::Missing { .. } => Some("run these, then merge again".into()),
-            Self::NoBlock { .. } => None,
+            Self::NoBlock { .. } | Self::Cancelled(_) => None,
             Self::Changed { .. } => Some(
                 "plan again: of `walpha shape`, remove the folder `.blocks` beside the output first"
                     .into(),

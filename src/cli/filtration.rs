@@ -114,7 +114,8 @@ impl Filtration {
         progress.stage(Stage::Write, || {
             write_all(targets.into_iter().map(|(target, format)| {
                 let (ordered, monitor) = (&ordered, &monitor);
-                let content = move |out: &mut dyn Write| format.write(ordered, out, monitor);
+                let content =
+                    move |out: &mut dyn Write| format.write_monitored(ordered, out, monitor);
                 (target, Box::new(content) as Content<'_>)
             }))
         })?;

@@ -61,8 +61,16 @@ impl FiltrationFormat {
     /// whose simplices have different values.
     ///
     /// # Errors
-    /// Whatever `out` returns; no memory; [`Cancelled`](crate::progress::Cancelled) within an error of the kind `Other`.
-    pub fn write(
+    /// Whatever `out` returns; no memory.
+    pub fn write(&self, ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
+        self.write_monitored(ordered, out, &Monitor::silent())
+    }
+
+    /// The same, which says how far it is and can be cancelled.
+    ///
+    /// # Errors
+    /// Those of [`write`](Self::write), and one of the kind `Other` around [`Cancelled`](crate::progress::Cancelled).
+    pub fn write_monitored(
         &self,
         ordered: &Ordered<'_>,
         out: &mut dyn Write,

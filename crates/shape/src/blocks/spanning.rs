@@ -33,8 +33,6 @@ mod tests {
     use walpha_regular::Sites;
 
     use super::super::{Partition, Question, in_space};
-    use super::*;
-
     /// Blocks of a line once took all points with them: quadratic in the number of blocks.
     #[test]
     fn a_block_of_a_line_stays_small() {

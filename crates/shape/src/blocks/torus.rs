@@ -72,6 +72,8 @@ pub(super) fn too_long(torus: Torus, Long { edge, ends }: Long) -> ShapeError {
 
 #[cfg(test)]
 mod tests {
+    use walpha_base::Monitor;
+
     use super::*;
 
     fn question(alpha: f64, exterior: bool, sites: &Sites<'_>) -> Question {
