@@ -1,7 +1,7 @@
 //! Blocks whose points may span no volume: along a line of points, most do not.
 
 use walpha_base::progress::Piece;
-use walpha_regular::{SitesError, Triangulation, TriangulationError, auxiliary_places};
+use walpha_regular::{SitesError, Triangulation, TriangulationError, auxiliary_positions};
 
 use super::{Block, triangulate};
 
@@ -15,7 +15,7 @@ pub(super) fn spanning(
 ) -> Result<Triangulation, TriangulationError> {
     match triangulate(block, work) {
         Err(TriangulationError::Sites(SitesError::Flat { .. } | SitesError::TooFew { .. })) => {
-            let places = auxiliary_places(&block.positions);
+            let places = auxiliary_positions(&block.positions);
             // Twice as much as makes them empty, for roundings.
             block.weights.extend(places.iter().map(|_| -(2.0 * alpha.max(0.0) + 1.0).ceil()));
             block.input.extend((next..).take(places.len()));
