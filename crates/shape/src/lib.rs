@@ -21,9 +21,7 @@
 //! ```
 
 mod alpha_shape;
-mod balls;
 mod blocks;
-mod cgal_error;
 mod error;
 mod flat;
 pub mod ladder;
@@ -43,14 +41,12 @@ mod voids;
 mod winding;
 
 pub use alpha_shape::AlphaShape;
-pub use balls::Balls;
 pub use blocks::PlanError;
-pub use cgal_error::CgalError;
-pub use error::{ShapeError, Whole};
+pub use error::{CgalError, ShapeError, Whole};
 pub use make::{alpha_shape, alpha_shape_by};
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;
-pub use options::{Engine, ShapeOptions};
+pub use options::{Balls, Engine, ShapeOptions};
 pub use parts::{Component, Enclosed, NO_COMPONENT};
 pub use points::{LengthsError, WeightSummary, WeightedPoints};
 pub use sheets::Sheets;

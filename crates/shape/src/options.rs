@@ -3,7 +3,7 @@ use std::num::NonZeroUsize;
 use serde::{Deserialize, Serialize};
 use walpha_base::setters;
 
-use super::{Alpha, Balls, ShapeError, Torus, Whole};
+use super::{Alpha, ShapeError, Torus, Whole};
 
 /// Which program computes the shape; all give the same answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,6 +20,19 @@ pub enum Engine {
     Cgal,
     /// Our own triangulation and classes: no C++, on all cores, in bounded memory, and the fastest.
     Native,
+}
+
+/// What a point with weight ω is at parameter α.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Balls {
+    /// A ball of squared radius α + ω: the usual reading (Edelsbrunner 1992; CGAL), the default.
+    #[default]
+    Power,
+    /// A ball of radius α + ω, as a sentence of the paper's section 4.2 reads: the power weight
+    /// (α + ω)² at parameter 0.
+    Radius,
 }
 
 /// How to make a shape of weighted points.

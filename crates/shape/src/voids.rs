@@ -184,8 +184,8 @@ fn voids(shape: &AlphaShape) -> Vec<Void> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ShapeOptions, WeightedPoints, alpha_shape};
     use super::*;
+    use crate::{ShapeOptions, WeightedPoints, alpha_shape};
 
     /// A 7³ lattice without its inner 3³ and without one more point far from them.
     fn hollow(alpha: f64, exterior: bool) -> AlphaShape {

@@ -19,7 +19,6 @@ mod merge;
 mod partition;
 mod piece;
 mod plan;
-mod reach;
 mod spanning;
 mod torus;
 
@@ -33,11 +32,11 @@ use super::{Complex, ShapeError};
 use classify::{Owned, Shelves, classify};
 use merge::merge;
 pub(super) use partition::Partition;
+pub(crate) use partition::Reach;
 pub use piece::{BlockShape, Own, Side, block_shape};
 pub use plan::AT_WORK;
 pub use plan::PlanError;
 pub(super) use plan::{Limits, Plan};
-pub(crate) use reach::Reach;
 use spanning::spanning;
 use torus::{on_torus, too_long};
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 use walpha_regular::Sites;
 
-use super::{Block, Copies, Reach};
+use super::{Block, Copies};
 
 /// Boxes of about equally many sites: each cut across its longest side.
 pub(crate) struct Partition {
@@ -176,6 +176,44 @@ impl Partition {
             }
         }
         windings
+    }
+}
+
+/// How far the halo of a block goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Reach {
+    /// To the points whose balls at this α meet one of the block's: what decides the shape at α.
+    Balls(f64),
+    /// So far, whatever the balls.
+    Distance(f64),
+}
+
+impl Reach {
+    /// Everything there is; of a torus, so many copies as decide the whole triangulation.
+    ///
+    /// Of the copies of the heaviest point, one is within half a diagonal of any place z, so the
+    /// largest empty orthogonal sphere has R² + max ω ≤ (diagonal / 2)². A vertex v of it is at √(R² + ω(v))
+    /// from its centre, no more than half a diagonal, and so is any point that could refute it.
+    pub(crate) fn whole(sites: &Sites<'_>) -> Self {
+        Self::Distance(sites.torus().map_or(f64::INFINITY, |torus| torus.diagonal()))
+    }
+
+    /// What decides the shape at α.
+    pub(crate) fn at(sites: &Sites<'_>, alpha: f64, heaviest: f64) -> Self {
+        let whole = Self::whole(sites);
+        match whole {
+            Self::Distance(most) if 2.0 * (alpha + heaviest).max(0.0).sqrt() >= most => whole,
+            _ => Self::Balls(alpha),
+        }
+    }
+
+    /// How far from a point of a weight those of another weight matter; NaN if they never do.
+    #[inline]
+    pub(crate) fn from(self, weight: f64, other: f64) -> f64 {
+        match self {
+            Self::Balls(alpha) => (alpha + weight).max(0.0).sqrt() + (alpha + other).sqrt(),
+            Self::Distance(distance) => distance,
+        }
     }
 }
 

@@ -31,8 +31,8 @@ mod tests {
     use walpha_regular::Lattice;
     use walpha_regular::Sites;
 
-    use super::super::{Partition, Question, in_space};
     use super::*;
+    use crate::blocks::{Partition, Question, in_space};
 
     /// Blocks of a line once took all points with them: quadratic in the number of blocks.
     #[test]

@@ -26,15 +26,11 @@
 mod critical;
 mod filtration;
 mod incidence;
-mod largest;
 mod levels;
 mod ordered;
-mod shape;
-mod stops;
 mod table;
 mod topology;
 mod values;
-mod voids;
 
 pub use critical::{Curve, Suggestions};
 pub use filtration::Filtration;

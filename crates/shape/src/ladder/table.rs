@@ -2,7 +2,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::levels::{ByLevel, Span};
-use super::voids::Closed;
+use super::topology::Closed;
 use super::{Filtration, Levels};
 use crate::{Alpha, Betti, ByClass, Class, Measures, Void, facet_area, six_volumes};
 

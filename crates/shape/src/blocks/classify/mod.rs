@@ -10,18 +10,16 @@ mod around;
 mod cells;
 mod rows;
 mod sheets;
-mod stars;
 
 use walpha_base::UnionFind;
 use walpha_regular::{Predicates, Triangulation};
 
 use super::{Block, Question};
-use around::Walker;
+use around::{Stars, Walker};
 use cells::{Boundary, State};
 pub use rows::Side;
 pub(super) use rows::{Dimension, Long, Owned, Rows, Shelf, Shelves};
 use sheets::Sheets;
-use stars::Stars;
 
 /// Classifies the simplices whose smallest vertex is the block's own. O(cells).
 pub(super) fn classify(

@@ -7,7 +7,7 @@ use crate::Class;
 
 /// What a block owns.
 #[derive(Default)]
-pub(in super::super) struct Owned {
+pub(in crate::blocks) struct Owned {
     /// All its simplices, while it is at work.
     pub(super) rows: Shelf,
     /// Later these, by the shelf of their smallest vertices.
@@ -27,7 +27,7 @@ pub(in super::super) struct Owned {
 
 /// An edge by its input indices, and its ends.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Long {
+pub(in crate::blocks) struct Long {
     pub edge: [u32; 2],
     pub ends: [[f64; 3]; 2],
 }
@@ -35,7 +35,7 @@ pub(in super::super) struct Long {
 /// Input indices in runs of about equal length, so that the rows of one run can be merged, and given
 /// back, before those of the next.
 #[derive(Clone, Copy)]
-pub(in super::super) struct Shelves {
+pub(in crate::blocks) struct Shelves {
     pub count: usize,
     length: u32,
 }
@@ -63,7 +63,7 @@ impl Shelves {
 /// the other. That point is left out of the rows: a quarter to a half of the memory that they take
 /// while blocks wait for each other.
 #[derive(Default)]
-pub(in super::super) struct Shelf {
+pub(in crate::blocks) struct Shelf {
     pub cells: Rows<3>,
     pub facets: Rows<2>,
     pub edges: Rows<1>,
@@ -80,7 +80,7 @@ pub(in super::super) struct Shelf {
 
 /// Columns of [`Owned::starts`].
 #[derive(Clone, Copy)]
-pub(in super::super) enum Dimension {
+pub(in crate::blocks) enum Dimension {
     Cells,
     Facets,
     Edges,
@@ -89,7 +89,7 @@ pub(in super::super) enum Dimension {
 }
 
 /// Simplices of `M` + 1 vertices, by input index.
-pub(in super::super) struct Rows<const M: usize> {
+pub(in crate::blocks) struct Rows<const M: usize> {
     pub vertices: Vec<[u32; M]>,
     pub classes: Vec<Class>,
 }
@@ -230,8 +230,8 @@ mod tests {
     use walpha_regular::Lattice;
     use walpha_regular::Sites;
 
-    use super::super::super::{Limits, Plan, Question, Reach, decide, merge};
     use super::*;
+    use crate::blocks::{Limits, Plan, Question, Reach, decide, merge};
 
     #[test]
     fn merged_rows_take_the_bytes_foreseen() {

@@ -2,9 +2,9 @@
 
 use walpha_regular::Lattice;
 
-use super::super::{Question, run as run_blocks};
 use super::*;
 use crate::ShapeError;
+use crate::blocks::{Question, run as run_blocks};
 
 /// Each cube of a grid has six cells: with their faces more than is reckoned with for each point.
 #[test]
