@@ -220,7 +220,7 @@ impl Pipeline {
         let options = self.options(parameter)?;
         hear(Stage::Shape);
         let Weighed { points, origin, .. } = weighed;
-        let shape = alpha_shape(points, &options)?.meaning(origin.coordinates);
+        let shape = alpha_shape(points, &options)?.with_coordinates(origin.coordinates);
         Ok(Model { shape, parameter, origin })
     }
 

@@ -86,9 +86,9 @@ impl AlphaShape {
         }
     }
 
-    /// The same shape, whose numbers are declared to be in these coordinates.
+    /// The same shape, declared to be in these coordinates; no number changes.
     #[must_use]
-    pub fn meaning(self, coordinates: Coordinates) -> Self {
+    pub fn with_coordinates(self, coordinates: Coordinates) -> Self {
         Self { coordinates, ..self }
     }
 
