@@ -1,4 +1,5 @@
-//! One walk around each point, and the classes of the point and of its edges.
+//! One pass over the star of each point: the classes of the point and of its edges, and the rows of the simplices whose
+//! smallest vertex it is.
 
 use walpha_base::UnionFind;
 
@@ -6,20 +7,20 @@ use super::rows::{Long, Owned, Side};
 use super::{Boundary, Local, Sheets, State, even};
 use crate::Class;
 
-/// The cells around each owned vertex, as 4·cell + the vertex's place in it.
+/// The star of each owned vertex: its cells, as 4·cell + the corner that is the vertex.
 pub(super) struct Stars {
     starts: Vec<u32>,
     corners: Vec<u32>,
 }
 
 impl Stars {
-    /// Looks for the vertices below `own`. O(cells).
+    /// The stars of the vertices below `own`. O(cells).
     pub(super) fn new(cells: &[[u32; 4]], own: u32, states: &[State]) -> Self {
         let near = || {
             let all = (0u32..).step_by(4).zip(cells).zip(states);
-            all.filter(|(_, state)| !state.is_far()).map(|(cell, _)| cell)
+            all.filter(|(_, state)| !state.is_foreign()).map(|(cell, _)| cell)
         };
-        // Where the star of a vertex ends, kept one further on; then, as stars fill, where it begins.
+        // `starts[v + 1]` is where the next corner of v is written; once all are, it is where the star of v ends.
         let mut starts = vec![0; own as usize + 2];
         for v in near().flat_map(|(_, cell)| cell).filter(|&&v| v < own) {
             starts[*v as usize + 2] += 1;
@@ -47,7 +48,7 @@ impl Stars {
     }
 }
 
-/// Goes around one point after the other.
+/// Visits one own point after the other.
 pub(super) struct Walker<'a> {
     local: &'a Local<'a>,
     states: &'a [State],
@@ -55,22 +56,24 @@ pub(super) struct Walker<'a> {
     boundary: &'a Boundary,
     sheets: &'a mut Sheets,
     owned: &'a mut Owned,
-    /// Points united by edges.
+    /// The points, united along edges of the shape.
     components: UnionFind,
-    /// By vertex: 4·v + what the facets at its edge say ([`COVERED`], [`OPEN`]), if it is a neighbour of
-    /// the point v that was last in hand when it was met.
-    met: Vec<u32>,
+    /// By vertex u: 4·v + flags of the facets at the edge uv ([`COVERED`], [`OPEN`]), where v is the last point visited
+    /// that has u as a neighbour.
+    edge_flags: Vec<u32>,
+    /// The neighbours of the point visited, followed by unused elements.
     neighbours: Vec<u32>,
-    /// How many there are.
-    near: usize,
+    /// The number of its neighbours.
+    degree: usize,
+    /// Rows of the point visited, followed by unused elements.
     cells: Vec<CellRow>,
     facets: Vec<FacetRow>,
     edges: Vec<EdgeRow>,
 }
 
-/// One of the facets at an edge is in the shape.
+/// Flag of an edge: one of its facets is in the shape.
 const COVERED: u32 = 1;
-/// One of the facets at an edge is not interior.
+/// Flag of an edge: one of its facets is not interior.
 const OPEN: u32 = 2;
 
 impl<'a> Walker<'a> {
@@ -91,17 +94,17 @@ impl<'a> Walker<'a> {
             sheets,
             owned,
             components: UnionFind::new(points),
-            // No vertex has the number that u32::MAX stands for.
-            met: vec![u32::MAX; points],
+            // u32::MAX / 4 is no vertex.
+            edge_flags: vec![u32::MAX; points],
             neighbours: Vec::new(),
-            near: 0,
+            degree: 0,
             cells: Vec::new(),
             facets: Vec::new(),
             edges: Vec::new(),
         }
     }
 
-    /// The point's class, and the simplices it is the smallest vertex of.
+    /// Emits the point's class, and the simplices whose smallest vertex it is.
     pub(super) fn visit(&mut self, v: u32) {
         self.owned.rows.begin();
         let star = self.stars.of(v);
@@ -109,38 +112,58 @@ impl<'a> Walker<'a> {
             self.owned.rows.vertices.push(None);
             return;
         }
-        let covered = self.meet(v, star);
-        self.give_edges(v, star);
+        let covered = self.walk_star(v, star);
+        self.emit_edges(v, star);
         let class = if star.iter().all(|&at| self.states[at as usize / 4].is_inside()) {
             Class::Interior
         } else if covered {
             Class::Regular
         } else {
-            self.lone_vertex(v, star)
+            self.dangling_vertex(v, star)
         };
         self.owned.rows.vertices.push(Some(class));
     }
 
-    /// Ends the rows of the last point; gives the components.
+    /// Ends the rows of the last point, and returns the components.
     pub(super) fn finish(self) -> UnionFind {
         self.owned.rows.begin();
         self.components
     }
 
-    /// One walk around the point, nearly without branches, as these would be guessed wrong: its neighbours
-    /// with what the facets say of the edges to them, the cells and the facets that it is the smallest
-    /// vertex of. Says whether one of the facets around it is in the shape.
-    fn meet(&mut self, v: u32, star: &[u32]) -> bool {
-        let Self { local, states, met, neighbours, cells, facets, .. } = self;
+    /// One pass over the star of a point: its neighbours with the flags of the edges to them, and the cells and
+    /// facets whose smallest vertex it is. Nearly without branches, which would be mispredicted. Returns whether a
+    /// facet at the point is in the shape.
+    ///
+    /// In each cell of the star, v is corner k, and p, q, r are the other corners k + 1, k + 2, k + 3 modulo 4. The
+    /// vertices there are a, b, c, with input indices x, y, z:
+    ///
+    /// ```text
+    ///              v (k)             edge   facets at it     which are opposite
+    ///             /|\                va     vab and vac      r and q
+    ///            / | \               vb     vbc and vab      p and r
+    ///           /  |  \              vc     vac and vbc      q and p
+    ///          /   |   \
+    ///    a (p)·····|·····c (r)       facet  opposite to it   other vertices (by input index)
+    ///          \   |   /             vbc    p                y, z
+    ///           \  |  /              vac    q                x, z
+    ///            \ | /               vab    r                x, y
+    ///              b (q)
+    /// ```
+    ///
+    /// An edge at v is met once in each cell around it, so its flags accumulate over the star: after the pass they
+    /// cover all of its facets. A facet at v is met from its two cells, and emitted from the one that
+    /// [`State::emits`] names. A cell at v is met once. Facets and cells are emitted at their smallest vertex only.
+    fn walk_star(&mut self, v: u32, star: &[u32]) -> bool {
+        let Self { local, states, edge_flags, neighbours, cells, facets, .. } = self;
         let input = &local.block.input[..];
         let smallest = input[v as usize];
-        let most = star.len();
-        if facets.len() < 3 * most {
-            cells.resize(most, CellRow::default());
-            facets.resize(3 * most, FacetRow::default());
-            neighbours.resize(3 * most, 0);
+        let size = star.len();
+        if facets.len() < 3 * size {
+            cells.resize(size, CellRow::default());
+            facets.resize(3 * size, FacetRow::default());
+            neighbours.resize(3 * size, 0);
         }
-        let (mut covered, mut near, mut solid, mut flat) = (0, 0, 0, 0);
+        let (mut covered, mut degree, mut cell_count, mut facet_count) = (0, 0, 0, 0);
         for &at in star {
             let (cell, k) = (at / 4, at as usize % 4);
             let state = states[cell as usize];
@@ -156,14 +179,14 @@ impl<'a> Walker<'a> {
             covered |= in_shape & (at_p | at_q | at_r);
             // The facets at an edge are opposite the two other corners.
             for (u, facets) in [(a, at_q | at_r), (b, at_r | at_p), (c, at_p | at_q)] {
-                let says = u32::from(in_shape & facets != 0) * COVERED
+                let flags = u32::from(in_shape & facets != 0) * COVERED
                     + u32::from(open & facets != 0) * OPEN;
-                let met = &mut met[u as usize];
-                let is_new = *met / 4 != v;
-                let before = if is_new { 4 * v } else { *met };
-                *met = before | says;
-                neighbours[near] = u;
-                near += usize::from(is_new);
+                let edge = &mut edge_flags[u as usize];
+                let is_new = *edge / 4 != v;
+                let before = if is_new { 4 * v } else { *edge };
+                *edge = before | flags;
+                neighbours[degree] = u;
+                degree += usize::from(is_new);
             }
             for (opposite, (m, x), (n, y)) in
                 [(p, (q, y), (r, z)), (q, (p, x), (r, z)), (r, (p, x), (q, y))]
@@ -171,21 +194,21 @@ impl<'a> Walker<'a> {
                 let (m, low, n, high) = if x < y { (m, x, n, y) } else { (n, y, m, x) };
                 let row = u64::from(low) << 32 | u64::from(high);
                 let side = 4 * cell + opposite as u32;
-                facets[flat] = FacetRow { row, side, clockwise: !even(k, m, n) };
-                flat += usize::from(state.gives(opposite) && (smallest < low));
+                facets[facet_count] = FacetRow { row, side, clockwise: !even(k, m, n) };
+                facet_count += usize::from(state.emits(opposite) && (smallest < low));
             }
-            cells[solid] = CellRow::new(k, [x, y, z], state.is_inside());
+            cells[cell_count] = CellRow::new(k, [x, y, z], state.is_inside());
             let wanted = state.is_inside() | local.exterior;
-            solid += usize::from(wanted & (smallest < x.min(y).min(z)));
+            cell_count += usize::from(wanted & (smallest < x.min(y).min(z)));
         }
-        self.give_cells(solid);
-        self.give_facets(flat);
-        self.near = near;
+        self.emit_cells(cell_count);
+        self.emit_facets(facet_count);
+        self.degree = degree;
         covered != 0
     }
 
-    /// Whether an edge that no facet covers is singular; then a corner at its first end.
-    fn lone_edge(&self, v: u32, u: u32, star: &[u32]) -> Option<u32> {
+    /// Whether an edge without a facet in the shape is singular: a corner 4·cell + corner at its first end, if so.
+    fn dangling_edge(&self, v: u32, u: u32, star: &[u32]) -> Option<u32> {
         let local = self.local;
         if !local.fits([v, u]) {
             return None;
@@ -207,11 +230,11 @@ impl<'a> Walker<'a> {
         corner
     }
 
-    /// The class of a point that no facet of the shape touches.
-    fn lone_vertex(&self, v: u32, star: &[u32]) -> Class {
+    /// The class of a point without a facet in the shape.
+    fn dangling_vertex(&self, v: u32, star: &[u32]) -> Class {
         let mut refuted = false;
-        for &neighbour in &self.neighbours[..self.near] {
-            if self.lone_edge(v, neighbour, star).is_some() {
+        for &neighbour in &self.neighbours[..self.degree] {
+            if self.dangling_edge(v, neighbour, star).is_some() {
                 return Class::Regular;
             }
             refuted |= self.local.predicates.inside([v], neighbour);
@@ -220,19 +243,20 @@ impl<'a> Walker<'a> {
     }
 }
 
-/// A cell that the point in hand is the smallest vertex of.
+/// A cell whose smallest vertex is the point visited. Rows sort by their vertices.
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 struct CellRow {
-    /// The three other vertices in the order that makes it positively oriented, two in one number.
+    /// The three other vertices, by input index, in the order that makes the cell positively oriented; the first
+    /// two in one number, the first in its upper half.
     first_two: u64,
     third: u32,
     inside: bool,
 }
 
-/// A facet that the point in hand is the smallest vertex of.
+/// A facet whose smallest vertex is the point visited.
 #[derive(Clone, Copy, Default)]
 struct FacetRow {
-    /// The two other vertices in one number.
+    /// The two other vertices, by input index, in one number, the first in its upper half.
     pub row: u64,
     /// 4·cell + corner opposite.
     pub side: u32,
@@ -240,21 +264,22 @@ struct FacetRow {
     pub clockwise: bool,
 }
 
-/// An edge that the point in hand is the smallest vertex of.
+/// An edge whose smallest vertex is the point visited.
 struct EdgeRow {
     to: u32,
     class: Class,
-    /// Of a singular edge: a corner at the point in hand.
+    /// Of a singular edge: 4·cell + corner at the point visited; else [`NO_CORNER`].
     corner: u32,
 }
 
-const NOWHERE: u32 = u32::MAX;
+/// Stands for the absence of a corner.
+const NO_CORNER: u32 = u32::MAX;
 
 impl CellRow {
-    /// A cell without its smallest vertex, which is at place `k`; the others follow it.
+    /// A cell whose smallest vertex is corner `k`; the others are those that follow it cyclically.
     #[inline(always)]
     fn new(k: usize, [mut a, mut b, mut c]: [u32; 3], inside: bool) -> Self {
-        // Rotating a row of four is odd, and so is each exchange.
+        // Rotating a row of four by one is an odd permutation, and so is each exchange.
         let mut odd = k % 2 == 1;
         let mut order = |x: &mut u32, y: &mut u32| {
             odd ^= *x > *y;
@@ -269,7 +294,8 @@ impl CellRow {
 }
 
 impl Walker<'_> {
-    fn give_cells(&mut self, count: usize) {
+    /// Emits the cells, sorted.
+    fn emit_cells(&mut self, count: usize) {
         let rows = &mut self.owned.rows;
         let cells = &mut self.cells[..count];
         cells.sort_unstable();
@@ -280,7 +306,8 @@ impl Walker<'_> {
         }
     }
 
-    fn give_facets(&mut self, count: usize) {
+    /// Emits the facets, sorted, with corners on their sheets.
+    fn emit_facets(&mut self, count: usize) {
         let facets = &mut self.facets[..count];
         for facet in &mut *facets {
             let state = self.states[facet.side as usize / 4];
@@ -302,30 +329,31 @@ impl Walker<'_> {
             let beyond = self.boundary.beyond(facet.side);
             if class == Class::Regular {
                 let outside = if state.is_inside() { beyond } else { facet.side };
-                rows.facet_sheets.push(self.local.corner(outside));
+                rows.facet_sheets.push(self.local.owned_corner(outside));
             } else {
-                let sides = [self.local.corner(facet.side), self.local.corner(beyond)];
+                let sides = [self.local.owned_corner(facet.side), self.local.owned_corner(beyond)];
                 let [front, back] = if facet.clockwise { sides } else { [sides[1], sides[0]] };
                 rows.facet_sheets.extend([front, back]);
             }
         }
     }
 
-    fn give_edges(&mut self, v: u32, star: &[u32]) {
+    /// Classifies the edges at a point, and emits those whose smallest vertex it is, sorted.
+    fn emit_edges(&mut self, v: u32, star: &[u32]) {
         let smallest = self.local.input(v);
-        for &neighbour in &self.neighbours[..self.near] {
+        for &neighbour in &self.neighbours[..self.degree] {
             let to = self.local.input(neighbour);
-            // An edge between two blocks is joined to its sheet at both ends.
+            // Edges between two blocks are visited from both ends, as each block unites its own corners only.
             if to < smallest && self.local.owned(neighbour) {
                 continue;
             }
-            let says = self.met[neighbour as usize];
-            let mut corner = NOWHERE;
-            let class = if says & OPEN == 0 {
+            let flags = self.edge_flags[neighbour as usize];
+            let mut corner = NO_CORNER;
+            let class = if flags & OPEN == 0 {
                 Class::Interior
-            } else if says & COVERED != 0 {
+            } else if flags & COVERED != 0 {
                 Class::Regular
-            } else if let Some(at) = self.lone_edge(v, neighbour, star) {
+            } else if let Some(at) = self.dangling_edge(v, neighbour, star) {
                 corner = at;
                 Class::Singular
             } else {
@@ -338,7 +366,7 @@ impl Walker<'_> {
                 self.owned.long = Some(Long { edge: [smallest, to], ends });
             }
             if class == Class::Singular {
-                join_ends(self.local, self.sheets, self.owned, [v, neighbour], corner);
+                unite_ends(self.local, self.sheets, self.owned, [v, neighbour], corner);
             }
             if to > smallest && (class != Class::Exterior || self.local.exterior) {
                 self.edges.push(EdgeRow { to, class, corner });
@@ -361,14 +389,15 @@ impl Walker<'_> {
     }
 }
 
-/// Two vertices out of one number.
+/// The two vertices packed in one number.
 #[inline(always)]
 fn pair(row: u64) -> [u32; 2] {
     [(row >> 32) as u32, row as u32]
 }
 
-/// The space around a singular edge is one piece, from end to end.
-fn join_ends(
+/// Unites the corners at both ends of a singular edge, as the space around it is connected. Where the other end is
+/// another block's, the edge is noted for the merge.
+fn unite_ends(
     local: &Local<'_>,
     sheets: &mut Sheets,
     owned: &mut Owned,
@@ -377,8 +406,8 @@ fn join_ends(
 ) {
     if local.owned(u) {
         let cell = local.cells[corner as usize / 4];
-        let place = cell.iter().position(|&w| w == u).expect("a cell at the edge");
-        sheets.unite(corner, corner / 4 * 4 + place as u32);
+        let other = cell.iter().position(|&w| w == u).expect("a cell at the edge");
+        sheets.unite(corner, corner / 4 * 4 + other as u32);
     } else {
         let ends = if local.input(v) < local.input(u) { [v, u] } else { [u, v] };
         let [low, high] = ends.map(|end| local.input(end));

@@ -56,7 +56,7 @@ fn halos_are_the_points_within_reach() {
                                     at[1] + 8.0 * f64::from(y),
                                     at[2] + 2.0 * f64::from(z),
                                 ];
-                                let far = apart(at, &places) > reach.from(heaviest, weight);
+                                let far = apart(at, &places) > reach.distance(heaviest, weight);
                                 let own = own.contains(&site) && [x, y, z] == [0; 3];
                                 if !far && 0.3 + weight >= 0.0 && !own {
                                     halo.push((at.map(f64::to_bits), sites.input()[site as usize]));
@@ -112,8 +112,8 @@ fn large_balls_of_a_torus_ask_for_all_of_it() {
 
 #[test]
 fn balls_reach_as_far_as_both_their_radii() {
-    assert_eq!(Reach::Balls(5.0).from(4.0, 11.0), 7.0);
-    assert_eq!(Reach::Balls(5.0).from(-6.0, 11.0), 4.0);
-    assert!(Reach::Balls(5.0).from(4.0, -6.0).is_nan());
-    assert_eq!(Reach::Distance(2.0).from(4.0, -6.0), 2.0);
+    assert_eq!(Reach::Balls(5.0).distance(4.0, 11.0), 7.0);
+    assert_eq!(Reach::Balls(5.0).distance(-6.0, 11.0), 4.0);
+    assert!(Reach::Balls(5.0).distance(4.0, -6.0).is_nan());
+    assert_eq!(Reach::Distance(2.0).distance(4.0, -6.0), 2.0);
 }
