@@ -1,4 +1,4 @@
-//! Every simplex of a filtration and when it comes, in order.
+//! All simplices of a filtration in the order in which they enter.
 
 mod pairs;
 mod rank;
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use walpha_base::progress;
 
 use super::filtration::Radius;
-use super::levels::Own;
+use super::levels::OwnLevels;
 use super::{Filtration, Levels};
 use crate::{Alpha, Betti, Complex, ShapeError};
 pub use pairs::Pairs;
@@ -17,12 +17,12 @@ use rank::{NONE, Ranks};
 use walpha_base::memory;
 use walpha_regular::TriangulationError;
 
-/// Every simplex of a regular triangulation, and the α from which on it is in the shape, on its
-/// boundary, inside.
+/// All simplices of a regular triangulation with their values of α: where each enters the shape, becomes regular, and
+/// becomes interior.
 ///
-/// A *value* is a squared radius, given as the nearest double of the exact number (of two, the one
-/// whose last digit is even). The order is by the exact number, then by dimension, then by vertices;
-/// so faces come before what they are faces of, and simplices whose values differ by less than
+/// A *value* is a squared radius, given as the double nearest to the exact number (of two equally near ones, the
+/// even one). The order is by the exact number, then by dimension, then by vertices;
+/// so faces precede their cofaces, and simplices whose values differ by less than
 /// doubles can resolve are in the right order all the same.
 ///
 /// A double nearest to a value may be below it: the shape at this very α, [`Filtration::shape`], may
@@ -41,17 +41,17 @@ pub struct Ordered<'a> {
     pairs: OnceLock<Pairs>,
 }
 
-/// A simplex and when it comes.
+/// A simplex and when it enters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry<'a> {
     /// Input indices, ascending.
     pub vertices: &'a [u32],
     /// The α, a squared length, from which on it is in the shape, rounded to the nearest double.
     pub value: f64,
-    /// The place of that number among all values, from 0: equal for equal numbers only.
+    /// The rank of the exact value among all values, from 0; equal for equal numbers only.
     pub rank: u32,
     /// Whether no point lies inside its smallest orthogonal sphere, so that the value is the squared
-    /// radius of this; else it comes with a simplex that it is a face of, and is *attached*.
+    /// radius of this; else it enters with a coface, and is *attached*.
     pub gabriel: bool,
     /// From which on it is a face of another simplex of the shape; singular before. Of cells, ∞.
     pub regular: f64,
@@ -64,7 +64,7 @@ impl Filtration {
     /// are, or nearly are, equal.
     ///
     /// # Errors
-    /// No memory; more simplices than numbers of 32 bits.
+    /// Out of memory; more simplices than 32-bit numbers.
     pub fn simplices(&self) -> Result<Ordered<'_>, ShapeError> {
         let complex = self.whole.complex();
         let numbers = Numbers::of(complex).ok_or(TriangulationError::TooManyCells)?;
@@ -103,7 +103,7 @@ impl Filtration {
         };
         let [vertices, edges, facets, cells] = numbers.first;
         let cells = ranks[cells as usize..].to_vec();
-        let own = Own { facets: of(facets), edges: of(edges), vertices: of(vertices) };
+        let own = OwnLevels { facets: of(facets), edges: of(edges), vertices: of(vertices) };
         let (facets, edges, vertices) = self.spans(values.len() as u32, &cells, own);
         let alpha = |&value: &f64| Alpha::from_squared(value).expect("radii are numbers");
         let alphas = values.iter().map(alpha).collect();
@@ -127,7 +127,7 @@ fn sorted_cells(rows: &[[u32; 4]]) -> (Vec<[u32; 4]>, Vec<u32>) {
 }
 
 impl Ordered<'_> {
-    /// What is needed at once.
+    /// Bytes that are needed at once.
     fn bytes(numbers: Numbers) -> usize {
         let span = 3 * size_of::<u32>();
         Ranks::bytes(numbers.all())
@@ -140,28 +140,28 @@ impl Ordered<'_> {
         self.levels.filtration
     }
 
-    /// How many simplices there are.
+    /// The number of simplices.
     pub fn len(&self) -> usize {
         self.numbers.all()
     }
 
-    /// Whether there is none.
+    /// Whether there are no simplices.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// How many there are of a dimension.
+    /// The number of simplices of a dimension.
     ///
     /// # Panics
-    /// When it is above 3.
+    /// If it is above 3.
     pub fn count(&self, dimension: usize) -> usize {
         self.numbers.count(dimension)
     }
 
-    /// How many of a dimension are Gabriel.
+    /// The number of Gabriel simplices of a dimension.
     ///
     /// # Panics
-    /// When it is above 3.
+    /// If it is above 3.
     pub fn gabriel(&self, dimension: usize) -> usize {
         let Filtration { vertices, edges, facets, .. } = self.filtration();
         let own = |radii: &[Radius]| radii.iter().filter(|radius| radius.known().is_some()).count();
@@ -193,12 +193,12 @@ impl Ordered<'_> {
         &self.cells
     }
 
-    /// The values that are different numbers, ascending, by rank: two neighbours may be one double.
+    /// The distinct exact values, ascending, by rank, as nearest doubles: consecutive ones may be equal doubles.
     pub fn values(&self) -> &[Alpha] {
         self.levels.alphas()
     }
 
-    /// The numbers of all simplices in the order in which they come.
+    /// The numbers of all simplices in the order in which they enter.
     pub fn order(&self) -> &[u32] {
         &self.order
     }
@@ -206,7 +206,7 @@ impl Ordered<'_> {
     /// A simplex by its number.
     ///
     /// # Panics
-    /// When there is no such number.
+    /// If there is no such number.
     pub fn simplex(&self, number: u32) -> Entry<'_> {
         let filtration = self.filtration();
         let value = |rank: u32| {
@@ -268,8 +268,7 @@ pub(super) struct Numbers {
 }
 
 impl Numbers {
-    /// Those of a complex; none if there are more simplices than numbers of 32 bits, of which the last
-    /// names no simplex.
+    /// The numbers of the simplices of a complex; `None` if there are more than 32-bit numbers below `u32::MAX`.
     pub(crate) fn of(complex: &Complex) -> Option<Self> {
         let counts = [
             complex.vertices.len(),
@@ -286,12 +285,12 @@ impl Numbers {
         (all < u32::MAX).then_some(Self { first, all })
     }
 
-    /// How many there are.
+    /// The number of simplices.
     pub(crate) fn all(self) -> usize {
         self.all as usize
     }
 
-    /// How many there are of a dimension.
+    /// The number of simplices of a dimension.
     pub(crate) fn count(self, dimension: usize) -> usize {
         let end = self.first.get(dimension + 1).copied().unwrap_or(self.all);
         (end - self.first[dimension]) as usize
@@ -308,21 +307,20 @@ impl Numbers {
     }
 }
 
-/// How many parts of the ranks are put in order each by itself: few enough to write to all at once.
+/// Number of ranges of ranks, which are sorted separately: few enough to be written to at once.
 const PARTS: usize = 256;
-/// How many numbers are handed out to parts at once.
+/// Numbers that one task distributes to the ranges.
 const CHUNK: usize = 1 << 20;
 
-/// The numbers from 0 on by rank, and of one rank as they are. There are so many ranks; each number has
-/// one below.
+/// The numbers 0..`all`, stably sorted by rank; all ranks are below `ranks`.
 ///
-/// Counted twice: to parts of successive ranks, and within each, where counters fit a cache. O(n).
+/// Two counting sorts: into ranges of consecutive ranks, and within each range, where counters fit a cache. O(n).
 pub(super) fn by_rank(all: usize, ranks: usize, rank: impl Fn(u32) -> u32 + Sync) -> Vec<u32> {
     let shift = ranks.div_ceil(PARTS).next_power_of_two().ilog2();
-    let hand_out = |from: usize| {
+    let distribute = |from: usize| {
         let to = all.min(from + CHUNK);
-        let room = (to - from) / PARTS;
-        let mut parts: Vec<_> = (0..PARTS).map(|_| Vec::with_capacity(room)).collect();
+        let expected = (to - from) / PARTS;
+        let mut parts: Vec<_> = (0..PARTS).map(|_| Vec::with_capacity(expected)).collect();
         for simplex in from as u32..to as u32 {
             let rank = rank(simplex);
             parts[(rank >> shift) as usize].push([rank, simplex]);
@@ -330,7 +328,7 @@ pub(super) fn by_rank(all: usize, ranks: usize, rank: impl Fn(u32) -> u32 + Sync
         parts
     };
     let chunks: Vec<usize> = (0..all).step_by(CHUNK).collect();
-    let chunks: Vec<Vec<Vec<[u32; 2]>>> = chunks.into_par_iter().map(hand_out).collect();
+    let chunks: Vec<Vec<Vec<[u32; 2]>>> = chunks.into_par_iter().map(distribute).collect();
     let mut order = vec![0; all];
     let mut rest = &mut order[..];
     let mut parts = Vec::with_capacity(PARTS);
@@ -342,14 +340,14 @@ pub(super) fn by_rank(all: usize, ranks: usize, rank: impl Fn(u32) -> u32 + Sync
     }
     parts.into_par_iter().enumerate().for_each(|(part, order)| {
         let members = || chunks.iter().flat_map(|chunk| &chunk[part]);
-        let place = |rank: u32| rank as usize - (part << shift);
+        let offset = |rank: u32| rank as usize - (part << shift);
         let mut next = vec![0_usize; (1 << shift) + 1];
-        members().for_each(|&[rank, _]| next[place(rank) + 1] += 1);
+        members().for_each(|&[rank, _]| next[offset(rank) + 1] += 1);
         for rank in 1..next.len() {
             next[rank] += next[rank - 1];
         }
         for &[rank, simplex] in members() {
-            let next = &mut next[place(rank)];
+            let next = &mut next[offset(rank)];
             order[*next] = simplex;
             *next += 1;
         }
