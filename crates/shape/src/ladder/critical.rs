@@ -42,7 +42,8 @@ pub struct Suggestions {
     /// Besides, there are no voids.
     pub no_void: Alpha,
     /// The longest interval from `all_points` on in which the Betti numbers do not change, measured by the ratio of the
-    /// squared radii of the largest balls. The second is the α at which they change again; ∞, the string "inf" in JSON, if from `all_points` on they never change.
+    /// squared radii of the largest balls. The second is the α at which they change again; ∞, the string "inf" in
+    /// JSON, if from `all_points` on they never change.
     pub plateau: [Alpha; 2],
 }
 
