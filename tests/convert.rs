@@ -43,7 +43,7 @@ fn values_spacing_and_origin_come_back() {
     let samples = numbers(|i| (i * 7919 % 100_003) as f32 * 0.37 - 1e4);
     let frame =
         Frame::from_axes([-31.7, 12.25, 1e3], [[0.4, 0., 0.], [0., 0.7, 0.], [0., 0., 1.3]]);
-    let frame = frame.unwrap().meaning(Coordinates::PATIENT);
+    let frame = frame.unwrap().with_coordinates(Coordinates::PATIENT);
     let volume = Volume::new(samples, frame).unwrap();
     for name in ["scan.mha", "scan.nrrd", "scan.nii", "scan.nii.gz"] {
         write(at, name, &volume);

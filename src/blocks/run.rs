@@ -197,7 +197,7 @@ fn write(plan: &Plan, block: usize, points: &Points, shape: BlockShape) -> Resul
         let component = number(v);
         component_of[v as usize] = component;
         match components.get_mut(component as usize) {
-            Some(known) => known.sums.reach(position(v)),
+            Some(known) => known.sums.add_vertex(position(v)),
             None => components
                 .push(BlockComponent { first: voxel(v), sums: ComponentSums::at(position(v)) }),
         }

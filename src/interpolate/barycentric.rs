@@ -173,7 +173,7 @@ fn magnitudes(u: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
-    use walpha_regular::Reach;
+    use walpha_regular::BitRange;
 
     use super::*;
 
@@ -184,7 +184,7 @@ mod tests {
         let mut inside = 0;
         for i in 0..6 * 6 * 6 {
             let place = [i % 6, i / 6 % 6, i / 36].map(|k| f64::from(k) - 0.5);
-            assert!(Reach::of(&CELL).is_exact_with(place));
+            assert!(BitRange::of(&CELL).is_exact_with(place));
             let quick = coordinates(&CELL, place, true);
             assert_eq!(quick, coordinates(&CELL, place, false), "{place:?}");
             let [x, y, z] = place;

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use walpha_complex::canonical::smallest_even;
-use walpha_regular::Reach;
+use walpha_regular::BitRange;
 use walpha_regular::{Cell, Growing};
 
 use super::barycentric::coordinates;
@@ -14,12 +14,12 @@ use super::least_squares::Pieces;
 pub(super) struct Cells<'a> {
     growing: &'a Growing,
     values: &'a [f64],
-    reach: Reach,
+    bit_range: BitRange,
 }
 
 impl<'a> Cells<'a> {
     pub(super) fn of(growing: &'a Growing, values: &'a [f64]) -> Self {
-        Self { growing, values, reach: Reach::of(growing.positions()) }
+        Self { growing, values, bit_range: BitRange::of(growing.positions()) }
     }
 
     /// The corners of a cell in canonical order. Numbers of points are in the order of their indices.
@@ -28,7 +28,7 @@ impl<'a> Cells<'a> {
     }
 
     pub(super) fn coordinates(&self, row: [u32; 4], place: [f64; 3]) -> Option<[f64; 4]> {
-        coordinates(&self.corners(row), place, self.reach.is_exact_with(place))
+        coordinates(&self.corners(row), place, self.bit_range.is_exact_with(place))
     }
 
     pub(super) fn corners(&self, row: [u32; 4]) -> [[f64; 3]; 4] {

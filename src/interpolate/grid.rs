@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use walpha_regular::Reach;
+use walpha_regular::BitRange;
 
 use crate::points::{SampleGrid, Units};
 use crate::volume::{Coordinates, Dims, Frame, Volume, inverse};
@@ -81,14 +81,14 @@ impl Grid {
 
     /// What the coordinates of all samples have in common. O(samples) where they are of the
     /// world, else along the axes alone.
-    pub(super) fn reach(&self) -> Reach {
+    pub(super) fn bit_range(&self) -> BitRange {
         let [nx, ny, nz] = self.dims.xyz();
         if self.world.is_some() {
             let index = |i: usize| [i % nx, i / nx % ny, i / (nx * ny)];
-            return Reach::of_all((0..nx * ny * nz).map(|i| self.position(index(i))));
+            return BitRange::of_all((0..nx * ny * nz).map(|i| self.position(index(i))));
         }
         let along = |i: usize| [i.min(nx - 1), i.min(ny - 1), i.min(nz - 1)];
-        Reach::of_all((0..nx.max(ny).max(nz)).map(|i| self.position(along(i))))
+        BitRange::of_all((0..nx.max(ny).max(nz)).map(|i| self.position(along(i))))
     }
 
     /// The fractional index of a position, rounded.

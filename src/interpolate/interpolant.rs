@@ -1,7 +1,7 @@
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
-use walpha_regular::Reach;
+use walpha_regular::BitRange;
 
 use super::InterpolateError;
 use super::barycentric::coordinates;
@@ -30,7 +30,7 @@ pub struct Interpolant<'a> {
     positions: &'a [[f64; 3]],
     values: &'a [f64],
     parts: Vec<Part>,
-    reach: Reach,
+    bit_range: BitRange,
     /// Made when a single place is asked for; grids do without.
     tree: OnceLock<Tree>,
 }
@@ -83,8 +83,8 @@ impl<'a> Interpolant<'a> {
         add(&mut parts, &complex.edges, Class::Singular);
         add(&mut parts, &complex.vertices, Class::Singular);
         let positions = &shape.points().positions;
-        let reach = Reach::of(positions);
-        Ok(Self { positions, values, parts, reach, tree: OnceLock::new() })
+        let bit_range = BitRange::of(positions);
+        Ok(Self { positions, values, parts, bit_range, tree: OnceLock::new() })
     }
 
     /// F at a place (x, y, z) in the units of the points; `None` outside the shape, and for what is
@@ -117,8 +117,8 @@ impl<'a> Interpolant<'a> {
     }
 
     /// What the coordinates of points have in common.
-    pub(super) fn reach(&self) -> Reach {
-        self.reach
+    pub(super) fn bit_range(&self) -> BitRange {
+        self.bit_range
     }
 
     /// The corners of a simplex; the first so many count.
@@ -130,7 +130,7 @@ impl<'a> Interpolant<'a> {
     /// The coordinates of a place in a simplex, if it holds it.
     pub(super) fn coordinates(&self, part: u32, place: [f64; 3]) -> Option<[f64; 4]> {
         let (corners, count) = self.corners(part);
-        coordinates(&corners[..count], place, self.reach.is_exact_with(place))
+        coordinates(&corners[..count], place, self.bit_range.is_exact_with(place))
     }
 
     /// F on a simplex.

@@ -6,8 +6,8 @@ use dashu_int::IBig;
 
 use walpha_regular::number::{Number, integer, lowest_bit};
 
-/// A number of which barycentric coordinates are made; doubles are exact only where a [`Reach`](walpha_regular::Reach) says
-/// that no operation rounds.
+/// A number of which barycentric coordinates are made; doubles are exact only where a
+/// [`BitRange`](walpha_regular::BitRange) says that no operation rounds.
 pub(super) trait Part: Number + Clone {
     fn zero() -> Self;
     fn sign(&self) -> Ordering;

@@ -26,7 +26,7 @@ pub(super) fn owners(interpolant: &Interpolant<'_>, grid: &Grid) -> Result<Vec<u
     let samples = grid.dims().samples();
     let mut owners = room(samples, || format!("sampling at {} places", grid.dims()))?;
     owners.par_extend((0..samples).into_par_iter().map(|_| AtomicU32::new(NOTHING)));
-    let exact = interpolant.reach().with_all(grid.reach()).is_exact();
+    let exact = interpolant.bit_range().with_all(grid.bit_range()).is_exact();
     (0..interpolant.len() as u32).into_par_iter().with_min_len(CHUNK).for_each(|part| {
         let (corners, count) = interpolant.corners(part);
         let planes = if exact && count == 4 { Planes::of(corners) } else { None };

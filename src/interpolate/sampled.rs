@@ -57,7 +57,7 @@ impl<'a> Sampled<'a> {
         let mut sampled = Self {
             volume,
             units,
-            exact: grid.reach().is_exact(),
+            exact: grid.bit_range().is_exact(),
             grid,
             growing,
             voxels: vec![0; Growing::FIRST as usize],
@@ -85,7 +85,7 @@ impl<'a> Sampled<'a> {
     /// Gives samples numbers of points, which they are not yet.
     pub(super) fn name(&mut self, voxels: &[u32]) -> Range<u32> {
         self.describe(voxels);
-        self.growing.name(&positions(self.volume, self.units, voxels))
+        self.growing.register(&positions(self.volume, self.units, voxels))
     }
 
     /// Takes points out and puts others in, by their numbers.
@@ -171,7 +171,7 @@ impl<'a> Sampled<'a> {
 
     /// Finds the cells of the samples that new cells hold, and F there.
     fn follow(&mut self) {
-        let fresh = self.growing.take_fresh();
+        let fresh = self.growing.take_new_cells();
         let mut is_fresh = vec![false; self.cells()];
         fresh.iter().for_each(|&cell| is_fresh[cell as usize] = true);
         let stays = |&&owner: &&u32| {

@@ -212,7 +212,8 @@ impl Pipeline {
         let options = self.options(parameter)?;
         Stage::Shape.begin(monitor)?;
         let Weighed { points, origin, .. } = weighed;
-        let shape = alpha_shape_monitored(points, &options, monitor)?.meaning(origin.coordinates);
+        let shape =
+            alpha_shape_monitored(points, &options, monitor)?.with_coordinates(origin.coordinates);
         Ok(Model { shape, parameter, origin })
     }
 

@@ -155,6 +155,6 @@ impl SampleGrid {
             }
         }
         let dims = Dims::new(end[0], end[1], end[2]).ok()?;
-        Some(Self { dims, frame: Frame::VOXEL.meaning(coordinates), units: Units::Voxel })
+        Some(Self { dims, frame: Frame::VOXEL.with_coordinates(coordinates), units: Units::Voxel })
     }
 }

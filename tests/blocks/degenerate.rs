@@ -89,7 +89,7 @@ fn world_coordinates_and_regions_are_the_same_in_blocks() {
     let volume = walpha::volume::phantom(40).unwrap();
     let axes = [[0.42, 0.56, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.3]];
     let frame = walpha::Frame::from_axes([-31.7, 12.25, 100.0], axes).unwrap();
-    let frame = frame.meaning(walpha::Coordinates::PATIENT);
+    let frame = frame.with_coordinates(walpha::Coordinates::PATIENT);
     let volume = volume.with_frame(frame);
     let writer = walpha::volume::VolumeWriter::of(&path).unwrap();
     writer.write(&volume, &mut File::create(&path).unwrap()).unwrap();

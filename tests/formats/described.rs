@@ -108,8 +108,8 @@ fn colours_are_described() {
 fn frames_that_differ_are_told() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
-    let frame =
-        Frame::VOXEL.meaning(Coordinates { space: Space::Ras, unit: LengthUnit::Millimetre });
+    let frame = Frame::VOXEL
+        .with_coordinates(Coordinates { space: Space::Ras, unit: LengthUnit::Millimetre });
     let volume = Volume::new(Array3::zeros((3, 4, 5)), frame).unwrap();
     let good = written("nii", &volume);
     let change = |places: &[(usize, Vec<u8>)]| {

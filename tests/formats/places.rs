@@ -48,7 +48,7 @@ prop_compose! {
             axes = axes.map(|v| turn(v, axis, angle));
         }
         let axes = [0, 1, 2].map(|c| axes[c].map(|v| v * spacing[c]));
-        Frame::from_axes(origin, axes).unwrap().meaning(Coordinates { space, unit })
+        Frame::from_axes(origin, axes).unwrap().with_coordinates(Coordinates { space, unit })
     }
 }
 
@@ -89,7 +89,7 @@ fn a_volume_in_voxels_gets_no_place() {
 #[test]
 fn headers_say_the_space_and_the_unit() {
     let frame = Frame { origin: [-86.9, 39.2, -678.7], spacing: [0.5, 0.5, 2.0], ..Frame::VOXEL };
-    let frame = frame.meaning(Coordinates::PATIENT);
+    let frame = frame.with_coordinates(Coordinates::PATIENT);
     let volume = Volume::new(Array3::zeros((1, 1, 1)), frame).unwrap();
     let text =
         |format, volume: &Volume| String::from_utf8_lossy(&written(format, volume)).into_owned();
@@ -115,7 +115,7 @@ fn headers_say_the_space_and_the_unit() {
 
     // Micrometres of no patient stay what they are.
     let small = Coordinates { unit: LengthUnit::Micrometre, ..Coordinates::default() };
-    let small = volume.with_frame(frame.meaning(small));
+    let small = volume.with_frame(frame.with_coordinates(small));
     assert!(text("nrrd", &small).contains("space dimension: 3\nspace units: \"um\""));
     assert_eq!(written("nii", &small)[123], 3);
     assert!(text("mha", &small).contains("ElementSpacing = 0.0005 0.0005 0.002"));
@@ -130,7 +130,7 @@ fn lengths_are_in_the_unit_of_the_file() {
     ok(f, &["haar", "sample:phantom@16", "-o", "plain.npy"]);
     let samples: Array3<f32> = ndarray_npy::read_npy(f.join("plain.npy")).unwrap();
     let frame = Frame { origin: [10.0, 20.0, 30.0], spacing: [0.5, 0.5, 2.0], ..Frame::VOXEL };
-    let volume = Volume::new(samples, frame.meaning(Coordinates::PATIENT)).unwrap();
+    let volume = Volume::new(samples, frame.with_coordinates(Coordinates::PATIENT)).unwrap();
     save(f, "v.nii", written("nii", &volume));
 
     let shape =

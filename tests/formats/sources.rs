@@ -13,7 +13,7 @@ use walpha::{Dims, Frame, Volume};
 fn numbered() -> Volume {
     let samples = Array3::from_shape_fn((7, 5, 6), |(z, y, x)| (100 * z + 10 * y + x) as f32 / 8.0);
     let frame = Frame { origin: [7.0, 8.0, 9.0], spacing: [0.5, 2.0, 3.0], ..Frame::VOXEL };
-    Volume::new(samples, frame.meaning(walpha::Coordinates::PATIENT)).unwrap()
+    Volume::new(samples, frame.with_coordinates(walpha::Coordinates::PATIENT)).unwrap()
 }
 
 /// Boxes of a source are those of the volume.

@@ -59,7 +59,7 @@ fn small_files_of_every_flavour_are_read() {
         assert_eq!(volume.as_slice(), numbers(), "{name}");
         if [".vtk", ".vti"].iter().any(|extension| name.ends_with(extension)) {
             let frame = Frame { origin: [4.0, 5.0, 6.0], spacing: [1.0, 2.0, 3.0], ..Frame::VOXEL };
-            assert_eq!(*volume.frame(), frame.meaning(Coordinates::default()), "{name}");
+            assert_eq!(*volume.frame(), frame.with_coordinates(Coordinates::default()), "{name}");
         }
     }
 }

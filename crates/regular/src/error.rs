@@ -3,11 +3,11 @@ use walpha_base::advice::Advice;
 
 use super::Triangulation;
 
-/// Why points make no sites.
+/// Why points are no [`Sites`](super::Sites).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SitesError {
-    /// Positions and weights do not pair up.
+    /// Different numbers of positions and weights.
     #[error("{positions} positions but {weights} weights: each point needs one weight")]
     Lengths {
         /// Positions given.
@@ -15,36 +15,36 @@ pub enum SitesError {
         /// Weights given.
         weights: usize,
     },
-    /// More points than 32-bit indices.
+    /// More points than 32-bit indices can address.
     #[error("{0} points are too many: at most {max} fit a 32-bit index", max = u32::MAX)]
     TooMany(usize),
-    /// NaN, infinity or an absurd magnitude.
+    /// NaN, infinity, or a magnitude above the limit.
     #[error(
         "point {index} has {what} {value}: it must be a finite number of magnitude at most {limit:e}"
     )]
     Value {
         /// Input index of the point.
         index: usize,
-        /// Which of its numbers.
+        /// Which number: x, y, z or weight.
         what: &'static str,
-        /// The number.
+        /// Its value.
         value: f64,
         /// The largest magnitude accepted.
         limit: f64,
     },
-    /// No point at all, where one would do.
+    /// No point.
     #[error("there is no point: at least 1 is needed")]
     Empty,
-    /// Fewer than four different places.
+    /// Fewer than four distinct positions.
     #[error("{distinct} distinct points cannot span a tetrahedron: at least 4 are needed")]
     TooFew {
-        /// Different places among the input.
+        /// Number of distinct positions.
         distinct: usize,
     },
     /// All points in one plane or on one line.
     #[error("all {points} points lie {on}: a 3D triangulation needs points that span a volume")]
     Flat {
-        /// Different places among the input.
+        /// Number of distinct positions.
         points: usize,
         /// "in one plane" or "on one line".
         on: &'static str,
@@ -52,7 +52,7 @@ pub enum SitesError {
 }
 
 impl SitesError {
-    /// So many points whose affine hull has a dimension below 3.
+    /// The error for points whose affine hull has a dimension below 3.
     #[doc(hidden)]
     pub fn flat(points: usize, dimension: i32) -> Self {
         Self::Flat { points, on: if dimension == 2 { "in one plane" } else { "on one line" } }
@@ -69,13 +69,13 @@ pub enum TriangulationError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// More cells than the arrays can name.
+    /// More cells than [`Triangulation::MAX_CELLS`].
     #[error(
         "the triangulation has more than {} cells: that is more than its arrays can name",
-        Triangulation::MOST_CELLS
+        Triangulation::MAX_CELLS
     )]
     TooManyCells,
-    /// The system gives no more memory.
+    /// Out of memory.
     #[error("no memory for the triangulation: {} MiB are needed at once", bytes >> 20)]
     Memory {
         /// Bytes asked for.
@@ -84,7 +84,7 @@ pub enum TriangulationError {
 }
 
 impl SitesError {
-    /// What to do about it, where there is something.
+    /// How to resolve the error, if there is a way.
     pub fn advice(&self) -> Option<Advice> {
         Some(match self {
             Self::Lengths { .. } => return None,
@@ -98,7 +98,7 @@ impl SitesError {
 }
 
 impl TriangulationError {
-    /// What to do about it, where there is something.
+    /// How to resolve the error, if there is a way.
     pub fn advice(&self) -> Option<Advice> {
         Some(match self {
             Self::Sites(error) => return error.advice(),

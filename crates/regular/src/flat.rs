@@ -1,16 +1,16 @@
-//! Regular triangulations of points in one plane or on one line, or of one alone.
+//! Regular triangulations of points that span no volume: in one plane, on one line, or a single point.
 //!
-//! A few points are added so that all together span a volume: one beside a plane, two beside a line,
-//! three beside a point. The plane (line, point) then supports the convex hull, so what the
-//! triangulation of space has in it is the regular triangulation of the points there: over a
-//! supporting hyperplane the lower hull of lifted points is that of the points in it. Heights raised
-//! by infinitely little change nothing of this, so ties are broken in the order of (x, y, z) as in space.
-//! Each of its largest simplices is in one finite cell, with all the points added.
+//! Auxiliary points are added until all points span a volume: one for a plane, two for a line, three for a point.
+//! The plane (line, point) then supports the convex hull. Over a supporting hyperplane, the lower hull of the lifted
+//! points is the lower hull of the lifted points in it, so the triangulation of space restricted to the plane is the
+//! regular triangulation of the points there. Infinitesimal raises of heights do not change this, so ties are broken
+//! in the order of (x, y, z) as in space. Each maximal simplex of the flat triangulation is in exactly one finite
+//! cell, together with all auxiliary points.
 
 use super::{Predicates, Sites, SitesError, TriangulationError, insert_all};
 use walpha_base::Cancelled;
 
-/// The largest simplices of a flat triangulation, by site index, each ascending: all of one kind.
+/// The maximal simplices of a flat triangulation, all of one dimension; site indices ascend within each.
 #[derive(Debug, Default)]
 pub struct Flat {
     /// Of points in a plane.
@@ -21,20 +21,21 @@ pub struct Flat {
     pub vertices: Vec<[u32; 1]>,
 }
 
-/// The triangulation of sites that span no volume; `inserted` hears now and then how many more are in. Expected O(n log n).
+/// The triangulation of sites that span no volume. `inserted` is called now and then with the number of points
+/// inserted since. Expected O(n log n).
 ///
 /// # Errors
-/// No memory.
+/// Out of memory.
 pub fn triangulate_flat(
     sites: &Sites<'_>,
     inserted: impl FnMut(usize) -> Result<(), Cancelled>,
 ) -> Result<Flat, TriangulationError> {
-    let added = auxiliary_places(sites.positions());
+    let auxiliary = auxiliary_positions(sites.positions());
     let along = sites.curve();
-    let extra = added.len() as u32;
-    let mut positions = added;
+    let extra = auxiliary.len() as u32;
+    let mut positions = auxiliary;
     positions.extend(along.iter().map(|&i| sites.positions()[i as usize]));
-    // Of any weight they are vertices, as corners of the hull.
+    // Whatever their weights, they are vertices, as extreme points of the hull.
     let mut weights = vec![0.0; extra as usize];
     weights.extend(along.iter().map(|&i| sites.weights()[i as usize]));
     let made = insert_all(&positions, &weights, inserted)?;
@@ -47,7 +48,7 @@ pub fn triangulate_flat(
             (1, &[a, b, c]) => flat.triangles.push([a, b, c]),
             (2, &[a, b]) => flat.edges.push([a, b]),
             (3, &[a]) => flat.vertices.push([a]),
-            // Not all of the points added are among its corners.
+            // Cells without one of the auxiliary points hold no maximal simplex.
             _ => {}
         }
     }
@@ -56,35 +57,35 @@ pub fn triangulate_flat(
     Ok(flat)
 }
 
-/// Refuses sites that span no volume. O(n) for those, else mostly less.
+/// Checks that sites span a volume. O(n) where they do not, usually less where they do.
 ///
 /// # Errors
 /// [`SitesError::Flat`].
 pub fn check_span(sites: &Sites<'_>) -> Result<(), SitesError> {
     match spanning(sites.positions()).len() {
         4 => Ok(()),
-        some => Err(SitesError::flat(sites.positions().len(), some as i32 - 1)),
+        count => Err(SitesError::flat(sites.positions().len(), count as i32 - 1)),
     }
 }
 
-/// As many places as are needed to span what all of them span.
+/// At most four of the positions, affinely independent, with the same affine hull as all.
 fn spanning(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let mut spanning = vec![all[0]];
-    for &place in &all[1..] {
+    for &position in &all[1..] {
         if spanning.len() == 4 {
             break;
         }
-        if is_independent(&spanning, place) {
-            spanning.push(place);
+        if is_independent(&spanning, position) {
+            spanning.push(position);
         }
     }
     spanning
 }
 
-/// Whether a place is in no plane, on no line, at no point that others span. Exact.
-fn is_independent(spanning: &[[f64; 3]], place: [f64; 3]) -> bool {
+/// Whether a position is outside the affine hull of others. Exact.
+fn is_independent(spanning: &[[f64; 3]], position: [f64; 3]) -> bool {
     let mut positions = spanning.to_vec();
-    positions.push(place);
+    positions.push(position);
     let weights = vec![0.0; positions.len()];
     let predicates = Predicates::new(&positions, &weights);
     match positions.len() {
@@ -94,32 +95,35 @@ fn is_independent(spanning: &[[f64; 3]], place: [f64; 3]) -> bool {
     }
 }
 
-/// Places beside others that span a volume with them: along the axes from the first, farther away than any
-/// other, towards the origin. None if these span one.
-pub fn auxiliary_places(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
+/// Positions of auxiliary points that span a volume with the given ones; empty if these span one. Each is displaced
+/// from the first position along an axis, through the origin, by more than the largest coordinate.
+pub fn auxiliary_positions(all: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let mut spanning = spanning(all);
     let given = spanning.len();
     let largest = all.as_flattened().iter().fold(0f64, |most, x| most.max(x.abs()));
-    // A power of two, so that a lattice stays one. Of points at the origin alone, any will do.
-    let digits = largest.max(1e-150).log2().ceil() as i32;
-    let far = if largest > 0.0 { 2f64.powi(digits + 1) } else { 1.0 };
+    // A power of two, so that coordinates stay on their lattice. Any distance will do for points at the origin alone.
+    let exponent = largest.max(SHORTEST).log2().ceil() as i32;
+    let distance = if largest > 0.0 { 2f64.powi(exponent + 1) } else { 1.0 };
     for axis in 0..3 {
-        let mut place = spanning[0];
-        place[axis] -= far.copysign(place[axis]);
-        if spanning.len() < 4 && is_independent(&spanning, place) {
-            spanning.push(place);
+        let mut auxiliary = spanning[0];
+        auxiliary[axis] -= distance.copysign(auxiliary[axis]);
+        if spanning.len() < 4 && is_independent(&spanning, auxiliary) {
+            spanning.push(auxiliary);
         }
     }
     spanning.split_off(given)
 }
 
-/// Whether an error says that points span no volume.
+/// Whether the reason for an error is that points span no volume.
 pub fn is_flat(error: &TriangulationError) -> bool {
     matches!(
         error,
         TriangulationError::Sites(SitesError::Flat { .. } | SitesError::TooFew { distinct: 1.. })
     )
 }
+
+/// Auxiliary points are at least about this far away: powers of shorter lengths leave the range of doubles.
+const SHORTEST: f64 = 1e-150;
 
 #[cfg(test)]
 mod tests {

@@ -1,9 +1,9 @@
-//! Formulas that are written once, for doubles and for integers of any length; and what doubles are
-//! made of.
+//! Arithmetic of formulas that are written once, for doubles and for integers of any length; and the mantissa and
+//! exponent of doubles.
 
 use dashu_int::IBig;
 
-/// Exact for integers; for doubles only where no operation rounds.
+/// A number type of formulas. Operations are exact on integers, and on doubles where none rounds.
 pub trait Number {
     /// The sum.
     #[must_use]
@@ -37,9 +37,9 @@ macro_rules! number {
 
 number!(f64 i64 i128 IBig);
 
-/// A number that another, which may be of a simpler kind, multiplies.
+/// Multiplication by a number of another, simpler type.
 pub trait Scale<V>: Number {
-    /// The product with it.
+    /// The product with `factor`.
     #[must_use]
     fn scaled(&self, factor: &V) -> Self;
 }
@@ -51,11 +51,11 @@ impl<T: Number> Scale<T> for T {
     }
 }
 
-/// Integers that doubles are turned into: of 128 bits where these suffice, else of any length.
+/// Integers that doubles are converted to: `i128` where 128 bits suffice, else [`IBig`].
 pub trait Integer: Number + Ord {
     /// 0.
     const ZERO: Self;
-    /// A double in units of 2^`unit`, which must not exceed its lowest bit.
+    /// A double in units of 2^`unit`; its lowest bit must be at least one unit.
     fn of(value: f64, unit: i32) -> Self;
     /// The product with 2^`bits`.
     #[must_use]
@@ -83,34 +83,42 @@ impl Integer for IBig {
     }
 }
 
+/// The scalar product.
 #[inline(always)]
 pub fn dot<T: Number>(u: &[T; 3], v: &[T; 3]) -> T {
     u[0].times(&v[0]).plus(&u[1].times(&v[1])).plus(&u[2].times(&v[2]))
 }
 
+/// The vector product.
 #[inline(always)]
 pub fn cross<T: Number>(u: &[T; 3], v: &[T; 3]) -> [T; 3] {
     let minor = |i: usize, j: usize| u[i].times(&v[j]).minus(&u[j].times(&v[i]));
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
-/// Mantissa and exponent of a finite double; the mantissa is odd, or 0 with the exponent 0.
+/// Bits of the fraction of a double; its mantissa has one more, which is implicit.
+const FRACTION_BITS: u32 = f64::MANTISSA_DIGITS - 1;
+/// Bias of the exponent of a double whose mantissa counts as an integer: 1023 + 52.
+const BIAS: i32 = f64::MAX_EXP - 1 + FRACTION_BITS as i32;
+
+/// Mantissa and exponent of a finite double. The mantissa is odd, or 0 with the exponent 0.
 pub fn decode(value: f64) -> (i64, i32) {
     let bits = value.to_bits();
-    let (biased, fraction) = ((bits >> 52 & 0x7ff) as i32, (bits & ((1 << 52) - 1)) as i64);
-    let magnitude = if biased == 0 { fraction } else { fraction | 1 << 52 };
+    let biased = (bits >> FRACTION_BITS & 0x7ff) as i32;
+    let fraction = (bits & ((1 << FRACTION_BITS) - 1)) as i64;
+    let magnitude = if biased == 0 { fraction } else { fraction | 1 << FRACTION_BITS };
     if magnitude == 0 {
         return (0, 0);
     }
     let zeros = magnitude.trailing_zeros();
     let odd = magnitude >> zeros;
-    (if value < 0.0 { -odd } else { odd }, biased.max(1) - 1075 + zeros as i32)
+    (if value < 0.0 { -odd } else { odd }, biased.max(1) - BIAS + zeros as i32)
 }
 
-/// The exponent above the highest bit set in a finite double: |value| < 2 to that power; `None` for 0.
+/// The least exponent e with |value| < 2ᵉ, one above the highest bit set; `None` for 0.
 pub fn highest_bit(value: f64) -> Option<i32> {
     let (mantissa, exponent) = decode(value);
-    (mantissa != 0).then(|| exponent + 64 - mantissa.unsigned_abs().leading_zeros() as i32)
+    (mantissa != 0).then(|| exponent + (i64::BITS - mantissa.unsigned_abs().leading_zeros()) as i32)
 }
 
 /// The exponent of the lowest bit set in a finite double; `None` for 0.
@@ -119,7 +127,7 @@ pub fn lowest_bit(value: f64) -> Option<i32> {
     (mantissa != 0).then_some(exponent)
 }
 
-/// A double in units of 2^`unit`, which must not exceed its lowest bit.
+/// A double in units of 2^`unit`; its lowest bit must be at least one unit.
 pub fn integer(value: f64, unit: i32) -> IBig {
     let (mantissa, exponent) = decode(value);
     if mantissa == 0 { IBig::ZERO } else { IBig::from(mantissa) << (exponent - unit) as usize }

@@ -2,12 +2,13 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use super::curve::{self, Keyed};
+use super::order::{self, Keyed};
 use super::{SitesError, Torus};
 
-/// Weighted points of space (or, with `D` = 2, of the plane) that can be triangulated: all numbers
-/// finite and of sane magnitude, no two places equal. Checked once, then trusted. In space at least
-/// four points; in the plane one will do, and points on one line are welcome.
+/// Weighted points of space (or, with `D` = 2, of the plane) that can be triangulated: all numbers are
+/// finite and within [`MAX_COORDINATE`] and [`MAX_WEIGHT`], and no two positions are equal. Checked once,
+/// then trusted. In space there are at least four points; in the plane one point, or points on one line,
+/// are enough.
 #[derive(Clone, Debug)]
 pub struct Sites<'a, const D: usize = 3> {
     positions: Cow<'a, [[f64; D]]>,
@@ -15,24 +16,28 @@ pub struct Sites<'a, const D: usize = 3> {
     /// Input index of each site.
     input: Vec<u32>,
     duplicates: Vec<[u32; 2]>,
-    /// The sites in an order in which neighbours are near each other in space.
+    /// The sites along a Hilbert curve.
     curve: Vec<u32>,
-    /// The box that repeats, if one does: all positions are in it.
+    /// The periodic box, if there is one; all positions are in it.
     torus: Option<Torus>,
 }
 
-/// The largest coordinate accepted, 2⁵⁰⁰ ≈ 3.3e150: its square, and so every power distance, is still a
+/// The largest magnitude of a coordinate, 2⁵⁰⁰ ≈ 3.3e150: its square, and so every power distance, is a
 /// finite double.
-pub const MAX_COORDINATE: f64 = f64::from_bits((1023 + 500) << 52);
-/// The largest weight accepted, 2¹⁰⁰⁰: a squared length.
-pub const MAX_WEIGHT: f64 = f64::from_bits((1023 + 1000) << 52);
+pub const MAX_COORDINATE: f64 = power_of_two(500);
+/// The largest magnitude of a weight, 2¹⁰⁰⁰: weights are squared lengths.
+pub const MAX_WEIGHT: f64 = power_of_two(1000);
+
+const fn power_of_two(exponent: u64) -> f64 {
+    f64::from_bits((f64::MAX_EXP as u64 - 1 + exponent) << (f64::MANTISSA_DIGITS - 1))
+}
 
 impl<'a> Sites<'a> {
-    /// Checks points and removes duplicates: of several at one place the largest weight stays, of
-    /// equal weights the lowest index. −0 and 0 are one place. O(n log n).
+    /// Checks points and removes duplicates. Of points with equal positions the one of largest weight is
+    /// kept, of equal weights the one of lowest index. −0 and 0 are equal. O(n log n).
     ///
     /// # Errors
-    /// See [`SitesError`]; points in one plane are found later, by the triangulation.
+    /// See [`SitesError`]. Coplanar points are reported later, by the triangulation.
     pub fn new(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Result<Self, SitesError> {
         let sites = Self::distinct(positions, weights)?;
         if sites.input.len() < 4 {
@@ -41,19 +46,19 @@ impl<'a> Sites<'a> {
         Ok(sites)
     }
 
-    /// The same for points that may span no volume: one will do.
+    /// Like [`Self::new`], for at least one point; points need not span a volume.
     ///
     /// # Errors
-    /// No point, and what [`SitesError`] says of numbers.
+    /// [`SitesError::Empty`], [`SitesError::TooMany`], [`SitesError::Lengths`] and [`SitesError::Value`].
     pub fn any(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Result<Self, SitesError> {
         let sites = Self::distinct(positions, weights)?;
         if sites.input.is_empty() { Err(SitesError::Empty) } else { Ok(sites) }
     }
 
-    /// The same for points of a torus, all of them in its box: those of space are their copies.
+    /// Like [`Self::any`], for points of a torus, all of them in its box.
     ///
     /// # Errors
-    /// No point, and what [`SitesError`] says of numbers.
+    /// [`SitesError::Empty`], [`SitesError::TooMany`], [`SitesError::Lengths`] and [`SitesError::Value`].
     pub fn on_torus(
         positions: &'a [[f64; 3]],
         weights: &'a [f64],
@@ -63,7 +68,7 @@ impl<'a> Sites<'a> {
         Ok(Self { torus: Some(torus), ..Self::any(positions, weights)? })
     }
 
-    /// The box that repeats, if one does.
+    /// The periodic box, if there is one.
     pub fn torus(&self) -> Option<Torus> {
         self.torus
     }
@@ -75,10 +80,10 @@ impl<'a> Sites<'a> {
 }
 
 impl<'a> Sites<'a, 2> {
-    /// The same for points of the plane.
+    /// Like [`Sites::any`], for points of the plane.
     ///
     /// # Errors
-    /// No point, and what [`SitesError`] says of numbers.
+    /// [`SitesError::Empty`], [`SitesError::TooMany`], [`SitesError::Lengths`] and [`SitesError::Value`].
     pub fn in_plane(positions: &'a [[f64; 2]], weights: &'a [f64]) -> Result<Self, SitesError> {
         let sites = Self::distinct(positions, weights)?;
         if sites.input.is_empty() { Err(SitesError::Empty) } else { Ok(sites) }
@@ -88,7 +93,7 @@ impl<'a> Sites<'a, 2> {
 impl<'a, const D: usize> Sites<'a, D> {
     fn distinct(positions: &'a [[f64; D]], weights: &'a [f64]) -> Result<Self, SitesError> {
         check(positions, weights)?;
-        let mut curve = curve::keyed(positions);
+        let mut curve = order::along_curve(positions);
         let duplicates = duplicates(&mut curve, positions, weights);
         if duplicates.is_empty() {
             return Ok(Self {
@@ -100,17 +105,17 @@ impl<'a, const D: usize> Sites<'a, D> {
                 torus: None,
             });
         }
-        const GONE: u32 = u32::MAX;
+        const DUPLICATE: u32 = u32::MAX;
         let mut site: Vec<u32> = vec![0; positions.len()];
-        duplicates.iter().for_each(|&[went, _]| site[went as usize] = GONE);
-        let stays = |i: &u32| site[*i as usize] != GONE;
-        let input: Vec<u32> = (0..positions.len() as u32).filter(stays).collect();
+        duplicates.iter().for_each(|&[removed, _]| site[removed as usize] = DUPLICATE);
+        let kept = |i: &u32| site[*i as usize] != DUPLICATE;
+        let input: Vec<u32> = (0..positions.len() as u32).filter(kept).collect();
         input.iter().enumerate().for_each(|(at, &i)| site[i as usize] = at as u32);
         let along = curve.into_iter().map(|(_, point)| site[point as usize]);
         Ok(Self {
             positions: input.iter().map(|&i| positions[i as usize]).collect(),
             weights: input.iter().map(|&i| weights[i as usize]).collect(),
-            curve: along.filter(|&at| at != GONE).collect(),
+            curve: along.filter(|&at| at != DUPLICATE).collect(),
             input,
             duplicates,
             torus: None,
@@ -132,14 +137,13 @@ impl<'a, const D: usize> Sites<'a, D> {
         &self.input
     }
 
-    /// Pairs of input indices: a point that went, and the one at the same place that stayed.
-    /// Ascending.
+    /// Pairs of input indices: a removed point, and the point kept at the same position. Ascending.
     pub fn duplicates(&self) -> &[[u32; 2]] {
         &self.duplicates
     }
 }
 
-/// Whether every number is in the range of the predicates; coordinates are x, y and, in space, z.
+/// Checks that every number is within the range of the predicates. Coordinates are x, y and, in space, z.
 ///
 /// # Errors
 /// [`SitesError::Lengths`] and [`SitesError::Value`].
@@ -168,19 +172,19 @@ pub fn check<const D: usize>(positions: &[[f64; D]], weights: &[f64]) -> Result<
     Err(SitesError::Value { index, what, value, limit })
 }
 
-/// Pairs (went, stayed) of points at one place, ascending. Equal places have equal keys; points of
-/// one key are left in the order of their places, then their indices.
+/// Pairs (removed, kept) of points with equal positions, ascending. Equal positions have equal indices on
+/// the curve; points of one curve index are sorted by position, then by number.
 fn duplicates<const D: usize>(
     curve: &mut [Keyed],
     positions: &[[f64; D]],
     weights: &[f64],
 ) -> Vec<[u32; 2]> {
     // Adding 0.0 turns −0.0 into 0.0, so equal numbers have equal bits.
-    let place = |i: u32| positions[i as usize].map(|v| (v + 0.0).to_bits());
+    let position_bits = |i: u32| positions[i as usize].map(|v| (v + 0.0).to_bits());
     let mut duplicates = Vec::new();
-    for same_key in curve.chunk_by_mut(|a, b| a.0 == b.0).filter(|points| points.len() > 1) {
-        same_key.sort_unstable_by_key(|&(_, i)| (place(i), i));
-        for equal in same_key.chunk_by(|a, b| place(a.1) == place(b.1)) {
+    for same_index in curve.chunk_by_mut(|a, b| a.0 == b.0).filter(|points| points.len() > 1) {
+        same_index.sort_unstable_by_key(|&(_, i)| (position_bits(i), i));
+        for equal in same_index.chunk_by(|a, b| position_bits(a.1) == position_bits(b.1)) {
             let mut best = equal[0].1;
             for &(_, i) in equal {
                 // Of equal weights the lowest index, which comes first.

@@ -1,14 +1,14 @@
-//! Periodic boxes: points that repeat along the axes for ever.
+//! Periodic boxes: sets of points that repeat along the axes.
 
 use walpha_base::advice::{Advice, Setting, advice};
 
-/// A box whose opposite sides are one: a flat three-dimensional torus. A point stands for all its
-/// copies, which lie multiples of the sides away along the axes.
+/// A box whose opposite faces are identified: a flat three-dimensional torus. A point stands for all its
+/// copies, which are displaced along the axes by multiples of the sides.
 ///
-/// Copies must be exact, or ties between points and between copies of them would be broken in
-/// different ways. So sides and coordinates are multiples of a common [`step`](Self::step), a power of
-/// two below 2⁻⁴⁹ times the diagonal, to which they are rounded; coordinates on a voxel grid stay as they
-/// are. Whatever is said of a shape is exact for the rounded points, which it lists.
+/// Copies must be exact; otherwise ties between points and ties between their copies would be broken
+/// differently. Sides and coordinates are therefore rounded to multiples of a common
+/// [`step`](Self::step), a power of two below 2⁻⁴⁹ times the diagonal. Coordinates on a voxel grid are
+/// unchanged. Every statement about a shape is exact for the rounded points, which the shape lists.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torus {
     sides: [f64; 3],
@@ -19,11 +19,11 @@ pub struct Torus {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TorusError {
-    /// A side is not a length.
+    /// A side is not a number between [`Torus::MIN_SIDE`] and [`Torus::MAX_SIDE`].
     #[error(
         "a periodic box has side {side} along {axis}: it must be a positive number between {low:e} and {high:e}",
-        low = Torus::SHORTEST,
-        high = Torus::LONGEST
+        low = Torus::MIN_SIDE,
+        high = Torus::MAX_SIDE
     )]
     Side {
         /// x, y or z.
@@ -31,11 +31,11 @@ pub enum TorusError {
         /// The side.
         side: f64,
     },
-    /// One side is far longer than another, so that near copies along one are lost in the rounding
-    /// along the other.
+    /// One side is far longer than another: rounding along the long side would be too coarse for the short
+    /// one.
     #[error(
         "the sides of a periodic box go from {shortest} to {longest}: none may be more than {} times another",
-        Torus::MOST_ELONGATED
+        Torus::MAX_ASPECT_RATIO
     )]
     Elongated {
         /// The shortest side.
@@ -62,32 +62,35 @@ pub const AXES: [char; 3] = ['x', 'y', 'z'];
 
 impl Torus {
     /// The shortest side accepted.
-    pub const SHORTEST: f64 = 1e-100;
+    pub const MIN_SIDE: f64 = 1e-100;
     /// The longest side accepted.
-    pub const LONGEST: f64 = 1e100;
-    /// How many times as long as another a side may be.
-    pub const MOST_ELONGATED: f64 = 1000.0;
+    pub const MAX_SIDE: f64 = 1e100;
+    /// The largest ratio of the longest side to the shortest.
+    pub const MAX_ASPECT_RATIO: f64 = 1000.0;
+
+    /// Bits that differences of coordinates of copies have beyond those of the longest side: copies are searched
+    /// within one diagonal, at most √3 times that side, so all coordinates are below 4 times that side, and
+    /// differences below 8 times.
+    const HEADROOM_BITS: i32 = 3;
 
     /// A box by its sides along x, y and z, in the unit of the points.
     ///
     /// # Errors
-    /// [`TorusError`]: a side that is not a length, or one far longer than another.
+    /// A side out of range, or far longer than another; see [`TorusError`].
     pub fn new(sides: [f64; 3]) -> Result<Self, TorusError> {
         for (axis, side) in AXES.into_iter().zip(sides) {
-            // NaN is in no range.
-            if !(Self::SHORTEST..=Self::LONGEST).contains(&side) {
+            // NaN is outside every range.
+            if !(Self::MIN_SIDE..=Self::MAX_SIDE).contains(&side) {
                 return Err(TorusError::Side { axis, side });
             }
         }
         let shortest = sides.into_iter().fold(f64::INFINITY, f64::min);
         let longest = sides.into_iter().fold(0.0, f64::max);
-        if longest > Self::MOST_ELONGATED * shortest {
+        if longest > Self::MAX_ASPECT_RATIO * shortest {
             return Err(TorusError::Elongated { shortest, longest });
         }
-        // Copies are looked for within one diagonal, which is at most √3 times the longest side: all
-        // coordinates are below 4 times that side, and differences below 8 times.
         let above = 2f64.powi(longest.log2().floor() as i32 + 1);
-        let step = above * 2f64.powi(3 - 53);
+        let step = above * 2f64.powi(Self::HEADROOM_BITS - f64::MANTISSA_DIGITS as i32);
         let sides = sides.map(|side| (side / step).round_ties_even() * step);
         Ok(Self { sides, step })
     }
@@ -97,7 +100,7 @@ impl Torus {
         self.sides
     }
 
-    /// What all coordinates are multiples of.
+    /// The power of two of which all coordinates and sides are multiples.
     pub fn step(&self) -> f64 {
         self.step
     }
@@ -107,13 +110,13 @@ impl Torus {
         self.sides.iter().product()
     }
 
-    /// The copy of a place that is in the box: at least 0 and less than the side along each axis,
-    /// rounded to the step.
-    pub fn wrap(&self, place: [f64; 3]) -> [f64; 3] {
-        let mut place = place;
-        for (x, side) in place.iter_mut().zip(self.sides) {
+    /// The copy of a position that is in the box, rounded to the step. Along each axis it is at least 0 and
+    /// less than the side.
+    pub fn wrap(&self, position: [f64; 3]) -> [f64; 3] {
+        let mut position = position;
+        for (x, side) in position.iter_mut().zip(self.sides) {
             let steps = *x / self.step;
-            // From 2⁵² steps on, doubles are multiples of the step.
+            // Doubles of 2⁵² steps or more are multiples of the step already.
             if steps.abs() < (1u64 << 52) as f64 {
                 *x = steps.round_ties_even() * self.step;
             }
@@ -123,16 +126,16 @@ impl Torus {
                 *x = 0.0;
             }
         }
-        place
+        position
     }
 
-    /// Whether a place is in the box: at least 0 and less than the side along each axis.
-    pub fn holds(&self, place: [f64; 3]) -> bool {
-        place.iter().zip(self.sides).all(|(x, side)| (0.0..side).contains(x))
+    /// Whether a position is in the box: at least 0 and less than the side along each axis.
+    pub fn holds(&self, position: [f64; 3]) -> bool {
+        position.iter().zip(self.sides).all(|(x, side)| (0.0..side).contains(x))
     }
 
-    /// The copy of a place in the box that is nearest to another one there, along each axis; of
-    /// two equally near ones, the place as it is. Exact.
+    /// The copy of `to` that is nearest to `from` along each axis, for two positions in the box; where two
+    /// copies are equally near, `to` itself. Exact.
     #[inline]
     pub fn near(&self, from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
         let mut near = to;
@@ -142,8 +145,8 @@ impl Torus {
         near
     }
 
-    /// How often the way from one place in the box to the nearest copy of another crosses its sides:
-    /// along each axis the multiple of the side by which that copy differs from the place.
+    /// How often the way from one position in the box to the nearest copy of another crosses its faces: along each
+    /// axis the multiple of the side by which that copy differs from `to`.
     #[inline]
     pub fn windings(&self, from: [f64; 3], to: [f64; 3]) -> [i32; 3] {
         [0, 1, 2].map(|k| -self.winding(k, from[k], to[k]))
@@ -155,13 +158,13 @@ impl Torus {
         i32::from(way > half) - i32::from(way < -half)
     }
 
-    /// A place moved by multiples of the sides. Exact for places near the box.
+    /// A position moved by multiples of the sides. Exact for positions near the box.
     #[inline]
-    pub fn moved(&self, place: [f64; 3], windings: [i32; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|k| place[k] + f64::from(windings[k]) * self.sides[k])
+    pub fn moved(&self, position: [f64; 3], windings: [i32; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|k| position[k] + f64::from(windings[k]) * self.sides[k])
     }
 
-    /// The corners of a simplex, those after the first at their copies nearest to it.
+    /// The corners of a simplex: the first one, and of each other the copy nearest to it.
     #[inline]
     pub fn together<const N: usize>(&self, mut corners: [[f64; 3]; N]) -> [[f64; 3]; N] {
         let first = corners[0];
@@ -169,7 +172,7 @@ impl Torus {
         corners
     }
 
-    /// The length of the diagonal, or a little more.
+    /// An upper bound of the length of the diagonal, larger by about 10⁻¹⁵ of it.
     pub fn diagonal(&self) -> f64 {
         self.sides.iter().map(|side| side * side).sum::<f64>().sqrt() * (1.0 + 1e-15)
     }

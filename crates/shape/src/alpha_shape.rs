@@ -15,10 +15,10 @@ pub struct AlphaShape {
     pub(super) points: WeightedPoints,
     pub(super) coordinates: Coordinates,
     pub(super) options: ShapeOptions,
-    /// Weights (α + ω)², where the balls are read so.
+    /// Weights (α + ω)², with [`Balls::Radius`].
     pub(super) squared: Option<Vec<f64>>,
     pub(super) complex: Complex,
-    /// What the last points are copies of, where a torus is laid out in space.
+    /// The points that the last points are copies of, where a torus is laid out in space.
     pub(super) copies: Vec<u32>,
     pub(super) duplicates: Vec<[u32; 2]>,
     pub(super) hidden: Option<Vec<u32>>,
@@ -27,7 +27,7 @@ pub struct AlphaShape {
     pub(super) measures: Measures,
 }
 
-/// A shape as others found it, in canonical order.
+/// The parts of a shape that has been computed elsewhere, in canonical order.
 #[doc(hidden)]
 pub struct Assembled {
     pub points: WeightedPoints,
@@ -41,7 +41,7 @@ pub struct Assembled {
 }
 
 impl AlphaShape {
-    /// A shape that is all known already, of points no two of which are at one place.
+    /// A shape from its parts. No two points may have equal positions.
     ///
     /// # Errors
     /// A negative radius.
@@ -86,13 +86,13 @@ impl AlphaShape {
         }
     }
 
-    /// The same shape, whose numbers are declared to be in these coordinates.
+    /// The same shape, declared to be in these coordinates; no number changes.
     #[must_use]
-    pub fn meaning(self, coordinates: Coordinates) -> Self {
+    pub fn with_coordinates(self, coordinates: Coordinates) -> Self {
         Self { coordinates, ..self }
     }
 
-    /// What the coordinates of the points mean, as far as it is known.
+    /// The axes and the unit of the coordinates, as far as they are known.
     pub fn coordinates(&self) -> Coordinates {
         self.coordinates
     }
@@ -102,45 +102,45 @@ impl AlphaShape {
         &self.points
     }
 
-    /// The places of a simplex's vertices; on a torus the first is in the box, and the others are the
+    /// The positions of a simplex's vertices; on a torus the first is in the box, and the others are the
     /// copies nearest to it.
     pub fn corners<const N: usize>(&self, row: [u32; N]) -> [[f64; 3]; N] {
         together(self.options.periodic, row.map(|v| self.points.positions[v as usize]))
     }
 
-    /// What points are copies of, in a shape that is [laid out](Self::unwrapped): of the last points, in
-    /// their order.
+    /// In a shape that is [laid out](Self::unwrapped): the points that the last points are copies of, in their
+    /// order.
     pub fn copies(&self) -> &[u32] {
         &self.copies
     }
 
-    /// How the shape was made.
+    /// The options that the shape was computed with.
     pub fn options(&self) -> &ShapeOptions {
         &self.options
     }
 
-    /// The weights the triangulation is regular for: ω, or (α + ω)² for [`Balls::Radius`].
+    /// The weights that the triangulation is regular for: ω, or (α + ω)² for [`Balls::Radius`].
     pub fn power_weights(&self) -> &[f64] {
         self.squared.as_deref().unwrap_or(&self.points.weights)
     }
 
-    /// The squared radius simplices are compared with: α, or 0 for [`Balls::Radius`].
+    /// The squared radius that simplices are compared with: α, or 0 for [`Balls::Radius`].
     pub fn power_alpha(&self) -> Alpha {
         power_alpha(&self.options)
     }
 
-    /// The complex with the power weights and the α that it is judged with, to be compared and checked.
+    /// The complex with its points, power weights and α, to be compared and checked.
     pub fn placed(&self) -> Placed<'_> {
         let (positions, weights) = (&self.points.positions, self.power_weights());
         Placed::new(positions, weights, self.power_alpha(), &self.complex)
     }
 
-    /// The simplices and their classes, in canonical order; exterior ones only if asked for.
+    /// The simplices and their classes, in canonical order; exterior ones only if they were asked for.
     pub fn complex(&self) -> &Complex {
         &self.complex
     }
 
-    /// Pairs of input indices: a point that went, and the one at the same place that stayed.
+    /// Pairs of input indices: a removed point, and the point kept at the same position.
     pub fn duplicates(&self) -> &[[u32; 2]] {
         &self.duplicates
     }
@@ -151,12 +151,12 @@ impl AlphaShape {
         self.hidden.as_deref()
     }
 
-    /// Betti numbers of the shape; `None` where whoever made it did not count them.
+    /// Betti numbers of the shape; `None` where they have not been counted.
     pub fn betti(&self) -> Option<Betti> {
         self.betti
     }
 
-    /// The sheets that boundary facets and singular edges are part of; `None` of a flat shape.
+    /// The sheets of the boundary facets and singular edges; `None` for a flat shape.
     pub fn sheets(&self) -> Option<&Sheets> {
         self.sheets.as_ref()
     }
@@ -166,7 +166,7 @@ impl AlphaShape {
         &self.measures
     }
 
-    /// How many points are vertices of the shape.
+    /// Number of points that are vertices of the shape.
     pub fn points_in_shape(&self) -> usize {
         self.complex.vertices.counts().in_shape()
     }

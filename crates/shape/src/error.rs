@@ -3,7 +3,7 @@ use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::memory::NoMemory;
 use walpha_regular::{SitesError, TriangulationError, is_flat};
 
-use super::{CgalError, PlanError};
+use super::PlanError;
 
 /// Why a shape cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -12,10 +12,10 @@ pub enum ShapeError {
     /// The points cannot be triangulated.
     #[error(transparent)]
     Triangulation(#[from] TriangulationError),
-    /// CGAL gave no answer.
+    /// CGAL failed.
     #[error(transparent)]
     Cgal(#[from] CgalError),
-    /// The `radius` reading asks for a ball of negative or infinite radius.
+    /// With [`Balls::Radius`](super::Balls::Radius), a ball has a negative or infinite radius.
     #[error(
         "point {index} would be a ball of radius α + ω = {radius}: where α + ω is a radius it must \
          be finite and not negative"
@@ -32,38 +32,38 @@ pub enum ShapeError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Memory for what is known of the simplices cannot be had.
+    /// Out of memory for data about the simplices.
     #[error(transparent)]
     Memory(#[from] NoMemory),
-    /// Memory is bounded by cutting the points into blocks, which this shape is not made in.
+    /// A bound on memory is kept by cutting the points into blocks, and this shape takes the whole triangulation.
     #[error(
         "a bound on memory cannot be kept {}: that takes the whole triangulation at once",
         by.when()
     )]
     Unbounded {
-        /// What asks for the whole triangulation.
+        /// What requires the whole triangulation.
         by: Whole,
     },
-    /// Two points at one place, of a set that is never in one place.
+    /// Two points at one position, in a set of points that is distributed over blocks.
     #[error("two points are at one place, {at:?}, which is not sorted out in separate blocks")]
     Coincident {
-        /// The place.
+        /// The position.
         at: [f64; 3],
     },
-    /// Blocks were asked for, and something that takes the whole triangulation.
+    /// Several blocks, and something that requires the whole triangulation.
     #[error("a shape {} takes the whole triangulation, and {blocks} blocks were asked for", by.when())]
     Divided {
-        /// What takes it.
+        /// What requires it.
         by: Whole,
-        /// The blocks asked for.
+        /// The number of blocks given.
         blocks: usize,
     },
-    /// CGAL's alpha shapes know no periodic boxes with weights.
+    /// CGAL has no weighted alpha shapes of periodic boxes.
     #[error(
         "the engine cgal is CGAL's alpha shape of points in space, which knows no periodic box"
     )]
     Unrepeated,
-    /// An edge is so long that its ends do not say which of their copies it joins.
+    /// An edge is so long that its ends do not determine which of their copies it joins.
     #[error(
         "the edge between points {} and {} spans {span} along {axis}, half of the periodic box ({side}) or \
          more: its ends would not say which of their copies it joins",
@@ -81,7 +81,7 @@ pub enum ShapeError {
     },
 }
 
-/// What takes the whole triangulation.
+/// What requires the whole triangulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Whole {
@@ -107,7 +107,7 @@ impl Whole {
 }
 
 impl ShapeError {
-    /// What to do about it, where there is something.
+    /// How to resolve the error, if there is a way.
     pub fn advice(&self) -> Option<Advice> {
         Some(match self {
             Self::Triangulation(error) => return error.advice(),
@@ -148,7 +148,7 @@ impl ShapeError {
         })
     }
 
-    /// Whether it says that points span no volume, though there is one at least.
+    /// Whether the reason is that points span no volume, though there is at least one.
     pub fn is_flat(&self) -> bool {
         matches!(self, Self::Triangulation(error) if is_flat(error))
     }
@@ -157,5 +157,42 @@ impl ShapeError {
 impl From<SitesError> for ShapeError {
     fn from(error: SitesError) -> Self {
         Self::Triangulation(error.into())
+    }
+}
+
+/// Why CGAL failed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CgalError {
+    /// C++ ran out of memory.
+    #[error("no memory for the {stage}: C++ ran out of it")]
+    Memory {
+        /// What was being computed.
+        stage: &'static str,
+    },
+    /// CGAL threw. This is a fault of walpha or CGAL, not of the input.
+    #[error("CGAL failed in the {stage} stage: {text}")]
+    Thrown {
+        /// What was being computed.
+        stage: &'static str,
+        /// The message of the exception.
+        text: String,
+    },
+    /// This program was built without CGAL.
+    #[error(
+        "this walpha was built without CGAL: there is no engine cgal and no triangulation of the plane"
+    )]
+    Absent,
+}
+
+impl CgalError {
+    /// How to resolve the error.
+    pub fn advice(&self) -> Advice {
+        match self {
+            Self::Memory { .. } => "allow more, use the native engine, or select fewer points",
+            Self::Thrown { .. } => "please report this with the input",
+            Self::Absent => "use the native engine, or build with the feature `cgal`",
+        }
+        .into()
     }
 }

@@ -1,7 +1,7 @@
-//! Shapes of points that span no volume: in their plane, on their line, at their point.
+//! Shapes of points that span no volume: in one plane, on one line, or a single point.
 //!
-//! There are no cells. Classes are those of space: what is in the shape and a face of nothing there is
-//! singular, the faces of it are regular, and nothing is interior, as space is on both sides.
+//! There are no cells. Classes are those of space: a simplex of the shape is singular if it is a face of no other
+//! simplex of the shape, else regular; none is interior, as space is on both sides.
 
 use walpha_base::Monitor;
 use walpha_regular::{Predicates, Sites, triangulate_flat};
@@ -9,19 +9,23 @@ use walpha_regular::{Predicates, Sites, triangulate_flat};
 use super::topology::flat_betti;
 use super::{Betti, Class, Complex, ShapeError, Simplices};
 
-/// What a flat shape is.
-pub(super) struct Found {
-    /// The whole triangulation, by input index.
+/// A flat shape.
+pub(super) struct FlatShape {
+    /// All simplices of the triangulation with their classes, by input index.
     pub complex: Complex,
     pub betti: Betti,
 }
 
 /// The α-complex of sites that span no volume, and the simplices that are not in it.
-pub(super) fn flat(sites: &Sites<'_>, alpha: f64, monitor: &Monitor) -> Result<Found, ShapeError> {
+pub(super) fn flat(
+    sites: &Sites<'_>,
+    alpha: f64,
+    monitor: &Monitor,
+) -> Result<FlatShape, ShapeError> {
     let work = monitor.units(sites.input().len() as u64);
     let tops = triangulate_flat(sites, |more| work.add(more as u64))?;
     let plane = Plane { spheres: Predicates::new(sites.positions(), sites.weights()), alpha };
-    // The sphere of a largest simplex is always empty.
+    // The orthogonal sphere of a maximal simplex is always empty.
     let facets = plane.classified(lone(&tops.triangles));
     let mut edges = lone(&tops.edges);
     for (&[a, b, c], class) in facets.iter() {
@@ -43,13 +47,13 @@ pub(super) fn flat(sites: &Sites<'_>, alpha: f64, monitor: &Monitor) -> Result<F
         vertices: by_input(vertices, input),
     };
     let betti = flat_betti(&complex);
-    Ok(Found { complex, betti })
+    Ok(FlatShape { complex, betti })
 }
 
 /// A simplex, and a coface: its other vertex, and whether it is in the shape.
 type Coface<const N: usize> = ([u32; N], Option<(u32, bool)>);
 
-/// Simplices that have no cofaces.
+/// Simplices without cofaces.
 fn lone<const N: usize>(rows: &[[u32; N]]) -> Vec<Coface<N>> {
     rows.iter().map(|&row| (row, None)).collect()
 }
@@ -60,7 +64,7 @@ struct Plane<'a> {
 }
 
 impl Plane<'_> {
-    /// Simplices with their classes, by what is known of their cofaces.
+    /// Classifies simplices by their cofaces; a simplex is listed once per coface.
     fn classified<const N: usize>(&self, mut known: Vec<Coface<N>>) -> Simplices<N> {
         known.sort_unstable();
         let mut simplices = Simplices::default();
@@ -79,6 +83,7 @@ impl Plane<'_> {
         simplices
     }
 
+    /// Whether the smallest orthogonal sphere has a squared radius of at most α. Exact.
     fn fits<const N: usize>(&self, row: [u32; N]) -> bool {
         match self.alpha {
             f64::INFINITY => true,
@@ -88,7 +93,7 @@ impl Plane<'_> {
     }
 }
 
-/// Rows by input index, which ascends with that of sites.
+/// Replaces site indices by input indices, which are in the same order.
 fn by_input<const N: usize>(mut simplices: Simplices<N>, input: &[u32]) -> Simplices<N> {
     for v in simplices.rows_mut().as_flattened_mut() {
         *v = input[*v as usize];

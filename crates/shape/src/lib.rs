@@ -3,13 +3,13 @@
 //!
 //! The weighted alpha shape at α is the part of the regular (weighted Delaunay) triangulation whose simplices
 //! have an empty orthogonal sphere of squared radius α or less, with their faces (Edelsbrunner 1992; Edelsbrunner and Mücke
-//! 1994, doi:10.1145/174462.156635). Every decision is exact, from the input doubles on, and degenerate input is decided
-//! like any other. α and weights are squared lengths.
+//! 1994, doi:10.1145/174462.156635). Every predicate is evaluated exactly on the input doubles, so degenerate input needs no special
+//! treatment. α and weights are squared lengths.
 //!
 //! ```
 //! use walpha_shape::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
 //!
-//! // The corners of a cube lie on a sphere of squared radius 3/4: at this α, and no less, it is full.
+//! // The corners of a cube lie on a sphere of squared radius 3/4: the least α at which the shape is the whole cube.
 //! let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|c| c as f64);
 //! let cube = WeightedPoints::unweighted((0..8).map(corner).collect());
 //! let shape = alpha_shape(cube, &ShapeOptions::new(Alpha::from_squared(0.75)?))?;
@@ -21,9 +21,7 @@
 //! ```
 
 mod alpha_shape;
-mod balls;
 mod blocks;
-mod cgal_error;
 mod error;
 mod flat;
 pub mod ladder;
@@ -43,14 +41,12 @@ mod voids;
 mod winding;
 
 pub use alpha_shape::AlphaShape;
-pub use balls::Balls;
 pub use blocks::PlanError;
-pub use cgal_error::CgalError;
-pub use error::{ShapeError, Whole};
+pub use error::{CgalError, ShapeError, Whole};
 pub use make::{alpha_shape, alpha_shape_by, alpha_shape_monitored};
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;
-pub use options::{Engine, ShapeOptions};
+pub use options::{Balls, Engine, ShapeOptions};
 pub use parts::{Component, Enclosed, NO_COMPONENT};
 pub use points::{LengthsError, WeightSummary, WeightedPoints};
 pub use sheets::Sheets;
@@ -62,7 +58,7 @@ pub use walpha_base::{Coordinates, LengthUnit, Space};
 pub use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices};
 pub use walpha_regular::{Torus, TorusError};
 
-// What walpha makes shapes of in blocks, from file to file: no promise to others.
+// For walpha, which computes shapes in blocks from file to file: not covered by semantic versioning.
 #[doc(hidden)]
 pub use alpha_shape::Assembled;
 #[doc(hidden)]
@@ -78,7 +74,7 @@ pub use voids::Hollow;
 #[doc(hidden)]
 pub use winding::{Directions, United, WindingSets};
 
-/// The example in the README runs.
+/// Compiles and runs the example in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

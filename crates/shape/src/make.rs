@@ -7,7 +7,7 @@ use walpha_regular::{Sites, check_numbers, lattice};
 use super::blocks::{self, Limits, Plan, Question, Reach};
 use super::flat::{self, flat};
 use super::options::power_alpha;
-use super::parts::wound;
+use super::parts::connected_on_torus;
 use super::topology::{components, sheet_betti, torus_betti};
 use super::{
     Alpha, AlphaShape, Balls, Betti, CgalError, Complex, Engine, Measures, ShapeError,
@@ -16,13 +16,12 @@ use super::{
 
 /// The alpha shape of weighted points.
 ///
-/// Of several points at one place the heaviest stays ([`AlphaShape::duplicates`]). An empty shape
+/// Of points with equal positions the heaviest is kept ([`AlphaShape::duplicates`]). An empty shape
 /// is a result, not an error. At α = ∞ the shape is the convex hull.
 ///
-/// Points in one plane or on one line, which is decided exactly, have their shape there: there are no
-/// cells, what is in the shape and a face of nothing else there is singular, its faces are regular,
-/// and nothing is interior. Ties are broken as in space. It is made in one piece, whatever blocks were
-/// asked for.
+/// Points in one plane or on one line, which is decided exactly, have their shape there: there are no cells, a
+/// simplex of the shape is singular if it is a face of no other one, else regular, and none is interior.
+/// Ties are broken as in space. Such a shape is computed in one block, whatever the options say.
 ///
 /// With [`ShapeOptions::periodic`] the shape is that of a torus. Its points are those given, moved into the
 /// box and rounded as [`Torus::wrap`](super::Torus::wrap) does. A simplex of the torus is listed once, by the input indices of
@@ -32,9 +31,10 @@ use super::{
 /// such edge. At α = ∞ the shape is the whole torus.
 ///
 /// # Errors
-/// [`CgalError::Absent`] for [`Engine::Cgal`], which the crate `walpha` has; NaN or absurd numbers, no points, and with [`ShapeOptions::refuse_flat`] fewer than four different
-/// places and points in one plane or on one line: see [`SitesError`](walpha_regular::SitesError); a negative radius:
-/// [`ShapeError::Radius`]; options that do not go together: [`ShapeOptions::check`].
+/// [`CgalError::Absent`] for [`Engine::Cgal`], which only the crate `walpha` has; numbers that are not finite or too large, no
+/// points, and with [`ShapeOptions::refuse_flat`] points that span no volume: see
+/// [`SitesError`](walpha_regular::SitesError); a negative radius: [`ShapeError::Radius`]; incompatible options:
+/// [`ShapeOptions::check`].
 pub fn alpha_shape(
     points: WeightedPoints,
     options: &ShapeOptions,
@@ -56,12 +56,12 @@ pub fn alpha_shape_monitored(
         return Err(CgalError::Absent.into());
     }
     let find = |sites: &Sites<'_>, options: &ShapeOptions| by_blocks(sites, options, monitor);
-    made(points, options.engine(Engine::Native), &find, monitor)
+    shape_by(points, options.engine(Engine::Native), &find, monitor)
 }
 
-/// The same, where the simplices of the sites and their classes at a squared α are computed by another program:
-/// the whole triangulation, in canonical order, by input indices. Components, topology, measures and all
-/// else are found on this complex. Points in one plane or on one line are not handed over.
+/// Like [`alpha_shape`], where another program classifies the simplices: `classify` returns the whole triangulation of
+/// the sites at α, in canonical order, by input indices. Components, topology and measures are computed from this
+/// complex. `classify` is not called for points in one plane or on one line.
 ///
 /// # Errors
 /// As [`alpha_shape`], and those of the other program.
@@ -79,13 +79,13 @@ pub fn alpha_shape_by(
         let duplicates = sites.duplicates().to_vec();
         Ok(Found { complex, boundary, hidden, duplicates, betti: None })
     };
-    made(points, *options, &find, monitor)
+    shape_by(points, *options, &find, monitor)
 }
 
-/// The simplices in space, as an engine finds them.
+/// An engine: computes the shape of sites that span a volume.
 type Find<'a> = dyn Fn(&Sites<'_>, &ShapeOptions) -> Result<Found, ShapeError> + 'a;
 
-fn made(
+fn shape_by(
     mut points: WeightedPoints,
     mut options: ShapeOptions,
     find: &Find<'_>,
@@ -109,7 +109,7 @@ fn made(
         found => found?,
     };
     let Found { mut complex, boundary, hidden, duplicates, betti } = found;
-    // Only who saw the whole triangulation lists what is outside.
+    // Only a whole triangulation has exterior simplices.
     if hidden.is_some() && !options.exterior {
         complex.retain_shape();
     }
@@ -120,7 +120,7 @@ fn made(
             Some(match options.periodic {
                 None => sheet_betti(&complex, *b0, sheets),
                 Some(torus) => {
-                    let wound = wound(&complex, &points.positions, torus);
+                    let wound = connected_on_torus(&complex, &points.positions, torus);
                     torus_betti(&complex, wound.directions().rank(), sheets, *windings)
                 }
             })
@@ -142,13 +142,13 @@ fn made(
     })
 }
 
-/// What an engine found.
+/// The result of an engine.
 struct Found {
     complex: Complex,
-    /// The number of components and the sheets of the boundary, where the engine knows them, and in how
-    /// many directions the sheets go round a torus.
+    /// The number of components, the sheets of the boundary, and the number of independent directions in which the
+    /// sheets wind round a torus; `None` for flat shapes.
     boundary: Option<(u64, Sheets, usize)>,
-    /// Sites that are not vertices, where the engine saw the whole triangulation.
+    /// Hidden sites, where the engine computed the whole triangulation.
     hidden: Option<Vec<u32>>,
     duplicates: Vec<[u32; 2]>,
     /// Betti numbers, where they are not counted by sheets.
@@ -176,7 +176,7 @@ fn in_plane(
     monitor: &Monitor,
 ) -> Result<Found, ShapeError> {
     let sites = Sites::any(positions, weights)?;
-    let flat::Found { complex, betti } = flat(&sites, power_alpha(options).squared(), monitor)?;
+    let flat::FlatShape { complex, betti } = flat(&sites, power_alpha(options).squared(), monitor)?;
     let hidden = Some(hidden(sites.input(), &complex.vertices));
     let duplicates = sites.duplicates().to_vec();
     Ok(Found { complex, boundary: None, hidden, duplicates, betti: Some(betti) })
@@ -188,10 +188,10 @@ fn by_blocks(
     monitor: &Monitor,
 ) -> Result<Found, ShapeError> {
     let asked = options.blocks.map(NonZeroUsize::get);
-    // Any α below −max ω asks for the empty shape, and doubles hold one.
+    // Below −max ω the shape is empty: this is a finite α below that.
     let largest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let alpha = power_alpha(options).squared().max(-2.0 * largest.abs() - 1.0);
-    // Of a torus, the whole triangulation is that with its exterior simplices.
+    // The whole triangulation of a torus comes with its exterior simplices only.
     let exterior = options.exterior || (options.hidden && sites.torus().is_some());
     let plan = if exterior || options.hidden || alpha.is_infinite() {
         Plan::whole(sites)
@@ -208,10 +208,11 @@ fn by_blocks(
     Ok(Found { complex: answer.complex, boundary, hidden: answer.hidden, duplicates, betti: None })
 }
 
+/// The power weights (α + ω)² of balls of radius α + ω.
 pub(super) fn squared_radii(weights: &[f64], alpha: Alpha) -> Result<Vec<f64>, ShapeError> {
     let radius = |(index, weight): (usize, &f64)| {
         let radius = alpha.squared() + weight;
-        // NaN compares false: it is refused too.
+        // NaN compares false, so it is refused, too.
         if radius >= 0.0 && radius.is_finite() {
             Ok(radius * radius)
         } else {
@@ -221,7 +222,7 @@ pub(super) fn squared_radii(weights: &[f64], alpha: Alpha) -> Result<Vec<f64>, S
     weights.iter().enumerate().map(radius).collect()
 }
 
-/// Sites that are not vertices. Both lists ascend.
+/// The sites that are no vertices. Both lists ascend.
 fn hidden(sites: &[u32], vertices: &Simplices<1>) -> Vec<u32> {
     let mut vertices = vertices.rows().iter().peekable();
     sites.iter().copied().filter(|&site| vertices.next_if(|v| v[0] == site).is_none()).collect()

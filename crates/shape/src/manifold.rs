@@ -2,8 +2,8 @@ use walpha_base::UnionFind;
 
 use super::Surface;
 
-/// Where the boundary of a shape is not a manifold: a solid in the sense of other programs has none of
-/// these, an alpha shape often has.
+/// Numbers of edges and vertices where the boundary of a shape is not a manifold. Other programs expect of a solid
+/// that there are none; alpha shapes often have some.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ManifoldDefects {
     /// Edges on more than two regular facets, where parts of the shape touch along a line.
@@ -14,15 +14,15 @@ pub struct ManifoldDefects {
 }
 
 impl ManifoldDefects {
-    /// Whether there is none.
+    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 }
 
 impl Surface {
-    /// Where the regular facets do not make a manifold. Singular simplices, which bound nothing, are not
-    /// looked at. O(n log n).
+    /// The defects of the surface of regular facets. Singular simplices, which bound nothing, do not count.
+    /// O(n log n).
     pub fn manifold_defects(&self) -> ManifoldDefects {
         let sides = self.sides();
         let mut fans = UnionFind::new(3 * self.regular.len());

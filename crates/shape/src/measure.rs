@@ -6,8 +6,7 @@ use walpha_regular::Torus;
 
 use super::{Class, Complex};
 
-/// Sizes of a shape in the units of its points, summed exactly and
-/// rounded once.
+/// Volume and areas of a shape in the units of its points, summed exactly and rounded once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measures {
     /// Volume of the interior cells.
@@ -19,8 +18,8 @@ pub struct Measures {
 }
 
 impl Measures {
-    /// Measures a shape, of a torus perhaps. The terms are rounded, their sums exact: the same on any
-    /// number of threads, and for shapes made in pieces. O(n).
+    /// Measures a shape, in space or on a torus. Terms are rounded, their sums exact: they do not depend on the
+    /// number of threads or blocks. O(n).
     pub fn of(complex: &Complex, positions: &[[f64; 3]], torus: Option<Torus>) -> Self {
         let at = |v: u32| positions[v as usize];
         let area = |class| {
@@ -31,7 +30,7 @@ impl Measures {
                 facet_area(together(torus, facet.map(at)))
             })
         };
-        // Divided last: sums of determinants on a lattice are whole numbers.
+        // Divided last: on a lattice, determinants and their sums are integers.
         let volume = sum(complex.cells.rows(), |i, cell| {
             if complex.cells.classes()[i] != Class::Interior {
                 return 0.0;
@@ -42,7 +41,7 @@ impl Measures {
     }
 }
 
-/// The corners of a simplex; of a torus those that belong together.
+/// The corners of a simplex; on a torus, the copies nearest to the first one.
 #[inline]
 pub(crate) fn together<const N: usize>(
     torus: Option<Torus>,
@@ -56,13 +55,14 @@ pub fn facet_area([a, b, c]: [[f64; 3]; 3]) -> f64 {
     length(cross(sub(b, a), sub(c, a))) / 2.0
 }
 
-/// Six times the volume of a positively oriented cell: a determinant, a whole number on a lattice.
+/// Six times the volume of a positively oriented cell: a determinant, an integer on an integer lattice.
 pub fn six_volumes([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
     dot(cross(sub(b, a), sub(c, a)), sub(d, a))
 }
 
 /// Σ `term(i, row)`, exact and rounded once.
 fn sum<const N: usize>(rows: &[[u32; N]], term: impl Fn(usize, [u32; N]) -> f64 + Sync) -> f64 {
+    // Rows summed by one thread at a time.
     const CHUNK: usize = 1 << 14;
     let of_chunk = |(chunk, rows): (usize, &[[u32; N]])| {
         (chunk * CHUNK..).zip(rows).map(|(i, &row)| term(i, row)).collect::<Sum>()

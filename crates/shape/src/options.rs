@@ -3,15 +3,15 @@ use std::num::NonZeroUsize;
 use serde::{Deserialize, Serialize};
 use walpha_base::setters;
 
-use super::{Alpha, Balls, ShapeError, Torus, Whole};
+use super::{Alpha, ShapeError, Torus, Whole};
 
-/// Which program computes the shape; all give the same answer.
+/// Which program computes the shape; the result is the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Engine {
-    /// Native; in the crate `walpha`, CGAL for up to 20 000 points, and native beyond and for what only it can do:
+    /// Native; in the crate `walpha`, CGAL for up to 20 000 points, and native for more or for what only it can do:
     /// blocks, a limit on memory, periodic boxes, a build without CGAL.
     #[default]
     Auto,
@@ -22,7 +22,20 @@ pub enum Engine {
     Native,
 }
 
-/// How to make a shape of weighted points.
+/// Which ball a point of weight ω is at parameter α.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Balls {
+    /// A ball of squared radius α + ω: the usual definition (Edelsbrunner 1992; CGAL), the default.
+    #[default]
+    Power,
+    /// A ball of radius α + ω, as a sentence of the paper's section 4.2 reads: the power weight
+    /// (α + ω)² at parameter 0.
+    Radius,
+}
+
+/// How to compute the shape of weighted points.
 ///
 /// ```
 /// use walpha_shape::{Alpha, Engine, ShapeOptions};
@@ -39,21 +52,21 @@ pub struct ShapeOptions {
     pub balls: Balls,
     /// Which program computes it.
     pub engine: Engine,
-    /// Whether the simplices outside the shape are wanted too: the whole triangulation, which
-    /// takes one block.
+    /// Whether the simplices outside the shape are listed, too: the whole triangulation, which takes one
+    /// block.
     pub exterior: bool,
-    /// Whether the points that heavier ones hide are wanted ([`AlphaShape::hidden`](super::AlphaShape::hidden)),
+    /// Whether hidden points are listed ([`AlphaShape::hidden`](super::AlphaShape::hidden)),
     /// which takes the whole triangulation, too.
     pub hidden: bool,
-    /// How many blocks the points are cut into, at most one for each; by default, as few as keep the
-    /// threads at work and the memory bounded. One block is the whole triangulation.
+    /// The number of blocks that the points are cut into, at most one per point; by default the fewest that keep all
+    /// threads busy and the bound on memory. One block is the whole triangulation.
     pub blocks: Option<NonZeroUsize>,
-    /// Bytes of memory that the plan for the blocks keeps to.
+    /// A bound on memory in bytes, which the number of blocks is chosen for.
     pub memory: Option<u64>,
     /// Whether points in one plane, on one line, or fewer than four are an error. Otherwise their shape
     /// is the one in their plane or on their line, without cells.
     pub refuse_flat: bool,
-    /// The box that repeats, if one does: the points are those of a torus, of which the shape is.
+    /// The periodic box, if there is one: points and shape are those of a torus.
     pub periodic: Option<Torus>,
 }
 
@@ -85,7 +98,7 @@ impl ShapeOptions {
         periodic: Option<Torus>,
     }
 
-    /// Whether they go together, which [`alpha_shape`](super::alpha_shape()) looks at first.
+    /// Checks that the options are compatible, as [`alpha_shape`](super::alpha_shape()) does first.
     ///
     /// # Errors
     /// [`ShapeError::Unbounded`] and [`ShapeError::Divided`]: blocks, or a bound on memory, for what
@@ -115,7 +128,7 @@ impl ShapeOptions {
     }
 }
 
-/// The parameter at which the power weights are judged.
+/// The α for the power weights.
 pub(super) fn power_alpha(options: &ShapeOptions) -> Alpha {
     match options.balls {
         Balls::Power => options.alpha,

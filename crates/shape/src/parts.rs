@@ -1,4 +1,4 @@
-//! Components of a shape.
+//! The components of a shape.
 
 use serde::{Deserialize, Serialize};
 use walpha_base::UnionFind;
@@ -11,9 +11,9 @@ use super::{AlphaShape, Class, Complex, Sheets};
 /// A connected component of a shape.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Component {
-    /// Its vertices.
+    /// Number of its vertices.
     pub vertices: usize,
-    /// Its cells; 0 for one that is nowhere solid.
+    /// Number of its cells; 0 for a component that is nowhere solid.
     pub cells: usize,
     /// The volume of its cells, in cubed units of the points.
     pub volume: f64,
@@ -25,21 +25,21 @@ pub struct Component {
     pub low: [f64; 3],
     /// The largest coordinates of its box, (x, y, z).
     pub high: [f64; 3],
-    /// What its boundary encloses, largest first; `None` where sheets are not known, and on a torus, where
-    /// not every sheet encloses something ([`AlphaShape::voids`]).
+    /// The voids that its boundary encloses, largest first; `None` where sheets are not known, and on a torus,
+    /// where a sheet need not enclose anything ([`AlphaShape::voids`]).
     pub voids: Option<Vec<Enclosed>>,
-    /// On a torus: in how many independent directions it goes round. Its box is that of one of its copies, and
-    /// along axes that it goes round the whole side.
+    /// On a torus: the number of independent directions in which it winds round. Its box is that of one of its copies,
+    /// and the whole side along axes that it winds along.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rounds: Option<usize>,
 }
 
-/// A void by the sheet around it. Another component may float in it: its volume counts here.
+/// A void, described by the sheet around it. The volume includes that of other components inside.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Enclosed {
     /// The number of the sheet.
     pub sheet: u32,
-    /// What the sheet encloses, in cubed units of the points.
+    /// The volume enclosed by the sheet, in cubed units of the points.
     pub volume: f64,
     /// The smallest coordinates of its box, (x, y, z).
     pub low: [f64; 3],
@@ -47,7 +47,7 @@ pub struct Enclosed {
     pub high: [f64; 3],
 }
 
-/// What [`AlphaShape::component_numbers`] says of points that are not vertices of the shape.
+/// Stands in [`AlphaShape::component_numbers`] for points that are no vertices of the shape.
 pub const NO_COMPONENT: u32 = u32::MAX;
 
 impl AlphaShape {
@@ -55,7 +55,7 @@ impl AlphaShape {
     /// Components are numbered in the order of their smallest vertices. O(n).
     pub fn component_numbers(&self) -> Vec<u32> {
         let mut sets = connected(self.complex());
-        // Copies of a point are where the point is.
+        // Copies of a point are in its component.
         let first_copy = (self.points().len() - self.copies.len()) as u32;
         for (copy, &of) in (first_copy..).zip(&self.copies) {
             sets.unite(copy, of);
@@ -82,51 +82,52 @@ impl AlphaShape {
         let numbers = self.component_numbers();
         let positions = &self.points().positions;
         let torus = self.options().periodic;
-        let mut wound = torus.map(|torus| (torus, wound(self.complex(), positions, torus)));
+        let mut windings =
+            torus.map(|torus| (torus, connected_on_torus(self.complex(), positions, torus)));
         let number = |v: u32| numbers[v as usize] as usize;
         let mut components: Vec<ComponentSums> = Vec::new();
         for &[v] in self.complex().vertices.rows() {
             let mut point = positions[v as usize];
-            if let Some((torus, wound)) = &mut wound {
-                point = torus.moved(point, wound.find(v).1);
+            if let Some((torus, windings)) = &mut windings {
+                point = torus.moved(point, windings.find(v).1);
             }
             match number(v) {
                 n if n == NO_COMPONENT as usize => {}
                 n if n == components.len() => components.push(ComponentSums::at(point)),
-                n => components[n].reach(point),
+                n => components[n].add_vertex(point),
             }
         }
         for cell in self.complex().cells.of(Class::Interior) {
             components[number(cell[0])].add_cell(self.corners(*cell));
         }
         for (facet, class) in self.complex().facets.iter() {
-            // The ends of others may be in no component.
+            // The vertices of exterior facets may be in no component.
             if let Class::Regular | Class::Singular = class {
                 components[number(facet[0])].add_facet(self.corners(*facet), class);
             }
         }
-        // What a surface of a torus encloses is not its sheets' to say.
+        // On a torus, a sheet need not enclose anything.
         let sheets = self.sheets().filter(|_| torus.is_none());
         let sheets = sheets.map(|sheets| self.sheet_sums(sheets, &numbers));
         let mut components = components_of_sums(components, sheets);
-        if let Some((torus, wound)) = wound {
-            self.go_round(&mut components, &numbers, torus, wound);
+        if let Some((torus, windings)) = windings {
+            self.set_rounds(&mut components, &numbers, torus, windings);
         }
         components
     }
 
-    /// Says how components go round a torus.
-    fn go_round(
+    /// Sets `rounds` and the boxes of components that wind round a torus.
+    fn set_rounds(
         &self,
         components: &mut [Component],
         numbers: &[u32],
         torus: Torus,
-        mut wound: WindingSets,
+        mut windings: WindingSets,
     ) {
         components.iter_mut().for_each(|component| component.rounds = Some(0));
         for &[v] in self.complex().vertices.rows() {
-            let (root, _) = wound.find(v);
-            let Some(directions) = wound.rounds(root).filter(|_| root == v) else { continue };
+            let (root, _) = windings.find(v);
+            let Some(directions) = windings.rounds(root).filter(|_| root == v) else { continue };
             let component = &mut components[numbers[v as usize] as usize];
             component.rounds = Some(directions.rank());
             for axis in (0..3).filter(|&axis| directions.has(axis)) {
@@ -135,7 +136,7 @@ impl AlphaShape {
         }
     }
 
-    /// Each sheet that has facets, with its component.
+    /// Each sheet with facets: its number, its component, and its sums.
     fn sheet_sums(&self, sheets: &Sheets, numbers: &[u32]) -> Vec<(u32, usize, SheetSums)> {
         let positions = &self.points().positions;
         let complex = self.complex();
@@ -160,8 +161,12 @@ impl AlphaShape {
     }
 }
 
-/// The vertices of a shape of a torus, united by its edges.
-pub(super) fn wound(complex: &Complex, positions: &[[f64; 3]], torus: Torus) -> WindingSets {
+/// The vertices of a shape of a torus, united along its edges.
+pub(super) fn connected_on_torus(
+    complex: &Complex,
+    positions: &[[f64; 3]],
+    torus: Torus,
+) -> WindingSets {
     let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
     let mut sets = WindingSets::new(points);
     for (&[a, b], class) in complex.edges.iter() {
@@ -173,7 +178,7 @@ pub(super) fn wound(complex: &Complex, positions: &[[f64; 3]], torus: Torus) -> 
     sets
 }
 
-/// The vertices of a shape, united by its edges.
+/// The vertices of a shape, united along its edges.
 pub(super) fn connected(complex: &Complex) -> UnionFind {
     let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
     let mut sets = UnionFind::new(points);

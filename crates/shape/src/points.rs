@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
 use walpha_base::Sum;
 
-/// What a shape is made of: places, their weights, and values where they are known.
+/// Weighted points, with values where they are known.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WeightedPoints {
     /// Coordinates (x, y, z).
@@ -12,16 +12,16 @@ pub struct WeightedPoints {
     pub values: Option<Vec<f64>>,
 }
 
-/// A column without exactly one entry for each point.
+/// A column whose number of entries is not the number of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{given} {column} for {points} points: each point needs one")]
 #[non_exhaustive]
 pub struct LengthsError {
-    /// What the column holds.
+    /// What the column contains.
     pub column: &'static str,
-    /// Its entries.
+    /// Its number of entries.
     pub given: usize,
-    /// The points.
+    /// The number of points.
     pub points: usize,
 }
 
@@ -37,20 +37,20 @@ pub struct WeightSummary {
 }
 
 impl LengthsError {
-    /// Unless `given` entries of a column are one for each of the `points`.
+    /// Checks that a column has as many entries as there are points.
     ///
     /// # Errors
-    /// The error.
+    /// [`LengthsError`] where it has not.
     pub fn unless_equal(column: &'static str, given: usize, points: usize) -> Result<(), Self> {
         if given == points { Ok(()) } else { Err(Self { column, given, points }) }
     }
 }
 
 impl WeightedPoints {
-    /// Points at these places (x, y, z) with weights ω, squared lengths.
+    /// Points at positions (x, y, z) with weights ω, squared lengths.
     ///
     /// # Errors
-    /// Unless there is a weight for each point.
+    /// The numbers of positions and weights differ.
     pub fn new(positions: Vec<[f64; 3]>, weights: Vec<f64>) -> Result<Self, LengthsError> {
         LengthsError::unless_equal("weights", weights.len(), positions.len())?;
         Ok(Self { positions, weights, values: None })
@@ -64,7 +64,7 @@ impl WeightedPoints {
     /// The same points with values F.
     ///
     /// # Errors
-    /// Unless there is one for each point.
+    /// The numbers of points and values differ.
     pub fn with_values(self, values: Vec<f64>) -> Result<Self, LengthsError> {
         LengthsError::unless_equal("values", values.len(), self.len())?;
         Ok(Self { values: Some(values), ..self })
@@ -87,7 +87,7 @@ impl WeightedPoints {
         }
         let ends = |(low, high): (f64, f64), &w: &f64| (low.min(w), high.max(w));
         let (min, max) = self.weights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
-        // Summed exactly, so that it does not matter in what order, or how many at a time.
+        // Summed exactly, so that the order and the number of threads do not matter.
         let sum: Sum = self.weights.iter().copied().collect();
         WeightSummary { min, mean: sum.value() / self.weights.len() as f64, max }
     }

@@ -8,35 +8,35 @@ use super::blocks::Answer;
 use super::topology::sides;
 use super::{Class, Complex};
 
-/// The sheets of a shape's boundary: the connected pieces of its outside seen closely. A component
-/// has one around it and one for each of its voids. They are numbered from 0 in the order in which
-/// they appear along the boundary facets, then the singular edges; isolated points, each a sheet of
-/// its own, have no number.
+/// The sheets of a shape's boundary: the connected components of the boundary of a thin neighbourhood of the shape.
+/// A component of the shape has one around it and one for each of its voids. Sheets are numbered from 0 in the order
+/// of their first boundary facets, then of their first singular edges. The sheet of an isolated point has no number.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheets {
-    /// For each regular facet, in their order, the sheet it is part of.
+    /// For each regular facet, in their order, its sheet.
     pub regular: Vec<u32>,
     /// For each singular facet, in their order, the sheet seen from which its sorted row turns
     /// clockwise, and that on the other side.
     pub singular: Vec<[u32; 2]>,
     /// For each singular edge, in their order, the sheet around it.
     pub edges: Vec<u32>,
-    /// How many there are.
+    /// Number of numbered sheets.
     pub count: u32,
 }
 
-/// Where there is no number yet.
-const NONE: u32 = u32::MAX;
+/// Stands for the absence of a number.
+const UNNUMBERED: u32 = u32::MAX;
 
 impl Sheets {
-    /// Gives the sheets of blocks numbers that do not depend on the blocks. O(n).
+    /// Renumbers the sheets of blocks so that numbers do not depend on the blocks. O(n).
     pub(super) fn of(answer: &Answer) -> Self {
         Self::numbered(&answer.complex, &answer.facet_sheets, &answer.edge_sheets)
     }
 
-    /// The sheets of a shape within its *whole* triangulation in space, exterior simplices included, from
-    /// their definition: what two corners of exterior cells see, at one vertex of the shape and with an
-    /// exterior facet between them, or at the ends of an edge of the shape, lies on one sheet. O(n log n).
+    /// The sheets of a shape within its *whole* triangulation in space, exterior simplices included, from their
+    /// definition: two corners of exterior cells are on one sheet if they are at one vertex of the shape and their
+    /// cells share an exterior facet there, or if they are at the two ends of an edge of the shape in one cell.
+    /// O(n log n).
     pub(super) fn of_whole(whole: &Complex) -> Self {
         let mut outside = Outside::of(whole);
         let facets = outside.facets();
@@ -47,15 +47,16 @@ impl Sheets {
         Self::numbered(whole, &facets, &edges)
     }
 
-    /// Numbers sheets by where they appear first: `facets` names that of each regular facet and the two of
-    /// each singular one, in the order of the facets, `edges` that of each singular edge.
+    /// Numbers sheets in the order of their first appearance. `facets` has one name for each regular facet and two for
+    /// each singular one, in the order of the facets; `edges` has one for each singular edge.
     fn numbered(complex: &Complex, facets: &[u32], edges: &[u32]) -> Self {
         let named = facets.iter().chain(edges);
-        let mut numbers = vec![NONE; named.clone().max().map_or(0, |&most| most as usize + 1)];
+        let mut numbers =
+            vec![UNNUMBERED; named.clone().max().map_or(0, |&most| most as usize + 1)];
         let mut count = 0;
         let mut numbered = named.map(|&name| {
             let number = &mut numbers[name as usize];
-            if *number == NONE {
+            if *number == UNNUMBERED {
                 *number = count;
                 count += 1;
             }
@@ -74,7 +75,7 @@ impl Sheets {
         Self { regular, singular, edges, count }
     }
 
-    /// The number that files have where there is no sheet.
+    /// Stands in files for the absence of a sheet.
     pub const NONE: i32 = -1;
 
     /// For each regular and then each singular facet the sheet in front of it, seen from which its
@@ -85,11 +86,11 @@ impl Sheets {
     }
 }
 
-/// The corners of exterior cells, numbered 4·cell + place, those that see one sheet united. Beyond each
-/// facet of the hull lies one more exterior cell, which has three corners.
+/// A union-find over the corners of exterior cells, 4·cell + corner; corners on one sheet are united. Beyond each facet
+/// of the hull lies one more exterior cell, the infinite one, which has three corners here.
 struct Outside<'a> {
     whole: &'a Complex,
-    /// The facets of all cells, sorted, ascending, each with its cell: a facet of the hull once.
+    /// The facets of all cells as sorted rows, ascending, each with its cell; those of the hull occur once.
     sides: Vec<([u32; 3], u32)>,
     /// The facets of the hull.
     hull: Vec<[u32; 3]>,
@@ -112,7 +113,7 @@ impl<'a> Outside<'a> {
         Self { whole, sides, hull, vertices, sets }
     }
 
-    /// The corners of a cell.
+    /// The vertices of a cell.
     fn row(&self, cell: u32) -> &[u32] {
         let cells = self.whole.cells.rows();
         match (cell as usize).checked_sub(cells.len()) {
@@ -123,11 +124,11 @@ impl<'a> Outside<'a> {
 
     /// The number of a cell's corner at a vertex.
     fn corner(&self, cell: u32, v: u32) -> u32 {
-        let place = self.row(cell).iter().position(|&corner| corner == v);
-        4 * cell + place.expect("a vertex of the cell") as u32
+        let corner = self.row(cell).iter().position(|&corner| corner == v);
+        4 * cell + corner.expect("a vertex of the cell") as u32
     }
 
-    /// Unites the corners of two cells at those of their common vertices that are in the shape.
+    /// Unites the corners of two cells at those of the given common vertices that are in the shape.
     fn unite(&mut self, [one, other]: [u32; 2], vertices: &[u32]) {
         for &v in vertices {
             if self.vertices[v as usize] {
@@ -137,15 +138,15 @@ impl<'a> Outside<'a> {
         }
     }
 
-    /// A corner that sees the outer side of each regular facet, and two that see those of each singular
-    /// one, in the order of the facets: first the side from which its sorted row turns clockwise.
+    /// A corner on the outer side of each regular facet, and one on each side of each singular one, in the order of the
+    /// facets: first the side from which its sorted row turns clockwise. Unites corners across exterior facets.
     fn facets(&mut self) -> Vec<u32> {
         let (cells, facets) = (&self.whole.cells, &self.whole.facets);
         // Facets as sorted rows, ascending as `sides` are: regular ones need not be listed so.
         let mut ascending: Vec<([u32; 3], usize)> = Vec::with_capacity(facets.len());
         ascending.extend(facets.rows().iter().enumerate().map(|(at, &row)| (sorted(row), at)));
         ascending.par_sort_unstable();
-        let mut seen = vec![[NONE; 2]; facets.len()];
+        let mut seen = vec![[UNNUMBERED; 2]; facets.len()];
         let mut beyond = cells.len() as u32..;
         let sides = std::mem::take(&mut self.sides);
         let groups = sides.chunk_by(|a, b| a.0 == b.0);
@@ -168,17 +169,17 @@ impl<'a> Outside<'a> {
             }
         }
         let seen = seen.into_flattened();
-        seen.into_iter().filter(|&corner| corner != NONE).collect()
+        seen.into_iter().filter(|&corner| corner != UNNUMBERED).collect()
     }
 
-    /// A corner that sees each singular edge, in their order. Unites corners along edges of the shape, and
-    /// those of cells beyond the hull, which have infinite facets between them.
+    /// A corner at each singular edge, in their order. Unites corners along edges of the shape, and those of infinite
+    /// cells, which share infinite facets.
     fn edges(&mut self) -> Vec<u32> {
         let (cells, edges) = (&self.whole.cells, &self.whole.edges);
         let exterior = cells.classes().iter().map(|&class| class == Class::Exterior);
         let exterior = (0..).zip(exterior).filter(|(_, is)| *is).map(|(cell, _)| cell);
         let beyond = (cells.len() as u32..).take(self.hull.len());
-        let mut seen = vec![NONE; edges.len()];
+        let mut seen = vec![UNNUMBERED; edges.len()];
         for cell in exterior.chain(beyond.clone()) {
             let row = self.row(cell).to_vec();
             for (i, &a) in row.iter().enumerate() {
@@ -190,7 +191,7 @@ impl<'a> Outside<'a> {
                         let corner = self.corner(cell, a);
                         let other = self.corner(cell, b);
                         self.sets.unite(corner, other);
-                        seen[edge] = if class == Class::Singular { corner } else { NONE };
+                        seen[edge] = if class == Class::Singular { corner } else { UNNUMBERED };
                     }
                 }
             }
@@ -204,12 +205,12 @@ impl<'a> Outside<'a> {
         for pair in around.chunk_by(|a, b| a.0 == b.0) {
             self.unite([pair[0].1, pair[1].1], &pair[0].0);
         }
-        seen.into_iter().filter(|&corner| corner != NONE).collect()
+        seen.into_iter().filter(|&corner| corner != UNNUMBERED).collect()
     }
 }
 
-/// Whether the sorted corners of a facet turn counter-clockwise seen from the cell, which is positively
-/// oriented and has them.
+/// Whether the sorted vertices of a facet of a positively oriented cell turn counter-clockwise seen from inside the
+/// cell.
 fn is_first(facet: [u32; 3], cell: [u32; 4]) -> bool {
     let [a, b, c] = facet;
     let d = cell.into_iter().find(|v| !facet.contains(v)).expect("a fourth corner");

@@ -1,4 +1,4 @@
-//! A boundary that other programs take for a solid's: closed, oriented, and a manifold.
+//! The boundary of a shape as a closed, oriented manifold, which other programs accept as the boundary of a solid.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -12,14 +12,13 @@ use super::{AlphaShape, Surface};
 pub struct Cuts {
     /// Edges on more than two facets, along which parts of the shape touch.
     pub edges: usize,
-    /// Vertices that now occur more than once.
+    /// Number of copies of vertices that were added.
     pub vertices: usize,
-    /// Vertices in the middle of an edge, at which one of two sheets that share both of its ends
-    /// was bent apart from the other.
+    /// Vertices inserted at midpoints of edges, to separate facets along an edge whose both ends are in one fan.
     pub midpoints: usize,
 }
 
-/// A corner of a facet: three times its row, and which.
+/// A corner of a facet: 3·row + corner.
 type Corner = u32;
 
 impl Surface {
@@ -27,8 +26,8 @@ impl Surface {
     /// along it in opposite directions, and the facets around a vertex are one fan. Where the shape
     /// is not a manifold, its parts are cut apart: facets that bound the same cells stay together, and
     /// vertices between others occur once for each fan. Where that leaves an edge on four facets, as both
-    /// of its ends are in one fan, two of them get a vertex in its middle. No place moves, but for the
-    /// rounding of such middles. O(n log n).
+    /// of its ends are in one fan, two of them get a vertex at its midpoint. No vertex moves; only such midpoints
+    /// are rounded. O(n log n).
     #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn solid(shape: &AlphaShape) -> (Self, Cuts) {
         let whole = Self::of(shape);
@@ -38,7 +37,7 @@ impl Surface {
             fans.unite(a[0], b[0]);
             fans.unite(a[1], b[1]);
         }
-        // A fan's number is that of its vertex, if it is the first there.
+        // Fans are numbered in the order of their vertices; each gets a vertex.
         let mut vertices = Vec::new();
         let mut number = HashMap::new();
         let mut order: Vec<(u32, Corner)> =
@@ -57,20 +56,20 @@ impl Surface {
         let mut cuts =
             Cuts { edges: pairs.touching, vertices: vertices.len() - first_ones, midpoints: 0 };
         let mut solid = Self { vertices, regular, ..Self::default() };
-        solid.bend(&pairs.corners);
+        solid.insert_midpoints(&pairs.corners);
         cuts.midpoints = solid.midpoints.len();
         (solid, cuts)
     }
 
-    /// Parts sheets that share both ends of an edge, by vertices in its middle.
-    fn bend(&mut self, pairs: &[[[Corner; 2]; 2]]) {
+    /// Separates pairs of facets at an edge whose ends they share, by vertices at its midpoint.
+    fn insert_midpoints(&mut self, pairs: &[[[Corner; 2]; 2]]) {
         let mut sheets: BTreeMap<[u32; 2], Vec<[Corner; 2]>> = BTreeMap::new();
         for [[a, other], [b, _]] in pairs {
             let ends = [a, other].map(|&corner| self.regular.as_flattened()[corner as usize]);
             let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
             sheets.entry(key).or_default().push([a / 3, b / 3]);
         }
-        // Edges of each facet that get a middle, by their ends.
+        // By facet, the edges that get a midpoint, by their ends.
         let mut middles: BTreeMap<u32, Vec<([u32; 2], u32)>> = BTreeMap::new();
         for (ends, sheets) in &sheets {
             for facets in &sheets[1..] {
@@ -94,17 +93,18 @@ impl Surface {
     }
 }
 
-/// A triangle cut into triangles, by vertices in the middle of some of its edges: the one behind each corner.
+/// A triangle divided into triangles by midpoints of some of its edges; `middles[i]` is on the edge that starts at
+/// corner i.
 fn divided(row: [u32; 3], middles: [Option<u32>; 3]) -> Vec<[u32; 3]> {
     let around: Vec<u32> = (0..3).flat_map(|i| [Some(row[i]), middles[i]]).flatten().collect();
-    // From a vertex in a middle, no piece is flat: its two neighbours are on one line with it.
+    // As a fan from a midpoint, none is degenerate: only its two neighbours are collinear with it.
     let Some(from) = (0..3).find_map(|i| middles[i]) else { return vec![row] };
     let at = around.iter().position(|&v| v == from).expect("it is one of them");
     let turned: Vec<u32> = around[at..].iter().chain(&around[..at]).copied().collect();
     turned[1..].windows(2).map(|pair| [from, pair[0], pair[1]]).collect()
 }
 
-/// Facets that meet along edges of the boundary of the same cells.
+/// Pairs of facets that stay joined along an edge, as they bound the same cells there.
 struct Pairs {
     /// For two facets, their corners at the ends of the edge, in the same order.
     corners: Vec<[[Corner; 2]; 2]>,
@@ -128,7 +128,7 @@ impl Pairs {
                 corners.push([*a, *b]);
                 continue;
             }
-            // By the third corner of each facet, which is that of the first or last cell between.
+            // By the third corner of each facet, which is also one of the first or last cell between two facets.
             let third = |corners: &[Corner; 2]| {
                 let row = surface.regular[corners[0] as usize / 3];
                 let ends = sides[0].0;
@@ -149,7 +149,7 @@ impl Pairs {
     }
 }
 
-/// Around each of these edges, the third and fourth corners of the cells of the shape.
+/// By edge, the third and fourth corners of the cells of the shape around it: the link of the edge in the shape.
 fn wedges(
     shape: &AlphaShape,
     edges: &HashMap<[u32; 2], usize>,
@@ -171,7 +171,7 @@ fn wedges(
     wedges
 }
 
-/// The other end of the row of cells that begins at a facet with this third corner.
+/// The other end of the chain of cells around an edge that starts at the facet with this third corner.
 fn last(links: &[[u32; 2]], from: u32) -> u32 {
     let (mut at, mut before) = (from, None);
     loop {

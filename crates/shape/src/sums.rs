@@ -1,16 +1,16 @@
-//! What is summed over components and sheets, part by part.
+//! Sums over components and sheets, accumulated part by part.
 
 use serde::{Deserialize, Serialize};
 use walpha_base::Sum;
 
 use super::{Class, Component, Enclosed, Measures, facet_area, six_volumes};
 
-/// What is summed over a component, or over a part of one: parts [join](Self::join) in any order.
+/// Sums over a component, or over a part of one. Parts are [joined](Self::join) in any order, with the same result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ComponentSums {
-    /// Vertices so far.
+    /// Number of vertices.
     pub vertices: usize,
-    /// Cells so far.
+    /// Number of cells.
     pub cells: usize,
     six_volumes: Sum,
     area: Sum,
@@ -20,7 +20,7 @@ pub struct ComponentSums {
 }
 
 impl ComponentSums {
-    /// One of its vertices.
+    /// A component of one vertex.
     pub fn at(point: [f64; 3]) -> Self {
         Self {
             vertices: 1,
@@ -33,19 +33,19 @@ impl ComponentSums {
         }
     }
 
-    /// Another vertex.
-    pub fn reach(&mut self, point: [f64; 3]) {
+    /// Adds a vertex.
+    pub fn add_vertex(&mut self, point: [f64; 3]) {
         self.vertices += 1;
         widen(&mut self.low, &mut self.high, point);
     }
 
-    /// A cell that is in the shape.
+    /// Adds a cell of the shape.
     pub fn add_cell(&mut self, corners: [[f64; 3]; 4]) {
         self.cells += 1;
         self.six_volumes.add(six_volumes(corners));
     }
 
-    /// A facet of some class.
+    /// Adds a facet, if it is regular or singular.
     pub fn add_facet(&mut self, corners: [[f64; 3]; 3], class: Class) {
         match class {
             Class::Regular => self.area.add(facet_area(corners)),
@@ -54,7 +54,7 @@ impl ComponentSums {
         }
     }
 
-    /// Takes in another part.
+    /// Adds another part.
     pub fn join(&mut self, other: &Self) {
         self.vertices += other.vertices;
         self.cells += other.cells;
@@ -65,7 +65,7 @@ impl ComponentSums {
         widen(&mut self.low, &mut self.high, other.high);
     }
 
-    /// What all of these have, which is what the shape has.
+    /// The measures of all components together, which are those of the shape.
     pub fn measures<'a>(all: impl Iterator<Item = &'a Self> + Clone) -> Measures {
         let sum = |of: fn(&Self) -> &Sum| {
             let mut sum = Sum::default();
@@ -84,7 +84,7 @@ impl ComponentSums {
         Component {
             vertices,
             cells,
-            // Divided last: sums of determinants on a lattice are whole numbers.
+            // Divided last: on a lattice, determinants and their sums are integers.
             volume: self.six_volumes.value() / 6.0,
             area: self.area.value(),
             singular_area: self.singular_area.value(),
@@ -96,7 +96,7 @@ impl ComponentSums {
     }
 }
 
-/// What is summed over the sides of facets that are on one sheet, or over some of them.
+/// Sums over the sides of facets on one sheet, or over some of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SheetSums {
     six_volumes: Sum,
@@ -112,15 +112,15 @@ impl Default for SheetSums {
 }
 
 impl SheetSums {
-    /// A side of a facet, whose corners turn counter-clockwise seen from outside the shape. `apex` is one
-    /// place for all: of the cones over the sides of a sheet from it, signed, the sheet's inside remains.
+    /// Adds a side of a facet, whose corners turn counter-clockwise seen from outside the shape. `apex` is the same for
+    /// all sides: the signed volumes of the cones from it over a closed sheet sum to the volume inside.
     pub fn add(&mut self, apex: [f64; 3], corners: [[f64; 3]; 3]) {
         let [a, b, c] = corners;
         self.six_volumes.add(-six_volumes([apex, a, b, c]));
         corners.iter().for_each(|&corner| widen(&mut self.low, &mut self.high, corner));
     }
 
-    /// Takes in other sides.
+    /// Adds other sides of the same sheet.
     pub fn join(&mut self, other: &Self) {
         self.six_volumes.join(&other.six_volumes);
         widen(&mut self.low, &mut self.high, other.low);
@@ -133,8 +133,8 @@ impl SheetSums {
     }
 }
 
-/// Components by their numbers, with the voids that their sheets enclose; sheets ascend by number, each
-/// with its component.
+/// Components from their sums, with the voids that their sheets enclose. Each sheet is given with its number, its
+/// component and its sums, in ascending order.
 pub fn components_of_sums(
     components: Vec<ComponentSums>,
     sheets: Option<Vec<(u32, usize, SheetSums)>>,
@@ -146,7 +146,7 @@ pub fn components_of_sums(
     let enclosed =
         |(sheet, component, sums): (u32, usize, SheetSums)| (component, sums.enclosed(sheet));
     let mut found: Vec<(usize, Enclosed)> = sheets.into_iter().map(enclosed).collect();
-    // The sheet around a component has what it encloses behind it: least, and first.
+    // The outer sheet of a component encloses minus the volume of it and its voids: the least, so it is the first.
     found.sort_by(|(a, first), (b, second)| a.cmp(b).then(first.volume.total_cmp(&second.volume)));
     let voids = found.chunk_by(|a, b| a.0 == b.0).flat_map(|of_one| of_one[1..].iter().rev());
     for &(component, void) in voids {

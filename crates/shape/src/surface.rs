@@ -2,8 +2,8 @@ use std::collections::BTreeSet;
 
 use super::{AlphaShape, Class, Complex};
 
-/// What can be seen of a shape: boundary facets and everything thinner, with its own compact
-/// numbering of vertices.
+/// The visible part of a shape: regular facets and all singular simplices, with a compact numbering of their
+/// vertices.
 ///
 /// If the points 4, 7, 8 and 9 are those on the boundary, `vertices` is `[4, 7, 8, 9]` and a facet
 /// over the points 4, 9 and 8 is the row `[0, 3, 2]`.
@@ -11,11 +11,11 @@ use super::{AlphaShape, Class, Complex};
 pub struct Surface {
     /// Input indices of the vertices used below, ascending.
     pub vertices: Vec<u32>,
-    /// Further vertices, in the middle between two of those: of [`Surface::solid`] alone.
+    /// Further vertices, each the midpoint of two of those; in [`Surface::solid`] only.
     pub midpoints: Vec<[u32; 2]>,
     /// Regular facets, counter-clockwise seen from outside.
     pub regular: Vec<[u32; 3]>,
-    /// Singular facets: no inside, no orientation.
+    /// Singular facets, which have no orientation.
     pub singular: Vec<[u32; 3]>,
     /// Singular edges.
     pub edges: Vec<[u32; 2]>,
@@ -58,26 +58,25 @@ impl Surface {
         self.regular.iter().chain(&self.singular)
     }
 
-    /// The number of vertices, midpoints too.
+    /// The number of vertices, midpoints included.
     pub fn vertex_count(&self) -> usize {
         self.vertices.len() + self.midpoints.len()
     }
 
-    /// Input indices of all vertices; of a midpoint, that of one of its ends.
+    /// Input indices of all vertices; for a midpoint, that of one of its ends.
     pub fn indices(&self) -> impl Iterator<Item = u32> {
         let end = |ends: &[u32; 2]| self.vertices[ends[0] as usize];
         self.vertices.iter().copied().chain(self.midpoints.iter().map(end))
     }
 
-    /// Numbers of all vertices, from those of the input: F, for which the mean of two ends is that of
-    /// their midpoint, or weights.
+    /// Values (F or weights) of all vertices, from those of the input; a midpoint has the mean of its ends.
     pub fn numbers(&self, of_input: &[f64]) -> impl Iterator<Item = f64> {
         let at = |v: u32| of_input[self.vertices[v as usize] as usize];
         let mean = move |ends: &[u32; 2]| at(ends[0]) / 2.0 + at(ends[1]) / 2.0;
         self.vertices.iter().map(|&v| of_input[v as usize]).chain(self.midpoints.iter().map(mean))
     }
 
-    /// Places of all vertices, from those of the input.
+    /// Positions of all vertices, from those of the input.
     pub fn positions(&self, of_input: &[[f64; 3]]) -> impl Iterator<Item = [f64; 3]> {
         let at = |v: u32| of_input[self.vertices[v as usize] as usize];
         let mean = move |ends: &[u32; 2]| {
@@ -87,8 +86,8 @@ impl Surface {
         self.vertices.iter().map(|&v| of_input[v as usize]).chain(self.midpoints.iter().map(mean))
     }
 
-    /// Each edge of each regular facet, smaller end first, with the corners of the facet at its ends:
-    /// three times its row, and which. Sorted.
+    /// Each edge of each regular facet, smaller end first, with the corners of the facet at its ends
+    /// as 3·row + corner. Sorted.
     pub(super) fn sides(&self) -> Vec<([u32; 2], [u32; 2])> {
         let mut sides: Vec<([u32; 2], [u32; 2])> = Vec::with_capacity(3 * self.regular.len());
         for (facet, row) in self.regular.iter().enumerate() {

@@ -28,12 +28,12 @@ pub struct Betti {
 }
 
 impl Betti {
-    /// Those of a shape in space.
+    /// The Betti numbers of a shape in space.
     pub fn in_space(b0: u64, b1: u64, b2: u64) -> Self {
         Self { b0, b1, b2, b3: None }
     }
 
-    /// By the Euler characteristic, which all others and it leave b1 no choice for.
+    /// The Betti numbers, with b1 from the Euler characteristic: b1 = b0 + b2 − b3 − χ.
     pub(crate) fn with_euler(b0: u64, b2: u64, b3: Option<u64>, euler: i64) -> Self {
         let b1 = (b0 + b2) as i64 - b3.unwrap_or(0) as i64 - euler;
         Self { b0, b1: u64::try_from(b1).expect("b1 counts something"), b2, b3 }
@@ -76,8 +76,8 @@ pub fn direct_betti(whole: &Complex) -> Betti {
     Betti::with_euler(b0, b2, None, whole.euler_characteristic())
 }
 
-/// The Betti numbers of a shape by its sheets: the connected pieces of its outside seen closely, or
-/// of the boundary of a thin neighbourhood of it. A component with k voids of its own has k + 1
+/// The Betti numbers of a shape by its sheets, the components of the boundary of a thin neighbourhood of it. A
+/// component with k voids of its own has k + 1
 /// sheets (Alexander duality), so sheets = b0 + b2, and b1 follows from the Euler characteristic.
 /// Every isolated vertex has a sheet of its own. O(n).
 pub(super) fn sheet_betti(complex: &Complex, b0: u64, sheets: &Sheets) -> Betti {
@@ -86,8 +86,8 @@ pub(super) fn sheet_betti(complex: &Complex, b0: u64, sheets: &Sheets) -> Betti 
     Betti::with_euler(b0, b2, None, complex.euler_characteristic())
 }
 
-/// The Betti numbers of a shape of a torus, by its sheets and by the directions in which loops of the shape,
-/// and loops on its sheets, go round. O(n).
+/// The Betti numbers of a shape of a torus, by its sheets and by the numbers of independent directions in
+/// which loops of the shape, and loops on its sheets, wind round. O(n).
 ///
 /// Let N be a thin neighbourhood of the shape K, S its boundary. H₂(N) is H¹(N, S), and in the exact
 /// sequence H⁰(N, S) → H⁰(N) → H⁰(S) → H¹(N, S) → H¹(N) → H¹(S) the first is H₃(N): so b2 is
@@ -116,15 +116,15 @@ pub(super) fn flat_betti(complex: &Complex) -> Betti {
     Betti::with_euler(b0, 0, None, complex.euler_characteristic())
 }
 
-/// Components of the shape, by its edges.
+/// The number of components of the shape, counted by its edges.
 pub(super) fn components(complex: &Complex) -> u64 {
     let mut sets = connected(complex);
     let of_shape = complex.vertices.iter().filter(|&(_, class)| class != Class::Exterior);
     of_shape.filter(|&(&[v], _)| sets.find(v) == v).count() as u64
 }
 
-/// The facets of the cells of some classes as sorted rows, ascending, so that those at one facet are
-/// neighbours; each with its cell.
+/// The facets of the cells of some classes as sorted rows, each with its cell; ascending, so that the two
+/// cells of a facet are consecutive.
 pub(super) fn sides(whole: &Complex, of: impl Fn(Class) -> bool + Sync) -> Vec<([u32; 3], u32)> {
     let mut sides: Vec<([u32; 3], u32)> = whole
         .cells
@@ -160,8 +160,8 @@ pub(super) fn complement_on(torus: Torus, whole: &Complex, positions: &[[f64; 3]
     sets
 }
 
-/// By how many sides the second of two cells must be moved to have a vertex where the first has it, each
-/// lying where its own first vertex is in the box.
+/// The multiples of the sides by which the second of two cells must be moved so that a common vertex coincides, where
+/// each cell is the copy whose first vertex is in the box.
 pub fn between(torus: Torus, cells: [[u32; 4]; 2], vertex: u32, positions: &[[f64; 3]]) -> Winding {
     let way =
         |cell: [u32; 4]| torus.windings(positions[cell[0] as usize], positions[vertex as usize]);
@@ -173,17 +173,17 @@ pub fn between(torus: Torus, cells: [[u32; 4]; 2], vertex: u32, positions: &[[f6
 pub(super) struct Complement {
     sets: UnionFind,
     outside: u32,
-    /// How many there are, the outside's own among them.
+    /// The number of components, that of the outside included.
     components: u64,
 }
 
 impl Complement {
-    /// The component that is not bounded.
+    /// The unbounded component.
     pub(super) fn outside(&mut self) -> u32 {
         self.sets.find(self.outside)
     }
 
-    /// The component of an exterior cell, named by its first cell.
+    /// The component of an exterior cell, by its smallest cell.
     pub(super) fn component(&mut self, cell: u32) -> u32 {
         self.sets.find(cell)
     }

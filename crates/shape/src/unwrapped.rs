@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 
 use super::{AlphaShape, Simplices, Torus};
 
-/// A point, and the sides of the box that its copy is moved by.
+/// A copy of a point: the point, and the multiples of the sides that the copy is moved by.
 type Copied = (u32, [i32; 3]);
 
-/// The copies that are needed, numbered after the points themselves as they turn up.
+/// The copies that are needed, numbered after the points in the order of their first use.
 pub(super) struct Layout<'a> {
     torus: Torus,
     positions: &'a [[f64; 3]],
     numbers: BTreeMap<Copied, u32>,
-    /// What each copy is one of.
+    /// The copies, in the order of their numbers.
     pub copied: Vec<Copied>,
 }
 
@@ -21,8 +21,8 @@ impl<'a> Layout<'a> {
         Self { torus, positions, numbers: BTreeMap::new(), copied: Vec::new() }
     }
 
-    /// Rows laid out: each simplex where its lowest coordinates are in the box, so that only the upper sides
-    /// of the box have something beyond them.
+    /// Lays rows out: each simplex in the copy whose lowest coordinates are in the box, so that simplices extend beyond
+    /// the upper faces of the box only.
     pub(super) fn lay_out<const N: usize>(&mut self, simplices: &Simplices<N>) -> Simplices<N> {
         simplices.iter().map(|(&row, class)| (self.row(row), class)).collect()
     }
@@ -54,7 +54,7 @@ impl AlphaShape {
     /// [`AlphaShape::complex`], but where it crosses an upper side of the box with copies of points in place
     /// of these. Copies come after all points. Along the sides the layout is cut open, so it is not the α-complex
     /// of its points; classes, sizes, components and sheets are those of the torus. A shape in space is
-    /// given back as it is. O(n log n).
+    /// returned unchanged. O(n log n).
     #[must_use]
     pub fn unwrapped(&self) -> Self {
         let Some(torus) = self.options.periodic else { return self.clone() };

@@ -8,10 +8,10 @@ use super::topology::{Complement, complement_on};
 use super::winding::{Winding, WindingSets};
 use super::{Alpha, AlphaShape, Class};
 
-/// A void of a shape: a bounded component of its complement, made of exterior cells.
+/// A void of a shape: a bounded component of its complement, which consists of exterior cells.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Void {
-    /// Cells of the triangulation that fill it.
+    /// Number of its cells.
     pub cells: usize,
     /// Its volume, in cubed units of the points.
     pub volume: f64,
@@ -27,22 +27,22 @@ pub struct Void {
 }
 
 impl Void {
-    /// Largest first, ties by box.
+    /// The order by descending volume, then by box.
     pub fn order(&self, other: &Self) -> Ordering {
         let boxes = || self.low.partial_cmp(&other.low).unwrap_or(Ordering::Equal);
         other.volume.total_cmp(&self.volume).then_with(boxes)
     }
 }
 
-/// A component of the complement, and what is summed over its cells.
+/// A component of the complement: sums over its cells.
 #[derive(Clone, Copy, Debug)]
 pub struct Hollow {
     cells: usize,
-    /// Divided last: sums of determinants on a lattice are whole numbers.
+    /// Divided last: on a lattice, determinants and their sums are integers.
     six_volumes: f64,
     low: [f64; 3],
     high: [f64; 3],
-    /// Around the largest squared radius of the cells.
+    /// Encloses the largest squared radius of the cells.
     radius: Interval,
 }
 
@@ -57,12 +57,12 @@ impl Hollow {
         Self { cells: 1, six_volumes, low: end(f64::min), high: end(f64::max), radius }
     }
 
-    /// The same at another copy of it on a torus.
+    /// Moves it to another of its copies on a torus.
     pub fn moved(&mut self, torus: Torus, way: Winding) {
         (self.low, self.high) = (torus.moved(self.low, way), torus.moved(self.high, way));
     }
 
-    /// Takes in another.
+    /// Adds another one.
     pub fn join(&mut self, other: &Self) {
         self.cells += other.cells;
         self.six_volumes += other.six_volumes;
@@ -74,12 +74,12 @@ impl Hollow {
         self.radius.high = self.radius.high.max(other.radius.high);
     }
 
-    /// How many cells there are.
+    /// The number of cells.
     pub fn cells(&self) -> usize {
         self.cells
     }
 
-    /// Raises α to the first double at which one of the cells fits.
+    /// Raises α to the least double at which this one of its cells fits.
     pub fn raise(
         &self,
         alpha: &mut f64,
@@ -87,13 +87,13 @@ impl Hollow {
         cell: [u32; 4],
         radius: Interval,
     ) {
-        // What surely comes before another needs no look.
+        // A cell that certainly fits earlier than another one does not matter.
         if radius.high >= self.radius.low && !spheres.fits_by(cell, radius, *alpha) {
             *alpha = spheres.first_alpha(cell);
         }
     }
 
-    /// As a void that is filled at this α.
+    /// The component as a void that is filled at this α.
     pub(crate) fn void(&self, filling_alpha: f64) -> Void {
         let Self { cells, six_volumes, low, high, .. } = *self;
         let filling_alpha = Alpha::from_squared(filling_alpha).expect("radii are numbers");
@@ -110,13 +110,13 @@ impl AlphaShape {
     ///
     /// Volumes are rounded sums in a fixed order. O(n log n).
     pub fn voids(&self) -> Option<Vec<Void>> {
-        // A flat shape shuts nothing in.
+        // A flat shape encloses nothing.
         let flat = self.complex().cells.is_empty();
         self.options().exterior.then(|| if flat { Vec::new() } else { voids(self) })
     }
 }
 
-/// What is bounded of a complement, by cells.
+/// The components of the complement, of which voids are the bounded ones.
 enum Bounded {
     InSpace(Complement),
     OnTorus(Torus, WindingSets),
@@ -131,9 +131,9 @@ impl Bounded {
         }
     }
 
-    /// The component of an exterior cell, named by its first cell, if it is bounded; and the cell's corners,
-    /// where it lies beside the component's others.
-    fn place(&mut self, cell: u32, corners: [[f64; 3]; 4]) -> Option<(u32, [[f64; 3]; 4])> {
+    /// The component of an exterior cell, if it is bounded, by its smallest cell; and the cell's corners, on a torus in
+    /// the copy that is connected with the component's other cells.
+    fn locate(&mut self, cell: u32, corners: [[f64; 3]; 4]) -> Option<(u32, [[f64; 3]; 4])> {
         match self {
             Self::InSpace(complement) => {
                 let component = complement.component(cell);
@@ -153,14 +153,14 @@ fn voids(shape: &AlphaShape) -> Vec<Void> {
     let mut bounded = Bounded::of(shape);
     let (positions, weights) = (&shape.points().positions, shape.power_weights());
     let spheres = Predicates::on_torus(positions, weights, shape.options().periodic);
-    // By the component's number, which is its first cell's.
+    // By component, whose number is that of its smallest cell.
     let mut found: Vec<Option<Hollow>> = vec![None; cells.len() + 1];
     let mut inside = Vec::new();
     for (id, (&cell, class)) in cells.iter().enumerate() {
         if class != Class::Exterior {
             continue;
         }
-        let Some((component, corners)) = bounded.place(id as u32, shape.corners(cell)) else {
+        let Some((component, corners)) = bounded.locate(id as u32, shape.corners(cell)) else {
             continue;
         };
         let radius = spheres.squared_radius(cell);
@@ -184,8 +184,8 @@ fn voids(shape: &AlphaShape) -> Vec<Void> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ShapeOptions, WeightedPoints, alpha_shape};
     use super::*;
+    use crate::{ShapeOptions, WeightedPoints, alpha_shape};
 
     /// A 7³ lattice without its inner 3³ and without one more point far from them.
     fn hollow(alpha: f64, exterior: bool) -> AlphaShape {

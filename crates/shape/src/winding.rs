@@ -1,21 +1,21 @@
-//! What hangs together on a torus, and how it goes round.
+//! Connected sets on a torus, and the directions in which they wind round it.
 
 use std::collections::BTreeMap;
 
-/// By how many sides of the box something is moved along each axis.
+/// A translation by multiples of the sides of the box, one for each axis.
 pub(crate) type Winding = [i32; 3];
 
-/// Directions that are independent of each other: at most three.
+/// Linearly independent directions, at most three.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Directions(Vec<Winding>);
 
 impl Directions {
-    /// How many there are.
+    /// The number of directions.
     pub fn rank(&self) -> usize {
         self.0.len()
     }
 
-    /// Adds a direction if it is independent of those that are there; says whether it was.
+    /// Adds a direction if it is independent of the others; returns whether it is.
     pub fn add(&mut self, way: Winding) -> bool {
         let independent = match self.0[..] {
             [] => way != [0; 3],
@@ -32,12 +32,12 @@ impl Directions {
         independent
     }
 
-    /// Adds all of others.
+    /// Adds those of others that are independent.
     pub fn extend(&mut self, others: &Self) {
         others.0.iter().for_each(|&way| _ = self.add(way));
     }
 
-    /// Whether one of them has a part along an axis.
+    /// Whether a direction has a component along an axis.
     pub fn has(&self, axis: usize) -> bool {
         self.0.iter().any(|way| way[axis] != 0)
     }
@@ -48,13 +48,13 @@ fn cross(a: Winding, b: Winding) -> [i128; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Disjoint sets of things on a torus, each united with others at some of their copies. A set whose
-/// members can be laid out in space so that all meet is like one of space; else there are ways through
-/// it that end at another copy of where they began: it goes round.
+/// A union-find over objects on a torus, which are united at given copies. If the members of a set can be laid out in
+/// space so that all unions hold, the set is as in space. Otherwise some closed paths through the set end at
+/// another copy of their start: the set winds round the torus.
 pub struct WindingSets {
-    /// Of each member another one of its set, and by how many sides it is moved against that.
+    /// By member: its parent, and its winding relative to the parent.
     parents: Vec<(u32, Winding)>,
-    /// By root, the directions in which a set goes round, if it does.
+    /// By root, the directions in which a set winds round, if it does.
     rounds: BTreeMap<u32, Directions>,
 }
 
@@ -64,8 +64,7 @@ impl WindingSets {
         Self { parents: (0..n as u32).map(|v| (v, [0; 3])).collect(), rounds: BTreeMap::new() }
     }
 
-    /// The smallest member of the set that holds `member`, and by how many sides `member` is moved
-    /// where that is not.
+    /// The smallest member of the set of `member`, and the winding of `member` relative to it.
     pub fn find(&mut self, member: u32) -> (u32, Winding) {
         let mut at = member;
         let mut moved = [0; 3];
@@ -82,11 +81,11 @@ impl WindingSets {
         }
     }
 
-    /// Makes one set of two, in which `b` moved by so many sides meets `a`. Says whether they were two, or
-    /// else, which new direction this goes round in, if it is one.
+    /// Unites the sets of `a` and `b`, where `b`, moved by `moved`, meets `a`. Returns whether they were two sets, or
+    /// else the new direction in which their set winds round, if there is one.
     pub fn unite(&mut self, a: u32, b: u32, moved: Winding) -> United {
         let ((root, to_a), (other, to_b)) = (self.find(a), self.find(b));
-        // How the root of b is moved where that of a is not.
+        // The winding of the root of b relative to that of a.
         let way = minus(plus(to_a, moved), to_b);
         if root == other {
             let is_new = way != [0; 3] && self.rounds.entry(root).or_default().add(way);
@@ -101,12 +100,12 @@ impl WindingSets {
         United::Two
     }
 
-    /// The directions in which the set of a root goes round, if it does.
+    /// The directions in which the set of a root winds round, if it does.
     pub fn rounds(&self, root: u32) -> Option<&Directions> {
         self.rounds.get(&root)
     }
 
-    /// The directions in which all sets together go round.
+    /// The directions in which all sets together wind round.
     pub fn directions(&self) -> Directions {
         let mut all = Directions::default();
         self.rounds.values().for_each(|directions| all.extend(directions));
@@ -114,14 +113,14 @@ impl WindingSets {
     }
 }
 
-/// What two members of [`WindingSets`] were.
+/// The result of uniting two members of [`WindingSets`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum United {
-    /// Members of two sets, which are one now.
+    /// They were in two sets, which are one now.
     Two,
-    /// Of one set, and the way between them shows that it goes round in a new direction.
+    /// They were in one set, which is now known to wind round in a new direction.
     Round(Winding),
-    /// Of one set, and nothing new is known of it.
+    /// They were in one set, and the union adds nothing.
     Already,
 }
 

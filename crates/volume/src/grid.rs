@@ -168,9 +168,9 @@ impl Frame {
         numbers.copied().all(f64::is_finite).then_some(frame)
     }
 
-    /// The same numbers, declared to be in these coordinates.
+    /// The same frame, declared to be in these coordinates; no number changes.
     #[must_use]
-    pub fn meaning(self, coordinates: Coordinates) -> Self {
+    pub fn with_coordinates(self, coordinates: Coordinates) -> Self {
         Self { coordinates, ..self }
     }
 

@@ -175,7 +175,7 @@ fn write_meshes(
         return Ok(());
     }
     for (k, level) in ladder.levels.iter().enumerate() {
-        let shape = levels.shape(k, false, level.betti).meaning(coordinates);
+        let shape = levels.shape(k, false, level.betti).with_coordinates(coordinates);
         for mesh in meshes {
             let name = level_name(ladder, k, level, &mesh.extension);
             folder.write(&name, |out| mesh.exporter.write(&shape, out))?;

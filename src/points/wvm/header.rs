@@ -86,8 +86,8 @@ impl Header {
 
     /// The frame of the grid, where it has to be stored.
     fn frame(&self) -> Option<Frame> {
-        let silent = Frame::VOXEL.meaning(self.coordinates);
-        self.grid.map(|grid| grid.frame).filter(|frame| *frame != silent)
+        let default = Frame::VOXEL.with_coordinates(self.coordinates);
+        self.grid.map(|grid| grid.frame).filter(|frame| *frame != default)
     }
 
     /// The bytes of the head, with its checksum.
@@ -179,8 +179,8 @@ impl Header {
         let grid = if has(GRID) {
             let [x, y, z] = [fields.whole()?, fields.whole()?, fields.whole()?];
             let dims = Dims::new(x, y, z).map_err(|error| Reason::header(error.to_string()))?;
-            let silent = Frame::VOXEL.meaning(coordinates);
-            let frame = if has(FRAME) { fields.frame()? } else { silent };
+            let default = Frame::VOXEL.with_coordinates(coordinates);
+            let frame = if has(FRAME) { fields.frame()? } else { default };
             let units = if has(WORLD) { Units::World } else { Units::Voxel };
             Some(SampleGrid { dims, frame, units })
         } else {

@@ -1,228 +1,239 @@
-//! The cells that go when a point comes, and those that take their place.
+//! The cavity of a new point: the cells in conflict with it, and the new cells that replace them.
 
 use super::{Builder, Mesh};
 use crate::predicates::Screen;
 use crate::{Cell, Triangulation, TriangulationError, filled};
 
-/// So many different corners of a cavity's boundary, the ghost among them, fit the table.
-const TABLE: usize = 64;
+/// Side of [`Cavity::table`]: the largest number of distinct vertices of the boundary of a cavity, the ghost
+/// included, whose cells are joined by table. A power of two.
+const TABLE_SIDE: usize = 64;
 
-/// What one insertion works with; kept so that the next need not allocate.
+/// Working memory of an insertion, kept so that the next one need not allocate.
 pub(super) struct Cavity {
-    /// The cells that go; later the places of the new ones.
-    cells: Vec<u32>,
-    /// The facets of its boundary, and room for those of one more cell.
+    /// The cells in conflict with the point. Empty once their slots belong to new cells.
+    conflicts: Vec<u32>,
+    /// The slots of the new cells, one for each facet of the boundary.
+    new_cells: Vec<u32>,
+    /// The facets of its boundary, followed by at least four unused elements while facets are added.
     boundary: Vec<Facet>,
     /// Number of facets of the boundary.
     facets: usize,
-    /// Corners of the boundary have numbers of their own, from 0: this is `base` plus that for those
-    /// that have been met in this insertion, less than `base` for all others.
-    names: Vec<u32>,
+    /// Vertices of the boundary have local numbers 0, 1, … in the order in which they are met. This is, by
+    /// vertex, `base` plus the local number; less than `base` for vertices not met in this insertion.
+    local_numbers: Vec<u32>,
     base: u32,
-    /// Number of distinct corners of the boundary.
-    corners: u32,
-    /// By the own numbers of two corners x, y: 4·cell + corner of the new facet that holds v, x, y.
-    table: Box<[u32; TABLE * TABLE]>,
-    /// The mark of cells seen from this cavity and left alone; one more is that of its own cells.
-    seen: u32,
+    /// Number of distinct vertices of the boundary.
+    vertices: u32,
+    /// By the local numbers of two vertices x, y: 4·cell + corner of the new facet with vertices v, x, y, where v
+    /// is the new point.
+    table: Box<[u32; TABLE_SIDE * TABLE_SIDE]>,
+    /// Stamp of cells that this insertion visited and that are not in conflict; `stamp + 1` is that of cells in
+    /// conflict. All older stamps are smaller.
+    stamp: u32,
 }
 
-/// A facet of the boundary.
+/// A boundary facet of the cavity.
 #[derive(Clone, Copy, Default)]
 struct Facet {
-    /// With the new point these make a positively oriented cell.
+    /// Its vertices; with the new point as fourth corner they are a positively oriented cell.
     corners: [u32; 3],
-    /// 4·cell + corner outside the cavity.
+    /// The same facet as 4·cell + corner of the cell outside the cavity.
     outside: u32,
 }
 
-/// The new point's place in new cells.
+/// The corner of new cells that is the new point.
 const APEX: u32 = 3;
 
 impl Cavity {
-    /// For points with numbers below one.
+    /// For vertices with numbers below `below`.
     pub(super) fn new(below: usize) -> Result<Self, TriangulationError> {
-        let names = filled(below, 0)?;
+        let local_numbers = filled(below, 0)?;
         Ok(Self {
-            cells: Vec::new(),
+            conflicts: Vec::new(),
+            new_cells: Vec::new(),
             boundary: vec![Facet::default(); 4],
             facets: 0,
-            names,
+            local_numbers,
             base: 1,
-            corners: 0,
-            table: vec![0; TABLE * TABLE].try_into().expect("as long"),
-            seen: 0,
+            vertices: 0,
+            table: vec![0; TABLE_SIDE * TABLE_SIDE].try_into().expect("as long"),
+            stamp: 0,
         })
     }
 
-    /// Makes room for points of larger numbers.
-    pub(super) fn admit(&mut self, below: usize) {
-        self.names.resize(self.names.len().max(below), 0);
+    /// Admits vertices with numbers below `below`.
+    pub(super) fn grow(&mut self, below: usize) {
+        self.local_numbers.resize(self.local_numbers.len().max(below), 0);
     }
 
     /// The cells that the last insertion made.
-    pub(super) fn made(&self) -> &[u32] {
-        &self.cells[..self.facets]
+    pub(super) fn new_cells(&self) -> &[u32] {
+        &self.new_cells
     }
 
-    /// Forgets the last cavity.
-    fn clear(&mut self, marks: &mut [u32]) {
-        self.cells.clear();
+    /// Prepares for the next point.
+    fn clear(&mut self, stamps: &mut [u32]) {
+        self.conflicts.clear();
         self.facets = 0;
-        self.base += self.corners;
-        self.corners = 0;
-        self.seen += 2;
-        // Half the numbers are left for one cavity.
+        self.base += self.vertices;
+        self.vertices = 0;
+        self.stamp += 2;
+        // The numbers of one cavity fit the upper half of u32.
         if self.base > u32::MAX / 2 {
-            self.names.fill(0);
+            self.local_numbers.fill(0);
             self.base = 1;
         }
-        if self.seen > u32::MAX / 2 {
-            marks.fill(0);
-            self.seen = 2;
+        if self.stamp > u32::MAX / 2 {
+            stamps.fill(0);
+            self.stamp = 2;
         }
     }
 }
 
 impl Builder {
-    /// Collects the cells in conflict with a point, beginning with one, and their boundary.
-    pub(super) fn dig(&mut self, screen: &Screen<'_>, start: u32, v: u32) {
-        let Self { mesh, marks, cavity, .. } = self;
-        cavity.clear(marks);
-        let seen = cavity.seen;
-        marks[start as usize] = seen + 1;
-        cavity.cells.push(start);
+    /// Collects the cells in conflict with a point, starting with one of them, and their boundary facets.
+    pub(super) fn find_cavity(&mut self, screen: &Screen<'_>, start: u32, v: u32) {
+        let Self { mesh, stamps, cavity, .. } = self;
+        cavity.clear(stamps);
+        let visited = cavity.stamp;
+        stamps[start as usize] = visited + 1;
+        cavity.conflicts.push(start);
         let mut at = 0;
-        while let Some(&cell) = cavity.cells.get(at) {
+        while let Some(&cell) = cavity.conflicts.get(at) {
             at += 1;
             let across = mesh.cells[cell as usize].neighbors;
-            let mut stays = 0;
+            let mut kept = 0;
             for (corner, outside) in across.into_iter().enumerate() {
                 let next = outside / 4;
-                let mark = &mut marks[next as usize];
-                if *mark < seen {
-                    let goes = mesh.conflicts(screen, next, v);
-                    *mark = seen + u32::from(goes);
-                    if goes {
-                        cavity.cells.push(next);
+                let stamp = &mut stamps[next as usize];
+                if *stamp < visited {
+                    let in_conflict = mesh.conflicts(screen, next, v);
+                    *stamp = visited + u32::from(in_conflict);
+                    if in_conflict {
+                        cavity.conflicts.push(next);
                     }
                 }
-                stays |= usize::from(*mark == seen) << corner;
+                kept |= usize::from(*stamp == visited) << corner;
             }
-            cavity.bound(mesh.cells[cell as usize].corners, across, stays);
+            cavity.add_boundary(mesh.cells[cell as usize].corners, across, kept);
         }
     }
 
-    /// Joins the point to the boundary of the cavity.
-    pub(super) fn fill(&mut self, v: u32) -> Result<(), TriangulationError> {
-        self.make_room()?;
-        self.write(v);
+    /// Replaces the cells of the cavity by cells that join its boundary facets to the point.
+    pub(super) fn fill_cavity(&mut self, v: u32) -> Result<(), TriangulationError> {
+        self.assign_slots()?;
+        self.write_cells(v);
         let Self { mesh, cavity, .. } = self;
-        if cavity.corners as usize <= TABLE {
+        if cavity.vertices as usize <= TABLE_SIDE {
             cavity.join_by_table(mesh);
         } else {
             cavity.join_by_sorting(mesh);
         }
-        self.near = cavity.cells[cavity.facets - 1];
+        self.hint = cavity.new_cells[cavity.facets - 1];
         Ok(())
     }
 
-    /// Finds places for the new cells: those of the cavity first, then others that are free, then
-    /// new ones.
-    fn make_room(&mut self) -> Result<(), TriangulationError> {
+    /// Assigns slots to the new cells: first those of the cells in conflict, then free ones, then new ones.
+    fn assign_slots(&mut self) -> Result<(), TriangulationError> {
         let wanted = self.cavity.facets;
-        let places = &mut self.cavity.cells;
-        if wanted < places.len() {
-            self.free.extend(places.drain(wanted..));
+        // Exchanged rather than copied: what the last insertion made is no longer needed.
+        std::mem::swap(&mut self.cavity.conflicts, &mut self.cavity.new_cells);
+        self.cavity.conflicts.clear();
+        let slots = &mut self.cavity.new_cells;
+        if wanted < slots.len() {
+            self.free_slots.extend(slots.drain(wanted..));
         }
-        let reused = self.free.len() - (wanted - places.len()).min(self.free.len());
-        places.extend(self.free.drain(reused..));
-        let more = wanted - places.len();
+        let reused = self.free_slots.len() - (wanted - slots.len()).min(self.free_slots.len());
+        slots.extend(self.free_slots.drain(reused..));
+        let more = wanted - slots.len();
         if more > 0 {
             let count = self.mesh.cells.len();
-            if count + more > Triangulation::MOST_CELLS {
+            if count + more > Triangulation::MAX_CELLS {
                 return Err(TriangulationError::TooManyCells);
             }
-            places.extend(count as u32..(count + more) as u32);
+            slots.extend(count as u32..(count + more) as u32);
             self.reserve(more)?;
             self.mesh.cells.resize(count + more, Cell::default());
-            self.marks.resize(count + more, 0);
+            self.stamps.resize(count + more, 0);
         }
         Ok(())
     }
 
-    /// Writes the new cells, links them to the cells outside, and notes in the table where they meet
-    /// each other: each edge of the boundary is in two facets, which run along it in opposite
-    /// directions.
-    fn write(&mut self, v: u32) {
+    /// Writes the corners of the new cells, makes them the neighbours of the cells outside, and enters their other
+    /// facets in the table. Each edge of the boundary is in two boundary facets, whose orientations run along it in
+    /// opposite directions: the entries (x, y) and (y, x).
+    fn write_cells(&mut self, v: u32) {
         let Self { mesh, cavity, .. } = self;
-        let Cavity { boundary, facets, cells, names, base, corners, table, .. } = cavity;
+        let Cavity { boundary, facets, new_cells, local_numbers, base, vertices, table, .. } =
+            cavity;
         let mut number = |v: u32| {
-            let name = &mut names[v as usize];
-            let is_new = *name < *base;
-            *name = if is_new { *base + *corners } else { *name };
-            *corners += u32::from(is_new);
-            *name - *base
+            let number = &mut local_numbers[v as usize];
+            let is_new = *number < *base;
+            *number = if is_new { *base + *vertices } else { *number };
+            *vertices += u32::from(is_new);
+            *number - *base
         };
-        for (facet, &place) in boundary[..*facets].iter().zip(&*cells) {
+        for (facet, &new) in boundary[..*facets].iter().zip(&*new_cells) {
             let Facet { corners: [a, b, c], outside } = *facet;
-            mesh.cells[place as usize].corners = [a, b, c, v];
-            mesh.cells[outside as usize / 4].neighbors[outside as usize % 4] = 4 * place + APEX;
+            mesh.cells[new as usize].corners = [a, b, c, v];
+            mesh.cells[outside as usize / 4].neighbors[outside as usize % 4] = 4 * new + APEX;
             let (a, b, c) = (number(a), number(b), number(c));
             for (corner, x, y) in [(0, b, c), (1, c, a), (2, a, b)] {
-                table[slot(x, y)] = 4 * place + corner;
+                table[table_index(x, y)] = 4 * new + corner;
             }
         }
     }
 }
 
-/// The place of an edge of the boundary in the table.
+/// The entry of an edge of the boundary, by the local numbers of its vertices. With too many vertices for the table
+/// it is within bounds all the same; what is entered then is not used.
 #[inline(always)]
-fn slot(x: u32, y: u32) -> usize {
-    (x as usize * TABLE + y as usize) % (TABLE * TABLE)
+fn table_index(x: u32, y: u32) -> usize {
+    (x as usize * TABLE_SIDE + y as usize) % (TABLE_SIDE * TABLE_SIDE)
 }
 
 impl Cavity {
-    /// Adds the facets of a cell beyond which cells stay. They are written anyway, without branches
-    /// that would be guessed wrong half the time, and the next ones take the place of others.
+    /// Adds the boundary facets of a cell in conflict: bit k of `kept` says whether the neighbour opposite corner k
+    /// is not in conflict. All four facets are written, and those that are no boundary facets are overwritten by
+    /// the next: branches would be mispredicted half the time.
     #[inline(always)]
-    fn bound(&mut self, cell: [u32; 4], across: [u32; 4], stays: usize) {
+    fn add_boundary(&mut self, cell: [u32; 4], across: [u32; 4], kept: usize) {
         if self.boundary.len() < self.facets + 4 {
             self.boundary.resize(2 * self.boundary.len(), Facet::default());
         }
-        let room = self.boundary[self.facets..].first_chunk_mut::<4>();
-        let room = room.expect("made above");
+        let unused = self.boundary[self.facets..].first_chunk_mut::<4>();
+        let unused = unused.expect("resized above");
         let [a, b, c, d] = cell;
         let facets = [[b, d, c], [a, c, d], [b, a, d], [a, b, c]];
         let mut at = 0;
         for (k, (corners, outside)) in facets.into_iter().zip(across).enumerate() {
-            room[at % 4] = Facet { corners, outside };
-            at += stays >> k & 1;
+            unused[at % 4] = Facet { corners, outside };
+            at += kept >> k & 1;
         }
         self.facets += at;
     }
 
-    /// Joins new cells to each other.
+    /// Makes new cells the neighbours of each other, by the table.
     fn join_by_table(&mut self, mesh: &mut Mesh) {
-        for (facet, &place) in self.boundary[..self.facets].iter().zip(&self.cells) {
+        for (facet, &new) in self.boundary[..self.facets].iter().zip(&self.new_cells) {
             let Facet { corners: [a, b, c], outside } = *facet;
-            let number = |v: u32| self.names[v as usize] - self.base;
+            let number = |v: u32| self.local_numbers[v as usize] - self.base;
             let (a, b, c) = (number(a), number(b), number(c));
-            let neighbors = |x: u32, y: u32| self.table[slot(x, y)];
-            mesh.cells[place as usize].neighbors =
-                [neighbors(c, b), neighbors(a, c), neighbors(b, a), outside];
+            let neighbor = |x: u32, y: u32| self.table[table_index(x, y)];
+            mesh.cells[new as usize].neighbors =
+                [neighbor(c, b), neighbor(a, c), neighbor(b, a), outside];
         }
     }
 
-    /// The same with more corners than the table has room for: the two facets at an edge meet by
-    /// sorting.
+    /// The same for more vertices than the table holds: sorting by edge brings the two facets at each edge
+    /// together.
     fn join_by_sorting(&mut self, mesh: &mut Mesh) {
         let mut edges = Vec::with_capacity(3 * self.facets);
-        for (facet, &place) in self.boundary[..self.facets].iter().zip(&self.cells) {
+        for (facet, &new) in self.boundary[..self.facets].iter().zip(&self.new_cells) {
             let [a, b, c] = facet.corners;
-            mesh.cells[place as usize].neighbors[APEX as usize] = facet.outside;
+            mesh.cells[new as usize].neighbors[APEX as usize] = facet.outside;
             for (corner, x, y) in [(0, b, c), (1, c, a), (2, a, b)] {
-                edges.push(((x.min(y), x.max(y)), 4 * place + corner));
+                edges.push(((x.min(y), x.max(y)), 4 * new + corner));
             }
         }
         edges.sort_unstable();

@@ -1,139 +1,140 @@
-//! A Delaunay triangulation that points join and leave again.
+//! A Delaunay triangulation with insertion and removal of points.
 
 use std::collections::HashSet;
 use std::ops::Range;
 
-use super::leave::{Hole, Workspace};
-use super::{Builder, rounds};
+use super::Builder;
+use super::removal::{Hole, Workspace};
+use crate::order::rounds;
 use crate::predicates::{Predicates, Screen};
-use crate::{Cell, GONE, Sites, TriangulationError, curve};
+use crate::{Cell, DELETED, Sites, TriangulationError, order};
 
-/// The Delaunay triangulation of points that come in batches, and may leave one by one.
+/// The Delaunay triangulation of a set of points that grows by batches, and from which points may be removed.
 ///
-/// Ties are broken as ever, so it is that of the points in it and of nothing else: not of the order in
-/// which they came, nor of those that left. Points have numbers in the order in which they are
-/// named, from [`Growing::FIRST`] on; what has a number need not be in it.
+/// Ties are broken as in [`Triangulation`](crate::Triangulation), so the cells depend on the points in the
+/// triangulation alone, and not on the order of insertions and removals. Points are numbered from
+/// [`Growing::FIRST`] on in the order in which they are registered; a registered point need not be a vertex. The
+/// ghost is vertex 0.
 pub struct Growing {
     positions: Vec<[f64; 3]>,
     weights: Vec<f64>,
     state: State,
 }
 
-/// What the insertion of a point would change.
+/// What the insertion of a point would change; see [`Growing::insertion`].
 pub struct Insertion {
-    /// Cells in conflict with it, infinite ones among them.
+    /// The cells in conflict with the point, infinite ones included.
     pub removed: Vec<u32>,
-    /// The finite cells that would take their places.
+    /// The finite cells that would replace them.
     pub cells: Vec<[u32; 4]>,
 }
 
-/// What insertions and removals change.
+/// The part of [`Growing`] that insertions and removals change, apart from the points that they read.
 pub(super) struct State {
     pub builder: Builder,
-    /// The places of vertices, so that no two stand at one.
-    taken: HashSet<[u64; 3]>,
-    /// A cell at each vertex; [`NONE`] at other points.
-    pub at: Vec<u32>,
-    /// Cells made since they were last asked for, some of them gone again.
-    fresh: Vec<u32>,
+    /// The [`position_bits`] of all vertices: no two are equal.
+    occupied: HashSet<[u64; 3]>,
+    /// A cell at each vertex; [`NO_CELL`] for other points.
+    pub cell_at: Vec<u32>,
+    /// Cells made since the last [`Growing::take_new_cells`]; some may have been deleted since.
+    new_cells: Vec<u32>,
 }
 
-/// The number before that of the first point.
+/// The infinite vertex. Its number precedes those of the points, whose number is not known in advance.
 pub(super) const GHOST: u32 = 0;
-/// The cell at a point that is not a vertex.
-pub(super) const NONE: u32 = u32::MAX;
+/// Stands for the absence of a cell.
+pub(super) const NO_CELL: u32 = u32::MAX;
 
 impl Growing {
     /// The number of the first point.
     pub const FIRST: u32 = GHOST + 1;
 
-    /// The triangulation of some points.
+    /// The Delaunay triangulation of points.
     ///
     /// # Errors
-    /// Points that are not sites or span no volume; no memory.
+    /// Points that are no [`Sites`] or span no volume; out of memory.
     pub fn new(positions: &[[f64; 3]]) -> Result<Self, TriangulationError> {
         Sites::new(positions, &vec![0.0; positions.len()])?;
-        let builder = Builder::empty(positions.len(), positions.len() + 1, GHOST)?;
-        let (taken, at, fresh) = (HashSet::new(), vec![NONE], Vec::new());
+        let builder = Builder::with_capacity(positions.len(), positions.len() + 1, GHOST)?;
+        let (occupied, cell_at, new_cells) = (HashSet::new(), vec![NO_CELL], Vec::new());
         let mut growing = Self {
-            // A place for the ghost, which makes no bound wider.
+            // The ghost has the position of a point, so that it widens no bound.
             positions: vec![positions[0]],
             weights: vec![0.0],
-            state: State { builder, taken, at, fresh },
+            state: State { builder, occupied, cell_at, new_cells },
         };
-        let all = growing.name(positions);
+        let all = growing.register(positions);
         let Self { positions, weights, state } = &mut growing;
         let predicates = Predicates::new(positions, weights);
         let screen = Screen::with_ghost(&predicates, GHOST)?;
-        state.builder.begin(&screen, all.clone())?;
-        (0..state.builder.mesh.cells.len() as u32).for_each(|cell| state.note(cell));
-        for v in state.builder.first {
-            state.taken.insert(place(positions[v as usize]));
+        state.builder.start(&screen, all.clone())?;
+        (0..state.builder.mesh.cells.len() as u32).for_each(|cell| state.record_cell(cell));
+        for v in state.builder.first_cell {
+            state.occupied.insert(position_bits(positions[v as usize]));
         }
         state.insert_all(positions, &screen, &all.collect::<Vec<_>>())?;
         Ok(growing)
     }
 
-    /// Gives points numbers; they are not vertices yet.
-    pub fn name(&mut self, positions: &[[f64; 3]]) -> Range<u32> {
+    /// Gives points numbers, without inserting them.
+    pub fn register(&mut self, positions: &[[f64; 3]]) -> Range<u32> {
         let first = self.positions.len() as u32;
         self.positions.extend_from_slice(positions);
         let count = self.positions.len();
         self.weights.resize(count, 0.0);
-        self.state.at.resize(count, NONE);
-        self.state.builder.cavity.admit(count);
+        self.state.cell_at.resize(count, NO_CELL);
+        self.state.builder.cavity.grow(count);
         first..count as u32
     }
 
-    /// Makes points vertices. One at the place of a vertex stays out.
+    /// Inserts registered points. A point at the position of a vertex is left out.
     ///
     /// # Errors
-    /// Too many cells, no memory.
+    /// Too many cells; out of memory.
     pub fn insert(&mut self, points: &[u32]) -> Result<(), TriangulationError> {
         let Self { positions, weights, state } = self;
         let predicates = Predicates::new(positions, weights);
         state.insert_all(positions, &Screen::with_ghost(&predicates, GHOST)?, points)
     }
 
-    /// Removes vertices, other than those around which no triangulation would be left. Gives the number of
-    /// those that left.
+    /// Removes vertices, except those whose neighbours span no volume. Returns the number of vertices removed.
     ///
     /// # Errors
-    /// Too many cells, no memory.
+    /// Too many cells; out of memory.
     pub fn remove(&mut self, points: &[u32]) -> Result<usize, TriangulationError> {
         let Self { positions, weights, state } = self;
         let predicates = Predicates::new(positions, weights);
         let screen = Screen::with_ghost(&predicates, GHOST)?;
         let mut workspace = Workspace::new(positions.len())?;
-        let mut left = 0;
+        let mut removed = 0;
         for &v in points {
             if let Some(hole) = state.hole(&screen, v, &mut workspace)? {
                 state.close(v, &hole)?;
-                state.taken.remove(&place(positions[v as usize]));
-                left += 1;
+                state.occupied.remove(&position_bits(positions[v as usize]));
+                removed += 1;
             }
         }
-        state.mark_gone();
-        Ok(left)
+        state.mark_deleted();
+        Ok(removed)
     }
 
-    /// What the [`Screen`](Self::screen) of all points with numbers begins with.
+    /// Predicates of all registered points, for [`Self::screen`].
     pub fn predicates(&self) -> Predicates<'_> {
         Predicates::new(&self.positions, &self.weights)
     }
 
-    /// Tests for [`Self::hole`] and [`Self::insertion`].
+    /// The filtered predicates that [`Self::hole`] and [`Self::insertion`] need.
     ///
     /// # Errors
-    /// No memory.
+    /// Out of memory.
     pub fn screen<'a>(predicates: &'a Predicates<'a>) -> Result<Screen<'a>, TriangulationError> {
         Screen::with_ghost(predicates, GHOST)
     }
 
-    /// What would come in the place of a vertex; `None` where no triangulation would be left.
+    /// What the removal of a vertex would change; `None` where its neighbours span no volume.
     ///
     /// # Errors
-    /// No memory.
+    /// Out of memory.
     pub fn hole(
         &self,
         screen: &Screen<'_>,
@@ -143,10 +144,10 @@ impl Growing {
         self.state.hole(screen, v, workspace)
     }
 
-    /// What would come with a point that lies in a cell, and is not a vertex.
+    /// What the insertion of a registered point would change, which is no vertex and lies in the cell `cell`.
     pub fn insertion(&self, screen: &Screen<'_>, v: u32, cell: u32) -> Insertion {
         let mesh = &self.state.builder.mesh;
-        let (mut removed, mut stays, mut cells) = (vec![cell], Vec::new(), Vec::new());
+        let (mut removed, mut kept, mut cells) = (vec![cell], Vec::new(), Vec::new());
         let mut at = 0;
         while let Some(&cell) = removed.get(at) {
             at += 1;
@@ -156,10 +157,10 @@ impl Growing {
                 if removed.contains(&next) {
                     continue;
                 }
-                if !stays.contains(&next) && mesh.conflicts(screen, next, v) {
+                if !kept.contains(&next) && mesh.conflicts(screen, next, v) {
                     removed.push(next);
                 } else {
-                    stays.push(next);
+                    kept.push(next);
                     let mut joined = corners;
                     joined[k] = v;
                     cells.push(joined);
@@ -172,29 +173,31 @@ impl Growing {
 
     /// Whether a point is a vertex.
     pub fn is_vertex(&self, v: u32) -> bool {
-        self.state.at[v as usize] != NONE
+        self.state.cell_at[v as usize] != NO_CELL
     }
 
-    /// The corners of each cell and 4·cell + corner across each facet. Some are gone.
+    /// All cells, infinite and deleted ones included; see [`Self::is_cell`].
     pub fn cells(&self) -> &[Cell] {
         &self.state.builder.mesh.cells
     }
 
-    /// Whether there is a finite cell of this number.
+    /// Whether a cell is finite and not deleted.
     pub fn is_cell(&self, cell: u32) -> bool {
         let [a, b, c, d] = self.cells()[cell as usize].corners;
-        a != GONE && a != GHOST && b != GHOST && c != GHOST && d != GHOST
+        a != DELETED && a != GHOST && b != GHOST && c != GHOST && d != GHOST
     }
 
-    /// The finite cells made since this was last asked, ascending.
-    pub fn take_fresh(&mut self) -> Vec<u32> {
+    /// The finite cells made since the last call, ascending.
+    pub fn take_new_cells(&mut self) -> Vec<u32> {
         let mut made = vec![false; self.cells().len()];
-        std::mem::take(&mut self.state.fresh).iter().for_each(|&cell| made[cell as usize] = true);
-        let fresh = (0..).zip(made).filter(|&(cell, made)| made && self.is_cell(cell));
-        fresh.map(|(cell, _)| cell).collect()
+        std::mem::take(&mut self.state.new_cells)
+            .iter()
+            .for_each(|&cell| made[cell as usize] = true);
+        let new = (0..).zip(made).filter(|&(cell, made)| made && self.is_cell(cell));
+        new.map(|(cell, _)| cell).collect()
     }
 
-    /// Where points stand, by number.
+    /// The positions of registered points, by number; the first one is that of the ghost, and of no use.
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }
@@ -207,37 +210,39 @@ impl State {
         screen: &Screen<'_>,
         points: &[u32],
     ) -> Result<(), TriangulationError> {
-        let places: Vec<_> = points.iter().map(|&v| positions[v as usize]).collect();
-        let along = curve::keyed(&places);
+        let batch: Vec<_> = points.iter().map(|&v| positions[v as usize]).collect();
+        let along = order::along_curve(&batch);
         for i in rounds(points.len() as u32) {
             let v = points[along[i as usize].1 as usize];
-            if self.taken.insert(place(positions[v as usize])) && self.builder.insert(screen, v)? {
-                for at in 0..self.builder.cavity.made().len() {
-                    self.note(self.builder.cavity.made()[at]);
+            if self.occupied.insert(position_bits(positions[v as usize]))
+                && self.builder.insert(screen, v)?
+            {
+                for at in 0..self.builder.cavity.new_cells().len() {
+                    self.record_cell(self.builder.cavity.new_cells()[at]);
                 }
             }
         }
-        self.mark_gone();
+        self.mark_deleted();
         Ok(())
     }
 
-    /// Marks the places of cells that are gone.
-    fn mark_gone(&mut self) {
-        let Builder { free, mesh, .. } = &mut self.builder;
-        free.iter().for_each(|&place| mesh.cells[place as usize].corners[0] = GONE);
+    /// Marks the cells in free slots as [`DELETED`].
+    fn mark_deleted(&mut self) {
+        let Builder { free_slots, mesh, .. } = &mut self.builder;
+        free_slots.iter().for_each(|&slot| mesh.cells[slot as usize].corners[0] = DELETED);
     }
 
-    /// Takes note of a new cell.
-    pub(super) fn note(&mut self, cell: u32) {
-        self.fresh.push(cell);
+    /// Records a new cell, and that it is at its corners.
+    pub(super) fn record_cell(&mut self, cell: u32) {
+        self.new_cells.push(cell);
         for v in self.builder.mesh.cells[cell as usize].corners {
-            self.at[v as usize] = cell;
+            self.cell_at[v as usize] = cell;
         }
     }
 }
 
-/// Equal places have equal bits: adding 0.0 turns −0.0 into 0.0.
-fn place(position: [f64; 3]) -> [u64; 3] {
+/// Bits of a position that are equal for equal positions: adding 0.0 turns −0.0 into 0.0.
+fn position_bits(position: [f64; 3]) -> [u64; 3] {
     position.map(|x| (x + 0.0).to_bits())
 }
 

@@ -1,37 +1,38 @@
-//! Our own maker: incremental insertion (Bowyer 1981, doi:10.1093/comjnl/24.2.162; Watson 1981,
+//! Incremental insertion (Bowyer 1981, doi:10.1093/comjnl/24.2.162; Watson 1981,
 //! doi:10.1093/comjnl/24.2.167) with weights, over flat arrays.
 //!
-//! 1. Points come in [`rounds`]. Points along a curve ([`Sites`](super::Sites) know one) find their
-//!    cells, and the numbers these are made of, in the cache.
-//! 2. A walk from the last new cell finds the one that holds the point ([`locate`]). If the point
-//!    does not lie inside that cell's orthogonal sphere it is hidden.
-//! 3. The cells whose spheres hold the point are one cavity; new cells join the point to the
-//!    cavity's boundary ([`cavity`]), in the places of the old ones.
+//! 1. Points are inserted in [`rounds`]. Within a round they follow a space-filling curve
+//!    ([`Sites::curve`](super::Sites::curve)), so that the cells and points touched are in the cache.
+//! 2. A walk from the last new cell finds the cell that contains the point ([`Builder::locate`]). If the
+//!    point is not in conflict with that cell, that is not inside its orthogonal sphere, it is hidden.
+//! 3. The cells in conflict with the point are connected: the cavity. New cells join the point to the
+//!    boundary facets of the cavity ([`cavity`]) and reuse the slots of the old cells.
 
 mod cavity;
 mod growing;
-mod leave;
-mod locate;
-mod start;
+mod removal;
 
 use std::cmp::Ordering;
 
+use walpha_base::Cancelled;
+use walpha_base::memory::asking;
+
+use super::order::rounds;
 use super::predicates::{Predicates, Screen};
-use super::rounds::rounds;
-use super::{Cell, GONE, Triangulation, TriangulationError};
+use super::{Cell, DELETED, SitesError, Triangulation, TriangulationError, no_memory};
 use cavity::Cavity;
 pub use growing::Growing;
-pub use leave::Workspace;
-use walpha_base::Cancelled;
+pub use removal::Workspace;
 
-/// So many insertions are counted at once: some milliseconds.
-const TOGETHER: usize = 4096;
+/// Insertions between two reports of progress: some milliseconds.
+const REPORT_EVERY: usize = 4096;
 
-/// The regular triangulation of points: finite numbers of sane magnitude, no two places equal.
-/// Expected O(n log n) for points of even density.
+/// The regular triangulation of points, which satisfy the conditions of [`Sites`](super::Sites) and follow a
+/// space-filling curve. `inserted` is called now and then with the number of points inserted since. Expected
+/// O(n log n) for evenly distributed points.
 ///
 /// # Errors
-/// Points that span no volume, too many cells, no memory; what `inserted` returns.
+/// Points that span no volume; too many cells; out of memory; what `inserted` returns.
 pub fn insert_all(
     positions: &[[f64; 3]],
     weights: &[f64],
@@ -40,75 +41,175 @@ pub fn insert_all(
     let predicates = Predicates::new(positions, weights);
     let screen = Screen::new(&predicates)?;
     let count = screen.count() as u32;
-    let mut builder = Builder::empty(screen.count(), screen.count() + 1, count)?;
-    builder.begin(&screen, 0..count)?;
+    let mut builder = Builder::with_capacity(screen.count(), screen.count() + 1, count)?;
+    builder.start(&screen, 0..count)?;
     for (i, v) in rounds(count).enumerate() {
-        if i % TOGETHER == TOGETHER - 1 {
-            inserted(TOGETHER)?;
+        if i % REPORT_EVERY == REPORT_EVERY - 1 {
+            inserted(REPORT_EVERY)?;
         }
-        if !builder.first.contains(&v) {
+        if !builder.first_cell.contains(&v) {
             builder.insert(&screen, v)?;
         }
     }
     builder.finish()
 }
 
-/// A triangulation that grows.
+/// Memory is reserved for this many cells per point, and 1/16 more. A Poisson–Delaunay triangulation has
+/// about 6.8; some more exist during construction.
+const CELLS_PER_POINT: usize = 7;
+/// At least this many cells are reserved.
+const MIN_CELLS: usize = 64;
+/// Memory of a cell: itself and its visit stamp.
+const CELL_BYTES: usize = size_of::<Cell>() + size_of::<u32>();
+
+/// A triangulation under construction.
 struct Builder {
     mesh: Mesh,
-    /// What the last insertions said of each cell, see [`Cavity`].
-    marks: Vec<u32>,
-    /// Places of cells that are gone.
-    free: Vec<u32>,
-    /// The corners of the first cell.
-    first: [u32; 4],
-    /// A cell near the last point.
-    near: u32,
+    /// Visit stamp per cell: the last insertion that visited it, and whether the cell was in conflict. See
+    /// `Cavity::stamp`.
+    stamps: Vec<u32>,
+    /// Slots of deleted cells, to be reused.
+    free_slots: Vec<u32>,
+    /// The corners of the cell that construction started from.
+    first_cell: [u32; 4],
+    /// Where the next walk starts: a cell at the last vertex.
+    hint: u32,
     cavity: Cavity,
 }
 
 impl Builder {
-    /// Makes a point a vertex, or leaves it hidden; returns which.
+    /// An empty triangulation with capacity for `points` points. All vertex numbers, the ghost's included, are below
+    /// `below`.
+    fn with_capacity(points: usize, below: usize, ghost: u32) -> Result<Self, TriangulationError> {
+        let expected = (points + points / 16).saturating_mul(CELLS_PER_POINT).max(MIN_CELLS);
+        let mut builder = Self {
+            mesh: Mesh { cells: Vec::new(), ghost },
+            stamps: Vec::new(),
+            free_slots: Vec::new(),
+            first_cell: [ghost; 4],
+            hint: 0,
+            cavity: Cavity::new(below)?,
+        };
+        builder.reserve(expected)?;
+        Ok(builder)
+    }
+
+    /// Starts with four of some points that span a volume: one cell and the four infinite cells around it. O(n)
+    /// where the first points span none.
+    fn start(
+        &mut self,
+        screen: &Screen<'_>,
+        points: impl Iterator<Item = u32> + Clone,
+    ) -> Result<(), TriangulationError> {
+        let Self { mesh: Mesh { cells, ghost }, stamps, free_slots, first_cell, hint, .. } = self;
+        *first_cell = spanning(screen, points)?;
+        cells.clear();
+        free_slots.clear();
+        stamps.clear();
+        *hint = 0;
+        cells.push(Cell { corners: *first_cell, neighbors: [0; 4] });
+        for corner in 0..4 {
+            let mut infinite = *first_cell;
+            infinite[corner] = *ghost;
+            // Seen from outside, the facet has the opposite orientation.
+            infinite.swap((corner + 1) % 4, (corner + 2) % 4);
+            cells.push(Cell { corners: infinite, neighbors: [0; 4] });
+        }
+        stamps.resize(5, 0);
+        for a in 0..5 {
+            for b in 0..5 {
+                if let Some([from, to]) = common_facet(cells[a].corners, cells[b].corners) {
+                    cells[a].neighbors[from] = (4 * b + to) as u32;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Reserves memory for `more` more cells.
+    fn reserve(&mut self, more: usize) -> Result<(), TriangulationError> {
+        let bytes = (self.mesh.cells.len() + more).saturating_mul(CELL_BYTES);
+        asking(|| self.mesh.cells.try_reserve(more))
+            .and_then(|()| asking(|| self.stamps.try_reserve(more)))
+            .map_err(|_| no_memory(bytes))
+    }
+
+    /// Inserts a point; `false` if it is hidden.
     fn insert(&mut self, screen: &Screen<'_>, v: u32) -> Result<bool, TriangulationError> {
         let cell = self.locate(screen, v);
-        let joins = self.mesh.conflicts(screen, cell, v);
-        if joins {
-            self.dig(screen, cell, v);
-            self.fill(v)?;
+        let is_vertex = self.mesh.conflicts(screen, cell, v);
+        if is_vertex {
+            self.find_cavity(screen, cell, v);
+            self.fill_cavity(v)?;
         }
-        Ok(joins)
+        Ok(is_vertex)
+    }
+
+    /// The finite cell that contains a point, or an infinite cell whose facet of the hull has the point strictly
+    /// beyond it. Found by a visibility walk: it crosses facets that separate the cell from the point. In a regular
+    /// triangulation such a walk never returns to a cell (Edelsbrunner 1990, doi:10.1007/BF02122778).
+    #[inline(never)]
+    fn locate(&self, screen: &Screen<'_>, v: u32) -> u32 {
+        let mut cell = self.hint;
+        if let Some(corner) = self.mesh.ghost_corner(cell) {
+            cell = self.mesh.cells[cell as usize].neighbors[corner] / 4;
+        }
+        let mut from = u32::MAX;
+        'walk: loop {
+            let corners = self.mesh.cells[cell as usize].corners;
+            let across = self.mesh.cells[cell as usize].neighbors;
+            for corner in 0..4 {
+                let next = across[corner] / 4;
+                if next == from {
+                    continue;
+                }
+                let mut moved = corners;
+                moved[corner] = v;
+                if screen.orientation(moved).is_lt() {
+                    if self.mesh.ghost_corner(next).is_some() {
+                        return next;
+                    }
+                    from = cell;
+                    cell = next;
+                    continue 'walk;
+                }
+            }
+            return cell;
+        }
     }
 
     fn finish(mut self) -> Result<Triangulation, TriangulationError> {
-        for place in self.free {
-            self.mesh.cells[place as usize].corners[0] = GONE;
+        for slot in self.free_slots {
+            self.mesh.cells[slot as usize].corners[0] = DELETED;
         }
-        drop(self.marks);
-        Triangulation::along_points(self.mesh.cells, self.mesh.ghost)
+        drop(self.stamps);
+        Triangulation::sorted_by_corner(self.mesh.cells, self.mesh.ghost)
     }
 }
 
-/// Cells and their neighbours, as [`Triangulation`] has them.
+/// Cells and their adjacency as in [`Triangulation`].
 struct Mesh {
     cells: Vec<Cell>,
+    /// The number of the infinite vertex. In a [`Triangulation`] it is the number of points, so that the points are
+    /// 0, 1, …; in [`Growing`], where points are added later, it is 0 and the points are 1, 2, …
     ghost: u32,
 }
 
 impl Mesh {
-    /// Whether a point lies inside the orthogonal sphere of a cell.
+    /// Whether a cell is in conflict with a point: the point lies inside its orthogonal sphere.
     #[inline(always)]
     fn conflicts(&self, screen: &Screen<'_>, cell: u32, v: u32) -> bool {
         let quick = screen.conflicts(self.cells[cell as usize].corners, v);
-        quick.unwrap_or_else(|| self.conflicts_closely(screen, cell, v))
+        quick.unwrap_or_else(|| self.conflicts_exactly(screen, cell, v))
     }
 
-    /// The sphere of an infinite cell is the half-space beyond its facet, and that of the finite
-    /// cell behind where both meet.
+    /// The exact test. The sphere of an infinite cell is the open half-space beyond its facet of the hull; in the
+    /// plane of that facet the sphere of the finite cell behind it decides.
     #[inline(never)]
-    fn conflicts_closely(&self, screen: &Screen<'_>, cell: u32, v: u32) -> bool {
+    fn conflicts_exactly(&self, screen: &Screen<'_>, cell: u32, v: u32) -> bool {
         let mut corners = self.cells[cell as usize].corners;
         let Some(corner) = self.ghost_corner(cell) else {
-            return screen.conflicts_closely(corners, v);
+            return screen.conflicts_exactly(corners, v);
         };
         corners[corner] = v;
         match screen.orientation(corners) {
@@ -118,21 +219,44 @@ impl Mesh {
                 let behind =
                     self.cells[self.cells[cell as usize].neighbors[corner] as usize / 4].corners;
                 let quick = screen.conflicts(behind, v);
-                quick.unwrap_or_else(|| screen.conflicts_closely(behind, v))
+                quick.unwrap_or_else(|| screen.conflicts_exactly(behind, v))
             }
         }
     }
 
-    /// The place of the ghost in an infinite cell.
+    /// Which corner of a cell is the ghost; `None` for finite cells.
     #[inline(always)]
     fn ghost_corner(&self, cell: u32) -> Option<usize> {
         self.cells[cell as usize].corners.iter().position(|&v| v == self.ghost)
     }
 
-    /// Joins two facets, each 4·cell + corner.
+    /// Makes two cells adjacent across the facets 4·cell + corner.
     #[inline(always)]
     fn join(&mut self, a: u32, b: u32) {
         self.cells[a as usize / 4].neighbors[a as usize % 4] = b;
         self.cells[b as usize / 4].neighbors[b as usize % 4] = a;
     }
+}
+
+/// The first four points that span a volume, positively oriented.
+fn spanning(
+    screen: &Screen<'_>,
+    mut points: impl Iterator<Item = u32> + Clone,
+) -> Result<[u32; 4], TriangulationError> {
+    let all = points.clone();
+    let flat = |dimension| SitesError::flat(all.clone().count(), dimension);
+    let (Some(a), Some(b)) = (points.next(), points.next()) else { return Err(flat(0).into()) };
+    let c = points.find(|&c| !screen.collinear([a, b, c])).ok_or_else(|| flat(1))?;
+    let sign = |d: u32| screen.orientation([a, b, c, d]);
+    let d = points.find(|&d| sign(d).is_ne()).ok_or_else(|| flat(2))?;
+    Ok(if sign(d) == Ordering::Greater { [a, b, c, d] } else { [b, a, c, d] })
+}
+
+/// The corners opposite the facet that two different cells share, if they share one.
+fn common_facet(a: [u32; 4], b: [u32; 4]) -> Option<[usize; 2]> {
+    let opposite = |a: [u32; 4], b: [u32; 4]| {
+        let mut lone = (0..4).filter(|&k| !b.contains(&a[k]));
+        lone.next().filter(|_| lone.next().is_none())
+    };
+    Some([opposite(a, b)?, opposite(b, a)?])
 }

@@ -1,5 +1,5 @@
-//! The same questions in integers: no rounding from the doubles on. 128 bits do for most lattices,
-//! whatever their weights; beyond these integers are of any length.
+//! The predicates in integers, without any rounding. 128 bits suffice on most lattices, whatever the weights;
+//! otherwise integers are of arbitrary length.
 
 use std::cmp::Ordering;
 
@@ -9,10 +9,13 @@ use super::formulas::{Ray, determinant, power_determinant, quotient, side};
 use super::{Ratio, Site};
 use crate::number::{Integer, cross, dot, highest_bit, lowest_bit};
 
-/// Evaluates an expression over integers `$T` that hold so many bits.
+/// The bits of the magnitude of an `i128`.
+const BITS_OF_I128: u32 = 127;
+
+/// Evaluates an expression over integers `$T` that hold magnitudes of `$bits` bits: `i128` or `IBig`.
 macro_rules! in_integers {
     ($bits:expr, $T:ident => $value:expr) => {
-        if $bits < 127 {
+        if $bits < BITS_OF_I128 {
             type $T = i128;
             $value
         } else {
@@ -52,7 +55,7 @@ pub(super) fn power(sites: [Site; 5]) -> Ordering {
 pub(super) fn fits<const N: usize>(sites: [Site; N], alpha: f64) -> bool {
     let units = Units::of(&sites, alpha);
     let Units { coordinate_bits: c, power_bits: p, finer, .. } = units;
-    // The numerator, then the product of the ball and the denominator.
+    // Bits of the numerator, and of the product of ball α + ω and denominator.
     let bits =
         (2 * (N as u32 - 2) * c + 2 * p + 7).max(p + 2 * (N as u32 - 1) * c + 9 + finer as u32);
     in_integers!(bits, T => {
@@ -89,16 +92,20 @@ pub(super) fn inside<const N: usize>(sites: [Site; N], x: Site) -> bool {
     })
 }
 
-/// Units in which numbers are integers: powers of two, one for coordinates, and one for squares
-/// that is `finer` bits finer than the first one squared. The formulas are homogeneous in each, so
-/// that a lattice with arbitrary doubles as weights needs few digits for its coordinates.
+/// Units in which all numbers are integers: powers of two, one for coordinates, and one for squares, which is
+/// `finer` bits finer than the square of the first. The formulas are homogeneous in each unit, so that points on
+/// a lattice with arbitrary doubles as weights need few bits for their coordinates.
 struct Units {
+    /// The unit of coordinates is two to this power.
     coordinate: i32,
     finer: usize,
-    /// Bits that hold a difference of coordinates, and a power.
+    /// Bits of a difference of coordinates.
     coordinate_bits: u32,
+    /// Bits of a power |q − p|² + ω(p) − ω(q).
     power_bits: u32,
+    /// The lowest bit of any coordinate, and of any weight or α.
     lowest: [Option<i32>; 2],
+    /// The exponent above the highest bit of these.
     highest: [Option<i32>; 2],
 }
 
@@ -124,6 +131,7 @@ impl Units {
         self.settle();
     }
 
+    /// Takes the bits of a site into account.
     fn widen(&mut self, site: Site) {
         let [x, y, z] = site.position;
         for (kind, value) in [(0, x), (0, y), (0, z), (1, site.weight)] {
@@ -135,13 +143,14 @@ impl Units {
         }
     }
 
+    /// Computes units and numbers of bits from the lowest and highest bits.
     fn settle(&mut self) {
         self.coordinate = self.lowest[0].unwrap_or(0);
         let height = self.lowest[1].map_or(2 * self.coordinate, |bit| bit.min(2 * self.coordinate));
         self.finer = (2 * self.coordinate - height) as usize;
         self.coordinate_bits = self.highest[0].map_or(0, |bit| (bit - self.coordinate) as u32) + 1;
         let weight = self.highest[1].map_or(0, |bit| (bit - height).max(0) as u32) + 1;
-        // Of three squares and a difference of weights.
+        // Three squares and a difference of weights.
         self.power_bits = (2 * self.coordinate_bits + 2 + self.finer as u32).max(weight) + 1;
     }
 
@@ -150,10 +159,12 @@ impl Units {
         2 * self.coordinate - self.finer as i32
     }
 
+    /// A squared length in units of squares.
     fn height<T: Integer>(&self, square: f64) -> T {
         T::of(square, self.square())
     }
 
+    /// q − p in units of coordinates.
     fn vector<T: Integer>(&self, p: Site, q: Site) -> [T; 3] {
         let at = |site: Site, k: usize| T::of(site.position[k], self.coordinate);
         [0, 1, 2].map(|k| at(q, k).minus(&at(p, k)))

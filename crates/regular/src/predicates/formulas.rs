@@ -1,22 +1,22 @@
-//! The polynomials behind every geometric decision, written once for doubles and for integers.
+//! The polynomials whose signs are the predicates, written once for doubles and for integers.
 //!
-//! Orientation and power test are determinants of rays from one of the points to the others.
+//! Orientation and power test are determinants of rays, from one of the points to the others.
 //!
 //! Seen from a simplex's first vertex p, with rays a = q − p and powers t = |a|² + ω(p) − ω(q) of
 //! the others, the centre is p + c where 2c·a = t for each ray and c lies in the span of the rays;
-//! the squared radius is |c|² − ω(p). A point at the ray e is inside if its power < 2c·e.
+//! the squared radius is |c|² − ω(p). A point p + e with the power s lies inside if s < 2c·e.
 
 use crate::number::{Number, Scale, cross, dot};
 
-/// From the first vertex to another. Where a lattice makes vectors exact in doubles, only powers
-/// need more digits.
+/// From the first vertex p to another vertex q: `vector` q − p and `power` |q − p|² + ω(p) − ω(q). The types differ
+/// where a lattice makes vectors exact in doubles, and only powers need more digits.
 #[derive(Clone, Copy)]
 pub(super) struct Ray<T, V = T> {
     pub vector: [V; 3],
     pub power: T,
 }
 
-/// The determinant of three vectors: positive if they turn like the axes x, y, z.
+/// The determinant of three vectors: positive if they are oriented like the axes x, y, z.
 #[inline(always)]
 pub(super) fn determinant<T: Number>([a, b, c]: [&[T; 3]; 3]) -> T {
     dot(a, &cross(b, c))
@@ -24,11 +24,11 @@ pub(super) fn determinant<T: Number>([a, b, c]: [&[T; 3]; 3]) -> T {
 
 /// The determinant of four rays as rows (x, y, z, power), by 2×2 minors. For the rays from a point t
 /// to the corners of a positively oriented cell it is negative if t lies strictly inside the cell's
-/// orthogonal sphere. Powers may also be differences of lifted heights |p|² − ω, which adds
+/// orthogonal sphere. Powers may be replaced by differences of lifted heights |p|² − ω: this only adds
 /// multiples of the other columns.
 #[inline(always)]
 pub(super) fn power_determinant<T: Number>([a, b, c, d]: &[Ray<T>; 4]) -> T {
-    // Laplace's expansion by two rows and the two others.
+    // Laplace expansion: minors of two rows times the complementary minors of the others.
     let terms = [
         products(minors(a, b), minors(c, d)),
         products(minors(a, c), minors(b, d)),
@@ -38,8 +38,8 @@ pub(super) fn power_determinant<T: Number>([a, b, c, d]: &[Ray<T>; 4]) -> T {
     x.plus(&y)
 }
 
-/// The minors of two rays in the columns (x, y) and (z, power), side by side: a processor computes
-/// both at once.
+/// The minors of two rays in the columns (x, y) and (z, power), computed in pairs so that one vector instruction of
+/// two lanes does both: (x, z) times (y, power).
 #[inline(always)]
 fn minors<T: Number>(p: &Ray<T>, q: &Ray<T>) -> [T; 2] {
     let (low_p, high_p) = ([&p.vector[0], &p.vector[2]], [&p.vector[1], &p.power]);
@@ -47,14 +47,14 @@ fn minors<T: Number>(p: &Ray<T>, q: &Ray<T>) -> [T; 2] {
     [0, 1].map(|i| low_p[i].times(high_q[i]).minus(&low_q[i].times(high_p[i])))
 }
 
-/// The products of the minors of two rays with the opposite ones of two others.
+/// The products of the minors of two rays with the complementary minors of two others.
 #[inline(always)]
 fn products<T: Number>([u, v]: [T; 2], [x, y]: [T; 2]) -> [T; 2] {
     [u.times(&y), v.times(&x)]
 }
 
-/// 4 d·|c|² and d, where d ≥ 0 depends on the rays alone: of degree 2 for one ray, 4 for two, 6
-/// for three.
+/// 4 d·|c|² and d, where d ≥ 0 depends on the vectors alone and has degree 2 for one ray, 4 for two, 6 for
+/// three.
 #[inline(always)]
 pub(super) fn quotient<T: Scale<V>, V: Number>(rays: &[Ray<T, V>]) -> (T, V) {
     match rays {
@@ -78,8 +78,8 @@ pub(super) fn quotient<T: Scale<V>, V: Number>(rays: &[Ray<T, V>]) -> (T, V) {
     }
 }
 
-/// A positive multiple of the power of the point at `e` less 2c·e: negative inside the sphere of a
-/// vertex, an edge or a facet.
+/// A positive multiple of s − 2c·e for the point at `e` of power s: negative inside the smallest orthogonal sphere
+/// of an edge or a facet.
 #[inline(always)]
 pub(super) fn side<T: Number>(rays: &[Ray<T>], e: &Ray<T>) -> T {
     match rays {
@@ -93,11 +93,11 @@ pub(super) fn side<T: Number>(rays: &[Ray<T>], e: &Ray<T>) -> T {
             let along = along.plus(&v.times(&dot(&e.vector, &b.vector)));
             e.power.times(&d).minus(&along)
         }
-        _ => unreachable!("only edges and facets are asked about"),
+        _ => unreachable!("only edges and facets have sides"),
     }
 }
 
-/// The Gram determinant d of two rays, and d times the coordinates of 2c in them.
+/// The Gram determinant d of two rays, and d times the coefficients of 2c in the basis of the rays.
 #[inline(always)]
 fn gram<T: Scale<V>, V: Number>(a: &Ray<T, V>, b: &Ray<T, V>) -> ([T; 2], V) {
     let aa = dot(&a.vector, &a.vector);

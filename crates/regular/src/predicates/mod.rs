@@ -1,9 +1,9 @@
-//! Exact answers to every geometric question that a regular triangulation and an α-complex are made
-//! of: orientation, power test, radius of the smallest orthogonal sphere, and whether it is empty.
+//! The exact predicates of regular triangulations and α-complexes: orientation, power test, radius of the smallest
+//! orthogonal sphere, and whether a point lies inside it.
 //!
-//! Each answer is the sign of a polynomial. It is computed in doubles and believed when it passes a
-//! forward error bound, or when the arithmetic was exact because all numbers are small multiples of
-//! a power of two, as on voxel grids. Otherwise integers decide.
+//! Each predicate is the sign of a polynomial. It is evaluated in doubles, and accepted if its magnitude exceeds a
+//! forward error bound, or if the arithmetic is exact because all numbers are small multiples of a power of two, as on
+//! voxel grids. Otherwise integers decide.
 
 mod exact;
 mod formulas;
@@ -16,7 +16,7 @@ mod twofold;
 use std::cmp::Ordering;
 
 use formulas::{determinant, power_determinant, quotient, side};
-pub use nearest::Small as SmallRadius;
+pub use nearest::SmallRadius;
 pub use ratio::Ratio;
 pub use screen::Screen;
 use size::{Size, View, ray};
@@ -31,53 +31,55 @@ pub(crate) struct Site {
     weight: f64,
 }
 
-/// Doubles around a number: `low` ≤ it ≤ `high`.
+/// Doubles that enclose a real number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// Not above the number.
+    /// A lower bound.
     pub low: f64,
-    /// Not below it.
+    /// An upper bound.
     pub high: f64,
 }
 
 impl Interval {
-    /// Around a number of which this is the nearest double.
+    /// Encloses every number whose nearest double this is.
     pub fn around(nearest: f64) -> Self {
         Self { low: nearest.next_down(), high: nearest.next_up() }
     }
 }
 
-/// Weighted points, asked about by index.
+/// Predicates on weighted points, which are given by index.
 pub struct Predicates<'a> {
     positions: &'a [[f64; 3]],
     weights: &'a [f64],
     lattice: Lattice,
-    /// Below these, polynomials of degree 1 to 8 in coordinates are exact in doubles; 0 off a
-    /// lattice.
+    /// By degree less 1: the largest sum of magnitudes of terms for which a polynomial in coordinates is exact in
+    /// doubles; 0 without a lattice.
     exact: [f64; 8],
-    /// Where points stand for all their copies: a simplex is made of those nearest to its first corner.
+    /// On a torus, points stand for all their copies: a simplex has the copies nearest to its first corner.
     torus: Option<Torus>,
 }
 
-/// Every number is the result of fewer than 32 roundings, so a polynomial is off by less than 2⁻⁴⁸
-/// of the sum of the magnitudes of its terms.
+/// Relative rounding error, 2⁻⁴⁸ = 32·2⁻⁵³: a polynomial takes fewer than 32 roundings of at most 2⁻⁵³ each, so its
+/// error is less than this times the sum of the magnitudes of its terms.
 const ROUNDING: f64 = 1.0 / (1u64 << 48) as f64;
 
+/// From here on not all integers are doubles: 2⁵³.
+const MAX_INTEGER: f64 = (1u64 << f64::MANTISSA_DIGITS) as f64;
+
 impl<'a> Predicates<'a> {
-    /// Looks for what the numbers have in common. O(n).
+    /// Predicates on points, with their own lattice. O(n).
     pub fn new(positions: &'a [[f64; 3]], weights: &'a [f64]) -> Self {
         Self::on(Lattice::of(positions, weights), positions, weights)
     }
 
-    /// The same, where a lattice of all numbers is known.
+    /// Predicates on points of a known lattice. O(1).
     pub fn on(lattice: Lattice, positions: &'a [[f64; 3]], weights: &'a [f64]) -> Self {
-        let most = (1u64 << 53) as f64;
-        let exact = [1, 2, 3, 4, 5, 6, 7, 8].map(|degree| most * lattice.step.powi(degree));
+        let exact = [1, 2, 3, 4, 5, 6, 7, 8].map(|degree| MAX_INTEGER * lattice.step.powi(degree));
         Self { positions, weights, lattice, exact, torus: None }
     }
 
-    /// Looks for what the numbers of points of a torus have in common. Corners of a simplex, and what is
-    /// asked about beside it, must each be nearer to its first corner than half a side. O(n).
+    /// Predicates on points of a torus, if one is given. The other corners of a simplex, and a point tested against
+    /// it, must be nearer to its first corner than half a side along each axis. O(n).
     pub fn on_torus(positions: &'a [[f64; 3]], weights: &'a [f64], torus: Option<Torus>) -> Self {
         let lattice = lattice(positions, weights, torus);
         Self { torus, ..Self::on(lattice, positions, weights) }
@@ -101,7 +103,7 @@ impl<'a> Predicates<'a> {
         sites
     }
 
-    /// A point beside a simplex.
+    /// A point to be tested against a simplex with the first corner `p`: its copy nearest to `p`.
     #[inline(always)]
     fn nearest_copy(&self, p: Site, v: u32) -> Site {
         let site = self.site(v);
@@ -111,7 +113,7 @@ impl<'a> Predicates<'a> {
         }
     }
 
-    /// The squared radius of the smallest orthogonal sphere of a simplex: α at which it fits.
+    /// Encloses the squared radius of the smallest orthogonal sphere of a simplex: the least α that it fits.
     #[inline]
     pub fn squared_radius<const N: usize>(&self, simplex: [u32; N]) -> Interval {
         let p = self.site(simplex[0]);
@@ -152,8 +154,8 @@ impl<'a> Predicates<'a> {
         self.fits(simplex, alpha)
     }
 
-    /// The smallest double that is not below the squared radius: the first α at which it fits. By
-    /// division of integers; some microseconds.
+    /// The least double α that a simplex fits: its squared radius, rounded up. By division of integers; some
+    /// microseconds.
     pub fn first_alpha<const N: usize>(&self, simplex: [u32; N]) -> f64 {
         let sites = self.sites(simplex);
         if N == 1 { -sites[0].weight } else { exact::squared_radius(sites).rounded_up() }
@@ -167,8 +169,8 @@ impl<'a> Predicates<'a> {
         let p = sites[0];
         let x = self.nearest_copy(p, x);
         let View { rays, size } = View::<N>::of(p, sites);
-        let (ray, reach) = ray(p, x);
-        let size = size.larger(reach);
+        let (ray, of_ray) = ray(p, x);
+        let size = size.larger(of_ray);
         let value = if N == 1 { ray.power } else { side(&rays[1..], &ray) };
         let bound = size.side_bound(N);
         let exact = self.lattice.holds_weights && self.holds(bound, 2 * N);
@@ -205,8 +207,8 @@ impl<'a> Predicates<'a> {
         let View { rays, size } = View::of(t, sites);
         let value = power_determinant(&rays);
         let bound = 24.0 * size.length * size.length * size.length * size.power;
-        let alike = sites.iter().all(|site| site.weight == t.weight);
-        let exact = (alike || self.lattice.holds_weights) && self.holds(bound, 5);
+        let equal_weights = sites.iter().all(|site| site.weight == t.weight);
+        let exact = (equal_weights || self.lattice.holds_weights) && self.holds(bound, 5);
         if exact || (size.is_sane() && value.abs() > bound * ROUNDING) {
             sign(value)
         } else {
@@ -238,18 +240,17 @@ impl<'a> Predicates<'a> {
         }
     }
 
-    /// Whether doubles hold a polynomial of this degree whose terms sum to `bound` in magnitude.
+    /// Whether a polynomial of this degree, the magnitudes of whose terms sum to at most `bound`, is exact in doubles.
     #[inline]
     fn holds(&self, bound: f64, degree: usize) -> bool {
         // Without a step nothing is exact, not even a bound that underflowed to 0.
         self.lattice.step != 0.0 && bound <= self.exact[degree - 1]
     }
 
+    /// Whether a squared length is a multiple of the squared step.
     fn on_lattice(&self, square: f64) -> bool {
         let multiple = square / (self.lattice.step * self.lattice.step);
-        self.lattice.step != 0.0
-            && multiple.abs() < (1u64 << 53) as f64
-            && multiple.round() == multiple
+        self.lattice.step != 0.0 && multiple.abs() < MAX_INTEGER && multiple.round() == multiple
     }
 }
 
@@ -261,10 +262,10 @@ pub fn lattice(positions: &[[f64; 3]], weights: &[f64], torus: Option<Torus>) ->
     }
 }
 
-/// The smallest and largest coordinates of points; of none, +∞ and −∞. O(n).
+/// The bounding box of points: smallest and largest coordinates, +∞ and −∞ without points. O(n).
 pub(crate) fn extent(positions: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
-    let nothing = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    positions.iter().fold(nothing, |(low, high), p| {
+    let empty = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    positions.iter().fold(empty, |(low, high), p| {
         ([0, 1, 2].map(|k| p[k].min(low[k])), [0, 1, 2].map(|k| p[k].max(high[k])))
     })
 }

@@ -1,5 +1,4 @@
-//! Squared radii as numbers: the nearest double, and the exact number where that does not distinguish two
-//! apart.
+//! Squared radii as numbers: the nearest double, and the exact number where two have the same nearest double.
 
 use super::formulas::{Ray, quotient};
 use super::size::{Size, View};
@@ -7,17 +6,16 @@ use super::twofold::Twofold;
 use super::{Predicates, Ratio, Site, exact};
 use crate::number::{Number, dot};
 
-/// A squared radius on a lattice: numerator / 4 denominator, in squares of its step, less a weight.
+/// A squared radius on a lattice, exactly: numerator / (4 denominator) in squares of the step, less the weight.
 #[derive(Clone, Copy, Debug)]
-pub struct Small {
+pub struct SmallRadius {
     numerator: i64,
     denominator: i64,
     weight: f64,
 }
 
-impl Small {
-    /// Whether two are surely the same number. Two that are the same may say no where they have
-    /// different weights.
+impl SmallRadius {
+    /// Whether two numbers are known to be equal. Equal numbers with different weights may give `false`.
     pub fn equals(self, other: Self) -> bool {
         let product = |a: i64, b: i64| i128::from(a) * i128::from(b);
         self.weight == other.weight
@@ -27,12 +25,12 @@ impl Small {
 }
 
 impl Predicates<'_> {
-    /// The double nearest to the squared radius of the smallest orthogonal sphere, of two the one
-    /// whose last digit is even. Never −0.
+    /// The double nearest to the squared radius of the smallest orthogonal sphere; of two equally near ones the
+    /// even one. Never −0.
     ///
-    /// By one division where a lattice makes numerator and denominator exact, else by twice the digits
-    /// of doubles, of powers alone where a lattice makes vectors exact; what lies too near to the middle
-    /// of two doubles for that, by integers.
+    /// Where a lattice makes numerator and denominator exact, this takes one division. Otherwise numbers have
+    /// twice the digits of doubles (only powers do where a lattice makes vectors exact), and integers decide what
+    /// is too near to the midpoint of two doubles for that.
     pub fn nearest_radius<const N: usize>(&self, simplex: [u32; N]) -> f64 {
         let sites = self.sites(simplex);
         if N == 1 {
@@ -44,10 +42,10 @@ impl Predicates<'_> {
         let terms = bounds.numerator + 4.0 * weight.abs() * bounds.denominator;
         if self.lattice.holds_weights && self.holds(terms, 2 * N) {
             let (numerator, denominator) = quotient(&rays[1..]);
-            // A face of a lattice's triangulation is not flat: its denominator is not 0.
+            // Simplices of a triangulation are not degenerate, so the exact denominator is not 0.
             return (numerator - 4.0 * weight * denominator) / (4.0 * denominator) + 0.0;
         }
-        let rounded = if !(size.is_sane() && weight.abs() < 1e60) {
+        let rounded = if !(size.is_sane() && weight.abs() < Size::LARGEST_SQUARE) {
             None
         } else if self.holds_vectors(size, N) {
             let (numerator, denominator) = quotient(&lattice_rays(sites, rays)[1..]);
@@ -60,30 +58,31 @@ impl Predicates<'_> {
         rounded.unwrap_or_else(|| self.exact_radius(simplex).nearest())
     }
 
-    /// Whether the vectors of so many vertices, and what a radius needs of them without weights, are exact
-    /// in doubles, and products of two lengths have at most 26 digits.
+    /// Whether the vectors of a simplex with this many vertices and the denominator of its squared radius are exact in
+    /// doubles, and products of two lengths have at most 26 bits.
     #[inline(always)]
     fn holds_vectors(&self, size: Size, vertices: usize) -> bool {
-        const DIGITS: f64 = (1u64 << 26) as f64;
+        // Factors of `Twofold` by `Scale<f64>` have at most 26 bits.
+        const MAX_FACTOR: f64 = (1u64 << 26) as f64;
         let step = self.lattice.step;
-        3.0 * size.length * size.length <= DIGITS * (step * step)
+        3.0 * size.length * size.length <= MAX_FACTOR * (step * step)
             && self.holds(size.bounds(vertices).denominator, 2 * vertices - 2)
     }
 
-    /// The squared radius of the smallest orthogonal sphere, exactly. By integers of any length.
+    /// The squared radius of the smallest orthogonal sphere, exactly. By integers of arbitrary length.
     pub fn exact_radius<const N: usize>(&self, simplex: [u32; N]) -> Ratio {
         exact::squared_radius(self.sites(simplex))
     }
 
-    /// The same in small integers, where a lattice has them.
-    pub fn small_radius<const N: usize>(&self, simplex: [u32; N]) -> Option<Small> {
+    /// The same as a ratio of 64-bit integers, where a lattice allows.
+    pub fn small_radius<const N: usize>(&self, simplex: [u32; N]) -> Option<SmallRadius> {
         let sites = self.sites(simplex);
         let weight = sites[0].weight;
         if N == 1 {
-            return Some(Small { numerator: 0, denominator: 1, weight });
+            return Some(SmallRadius { numerator: 0, denominator: 1, weight });
         }
-        let alike = sites.iter().all(|site| site.weight == weight);
-        if !(alike || self.lattice.holds_weights) {
+        let equal_weights = sites.iter().all(|site| site.weight == weight);
+        if !(equal_weights || self.lattice.holds_weights) {
             return None;
         }
         let View { rays, size } = View::<N>::of(sites[0], sites);
@@ -93,7 +92,7 @@ impl Predicates<'_> {
         }
         let (numerator, denominator) = quotient(&rays[1..]);
         let steps = |value: f64, degree: usize| {
-            // A power of two: nothing is rounded.
+            // Division by a power of two is exact.
             (value / self.lattice.step.powi(degree as i32)) as i64
         };
         let terms = bounds.numerator + 4.0 * weight.abs() * bounds.denominator;
@@ -103,7 +102,7 @@ impl Predicates<'_> {
         } else {
             (numerator, weight)
         };
-        Some(Small {
+        Some(SmallRadius {
             numerator: steps(numerator, 2 * N),
             denominator: steps(denominator, 2 * N - 2),
             weight,
@@ -111,8 +110,8 @@ impl Predicates<'_> {
     }
 }
 
-/// The double nearest to numerator / 4 denominator − weight, if it is certain, from the sums of magnitudes
-/// of the terms of both.
+/// The double nearest to numerator / (4 denominator) − weight, if the error bounds determine it. `above` and `below` are
+/// the sums of the magnitudes of the terms of numerator and denominator.
 #[inline(always)]
 fn rounded(
     numerator: Twofold,
@@ -136,7 +135,7 @@ fn rounded(
     radius.nearest(error).map(|radius| radius + 0.0)
 }
 
-/// Of the rays in doubles, whose vectors are exact, those with exact powers, too.
+/// Rays with exact vectors in doubles, and powers with twice the digits.
 #[inline(always)]
 fn lattice_rays<const N: usize>(sites: [Site; N], rays: [Ray<f64>; N]) -> [Ray<Twofold, f64>; N] {
     let mut exact = [Ray { power: Twofold::sum(0.0, 0.0), vector: [0.0; 3] }; N];
@@ -148,6 +147,7 @@ fn lattice_rays<const N: usize>(sites: [Site; N], rays: [Ray<f64>; N]) -> [Ray<T
     exact
 }
 
+/// Rays with twice the digits.
 #[inline(always)]
 fn twofold_rays<const N: usize>(sites: [Site; N]) -> [Ray<Twofold>; N] {
     let p = sites[0];

@@ -3,7 +3,7 @@ use std::cmp::Ordering;
 use dashu_int::IBig;
 use dashu_int::ops::{BitTest, DivEuclid, DivRemEuclid, UnsignedAbs};
 
-/// An exact number: numerator / denominator · 2^exponent, the denominator positive.
+/// An exact number: numerator / denominator · 2^exponent with a positive denominator.
 #[derive(Clone, Debug)]
 pub struct Ratio {
     numerator: IBig,
@@ -11,39 +11,41 @@ pub struct Ratio {
     exponent: i32,
 }
 
-/// The exponent of the smallest double above 0.
-const LOWEST: i32 = -1074;
+/// The exponent of the smallest positive double: −1074.
+const LOWEST: i32 = f64::MIN_EXP - f64::MANTISSA_DIGITS as i32;
+/// Bits of the mantissa of a double.
+const MANTISSA_BITS: i32 = f64::MANTISSA_DIGITS as i32;
 
 impl Ratio {
     pub(super) fn new(numerator: IBig, denominator: IBig, exponent: i32) -> Self {
         Self { numerator, denominator, exponent }
     }
 
-    /// The smallest double that is not below it; ∞ beyond them.
+    /// The number rounded up to a double; +∞ beyond the largest.
     pub(super) fn rounded_up(self) -> f64 {
-        // So many more digits that the quotient has 56 or 57, but none below the last of a double.
-        let more = self.digits_wanted(56);
-        let (numerator, denominator, exponent) = self.with_more(more);
+        // The quotient has up to 4 bits more than a double, but none below the lowest of a double.
+        let shift = self.shift_for(MANTISSA_BITS + 3);
+        let (numerator, denominator, exponent) = self.shifted(shift);
         let ceiling = -((-numerator).div_euclid(denominator));
-        // Rounding up twice is rounding up once.
-        let spare = (bits(&ceiling) - 53).max(0);
+        // Rounding up in two steps is rounding up once.
+        let spare = (bits(&ceiling) - MANTISSA_BITS).max(0);
         let unit = IBig::ONE << spare as usize;
         let digits = -((-ceiling).div_euclid(unit));
         let value = double(digits, exponent + spare);
         if value == f64::NEG_INFINITY { f64::MIN } else { value }
     }
 
-    /// The nearest double, of two the one whose last digit is even; ±∞ beyond them. Never −0.
+    /// The nearest double, of two equally near ones the even one; ±∞ beyond the largest. Never −0.
     pub fn nearest(self) -> f64 {
-        // The quotient has 53 digits or 54, or fewer where a double has no more.
-        let more = self.digits_wanted(53);
-        let (numerator, denominator, exponent) = self.with_more(more);
+        // The quotient has 53 or 54 bits, or fewer where the double is subnormal.
+        let shift = self.shift_for(MANTISSA_BITS);
+        let (numerator, denominator, exponent) = self.shifted(shift);
         let negative = numerator < IBig::ZERO;
         let numerator = if negative { -numerator } else { numerator };
         let mut unit = denominator;
         let mut exponent = exponent;
         let (mut digits, mut rest) = (&numerator).div_rem_euclid(&unit);
-        if bits(&digits) > 53 {
+        if bits(&digits) > MANTISSA_BITS {
             (unit, exponent) = (unit << 1, exponent + 1);
             (digits, rest) = (&numerator).div_rem_euclid(&unit);
         }
@@ -54,18 +56,19 @@ impl Ratio {
         if negative && value != 0.0 { -value } else { value }
     }
 
-    /// How far the numerator must be shifted for a quotient of `count` digits or one more, but none
-    /// below the last of a double.
-    fn digits_wanted(&self, count: i32) -> i32 {
+    /// By how many bits the numerator must be shifted to the left for a quotient of `count` bits or one more, but
+    /// none below the lowest bit of a double. Negative for a shift of the denominator.
+    fn shift_for(&self, count: i32) -> i32 {
         (count - bits(&self.numerator) + bits(&self.denominator)).min(self.exponent - LOWEST)
     }
 
-    fn with_more(self, more: i32) -> (IBig, IBig, i32) {
+    /// Numerator, denominator and exponent of the same number, shifted.
+    fn shifted(self, shift: i32) -> (IBig, IBig, i32) {
         let Self { numerator, denominator, exponent } = self;
-        if more >= 0 {
-            (numerator << more as usize, denominator, exponent - more)
+        if shift >= 0 {
+            (numerator << shift as usize, denominator, exponent - shift)
         } else {
-            (numerator, denominator << more.unsigned_abs() as usize, exponent - more)
+            (numerator, denominator << shift.unsigned_abs() as usize, exponent - shift)
         }
     }
 }
@@ -96,11 +99,12 @@ impl PartialEq for Ratio {
 
 impl Eq for Ratio {}
 
+/// Bits of the magnitude.
 fn bits(number: &IBig) -> i32 {
     number.unsigned_abs().bit_len() as i32
 }
 
-/// At most 2⁵³ times a power of two.
+/// `digits`, of magnitude at most 2⁵³, times 2^`power`.
 fn double(digits: IBig, power: i32) -> f64 {
     let digits = i64::try_from(digits).expect("at most 2⁵³") as f64;
     // In two steps, as a power alone may be out of range; each product is exact.

@@ -1,82 +1,91 @@
-//! Orientation and power test for many points: one bound for the whole set decides nearly all.
+//! Orientation and power test on many points, filtered: one error bound for the whole set decides nearly all.
 
 use std::cmp::Ordering;
 
 use super::formulas::{Ray, determinant, power_determinant};
 use super::{Predicates, ROUNDING};
-use crate::{TriangulationError, room};
+use crate::{TriangulationError, with_capacity};
 
-/// Weighted points about the middle of their box, each with its height |p|² − ω on the paraboloid:
-/// four doubles that both determinants are made of. On a lattice where all terms of a determinant
-/// stay below 2⁵³ every sign is exact, ties included; else a sign is believed beyond one bound for
-/// the whole set, and [`Predicates`] decide the rest.
+/// Weighted points lifted to the paraboloid: coordinates relative to the centre of the bounding box, and the height
+/// h = |p|² − ω. Both determinants are computed from these four doubles. On a lattice where the terms of a determinant
+/// sum to at most 2⁵³ in magnitude, every sign is exact, ties included. Otherwise a sign is accepted beyond one error
+/// bound for the whole set, and [`Predicates`] decide the rest.
 pub struct Screen<'a> {
     predicates: &'a Predicates<'a>,
-    /// One more than there are: the ghost is nowhere, so that no sign is believed.
+    /// Points as [x, z, y, h], not [x, y, z, h]: `power_determinant` multiplies the lanes (x, z) by the lanes (y, h),
+    /// so that one vector instruction computes the minors in the columns (x, y) and (z, h). In this order both pairs
+    /// are adjacent in memory, and a difference of two points is not shuffled. After the last point comes the ghost,
+    /// all NaN: no comparison accepts a sign that it takes part in.
     points: Vec<[f64; 4]>,
-    /// Where every determinant of coordinates is exact: what x and y count for in the number that
-    /// orders points by (x, y, z).
+    /// Where every orientation is exact: factors of x and y for which `x·fx + y·fy + z` orders points by (x, y, z),
+    /// exactly.
     order: Option<[f64; 2]>,
+    /// Error bounds of the determinants: beyond them a sign is certain. 0 where they are exact.
     orientation: f64,
     power: f64,
 }
 
-/// 2¹⁴ times the smallest double: 2⁻¹⁰⁶⁰.
-const LOST: f64 = f64::from_bits(1 << 14);
+/// 2⁻¹⁰⁶⁰, 2¹⁴ times the smallest positive double: bounds what the products of a determinant lose by underflow
+/// together, before they are multiplied by further factors.
+const UNDERFLOW: f64 = f64::from_bits(1 << 14);
 
 impl<'a> Screen<'a> {
-    /// Looks at all points. O(n).
+    /// Lifts all points, and bounds the errors. O(n).
     ///
     /// # Errors
-    /// No memory for 32 bytes a point.
+    /// Out of memory: 32 bytes per point are needed.
     pub fn new(predicates: &'a Predicates<'a>) -> Result<Self, TriangulationError> {
         let (positions, weights) = (predicates.positions, predicates.weights);
         let (low, high) = super::extent(positions);
-        let alike = weights.windows(2).all(|pair| pair[0] == pair[1]);
+        let equal_weights = weights.windows(2).all(|pair| pair[0] == pair[1]);
         let lattice = predicates.lattice;
-        let exact = lattice.step != 0.0 && (lattice.holds_weights || alike);
-        let middle = [0, 1, 2].map(|k| match lattice.step {
+        let exact = lattice.step != 0.0 && (lattice.holds_weights || equal_weights);
+        let centre = [0, 1, 2].map(|k| match lattice.step {
             0.0 => low[k] / 2.0 + high[k] / 2.0,
             step => ((low[k] / 2.0 + high[k] / 2.0) / step).round() * step,
         });
-        let mut points = room(positions.len() + 1)?;
+        let mut points = with_capacity(positions.len() + 1)?;
         let mut highest = 0f64;
         for (position, weight) in positions.iter().zip(weights) {
-            let [x, y, z] = [0, 1, 2].map(|k| position[k] - middle[k]);
-            let (square, weight) = (x * x + y * y + z * z, if alike { 0.0 } else { *weight });
+            let [x, y, z] = [0, 1, 2].map(|k| position[k] - centre[k]);
+            let (square, weight) =
+                (x * x + y * y + z * z, if equal_weights { 0.0 } else { *weight });
             highest = highest.max(square + weight.abs());
             points.push([x, z, y, square - weight]);
         }
         points.push([f64::NAN; 4]);
         let [width, depth, height] = [0, 1, 2].map(|k| high[k] - low[k]);
         let terms = 6.0 * width * depth * height;
-        // Four differences of heights, each of at most twice the largest.
+        // Four differences of heights, each at most twice the largest height.
         let power_terms = 4.0 * terms * 2.0 * highest;
-        // What products lose that fall below the smallest doubles, times what they are multiplied by; ∞
-        // where one may overflow.
-        let lost = LOST * (1.0 + width) * (1.0 + depth) * (1.0 + height) * (1.0 + highest);
-        let sure = |terms: f64, degree: usize, exact: bool| {
+        // Underflows of products, times the factors that they are multiplied by later; ∞ where a product may
+        // overflow.
+        let underflow =
+            UNDERFLOW * (1.0 + width) * (1.0 + depth) * (1.0 + height) * (1.0 + highest);
+        let error_bound = |terms: f64, degree: usize, exact: bool| {
             if exact && predicates.holds(terms, degree) {
                 0.0
             } else {
-                // A difference is off by less than 2⁻⁵⁰ of the largest; see `ROUNDING`.
-                terms * ROUNDING + lost
+                // The relative error of a difference is below 2⁻⁵⁰ of the largest one, which `ROUNDING` covers.
+                terms * ROUNDING + underflow
             }
         };
         let on_lattice = lattice.step != 0.0;
-        let (orientation, power) = (sure(terms, 3, on_lattice), sure(power_terms, 5, exact));
-        // One more than the steps there are in z, and so for y: below 2⁵³ in all, as `terms` are, of which
-        // there are six.
-        let more = |extent: f64| extent / lattice.step + 1.0;
-        let order =
-            (on_lattice && orientation == 0.0).then(|| [more(depth) * more(height), more(height)]);
+        let (orientation, power) =
+            (error_bound(terms, 3, on_lattice), error_bound(power_terms, 5, exact));
+        // A step in y counts more than the whole extent in z, and one in x more than that in y and z. The sum stays
+        // below 2⁵³, as six times the product of the extents does.
+        let counts = |extent: f64| extent / lattice.step + 1.0;
+        let order = (on_lattice && orientation == 0.0)
+            .then(|| [counts(depth) * counts(height), counts(height)]);
         Ok(Self { predicates, points, order, orientation, power })
     }
 
-    /// The same where the ghost has the number of a point, whose place is another point's.
+    /// The same where the ghost has the number of an element of the positions, which is no point. That position must
+    /// be a copy of a point's, so that it widens no bound.
     ///
     /// # Errors
-    /// No memory for 32 bytes a point.
+    /// Out of memory: 32 bytes per point are needed.
     pub fn with_ghost(
         predicates: &'a Predicates<'a>,
         ghost: u32,
@@ -86,7 +95,7 @@ impl<'a> Screen<'a> {
         Ok(screen)
     }
 
-    /// The number of points.
+    /// The number of points; a [`Self::with_ghost`] counts, too.
     pub fn count(&self) -> usize {
         self.points.len() - 1
     }
@@ -117,8 +126,8 @@ impl<'a> Screen<'a> {
         self.predicates.collinear([a, b, c])
     }
 
-    /// Whether a point lies inside the orthogonal sphere of a positively oriented cell; `None` if
-    /// that needs a closer look, or if the cell is infinite.
+    /// Whether a point lies inside the orthogonal sphere of a positively oriented cell; `None` if the error bound
+    /// does not decide, and for infinite cells.
     #[inline(always)]
     pub fn conflicts(&self, cell: [u32; 4], t: u32) -> Option<bool> {
         let x = &self.points[t as usize];
@@ -130,12 +139,11 @@ impl<'a> Screen<'a> {
         (value.abs() > self.power).then_some(value < 0.0)
     }
 
-    /// The same for a finite cell, always decided: points on the sphere are judged as if each point
-    /// were raised by an infinitely small height, the larger the later it comes in the order of
-    /// (x, y, z) (Devillers and Teillaud 2011, doi:10.1016/j.comgeo.2010.09.010; CGAL's
-    /// `Regular_triangulation_3` does the same).
-    pub fn conflicts_closely(&self, cell: [u32; 4], t: u32) -> bool {
-        // With a bound of 0 the first look has seen a true 0.
+    /// The exact test of a finite cell that [`Self::conflicts`] has not decided. For points on the sphere, each lifted
+    /// point is raised by an infinitesimal height, which is larger the later the point comes in the order of (x, y, z)
+    /// (Devillers and Teillaud 2011, doi:10.1016/j.comgeo.2010.09.010; CGAL's `Regular_triangulation_3` does the same).
+    pub fn conflicts_exactly(&self, cell: [u32; 4], t: u32) -> bool {
+        // Where the filter is exact, it has found a 0.
         let sign = match self.power {
             0.0 => Ordering::Equal,
             _ => self.predicates.power(cell, t),
@@ -143,30 +151,31 @@ impl<'a> Screen<'a> {
         sign.is_lt() || (sign.is_eq() && self.conflicts_raised(cell, t))
     }
 
-    /// For a point on the sphere: the sign of the first term in the infinitely small heights that
-    /// is not 0.
+    /// For a point on the sphere: whether the first term in the infinitesimal heights that is not 0 is negative.
     fn conflicts_raised(&self, cell: [u32; 4], t: u32) -> bool {
-        let mut names = [cell[0], cell[1], cell[2], cell[3], t];
-        let mut places = [0, 1, 2, 3, 4];
+        // The index of `t` among the five.
+        const TESTED: usize = 4;
+        let mut points = [cell[0], cell[1], cell[2], cell[3], t];
+        let mut corners = [0, 1, 2, 3, TESTED];
         for count in [5, 4, 3] {
-            let last = self.last(&names[..count]);
-            let place = places[last];
-            if place == 4 {
+            let last = self.last(&points[..count]);
+            let corner = corners[last];
+            if corner == TESTED {
                 return false;
             }
             let mut moved = cell;
-            moved[place] = t;
+            moved[corner] = t;
             let sign = self.orientation(moved);
             if sign.is_ne() {
                 return sign.is_gt();
             }
-            names[last] = names[count - 1];
-            places[last] = places[count - 1];
+            points[last] = points[count - 1];
+            corners[last] = corners[count - 1];
         }
         false
     }
 
-    /// Which of some points comes last in the order of (x, y, z).
+    /// The index of the point that comes last in the order of (x, y, z).
     fn last(&self, points: &[u32]) -> usize {
         let mut last = 0;
         if let Some([by_x, by_y]) = self.order {

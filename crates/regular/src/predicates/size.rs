@@ -1,10 +1,11 @@
-//! A simplex as rays from one point, and the magnitudes that bound the rounding of its polynomials.
+//! A simplex as rays from one point, and bounds of the terms of its polynomials, from which follow bounds of their
+//! rounding errors.
 
 use super::Site;
 use super::formulas::Ray;
 use crate::number::dot;
 
-/// A simplex as rays from a point; from its own first vertex the first ray is 0.
+/// The rays from a point to the vertices of a simplex. The first is 0 if the point is the first vertex.
 pub(super) struct View<const N: usize> {
     pub rays: [Ray<f64>; N],
     pub size: Size,
@@ -16,14 +17,15 @@ impl<const N: usize> View<N> {
         let mut size = Size { length: 0.0, power: 0.0 };
         let mut rays = [Ray { vector: [0.0; 3], power: 0.0 }; N];
         for (to, q) in rays.iter_mut().zip(sites) {
-            let (ray, reach) = ray(p, q);
-            size = size.larger(reach);
+            let (ray, of_ray) = ray(p, q);
+            size = size.larger(of_ray);
             *to = ray;
         }
         Self { rays, size }
     }
 }
 
+/// The ray from p to q, and its size.
 #[inline(always)]
 pub(super) fn ray(p: Site, q: Site) -> (Ray<f64>, Size) {
     let vector = [0, 1, 2].map(|k| q.position[k] - p.position[k]);
@@ -33,19 +35,26 @@ pub(super) fn ray(p: Site, q: Site) -> (Ray<f64>, Size) {
     (Ray { power: dot(&vector, &vector) + heavier, vector }, size)
 }
 
-/// Magnitudes: the largest coordinate of a ray, and the terms of the largest power.
+/// Magnitudes of a set of rays.
 #[derive(Clone, Copy)]
 pub(super) struct Size {
+    /// The largest magnitude of a coordinate of a vector.
     pub length: f64,
+    /// The largest sum of the magnitudes of the terms of a power.
     pub power: f64,
 }
 
+/// Sums of the magnitudes of the terms of numerator and denominator of a squared radius.
 pub(super) struct Bounds {
     pub numerator: f64,
     pub denominator: f64,
 }
 
 impl Size {
+    /// Lengths between `SHORTEST` and `LONGEST`, and squares up to `LARGEST_SQUARE`, have polynomials up to degree 8
+    /// within the range of doubles.
+    const SHORTEST: f64 = 1e-30;
+    const LONGEST: f64 = 1e30;
     pub(super) const LARGEST_SQUARE: f64 = 1e60;
 
     #[inline(always)]
@@ -53,12 +62,14 @@ impl Size {
         Self { length: self.length.max(other.length), power: self.power.max(other.power) }
     }
 
-    /// Whether nothing overflows or loses digits to underflow; degrees go up to 8.
+    /// Whether polynomials of degree up to 8 neither overflow nor lose bits to underflow.
     pub(super) fn is_sane(self) -> bool {
-        self.length > 1e-30 && self.length < 1e30 && self.power < Self::LARGEST_SQUARE
+        self.length > Self::SHORTEST
+            && self.length < Self::LONGEST
+            && self.power < Self::LARGEST_SQUARE
     }
 
-    /// The terms of the two polynomials behind a radius, for so many vertices.
+    /// Bounds of the terms of [`quotient`](super::formulas::quotient) for a simplex with this many vertices.
     #[inline(always)]
     pub(super) fn bounds(self, vertices: usize) -> Bounds {
         let square = self.length * self.length;
@@ -73,7 +84,7 @@ impl Size {
         }
     }
 
-    /// The terms of the polynomial that separates inside from outside.
+    /// A bound of the terms of [`side`](super::formulas::side) for a simplex with this many vertices.
     #[inline(always)]
     pub(super) fn side_bound(self, vertices: usize) -> f64 {
         let square = self.length * self.length;

@@ -1,12 +1,12 @@
-//! Numbers of two doubles: twice the digits, at some twenty operations each (Dekker 1971,
+//! Double-double numbers: twice the digits of doubles, at about twenty operations each (Dekker 1971,
 //! doi:10.1007/BF01397083; bounds by Joldes, Muller and Popescu 2017, doi:10.1145/3121432).
 
 use crate::number::{Number, Scale};
 
 /// The unevaluated sum of two doubles, the second at most half a unit in the last place of the first.
 ///
-/// With u = 2⁻⁵³, each operation is off by at most 8u² = 2⁻¹⁰³ of the magnitudes of its terms, as
-/// long as nothing overflows or falls below the smallest normal double.
+/// With u = 2⁻⁵³, the error of each operation is at most 8u² = 2⁻¹⁰³ times the magnitudes of its terms, unless
+/// something overflows or falls below the smallest normal double.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Twofold {
     pub high: f64,
@@ -14,10 +14,11 @@ pub(super) struct Twofold {
 }
 
 impl Twofold {
-    /// What [`Number`] operations are off by, of the magnitudes of their terms, after fewer than 32.
+    /// Relative error of fewer than 32 [`Number`] operations, with respect to the sum of the magnitudes of the
+    /// terms: 2⁻⁹⁷, twice 32·2⁻¹⁰³.
     pub(super) const ROUNDING: f64 = 1.0 / (1u128 << 97) as f64;
 
-    /// The sum of two doubles, exactly (Knuth).
+    /// The exact sum of two doubles (Knuth's `TwoSum`).
     #[inline(always)]
     pub(super) fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
@@ -25,7 +26,7 @@ impl Twofold {
         Self { high, low: (a - (high - of_b)) + (b - of_b) }
     }
 
-    /// The product of two doubles, exactly (Dekker): fused multiplication is not there everywhere.
+    /// The exact product of two doubles (Dekker's): not every processor has fused multiplication and addition.
     #[inline(always)]
     pub(super) fn product(a: f64, b: f64) -> Self {
         let high = a * b;
@@ -34,7 +35,7 @@ impl Twofold {
         Self { high, low }
     }
 
-    /// The quotient, off by less than 2⁻⁹⁸ of itself.
+    /// The quotient, with a relative error below 2⁻⁹⁸.
     #[inline(always)]
     pub(super) fn over(self, other: Self) -> Self {
         let quotient = self.high / other.high;
@@ -43,8 +44,8 @@ impl Twofold {
         Self::sum(quotient, rest / other.high)
     }
 
-    /// The nearest double of a number that is off by at most so much from this one; none if there
-    /// are several.
+    /// The double nearest to every number that differs from this one by at most `error`; `None` if they have
+    /// different ones.
     #[inline(always)]
     pub(super) fn nearest(self, error: f64) -> Option<f64> {
         let error = error * (1.0 + 1e-9) + self.low.abs() * f64::EPSILON;
@@ -53,9 +54,10 @@ impl Twofold {
     }
 }
 
-/// A double as a sum of two with half the digits each (Veltkamp).
+/// Splits a double into the sum of two with half the digits each (Veltkamp).
 #[inline(always)]
 fn halves(value: f64) -> (f64, f64) {
+    // 2²⁷ + 1: half of 53 bits, rounded up.
     const SPLIT: f64 = ((1u64 << 27) + 1) as f64;
     let scaled = SPLIT * value;
     let high = scaled - (scaled - value);
@@ -82,7 +84,7 @@ impl Number for Twofold {
     }
 }
 
-/// By a double of at most 26 digits, which need not be taken apart.
+/// Multiplication by a double of at most 26 bits, which need not be split.
 impl Scale<f64> for Twofold {
     #[inline(always)]
     fn scaled(&self, factor: &f64) -> Self {

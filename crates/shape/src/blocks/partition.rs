@@ -1,19 +1,19 @@
-//! Sites cut into blocks by a k-d tree.
+//! The division of sites into blocks by a k-d tree, and the halos of blocks.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 use walpha_regular::Sites;
 
-use super::{Block, Copies, Reach};
+use super::{Block, Copies};
 
-/// Boxes of about equally many sites: each cut across its longest side.
+/// A k-d tree of boxes, each cut across its longest side, into blocks of about equally many sites.
 pub(crate) struct Partition {
-    /// A tree in which children come after their parents; the first is the root.
+    /// The nodes of the tree, children after their parents; the first is the root.
     nodes: Vec<Node>,
     /// The leaf of each block.
     leaves: Vec<usize>,
-    /// Places on the curve, those of a block side by side and ascending.
+    /// Sites by their ranks on the curve, grouped by block and ascending within a block.
     members: Vec<u32>,
 }
 
@@ -23,12 +23,12 @@ struct Node {
     high: [f64; 3],
     /// The largest weight.
     heaviest: f64,
-    /// The nodes it is cut into; none for a block.
+    /// The two nodes that it is cut into; `None` for a block.
     halves: Option<[usize; 2]>,
 }
 
 impl Partition {
-    /// Cuts sites into so many blocks, but no more than there are sites. O(n log blocks).
+    /// Cuts sites into `blocks` blocks, at most one per site. O(n log blocks).
     pub(crate) fn new(sites: &Sites<'_>, blocks: usize) -> Self {
         let count = sites.curve().len();
         let mut members: Vec<u32> = (0..count as u32).collect();
@@ -48,7 +48,7 @@ impl Partition {
             let left = blocks / 2;
             let middle = here.len() * left / blocks;
             let along =
-                |&place: &u32| sites.positions()[sites.curve()[place as usize] as usize][axis];
+                |&rank: &u32| sites.positions()[sites.curve()[rank as usize] as usize][axis];
             here.select_nth_unstable_by(middle, |a, b| {
                 along(a).total_cmp(&along(b)).then(a.cmp(b))
             });
@@ -74,31 +74,32 @@ impl Partition {
         block: usize,
     ) -> impl Iterator<Item = u32> + 'a {
         let members = &self.members[self.nodes[self.leaves[block]].members.clone()];
-        members.iter().map(|&place| sites.curve()[place as usize])
+        members.iter().map(|&rank| sites.curve()[rank as usize])
     }
 
-    /// How many points the largest block has, those around it included.
+    /// The number of points of the largest block, its halo included.
     pub(crate) fn largest(&self, sites: &Sites<'_>, reach: Reach) -> usize {
         let size = |block: usize| self.size(sites, reach, block);
         (0..self.len()).into_par_iter().map(size).max().unwrap_or(0)
     }
 
-    /// How many points a block has, those around it included.
+    /// The number of points of a block, its halo included.
     pub(crate) fn size(&self, sites: &Sites<'_>, reach: Reach, block: usize) -> usize {
         let mut count = self.nodes[self.leaves[block]].members.len();
         self.halo(sites, reach, block, |_, _| count += 1);
         count
     }
 
-    /// The points of a block and of its halo. Copies of points come copy by copy, each along the curve.
+    /// The points of a block, then those of its halo. On a torus the halo is sorted by winding, then along the
+    /// curve.
     pub(crate) fn block(&self, sites: &Sites<'_>, reach: Reach, block: usize) -> Block {
         let own = self.nodes[self.leaves[block]].members.clone();
         let mut halo = Vec::new();
-        self.halo(sites, reach, block, |place, windings| halo.push((windings, place)));
+        self.halo(sites, reach, block, |rank, windings| halo.push((windings, rank)));
         halo.sort_unstable();
-        let places = || self.members[own.clone()].iter().chain(halo.iter().map(|(_, place)| place));
-        let site = |&place: &u32| sites.curve()[place as usize] as usize;
-        let mut positions: Vec<_> = places().map(|place| sites.positions()[site(place)]).collect();
+        let ranks = || self.members[own.clone()].iter().chain(halo.iter().map(|(_, rank)| rank));
+        let site = |&rank: &u32| sites.curve()[rank as usize] as usize;
+        let mut positions: Vec<_> = ranks().map(|rank| sites.positions()[site(rank)]).collect();
         let copies = sites.torus().map(|torus| {
             let windings: Vec<_> = halo.iter().map(|&(windings, _)| windings).collect();
             for (position, &windings) in positions[own.len()..].iter_mut().zip(&windings) {
@@ -108,17 +109,17 @@ impl Partition {
         });
         Block {
             positions,
-            weights: places().map(|place| sites.weights()[site(place)]).collect(),
-            input: places().map(|place| sites.input()[site(place)]).collect(),
+            weights: ranks().map(|rank| sites.weights()[site(rank)]).collect(),
+            input: ranks().map(|rank| sites.input()[site(rank)]).collect(),
             own: own.len() as u32,
             copies,
         }
     }
 
-    /// Visits the places on the curve of the points around a block, in no particular order, each with
-    /// the sides of the box that it is moved by.
+    /// Visits the points of the halo of a block in no particular order: the rank of each on the curve, and the
+    /// multiples of the sides by which it is moved.
     ///
-    /// Points with α + ω < 0 have no ball and refute nothing: they are left out.
+    /// Points with α + ω < 0 have no ball and can refute nothing: they are left out.
     fn halo(
         &self,
         sites: &Sites<'_>,
@@ -128,11 +129,12 @@ impl Partition {
     ) {
         let leaf = self.leaves[block];
         let own = &self.nodes[leaf];
-        let near = |low, high, heaviest| own.reaches(low, high, reach.from(own.heaviest, heaviest));
+        let near =
+            |low, high, heaviest| own.reaches(low, high, reach.distance(own.heaviest, heaviest));
         for windings in self.windings(sites, own, reach) {
-            let moved = |place| match sites.torus() {
-                None => place,
-                Some(torus) => torus.moved(place, windings),
+            let moved = |position| match sites.torus() {
+                None => position,
+                Some(torus) => torus.moved(position, windings),
             };
             let mut pending = vec![0];
             while let Some(at) = pending.pop() {
@@ -146,25 +148,26 @@ impl Partition {
                     pending.extend(halves);
                     continue;
                 }
-                for &place in &self.members[node.members.clone()] {
-                    let site = sites.curve()[place as usize] as usize;
+                for &rank in &self.members[node.members.clone()] {
+                    let site = sites.curve()[rank as usize] as usize;
                     let at = moved(sites.positions()[site]);
                     if near(at, at, sites.weights()[site]) {
-                        visit(place, windings);
+                        visit(rank, windings);
                     }
                 }
             }
         }
     }
 
-    /// The multiples of the sides of the box by which points near a block may have been moved.
+    /// The multiples of the sides by which points of the halo of a block may be moved: all that may be in reach, and
+    /// perhaps more.
     fn windings(&self, sites: &Sites<'_>, own: &Node, reach: Reach) -> Vec<[i32; 3]> {
         let Some(torus) = sites.torus() else { return vec![[0; 3]] };
         let all = &self.nodes[0];
-        let reach = reach.from(own.heaviest, all.heaviest).max(0.0);
+        let reach = reach.distance(own.heaviest, all.heaviest).max(0.0);
         let along = |k: usize| {
             let side = torus.sides()[k];
-            // One more than may reach, for roundings.
+            // Rounded outward, so that no copy in reach is missed.
             let below = ((own.low[k] - all.high[k] - reach) / side).floor() as i32;
             let above = ((own.high[k] - all.low[k] + reach) / side).ceil() as i32;
             below..=above
@@ -179,14 +182,53 @@ impl Partition {
     }
 }
 
-/// The ball of points around some points of their own: what reaches it is their halo.
+/// The extent of the halo of a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Reach {
+    /// The points whose balls at this α meet a ball of the block's points: they decide the shape at α.
+    Balls(f64),
+    /// The points within this distance, whatever their balls.
+    Distance(f64),
+}
+
+impl Reach {
+    /// All points; of a torus, the copies that decide the whole triangulation.
+    ///
+    /// Of the copies of the heaviest point, one is within half a diagonal of any place z, so the
+    /// largest empty orthogonal sphere has R² + max ω ≤ (diagonal / 2)². A vertex v of it is at √(R² + ω(v))
+    /// from its centre, no more than half a diagonal, and so is any point that could refute it.
+    pub(crate) fn whole(sites: &Sites<'_>) -> Self {
+        Self::Distance(sites.torus().map_or(f64::INFINITY, |torus| torus.diagonal()))
+    }
+
+    /// The extent that decides the shape at α.
+    pub(crate) fn at(sites: &Sites<'_>, alpha: f64, heaviest: f64) -> Self {
+        let whole = Self::whole(sites);
+        match whole {
+            Self::Distance(most) if 2.0 * (alpha + heaviest).max(0.0).sqrt() >= most => whole,
+            _ => Self::Balls(alpha),
+        }
+    }
+
+    /// The distance up to which points of weight `other` are in the halo of a point of weight `weight`; NaN if they
+    /// never are.
+    #[inline]
+    pub(crate) fn distance(self, weight: f64, other: f64) -> f64 {
+        match self {
+            Self::Balls(alpha) => (alpha + weight).max(0.0).sqrt() + (alpha + other).sqrt(),
+            Self::Distance(distance) => distance,
+        }
+    }
+}
+
+/// The own points of a block, for which it can be told whether another point is in their halo.
 pub(super) struct Neighbourhood {
     own: Node,
     reach: Reach,
 }
 
 impl Neighbourhood {
-    /// Of points with their weights.
+    /// The neighbourhood of points with their weights.
     pub(super) fn of(points: impl Iterator<Item = ([f64; 3], f64)>, alpha: f64) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         let mut heaviest = f64::NEG_INFINITY;
@@ -202,9 +244,14 @@ impl Neighbourhood {
 
     /// Whether a point is in the halo.
     pub(super) fn holds(&self, at: [f64; 3], weight: f64) -> bool {
-        self.own.reaches(at, at, self.reach.from(self.own.heaviest, weight))
+        self.own.reaches(at, at, self.reach.distance(self.own.heaviest, weight))
     }
 }
+
+/// Relative margin of squared distances: 32 roundings.
+const MARGIN: f64 = 16.0 * f64::EPSILON;
+/// Points of which one thread computes the extent.
+const EXTENT_CHUNK: usize = 1 << 12;
 
 /// The lowest and highest corner of a box, and the largest weight in it.
 type Extent = ([f64; 3], [f64; 3], f64);
@@ -220,29 +267,29 @@ impl Node {
             }
             (low, high, u.max(v))
         };
-        let extent = |&place: &u32| {
-            let site = sites.curve()[place as usize] as usize;
+        let extent = |&rank: &u32| {
+            let site = sites.curve()[rank as usize] as usize;
             let at = sites.positions()[site];
             (at, at, sites.weights()[site])
         };
         let (low, high, heaviest) =
-            members.par_iter().with_min_len(1 << 12).map(extent).reduce(nowhere, union);
+            members.par_iter().with_min_len(EXTENT_CHUNK).map(extent).reduce(nowhere, union);
         Self { members: start..start + members.len(), low, high, heaviest, halves: None }
     }
 
     fn longest_side(&self) -> usize {
         let side = |k: usize| self.high[k] - self.low[k];
-        // Of equals the last, the slowest in a volume's memory.
+        // Of equal sides the last, along which the samples of a volume are farthest apart in memory.
         (0..3).max_by(|&a, &b| side(a).total_cmp(&side(b))).unwrap_or(2)
     }
 
-    /// Whether a box is within reach of this one; not where the reach is NaN.
+    /// Whether the distance of a box from this one is at most `reach`; `false` for NaN.
     fn reaches(&self, low: [f64; 3], high: [f64; 3], reach: f64) -> bool {
         let away = |k: usize| (low[k] - self.high[k]).max(self.low[k] - high[k]).max(0.0);
         let apart = away(0) * away(0) + away(1) * away(1) + away(2) * away(2);
-        // NaN compares false. Both sides come out of a few
-        // operations, each off by at most 2⁻⁵³ of its result: a point too many does no harm.
-        apart <= reach * reach * (1.0 + 16.0 * f64::EPSILON)
+        // NaN compares false. The margin covers the roundings of both sides, a few operations of relative error 2⁻⁵³
+        // each: a point too many does no harm.
+        apart <= reach * reach * (1.0 + MARGIN)
     }
 }
 

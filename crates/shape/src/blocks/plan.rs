@@ -1,4 +1,4 @@
-//! Into how many blocks a set is cut.
+//! The number of blocks, from the number of threads and the memory allowed.
 
 use walpha_base::advice::Advice;
 use walpha_base::memory::{self, NoMemory};
@@ -6,24 +6,27 @@ use walpha_regular::Sites;
 
 use super::{Partition, Reach};
 
-/// The blocks, and how many are worked on at once.
+/// The blocks, and how many of them are computed at once.
 pub(crate) struct Plan {
     pub partition: Partition,
     pub at_once: usize,
     /// Points in the blocks worked on at once, their halos' included.
     at_work: usize,
-    /// Bytes allowed, and held when the plan was made. Memory that comes free then goes back to the
-    /// system at once, which takes a tenth of the time, as it must be asked for again.
+    /// The bound on memory, if there is one. Freed memory is then returned to the system at once, which costs a tenth
+    /// of the time, as it must be requested again.
     bound: Option<Bound>,
 }
 
+/// A bound on memory, in bytes.
 #[derive(Clone, Copy)]
 struct Bound {
+    /// Allowed.
     asked: u64,
+    /// In use when the plan was made.
     resident: u64,
 }
 
-/// What a plan keeps to.
+/// The limits of a plan.
 #[derive(Clone, Copy)]
 pub(crate) struct Limits {
     /// Blocks asked for.
@@ -42,39 +45,42 @@ pub(crate) struct Limits {
 pub struct PlanError {
     /// Bytes allowed.
     pub asked: u64,
-    /// Bytes that the smallest plan needs.
+    /// Bytes that the most economical plan needs.
     pub needed: u64,
     /// Its number of blocks.
     pub blocks: usize,
 }
 
 impl PlanError {
-    /// What to do about it.
+    /// How to resolve the error.
     pub fn advice(&self) -> Advice {
         "allow more, or select fewer points".into()
     }
 }
 
-/// Bytes for each point of blocks that are done: the rows and classes of about 5 cells, 11 facets and 7
-/// edges, without their smallest vertices, and the sides that blocks share. A shape without any outside
-/// has up to 7, 14 and 8, for which [`Plan::keeps`] watches.
+/// Bytes per point of finished blocks: the rows and classes of about 5 cells, 11 facets and 7
+/// edges, without their smallest vertices, and the sides that blocks share. A shape that fills the
+/// whole hull has up to 7, 14 and 8; [`Plan::keeps`] detects that.
 const DONE: u64 = 215;
-/// Bytes for each point when blocks are merged: whole rows.
+/// Bytes per point when blocks are merged: rows with all vertices.
 const MERGED: u64 = 320;
-/// Bytes for each point that merging takes beside the rows: where the rows of each are.
-const PLACES: u64 = 16;
-/// Steps in which rows are merged where memory is bounded: so little of them is there twice.
-const SHELVES: usize = 32;
-/// Blocks are made no smaller for the sake of threads: halos would cost more than a thread gains.
+/// Bytes per point that merging takes besides rows: the locations of the rows.
+const LOCATIONS: u64 = 16;
+/// Buckets in which rows are merged where memory is bounded: only one bucket is in memory twice.
+const BUCKETS: usize = 32;
+/// A block that lacks less than this fraction of the points, one in 8, is nearly the whole.
+const NEARLY_WHOLE: usize = 8;
+/// The least number of points of a block that is cut for the sake of threads: with smaller blocks, halos cost more
+/// than another thread gains.
 const WORTHWHILE: usize = 2000;
-/// No set has use for more blocks.
-const MOST: usize = 1 << 12;
+/// The largest number of blocks.
+const MAX_BLOCKS: usize = 1 << 12;
 
-/// Bytes for each point of a block at work, its halo's included: 6 to 7 cells of 36 bytes while they are
-/// made; then of 32, with stars and rows.
+/// Bytes per point of a block being computed, its halo's points included: 6 to 7 cells of 36 bytes (corners,
+/// neighbours and visit stamp) during triangulation; then of 32, with stars and rows.
 pub const AT_WORK: u64 = 600;
 
-/// Bytes that a shape of so many points takes, with so many of them and of halos at work.
+/// Bytes that a shape of `points` points takes while blocks with `at_work` points, halos included, are computed.
 fn taken(points: usize, at_work: usize) -> u64 {
     let working = DONE * points as u64 + AT_WORK * at_work as u64;
     working.max(MERGED * points as u64)
@@ -118,9 +124,9 @@ impl Plan {
         let points = sites.input().len();
         let at_once = fewest(points, threads);
         let partition = Partition::new(sites, at_once);
-        // More blocks than one pay only if none of them is nearly the whole.
+        // Several blocks pay only if none of them, with its halo, is nearly the whole.
         let largest = partition.largest(sites, reach);
-        if largest > points - points / 8 {
+        if largest > points - points / NEARLY_WHOLE {
             return Self::whole(sites);
         }
         Self { partition, at_once, at_work: at_once * largest, bound: None }
@@ -162,17 +168,17 @@ impl Plan {
                 best = Some((time(at_once), Self { partition, at_once, at_work, bound }));
             }
             blocks *= 2;
-            // More blocks have more of a halo: with all threads at work they are slower.
+            // More blocks have more points in halos: once all threads have work, they are slower.
             if at_once == Some(threads)
                 || (best.is_some() && time(threads) >= shortest)
-                || blocks > MOST.min(points)
+                || blocks > MAX_BLOCKS.min(points)
             {
                 return best.map(|(_, plan)| plan).ok_or(least);
             }
         }
     }
 
-    /// Whether the memory for it can be had, as far as can be said before.
+    /// Checks, as far as can be foreseen, that there is enough memory.
     ///
     /// # Errors
     /// [`NoMemory`] when not.
@@ -181,25 +187,24 @@ impl Plan {
         memory::afford(bytes, || format!("the shape of {points} points"))
     }
 
-    /// In how many steps the rows of blocks are merged.
-    pub(crate) fn shelves(&self) -> usize {
-        if self.bound.is_some() { SHELVES } else { 1 }
+    /// The number of buckets in which rows are merged.
+    pub(crate) fn buckets(&self) -> usize {
+        if self.bound.is_some() { BUCKETS } else { 1 }
     }
 
-    /// Whether the bound will be kept if all points have as much to merge as some of them have.
+    /// Checks that the bound will be kept if all points have as many rows as those of the blocks done so far.
     ///
     /// # Errors
     /// [`PlanError`] when not.
     pub(crate) fn keeps(&self, bytes: u64, points: usize, all: usize) -> Result<(), PlanError> {
         let Some(Bound { asked, resident }) = self.bound else { return Ok(()) };
         let rows = (bytes as f64 * all as f64 / points as f64) as u64;
-        let needed = resident + rows + PLACES * all as u64;
+        let needed = resident + rows + LOCATIONS * all as u64;
         let error = PlanError { asked, needed, blocks: self.partition.len() };
         if needed <= asked { Ok(()) } else { Err(error) }
     }
 
-    /// Gives freed memory back to the system, where memory matters more than time and the allocator
-    /// would keep it for itself (glibc).
+    /// Returns freed memory to the system where memory is bounded; some allocators (glibc's) would keep it.
     pub(crate) fn give_back(&self) {
         if self.bound.is_some() {
             memory::give_back();

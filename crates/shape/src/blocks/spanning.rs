@@ -1,12 +1,12 @@
-//! Blocks whose points may span no volume: along a line of points, most do not.
+//! Triangulation of blocks whose points may span no volume; along a line of points, most do not.
 
 use walpha_base::monitor::Units;
-use walpha_regular::{SitesError, Triangulation, TriangulationError, auxiliary_places};
+use walpha_regular::{SitesError, Triangulation, TriangulationError, auxiliary_positions};
 
 use super::{Block, triangulate};
 
-/// Triangulates a block, where its points span no volume with places beside them, numbered from `next`.
-/// Their balls at α are empty: they are in no simplex of the shape, and refute none.
+/// Triangulates a block. Where its points span no volume, auxiliary points are added, with input indices from `next`
+/// on. Their balls at α are empty, so they are in no simplex of the shape and refute none.
 pub(super) fn spanning(
     block: &mut Block,
     alpha: f64,
@@ -15,11 +15,11 @@ pub(super) fn spanning(
 ) -> Result<Triangulation, TriangulationError> {
     match triangulate(block, work) {
         Err(TriangulationError::Sites(SitesError::Flat { .. } | SitesError::TooFew { .. })) => {
-            let places = auxiliary_places(&block.positions);
-            // Twice as much as makes them empty, for roundings.
-            block.weights.extend(places.iter().map(|_| -(2.0 * alpha.max(0.0) + 1.0).ceil()));
-            block.input.extend((next..).take(places.len()));
-            block.positions.extend(places);
+            let auxiliary = auxiliary_positions(&block.positions);
+            // Weights below −α make the balls empty; twice as much, for roundings.
+            block.weights.extend(auxiliary.iter().map(|_| -(2.0 * alpha.max(0.0) + 1.0).ceil()));
+            block.input.extend((next..).take(auxiliary.len()));
+            block.positions.extend(auxiliary);
             triangulate(block, work)
         }
         made => made,
@@ -32,7 +32,8 @@ mod tests {
     use walpha_regular::Lattice;
     use walpha_regular::Sites;
 
-    use super::super::{Partition, Question, in_space};
+    use crate::blocks::{Partition, Question, in_space};
+
     /// Blocks of a line once took all points with them: quadratic in the number of blocks.
     #[test]
     fn a_block_of_a_line_stays_small() {
@@ -51,7 +52,7 @@ mod tests {
                 in_space(&sites, &partition, block, &question, &work).unwrap();
             assert!(points.positions.len() < 110, "{}", points.positions.len());
             assert_eq!(made.ghost() as usize, points.input.len());
-            // The places beside are on a lattice of their own.
+            // Auxiliary points have a lattice of their own.
             let own = Lattice::of(&points.positions, &points.weights);
             let is_flat = points.weights.iter().any(|&weight| weight < 0.0);
             flat += usize::from(is_flat);

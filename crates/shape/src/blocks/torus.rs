@@ -1,4 +1,4 @@
-//! How far a block of a torus looks: less than what is asked for, where that decides it.
+//! The halo of a block of a torus: smaller than α asks for where that is enough to decide the block.
 
 use rayon::prelude::*;
 use walpha_base::monitor::Units;
@@ -11,7 +11,8 @@ use super::classify::Long;
 use super::{Block, Partition, Question, Reach, triangulate};
 use crate::ShapeError;
 
-/// A block with what decides what it owns around it: as much as there are large empty spheres.
+/// A block with its halo, its triangulation, and the lattice of its points. The halo is as large as the largest empty
+/// orthogonal spheres at the block's points require.
 pub(super) fn on_torus(
     sites: &Sites<'_>,
     torus: Torus,
@@ -33,22 +34,25 @@ pub(super) fn on_torus(
     Ok((points, made, question.lattice))
 }
 
+/// Squared radii of spheres for which halos are tried, in squares of the mean spacing of points. The largest empty
+/// spheres of evenly distributed points have radii of at most about twice the spacing, so the first halo is mostly
+/// enough, and much smaller than that for a large α.
+const SQUARED_RADII: [f64; 3] = [4.0, 16.0, 64.0];
+
 impl Question {
-    /// How far to look on a torus before all is looked at.
+    /// The halos to try, in this order, before that of the whole triangulation.
     fn reaches(&self, sites: &Sites<'_>, torus: Torus) -> Vec<Reach> {
         let heaviest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let wanted = if self.exterior { f64::INFINITY } else { self.alpha };
-        // The largest empty spheres of points of even density are twice as large as what each point has
-        // of the box, or less: then all is known with less around it than a large α asks for.
         let spacing = (torus.volume() / sites.input().len() as f64).cbrt();
-        let squares = [4.0, 16.0, 64.0].map(|times| times * spacing * spacing);
+        let squares = SQUARED_RADII.map(|times| times * spacing * spacing);
         let fewer = squares.into_iter().filter(|square| 4.0 * square <= wanted + heaviest);
         let reaches = fewer.map(|square| square - heaviest).chain([wanted]);
         reaches.map(|alpha| Reach::at(sites, alpha, heaviest)).collect()
     }
 
-    /// Whether the triangulation of a block with a halo decides what is asked. If the halo is for a smaller
-    /// α, it does where no sphere at the block's points is larger: all of them are empty, then.
+    /// Whether the triangulation of a block with a halo decides the block. A halo for a smaller α does if no
+    /// orthogonal sphere at the block's points is larger: then all of these spheres are empty.
     fn decides(&self, reach: Reach, points: &Block, made: &Triangulation) -> bool {
         let Reach::Balls(alpha) = reach else { return true };
         if alpha >= self.alpha && !self.exterior {

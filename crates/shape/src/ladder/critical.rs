@@ -4,15 +4,14 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::levels::ByLevel;
-use super::stops::Sight;
 use super::values::Value;
 use super::{Filtration, Levels};
 use crate::{Alpha, Betti};
 
-/// The topology of a filtration at every α at which a simplex comes.
+/// The topology of a filtration at every critical value: every α at which a simplex enters.
 ///
-/// Critical values are distinguished exactly; those for which the same double is the first not below
-/// are one entry, as no double separates them. On a voxel grid, where values are equal by the thousand,
+/// Critical values are distinguished exactly; those with the same least double that is not below are
+/// one entry, as no double separates them. On a voxel grid, where values are equal by the thousand,
 /// that leaves few.
 #[derive(Clone, Debug)]
 pub struct Curve {
@@ -21,30 +20,30 @@ pub struct Curve {
     pub betti: Vec<Betti>,
     /// The solid components from each value on.
     pub solid_components: Vec<u64>,
-    /// Vertices of the triangulation that no cell of the shape has, from each value on; where points span no
-    /// volume, no triangle, or no edge.
+    /// Number of vertices of the triangulation that are in no cell of the shape, from each value on; where points span
+    /// no volume, in no triangle, or in no edge.
     pub loose: Vec<u64>,
-    /// What can be seen from each value on.
-    pub(super) sights: Vec<Sight>,
+    /// The visible simplices from each value on.
+    pub(super) visible: Vec<Visible>,
     largest_weight: f64,
 }
 
-/// Values of α to try, squared lengths, each the first double at which the shape has the property.
+/// Suggested values of α, squared lengths, each the least double at which the shape has the property.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Suggestions {
     /// Every vertex of the triangulation is one of a cell: MATLAB's
     /// `criticalAlpha(shp, 'all-points')`, CGAL's `Alpha_shape_3::find_alpha_solid`.
     pub all_points: Alpha,
-    /// That, and the cells are one solid component: MATLAB's `criticalAlpha(shp, 'one-region')`,
-    /// CGAL's `Alpha_shape_3::find_optimal_alpha(1)`, which searches by halving and may find a
-    /// larger one. This is the smallest α with the property, not one from which it lasts: the
+    /// Besides, the cells are one solid component: MATLAB's `criticalAlpha(shp, 'one-region')`,
+    /// CGAL's `Alpha_shape_3::find_optimal_alpha(1)`, which bisects and may find a larger
+    /// one. This is the smallest α with the property, not one from which it lasts: the
     /// number of components rises and falls.
     pub one_region: Alpha,
-    /// The same, and without voids.
+    /// Besides, there are no voids.
     pub no_void: Alpha,
-    /// From where to where the Betti numbers stay the same longest, as a ratio of the squared radii
-    /// of the largest balls, looked for from `all_points` on. The second is the α at which they
-    /// change again; ∞, the string "inf" in JSON, if from `all_points` on they never change.
+    /// The longest interval from `all_points` on in which the Betti numbers do not change, measured by the ratio of the
+    /// squared radii of the largest balls. The second is the α at which they change again; ∞, the string "inf" in
+    /// JSON, if from `all_points` on they never change.
     pub plateau: [Alpha; 2],
 }
 
@@ -60,7 +59,7 @@ impl Filtration {
             betti,
             solid_components,
             loose: self.loose(&levels),
-            sights: levels.sights(),
+            visible: levels.visible(),
             largest_weight: weights.iter().copied().fold(f64::NEG_INFINITY, f64::max),
             values,
         }
@@ -92,13 +91,13 @@ impl Filtration {
         levels
     }
 
-    /// Vertices that no largest simplex has, at each level.
+    /// The number of vertices in no maximal simplex, at each level.
     fn loose(&self, levels: &Levels<'_>) -> Vec<u64> {
-        let (firsts, levels) = (levels.of_largest(), levels.len());
+        let (firsts, levels) = (levels.firsts_of_maximal(), levels.len());
         let vertices = self.whole.complex().vertices.len();
         let mut covered = vec![levels as u32; vertices];
         for (row, &level) in firsts.iter().enumerate() {
-            for &v in self.largest(row) {
+            for &v in self.maximal_simplex(row) {
                 let at = &mut covered[self.incidence.vertex_rows[v as usize] as usize];
                 *at = level.min(*at);
             }
@@ -112,7 +111,7 @@ impl Filtration {
         (0..levels).map(less).collect()
     }
 
-    /// What α to try. O(n).
+    /// Suggests values of α. O(n).
     #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn suggest(&self, curve: &Curve) -> Suggestions {
         let last = curve.values.len() - 1;
@@ -129,8 +128,8 @@ impl Filtration {
         Suggestions { all_points, one_region, no_void, plateau: [low, high] }
     }
 
-    /// At most `count` critical values at which Betti numbers change, as evenly as they come in the
-    /// logarithm of the squared radius α + max ω of the largest balls. Each is the first double
+    /// At most `count` critical values at which Betti numbers change, as evenly spaced as possible in the
+    /// logarithm of the squared radius α + max ω of the largest balls. Each is the least double
     /// at which the shape is the new one. O(n·count).
     ///
     /// # Panics
@@ -164,17 +163,17 @@ impl Curve {
         self.values.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no critical values.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// α just above each critical value, ascending: the rest of a step of the curve lies between.
+    /// A double α at or just above each critical value and below the next, ascending.
     pub fn alphas(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
         self.values.iter().map(|value| value.above())
     }
 
-    /// The largest weight: what α must be raised by to have the squared radius of the largest balls.
+    /// The largest weight ω: α + ω is the squared radius of the largest balls.
     pub fn largest_weight(&self) -> f64 {
         self.largest_weight
     }
@@ -184,9 +183,8 @@ impl Curve {
         self.values[k].above() + self.largest_weight
     }
 
-    /// The value at which the longest stretch without a change begins, and the one that ends it;
-    /// none if nothing changes from the start on. The last stretch of several has no end, and is
-    /// none of them.
+    /// The values at which the longest plateau starts and ends; without an end if nothing changes from the start on. If
+    /// something does, the last plateau, which has no end, does not count.
     fn plateau(&self, start: usize) -> (usize, Option<usize>) {
         let ratio = |(a, b): (usize, usize)| self.size(b) / self.size(a);
         let mut best: Option<(usize, usize)> = None;
@@ -201,4 +199,121 @@ impl Curve {
         }
         best.map_or((start, None), |(from, to)| (from, Some(to)))
     }
+}
+
+/// The visible simplices of a level: boundary and singular facets, and singular edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Visible {
+    /// Their number.
+    pub count: u64,
+    /// How many appear, disappear, or turn from singular to regular at this level.
+    pub changed: u64,
+}
+
+impl Levels<'_> {
+    /// The visible simplices of each level. O(n).
+    pub(super) fn visible(&self) -> Vec<Visible> {
+        let mut change = vec![(0i64, 0u64); self.len() + 1];
+        let mut event = |level: u32, more: i64| {
+            let (count, changed) = &mut change[level as usize];
+            (*count, *changed) = (*count + more, *changed + 1);
+        };
+        for span in &self.facets {
+            if span.first < span.interior {
+                event(span.first, 1);
+                if span.first < span.regular && span.regular < span.interior {
+                    event(span.regular, 0);
+                }
+                event(span.interior, -1);
+            }
+        }
+        for span in self.edges.iter().filter(|span| span.first < span.regular) {
+            event(span.first, 1);
+            event(span.regular, -1);
+        }
+        change.pop();
+        let mut count = 0;
+        let sight = |(more, changed): (i64, u64)| {
+            count += more;
+            Visible { count: count as u64, changed }
+        };
+        change.into_iter().map(sight).collect()
+    }
+
+    /// The levels with visible simplices that differ from those of the level before. Of several equal levels, `wanted`
+    /// is kept if it is one of them, else the first. O(n).
+    pub fn distinct(&self, wanted: Alpha) -> Vec<Alpha> {
+        let mut kept: Vec<Alpha> = Vec::new();
+        let mut stands = false;
+        for (&alpha, visible) in self.alphas().iter().zip(self.visible()) {
+            let same = stands && visible.changed == 0;
+            stands = visible.count > 0;
+            if same && alpha == wanted {
+                kept.pop();
+            }
+            if stands && (!same || alpha == wanted) {
+                kept.push(alpha);
+            }
+        }
+        kept
+    }
+}
+
+impl Filtration {
+    /// At most `count` critical values for pictures, ascending: each has visible simplices, and others than the one
+    /// before.
+    ///
+    /// They are evenly spaced in the mean of three measures, so that neither few large simplices nor many small ones
+    /// dominate: the logarithm of the squared radius of the largest balls, the
+    /// facets and edges that appear and disappear, and the Betti numbers that change. The last two put most
+    /// levels where the shape takes form. O(n).
+    pub fn stops(&self, curve: &Curve, count: usize) -> Vec<Alpha> {
+        let shows = |&k: &usize| {
+            let Visible { count, changed } = curve.visible[k];
+            count > 0 && changed > 0 && curve.size(k) > 0.0
+        };
+        let all: Vec<usize> = (0..curve.len()).filter(shows).collect();
+        let (Some(&first), Some(&last)) = (all.first(), all.last()) else { return Vec::new() };
+        let measures = [
+            (first..=last).map(|k| curve.size(k).max(curve.size(first)).ln()).collect(),
+            sums((first..=last).map(|k| curve.visible[k].changed)),
+            sums((first..=last).map(|k| curve.betti_change(k))),
+        ];
+        let coordinate = |k: usize| -> f64 {
+            let share = |sums: &Vec<f64>| {
+                let (low, high) = (sums[0], sums[sums.len() - 1]);
+                if high > low { (sums[k - first] - low) / (high - low) } else { 0.0 }
+            };
+            measures.iter().map(share).sum()
+        };
+        let whole = coordinate(last);
+        let mut chosen: Vec<usize> = Vec::new();
+        for step in 0..count {
+            let wanted = whole * step as f64 / (count.max(2) - 1) as f64;
+            let at = all.partition_point(|&k| coordinate(k) < wanted).min(all.len() - 1);
+            if chosen.last().is_none_or(|&before| before < all[at]) {
+                chosen.push(all[at]);
+            }
+        }
+        chosen.into_iter().map(|k| self.first_alpha(curve.values[k])).collect()
+    }
+}
+
+impl Curve {
+    /// The sum of the changes of the Betti numbers from the value before.
+    fn betti_change(&self, k: usize) -> u64 {
+        let of = |k: usize| <[u64; 3]>::from(self.betti[k]);
+        let before = if k == 0 { [0; 3] } else { of(k - 1) };
+        of(k).into_iter().zip(before).map(|(now, before)| now.abs_diff(before)).sum()
+    }
+}
+
+/// Prefix sums.
+fn sums(numbers: impl Iterator<Item = u64>) -> Vec<f64> {
+    let mut sum = 0;
+    let add = |number| {
+        sum += number;
+        sum as f64
+    };
+    numbers.map(add).collect()
 }

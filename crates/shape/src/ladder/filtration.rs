@@ -8,16 +8,15 @@ use super::incidence::Incidence;
 use crate::WeightedPoints;
 use crate::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
 
-/// All alpha shapes of a set of points at once: the regular triangulation, and for each simplex
-/// when it comes.
+/// All alpha shapes of a set of points: the regular triangulation, and for each simplex the α at which it enters.
 ///
-/// The weights are what they are, for every α: with weights in proportion to α shapes would not
-/// be nested. A simplex comes at the squared radius of its smallest orthogonal sphere if no point
+/// Weights are the same for every α; with weights that depend on α, shapes would not be nested. A simplex enters
+/// at the squared radius of its smallest orthogonal sphere if no point
 /// lies strictly inside (it is *Gabriel*), else with the first simplex it is a face of
 /// (Edelsbrunner and Mücke 1994, doi:10.1145/174462.156635; CGAL's `Alpha_shape_3` keeps the same
 /// intervals, in rounded numbers). Here a radius is the nearest double, and where an α is as near to the
-/// exact number, exact arithmetic decides: a shape taken from a filtration is the one
-/// [`alpha_shape`] makes.
+/// exact number, exact arithmetic decides: a shape taken from a filtration equals that of
+/// [`alpha_shape`].
 pub struct Filtration {
     pub(super) whole: AlphaShape,
     pub(super) incidence: Incidence,
@@ -45,11 +44,11 @@ impl Radius {
 }
 
 impl Filtration {
-    /// Triangulates points and finds when each simplex comes. A little less than twice as dear
-    /// as one shape of the whole triangulation; expected O(n log n).
+    /// Triangulates points and computes when each simplex enters. Takes a little less than twice the time of one shape
+    /// of the whole triangulation; expected O(n log n).
     ///
     /// Points in one plane, on one line or at one place have the filtration that they have there: there are no
-    /// cells, the triangles (edges, vertex) come by their own spheres, and nothing is ever interior.
+    /// cells, triangles (edges, the vertex) enter by their own spheres, and none is ever interior.
     ///
     /// # Errors
     /// As [`alpha_shape`].
@@ -57,7 +56,7 @@ impl Filtration {
         Self::on(None, points)
     }
 
-    /// The same of the points of a torus, if there is one: shapes are then those of
+    /// Like [`Self::new`], for points of a torus if one is given: shapes are then those of
     /// [`ShapeOptions::periodic`].
     ///
     /// # Errors
@@ -103,7 +102,7 @@ impl Filtration {
         Ok(Self { whole, incidence, cells, facets, edges, vertices })
     }
 
-    /// What a filtration of these simplices takes besides them, without its levels.
+    /// Bytes of a filtration of these simplices, besides them and without levels.
     fn bytes(whole: &Complex) -> usize {
         let radius = size_of::<Radius>();
         let cell = radius + size_of::<[u32; 4]>();
@@ -128,7 +127,7 @@ impl Filtration {
         &self.whole
     }
 
-    /// The shape at α, as [`alpha_shape`] makes it. O(n log n).
+    /// The shape at α, equal to that of [`alpha_shape`]. O(n log n).
     pub fn shape(&self, alpha: Alpha) -> AlphaShape {
         let levels = self.levels(&[alpha]);
         let [betti] = levels.betti()[..] else { unreachable!("one level") };
@@ -143,7 +142,8 @@ impl Filtration {
 
 fn gabriel_facets(whole: &Complex, incidence: &Incidence, spheres: &Predicates<'_>) -> Vec<Radius> {
     let facets = incidence.facets.par_iter().zip(&incidence.facet_cells);
-    // In a regular triangulation a sphere that holds a point holds one of the two beside it.
+    // In a regular triangulation, a smallest orthogonal sphere of a facet that contains any point contains one of the
+    // two vertices opposite the facet.
     let radius = |(&facet, sides): (&[u32; 3], &[u32; 2])| {
         let held = sides.iter().filter(|&&cell| cell != Incidence::OUTSIDE).any(|&cell| {
             let cell = whole.cells.rows()[cell as usize];

@@ -1,8 +1,9 @@
 use rayon::prelude::*;
 
+use super::{Filtration, Levels, Span};
 use crate::Complex;
 
-/// Which simplices of a whole triangulation border on which, by row.
+/// The incidences of the simplices of a whole triangulation, by row.
 pub(super) struct Incidence {
     /// The facets, each sorted, in lexicographic order.
     pub facets: Vec<[u32; 3]>,
@@ -12,15 +13,15 @@ pub(super) struct Incidence {
     pub facet_cells: Vec<[u32; 2]>,
     /// The edge opposite each corner of each facet.
     pub facet_edges: Vec<[u32; 3]>,
-    /// The row of each point among the vertices; meaningless for hidden points.
+    /// The row of each point among the vertices; undefined for hidden points.
     pub vertex_rows: Vec<u32>,
 }
 
 impl Incidence {
-    /// Where a hull facet has no cell.
+    /// Stands for the missing cell of a facet of the hull.
     pub(super) const OUTSIDE: u32 = u32::MAX;
 
-    /// Looks everything up. Expected O(n log d), d the edges at a point.
+    /// Computes all incidences. Expected O(n log d), where d is the degree of a vertex.
     pub(super) fn of(whole: &Complex, points: usize) -> Self {
         let facets = sorted_facets(whole);
         let edges = Edges::new(whole.edges.rows(), points);
@@ -68,7 +69,7 @@ fn sorted_facets(whole: &Complex) -> Vec<[u32; 3]> {
     facets
 }
 
-/// Edges, found by their ends.
+/// An index of edges by their ends.
 struct Edges<'a> {
     rows: &'a [[u32; 2]],
     /// The first row of each vertex, and the end.
@@ -83,11 +84,11 @@ impl<'a> Edges<'a> {
     /// The edge between two vertices, the smaller first.
     fn find(&self, a: u32, b: u32) -> u32 {
         let [first, end] = [a, a + 1].map(|v| self.starts[v as usize]);
-        first + place(&self.rows[first as usize..end as usize], b)
+        first + index_of(&self.rows[first as usize..end as usize], b)
     }
 }
 
-/// Facets, found by their two smaller vertices and the largest.
+/// An index of facets by the edge of their two smaller vertices, and their largest vertex.
 struct OnEdges<'a> {
     facets: &'a [[u32; 3]],
     /// The first row of each edge, and the end.
@@ -101,11 +102,11 @@ impl<'a> OnEdges<'a> {
 
     fn find(&self, edge: u32, v: u32) -> u32 {
         let [first, end] = [edge, edge + 1].map(|edge| self.starts[edge as usize]);
-        first + place(&self.facets[first as usize..end as usize], v)
+        first + index_of(&self.facets[first as usize..end as usize], v)
     }
 }
 
-/// Where the rows of each group begin, and the last ends.
+/// Where the rows of each group start, and where the last ones end.
 fn starts(groups: impl Iterator<Item = u32>, count: usize) -> Vec<u32> {
     let mut starts = vec![0; count + 1];
     groups.for_each(|group| starts[group as usize + 1] += 1);
@@ -115,9 +116,10 @@ fn starts(groups: impl Iterator<Item = u32>, count: usize) -> Vec<u32> {
     starts
 }
 
-/// The place among rows, whose last vertices ascend, of the one with this. Nearly always there are few:
-/// then to count is faster than to halve, whose every step is a guess.
-fn place<const N: usize>(rows: &[[u32; N]], last: u32) -> u32 {
+/// The index of the row with this last vertex, among rows whose last vertices ascend. There are nearly always few: then
+/// counting is faster than bisection, whose branches are mispredicted.
+fn index_of<const N: usize>(rows: &[[u32; N]], last: u32) -> u32 {
+    // Up to so many rows are counted.
     const FEW: usize = 32;
     let at = if rows.len() <= FEW {
         rows.iter().map(|row| usize::from(row[N - 1] < last)).sum()
@@ -126,4 +128,72 @@ fn place<const N: usize>(rows: &[[u32; N]], last: u32) -> u32 {
     };
     assert_eq!(rows[at][N - 1], last, "each face of a simplex is there");
     at as u32
+}
+
+/// Two maximal simplices with a common face of one dimension less.
+type AdjacentPair = [u32; 2];
+
+impl Levels<'_> {
+    /// The first level of each maximal simplex, by row. Maximal simplices are cells or, where points span no volume,
+    /// triangles, edges, or one vertex.
+    pub(super) fn firsts_of_maximal(&self) -> Vec<u32> {
+        let firsts = |spans: &[Span]| spans.iter().map(|span| span.first).collect();
+        match self.filtration.dimension() {
+            3 => self.cells.clone(),
+            2 => firsts(&self.facets),
+            1 => firsts(&self.edges),
+            _ => firsts(&self.vertices),
+        }
+    }
+}
+
+impl Filtration {
+    /// The dimension of what the points span.
+    pub(super) fn dimension(&self) -> usize {
+        let complex = self.whole.complex();
+        let counts = [complex.edges.len(), complex.facets.len(), complex.cells.len()];
+        counts.iter().rposition(|&count| count > 0).map_or(0, |below| below + 1)
+    }
+
+    /// The vertices of a maximal simplex.
+    pub(super) fn maximal_simplex(&self, row: usize) -> &[u32] {
+        let complex = self.whole.complex();
+        match self.dimension() {
+            3 => &complex.cells.rows()[row],
+            2 => &self.incidence.facets[row],
+            1 => &complex.edges.rows()[row],
+            _ => &complex.vertices.rows()[row],
+        }
+    }
+
+    /// All pairs of maximal simplices with a common face of one dimension less. O(n).
+    pub(super) fn adjacent_pairs(&self) -> Vec<AdjacentPair> {
+        let complex = self.whole.complex();
+        let incidence = &self.incidence;
+        let mut sides = match self.dimension() {
+            3 => incidence.facet_cells.clone(),
+            2 => cofaces(complex.edges.len(), incidence.facet_edges.iter().map(|edges| &edges[..])),
+            1 => {
+                let ends: Vec<[u32; 2]> = (complex.edges.rows().iter())
+                    .map(|edge| edge.map(|v| incidence.vertex_rows[v as usize]))
+                    .collect();
+                cofaces(complex.vertices.len(), ends.iter().map(|ends| &ends[..]))
+            }
+            _ => Vec::new(),
+        };
+        sides.retain(|sides| sides[1] != Incidence::OUTSIDE);
+        sides
+    }
+}
+
+/// The two cofaces of each face, by row; [`Incidence::OUTSIDE`] for those missing.
+fn cofaces<'a>(faces: usize, of: impl Iterator<Item = &'a [u32]>) -> Vec<AdjacentPair> {
+    let mut sides = vec![[Incidence::OUTSIDE; 2]; faces];
+    for (row, its) in (0..).zip(of) {
+        for &face in its {
+            let [first, second] = &mut sides[face as usize];
+            *(if *first == Incidence::OUTSIDE { first } else { second }) = row;
+        }
+    }
+    sides
 }

@@ -3,18 +3,16 @@ use walpha_regular::{Interval, Predicates};
 
 use super::Filtration;
 use super::incidence::Incidence;
-use crate::WeightedPoints;
-use crate::{Alpha, Class};
+use crate::{Alpha, AlphaShape, Betti, Class, Complex, WeightedPoints};
 
-/// From which level on a simplex is what: levels count from 0, and as many as there are means
-/// never.
+/// The levels at which the class of a simplex changes. Levels count from 0; the number of levels stands for never.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
-    /// In the shape.
+    /// From here on it is in the shape.
     pub first: u32,
-    /// A face of another simplex of the shape; singular before.
+    /// From here on it is a face of another simplex of the shape; singular before.
     pub regular: u32,
-    /// No more on the boundary.
+    /// From here on it is not on the boundary.
     pub interior: u32,
 }
 
@@ -23,17 +21,17 @@ impl Span {
         Self { first: never, regular: never, interior: 0 }
     }
 
-    /// Takes in a simplex that this one is a face of.
-    fn beside(&mut self, higher: Self) {
+    /// Accounts for a coface.
+    fn add_coface(&mut self, higher: Self) {
         self.regular = self.regular.min(higher.first);
         self.interior = self.interior.max(higher.interior);
     }
 
-    /// Sets the level of its own sphere, if that is empty.
+    /// Sets the level at which the simplex enters by its own sphere, if that is empty; call it after all cofaces.
     ///
-    /// A sphere of a face is no larger than one of the whole, so own ≤ regular: this is what makes
-    /// a level a complex, and where predicates that contradict each other would show.
-    fn own(&mut self, own: Option<u32>) {
+    /// The smallest orthogonal sphere of a face is no larger than that of a coface, so own ≤ regular. This makes each
+    /// level a complex; contradictory predicates would be found here.
+    fn set_first(&mut self, own: Option<u32>) {
         assert!(own.is_none_or(|own| own <= self.regular), "a face comes after its coface");
         self.first = own.unwrap_or(self.regular);
     }
@@ -53,7 +51,7 @@ impl Span {
 }
 
 /// A filtration at several α: for each simplex, the first level at which it is in the shape, and
-/// the levels at which its class changes. So levels are nested because a simplex never goes.
+/// the levels at which its class changes. Levels are nested, as a simplex never leaves.
 pub struct Levels<'a> {
     pub(super) filtration: &'a Filtration,
     pub(super) alphas: Vec<Alpha>,
@@ -65,7 +63,7 @@ pub struct Levels<'a> {
 }
 
 impl Filtration {
-    /// Decides every simplex at every α, exactly. Ascending order and distinct α are made first.
+    /// Decides exactly for every simplex at which α it is in the shape. The α are sorted, and duplicates removed.
     /// O(n log m) for m levels, and exact arithmetic for ties.
     pub fn levels(&self, alphas: &[Alpha]) -> Levels<'_> {
         let mut alphas = alphas.to_vec();
@@ -77,7 +75,7 @@ impl Filtration {
         let cells: Vec<u32> = (complex.cells.rows().par_iter().zip(&self.cells))
             .map(|(&cell, &radius)| level(&spheres, cell, radius, &alphas))
             .collect();
-        let own = Own {
+        let own = OwnLevels {
             facets: |row: usize| {
                 let facet = self.incidence.facets[row];
                 self.facets[row].known().map(|radius| level(&spheres, facet, radius, &alphas))
@@ -95,12 +93,12 @@ impl Filtration {
         Levels { filtration: self, alphas, cells, facets, edges, vertices }
     }
 
-    /// What is below cells, from the levels of these and those of empty spheres of its own.
+    /// The spans of facets, edges and vertices, from the levels of cells and of own empty spheres.
     pub(super) fn spans<F, E, V>(
         &self,
         never: u32,
         cells: &[u32],
-        own: Own<F, E, V>,
+        own: OwnLevels<F, E, V>,
     ) -> (Vec<Span>, Vec<Span>, Vec<Span>)
     where
         F: Fn(usize) -> Option<u32> + Sync,
@@ -111,36 +109,39 @@ impl Filtration {
         let of_facet = |(row, sides): (usize, &[u32; 2])| {
             let mut span = Span::until(never);
             for &cell in sides {
-                // Beyond the hull nothing ever comes.
+                // Beyond the hull, no cell ever enters.
                 let first = if cell == Incidence::OUTSIDE { never } else { cells[cell as usize] };
-                span.beside(Span { first, regular: first, interior: first });
+                span.add_coface(Span { first, regular: first, interior: first });
             }
-            span.own((own.facets)(row));
+            span.set_first((own.facets)(row));
             span
         };
         let facets: Vec<Span> =
             incidence.facet_cells.par_iter().enumerate().map(of_facet).collect();
-        // Where there are no cells, the points span no volume, and space is on both sides of all.
+        // Without cells, the points span no volume, and no simplex is ever interior.
         let faces =
             Span { interior: if cells.is_empty() { never } else { 0 }, ..Span::until(never) };
         let mut edges = vec![faces; complex.edges.len()];
         for (&facet, on) in facets.iter().zip(&incidence.facet_edges) {
-            on.iter().for_each(|&edge| edges[edge as usize].beside(facet));
+            on.iter().for_each(|&edge| edges[edge as usize].add_coface(facet));
         }
-        edges.par_iter_mut().enumerate().for_each(|(row, span)| span.own((own.edges)(row)));
+        edges.par_iter_mut().enumerate().for_each(|(row, span)| span.set_first((own.edges)(row)));
         let mut vertices = vec![faces; complex.vertices.len()];
         for (&edge, ends) in edges.iter().zip(complex.edges.rows()) {
             for &v in ends {
-                vertices[incidence.vertex_rows[v as usize] as usize].beside(edge);
+                vertices[incidence.vertex_rows[v as usize] as usize].add_coface(edge);
             }
         }
-        vertices.par_iter_mut().enumerate().for_each(|(row, span)| span.own((own.vertices)(row)));
+        vertices
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(row, span)| span.set_first((own.vertices)(row)));
         (facets, edges, vertices)
     }
 }
 
-/// By row, the level at which a simplex comes by its own sphere, if that is empty.
-pub(super) struct Own<F, E, V> {
+/// By row, the level at which a simplex enters by its own sphere, if that is empty.
+pub(super) struct OwnLevels<F, E, V> {
     pub facets: F,
     pub edges: E,
     pub vertices: V,
@@ -162,14 +163,14 @@ impl Levels<'_> {
         self.alphas.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no levels.
     pub fn is_empty(&self) -> bool {
         self.alphas.is_empty()
     }
 }
 
-/// How many of the α, which ascend, a simplex does not fit, of whose squared radius this is the nearest
-/// double.
+/// The level at which a simplex enters by its own sphere: the number of α, which ascend, that it does not fit. `radius`
+/// is the double nearest to its squared radius.
 fn level<const N: usize>(
     spheres: &Predicates<'_>,
     simplex: [u32; N],
@@ -183,8 +184,8 @@ fn level<const N: usize>(
     (out + doubtful.iter().take_while(|alpha| unfit(alpha)).count()) as u32
 }
 
-/// The rows that come at each level, ascending: `rows[starts[k]..starts[k + 1]]` at level k, and
-/// those that never come last.
+/// Rows grouped by the level at which they enter, ascending within each: `rows[starts[k]..starts[k + 1]]` at level k;
+/// those that never enter are last.
 pub(super) struct ByLevel {
     rows: Vec<u32>,
     starts: Vec<usize>,
@@ -206,8 +207,114 @@ impl ByLevel {
         Self { rows, starts }
     }
 
-    /// What comes at a level.
+    /// The rows that enter at a level.
     pub(super) fn at(&self, level: usize) -> &[u32] {
         &self.rows[self.starts[level]..self.starts[level + 1]]
     }
+}
+
+impl Levels<'_> {
+    /// The shape at a level, equal to that of [`alpha_shape`](crate::alpha_shape); with `exterior`,
+    /// simplices outside are kept. `betti` is the level's, of [`Levels::betti`]. O(n log n).
+    ///
+    /// # Panics
+    /// If there is no such level.
+    pub fn shape(&self, level: usize, exterior: bool, betti: Betti) -> AlphaShape {
+        let alpha = self.alphas[level];
+        self.filtration.whole.at(alpha, exterior, self.complex(level, exterior), betti)
+    }
+
+    /// The facets that are regular or singular at some level, counter-clockwise seen from the side whose cell enters
+    /// later: each once for all levels. O(n).
+    pub fn facets(&self) -> Vec<([u32; 3], Span)> {
+        let incidence = &self.filtration.incidence;
+        let shown = self.facets.par_iter().enumerate();
+        let shown = shown.filter(|(_, span)| span.first < span.interior);
+        shown.map(|(row, span)| (self.turned(row, incidence.facet_cells[row]), *span)).collect()
+    }
+
+    /// The edges that are singular at some level. O(n).
+    pub fn singular_edges(&self) -> Vec<([u32; 2], Span)> {
+        let rows = self.filtration.whole.complex().edges.rows();
+        let edges = rows.iter().copied().zip(self.edges.iter().copied());
+        edges.filter(|(_, span)| span.first < span.regular).collect()
+    }
+
+    /// All vertices of the triangulation. O(n).
+    pub fn vertices(&self) -> Vec<(u32, Span)> {
+        let rows = self.filtration.whole.complex().vertices.rows();
+        rows.iter().map(|&[v]| v).zip(self.vertices.iter().copied()).collect()
+    }
+
+    /// The classified complex of a level, in canonical order.
+    fn complex(&self, level: usize, exterior: bool) -> Complex {
+        let whole = self.filtration.whole.complex();
+        let level = level as u32;
+        let cell_class =
+            |first: u32| if first <= level { Class::Interior } else { Class::Exterior };
+        let cells = self.cells.iter().map(|&first| cell_class(first));
+        let class = |span: &Span| span.class(level);
+        let facets = self.facets.iter().map(class);
+        let mut oriented: Vec<_> =
+            select(&self.filtration.incidence.facets, facets.clone(), exterior);
+        let outward = self.outward(level);
+        // Rows of both lists are in the same order.
+        let mut at = outward.iter();
+        for (row, class) in &mut oriented {
+            if *class == Class::Regular {
+                *row = *at.next().expect("each regular facet is turned");
+            }
+        }
+        oriented.par_sort_unstable_by_key(|pair| pair.0);
+        Complex {
+            cells: select(whole.cells.rows(), cells, exterior),
+            facets: oriented.into_iter().collect(),
+            edges: select(whole.edges.rows(), self.edges.iter().map(class), exterior),
+            vertices: select(whole.vertices.rows(), self.vertices.iter().map(class), exterior),
+        }
+    }
+
+    /// The regular facets, counter-clockwise seen from outside, smallest vertex first, in the order
+    /// of their sorted rows.
+    fn outward(&self, level: u32) -> Vec<[u32; 3]> {
+        let incidence = &self.filtration.incidence;
+        let regular = self.facets.par_iter().enumerate();
+        let regular = regular.filter(|(_, span)| span.class(level) == Class::Regular);
+        regular.map(|(row, _)| self.turned(row, incidence.facet_cells[row])).collect()
+    }
+
+    /// A facet, counter-clockwise seen from the side whose cell enters later, or never.
+    fn turned(&self, row: usize, sides: [u32; 2]) -> [u32; 3] {
+        let incidence = &self.filtration.incidence;
+        let comes = |cell: u32| match cell {
+            Incidence::OUTSIDE => u32::MAX,
+            cell => self.cells[cell as usize],
+        };
+        let inside = if comes(sides[0]) < comes(sides[1]) { sides[0] } else { sides[1] };
+        // Points in a plane: there are no cells, and no side is the outer one.
+        if inside == Incidence::OUTSIDE {
+            return incidence.facets[row];
+        }
+        let facets = &incidence.cell_facets[inside as usize];
+        let opposite = facets.iter().position(|&facet| facet as usize == row).expect("its facet");
+        let cell = self.filtration.whole.complex().cells.rows()[inside as usize];
+        // Seen from outside a positive cell, the corners after an even one turn clockwise.
+        let mut facet = [1, 2, 3].map(|step| cell[(opposite + step) % 4]);
+        if opposite % 2 == 1 {
+            facet.swap(1, 2);
+        }
+        let first = (0..3).min_by_key(|&k| facet[k]).unwrap_or(0);
+        facet.rotate_left(first);
+        facet
+    }
+}
+
+/// The rows that a level lists, each with its class.
+fn select<const N: usize, S: FromIterator<([u32; N], Class)>>(
+    rows: &[[u32; N]],
+    classes: impl Iterator<Item = Class>,
+    exterior: bool,
+) -> S {
+    let wanted = rows.iter().copied().zip(classes);
+    wanted.filter(|&(_, class)| exterior || class != Class::Exterior).collect()
 }

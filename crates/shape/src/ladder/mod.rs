@@ -1,7 +1,7 @@
 //! Many α from one triangulation, and levels of detail.
 //!
 //! With frozen weights the alpha shapes of a set of points are nested: one regular triangulation
-//! and, for each simplex, the α at which it comes, hold them all.
+//! and, for each simplex, the α at which it enters, determine them all.
 //!
 //! ```
 //! use walpha_shape::ladder::Filtration;
@@ -26,15 +26,11 @@
 mod critical;
 mod filtration;
 mod incidence;
-mod largest;
 mod levels;
 mod ordered;
-mod shape;
-mod stops;
 mod table;
 mod topology;
 mod values;
-mod voids;
 
 pub use critical::{Curve, Suggestions};
 pub use filtration::Filtration;

@@ -2,18 +2,18 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::levels::{ByLevel, Span};
-use super::voids::Closed;
+use super::topology::UpperBetti;
 use super::{Filtration, Levels};
 use crate::{Alpha, Betti, ByClass, Class, Measures, Void, facet_area, six_volumes};
 
-/// What is measured of each level of a filtration, by ascending α.
+/// Measurements of each level of a filtration, by ascending α.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ladder {
     /// A row for each α.
     pub levels: Vec<Level>,
 }
 
-/// A shape of a ladder in numbers.
+/// The measurements of a level.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Level {
     /// α, a squared length; the string "inf" where it is infinite.
@@ -36,7 +36,7 @@ pub struct Level {
     /// Volume and areas, in units of the points.
     #[serde(flatten)]
     pub measures: Measures,
-    /// The share of the volume of the domain that the cells fill; 0 of a flat one.
+    /// The share of the volume of the domain that the cells fill; 0 for a flat domain.
     pub coverage: f64,
     /// The voids, largest first.
     pub voids: Vec<Void>,
@@ -62,12 +62,12 @@ impl Filtration {
 }
 
 impl Levels<'_> {
-    /// The numbers of each level; see [`Filtration::ladder`].
+    /// The measurements of each level; see [`Filtration::ladder`].
     pub fn ladder(&self, domain: f64) -> Ladder {
         let ((voids, betti), (solid, measures)) = rayon::join(
             || {
                 let mut voids = vec![Vec::new(); self.len()];
-                let mut closed = vec![Closed::default(); self.len()];
+                let mut closed = vec![UpperBetti::default(); self.len()];
                 self.descend(|level, complement| {
                     (voids[level], closed[level]) = (complement.voids(), complement.closed());
                 });
@@ -103,7 +103,7 @@ impl Levels<'_> {
         let whole = &self.filtration.whole;
         let cells = whole.complex().cells.rows();
         let volumes = self.fixed_order_sums(&self.cells, |row, &first, sums| {
-            // Summed up over the levels below.
+            // Accumulated over levels below.
             if let Some(sum) = sums.get_mut(first as usize) {
                 sum[0] += six_volumes(whole.corners(cells[row]));
             }
@@ -149,7 +149,7 @@ impl Levels<'_> {
     }
 }
 
-/// How many simplices of each class each level has.
+/// The number of simplices of each class at each level.
 fn by_class(spans: &[Span], levels: usize) -> Vec<ByClass<usize>> {
     let mut change = vec![ByClass::<i64>::default(); levels + 1];
     for span in spans {

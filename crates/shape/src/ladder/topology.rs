@@ -1,11 +1,18 @@
-//! Betti numbers and solid parts of all levels, by adding what comes at each.
+//! Betti numbers, solid components and voids of all levels.
+//!
+//! Components are counted upwards, adding the simplices that enter at each level. The complement is followed downwards:
+//! it only grows as α falls, so one union-find over cells serves all levels (Delfinado and Edelsbrunner 1995,
+//! doi:10.1016/0167-8396(94)00016-Y).
+
+use std::collections::BTreeMap;
 
 use walpha_base::UnionFind;
+use walpha_regular::{Interval, Predicates, Torus};
 
 use super::Levels;
+use super::incidence::Incidence;
 use super::levels::ByLevel;
-use super::voids::Closed;
-use crate::Betti;
+use crate::{Betti, Directions, Hollow, United, Void, WindingSets, between};
 
 impl Levels<'_> {
     /// Connected components of each level. O(n α(n)).
@@ -30,19 +37,19 @@ impl Levels<'_> {
     /// `Alpha_shape_3::number_of_solid_components` counts them; where points span no volume, triangles joined
     /// through edges, or edges through vertices. O(n α(n)).
     pub fn solid_components(&self) -> Vec<u64> {
-        let firsts = self.of_largest();
+        let firsts = self.firsts_of_maximal();
         let simplices = ByLevel::new(self.len(), firsts.iter().copied());
-        // Two are united when the later of them comes.
-        let joints = self.filtration.joints();
-        let later = joints.iter().map(|&[a, b]| firsts[a as usize].max(firsts[b as usize]));
+        // Two are united when the later of them enters.
+        let adjacent_pairs = self.filtration.adjacent_pairs();
+        let later = adjacent_pairs.iter().map(|&[a, b]| firsts[a as usize].max(firsts[b as usize]));
         let by_level = ByLevel::new(self.len(), later);
         let mut sets = UnionFind::new(firsts.len());
         let mut count = 0;
         let grow = |level| {
-            // All of them first: one may be united with others that come at the same level.
+            // All of them first: one may be united with others that enter at the same level.
             count += simplices.at(level).len() as u64;
             for &joint in by_level.at(level) {
-                let [a, b] = joints[joint as usize];
+                let [a, b] = adjacent_pairs[joint as usize];
                 count -= u64::from(sets.unite(a, b));
             }
             count
@@ -64,10 +71,10 @@ impl Levels<'_> {
         sums.take(self.len()).collect()
     }
 
-    /// The Betti numbers of each level, of which some are given: b1 = b0 + b2 − b3 − χ.
-    pub(super) fn betti_with(&self, closed: &[Closed]) -> Vec<Betti> {
+    /// The Betti numbers of each level, with b2 and b3 given: b1 = b0 + b2 − b3 − χ.
+    pub(super) fn betti_with(&self, closed: &[UpperBetti]) -> Vec<Betti> {
         let parts = self.components().into_iter().zip(closed).zip(self.euler_characteristics());
-        let betti = |((b0, closed), euler): ((u64, &Closed), i64)| {
+        let betti = |((b0, closed), euler): ((u64, &UpperBetti), i64)| {
             Betti::with_euler(b0, closed.b2, closed.b3, euler)
         };
         parts.map(betti).collect()
@@ -75,8 +82,198 @@ impl Levels<'_> {
 
     /// The Betti numbers of each level. O(n α(n)).
     pub fn betti(&self) -> Vec<Betti> {
-        let mut closed = vec![Closed::default(); self.len()];
+        let mut closed = vec![UpperBetti::default(); self.len()];
         self.descend(|level, complement| closed[level] = complement.closed());
         self.betti_with(&closed)
+    }
+}
+
+/// The components of the complement of a level.
+pub(super) struct LevelComplement<'a> {
+    levels: &'a Levels<'a>,
+    spheres: Predicates<'a>,
+    sets: Sets,
+    /// By root, the sums over each component.
+    hollows: Vec<Hollow>,
+    /// A superset of the roots: those, and cells that were roots once.
+    roots: Vec<u32>,
+    count: u64,
+    /// The cells of each component as a circular list: the next of each cell.
+    next: Vec<u32>,
+    /// By root, the α that fills a component and its number of cells then, where it has been computed.
+    known: BTreeMap<u32, (usize, f64)>,
+}
+
+/// Betti numbers that follow from the complement.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct UpperBetti {
+    pub b2: u64,
+    pub b3: Option<u64>,
+}
+
+/// The union-find over cells.
+enum Sets {
+    /// With the outside, which is one past the last cell.
+    InSpace(UnionFind),
+    /// And the directions in which all of them together go round.
+    OnTorus(Torus, WindingSets, Directions),
+}
+
+impl Sets {
+    fn find(&mut self, cell: u32) -> u32 {
+        match self {
+            Self::InSpace(sets) => sets.find(cell),
+            Self::OnTorus(_, sets, _) => sets.find(cell).0,
+        }
+    }
+}
+
+impl Levels<'_> {
+    /// The voids of each level, in space as many as its second Betti number, largest
+    /// first as in [`AlphaShape::voids`](crate::AlphaShape::voids).
+    /// O(n α(n)), and the length of the result.
+    pub fn voids(&self) -> Vec<Vec<Void>> {
+        let mut voids = vec![Vec::new(); self.len()];
+        self.descend(|level, complement| voids[level] = complement.voids());
+        voids
+    }
+
+    /// Visits the complement of each level, from the last to the first.
+    pub(super) fn descend(&self, mut visit: impl FnMut(usize, &mut LevelComplement<'_>)) {
+        let incidence = &self.filtration.incidence;
+        let cells = ByLevel::new(self.len(), self.cells.iter().copied());
+        let facets = ByLevel::new(self.len(), self.facets.iter().map(|span| span.first));
+        let whole = &self.filtration.whole;
+        let hollow = |(row, &cell): (usize, &[u32; 4])| {
+            let radius = Interval::around(self.filtration.cells[row]);
+            Hollow::of(radius, whole.corners(cell))
+        };
+        let outside = self.cells.len() as u32;
+        let (sets, count) = match self.filtration.torus() {
+            None => (Sets::InSpace(UnionFind::new(self.cells.len() + 1)), 1),
+            Some(torus) => {
+                let sets = WindingSets::new(self.cells.len());
+                (Sets::OnTorus(torus, sets, Directions::default()), 0)
+            }
+        };
+        let mut complement = LevelComplement {
+            levels: self,
+            spheres: self.filtration.spheres(),
+            sets,
+            hollows: whole.complex().cells.rows().iter().enumerate().map(hollow).collect(),
+            roots: Vec::new(),
+            count,
+            next: (0..outside).collect(),
+            known: BTreeMap::new(),
+        };
+        for level in (0..self.len()).rev() {
+            let gone = cells.at(level + 1);
+            complement.count += gone.len() as u64;
+            complement.roots.extend_from_slice(gone);
+            for &facet in facets.at(level + 1) {
+                let sides = incidence.facet_cells[facet as usize]
+                    .map(|side| if side == Incidence::OUTSIDE { outside } else { side });
+                complement.join(sides, incidence.facets[facet as usize][0]);
+            }
+            visit(level, &mut complement);
+        }
+    }
+}
+
+impl LevelComplement<'_> {
+    /// Unites the two cells of a facet with this vertex.
+    fn join(&mut self, [a, b]: [u32; 2], vertex: u32) {
+        let roots = [self.sets.find(a), self.sets.find(b)];
+        let (low, high) = (roots[0].min(roots[1]), roots[0].max(roots[1]));
+        let filtration = self.levels.filtration;
+        let joined = match &mut self.sets {
+            Sets::InSpace(sets) => {
+                sets.unite(a, b);
+                low != high
+            }
+            Sets::OnTorus(torus, sets, rounds) => {
+                let cells = filtration.whole.complex().cells.rows();
+                let cells = [cells[a as usize], cells[b as usize]];
+                let way = between(*torus, cells, vertex, &filtration.points().positions);
+                let united = sets.unite(a, b, way);
+                if let United::Round(way) = united {
+                    rounds.add(way);
+                }
+                self.hollows[high as usize].moved(*torus, sets.find(high).1);
+                united == United::Two
+            }
+        };
+        if joined {
+            self.add_up(low as usize, high as usize);
+        }
+    }
+
+    /// Accounts for the union of two components.
+    fn add_up(&mut self, root: usize, other: usize) {
+        self.count -= 1;
+        // The outside is the last set, and has no sums.
+        if other < self.hollows.len() {
+            self.next.swap(root, other);
+            let other = self.hollows[other];
+            self.hollows[root].join(&other);
+        }
+    }
+
+    /// The Betti numbers that the number of components determines, and on a torus the directions in which they
+    /// go round: b2 and b3 (Alexander duality, and on a torus the exact sequence of the pair of it and the
+    /// complement: H₁(complement) → H₁(torus) → H²(shape) → H₀(complement) → H₀(torus) → H³(shape)).
+    pub(super) fn closed(&self) -> UpperBetti {
+        match &self.sets {
+            Sets::InSpace(_) => UpperBetti { b2: self.count - 1, b3: None },
+            Sets::OnTorus(.., rounds) => {
+                let b3 = u64::from(self.count == 0);
+                UpperBetti { b2: self.count + b3 + 2 - rounds.rank() as u64, b3: Some(b3) }
+            }
+        }
+    }
+
+    /// Whether a component, given by its root, is bounded.
+    fn is_bounded(&mut self, root: u32) -> bool {
+        let outside = self.hollows.len() as u32;
+        match &mut self.sets {
+            Sets::InSpace(sets) => sets.find(outside) != root,
+            Sets::OnTorus(_, sets, _) => sets.rounds(root).is_none(),
+        }
+    }
+
+    pub(super) fn voids(&mut self) -> Vec<Void> {
+        let mut roots = std::mem::take(&mut self.roots);
+        // A component that winds round will always do so.
+        roots.retain(|&root| self.sets.find(root) == root && self.is_bounded(root));
+        let void = |&root: &u32| {
+            let alpha = self.filling(root);
+            self.hollows[root as usize].void(alpha)
+        };
+        let mut voids: Vec<Void> = roots.iter().map(void).collect();
+        voids.sort_by(Void::order);
+        self.roots = roots;
+        voids
+    }
+
+    /// The least double at which all cells of a component fit.
+    fn filling(&mut self, root: u32) -> f64 {
+        let hollow = self.hollows[root as usize];
+        match self.known.get(&root) {
+            Some(&(cells, alpha)) if cells == hollow.cells() => return alpha,
+            _ => {}
+        }
+        let filtration = self.levels.filtration;
+        let cells = filtration.whole.complex().cells.rows();
+        let (mut alpha, mut at) = (f64::NEG_INFINITY, root as usize);
+        loop {
+            let radius = Interval::around(filtration.cells[at]);
+            hollow.raise(&mut alpha, &self.spheres, cells[at], radius);
+            at = self.next[at] as usize;
+            if at == root as usize {
+                break;
+            }
+        }
+        self.known.insert(root, (hollow.cells(), alpha));
+        alpha
     }
 }

@@ -11,12 +11,12 @@ use super::filtration::Radius;
 use crate::Alpha;
 use crate::WeightedPoints;
 
-/// A critical value of α, as far as it is known.
+/// A critical value of α, as precisely as needed.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Value {
-    /// The first double that is not below it.
+    /// The least double that is not below it.
     First(f64),
-    /// That of a simplex whose radius has an interval of its own, which ends here.
+    /// The value of a simplex whose interval meets no other, and the upper end of the interval.
     Of(Row, f64),
 }
 
@@ -39,8 +39,8 @@ impl Value {
 }
 
 impl Filtration {
-    /// All critical values, ascending; those between the same two doubles are one. Radii whose
-    /// intervals meet no other are ordered by these, all others by exact arithmetic.
+    /// All critical values, ascending; those between the same two doubles are one. Radii whose intervals meet no other
+    /// are sorted by interval, all others by exact arithmetic.
     pub(super) fn values(&self) -> Vec<Value> {
         let own = |radii: &[Radius], row: fn(u32) -> Row| -> Vec<(Interval, Row)> {
             let known = radii.par_iter().enumerate();
@@ -83,7 +83,7 @@ impl Filtration {
         clusters.par_iter().map_init(HashMap::new, split).flatten_iter().collect()
     }
 
-    /// The first double that is not below a value.
+    /// The least double that is not below a value.
     pub(super) fn first_alpha(&self, value: Value) -> Alpha {
         let first = match value {
             Value::First(alpha) => alpha,
@@ -97,7 +97,7 @@ impl Filtration {
     }
 }
 
-/// Weights and squared distances of the corners, which determine the radius.
+/// Bits of the weights of up to four corners and their up to six squared distances, which determine the radius.
 pub(super) type Key = [u64; 10];
 
 struct Firsts<'a> {
@@ -108,8 +108,8 @@ struct Firsts<'a> {
 }
 
 impl Firsts<'_> {
-    /// The first double that is not below the squared radius of a simplex. On a lattice most are
-    /// congruent to one seen before.
+    /// The least double that is not below the squared radius of a simplex. On a lattice, most simplices are congruent
+    /// to an earlier one.
     fn of(&self, row: Row, known: &mut HashMap<Key, f64>) -> f64 {
         let Filtration { whole, incidence, .. } = self.filtration;
         let complex = whole.complex();
@@ -122,7 +122,7 @@ impl Firsts<'_> {
     }
 
     fn first<const N: usize>(&self, simplex: [u32; N], known: &mut HashMap<Key, f64>) -> f64 {
-        // Not −0, of which no one has heard.
+        // Adding 0.0 turns −0 into 0.
         let exactly = || self.spheres.first_alpha(simplex) + 0.0;
         if !self.exact || N == 1 {
             return exactly();
@@ -131,7 +131,7 @@ impl Firsts<'_> {
     }
 }
 
-/// What the squared radius of a simplex is a function of. Exact on a small lattice only.
+/// The numbers that determine the squared radius of a simplex. Exact on a small lattice only.
 pub(super) fn key<const N: usize>(filtration: &Filtration, mut simplex: [u32; N]) -> Key {
     let weights = &filtration.points().weights;
     // By weight: congruent simplices may have their vertices in another order.
@@ -140,20 +140,25 @@ pub(super) fn key<const N: usize>(filtration: &Filtration, mut simplex: [u32; N]
     let pairs = (0..N).flat_map(|i| (0..i).map(move |j| (i, j)));
     let distances =
         pairs.map(|(i, j)| (0..3).map(|k| (corners[i][k] - corners[j][k]).powi(2)).sum::<f64>());
-    let mut key = [u64::MAX; 10];
+    let mut key: Key = [u64::MAX; 10];
     let numbers = simplex.iter().map(|&v| weights[v as usize]).chain(distances);
     key.iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number.to_bits());
     key
 }
 
-/// Whether coordinates are multiples of a power of two below 2²⁵, so that squared distances are
-/// integers below 2⁵³ in its square.
+/// The largest number of bits of a coordinate in units of the lattice. Differences of coordinates of one sign have no
+/// more, so that the sum of three squares is below 2⁵²; of opposite signs, sums are exact up to 2⁵³.
+const SMALL_BITS: i32 = 25;
+/// Squares of units stay above the smallest double.
+const LOWEST_UNIT: i32 = -500;
+
+/// Whether coordinates are multiples of a power of two, by integers below 2²⁵, so that squared distances are integers
+/// below 2⁵³ in its square.
 pub(super) fn is_small_lattice(points: &WeightedPoints, torus: Option<Torus>) -> bool {
     let sides = torus.map(|torus| torus.sides());
     let sides = sides.as_slice().as_flattened();
     let coordinates = || points.positions.as_flattened().par_iter().chain(sides).copied();
     let lowest = coordinates().filter_map(lowest_bit).min().unwrap_or(0);
     let largest = coordinates().map(f64::abs).reduce(|| 0.0, f64::max);
-    // Squares of units must not be lost below the smallest double.
-    lowest > -500 && largest < 2f64.powi(lowest.saturating_add(25))
+    lowest > LOWEST_UNIT && largest < 2f64.powi(lowest.saturating_add(SMALL_BITS))
 }

@@ -111,7 +111,7 @@ pub(super) fn frame(
     axes: [[f64; 3]; 3],
     coordinates: Coordinates,
 ) -> Result<Frame, VolumeError> {
-    let frame = Frame::from_axes(origin, axes).map(|frame| frame.meaning(coordinates));
+    let frame = Frame::from_axes(origin, axes).map(|frame| frame.with_coordinates(coordinates));
     frame.ok_or_else(|| {
         let reason = Reason::header(format!(
             "places its grid at {origin:?} with steps {axes:?} along its axes: spacing must not \

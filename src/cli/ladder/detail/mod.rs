@@ -70,7 +70,7 @@ impl Ladder {
             let weighted = weigh(&points, weighting, alpha)?;
             let options = ShapeOptions::new(alpha);
             let shape = progress.stage(Stage::Shape, || alpha_shape(weighted, &options))?;
-            let shape = shape.meaning(coordinates);
+            let shape = shape.with_coordinates(coordinates);
             let errors = || Errors::of(&shape, &grays, &volume, units);
             let errors = progress.stage(Stage::Interpolate, errors)?;
             let mut row = Row::of(&shape, &truncation, &domain, errors);

@@ -2,11 +2,11 @@ use super::*;
 use crate::triangulate;
 use proptest::prelude::*;
 
-/// The finite cells as places, corners and cells in order.
+/// Cells as the positions of their corners; corners and cells sorted.
 fn cells(rows: impl Iterator<Item = [u32; 4]>, positions: &[[f64; 3]]) -> Vec<[[u64; 3]; 4]> {
     let mut cells: Vec<_> = rows
         .map(|row| {
-            let mut corners = row.map(|v| place(positions[v as usize]));
+            let mut corners = row.map(|v| position_bits(positions[v as usize]));
             corners.sort_unstable();
             corners
         })
@@ -47,13 +47,13 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
 
     #[test]
-    fn it_is_that_of_the_points_in_it(
+    fn it_depends_on_the_points_in_it_alone(
         (points, step) in in_a_box(), cut in 8..20usize,
         leave in prop::collection::vec(any::<prop::sample::Index>(), 1..30),
     ) {
         let mut growing = Growing::new(&points[..cut]).unwrap();
         agree(&growing, "of the first");
-        let rest: Vec<u32> = growing.name(&points[cut..]).collect();
+        let rest: Vec<u32> = growing.register(&points[cut..]).collect();
         growing.insert(&rest).unwrap();
         agree(&growing, "with more");
         let inner = points.len() - 8;
@@ -71,13 +71,13 @@ proptest! {
     }
 
     #[test]
-    fn looks_tell_what_comes((points, _) in in_a_box(), pick in any::<prop::sample::Index>()) {
+    fn insertions_and_holes_are_foreseen((points, _) in in_a_box(), pick in any::<prop::sample::Index>()) {
         let mut growing = Growing::new(&points[..points.len() - 1]).unwrap();
-        let [v] = growing.name(&points[points.len() - 1..]).collect::<Vec<_>>()[..] else {
+        let [v] = growing.register(&points[points.len() - 1..]).collect::<Vec<_>>()[..] else {
             panic!("one point");
         };
-        growing.take_fresh();
-        let crowns: Vec<Insertion> = {
+        growing.take_new_cells();
+        let insertions: Vec<Insertion> = {
             let predicates = growing.predicates();
             let screen = Growing::screen(&predicates).unwrap();
             let holds = |cell: &u32| {
@@ -92,10 +92,10 @@ proptest! {
             finite.filter(holds).map(|cell| growing.insertion(&screen, v, cell)).collect()
         };
         growing.insert(&[v]).unwrap();
-        let fresh = growing.take_fresh();
-        let rows = fresh.iter().map(|&cell| growing.cells()[cell as usize].corners);
+        let new = growing.take_new_cells();
+        let rows = new.iter().map(|&cell| growing.cells()[cell as usize].corners);
         let come = cells(rows, growing.positions());
-        for insertion in &crowns {
+        for insertion in &insertions {
             let foreseen = cells(insertion.cells.iter().copied(), growing.positions());
             prop_assert_eq!(&foreseen, &come);
         }
@@ -112,8 +112,8 @@ proptest! {
         };
         if let Some(foreseen) = foreseen {
             growing.remove(&[leaves]).unwrap();
-            let fresh = growing.take_fresh();
-            let rows = fresh.iter().map(|&cell| growing.cells()[cell as usize].corners);
+            let new = growing.take_new_cells();
+            let rows = new.iter().map(|&cell| growing.cells()[cell as usize].corners);
             prop_assert_eq!(foreseen, cells(rows, growing.positions()));
         }
     }

@@ -1,34 +1,32 @@
-//! What a block owns of the shape, from its triangulation.
+//! The simplices that a block owns, classified from its triangulation.
 //!
-//! 1. [`cells`]: which cells are inside, then the class of each facet, by the two cells beside it or,
-//!    where both are outside, by its own sphere.
+//! 1. [`cells`]: which cells are inside, then the class of each facet, by its two cells or, where both are
+//!    outside, by its own sphere.
 //! 2. [`sheets`]: while facets are classified, the corners of exterior cells are united into sheets.
-//! 3. [`around`]: one walk around each of the block's points gives edges, the point's class, and the
-//!    rows of the simplices that it is the smallest vertex of.
+//! 3. [`around`]: one pass over the star of each of the block's points gives edges, the point's class, and the
+//!    rows of the simplices whose smallest vertex it is.
 
 mod around;
 mod cells;
 mod rows;
 mod sheets;
-mod stars;
 
 use walpha_base::UnionFind;
 use walpha_regular::{Predicates, Triangulation};
 
 use super::{Block, Question};
-use around::Walker;
+use around::{Stars, Walker};
 use cells::{Boundary, State};
 pub use rows::Side;
-pub(super) use rows::{Dimension, Long, Owned, Rows, Shelf, Shelves};
+pub(super) use rows::{Bucket, Buckets, Dimension, Long, Owned, Rows, Starts};
 use sheets::Sheets;
-use stars::Stars;
 
 /// Classifies the simplices whose smallest vertex is the block's own. O(cells).
 pub(super) fn classify(
     block: &Block,
     mesh: Triangulation,
     question: &Question,
-    shelves: Shelves,
+    buckets: Buckets,
 ) -> Owned {
     let (cells, neighbors, ghost) = mesh.into_parts();
     let local = Local {
@@ -49,14 +47,14 @@ pub(super) fn classify(
     let mut walker = Walker::new(&local, &states, &stars, &boundary, &mut sheets, &mut owned);
     (0..block.own).for_each(|v| walker.visit(v));
     let mut components = walker.finish();
-    owned.joined = joined(&mut components, &block.input);
+    owned.components = component_pairs(&mut components, &block.input);
     sheets.number(&mut owned);
     drop((cells, states, stars));
-    owned.shelve(shelves, &block.input[..block.own as usize]);
+    owned.fill_buckets(buckets, &block.input[..block.own as usize]);
     owned
 }
 
-/// A block with its triangulation, and what is asked about it. Vertices are its points' numbers.
+/// A block with its triangulation and the parameters of the shape. Vertices are numbers of the block's points.
 struct Local<'a> {
     block: &'a Block,
     cells: &'a [[u32; 4]],
@@ -73,12 +71,13 @@ impl Local<'_> {
         v < self.block.own
     }
 
-    /// The place of simplices is decided by input indices.
+    /// The input index of a point, which orders the vertices of simplices.
     #[inline(always)]
     fn input(&self, v: u32) -> u32 {
         self.block.input[v as usize]
     }
 
+    /// Whether the smallest orthogonal sphere has a squared radius of at most α. Exact.
     fn fits<const N: usize>(&self, simplex: [u32; N]) -> bool {
         self.alpha == f64::INFINITY || self.predicates.fits(simplex, self.alpha)
     }
@@ -94,8 +93,8 @@ impl Local<'_> {
     }
 }
 
-/// Points and the representative of their component, by input index.
-fn joined(components: &mut UnionFind, input: &[u32]) -> Vec<[u32; 2]> {
+/// Each point that is not the representative of its component, with that, by input index.
+fn component_pairs(components: &mut UnionFind, input: &[u32]) -> Vec<[u32; 2]> {
     let pair = |v: u32| {
         let root = components.find(v);
         (root != v).then(|| [input[v as usize], input[root as usize]])
@@ -103,7 +102,7 @@ fn joined(components: &mut UnionFind, input: &[u32]) -> Vec<[u32; 2]> {
     (0..input.len() as u32).filter_map(pair).collect()
 }
 
-/// Whether a permutation of 0..4 that begins with three places is even.
+/// Whether the permutation of 0..4 that starts with a, b, c is even.
 #[inline(always)]
 fn even(a: usize, b: usize, c: usize) -> bool {
     let d = 6 - a - b - c;

@@ -1,76 +1,74 @@
-//! What a block gives out.
+//! The simplices that a block owns, in buckets, and what the merge of blocks needs besides.
 
 use std::ops::Range;
 
 use super::State;
 use crate::Class;
 
-/// What a block owns.
+/// The simplices that a block owns, and what the merge of blocks needs besides.
 #[derive(Default)]
-pub(in super::super) struct Owned {
-    /// All its simplices, while it is at work.
-    pub(super) rows: Shelf,
-    /// Later these, by the shelf of their smallest vertices.
-    pub shelves: Vec<Shelf>,
-    /// How many sheets there are.
+pub(in crate::blocks) struct Owned {
+    /// All simplices, until they are put into buckets.
+    pub(super) rows: Bucket,
+    /// The simplices by the bucket of their smallest vertices.
+    pub buckets: Vec<Bucket>,
+    /// Number of sheets.
     pub sheets: u32,
-    /// Sides of facets, and singular edges, that touch points of this block and of others.
+    /// Sides of facets, and singular edges, with vertices in this block and in others.
     pub shared: Vec<Side>,
-    /// Points, each with another one of its component.
-    pub joined: Vec<[u32; 2]>,
-    /// The ends of edges of the shape between points of this block and of others, some of them several
-    /// times.
+    /// Points, each with another one of its component: uniting these pairs gives the components.
+    pub components: Vec<[u32; 2]>,
+    /// The ends of edges of the shape between points of this block and of others, possibly repeated.
     pub border: Vec<u32>,
-    /// On a torus: an edge that spans half of the box or more.
+    /// On a torus: an edge that spans half of the box or more, if there is one.
     pub long: Option<Long>,
 }
 
 /// An edge by its input indices, and its ends.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Long {
+pub(in crate::blocks) struct Long {
     pub edge: [u32; 2],
     pub ends: [[f64; 3]; 2],
 }
 
-/// Input indices in runs of about equal length, so that the rows of one run can be merged, and given
-/// back, before those of the next.
+/// Divides input indices into runs of about equal length, the buckets. The rows of one bucket are merged, and their
+/// memory is freed, before those of the next.
 #[derive(Clone, Copy)]
-pub(in super::super) struct Shelves {
+pub(in crate::blocks) struct Buckets {
     pub count: usize,
     length: u32,
 }
 
-impl Shelves {
-    /// So many for these input indices, which ascend.
+impl Buckets {
+    /// `count` buckets for these input indices, which ascend.
     pub(crate) fn new(input: &[u32], count: usize) -> Self {
         let end = input.last().map_or(0, |&last| last as usize + 1);
         Self { count, length: end.div_ceil(count).max(1) as u32 }
     }
 
-    /// The shelf of the point with an input index.
+    /// The bucket of an input index.
     pub(crate) fn at(self, input: u32) -> usize {
         (input / self.length) as usize
     }
 
-    /// Which of these input indices, which ascend, are on each shelf.
+    /// By bucket, the range of its elements in these input indices, which ascend.
     pub(crate) fn ranges(self, input: &[u32]) -> Vec<Range<usize>> {
-        let start = |shelf| input.partition_point(|&i| self.at(i) < shelf);
-        (0..self.count).map(|shelf| start(shelf)..start(shelf + 1)).collect()
+        let start = |bucket| input.partition_point(|&i| self.at(i) < bucket);
+        (0..self.count).map(|bucket| start(bucket)..start(bucket + 1)).collect()
     }
 }
 
-/// The simplices that a block owns whose smallest vertices are on one shelf, around one of these after
-/// the other. That point is left out of the rows: a quarter to a half of the memory that they take
-/// while blocks wait for each other.
+/// The simplices that a block owns whose smallest vertices are in one bucket, grouped by smallest vertex. That
+/// vertex is left out of the rows, which saves a quarter to a half of their memory until blocks are merged.
 #[derive(Default)]
-pub(in super::super) struct Shelf {
+pub(in crate::blocks) struct Bucket {
     pub cells: Rows<3>,
     pub facets: Rows<2>,
     pub edges: Rows<1>,
     /// The class of each point, `None` for those that are not vertices.
     pub vertices: Vec<Option<Class>>,
-    /// Where the rows and sheets of each point begin, see [`Dimension`], and where the last ones end.
-    pub starts: Vec<[u32; 5]>,
+    /// By point, where its rows and sheets start, in the columns of [`Dimension`]; and where the last ones end.
+    pub starts: Vec<Starts>,
     /// The sheet of each regular facet, and the two of each singular facet: first that on the side where
     /// the facet's sorted row turns clockwise. Numbered from 0 within the block.
     pub facet_sheets: Vec<u32>,
@@ -78,9 +76,12 @@ pub(in super::super) struct Shelf {
     pub edge_sheets: Vec<u32>,
 }
 
-/// Columns of [`Owned::starts`].
+/// Positions in each of the lists of a [`Bucket`], by [`Dimension`].
+pub(in crate::blocks) type Starts = [u32; 5];
+
+/// Columns of [`Starts`].
 #[derive(Clone, Copy)]
-pub(in super::super) enum Dimension {
+pub(in crate::blocks) enum Dimension {
     Cells,
     Facets,
     Edges,
@@ -88,8 +89,8 @@ pub(in super::super) enum Dimension {
     EdgeSheets,
 }
 
-/// Simplices of `M` + 1 vertices, by input index.
-pub(in super::super) struct Rows<const M: usize> {
+/// Simplices of `M` + 1 vertices, by input index, without the smallest.
+pub(in crate::blocks) struct Rows<const M: usize> {
     pub vertices: Vec<[u32; M]>,
     pub classes: Vec<Class>,
 }
@@ -101,7 +102,7 @@ impl<const M: usize> Default for Rows<M> {
 }
 
 impl<const M: usize> Rows<M> {
-    /// Makes room for so many rows at the most, so that growing copies nothing.
+    /// Reserves memory for at most `most` rows, so that none is copied later.
     fn reserve(&mut self, most: usize) {
         self.vertices.reserve_exact(most);
         self.classes.reserve_exact(most);
@@ -118,11 +119,11 @@ impl<const M: usize> Rows<M> {
     }
 }
 
-/// One side of a facet, or a singular edge, that several blocks know.
+/// One side of a facet, or a singular edge, with vertices in several blocks.
 pub struct Side {
-    /// Sorted input indices; an edge repeats its last.
+    /// Sorted input indices; an edge repeats its last one.
     pub simplex: [u32; 3],
-    /// Its side.
+    /// Which side: 1 where an even permutation sorts the corners of the cell there, else 0; 0 for an edge.
     pub side: u32,
     /// Its sheet within the block.
     pub sheet: u32,
@@ -130,17 +131,23 @@ pub struct Side {
     pub windings: [i32; 3],
 }
 
+/// Bytes of a merged simplex with so many vertices: 32-bit input indices and a class.
+const fn merged_row(vertices: usize) -> usize {
+    vertices * size_of::<u32>() + size_of::<Class>()
+}
+
 impl Owned {
-    /// Makes room for the rows of a block with these classes, some of them other blocks'.
+    /// Reserves memory for the rows of a block whose cells have these states: an upper bound, as other blocks own
+    /// some of them.
     pub(super) fn reserve(&mut self, states: &[State], points: usize) {
         let (mut cells, mut facets) = (0, 0);
         for state in states {
             cells += usize::from(state.is_inside());
-            facets += state.given();
+            facets += state.emitted();
         }
         self.rows.cells.reserve(cells);
         self.rows.facets.reserve(facets);
-        // In a triangulated ball there is an edge for each cell and for each point, less a few.
+        // By Euler's formula, a triangulation has about as many edges as cells and vertices together.
         self.rows.edges.reserve(cells + points);
         self.rows.starts.reserve_exact(points + 1);
         self.rows.vertices.reserve_exact(points);
@@ -148,36 +155,36 @@ impl Owned {
 
     /// The number of points.
     pub(crate) fn points(&self) -> usize {
-        self.shelves.iter().map(|shelf| shelf.vertices.len()).sum()
+        self.buckets.iter().map(|bucket| bucket.vertices.len()).sum()
     }
 
-    /// What the rows, classes and sheets will take when they are whole.
+    /// Bytes of the rows, classes and sheets after merging.
     pub(crate) fn merged_bytes(&self) -> u64 {
-        let bytes = |shelf: &Shelf| {
-            let rows = 17 * shelf.cells.classes.len()
-                + 13 * shelf.facets.classes.len()
-                + 9 * shelf.edges.classes.len()
-                + 5 * shelf.vertices.len();
-            rows + 4 * (shelf.facet_sheets.len() + shelf.edge_sheets.len())
+        let bytes = |bucket: &Bucket| {
+            let rows = merged_row(4) * bucket.cells.classes.len()
+                + merged_row(3) * bucket.facets.classes.len()
+                + merged_row(2) * bucket.edges.classes.len()
+                + merged_row(1) * bucket.vertices.len();
+            rows + size_of::<u32>() * (bucket.facet_sheets.len() + bucket.edge_sheets.len())
         };
-        self.shelves.iter().map(bytes).sum::<usize>() as u64
+        self.buckets.iter().map(bytes).sum::<usize>() as u64
     }
 
-    /// Puts the rows of points with these input indices on shelves.
-    pub(super) fn shelve(&mut self, shelves: Shelves, input: &[u32]) {
+    /// Distributes the rows of points with these input indices to buckets.
+    pub(super) fn fill_buckets(&mut self, buckets: Buckets, input: &[u32]) {
         let rows = std::mem::take(&mut self.rows);
-        self.shelves = if shelves.count == 1 {
+        self.buckets = if buckets.count == 1 {
             vec![rows]
         } else {
-            let mut points = vec![Vec::new(); shelves.count];
-            (0..).zip(input).for_each(|(v, &i)| points[shelves.at(i)].push(v));
+            let mut points = vec![Vec::new(); buckets.count];
+            (0..).zip(input).for_each(|(v, &i)| points[buckets.at(i)].push(v));
             points.iter().map(|points| rows.of(points)).collect()
         };
     }
 }
 
-impl Shelf {
-    /// Notes that the rows of the next point begin here.
+impl Bucket {
+    /// Starts the rows of the next point.
     pub(super) fn begin(&mut self) {
         self.starts.push(
             [
@@ -197,7 +204,7 @@ impl Shelf {
             let start = move |v: u32| self.starts[v as usize][dimension as usize] as usize;
             points.iter().map(move |&v| start(v)..start(v + 1))
         };
-        let mut shelf = Self {
+        let mut bucket = Self {
             cells: self.cells.of(ranges(Dimension::Cells)),
             facets: self.facets.of(ranges(Dimension::Facets)),
             edges: self.edges.of(ranges(Dimension::Edges)),
@@ -207,17 +214,17 @@ impl Shelf {
             edge_sheets: gathered(&self.edge_sheets, ranges(Dimension::EdgeSheets)),
         };
         let mut end = [0; 5];
-        shelf.starts.push(end);
+        bucket.starts.push(end);
         for &v in points {
             let [from, to] = [self.starts[v as usize], self.starts[v as usize + 1]];
             (0..5).for_each(|k| end[k] += to[k] - from[k]);
-            shelf.starts.push(end);
+            bucket.starts.push(end);
         }
-        shelf
+        bucket
     }
 }
 
-/// Elements from these places, in memory of just their number.
+/// The elements in these ranges, in a vector of exactly their number.
 fn gathered<T: Copy>(from: &[T], ranges: impl Iterator<Item = Range<usize>> + Clone) -> Vec<T> {
     let mut to = Vec::with_capacity(ranges.clone().map(|range| range.len()).sum());
     ranges.for_each(|range| to.extend_from_slice(&from[range]));
@@ -230,8 +237,8 @@ mod tests {
     use walpha_regular::Lattice;
     use walpha_regular::Sites;
 
-    use super::super::super::{Limits, Plan, Question, Reach, decide, merge};
     use super::*;
+    use crate::blocks::{Limits, Plan, Question, Reach, decide, merge};
 
     #[test]
     fn merged_rows_take_the_bytes_foreseen() {
@@ -248,16 +255,16 @@ mod tests {
         for blocks in [1, 7] {
             let limits = Limits { blocks: Some(blocks), memory: None };
             let plan = Plan::new(&sites, Reach::Balls(0.75), limits).unwrap();
-            let shelves = Shelves::new(sites.input(), 1);
+            let buckets = Buckets::new(sites.input(), 1);
             let silent = Monitor::silent();
             let work = silent.units(1);
             let owned: Vec<_> = (0..plan.partition.len())
-                .map(|block| decide(&sites, &plan.partition, block, &question, shelves, &work))
+                .map(|block| decide(&sites, &plan.partition, block, &question, buckets, &work))
                 .collect::<Result<_, _>>()
                 .unwrap();
             assert_eq!(owned.iter().map(Owned::points).sum::<usize>(), positions.len());
             let foreseen: u64 = owned.iter().map(Owned::merged_bytes).sum();
-            let made = merge(&sites, &plan, owned, &question, shelves);
+            let made = merge(&sites, &plan, owned, &question, buckets);
             let complex = &made.complex;
             assert!(made.facet_sheets.len() > 2 && !made.edge_sheets.is_empty());
             let bytes = size_of_val(complex.cells.rows())

@@ -1,17 +1,17 @@
 use walpha_base::UnionFind;
 
-use super::rows::{Owned, Shelf, Side};
+use super::rows::{Bucket, Owned, Side};
 use super::{Local, State, even};
 
-/// Sheets of the boundary: the corners of exterior cells, united.
+/// Sheets of the boundary: a union-find over the corners of exterior cells.
 ///
-/// A corner is a cell seen from one of its vertices: 4·cell + place. Corners of exterior cells that meet
-/// at a vertex through an exterior facet lie in one sector of the space around that vertex; all that
-/// a side of a boundary facet has, and those at both ends of a singular edge, lie on one sheet. A
-/// block unites corners at its own points only: at others not all is known to it, and the blocks
-/// that own them will say.
+/// A corner is a cell seen from one of its vertices: 4·cell + corner. Two exterior cells with a common
+/// exterior facet are in one sector of the space around each vertex of that facet, so their corners there are united.
+/// The corners on one side of a boundary facet, and those at both ends of a singular edge, are on one sheet. A
+/// block unites corners at its own points only: it does not know the whole stars of other points, and their
+/// blocks do.
 pub(super) struct Sheets {
-    /// The number of each cell among those that are not inside.
+    /// The number of each cell among the exterior cells that are not foreign.
     number: Vec<u32>,
     sets: UnionFind,
 }
@@ -21,7 +21,7 @@ impl Sheets {
         let mut count = 0;
         let number = |state: &State| {
             let number = count;
-            count += u32::from(!state.is_inside() && !state.is_far());
+            count += u32::from(!state.is_inside() && !state.is_foreign());
             number
         };
         let number = states.iter().map(number).collect();
@@ -36,17 +36,17 @@ impl Sheets {
         self.sets.unite(self.at(a), self.at(b));
     }
 
-    /// Replaces corners by the numbers of their sheets, from 0 in order of appearance.
+    /// Replaces corners by the numbers of their sheets, which count from 0 in the order of appearance.
     pub(super) fn number(mut self, owned: &mut Owned) {
-        const NONE: u32 = u32::MAX;
-        let mut names = vec![NONE; self.sets.members()];
+        const UNNUMBERED: u32 = u32::MAX;
+        let mut names = vec![UNNUMBERED; self.sets.members()];
         let mut count = 0;
         let shared = owned.shared.iter_mut().map(|side| &mut side.sheet);
-        let Shelf { facet_sheets, edge_sheets, .. } = &mut owned.rows;
+        let Bucket { facet_sheets, edge_sheets, .. } = &mut owned.rows;
         for corner in facet_sheets.iter_mut().chain(edge_sheets).chain(shared) {
             let at = self.at(*corner);
             let name = &mut names[self.sets.find(at) as usize];
-            if *name == NONE {
+            if *name == UNNUMBERED {
                 *name = count;
                 count += 1;
             }
@@ -57,8 +57,8 @@ impl Sheets {
 }
 
 impl Local<'_> {
-    /// Around each owned vertex of an exterior facet, the cells on both sides are in one sector.
-    pub(super) fn pass(&self, here: u32, there: u32, sheets: &mut Sheets) {
+    /// Unites the corners of the cells on both sides of an exterior facet, at each owned vertex of it.
+    pub(super) fn unite_across(&self, here: u32, there: u32, sheets: &mut Sheets) {
         let cells = self.cells;
         let (cell, next) = (cells[here as usize / 4], cells[there as usize / 4]);
         for (k, &v) in cell.iter().enumerate() {
@@ -70,32 +70,32 @@ impl Local<'_> {
         }
     }
 
-    /// An owned corner of an exterior cell on the side it has of a facet.
-    pub(super) fn corner(&self, side: u32) -> u32 {
+    /// The corner of a cell at an owned vertex of one of its facets, 4·cell + corner opposite.
+    pub(super) fn owned_corner(&self, side: u32) -> u32 {
         let cell = self.cells[side as usize / 4];
         let owned = (1..4).map(|step| (side + step) % 4).find(|&k| self.owned(cell[k as usize]));
         side / 4 * 4 + owned.expect("an owned point on each facet that is asked about")
     }
 
-    /// One side of a boundary facet is on one sheet; other blocks may know it too.
-    pub(super) fn join_side(&self, side: u32, sheets: &mut Sheets, owned: &mut Owned) {
+    /// Unites the corners on one side of a boundary facet, and notes the side where other blocks know it, too.
+    pub(super) fn unite_side(&self, side: u32, sheets: &mut Sheets, owned: &mut Owned) {
         let cell = self.cells[side as usize / 4];
-        let mut places = [1, 2, 3].map(|step| (side as usize + step) % 4);
-        let own = places.iter().filter(|&&k| self.owned(cell[k])).count();
-        // Seen across from two owned points, and not known well here.
+        let mut corners = [1, 2, 3].map(|step| (side as usize + step) % 4);
+        let own = corners.iter().filter(|&&k| self.owned(cell[k])).count();
+        // The cell has no owned vertex but the one opposite this facet, so the facet is other blocks' alone.
         if own == 0 {
             return;
         }
-        let first = self.corner(side);
-        for &k in places.iter().filter(|&&k| self.owned(cell[k])) {
+        let first = self.owned_corner(side);
+        for &k in corners.iter().filter(|&&k| self.owned(cell[k])) {
             sheets.unite(first, side / 4 * 4 + k as u32);
         }
         if own == 3 {
             return;
         }
-        places.sort_unstable_by_key(|&k| self.input(cell[k]));
-        let [a, b, c] = places;
-        let simplex = places.map(|k| self.input(cell[k]));
+        corners.sort_unstable_by_key(|&k| self.input(cell[k]));
+        let [a, b, c] = corners;
+        let simplex = corners.map(|k| self.input(cell[k]));
         let windings = self.block.windings(cell[a]);
         let side = u32::from(even(a, b, c));
         owned.shared.push(Side { simplex, side, sheet: first, windings });

@@ -56,7 +56,7 @@ fn halos_are_the_points_within_reach() {
                                     at[1] + 8.0 * f64::from(y),
                                     at[2] + 2.0 * f64::from(z),
                                 ];
-                                let far = apart(at, &places) > reach.from(heaviest, weight);
+                                let far = apart(at, &places) > reach.distance(heaviest, weight);
                                 let own = own.contains(&site) && [x, y, z] == [0; 3];
                                 if !far && 0.3 + weight >= 0.0 && !own {
                                     halo.push((at.map(f64::to_bits), sites.input()[site as usize]));
@@ -94,4 +94,26 @@ fn a_neighbourhood_holds_what_balls_reach() {
     let near = Neighbourhood::of(own.into_iter(), 3.0);
     assert!(near.holds([5.0, 0.0, 0.0], -2.0) && !near.holds([5.1, 0.0, 0.0], -2.0));
     assert!(near.holds([1.0, -3.0, 0.0], -2.0) && !near.holds([1.0, 0.0, 0.0], -4.0));
+}
+
+/// Half of a diagonal of 13 is 6.5, whose square is 42.25.
+#[test]
+fn large_balls_of_a_torus_ask_for_all_of_it() {
+    let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let torus = Torus::new([3.0, 4.0, 12.0]).unwrap();
+    let periodic = Sites::on_torus(&positions, &[0.25; 4], torus).unwrap();
+    assert_eq!(Reach::at(&periodic, 41.75, 0.25), Reach::Balls(41.75));
+    assert_eq!(Reach::at(&periodic, 42.25, 0.25), Reach::whole(&periodic));
+    assert!(matches!(Reach::whole(&periodic), Reach::Distance(most) if (most - 13.0).abs() < 1e-9));
+    let sites = Sites::new(&positions, &[0.25; 4]).unwrap();
+    assert_eq!(Reach::at(&sites, 42.25, 0.25), Reach::Balls(42.25));
+    assert_eq!(Reach::whole(&sites), Reach::Distance(f64::INFINITY));
+}
+
+#[test]
+fn balls_reach_as_far_as_both_their_radii() {
+    assert_eq!(Reach::Balls(5.0).distance(4.0, 11.0), 7.0);
+    assert_eq!(Reach::Balls(5.0).distance(-6.0, 11.0), 4.0);
+    assert!(Reach::Balls(5.0).distance(4.0, -6.0).is_nan());
+    assert_eq!(Reach::Distance(2.0).distance(4.0, -6.0), 2.0);
 }

@@ -2,9 +2,9 @@
 
 use walpha_regular::Lattice;
 
-use super::super::{Question, run as run_blocks};
 use super::*;
 use crate::ShapeError;
+use crate::blocks::{Question, run as run_blocks};
 
 /// Each cube of a grid has six cells: with their faces more than is reckoned with for each point.
 #[test]
@@ -47,7 +47,7 @@ fn threads_have_a_block_each_unless_it_is_nearly_the_whole() {
     ] {
         let plan = Plan::fast(&sites, reach, threads);
         assert_eq!((plan.partition.len(), plan.at_once), (expected, expected), "{reach:?}");
-        assert_eq!(plan.shelves(), 1);
+        assert_eq!(plan.buckets(), 1);
     }
 }
 
@@ -59,7 +59,7 @@ fn the_fastest_plan_within_the_bound_is_found() {
     let (reach, threads, resident) = (Reach::Balls(0.75), 3, 1_000_000);
     // Bytes, time, blocks, blocks at once: the fastest first, of equals the one with fewer blocks.
     let mut plans = Vec::new();
-    for blocks in (0..12).map(|step| 3 << step).take_while(|&blocks| blocks <= MOST) {
+    for blocks in (0..12).map(|step| 3 << step).take_while(|&blocks| blocks <= MAX_BLOCKS) {
         let largest = Partition::new(&sites, blocks).largest(&sites, reach);
         for at_once in 1..=threads {
             let work = AT_WORK * (at_once * largest) as u64;
@@ -76,7 +76,7 @@ fn the_fastest_plan_within_the_bound_is_found() {
         match (plans.iter().find(|plan| plan.0 <= asked), plan) {
             (Some(&(.., blocks, at_once)), Ok(plan)) => {
                 assert_eq!((plan.partition.len(), plan.at_once), (blocks, at_once));
-                assert_eq!(plan.shelves(), SHELVES);
+                assert_eq!(plan.buckets(), BUCKETS);
                 made += 1;
             }
             (None, Err(error)) => {
@@ -102,7 +102,7 @@ fn a_block_at_work_has_room_for_its_cells() {
 fn more_rows_than_planned_are_noticed() {
     let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let sites = Sites::new(&positions, &[0.0; 4]).unwrap();
-    let bound = Bound { asked: 1000 + 4 * 100 + 4 * PLACES, resident: 1000 };
+    let bound = Bound { asked: 1000 + 4 * 100 + 4 * LOCATIONS, resident: 1000 };
     let plan = Plan { bound: Some(bound), ..Plan::whole(&sites) };
     assert_eq!(plan.keeps(200, 2, 4), Ok(()));
     let error = plan.keeps(202, 2, 4).unwrap_err();

@@ -1,9 +1,7 @@
-//! Every simplex of a filtration and when it comes, in order.
+//! All simplices of a filtration in the order in which they enter.
 
-mod numbers;
 mod pairs;
 mod rank;
-mod sort;
 
 use std::sync::OnceLock;
 
@@ -11,22 +9,20 @@ use rayon::prelude::*;
 use walpha_base::Monitor;
 
 use super::filtration::Radius;
-use super::levels::Own;
+use super::levels::OwnLevels;
 use super::{Filtration, Levels};
-use crate::{Alpha, Betti, ShapeError};
-pub(super) use numbers::Numbers;
+use crate::{Alpha, Betti, Complex, ShapeError};
 pub use pairs::Pairs;
 use rank::{NONE, Ranks};
-use sort::by_rank;
 use walpha_base::memory;
 use walpha_regular::TriangulationError;
 
-/// Every simplex of a regular triangulation, and the α from which on it is in the shape, on its
-/// boundary, inside.
+/// All simplices of a regular triangulation with their values of α: where each enters the shape, becomes regular, and
+/// becomes interior.
 ///
-/// A *value* is a squared radius, given as the nearest double of the exact number (of two, the one
-/// whose last digit is even). The order is by the exact number, then by dimension, then by vertices;
-/// so faces come before what they are faces of, and simplices whose values differ by less than
+/// A *value* is a squared radius, given as the double nearest to the exact number (of two equally near ones, the
+/// even one). The order is by the exact number, then by dimension, then by vertices;
+/// so faces precede their cofaces, and simplices whose values differ by less than
 /// doubles can resolve are in the right order all the same.
 ///
 /// A double nearest to a value may be below it: the shape at this very α, [`Filtration::shape`], may
@@ -45,17 +41,17 @@ pub struct Ordered<'a> {
     pairs: OnceLock<Pairs>,
 }
 
-/// A simplex and when it comes.
+/// A simplex and when it enters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry<'a> {
     /// Input indices, ascending.
     pub vertices: &'a [u32],
     /// The α, a squared length, from which on it is in the shape, rounded to the nearest double.
     pub value: f64,
-    /// The place of that number among all values, from 0: equal for equal numbers only.
+    /// The rank of the exact value among all values, from 0; equal for equal numbers only.
     pub rank: u32,
     /// Whether no point lies inside its smallest orthogonal sphere, so that the value is the squared
-    /// radius of this; else it comes with a simplex that it is a face of, and is *attached*.
+    /// radius of this; else it enters with a coface, and is *attached*.
     pub gabriel: bool,
     /// From which on it is a face of another simplex of the shape; singular before. Of cells, ∞.
     pub regular: f64,
@@ -68,7 +64,7 @@ impl Filtration {
     /// are, or nearly are, equal.
     ///
     /// # Errors
-    /// No memory; more simplices than numbers of 32 bits.
+    /// Out of memory; more simplices than 32-bit numbers.
     pub fn simplices(&self) -> Result<Ordered<'_>, ShapeError> {
         self.simplices_monitored(&Monitor::silent())
     }
@@ -115,7 +111,7 @@ impl Filtration {
         };
         let [vertices, edges, facets, cells] = numbers.first;
         let cells = ranks[cells as usize..].to_vec();
-        let own = Own { facets: of(facets), edges: of(edges), vertices: of(vertices) };
+        let own = OwnLevels { facets: of(facets), edges: of(edges), vertices: of(vertices) };
         let (facets, edges, vertices) = self.spans(values.len() as u32, &cells, own);
         let alpha = |&value: &f64| Alpha::from_squared(value).expect("radii are numbers");
         let alphas = values.iter().map(alpha).collect();
@@ -139,7 +135,7 @@ fn sorted_cells(rows: &[[u32; 4]]) -> (Vec<[u32; 4]>, Vec<u32>) {
 }
 
 impl Ordered<'_> {
-    /// What is needed at once.
+    /// Bytes that are needed at once.
     fn bytes(numbers: Numbers) -> usize {
         let span = 3 * size_of::<u32>();
         Ranks::bytes(numbers.all())
@@ -152,28 +148,28 @@ impl Ordered<'_> {
         self.levels.filtration
     }
 
-    /// How many simplices there are.
+    /// The number of simplices.
     pub fn len(&self) -> usize {
         self.numbers.all()
     }
 
-    /// Whether there is none.
+    /// Whether there are no simplices.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// How many there are of a dimension.
+    /// The number of simplices of a dimension.
     ///
     /// # Panics
-    /// When it is above 3.
+    /// If it is above 3.
     pub fn count(&self, dimension: usize) -> usize {
         self.numbers.count(dimension)
     }
 
-    /// How many of a dimension are Gabriel.
+    /// The number of Gabriel simplices of a dimension.
     ///
     /// # Panics
-    /// When it is above 3.
+    /// If it is above 3.
     pub fn gabriel(&self, dimension: usize) -> usize {
         let Filtration { vertices, edges, facets, .. } = self.filtration();
         let own = |radii: &[Radius]| radii.iter().filter(|radius| radius.known().is_some()).count();
@@ -205,12 +201,12 @@ impl Ordered<'_> {
         &self.cells
     }
 
-    /// The values that are different numbers, ascending, by rank: two neighbours may be one double.
+    /// The distinct exact values, ascending, by rank, as nearest doubles: consecutive ones may be equal doubles.
     pub fn values(&self) -> &[Alpha] {
         self.levels.alphas()
     }
 
-    /// The numbers of all simplices in the order in which they come.
+    /// The numbers of all simplices in the order in which they enter.
     pub fn order(&self) -> &[u32] {
         &self.order
     }
@@ -218,7 +214,7 @@ impl Ordered<'_> {
     /// A simplex by its number.
     ///
     /// # Panics
-    /// When there is no such number.
+    /// If there is no such number.
     pub fn simplex(&self, number: u32) -> Entry<'_> {
         let filtration = self.filtration();
         let value = |rank: u32| {
@@ -267,6 +263,119 @@ impl Ordered<'_> {
             (1, row) => self.levels.edges[row].first,
             (2, row) => self.levels.facets[row].first,
             (_, row) => self.levels.cells[self.cell_rows[row] as usize],
+        }
+    }
+}
+
+/// How simplices of all dimensions are numbered: vertices first, then edges, facets, cells.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Numbers {
+    /// The first number of each dimension.
+    pub first: [u32; 4],
+    all: u32,
+}
+
+impl Numbers {
+    /// The numbers of the simplices of a complex; `None` if there are more than 32-bit numbers below `u32::MAX`.
+    pub(crate) fn of(complex: &Complex) -> Option<Self> {
+        let counts = [
+            complex.vertices.len(),
+            complex.edges.len(),
+            complex.facets.len(),
+            complex.cells.len(),
+        ];
+        let mut first = [0; 4];
+        let mut all: u32 = 0;
+        for (first, count) in first.iter_mut().zip(counts) {
+            *first = all;
+            all = u32::try_from(count).ok().and_then(|count| all.checked_add(count))?;
+        }
+        (all < u32::MAX).then_some(Self { first, all })
+    }
+
+    /// The number of simplices.
+    pub(crate) fn all(self) -> usize {
+        self.all as usize
+    }
+
+    /// The number of simplices of a dimension.
+    pub(crate) fn count(self, dimension: usize) -> usize {
+        let end = self.first.get(dimension + 1).copied().unwrap_or(self.all);
+        (end - self.first[dimension]) as usize
+    }
+
+    /// The dimension of a simplex, and its row among those.
+    #[inline]
+    pub(crate) fn row(self, simplex: u32) -> (usize, usize) {
+        let [_, edges, facets, cells] = self.first;
+        let dimension = usize::from(simplex >= edges)
+            + usize::from(simplex >= facets)
+            + usize::from(simplex >= cells);
+        (dimension, (simplex - self.first[dimension]) as usize)
+    }
+}
+
+/// Number of ranges of ranks, which are sorted separately: few enough to be written to at once.
+const PARTS: usize = 256;
+/// Numbers that one task distributes to the ranges.
+const CHUNK: usize = 1 << 20;
+
+/// The numbers 0..`all`, stably sorted by rank; all ranks are below `ranks`.
+///
+/// Two counting sorts: into ranges of consecutive ranks, and within each range, where counters fit a cache. O(n).
+pub(super) fn by_rank(all: usize, ranks: usize, rank: impl Fn(u32) -> u32 + Sync) -> Vec<u32> {
+    let shift = ranks.div_ceil(PARTS).next_power_of_two().ilog2();
+    let distribute = |from: usize| {
+        let to = all.min(from + CHUNK);
+        let expected = (to - from) / PARTS;
+        let mut parts: Vec<_> = (0..PARTS).map(|_| Vec::with_capacity(expected)).collect();
+        for simplex in from as u32..to as u32 {
+            let rank = rank(simplex);
+            parts[(rank >> shift) as usize].push([rank, simplex]);
+        }
+        parts
+    };
+    let chunks: Vec<usize> = (0..all).step_by(CHUNK).collect();
+    let chunks: Vec<Vec<Vec<[u32; 2]>>> = chunks.into_par_iter().map(distribute).collect();
+    let mut order = vec![0; all];
+    let mut rest = &mut order[..];
+    let mut parts = Vec::with_capacity(PARTS);
+    for part in 0..PARTS {
+        let size = chunks.iter().map(|chunk| chunk[part].len()).sum();
+        let (here, after) = std::mem::take(&mut rest).split_at_mut(size);
+        parts.push(here);
+        rest = after;
+    }
+    parts.into_par_iter().enumerate().for_each(|(part, order)| {
+        let members = || chunks.iter().flat_map(|chunk| &chunk[part]);
+        let offset = |rank: u32| rank as usize - (part << shift);
+        let mut next = vec![0_usize; (1 << shift) + 1];
+        members().for_each(|&[rank, _]| next[offset(rank) + 1] += 1);
+        for rank in 1..next.len() {
+            next[rank] += next[rank - 1];
+        }
+        for &[rank, simplex] in members() {
+            let next = &mut next[offset(rank)];
+            order[*next] = simplex;
+            *next += 1;
+        }
+    });
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_a_stable_sort_has_it() {
+        for (all, ranks) in
+            [(0, 0), (1, 1), (1000, 3), (1000, 256), (5000, 1000), (CHUNK + 9, 70_000)]
+        {
+            let rank = |simplex: u32| (simplex.wrapping_mul(2_654_435_761) >> 7) % ranks as u32;
+            let mut wanted: Vec<u32> = (0..all as u32).collect();
+            wanted.sort_by_key(|&simplex| rank(simplex));
+            assert!(by_rank(all, ranks, rank) == wanted, "{all} numbers of {ranks} ranks");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Persistence pairs from unions of sets (Edelsbrunner, Letscher and Zomorodian 2002,
+//! Persistence pairs of dimensions 0 and 2 by union-find (Edelsbrunner, Letscher and Zomorodian 2002,
 //! doi:10.1007/s00454-002-2885-2; dimension 2 by duality, after Delfinado and Edelsbrunner 1995,
 //! doi:10.1016/0167-8396(94)00016-Y).
 
@@ -9,23 +9,23 @@ use crate::ladder::Filtration;
 use crate::ladder::incidence::Incidence;
 use crate::{Directions, Torus, United, WindingSets, between};
 
-/// What comes and goes, by numbers of simplices: those that make a component, or shut in a void, and
-/// those that unite it with an older one, or fill it.
+/// Persistence pairs by the numbers of simplices: the simplex that creates a component or void, and the one that merges
+/// it with an older component, or fills it.
 ///
-/// All pairs are there, also those that last no time at all, as both simplices have one value.
+/// Pairs of persistence 0, whose simplices have the same value, are included.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Pairs {
     /// Components: a vertex, and the edge that unites its component with one that came before; in
     /// the order of edges. All vertices but one have such an edge.
     pub components: Vec<[u32; 2]>,
-    /// The vertices whose components last for ever: one.
+    /// The vertex whose component is essential: one.
     pub lasting: Vec<u32>,
     /// Voids: a facet, and the cell that fills what it has shut in; in the order of facets. All
     /// cells have such a facet, on a torus all but one.
     pub voids: Vec<[u32; 2]>,
-    /// Of a torus: the facets with which its own surfaces come that nothing fills: three.
+    /// On a torus: the facets that create its three essential classes of dimension 2.
     pub lasting_voids: Vec<u32>,
-    /// Of a torus: the cell that makes it whole, and that is in none of the pairs above.
+    /// On a torus: the last cell, which creates its class of dimension 3, and is in none of the pairs above.
     pub last: Option<u32>,
 }
 
@@ -45,16 +45,16 @@ impl Ordered<'_> {
         self.rank(birth) != self.rank(death)
     }
 
-    /// Of two components that an edge unites, the younger ends.
+    /// Pairs of dimension 0, by the elder rule: of two components that an edge merges, the younger ends.
     fn component_pairs(&self) -> (Vec<[u32; 2]>, Vec<u32>) {
         let rows = &self.filtration().incidence.vertex_rows;
         let [of_vertices, of_edges, of_facets, _] = self.numbers.first;
-        let mut sets = Eldest::new(self.vertices().len());
+        let mut sets = ElderSets::new(self.vertices().len());
         let mut pairs = Vec::with_capacity(self.vertices().len());
         let mut lasting = Vec::new();
         for (age, &simplex) in (0..).zip(&self.order) {
             if (of_vertices..of_edges).contains(&simplex) {
-                sets.come(simplex - of_vertices, age);
+                sets.add(simplex - of_vertices, age);
             } else if (of_edges..of_facets).contains(&simplex) {
                 let ends = self.edges()[(simplex - of_edges) as usize];
                 let [a, b] = ends.map(|v| rows[v as usize]);
@@ -71,25 +71,28 @@ impl Ordered<'_> {
         (pairs, lasting)
     }
 
-    /// The same of the complement, backwards: there a cell makes a component, and a facet unites two; or, on a
-    /// torus, it opens a way round in a new direction.
+    /// Pairs of dimension 2, by the same rule for the complement, backwards: there a cell creates a component, and a
+    /// facet merges two; or, on a torus, it makes the complement wind round in a new direction.
     fn void_pairs(&self) -> Pairs {
         let incidence = &self.filtration().incidence;
         let [_, _, of_facets, of_cells] = self.numbers.first;
         let cells = self.cells.len();
         let mut sorted = vec![0; cells];
         self.cell_rows.iter().zip(0..).for_each(|(&row, at): (_, u32)| sorted[row as usize] = at);
-        let mut sets = Eldest::new(cells + 1);
-        let mut ways = self.filtration().torus().map(|torus| Ways::new(torus, self.filtration()));
+        let mut sets = ElderSets::new(cells + 1);
+        let mut ways = self
+            .filtration()
+            .torus()
+            .map(|torus| ComplementWindings::new(torus, self.filtration()));
         let mut found = Pairs { voids: Vec::with_capacity(cells), ..Pairs::default() };
         match ways {
-            // The outside was there before all.
-            None => sets.come(cells as u32, 0),
+            // The outside is the oldest component.
+            None => sets.add(cells as u32, 0),
             Some(_) => found.last = self.order.iter().rev().copied().find(|&s| s >= of_cells),
         }
         for (age, &simplex) in (1..).zip(self.order.iter().rev()) {
             if simplex >= of_cells {
-                sets.come(self.cell_rows[(simplex - of_cells) as usize], age);
+                sets.add(self.cell_rows[(simplex - of_cells) as usize], age);
             } else if simplex >= of_facets {
                 let row = (simplex - of_facets) as usize;
                 let sides = incidence.facet_cells[row];
@@ -109,21 +112,21 @@ impl Ordered<'_> {
     }
 }
 
-/// In which directions the complement goes round a torus.
-struct Ways<'a> {
+/// The directions in which the complement winds round a torus.
+struct ComplementWindings<'a> {
     torus: Torus,
     filtration: &'a Filtration,
     sets: WindingSets,
     rounds: Directions,
 }
 
-impl<'a> Ways<'a> {
+impl<'a> ComplementWindings<'a> {
     fn new(torus: Torus, filtration: &'a Filtration) -> Self {
         let sets = WindingSets::new(filtration.whole.complex().cells.len());
         Self { torus, filtration, sets, rounds: Directions::default() }
     }
 
-    /// Opens a facet; says whether there is a way round now in a direction that is new.
+    /// Joins the cells of a facet; returns whether the complement now winds round in a new direction.
     fn open(&mut self, facet: usize, sides: [u32; 2]) -> bool {
         let Filtration { whole, incidence, .. } = self.filtration;
         let cells = sides.map(|side| whole.complex().cells.rows()[side as usize]);
@@ -136,16 +139,16 @@ impl<'a> Ways<'a> {
     }
 }
 
-/// Disjoint sets that know which of their members came first.
-struct Eldest {
+/// A union-find that keeps the eldest member of each set.
+struct ElderSets {
     sets: UnionFind,
-    /// When each came.
+    /// When each was added.
     ages: Vec<u32>,
-    /// Of each set, at its root.
+    /// By root, the eldest member of its set.
     eldest: Vec<u32>,
 }
 
-impl Eldest {
+impl ElderSets {
     fn new(members: usize) -> Self {
         Self {
             sets: UnionFind::new(members),
@@ -154,7 +157,7 @@ impl Eldest {
         }
     }
 
-    fn come(&mut self, member: u32, age: u32) {
+    fn add(&mut self, member: u32, age: u32) {
         self.ages[member as usize] = age;
     }
 
@@ -162,7 +165,7 @@ impl Eldest {
         self.eldest[self.sets.find(member) as usize]
     }
 
-    /// Makes one set of two, and gives the younger of their eldest members; none if they were one.
+    /// Unites two sets, and returns the younger of their eldest members; `None` if they are one set already.
     fn unite(&mut self, a: u32, b: u32) -> Option<u32> {
         let [a, b] = [self.eldest_of(a), self.eldest_of(b)];
         if !self.sets.unite(a, b) {

@@ -1,7 +1,7 @@
-//! The values of a filtration, distinguished exactly and put in order.
+//! The values of a filtration, distinguished exactly and sorted.
 //!
-//! Rounding keeps order: where the nearest doubles of two squared radii differ, so do these. So only
-//! simplices with one nearest double are compared as exact numbers; on a lattice nearly all of them
+//! Rounding is monotonic: where the nearest doubles of two squared radii differ, they are in the order of the exact
+//! numbers. So only simplices with the same nearest double are compared as exact numbers; on a lattice nearly all of them
 //! are equal as ratios of small integers.
 
 use std::collections::BTreeMap;
@@ -14,10 +14,10 @@ use super::Numbers;
 use crate::ladder::Filtration;
 use crate::ladder::values::{Key, is_small_lattice, key};
 
-/// No sphere of its own.
+/// Stands for the rank of a simplex whose sphere is not empty.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Squared radii of empty smallest orthogonal spheres by their place among all, from 0.
+/// The ranks of the squared radii of empty smallest orthogonal spheres, from 0.
 pub(super) struct Ranks {
     /// The nearest double of each, ascending; several may have the same.
     pub values: Vec<f64>,
@@ -25,11 +25,11 @@ pub(super) struct Ranks {
     pub of: Vec<u32>,
 }
 
-/// A squared radius, in the order of doubles, and whose it is.
+/// A squared radius as an integer in the order of doubles, and the number of its simplex.
 type Radius = (u64, u32);
 
 impl Ranks {
-    /// Bytes that are needed at once, for so many simplices.
+    /// Bytes that are needed at once.
     pub(super) fn bytes(simplices: usize) -> usize {
         simplices * (size_of::<Radius>() + size_of::<u32>() + size_of::<f64>())
     }
@@ -41,12 +41,12 @@ impl Ranks {
         collect(filtration, numbers, &mut radii);
         radii.par_sort_unstable();
         let lattice = is_small_lattice(filtration.points(), filtration.torus());
-        let exact = Exactly { filtration, numbers, spheres, lattice };
+        let exact = ExactOrder { filtration, numbers, spheres, lattice };
         let several: Vec<_> =
             radii.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > 1).collect();
-        // Where a simplex's value differs from the one before it, though their doubles are equal.
+        // Simplices whose values differ from those before them, though the nearest doubles are equal.
         let mut steps: Vec<u32> =
-            several.into_par_iter().flat_map_iter(|run| exact.part(run)).collect();
+            several.into_par_iter().flat_map_iter(|run| exact.split_ties(run)).collect();
         steps.par_sort_unstable();
         let mut of = memory::room(numbers.all(), || "ranks".into())?;
         of.resize(numbers.all(), NONE);
@@ -74,7 +74,7 @@ fn collect(filtration: &Filtration, numbers: Numbers, radii: &mut Vec<Radius>) {
     radii.extend(cells.map(|(simplex, &radius)| (to_bits(radius), simplex)));
 }
 
-/// Integers in the order of doubles that are no −0.
+/// An integer in the order of doubles; not for −0.
 fn to_bits(value: f64) -> u64 {
     let bits = value.to_bits();
     if value < 0.0 { !bits } else { bits | 1 << 63 }
@@ -84,8 +84,8 @@ fn from_bits(key: u64) -> f64 {
     f64::from_bits(if key >> 63 == 1 { key & !(1 << 63) } else { !key })
 }
 
-/// Distinguishes radii that have one nearest double.
-struct Exactly<'a> {
+/// Distinguishes radii with the same nearest double.
+struct ExactOrder<'a> {
     filtration: &'a Filtration,
     numbers: Numbers,
     spheres: Predicates<'a>,
@@ -93,9 +93,9 @@ struct Exactly<'a> {
     lattice: bool,
 }
 
-impl Exactly<'_> {
-    /// Puts a run in order, and gives the first simplex of each value but the smallest.
-    fn part(&self, run: &mut [Radius]) -> Vec<u32> {
+impl ExactOrder<'_> {
+    /// Sorts a run of equal doubles by exact value, and returns the first simplex of each value but the smallest.
+    fn split_ties(&self, run: &mut [Radius]) -> Vec<u32> {
         if let Some(first) = self.small(run[0].1)
             && run.par_iter().all(|&(_, s)| self.small(s).is_some_and(|small| small.equals(first)))
         {

@@ -1,16 +1,17 @@
-//! An order of points in which neighbours in the order are neighbours in space.
+//! The order in which points are inserted: in rounds (a biased randomized insertion order: Amenta, Choi and Rote 2003,
+//! doi:10.1145/777792.777824), and along a Hilbert curve within a round, so that consecutive points are close in space.
 
 use rayon::prelude::*;
 
-/// Bits along each axis: 2¹⁶ steps in the largest extent.
+/// Bits of a grid coordinate: the longest side of the bounding box has 2¹⁶ grid steps.
 const BITS: u32 = 16;
 
-/// A place on the curve, and the number of a point.
+/// The index on the curve of a point's grid cell, and the number of the point.
 pub(super) type Keyed = (u64, u32);
 
 /// The points along a Hilbert curve through the cube around them; a point of the plane lies at z = 0.
-/// Points in one cube of the grid, equal ones among them, come in ascending order. O(n log n).
-pub(super) fn keyed<const D: usize>(positions: &[[f64; D]]) -> Vec<Keyed> {
+/// Points in one cell of the grid, such as equal points, are in ascending order. O(n log n).
+pub(super) fn along_curve<const D: usize>(positions: &[[f64; D]]) -> Vec<Keyed> {
     let ends = |k: usize| {
         let at = positions.par_iter().map(|p| p[k]);
         at.map(|x| (x, x)).reduce(
@@ -27,16 +28,16 @@ pub(super) fn keyed<const D: usize>(positions: &[[f64; D]]) -> Vec<Keyed> {
             for k in 0..D {
                 step[k] = (((p[k] - ends[k].0) * scale) as u32).min((1 << BITS) - 1);
             }
-            (place(step), i as u32)
+            (hilbert_index(step), i as u32)
         })
         .collect();
     keyed.par_sort_unstable();
     keyed
 }
 
-/// How far along the curve a place of the grid is: Skilling's transform ("Programming the Hilbert
+/// The index of a grid cell on the curve: Skilling's transform ("Programming the Hilbert
 /// curve", AIP Conference Proceedings 707, 2004, doi:10.1063/1.1751381), then bits interleaved.
-fn place(mut x: [u32; 3]) -> u64 {
+fn hilbert_index(mut x: [u32; 3]) -> u64 {
     let mut bit = 1 << (BITS - 1);
     while bit > 1 {
         let below = bit - 1;
@@ -65,7 +66,7 @@ fn place(mut x: [u32; 3]) -> u64 {
     spread[0] << 2 | spread[1] << 1 | spread[2]
 }
 
-/// Bits 0, 1, 2, … of a number below 2²¹ at places 0, 3, 6, …
+/// Moves bits 0, 1, 2, … of a number below 2²¹ to positions 0, 3, 6, …
 fn spread(mut x: u64) -> u64 {
     for (shift, mask) in [
         (32, 0x001f_0000_0000_ffff),
@@ -79,6 +80,29 @@ fn spread(mut x: u64) -> u64 {
     x
 }
 
+/// The numbers 0..n in rounds, each about three times as large as all before it together; ascending within a
+/// round.
+pub(super) fn rounds(n: u32) -> impl Iterator<Item = u32> {
+    let last = n.checked_ilog2().unwrap_or(0).saturating_sub(FIRST_ROUND_BITS) / GROWTH_BITS;
+    (0..=last).rev().flat_map(move |round| (0..n).filter(move |&v| round_of(v).min(last) == round))
+}
+
+/// The first round has about 2¹⁰ to 2¹² points: in smaller ones the walks between distant points cost more than
+/// the randomization saves.
+const FIRST_ROUND_BITS: u32 = 10;
+/// Each round multiplies the number of points inserted by 2 to this power.
+const GROWTH_BITS: u32 = 2;
+/// An odd multiplier that mixes the bits of a 32-bit number in two rounds of shift and multiply.
+const MIX: u32 = 0x45d9_f3b5;
+
+/// The round of a point, counted from the last, 0: the trailing zeros of its hashed number, divided by
+/// [`GROWTH_BITS`]. Round r + 1 is 2^`GROWTH_BITS` times less probable than round r.
+fn round_of(v: u32) -> u32 {
+    let v = (v ^ v >> 16).wrapping_mul(MIX);
+    let v = (v ^ v >> 16).wrapping_mul(MIX);
+    (v ^ v >> 16).trailing_zeros() / GROWTH_BITS
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -88,7 +112,7 @@ mod tests {
     fn neighbours_in_order_are_neighbours_in_space() {
         let corner = |i: u32| [i % 8, i / 8 % 8, i / 64];
         let positions: Vec<_> = (0..512).map(|i| corner(i).map(f64::from)).collect();
-        for pair in keyed(&positions).windows(2) {
+        for pair in along_curve(&positions).windows(2) {
             let (a, b) = (corner(pair[0].1), corner(pair[1].1));
             let apart: u32 = (0..3).map(|k| a[k].abs_diff(b[k])).sum();
             assert_eq!(apart, 1, "{a:?} {b:?}");
@@ -98,7 +122,7 @@ mod tests {
     #[test]
     fn one_place_keeps_its_order() {
         let points = |keyed: Vec<Keyed>| keyed.into_iter().map(|(_, i)| i).collect::<Vec<_>>();
-        assert_eq!(points(keyed(&[[1.0, 2.0, 3.0]; 4])), [0, 1, 2, 3]);
-        assert!(keyed::<3>(&[]).is_empty());
+        assert_eq!(points(along_curve(&[[1.0, 2.0, 3.0]; 4])), [0, 1, 2, 3]);
+        assert!(along_curve::<3>(&[]).is_empty());
     }
 }

@@ -1,55 +1,58 @@
-//! A block alone: what it owns of a shape whose other blocks are elsewhere.
+//! A single block: the simplices that it owns of a shape whose other blocks are computed elsewhere.
 
 use walpha_base::Monitor;
 use walpha_base::UnionFind;
 use walpha_regular::Lattice;
 use walpha_regular::Sites;
 
-use super::classify::{Dimension, Owned, Shelves, classify};
+use super::classify::{Buckets, Dimension, Owned, classify};
 use super::partition::Neighbourhood;
 use super::spanning::spanning;
 use super::{Block, Question};
 use crate::{Class, Complex, ShapeError, Simplices};
 
-/// Points around a block, in the order of their indices in the whole set, with weights.
+/// The points of a block and those around it, in the order of their indices in the whole set.
 #[derive(Clone, Copy)]
 pub struct Own<'a> {
-    /// Where they are.
+    /// Coordinates (x, y, z).
     pub positions: &'a [[f64; 3]],
     /// Power weights.
     pub weights: &'a [f64],
-    /// Which of them are the block's own; the others are all that may be in its halo, and perhaps more.
+    /// Which points are the block's own. The others are a superset of its halo.
     pub own: &'a [bool],
 }
 
-/// What a block owns, in canonical order, and what others need to know of it. Points are numbered by their
-/// place among those given; sheets and components from 0 within the block.
+/// The simplices that a block owns, in canonical order, and what is needed to merge it with other blocks. Points are
+/// numbered by their index among those given; sheets and components from 0 within the block.
 #[derive(Default)]
 pub struct BlockShape {
     /// The simplices that the block owns.
     pub complex: Complex,
-    /// The sheet of each regular facet and the two of each singular one, in the order of the facets.
+    /// One sheet for each regular facet and two for each singular one, in the order of the facets.
     pub facet_sheets: Vec<u32>,
     /// The sheet of each singular edge, in their order.
     pub edge_sheets: Vec<u32>,
-    /// How many sheets there are.
+    /// Number of sheets.
     pub sheets: u32,
-    /// Sides of facets, and singular edges, that touch points of other blocks, too.
+    /// Sides of facets, and singular edges, with vertices in this block and in others.
     pub shared: Vec<Side>,
-    /// For each point the smallest of its component, as far as it is known here.
+    /// For each point the smallest point of its component, as far as this block's edges connect it.
     pub components: Vec<u32>,
     /// The ends of the edges between points of this block and of others, ascending.
     pub border: Vec<u32>,
-    /// How many points were in the halo.
+    /// Number of points in the halo.
     pub halo: u64,
 }
 
 pub use super::classify::Side;
 
-/// Finds what a block owns of the α-complex. `alpha` is what power weights are judged by.
+/// The largest number of auxiliary points: for points at one position.
+const MAX_AUXILIARY: usize = 3;
+
+/// Computes the simplices that a block owns of the α-complex, at `alpha` for power weights.
 ///
 /// # Errors
-/// Numbers that are none, two points at one place, no memory.
+/// Numbers that are not finite or too large; two points at one position; out of memory.
 pub fn block_shape(points: Own<'_>, alpha: f64) -> Result<BlockShape, ShapeError> {
     let Own { positions, weights, own } = points;
     if !own.contains(&true) {
@@ -58,12 +61,12 @@ pub fn block_shape(points: Own<'_>, alpha: f64) -> Result<BlockShape, ShapeError
     let mut block = block(points, alpha)?;
     let halo = block.input.len() as u64 - u64::from(block.own);
     let largest = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // Any α below −max ω asks for the empty shape, and doubles hold one.
+    // Below −max ω the shape is empty: this is a finite α below that.
     let alpha = alpha.max(-2.0 * largest.abs() - 1.0);
     let made = spanning(&mut block, alpha, positions.len() as u32, &Monitor::silent().units(1))?;
     let lattice = Lattice::of(&block.positions, &block.weights);
     let question = Question { alpha, lattice, exterior: false };
-    let owned = classify(&block, made, &question, Shelves::new(&[], 1));
+    let owned = classify(&block, made, &question, Buckets::new(&[], 1));
     Ok(BlockShape { halo, ..ordered(owned, &block, positions.len()) })
 }
 
@@ -95,10 +98,10 @@ fn block(points: Own<'_>, alpha: f64) -> Result<Block, ShapeError> {
     })
 }
 
-/// Rows in the order of their smallest points; `points` are given.
+/// The rows in canonical order; `points` is the number of points given.
 fn ordered(owned: Owned, block: &Block, points: usize) -> BlockShape {
-    let Owned { mut shelves, sheets, shared, joined, mut border, .. } = owned;
-    let shelf = shelves.pop().expect("there is one");
+    let Owned { mut buckets, sheets, shared, components, mut border, .. } = owned;
+    let bucket = buckets.pop().expect("there is one");
     let mut order: Vec<u32> = (0..block.own).collect();
     order.sort_unstable_by_key(|&v| block.input[v as usize]);
     let mut piece = BlockShape { sheets, shared, ..BlockShape::default() };
@@ -111,31 +114,31 @@ fn ordered(owned: Owned, block: &Block, points: usize) -> BlockShape {
     for v in order {
         let a = block.input[v as usize];
         let rows = |dimension: Dimension| {
-            let start = |v: usize| shelf.starts[v][dimension as usize] as usize;
+            let start = |v: usize| bucket.starts[v][dimension as usize] as usize;
             start(v as usize)..start(v as usize + 1)
         };
         for i in rows(Dimension::Cells) {
-            let [b, c, d] = shelf.cells.vertices[i];
-            cells.push([a, b, c, d], shelf.cells.classes[i]);
+            let [b, c, d] = bucket.cells.vertices[i];
+            cells.push([a, b, c, d], bucket.cells.classes[i]);
         }
         for i in rows(Dimension::Facets) {
-            let [b, c] = shelf.facets.vertices[i];
-            facets.push([a, b, c], shelf.facets.classes[i]);
+            let [b, c] = bucket.facets.vertices[i];
+            facets.push([a, b, c], bucket.facets.classes[i]);
         }
         for i in rows(Dimension::Edges) {
-            edges.push([a, shelf.edges.vertices[i][0]], shelf.edges.classes[i]);
+            edges.push([a, bucket.edges.vertices[i][0]], bucket.edges.classes[i]);
         }
-        piece.facet_sheets.extend(&shelf.facet_sheets[rows(Dimension::FacetSheets)]);
-        piece.edge_sheets.extend(&shelf.edge_sheets[rows(Dimension::EdgeSheets)]);
-        match shelf.vertices[v as usize] {
+        piece.facet_sheets.extend(&bucket.facet_sheets[rows(Dimension::FacetSheets)]);
+        piece.edge_sheets.extend(&bucket.edge_sheets[rows(Dimension::EdgeSheets)]);
+        match bucket.vertices[v as usize] {
             None | Some(Class::Exterior) => {}
             Some(class) => vertices.push([a], class),
         }
     }
     piece.complex = Complex { cells, facets, edges, vertices };
-    // The places beside that may have been added are in no component of others.
-    let mut sets = UnionFind::new(points + 3);
-    joined.into_iter().for_each(|[a, b]| _ = sets.unite(a, b));
+    // Auxiliary points are numbered after those given.
+    let mut sets = UnionFind::new(points + MAX_AUXILIARY);
+    components.into_iter().for_each(|[a, b]| _ = sets.unite(a, b));
     piece.components = (0..points as u32).map(|i| sets.find(i)).collect();
     border.sort_unstable();
     border.dedup();
