@@ -146,13 +146,13 @@ pub(super) fn key<const N: usize>(filtration: &Filtration, mut simplex: [u32; N]
     key
 }
 
-/// The largest number of bits of a coordinate in units of the lattice. Differences of coordinates of one sign have no
-/// more, so that the sum of three squares is below 2⁵²; of opposite signs, sums are exact up to 2⁵³.
-const SMALL_BITS: i32 = 25;
+/// The largest number of bits of a coordinate in units of the lattice. Differences have one more at most, so that the
+/// sum of three squares is below 3·2⁵⁰, which doubles hold exactly.
+const SMALL_BITS: i32 = 24;
 /// Squares of units stay above the smallest double.
 const LOWEST_UNIT: i32 = -500;
 
-/// Whether coordinates are multiples of a power of two, by integers below 2²⁵, so that squared distances are integers
+/// Whether coordinates are multiples of a power of two, by integers below 2²⁴, so that squared distances are integers
 /// below 2⁵³ in its square.
 pub(super) fn is_small_lattice(points: &WeightedPoints, torus: Option<Torus>) -> bool {
     let sides = torus.map(|torus| torus.sides());
@@ -161,4 +161,22 @@ pub(super) fn is_small_lattice(points: &WeightedPoints, torus: Option<Torus>) ->
     let lowest = coordinates().filter_map(lowest_bit).min().unwrap_or(0);
     let largest = coordinates().map(f64::abs).reduce(|| 0.0, f64::max);
     lowest > LOWEST_UNIT && largest < 2f64.powi(lowest.saturating_add(SMALL_BITS))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two squared lengths that differ by 1 beyond 2⁵³ would be one double, and their simplices taken for congruent.
+    #[test]
+    fn squared_distances_on_a_small_lattice_are_exact() {
+        let corners = |half: f64| WeightedPoints::unweighted(vec![[-half; 3], [half; 3]]);
+        let (inside, beyond) = (2f64.powi(24) - 1.0, 2f64.powi(24) + 1.0);
+        assert!(is_small_lattice(&corners(inside), None));
+        assert!(3.0 * (2.0 * inside).powi(2) < 2f64.powi(53));
+        assert!(!is_small_lattice(&corners(beyond), None));
+        let largest = 2f64.powi(25) - 1.0;
+        assert!(3.0 * (2.0 * largest).powi(2) > 2f64.powi(53));
+        assert!(!is_small_lattice(&corners(largest), None));
+    }
 }
