@@ -118,14 +118,6 @@ impl Job {
         Alpha::from_squared(self.alpha).unwrap_or(Alpha::ZERO)
     }
 
-    /// The parameter at which power weights are judged.
-    pub(super) fn power_alpha(&self) -> f64 {
-        match self.balls {
-            Balls::Power => self.alpha,
-            Balls::Radius => 0.0,
-        }
-    }
-
     /// How many samples along x, y and z balls of this radius reach.
     pub(super) fn reach(&self, radius: f64) -> [usize; 3] {
         let samples = |step: f64| (radius * step).ceil().max(0.0) as usize;

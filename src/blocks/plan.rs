@@ -15,7 +15,7 @@ use super::{Alone, BlocksError, Field, Job, Part, Team};
 use crate::Weighting;
 use crate::export::Target;
 use crate::points::{PointsError, Shares};
-use crate::shape::{Alpha, Balls};
+use crate::shape::Alpha;
 
 /// How a job is cut into blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -299,10 +299,7 @@ impl Plan {
     pub(super) fn margin(&self) -> Result<[usize; 3], BlocksError> {
         let (shares, differences) = (self.shares()?, &self.survey.differences);
         let weights = [differences.min, differences.max].map(|l| self.weight(shares, l));
-        let radius = |weight: f64| match self.job.balls {
-            Balls::Power => (self.job.alpha + weight).max(0.0).sqrt(),
-            Balls::Radius => (self.job.alpha + weight).abs(),
-        };
+        let radius = |weight: f64| self.job.balls.radius(self.job.squared(), weight);
         let largest = weights.map(radius).into_iter().fold(0.0, f64::max);
         // Rounded up by more than all roundings on the way.
         Ok(self.job.reach(2.0 * largest * (1.0 + 1e-9)).map(|samples| samples.saturating_add(1)))

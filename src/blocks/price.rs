@@ -3,7 +3,7 @@ use serde::Serialize;
 use crate::Weighting;
 use crate::haar::Decomposition;
 use crate::points::SelectionRule;
-use crate::shape::{AT_WORK, Balls, PlanError, ShapeError};
+use crate::shape::{AT_WORK, PlanError, ShapeError};
 use crate::volume::Source;
 
 use super::cut::{SILENT, TILE_SAMPLE};
@@ -126,10 +126,7 @@ impl Model {
         };
         // All weights but a common one are small as a rule.
         let usual = if let Weighting::Common(weight) = job.weighting { weight } else { 0.0 };
-        let radius = |weight: f64| match job.balls {
-            Balls::Power => (job.alpha + weight).max(0.0).sqrt(),
-            Balls::Radius => (job.alpha + weight).abs(),
-        };
+        let radius = |weight: f64| job.balls.radius(job.squared(), weight);
         let product = |sizes: [usize; 3]| sizes.iter().product::<usize>() as u64;
         let reach = |radius: f64| job.reach(radius).into_iter().max().unwrap_or(0) as f64;
         let sums = SUM * product(Field::bricks_of(job.dims.xyz()).count());

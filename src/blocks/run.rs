@@ -6,7 +6,7 @@ use super::file::{Arrays, BlockFile};
 use super::stamp::Stamp;
 use super::{BlockPlan, BlocksError, Plan};
 use crate::shape::{
-    Balls, BlockShape, ByClass, Class, ComponentSums, Own, ShapeError, SheetSums, Side, block_shape,
+    BlockShape, ByClass, Class, ComponentSums, Own, ShapeError, SheetSums, Side, block_shape,
 };
 use crate::volume::GrayRange;
 
@@ -100,13 +100,17 @@ pub fn run(plan: &Plan, block: usize) -> Result<(), BlocksError> {
         return Err(BlocksError::changed(&plan.job, what));
     }
     let job = &plan.job;
-    let squared = match job.balls {
-        Balls::Power => None,
-        Balls::Radius => Some(squared_radii(plan, &points)?),
+    // Named by its place in the volume.
+    let named = |error| match error {
+        ShapeError::Radius { index, radius } => {
+            ShapeError::Radius { index: points.voxels[index] as usize, radius }
+        }
+        other => other,
     };
+    let squared = job.balls.power_weights(&points.weights, job.squared()).map_err(named)?;
     let weights = squared.as_deref().unwrap_or(&points.weights);
     let own = Own { positions: &points.positions, weights, own: &points.own };
-    let shape = block_shape(own, job.power_alpha())?;
+    let shape = block_shape(own, job.balls.power_alpha(job.squared()).squared())?;
     write(plan, block, &points, shape)
 }
 
@@ -152,20 +156,6 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
         points.own.push(part.holds([i % nx, i / nx % ny, i / (nx * ny)]));
     }
     Ok(points)
-}
-
-/// Weights (α + ω)², for balls of radius α + ω.
-fn squared_radii(plan: &Plan, points: &Points) -> Result<Vec<f64>, ShapeError> {
-    let radius = |(&voxel, weight): (&u64, &f64)| {
-        let radius = plan.job.alpha + weight;
-        // NaN compares false: it is refused too.
-        if radius >= 0.0 && radius.is_finite() {
-            Ok(radius * radius)
-        } else {
-            Err(ShapeError::Radius { index: voxel as usize, radius })
-        }
-    };
-    points.voxels.iter().zip(&points.weights).map(radius).collect()
 }
 
 /// Numbers from 0 in the order in which keys are met first.

@@ -1,12 +1,8 @@
 use walpha_base::Coordinates;
 use walpha_complex::Placed;
 
-use super::make::squared_radii;
 use super::measure::together;
-use super::options::power_alpha;
-use super::{
-    Alpha, Balls, Betti, Complex, Measures, ShapeError, ShapeOptions, Sheets, WeightedPoints,
-};
+use super::{Alpha, Betti, Complex, Measures, ShapeError, ShapeOptions, Sheets, WeightedPoints};
 
 /// The weighted alpha shape of a set of points: a classified subcomplex of their regular
 /// triangulation, by input index.
@@ -48,10 +44,7 @@ impl AlphaShape {
     #[doc(hidden)]
     pub fn assembled(parts: Assembled) -> Result<Self, ShapeError> {
         let Assembled { points, coordinates, options, complex, hidden, .. } = parts;
-        let squared = match options.balls {
-            Balls::Power => None,
-            Balls::Radius => Some(squared_radii(&points.weights, options.alpha)?),
-        };
+        let squared = options.balls.power_weights(&points.weights, options.alpha)?;
         Ok(Self {
             points,
             coordinates,
@@ -126,7 +119,7 @@ impl AlphaShape {
 
     /// The squared radius that simplices are compared with: α, or 0 for [`Balls::Radius`].
     pub fn power_alpha(&self) -> Alpha {
-        power_alpha(&self.options)
+        self.options.power_alpha()
     }
 
     /// The complex with its points, power weights and α, to be compared and checked.

@@ -6,12 +6,11 @@ use walpha_regular::{Sites, check_numbers, lattice};
 
 use super::blocks::{self, Limits, Plan, Question, Reach};
 use super::flat::{self, flat};
-use super::options::power_alpha;
 use super::parts::connected_on_torus;
 use super::topology::{components, sheet_betti, torus_betti};
 use super::{
-    Alpha, AlphaShape, Balls, Betti, CgalError, Complex, Engine, Measures, ShapeError,
-    ShapeOptions, Sheets, Simplices, WeightedPoints,
+    AlphaShape, Betti, CgalError, Complex, Engine, Measures, ShapeError, ShapeOptions, Sheets,
+    Simplices, WeightedPoints,
 };
 
 /// The alpha shape of weighted points.
@@ -73,7 +72,7 @@ pub fn alpha_shape_by(
 ) -> Result<AlphaShape, ShapeError> {
     let find = |sites: &Sites<'_>, options: &ShapeOptions| {
         monitor.check()?;
-        let complex = classify(sites, power_alpha(options).squared())?;
+        let complex = classify(sites, options.power_alpha().squared())?;
         let hidden = Some(hidden(sites.input(), &complex.vertices));
         let boundary = Some((components(&complex), Sheets::of_whole(&complex), 0));
         let duplicates = sites.duplicates().to_vec();
@@ -96,10 +95,7 @@ fn shape_by(
         check_numbers(&points.positions, &points.weights)?;
         points.positions.par_iter_mut().for_each(|place| *place = torus.wrap(*place));
     }
-    let squared = match options.balls {
-        Balls::Power => None,
-        Balls::Radius => Some(squared_radii(&points.weights, options.alpha)?),
-    };
+    let squared = options.balls.power_weights(&points.weights, options.alpha)?;
     let weights = squared.as_deref().unwrap_or(&points.weights);
     let found = match in_space(&points.positions, weights, &options, find) {
         Err(error) if !options.refuse_flat && error.is_flat() => {
@@ -176,7 +172,8 @@ fn in_plane(
     monitor: &Monitor,
 ) -> Result<Found, ShapeError> {
     let sites = Sites::any(positions, weights)?;
-    let flat::FlatShape { complex, betti } = flat(&sites, power_alpha(options).squared(), monitor)?;
+    let flat::FlatShape { complex, betti } =
+        flat(&sites, options.power_alpha().squared(), monitor)?;
     let hidden = Some(hidden(sites.input(), &complex.vertices));
     let duplicates = sites.duplicates().to_vec();
     Ok(Found { complex, boundary: None, hidden, duplicates, betti: Some(betti) })
@@ -190,7 +187,7 @@ fn by_blocks(
     let asked = options.blocks.map(NonZeroUsize::get);
     // Below −max ω the shape is empty: this is a finite α below that.
     let largest = sites.weights().iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let alpha = power_alpha(options).squared().max(-2.0 * largest.abs() - 1.0);
+    let alpha = options.power_alpha().squared().max(-2.0 * largest.abs() - 1.0);
     // The whole triangulation of a torus comes with its exterior simplices only.
     let exterior = options.exterior || (options.hidden && sites.torus().is_some());
     let plan = if exterior || options.hidden || alpha.is_infinite() {
@@ -208,40 +205,8 @@ fn by_blocks(
     Ok(Found { complex: answer.complex, boundary, hidden: answer.hidden, duplicates, betti: None })
 }
 
-/// The power weights (α + ω)² of balls of radius α + ω.
-pub(super) fn squared_radii(weights: &[f64], alpha: Alpha) -> Result<Vec<f64>, ShapeError> {
-    let radius = |(index, weight): (usize, &f64)| {
-        let radius = alpha.squared() + weight;
-        // NaN compares false, so it is refused, too.
-        if radius >= 0.0 && radius.is_finite() {
-            Ok(radius * radius)
-        } else {
-            Err(ShapeError::Radius { index, radius })
-        }
-    };
-    weights.iter().enumerate().map(radius).collect()
-}
-
 /// The sites that are no vertices. Both lists ascend.
 fn hidden(sites: &[u32], vertices: &Simplices<1>) -> Vec<u32> {
     let mut vertices = vertices.rows().iter().peekable();
     sites.iter().copied().filter(|&site| vertices.next_if(|v| v[0] == site).is_none()).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A ball may be a point, and no less.
-    #[test]
-    fn weights_of_radii_are_their_squares() {
-        let squared = |weights: &[f64]| squared_radii(weights, Alpha::from_squared(1.0).unwrap());
-        assert_eq!(squared(&[0.5, -1.0, 2.0]).unwrap(), [2.25, 0.0, 9.0]);
-        for (weight, radius) in [(-1.5, -0.5), (f64::INFINITY, f64::INFINITY)] {
-            match squared(&[0.0, weight]) {
-                Err(ShapeError::Radius { index: 1, radius: found }) => assert_eq!(found, radius),
-                other => panic!("{other:?}"),
-            }
-        }
-    }
 }

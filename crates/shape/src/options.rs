@@ -35,6 +35,48 @@ pub enum Balls {
     Radius,
 }
 
+impl Balls {
+    /// The α that the power weights are judged by.
+    pub fn power_alpha(self, alpha: Alpha) -> Alpha {
+        match self {
+            Self::Power => alpha,
+            Self::Radius => Alpha::ZERO,
+        }
+    }
+
+    /// The radius of the ball of a point with weight ω: 0 where a power ball is empty.
+    pub fn radius(self, alpha: Alpha, weight: f64) -> f64 {
+        match self {
+            Self::Power => (alpha.squared() + weight).max(0.0).sqrt(),
+            Self::Radius => (alpha.squared() + weight).abs(),
+        }
+    }
+
+    /// Power weights in place of these: (α + ω)² for [`Balls::Radius`], else `None`.
+    ///
+    /// # Errors
+    /// [`ShapeError::Radius`] for a negative or infinite radius, with the position of its weight.
+    pub fn power_weights(
+        self,
+        weights: &[f64],
+        alpha: Alpha,
+    ) -> Result<Option<Vec<f64>>, ShapeError> {
+        if self == Self::Power {
+            return Ok(None);
+        }
+        let squared = |(index, weight): (usize, &f64)| {
+            let radius = alpha.squared() + weight;
+            // NaN compares false, so it is refused, too.
+            if radius >= 0.0 && radius.is_finite() {
+                Ok(radius * radius)
+            } else {
+                Err(ShapeError::Radius { index, radius })
+            }
+        };
+        weights.iter().enumerate().map(squared).collect::<Result<_, _>>().map(Some)
+    }
+}
+
 /// How to compute the shape of weighted points.
 ///
 /// ```
@@ -121,17 +163,34 @@ impl ShapeOptions {
         let unbounded = |by| Err(ShapeError::Unbounded { by });
         match self.memory {
             Some(_) if self.engine == Engine::Cgal => unbounded(Whole::Cgal),
-            Some(_) if power_alpha(self) == Alpha::INFINITE => unbounded(Whole::Hull),
+            Some(_) if self.power_alpha() == Alpha::INFINITE => unbounded(Whole::Hull),
             Some(_) => listed.map_or(Ok(()), unbounded),
             None => Ok(()),
         }
     }
+
+    /// The α that the power weights are judged by: 0 for [`Balls::Radius`].
+    pub fn power_alpha(&self) -> Alpha {
+        self.balls.power_alpha(self.alpha)
+    }
 }
 
-/// The α for the power weights.
-pub(super) fn power_alpha(options: &ShapeOptions) -> Alpha {
-    match options.balls {
-        Balls::Power => options.alpha,
-        Balls::Radius => Alpha::ZERO,
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ball may be a point, and no less.
+    #[test]
+    fn weights_of_radii_are_their_squares() {
+        let alpha = Alpha::from_squared(1.0).unwrap();
+        let squared = |weights: &[f64]| Balls::Radius.power_weights(weights, alpha);
+        assert_eq!(squared(&[0.5, -1.0, 2.0]).unwrap(), Some(vec![2.25, 0.0, 9.0]));
+        assert_eq!(Balls::Power.power_weights(&[-9.0], alpha), Ok(None));
+        for (weight, radius) in [(-1.5, -0.5), (f64::INFINITY, f64::INFINITY)] {
+            match squared(&[0.0, weight]) {
+                Err(ShapeError::Radius { index: 1, radius: found }) => assert_eq!(found, radius),
+                other => panic!("{other:?}"),
+            }
+        }
     }
 }
