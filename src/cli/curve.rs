@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::export::{Content, NewFolder, Target, write_all};
+#[cfg(feature = "render")]
+use crate::interpolate::error_figure;
 use crate::interpolate::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
 use crate::progress::Stage;
-#[cfg(feature = "render")]
-use crate::render::error_figure;
 use crate::{LengthUnit, SelectionRule, Volume, Weighting, haar};
 
 use super::args::{PipelineArgs, SelectArgs};
