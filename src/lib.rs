@@ -43,8 +43,6 @@ pub mod interpolate;
 pub mod pipeline;
 pub mod points;
 pub mod progress;
-#[cfg(feature = "render")]
-pub mod render;
 #[cfg(feature = "paper")]
 pub mod reproduce;
 mod select;
@@ -54,6 +52,9 @@ pub mod shape;
 pub use walpha_base::advice;
 /// Exact regular triangulations: a crate of its own, `walpha-regular`, for use in other programs.
 pub use walpha_regular as triangulation;
+/// Pictures, figures and the interactive page: a crate of its own, `walpha-render`, for use in other programs.
+#[cfg(feature = "render")]
+pub use walpha_render as render;
 /// Many α from one triangulation, and levels of detail.
 pub use walpha_shape::ladder;
 /// Volumes and their files: a crate of its own, `walpha-volume`, for use in other programs.

@@ -8,10 +8,10 @@ use serde::Serialize;
 
 use crate::export::{Content, NewFolder, Target, write_all};
 use crate::haar::smooth_monitored;
+#[cfg(feature = "render")]
+use crate::interpolate::error_figure;
 use crate::interpolate::{CurveOptions, CurvePoint, error_curve, write_curve_csv};
 use crate::progress::Stage;
-#[cfg(feature = "render")]
-use crate::render::error_figure;
 use crate::{LengthUnit, SelectionRule, Volume, Weighting};
 
 use super::args::{PipelineArgs, SelectArgs};

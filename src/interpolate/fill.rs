@@ -11,8 +11,8 @@ use crate::volume::Volume;
 /// Corners that are not points yet come with their gray level and the least weight there is among
 /// the points. Being corners they are never hidden, and being light they hide little. Weights
 /// decide which points the triangulation has: a point hidden by heavier neighbours is not a vertex,
-/// and its value is not used. With [`Balls::Radius`] the weights are (α + ω)² for the α of the
-/// shape.
+/// and its value is not used. With [`Balls::Radius`](crate::Balls::Radius) the weights are (α + ω)²
+/// for the α of the shape.
 ///
 /// # Errors
 /// Points without values, and what [`alpha_shape`] refuses.

@@ -33,6 +33,8 @@
 mod adaptive;
 mod barycentric;
 mod cells;
+#[cfg(feature = "render")]
+mod chart;
 mod curve;
 mod deviation;
 mod drawn;
@@ -53,6 +55,8 @@ mod tree;
 mod trial;
 
 pub use adaptive::{Adaptive, adaptive_voxels, adaptive_voxels_monitored};
+#[cfg(feature = "render")]
+pub use chart::error_figure;
 pub use curve::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
 pub use deviation::Deviation;
 pub use error::InterpolateError;

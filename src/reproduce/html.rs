@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::text::number;
 use super::{File, Finding, Item, Report, ShapeNumbers, Table, Verdict};
-use crate::render::base64::base64;
+use crate::render::base64;
 use crate::shape::ByClass;
 
 const STYLE: &str = include_str!("page.css");

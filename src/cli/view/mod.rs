@@ -10,12 +10,12 @@ use anyhow::bail;
 use clap::Args;
 use walpha_base::shown::{number, shown};
 
-use crate::GrayRange;
 use crate::export::Target;
 use crate::pipeline::{AlphaRule, Parameter, Weighed};
 use crate::progress::Stage;
 use crate::render::{self, Original, Page, Subject};
 use crate::volume::UnknownFormat;
+use crate::{Frame, GrayRange, Units};
 
 use super::Global;
 use super::args::{Alphas, FrozenPipelineArgs};
@@ -153,7 +153,10 @@ impl View {
         let original = source.map(|Source { volume, facts }| Original {
             volume,
             isovalue: self.isovalue.unwrap_or_default().gray(&facts.range),
-            units: facts.units,
+            frame: match facts.units {
+                Units::Voxel => &Frame::VOXEL,
+                Units::World => volume.frame(),
+            },
         });
         let mut shown = Vec::new();
         for detail in details {

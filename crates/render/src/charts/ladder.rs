@@ -1,0 +1,189 @@
+use walpha_shape::Alpha;
+use walpha_shape::ladder::{Curve, Ladder, Level, Suggestions};
+
+use crate::error::RenderError;
+use crate::figure::{Content, Drawing, Figure, Panel, Pen};
+use crate::pixels::{PALETTE, Rgb, Size};
+
+const BETTI: [(&str, Rgb); 3] =
+    [("components b0", PALETTE[1]), ("tunnels b1", PALETTE[3]), ("voids b2", PALETTE[0])];
+const SIZES: [(&str, Rgb); 4] = [
+    ("coverage", PALETTE[2]),
+    ("volume of voids", PALETTE[4]),
+    ("area", PALETTE[5]),
+    ("area of singular facets", PALETTE[7]),
+];
+
+/// A ladder as a figure: Betti numbers at every critical value with the ladder's levels as dots, and
+/// sizes at the levels, over the logarithm of the squared radius α + max ω of the largest balls.
+/// Dashed lines mark the α suggested.
+///
+/// # Errors
+/// [`RenderError::Size`], never met.
+pub fn ladder_figure(
+    title: &str,
+    ladder: &Ladder,
+    curve: &Curve,
+    suggested: &Suggestions,
+    domain: f64,
+) -> Result<Figure, RenderError> {
+    let chart = Chart::new(ladder, curve, suggested);
+    let legend = BETTI.iter().chain(&SIZES);
+    Ok(Figure {
+        title: title.to_owned(),
+        columns: 1,
+        panel: Size::new(1500, 560)?,
+        panels: vec![
+            Panel {
+                title: "Topology".into(),
+                content: Content::Drawing(chart.topology()),
+                captions: Vec::new(),
+            },
+            Panel {
+                title: "Sizes".into(),
+                content: Content::Drawing(chart.sizes(domain)),
+                captions: vec![
+                    "Coverage and the volume of voids are shares of the domain; areas are shares of \
+                     the largest one met."
+                        .into(),
+                ],
+            },
+        ],
+        colour_bar: None,
+        legend: legend.map(|&(name, colour)| (name.to_owned(), colour)).collect(),
+        notes: vec![format!(
+            "α and ω are squared lengths. Lines: all {} critical values; dots: the levels of the \
+             ladder. Dashed, from the left: every point in a cell (α = {}), one solid component \
+             (α = {}), and no void (α = {}).",
+            curve.len(),
+            suggested.all_points,
+            suggested.one_region,
+            suggested.no_void
+        )],
+    })
+}
+
+struct Chart<'a> {
+    ladder: &'a Ladder,
+    curve: &'a Curve,
+    marks: [f64; 3],
+    /// The ends of the axis of α.
+    ends: [f64; 2],
+}
+
+impl<'a> Chart<'a> {
+    fn new(ladder: &'a Ladder, curve: &'a Curve, suggested: &Suggestions) -> Self {
+        let marks =
+            [suggested.all_points, suggested.one_region, suggested.no_void].map(Alpha::squared);
+        let weight = curve.largest_weight();
+        let shown = ladder.levels.iter().map(|level| level.alpha.squared()).chain(marks);
+        let ends = shown
+            .map(|alpha| place(alpha, weight))
+            .filter(|x| x.is_finite())
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x), h.max(x)]);
+        // A point alone comes with a ball of no size, which has no place on a logarithmic axis.
+        let ends = if ends[0] <= ends[1] { ends } else { [0.0; 2] };
+        let room = 0.03 * (ends[1] - ends[0]) + 0.02;
+        Self { ladder, curve, marks, ends: [ends[0] - room, ends[1] + room] }
+    }
+
+    fn x(&self, alpha: f64) -> f64 {
+        // What has no place of its own goes to an end.
+        place(alpha, self.curve.largest_weight()).clamp(self.ends[0], self.ends[1])
+    }
+
+    fn drawing(&self, top: f64, label: &str) -> Drawing {
+        let bounds = [[self.ends[0], 0.0], [self.ends[1], top]];
+        let mut drawing = Drawing::chart(bounds, "log10(α + max ω)", label);
+        for alpha in self.marks {
+            let x = self.x(alpha);
+            drawing.segment([[x, 0.0], [x, top]], Pen::line(Rgb([120; 3]), 2.0).dashed());
+        }
+        drawing
+    }
+
+    fn topology(&self) -> Drawing {
+        let numbers = |b: walpha_shape::Betti| <[u64; 3]>::from(b).map(height);
+        let all = self.curve.betti.iter().copied();
+        let top = all.clone().flat_map(numbers).fold(1.0, f64::max) * 1.05;
+        let mut drawing = self.drawing(top, "log10(1 + b)");
+        for (k, &(_, colour)) in BETTI.iter().enumerate() {
+            let line =
+                self.curve.alphas().zip(all.clone()).map(|(a, b)| [self.x(a), numbers(b)[k]]);
+            drawing.polyline(&stairs(line, self.ends), Pen::line(colour, 4.0));
+            for level in &self.ladder.levels {
+                drawing.dot([self.x(level.alpha.squared()), numbers(level.betti)[k]], 9.0, colour);
+            }
+        }
+        drawing
+    }
+
+    fn sizes(&self, domain: f64) -> Drawing {
+        let levels = &self.ladder.levels;
+        let largest =
+            |of: fn(&Level) -> f64| levels.iter().map(of).fold(f64::MIN_POSITIVE, f64::max);
+        let area = largest(|level| level.measures.area);
+        let singular = largest(|level| level.measures.singular_area);
+        let sizes = |level: &Level| {
+            [
+                level.coverage,
+                level.void_volume() / domain,
+                level.measures.area / area,
+                level.measures.singular_area / singular,
+            ]
+        };
+        let mut drawing = self.drawing(1.05, "share");
+        for (k, &(_, colour)) in SIZES.iter().enumerate() {
+            let points: Vec<_> =
+                levels.iter().map(|l| [self.x(l.alpha.squared()), sizes(l)[k]]).collect();
+            drawing.polyline(&points, Pen::line(colour, 4.0));
+            points.iter().for_each(|&at| drawing.dot(at, 9.0, colour));
+        }
+        drawing
+    }
+}
+
+fn place(alpha: f64, largest_weight: f64) -> f64 {
+    (alpha + largest_weight).log10()
+}
+
+fn height(count: u64) -> f64 {
+    (1.0 + count as f64).log10()
+}
+
+/// A step function over its points, thinned to what a figure can show: of each strip of the axis the
+/// last point stays.
+fn stairs(points: impl Iterator<Item = [f64; 2]>, ends: [f64; 2]) -> Vec<[f64; 2]> {
+    const STRIPS: f64 = 1200.0;
+    let strip = |x: f64| ((x - ends[0]) / (ends[1] - ends[0]) * STRIPS) as i64;
+    let mut line: Vec<[f64; 2]> = Vec::new();
+    let mut thinned: Vec<[f64; 2]> = Vec::new();
+    for point in points {
+        match thinned.last_mut() {
+            Some(last) if strip(last[0]) == strip(point[0]) => *last = point,
+            _ => thinned.push(point),
+        }
+    }
+    for [x, y] in thinned {
+        if let Some(&[_, before]) = line.last() {
+            line.push([x, before]);
+        }
+        line.push([x, y]);
+    }
+    if let Some(&[_, y]) = line.last() {
+        line.push([ends[1], y]);
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stairs_keep_the_last_of_each_strip() {
+        let points = [[0.0, 1.0], [0.0001, 2.0], [0.5, 3.0]];
+        let line = stairs(points.into_iter(), [0.0, 1.0]);
+        assert_eq!(line, [[0.0001, 2.0], [0.5, 2.0], [0.5, 3.0], [1.0, 3.0]]);
+    }
+}

@@ -1,0 +1,99 @@
+//! What SVG text is made of, and its way to pixels.
+
+use std::sync::{Arc, LazyLock};
+
+use resvg::{tiny_skia, usvg};
+
+use crate::error::RenderError;
+use crate::pixels::{Picture, Size};
+
+/// The families a viewer may set the text in: first the one that PNG files use.
+pub(super) const FAMILIES: &str =
+    "Ubuntu, 'Noto Sans', 'DejaVu Sans', 'Helvetica Neue', Arial, sans-serif";
+
+/// A number as short as a thousandth of a pixel allows; 0 for NaN.
+pub(super) fn num(value: f64) -> String {
+    if !value.is_finite() {
+        return "0".into();
+    }
+    let text = format!("{value:.3}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".into() } else { text.into() }
+}
+
+/// Text with the characters that mean something in XML replaced.
+pub(super) fn escape(text: &str) -> String {
+    text.chars()
+        .map(|c| match c {
+            '&' => "&amp;".into(),
+            '<' => "&lt;".into(),
+            '>' => "&gt;".into(),
+            '"' => "&quot;".into(),
+            // XML 1.0 has no place for control characters, not even escaped.
+            c if c.is_control() => " ".into(),
+            c => c.to_string(),
+        })
+        .collect()
+}
+
+/// The fonts that come with the library, and no others: Ubuntu Light, and Hack for signs that it
+/// lacks.
+static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
+    let mut fonts = usvg::fontdb::Database::new();
+    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+    fonts.load_font_data(epaint_default_fonts::HACK_REGULAR.to_vec());
+    Arc::new(fonts)
+});
+
+/// An SVG file as pixels.
+pub(super) fn rasterise(svg: &str, size: Size) -> Result<Picture, RenderError> {
+    let options = usvg::Options { fontdb: FONTS.clone(), ..usvg::Options::default() };
+    let tree = usvg::Tree::from_str(svg, &options)?;
+    let (width, height) = (size.width(), size.height());
+    let mut pixmap =
+        tiny_skia::Pixmap::new(width, height).ok_or(RenderError::Size { width, height })?;
+    let (sx, sy) = (width as f32 / tree.size().width(), height as f32 / tree.size().height());
+    resvg::render(&tree, tiny_skia::Transform::from_scale(sx, sy), &mut pixmap.as_mut());
+    let pixels = pixmap
+        .pixels()
+        .iter()
+        .map(|p| {
+            let p = p.demultiply();
+            [p.red(), p.green(), p.blue(), p.alpha()]
+        })
+        .collect();
+    Ok(Picture::new(size, pixels))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let pairs =
+            [(1.0, "1"), (-0.0001, "0"), (2.5, "2.5"), (1.0 / 3.0, "0.333"), (100.0, "100")];
+        for (value, text) in pairs {
+            assert_eq!(num(value), text);
+        }
+        assert_eq!(num(f64::NAN), "0");
+    }
+
+    #[test]
+    fn letters_signs_and_greek_leave_ink() {
+        let ink = |text: &str| {
+            let svg = format!(
+                r#"<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><text x="4" y="30" font-size="30" font-family="{FAMILIES}">{text}</text></svg>"#
+            );
+            let picture = rasterise(&svg, Size::new(40, 40).unwrap()).unwrap();
+            picture.pixels().iter().map(|p| u32::from(p[3])).sum::<u32>()
+        };
+        assert_eq!(ink(" "), 0);
+        // A sign that is in no font would be left out, or be the same box as any other.
+        let signs = ["a", "α", "ω", "√", "²", "³", "×", "−", "≥", "ρ", "→", "·", "…", "∞", "β"];
+        for sign in signs {
+            assert!(ink(sign) > 500, "{sign} is missing");
+        }
+        assert_ne!(ink("α"), ink("ω"));
+    }
+}

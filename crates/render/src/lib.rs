@@ -1,0 +1,56 @@
+//! Pictures. A scene of triangles, balls and tubes becomes a [`Picture`]; pictures and
+//! vector [`Drawing`]s become a [`Figure`] with panels, labels and a colour bar.
+//!
+//! Every picture is a function of its description alone: the same bytes on any number of threads
+//! and in each run. In the three-dimensional part nothing but + − × ÷ √ touches a pixel, which
+//! IEEE 754 fixes to the bit, and text is set in fonts that come with the library.
+//!
+//! ```
+//! use walpha_render::{Background, Camera, Projection, Scene, ShapeStyle, Size, View};
+//! use walpha_shape::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
+//!
+//! let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let options = ShapeOptions::new(Alpha::from_squared(1.0)?);
+//! let shape = alpha_shape(WeightedPoints::unweighted(corners), &options)?;
+//!
+//! let style = ShapeStyle::default();
+//! let scene = Scene::of_shape(&shape.points().positions, shape.complex(), &style)?;
+//! let size = Size::new(64, 48)?;
+//! let bounds = scene.bounds().expect("there is something to see");
+//! let camera = Camera::fit(bounds, View::ThreeQuarter, Projection::Perspective, size)?;
+//! let png = scene.render(&camera, size, Background::White)?.to_png()?;
+//! assert!(png.starts_with(b"\x89PNG"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod base64;
+mod charts;
+mod error;
+mod figure;
+mod light;
+mod marching;
+mod normals;
+mod pixels;
+mod primitives;
+mod renderer;
+mod scene;
+mod shape;
+mod view;
+
+pub use charts::{RateCurve, ladder_figure, rate_figure};
+pub use error::RenderError;
+pub use figure::{ColourBar, Content, Drawing, Figure, Panel, Pen, Step};
+pub use marching::Isosurface;
+pub use pixels::{ColourMap, PALETTE, Picture, Rgb, Size};
+pub use scene::{Background, Ball, Camera, Colours, Mesh, Projection, Scene, Shading, Tube, View};
+pub use shape::{Colouring, ShapeStyle, class_colours, plain_colours};
+pub use view::{Detail, Differences, Original, Page, Subject};
+
+// What walpha puts pictures into its report with: no promise to others.
+#[doc(hidden)]
+pub use base64::base64;
+
+/// The example in the README runs.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

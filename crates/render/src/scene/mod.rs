@@ -1,0 +1,202 @@
+//! What is drawn, and from where.
+
+mod camera;
+
+pub(crate) use camera::Lens;
+pub use camera::{Camera, Projection, View};
+
+use super::error::RenderError;
+use super::pixels::Rgb;
+
+/// The scene before the camera. Built once, seen from anywhere.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// Surfaces.
+    pub meshes: Vec<Mesh>,
+    /// Points, drawn as balls.
+    pub balls: Vec<Ball>,
+    /// Edges, drawn as round-ended tubes.
+    pub tubes: Vec<Tube>,
+}
+
+/// Triangles with one look.
+///
+/// # Example
+/// One triangle that turns counter-clockwise for an eye at z > 0, seen from both sides:
+/// ```
+/// use walpha_render::{Colours, Mesh, Rgb, Shading};
+///
+/// let mesh = Mesh {
+///     two_sided: true,
+///     shading: Shading::Flat,
+///     colours: Colours::Uniform(Rgb::BONE),
+///     ..Mesh::new(vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]])
+/// };
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Vertices, (x, y, z).
+    pub positions: Vec<[f64; 3]>,
+    /// Vertices of each triangle, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Outward normals of the vertices, of any length, for smooth shading; `None` weighs each
+    /// vertex's triangles by their angles (Thürmer and Wüthrich 1998,
+    /// doi:10.1080/10867651.1998.10487487).
+    pub normals: Option<Vec<[f64; 3]>>,
+    /// One colour, or one for each vertex.
+    pub colours: Colours,
+    /// Whether triangles are seen from behind as well. A closed surface needs only its outside.
+    pub two_sided: bool,
+    /// Flat or smooth.
+    pub shading: Shading,
+    /// 1 for a solid surface; less is translucent.
+    pub opacity: f64,
+}
+
+impl Mesh {
+    /// Opaque one-sided triangles the colour of bone, shaded smoothly by normals of their own.
+    pub fn new(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
+        Self {
+            positions,
+            triangles,
+            normals: None,
+            colours: Colours::Uniform(Rgb::BONE),
+            two_sided: false,
+            shading: Shading::Smooth,
+            opacity: 1.0,
+        }
+    }
+}
+
+/// The colour of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Colours {
+    /// The same everywhere.
+    Uniform(Rgb),
+    /// One for each vertex, blended over the triangles.
+    Vertex(Vec<Rgb>),
+}
+
+/// How light falls on a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shading {
+    /// Each triangle is a plane one can see.
+    Flat,
+    /// Normals are blended over the triangles: right for curved surfaces in small steps.
+    Smooth,
+}
+
+/// A point drawn as a shaded ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// Where, (x, y, z).
+    pub centre: [f64; 3],
+    /// In the units of the scene.
+    pub radius: f64,
+    /// Its colour.
+    pub colour: Rgb,
+}
+
+/// An edge drawn as a tube with round ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tube {
+    /// Both ends, (x, y, z).
+    pub ends: [[f64; 3]; 2],
+    /// In the units of the scene.
+    pub radius: f64,
+    /// Its colour.
+    pub colour: Rgb,
+}
+
+/// The background.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Background {
+    /// White, for paper.
+    #[default]
+    White,
+    /// Nothing: opacity 0.
+    Transparent,
+}
+
+impl Scene {
+    /// The box around all vertices, balls and tubes: its smallest and largest corner. `None` for
+    /// an empty scene.
+    pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
+        let mut bounds: Option<[[f64; 3]; 2]> = None;
+        let mut extend = |p: [f64; 3], radius: f64| {
+            let [low, high] = bounds.get_or_insert([p, p]);
+            for k in 0..3 {
+                low[k] = low[k].min(p[k] - radius);
+                high[k] = high[k].max(p[k] + radius);
+            }
+        };
+        for mesh in &self.meshes {
+            let corners = mesh.triangles.as_flattened().iter();
+            corners.filter_map(|&v| mesh.positions.get(v as usize)).for_each(|&p| extend(p, 0.0));
+        }
+        self.balls.iter().for_each(|ball| extend(ball.centre, ball.radius));
+        self.tubes.iter().for_each(|tube| tube.ends.iter().for_each(|&p| extend(p, tube.radius)));
+        bounds
+    }
+
+    /// Adds the twelve edges of a box, given by its smallest and largest corner.
+    pub fn add_box(&mut self, bounds: [[f64; 3]; 2], radius: f64, colour: Rgb) {
+        let corner = |bits: usize| [0, 1, 2].map(|k| bounds[bits >> k & 1][k]);
+        for from in 0..8_usize {
+            for axis in (0..3).filter(|axis| from >> axis & 1 == 0) {
+                let ends = [corner(from), corner(from | 1 << axis)];
+                self.tubes.push(Tube { ends, radius, colour });
+            }
+        }
+    }
+
+    /// Whether it contradicts itself.
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
+        let place = |p: &[f64; 3]| p.iter().all(|c| c.abs() < 1e100);
+        let radius = |r: f64| (0.0..1e100).contains(&r);
+        for (index, mesh) in self.meshes.iter().enumerate() {
+            mesh.check(index)?;
+        }
+        let ball = self.balls.iter().position(|b| !(place(&b.centre) && radius(b.radius)));
+        let tube = self.tubes.iter().position(|t| !(t.ends.iter().all(place) && radius(t.radius)));
+        match (ball, tube) {
+            (Some(index), _) => Err(RenderError::OutOfRange { what: "ball", index }),
+            (_, Some(index)) => Err(RenderError::OutOfRange { what: "tube", index }),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Mesh {
+    fn check(&self, mesh: usize) -> Result<(), RenderError> {
+        let vertices = self.positions.len();
+        let attribute = |what, got| match got {
+            Some(got) if got != vertices => {
+                Err(RenderError::Attribute { mesh, what, got, vertices })
+            }
+            _ => Ok(()),
+        };
+        attribute("normals", self.normals.as_ref().map(Vec::len))?;
+        attribute(
+            "colours",
+            match &self.colours {
+                Colours::Uniform(_) => None,
+                Colours::Vertex(each) => Some(each.len()),
+            },
+        )?;
+        for (triangle, corners) in self.triangles.iter().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices) {
+                return Err(RenderError::Index { mesh, triangle, vertex, vertices });
+            }
+        }
+        let finite = |all: &[[f64; 3]]| all.as_flattened().iter().all(|c| c.abs() < 1e100);
+        if finite(&self.positions)
+            && self.normals.as_deref().is_none_or(finite)
+            && (0.0..=1.0).contains(&self.opacity)
+        {
+            Ok(())
+        } else {
+            Err(RenderError::OutOfRange { what: "mesh", index: mesh })
+        }
+    }
+}

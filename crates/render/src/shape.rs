@@ -1,0 +1,177 @@
+use walpha_shape::{Class, Complex, Simplices};
+
+use super::error::RenderError;
+use super::normals::{smoothed, vertex_normals};
+use super::pixels::{ColourMap, PALETTE, Rgb};
+use super::scene::{Ball, Colours, Mesh, Scene, Shading, Tube};
+
+/// What the colours of a drawn shape mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Colouring<'a> {
+    /// Nothing: the boundary in the colour of bone, singular simplices in a tint of their own.
+    Plain,
+    /// A value at each input point, such as F, through a colour map.
+    Values(&'a [f64], ColourMap),
+    /// The classes: boundary facets, singular facets, singular edges and lone vertices each have
+    /// the colour that [`class_colours`] says.
+    Classes,
+}
+
+/// How a shape becomes a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeStyle<'a> {
+    /// What the colours mean.
+    pub colouring: Colouring<'a>,
+    /// Smooth shading suits shapes with steps at the scale of the point spacing; flat shading
+    /// shows each facet.
+    pub shading: Shading,
+    /// Half the thickness of singular edges, and half the radius of lone vertices, in the units of
+    /// the points. 0 leaves both out.
+    pub edge_radius: f64,
+    /// 1 for solid facets; less lets what is inside shine through, and shows the backs of facets.
+    pub opacity: f64,
+}
+
+impl Default for ShapeStyle<'_> {
+    /// Plain, smooth and solid, with edges fit for points about 1 apart.
+    fn default() -> Self {
+        Self {
+            colouring: Colouring::Plain,
+            shading: Shading::Smooth,
+            edge_radius: 0.12,
+            opacity: 1.0,
+        }
+    }
+}
+
+/// A class of simplices that is drawn, with its colour: for the legend of a figure coloured by
+/// [`Colouring::Classes`]. Boundary facets, singular facets, singular edges, lone vertices.
+pub fn class_colours() -> [(&'static str, Rgb); 4] {
+    [
+        ("regular facets", PALETTE[4]),
+        ("singular facets", PALETTE[3]),
+        ("singular edges", PALETTE[0]),
+        ("singular vertices", PALETTE[2]),
+    ]
+}
+
+/// What is drawn with [`Colouring::Plain`], with its colour: the boundary, and everything singular.
+pub fn plain_colours() -> [(&'static str, Rgb); 2] {
+    [("boundary", Rgb::BONE), ("singular: part of no cell", SINGULAR_TINT)]
+}
+
+/// The tint of singular facets among plain ones.
+const SINGULAR_TINT: Rgb = Rgb([214, 138, 92]);
+
+/// Rounds of blending that take the steps of a voxel lattice out of the normals, and leave orbits
+/// a few voxels wide.
+const LATTICE_ROUNDS: usize = 2;
+
+impl Scene {
+    /// The boundary of a shape: regular facets seen from outside, singular facets from both
+    /// sides, singular edges as tubes and singular vertices as balls. Interior and exterior
+    /// simplices are not drawn.
+    ///
+    /// `positions` are the input points by index, (x, y, z), in the units the picture shall have.
+    ///
+    /// # Errors
+    /// [`RenderError::Values`] when the values to colour by are not one for each point,
+    /// [`RenderError::Point`] when the complex has a vertex that is not a point.
+    pub fn of_shape(
+        positions: &[[f64; 3]],
+        complex: &Complex,
+        style: &ShapeStyle<'_>,
+    ) -> Result<Self, RenderError> {
+        if let Colouring::Values(values, _) = style.colouring
+            && values.len() != positions.len()
+        {
+            return Err(RenderError::Values { got: values.len(), points: positions.len() });
+        }
+        let facets = complex.facets.rows().as_flattened().iter();
+        let edges = complex.edges.rows().as_flattened().iter();
+        let all = facets.chain(edges).chain(complex.vertices.rows().as_flattened());
+        if let Some(&vertex) = all.max().filter(|&&v| v as usize >= positions.len()) {
+            return Err(RenderError::Point { vertex, points: positions.len() });
+        }
+        let mut scene = Self::default();
+        for class in [Class::Regular, Class::Singular] {
+            scene.meshes.extend(surface(positions, &complex.facets, class, style));
+        }
+        if style.edge_radius > 0.0 {
+            let place = |v: u32| positions[v as usize];
+            let colour = |v: u32, kind| style.colour(v, kind);
+            scene.tubes.extend(complex.edges.of(Class::Singular).map(|&[a, b]| Tube {
+                ends: [place(a), place(b)],
+                radius: style.edge_radius,
+                colour: colour(a, Kind::Edge),
+            }));
+            scene.balls.extend(complex.vertices.of(Class::Singular).map(|&[v]| Ball {
+                centre: place(v),
+                radius: 2.0 * style.edge_radius,
+                colour: colour(v, Kind::Vertex),
+            }));
+        }
+        Ok(scene)
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Regular,
+    Singular,
+    Edge,
+    Vertex,
+}
+
+impl ShapeStyle<'_> {
+    fn colour(&self, vertex: u32, kind: Kind) -> Rgb {
+        match (self.colouring, kind) {
+            (Colouring::Values(values, map), _) => map.colour(values[vertex as usize]),
+            (Colouring::Classes, kind) => class_colours()[kind as usize].1,
+            (Colouring::Plain, Kind::Regular) => Rgb::BONE,
+            (Colouring::Plain, _) => SINGULAR_TINT,
+        }
+    }
+}
+
+/// The facets of one class over the points they use; `None` when there are none.
+fn surface(
+    positions: &[[f64; 3]],
+    facets: &Simplices<3>,
+    class: Class,
+    style: &ShapeStyle<'_>,
+) -> Option<Mesh> {
+    let mut triangles: Vec<[u32; 3]> = facets.of(class).copied().collect();
+    let mut used: Vec<u32> = triangles.as_flattened().to_vec();
+    used.sort_unstable();
+    used.dedup();
+    for vertex in triangles.as_flattened_mut() {
+        *vertex = used.binary_search(vertex).expect("just collected") as u32;
+    }
+    let positions: Vec<[f64; 3]> = used.iter().map(|&v| positions[v as usize]).collect();
+    let (kind, shading) = match class {
+        // Singular facets meet at any angle; blending their normals would only blur them.
+        Class::Singular => (Kind::Singular, Shading::Flat),
+        _ => (Kind::Regular, style.shading),
+    };
+    let normals = (shading == Shading::Smooth)
+        .then(|| smoothed(vertex_normals(&positions, &triangles), &triangles, LATTICE_ROUNDS));
+    let colours = match style.colouring {
+        Colouring::Values(..) => {
+            Colours::Vertex(used.iter().map(|&v| style.colour(v, kind)).collect())
+        }
+        _ => Colours::Uniform(style.colour(0, kind)),
+    };
+    (!triangles.is_empty()).then_some(Mesh {
+        positions,
+        triangles,
+        normals,
+        colours,
+        two_sided: class == Class::Singular || style.opacity < 1.0,
+        shading,
+        opacity: style.opacity,
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,193 @@
+use std::fmt::Write;
+
+use plotly::Plot;
+use serde_json::json;
+use walpha_shape::ladder::Level;
+
+use super::pack::{Arrays, Packed};
+use super::plot::plot;
+use super::subject::{Detail, Subject};
+use crate::pixels::PALETTE;
+
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
+
+/// The page. Every string from outside is escaped, in markup and in data.
+pub(super) fn page(subject: &Subject<'_>, packed: &[Packed], surface: Option<&Arrays>) -> String {
+    let title = escape(subject.title);
+    let mut html = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n{}\n</head>\n<body>\n<h1>{title}</h1>\n",
+        library()
+    );
+    let simplified = packed.iter().any(|packed| packed.simplified.is_some());
+    let _ = write!(
+        html,
+        "<p>α and ω are squared lengths, in {unit} squared: at a level, a point of weight ω is a ball \
+         of squared radius α + ω. Weights are the same at all levels, so each shape contains the one \
+         before.</p>\n\
+         <form>{}<label for=\"level\">level <output id=\"name\"></output></label>\n\
+         <input id=\"level\" type=\"range\" min=\"0\" value=\"0\">\n\
+         <button id=\"play\" type=\"button\">Play</button>\n\
+         <label for=\"colour\">colour <select id=\"colour\">{}\
+         <option value=\"class\">class</option>{}</select></label>\n\
+         <button id=\"reset\" type=\"button\">Reset view</button>\n\
+         <button id=\"save\" type=\"button\">Save picture</button></form>\n\
+         <div id=\"scene\" role=\"img\" aria-label=\"The shape in three dimensions\"></div>\n\
+         <p class=\"soft\">Drag to turn, pinch or scroll to zoom; tap a point for its index, {}ω and \
+         class; tap a name above the scene to show or hide it.{}</p>\n\
+         <div class=\"tables\">\n<table id=\"numbers\"></table>\n<table>\n",
+        choice_of_detail(subject),
+        if subject.is_valued() { "<option value=\"value\">F</option>" } else { "" },
+        if subject.is_compared() {
+            "<option value=\"difference\">difference to the original</option>"
+        } else {
+            ""
+        },
+        explained(subject),
+        if simplified { " <b id=\"simplified\"></b>" } else { "" },
+        unit = escape(subject.unit),
+    );
+    for (name, value) in subject.facts {
+        let _ = writeln!(html, "<tr><th>{}</th><td>{}</td></tr>", escape(name), escape(value));
+    }
+    // Of what is interior, regular, singular.
+    let colours = [2, 1, 0].map(|k| PALETTE[k].hex());
+    let details = subject.details.iter().zip(packed);
+    let data = json!({
+        "details": details.map(|(of, packed)| detail(subject, of, packed)).collect::<Vec<_>>(),
+        "isosurface": surface,
+        "colours": colours,
+        "bars": bars(subject),
+    });
+    let _ = write!(
+        html,
+        "</table>\n</div>\n<script id=\"plot\" type=\"application/json\">{}</script>\n\
+         <script id=\"data\" type=\"application/json\">{}</script>\n\
+         <script>\n{SCRIPT}</script>\n</body>\n</html>\n",
+        inert(&plot(subject).to_json()),
+        inert(&data.to_string()),
+    );
+    html
+}
+
+/// What one chooses a level of detail by, where there are several.
+fn choice_of_detail(subject: &Subject<'_>) -> String {
+    let last = subject.details.len() - 1;
+    if last == 0 {
+        return String::new();
+    }
+    let mut html = "<label for=\"detail\">detail <select id=\"detail\">".to_owned();
+    for (k, detail) in subject.details.iter().enumerate() {
+        let selected = if k == last { " selected" } else { "" };
+        let points = detail.levels.points().len();
+        let _ = write!(html, "<option value=\"{k}\"{selected}>{points} points</option>");
+    }
+    html + "</select></label>\n"
+}
+
+/// The data of a level of detail.
+fn detail(subject: &Subject<'_>, detail: &Detail<'_>, packed: &Packed) -> serde_json::Value {
+    let mut rows = vec![["points".to_owned(), detail.levels.points().len().to_string()]];
+    if let Some(differences) = detail.differences {
+        let rmse = significant(differences.rmse);
+        let told = format!("{rmse} {} (root mean square, on all samples)", subject.difference);
+        rows.push(["error of F".to_owned(), told]);
+    }
+    json!({
+        "arrays": packed.arrays,
+        "rows": rows,
+        "levels": detail.ladder.levels.iter().map(level).collect::<Vec<_>>(),
+        "first": detail.first,
+        "simplified": packed.simplified,
+    })
+}
+
+/// The titles of colour scales.
+fn bars(subject: &Subject<'_>) -> serde_json::Value {
+    let difference = subject
+        .is_compared()
+        .then(|| format!("difference to the original, in {}", subject.difference));
+    json!({ "value": format!("F: {}", subject.value), "difference": difference })
+}
+
+/// What the numbers of a point are.
+fn explained(subject: &Subject<'_>) -> String {
+    let mut text = String::new();
+    if subject.is_valued() {
+        let _ = write!(text, "F ({}), ", escape(subject.value));
+    }
+    if subject.is_compared() {
+        let _ = write!(
+            text,
+            "difference (root mean square of F, filled in, against the samples around it, in {}), ",
+            escape(subject.difference)
+        );
+    }
+    text
+}
+
+/// plotly.js, without the typesetter of formulas that comes with it.
+fn library() -> String {
+    let scripts = Plot::offline_js_sources();
+    let end = scripts.find("</script>").expect("a script of plotly.js");
+    scripts[..end].to_owned() + "</script>"
+}
+
+/// What the page shows of a level, as pairs.
+fn level(level: &Level) -> serde_json::Value {
+    let [b0, b1, b2] = level.betti.into();
+    let by_class = |c: walpha_shape::ByClass<usize>| {
+        format!("{} interior, {} regular, {} singular", c.interior, c.regular, c.singular)
+    };
+    let alpha = significant(level.alpha.squared());
+    let radius = match level.alpha.radius() {
+        Some(radius) => format!("√α = {}", significant(radius)),
+        None => "negative, so no radius".into(),
+    };
+    json!({
+        "name": format!("α = {alpha}"),
+        "alpha": level.alpha.squared().clamp(f64::MIN, f64::MAX),
+        "rows": [
+            ["α", format!("{alpha} ({radius})")],
+            ["cells", level.cells.to_string()],
+            ["facets", by_class(level.facets)],
+            ["edges", by_class(level.edges)],
+            ["vertices", by_class(level.vertices)],
+            ["topology", format!("{b0} components, {b1} tunnels, {b2} voids")],
+            ["volume", format!("{}, coverage {:.2} %", significant(level.measures.volume), 100.0 * level.coverage)],
+            ["voids", format!("{} in all", significant(level.void_volume()))],
+        ],
+    })
+}
+
+/// A number with four significant digits at most.
+fn significant(number: f64) -> String {
+    if number.is_infinite() {
+        return if number > 0.0 { "∞".into() } else { "−∞".into() };
+    }
+    // Rounded by way of a text with an exponent; parsing gives the nearest double.
+    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+    walpha_base::shown::number(rounded)
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// JSON that cannot end the script element around it.
+fn inert(json: &str) -> String {
+    json.replace('<', "\\u003c")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn four_digits_are_enough() {
+        let told = [9.5, 0.016_074_782_699_769_346, 12_345.678, 2e-13, 0.0, f64::INFINITY];
+        assert_eq!(told.map(significant), ["9.5", "0.01607", "12350", "2e-13", "0", "∞"]);
+    }
+}

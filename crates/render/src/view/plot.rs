@@ -1,0 +1,110 @@
+use plotly::color::Rgb;
+use plotly::common::{
+    Anchor, ColorBar, ColorScale, ColorScalePalette, Font, HoverInfo, Line, Marker, Mode,
+    Orientation, Side, Title, Visible,
+};
+use plotly::configuration::DisplayModeBar;
+use plotly::layout::{
+    AspectMode, Axis, Camera, CameraCenter, Eye, ItemSizing, LayoutScene, Legend, Margin,
+};
+use plotly::traces::mesh3d::{IntensityMode, LightPosition, Lighting};
+use plotly::{Configuration, Layout, Mesh3D, Plot, Scatter3D};
+
+use super::subject::Subject;
+use crate::pixels::PALETTE;
+
+/// The traces in the order in which the page's script fills them, and the layout. Traces without
+/// data: the arrays of a level are put together in the browser.
+pub(super) fn plot(subject: &Subject<'_>) -> Plot {
+    let mut plot = Plot::new();
+    let valued = subject.is_valued();
+    let mesh = |name: &str, colour: Rgb| {
+        Mesh3D::<f64, f64, f64>::new(vec![], vec![], vec![], None::<Vec<usize>>, None, None)
+            .name(name)
+            .show_legend(true)
+            .color(colour)
+            .flat_shading(true)
+            .lighting(Lighting::new().ambient(0.8).diffuse(0.9).specular(0.1).roughness(0.8))
+            .light_position(LightPosition::new().x(vec![-1e4]).y(vec![-2e4]).z(vec![2e4]))
+            .hover_info(HoverInfo::Text)
+    };
+    let by_value = |mesh: Box<Mesh3D<f64, f64, f64>>| {
+        mesh.intensity_mode(IntensityMode::Vertex)
+            .color_scale(ColorScale::Palette(ColorScalePalette::Viridis))
+    };
+    plot.add_trace(by_value(mesh("boundary", rgb(1))).show_scale(valued).color_bar(colour_bar()));
+    plot.add_trace(by_value(mesh("singular facets", rgb(0))).show_scale(false));
+    plot.add_trace(
+        Scatter3D::<f64, f64, f64>::new(vec![], vec![], vec![])
+            .name("singular edges")
+            .mode(Mode::Lines)
+            .line(Line::new().color(rgb(3)).width(2.0))
+            .hover_info(HoverInfo::Skip),
+    );
+    plot.add_trace(
+        Scatter3D::<f64, f64, f64>::new(vec![], vec![], vec![])
+            .name("points, by weight")
+            .mode(Mode::Markers)
+            .marker(Marker::new().color(rgb(5)))
+            .visible(Visible::LegendOnly)
+            .hover_info(HoverInfo::Text),
+    );
+    if let Some(original) = &subject.original {
+        plot.add_trace(
+            mesh(&format!("isosurface at {}", original.isovalue), Rgb::new(190, 190, 190))
+                .opacity(0.5)
+                .visible(Visible::LegendOnly)
+                .hover_info(HoverInfo::Skip),
+        );
+    }
+    plot.set_layout(layout(subject.unit));
+    plot.set_configuration(
+        Configuration::new().responsive(true).display_mode_bar(DisplayModeBar::False),
+    );
+    plot
+}
+
+/// The script writes what it is a scale of.
+fn colour_bar() -> ColorBar {
+    ColorBar::new()
+        .title(Title::new().side(Side::Top).font(Font::new().size(12)))
+        .orientation(Orientation::Horizontal)
+        .thickness(12)
+        .y(0.0)
+        .y_anchor(Anchor::Top)
+        .tick_font(Font::new().size(11))
+}
+
+fn rgb(index: usize) -> Rgb {
+    let [r, g, b] = PALETTE[index].0;
+    Rgb::new(r, g, b)
+}
+
+fn layout(unit: &str) -> Layout {
+    // There is no room for a sentence beside an axis.
+    let label =
+        |name: &str| if unit.contains(' ') { name.to_owned() } else { format!("{name} ({unit})") };
+    let axis = |name: &str| Axis::new().title(Title::with_text(label(name))).n_ticks(6);
+    let camera = Camera::new()
+        .center(CameraCenter::from((0.0, 0.0, -0.16)))
+        .eye(Eye::from((1.0, -1.62, 0.6)));
+    let scene = LayoutScene::new()
+        .aspect_mode(AspectMode::Data)
+        .camera(camera)
+        .x_axis(axis("x"))
+        .y_axis(axis("y"))
+        .z_axis(axis("z"));
+    Layout::new()
+        .scene(scene)
+        .auto_size(true)
+        .margin(Margin::new().left(0).right(0).top(8).bottom(10))
+        .show_legend(true)
+        .legend(
+            Legend::new()
+                .orientation(Orientation::Horizontal)
+                .item_sizing(ItemSizing::Constant)
+                .x(0.0)
+                .y(1.0)
+                .y_anchor(Anchor::Bottom),
+        )
+}
