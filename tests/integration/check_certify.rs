@@ -5,8 +5,9 @@ use std::num::NonZeroUsize;
 use walpha::check::{Extent, Finding, NotJudged};
 use walpha::shape::{Engine, ShapeOptions, claim};
 use walpha::{Alpha, WeightedPoints, alpha_shape};
+use walpha_base::random::Random;
 
-use crate::check_common::{Answer, Case, Random, engine, grid, shape_of};
+use crate::check_common::{Answer, Case, engine, grid, shape_of};
 
 fn whole(case: &Case, answer: &Answer) -> Vec<Finding> {
     case.findings(answer, Extent::Whole)

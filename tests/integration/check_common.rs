@@ -7,7 +7,7 @@ mod common;
 use walpha::shape::{Engine, ShapeError, ShapeOptions};
 use walpha::{WeightedPoints, alpha_shape};
 
-pub use common::{Answer, Case, Random, definition, grid, shape_of};
+pub use common::{Answer, Case, definition, grid, shape_of};
 
 /// CGAL's own answer: the whole triangulation.
 pub fn engine(case: &Case) -> Result<Answer, ShapeError> {

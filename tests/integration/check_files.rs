@@ -6,8 +6,9 @@ use walpha::check::schema::ComplexFile;
 use walpha::export::{Exporter, Json, Npz};
 use walpha::shape::ShapeOptions;
 use walpha::{Alpha, WeightedPoints, alpha_shape};
+use walpha_base::random::Random;
 
-use crate::check_common::{Random, grid};
+use crate::check_common::grid;
 
 fn points() -> WeightedPoints {
     let mut random = Random::new(5);

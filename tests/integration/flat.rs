@@ -6,9 +6,9 @@ use walpha::check::enumerate;
 use walpha::ladder::Filtration;
 use walpha::shape::{Betti, Engine, ShapeOptions};
 use walpha::{Alpha, AlphaShape, Class, WeightedPoints, alpha_shape};
+use walpha_base::random::Random;
 
 use crate::common;
-use crate::common::random::Random;
 
 /// Points of a plane or line through the lattice, tilted as it comes, with ties everywhere.
 fn set(random: &mut Random) -> WeightedPoints {
@@ -16,7 +16,7 @@ fn set(random: &mut Random) -> WeightedPoints {
     let origin = [0; 3].map(|_| random.whole(-3, 3));
     let (line, weighted) = (random.below(3) == 0, random.below(2) == 0);
     // Powers of two change nothing.
-    let scale = [1.0, 0.125, 2f64.powi(40)][random.below(3) as usize];
+    let scale = [1.0, 0.125, 2f64.powi(40)][random.below(3)];
     let count = 1 + random.below(13);
     let point = |random: &mut Random| {
         let (u, v) = (random.whole(-3, 3), if line { 0.0 } else { random.whole(-2, 2) });
@@ -61,7 +61,7 @@ fn betti(shape: &AlphaShape) -> Betti {
 
 #[test]
 fn flat_shapes_are_those_of_the_definition() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let mut counts = [0; 4];
     let mut done = 0;
     while done < 400 {

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use walpha::shape::{Engine, ShapeError, ShapeOptions};
 use walpha::triangulation::{Sites, Triangulation, TriangulationError, triangulate};
 use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
+use walpha_base::random::Random;
 
-use crate::common::random::Random;
 use crate::common::sites::weighted;
 
 /// What a set is made of, by its number.
@@ -24,7 +24,7 @@ const FAMILIES: [fn(&mut Random) -> WeightedPoints; 9] = [
     line_and_a_few,
 ];
 
-fn count(r: &mut Random) -> u64 {
+fn count(r: &mut Random) -> usize {
     4 + r.below(11)
 }
 
@@ -37,12 +37,11 @@ fn lattice(r: &mut Random, weight: fn(&mut Random) -> f64) -> WeightedPoints {
 
 /// Integer points on one sphere, and perhaps its centre.
 fn sphere(r: &mut Random) -> WeightedPoints {
-    let squared = [3.0, 9.0, 14.0, 25.0][r.below(4) as usize];
+    let squared = [3.0, 9.0, 14.0, 25.0][r.below(4)];
     let all = (0..11 * 11 * 11).map(|i| [i % 11, i / 11 % 11, i / 121].map(|x| f64::from(x) - 5.0));
     let on: Vec<[f64; 3]> =
         all.filter(|p| p.iter().map(|x| x * x).sum::<f64>() == squared).collect();
-    let mut points: Vec<_> =
-        (0..count(r)).map(|_| (on[r.below(on.len() as u64) as usize], 0.0)).collect();
+    let mut points: Vec<_> = (0..count(r)).map(|_| (on[r.below(on.len())], 0.0)).collect();
     if r.below(2) == 0 {
         points.push(([0.0; 3], r.whole(-2, 2)));
     }
@@ -53,7 +52,7 @@ fn sphere(r: &mut Random) -> WeightedPoints {
 fn neighbours(r: &mut Random) -> WeightedPoints {
     let coordinate = |r: &mut Random| {
         let x = 1.0 + r.whole(0, 2);
-        [x, x.next_up(), x.next_down()][r.below(3) as usize]
+        [x, x.next_up(), x.next_down()][r.below(3)]
     };
     let points = (0..count(r)).map(|_| ([0; 3].map(|_| coordinate(r)), r.whole(0, 1)));
     weighted(points.collect::<Vec<_>>())
@@ -179,7 +178,7 @@ fn check(points: &WeightedPoints, alphas: &[f64]) -> &'static str {
 fn a_hundred_thousand_degenerate_sets() {
     const SETS: u64 = 100_000;
     let one = |seed: u64| {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let family = (seed % FAMILIES.len() as u64) as usize;
         let points = FAMILIES[family](&mut random);
         // Shapes of every tenth set: triangulations are where engines may differ.

@@ -22,6 +22,9 @@ pub mod near;
 pub mod npy;
 #[cfg(feature = "progress")]
 pub mod progress;
+#[cfg(any(test, feature = "random"))]
+#[doc(hidden)]
+pub mod random;
 mod setters;
 pub mod shown;
 #[cfg(feature = "cli")]

@@ -9,16 +9,16 @@ use walpha::{
     Alpha, Balls, Decomposition, Gray, GrayRange, Pipeline, Selection, SelectionRule, Tolerance,
     Units, Weighting,
 };
+use walpha_base::random::Random;
 
 use super::{compare, in_blocks, job};
 
 /// Noise in a file: singular simplices of all kinds and thousands of components.
-fn noise(folder: &Path, [x, y, z]: [usize; 3], levels: u32) -> String {
+fn noise(folder: &Path, [x, y, z]: [usize; 3], levels: usize) -> String {
     let path = folder.join("noise.npy");
-    let mut state = 12345u32;
+    let mut random = Random::new(12345);
     let samples = ndarray::Array3::from_shape_simple_fn((z, y, x), || {
-        state = state.wrapping_mul(1664525).wrapping_add(1013904223);
-        ((state >> 8) % levels) as f32 * 1.3 - 200.0
+        random.below(levels) as f32 * 1.3 - 200.0
     });
     ndarray_npy::WriteNpyExt::write_npy(&samples, File::create(&path).unwrap()).unwrap();
     path.to_str().unwrap().to_owned()

@@ -6,8 +6,9 @@ mod order;
 use proptest::prelude::*;
 use walpha::Class;
 use walpha::shape::Engine;
+use walpha_base::random::Random;
 
-use crate::check_common::{Answer, Case, Random, definition, engine, engine_of, grid};
+use crate::check_common::{Answer, Case, definition, engine, engine_of, grid};
 use crate::common;
 
 /// All answers must be equal, and so must be the decision that there is none.

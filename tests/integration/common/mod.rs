@@ -2,7 +2,6 @@
 
 pub mod alone;
 pub mod largest;
-pub mod random;
 pub mod sites;
 pub mod told;
 

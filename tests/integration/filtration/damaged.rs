@@ -4,10 +4,10 @@ use walpha::Alpha;
 use walpha::check::schema::FiltrationFile;
 use walpha::check::{Bound, Exact, FiltrationFinding, certify_filtration, compare_filtrations};
 use walpha::ladder::Filtration;
+use walpha_base::random::Random;
 
 use super::files::{file, findings};
 use super::sets;
-use crate::common::random::Random;
 
 /// Another α.
 fn moved(alpha: Alpha, to: fn(f64) -> f64) -> Alpha {
@@ -22,7 +22,7 @@ fn one_pair(damaged: &FiltrationFile, rule: &dyn Fn(&FiltrationFinding) -> bool)
 /// What is wrong is found, and named.
 #[test]
 fn the_checker_finds_what_is_wrong() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for points in sets(24, 30) {
         let filtration = Filtration::new(points).unwrap();
         let ordered = filtration.simplices().unwrap();
@@ -34,31 +34,31 @@ fn the_checker_finds_what_is_wrong() {
             assert!(!compare_filtrations(&right, damaged).unwrap().is_equal());
         };
         let mut damage = right.clone();
-        let at = random.below(damage.values.edges.len() as u64) as usize;
+        let at = random.below(damage.values.edges.len());
         damage.values.edges[at] = moved(damage.values.edges[at], f64::next_up);
         one(&damage, &is_when(Bound::Value));
         let mut damage = right.clone();
-        let at = random.below(damage.values.cells.len() as u64) as usize;
+        let at = random.below(damage.values.cells.len());
         damage.values.cells[at] = moved(damage.values.cells[at], f64::next_down);
         one(&damage, &is_when(Bound::Value));
         let mut damage = right.clone();
         let facets = &mut damage.gabriel.as_mut().unwrap().facets;
-        let at = random.below(facets.len() as u64) as usize;
+        let at = random.below(facets.len());
         facets[at] = !facets[at];
         one(&damage, &|found| matches!(found, FiltrationFinding::Gabriel { .. }));
         let mut damage = right.clone();
         let edges = &mut damage.regular.as_mut().unwrap().edges;
-        let at = random.below(edges.len() as u64) as usize;
+        let at = random.below(edges.len());
         edges[at] = moved(edges[at], f64::next_down);
         one(&damage, &is_when(Bound::Regular));
         let mut damage = right.clone();
         let vertices = &mut damage.interior.as_mut().unwrap().vertices;
-        let at = random.below(vertices.len() as u64) as usize;
+        let at = random.below(vertices.len());
         let other = |squared: f64| if squared == f64::INFINITY { 1.0 } else { f64::INFINITY };
         vertices[at] = moved(vertices[at], other);
         one(&damage, &is_when(Bound::Interior));
         let mut damage = right.clone();
-        let at = random.below(damage.order.len() as u64 - 1) as usize;
+        let at = random.below(damage.order.len() - 1);
         damage.order.swap(at, at + 1);
         let found = findings(&damage);
         assert!(!found.is_empty());

@@ -4,9 +4,9 @@ use walpha::check::enumerate;
 use walpha::ladder::Filtration;
 use walpha::shape::ShapeOptions;
 use walpha::{Alpha, WeightedPoints, alpha_shape};
+use walpha_base::random::Random;
 
 use crate::common;
-use crate::common::random::Random;
 
 /// Lattice points that span no volume, many at one place, on one circle, or hidden.
 fn set(random: &mut Random) -> WeightedPoints {
@@ -24,7 +24,7 @@ fn set(random: &mut Random) -> WeightedPoints {
 
 #[test]
 fn flat_filtrations_are_those_of_the_definition() {
-    let mut random = Random(29);
+    let mut random = Random::new(29);
     let (mut done, mut dimensions, mut hidden, mut attached) = (0, [0; 3], 0, 0);
     while done < 200 {
         let points = set(&mut random);

@@ -12,9 +12,9 @@ use std::collections::BTreeMap;
 
 use walpha::WeightedPoints;
 use walpha::ladder::Filtration;
+use walpha_base::random::Random;
 
 use crate::common;
-use crate::common::random::Random;
 
 /// Makes a place and a weight.
 type Family = fn(&mut Random) -> ([f64; 3], f64);
@@ -30,15 +30,15 @@ const FAMILIES: [Family; 6] = [
         // Lattice points moved by one place of their last digit, or not.
         let near = |r: &mut Random| {
             let x = 1.0 + r.whole(0, 2);
-            [x, x, x.next_up(), x.next_down()][r.below(4) as usize]
+            [x, x, x.next_up(), x.next_down()][r.below(4)]
         };
         ([0; 3].map(|_| near(r)), r.whole(0, 1))
     },
 ];
 
 /// Sets of up to so many points that span a volume.
-fn sets(count: usize, most: u64) -> impl Iterator<Item = WeightedPoints> {
-    let mut random = Random(17);
+fn sets(count: usize, most: usize) -> impl Iterator<Item = WeightedPoints> {
+    let mut random = Random::new(17);
     let sets = (0..).map(move |k| {
         let family = FAMILIES[k % FAMILIES.len()];
         let size = 4 + random.below(most - 3);

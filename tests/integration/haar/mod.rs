@@ -5,6 +5,7 @@ mod truncation;
 
 use ndarray::{Array3, ArrayView3};
 use walpha::haar::{Decomposition, Tolerance, forward};
+use walpha_base::random::Random;
 
 const BOTH: [Decomposition; 2] = [Decomposition::NonStandard, Decomposition::Standard];
 
@@ -26,15 +27,10 @@ const SIZES: [[usize; 3]; 14] = [
     [11, 2, 6],
 ];
 
-/// Reproducible noise in 0..255 (xorshift).
+/// Reproducible noise in 0..255.
 fn noise([x, y, z]: [usize; 3], seed: u64) -> Array3<f32> {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-    Array3::from_shape_simple_fn((z, y, x), || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 40) as f32 / (1u64 << 24) as f32 * 255.0
-    })
+    let mut random = Random::new(seed);
+    Array3::from_shape_simple_fn((z, y, x), || random.unit() as f32 * 255.0)
 }
 
 /// The mean of `2ˡ = width` samples from `start`, as a unit vector.

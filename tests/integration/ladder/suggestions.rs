@@ -3,6 +3,7 @@
 use walpha::ladder::Filtration;
 use walpha::shape::Engine;
 use walpha::{Alpha, WeightedPoints};
+use walpha_base::random::Random;
 
 use super::{alpha, alphas, below, check, hollow_lattice, one_by_one};
 use crate::common;
@@ -60,10 +61,9 @@ fn the_critical_values_of_ill_conditioned_points_are_exact() {
 fn voids_fill_at_the_first_double() {
     let mut points = hollow_lattice();
     // Off the lattice by less than radii are known in doubles: which comes last is hard to tell.
-    let mut state = 1u64;
+    let mut random = Random::new(1);
     for x in points.positions.iter_mut().flatten() {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        *x += 1024.0 + (state >> 60) as f64 * 2f64.powi(-42);
+        *x += 1024.0 + random.below(16) as f64 * 2f64.powi(-42);
     }
     let filtration = Filtration::new(points.clone()).unwrap();
     let void = filtration.ladder(&alphas(&[0.8]), 1.0).levels[0].voids[0];

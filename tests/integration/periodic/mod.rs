@@ -11,8 +11,7 @@ mod oracle;
 
 use walpha::shape::{Engine, ShapeError, ShapeOptions, Torus};
 use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
-
-use crate::common::random::Random;
+use walpha_base::random::Random;
 
 fn alpha(squared: f64) -> Alpha {
     Alpha::from_squared(squared).unwrap()
@@ -54,14 +53,14 @@ const FCC: [[f64; 3]; 4] = [[0.0; 3], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.
 /// Points of a box: of a lattice or anywhere, weighted or not, each place once.
 fn sets(count: u64) -> impl Iterator<Item = (WeightedPoints, [f64; 3])> {
     (0..count).map(|seed| {
-        let mut random = Random(1000 + seed);
-        let sides = [0; 3].map(|_| [4.0, 5.0, 6.0, 8.0][random.below(4) as usize]);
+        let mut random = Random::new(1000 + seed);
+        let sides = [0; 3].map(|_| [4.0, 5.0, 6.0, 8.0][random.below(4)]);
         let size = 1 + random.below([12, 60, 150][seed as usize % 3]);
         let mut points = unweighted(Vec::new());
         for _ in 0..size {
             let place = [0, 1, 2].map(|k: usize| match seed % 4 {
-                0 | 1 => random.below(sides[k] as u64) as f64,
-                2 => random.below(2 * sides[k] as u64) as f64 / 2.0,
+                0 | 1 => random.below(sides[k] as usize) as f64,
+                2 => random.below(2 * sides[k] as usize) as f64 / 2.0,
                 _ => (random.below(1 << 40) as f64) / (1u64 << 40) as f64 * sides[k],
             });
             let weight = match seed % 5 {
@@ -80,7 +79,7 @@ fn sets(count: u64) -> impl Iterator<Item = (WeightedPoints, [f64; 3])> {
 
 /// Points so dense that the whole triangulation has no long edge: on a lattice, on half of one, anywhere.
 fn dense(seed: u64) -> (WeightedPoints, [f64; 3]) {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let sides = [4.0, 4.0, 5.0];
     let mut points = crystal([4, 4, 5], [&CUBIC[..], &BCC, &FCC][seed as usize % 3]);
     for (place, weight) in points.positions.iter_mut().zip(&mut points.weights) {

@@ -45,7 +45,7 @@ fn refused(bytes: &[u8]) -> String {
     read_points(&save(folder.path(), bytes), None).unwrap_err().told()
 }
 
-/// Numbers that look like chance.
+/// Numbers that look like chance: those of which the kept files are made.
 struct Chance(u64);
 
 impl Chance {

@@ -1,8 +1,9 @@
 //! Comparison of complexes.
 
+use walpha_base::random::Random;
 use walpha_check::{Alpha, Class, CompareError, Comparison, Domain, Placed, Verdict, compare};
 
-use crate::common::{Answer, Case, Random, closed, definition, drop_row, grid, shape_of};
+use crate::common::{Answer, Case, closed, definition, drop_row, grid, shape_of};
 
 /// Without weights, at α = 0.75.
 fn placed<'a>(positions: &'a [[f64; 3]], answer: &'a Answer) -> Placed<'a> {

@@ -1,10 +1,11 @@
 //! Complexes and filtrations of points in one plane, on one line, or of one alone.
 
+use walpha_base::random::Random;
 use walpha_check::schema::{ComplexFile, FiltrationFile};
 use walpha_check::{Alpha, Claim, Class, Extent, Finding, Verdict, certify_filtration, enumerate};
 
 use crate::base::findings;
-use crate::common::{Answer, Case, Random, definition, drop_row, shape_of};
+use crate::common::{Answer, Case, definition, drop_row, shape_of};
 
 /// Grids in tilted planes and on lines, full of ties, with duplicates and hidden points; single points.
 fn cases() -> Vec<Case> {

@@ -2,12 +2,13 @@
 
 use std::io::Cursor;
 
+use walpha_base::random::Random;
 use walpha_check::schema::{ComplexFile, SchemaError};
 use walpha_check::{Extent, Finding};
 use zip::CompressionMethod;
 
 use crate::archive::{archive, npy};
-use crate::common::{Random, definition, grid};
+use crate::common::{definition, grid};
 
 /// Reads a file and judges what it holds, as the commands do; also a fuzz target.
 fn judge(bytes: &[u8]) -> Result<Vec<Finding>, String> {

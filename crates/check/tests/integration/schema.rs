@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use walpha_base::random::Random;
 use walpha_check::schema::{AnyFile, Classes, ComplexFile, FiltrationFile, SchemaError};
 use walpha_check::{ByClass, Claim, Class, Extent};
 use zip::CompressionMethod;
 
 use crate::archive::{archive, npy};
-use crate::common::{Case, Random, definition, grid, shape_of};
+use crate::common::{Case, definition, grid, shape_of};
 
 fn parse(json: &str) -> Result<ComplexFile, SchemaError> {
     ComplexFile::read_json(json.as_bytes())

@@ -1,12 +1,13 @@
 //! Other choices among ties and equal points: valid, and not exact; and what only looks like one.
 
+use walpha_base::random::Random;
 use walpha_check::schema::{ComplexFile, FiltrationFile};
 use walpha_check::{
     Alpha, Class, Complex, Extent, FiltrationFinding, Finding, Verdict, certify_filtration,
 };
 
 use crate::base::findings;
-use crate::common::{Answer, Case, Random, closed, definition, drop_row, grid, shape_of};
+use crate::common::{Answer, Case, closed, definition, drop_row, grid, shape_of};
 
 /// The answer of another program: that of points whose axes are turned round and exchanged, so that
 /// the perturbation orders them otherwise.
