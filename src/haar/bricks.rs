@@ -69,6 +69,7 @@ impl Bricks {
 #[cfg(test)]
 mod tests {
     use ndarray::{Array3, s};
+    use walpha_base::random::Random;
 
     use super::*;
     use crate::haar::{Decomposition, forward};
@@ -112,11 +113,10 @@ mod tests {
     fn bricks_make_what_the_whole_makes() {
         let sizes = [(20, 33, 17), (1, 5, 70), (64, 16, 8), (9, 9, 9), (1, 1, 1), (7, 40, 2)];
         for (z, y, x) in sizes {
-            let mut state = 3u32;
+            let mut random = Random::new(3);
             let samples = Array3::from_shape_simple_fn((z, y, x), || {
-                state = state.wrapping_mul(1664525).wrapping_add(1013904223);
                 // No whole numbers: sums are rounded, and must be so in the same order.
-                (state >> 8) as f32 / 65537.3
+                random.below(1 << 24) as f32 / 65537.3
             });
             let whole = forward(samples.view(), Decomposition::NonStandard);
             let back = whole.clone().inverse();

@@ -109,17 +109,16 @@ fn squares(n: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use ndarray::{Array3, s};
+    use walpha_base::random::Random;
 
     use super::*;
 
     #[test]
     fn slabs_make_what_the_whole_makes() {
         for (z, y, x) in [(5, 7, 9), (1, 4, 3), (8, 1, 16), (17, 33, 2), (1, 1, 1)] {
-            let mut state = 5u32;
-            let samples = Array3::from_shape_simple_fn((z, y, x), || {
-                state = state.wrapping_mul(1664525).wrapping_add(1013904223);
-                f64::from(state >> 8) / 65537.3
-            });
+            let mut random = Random::new(5);
+            let samples =
+                Array3::from_shape_simple_fn((z, y, x), || random.below(1 << 24) as f64 / 65537.3);
             let mut whole = samples.clone();
             forward(&mut whole);
             let mut back = whole.clone();

@@ -218,6 +218,8 @@ fn agrees(bits: u64, known: u64, shift: u32) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use walpha_base::random::Random;
+
     use super::*;
 
     /// A search over pieces of the values, in as many rounds as it takes.
@@ -240,13 +242,9 @@ mod tests {
 
     #[test]
     fn pieces_are_cut_as_the_whole_is() {
-        let mut state = 7u64;
-        let mut random = |n: u64| {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 33) % n
-        };
-        let reals: Vec<f64> = (0..200).map(|_| random(1 << 30) as f64 / 7.0).collect();
-        let ties: Vec<f64> = (0..200).map(|_| random(5) as f64 - 2.0).collect();
+        let mut random = Random::new(7);
+        let reals: Vec<f64> = (0..200).map(|_| random.below(1 << 30) as f64 / 7.0).collect();
+        let ties: Vec<f64> = (0..200).map(|_| random.below(5) as f64 - 2.0).collect();
         let masked: Vec<f64> = reals.iter().map(|&v| if v < 5e7 { f64::NAN } else { -v }).collect();
         for values in [&reals, &ties, &masked, &vec![0.1; 60], &vec![0.0; 9], &vec![]] {
             let all = values.iter().filter(|v| !v.is_nan());

@@ -21,6 +21,9 @@ pub mod monitor;
 #[cfg(feature = "near")]
 pub mod near;
 pub mod npy;
+#[cfg(any(test, feature = "random"))]
+#[doc(hidden)]
+pub mod random;
 mod setters;
 pub mod shown;
 #[cfg(feature = "cli")]

@@ -99,16 +99,13 @@ impl FromIterator<f64> for Sum {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
 
     #[test]
     fn sums_do_not_depend_on_their_order() {
-        let mut state = 1u64;
-        let mut random = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            let exponent = (state >> 58) as i32 - 32;
-            ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * 2f64.powi(exponent)
-        };
-        let terms: Vec<f64> = (0..1000).map(|_| random()).collect();
+        let mut random = Random::new(1);
+        let mut term = || (random.unit() - 0.5) * 2f64.powi(random.below(64) as i32 - 32);
+        let terms: Vec<f64> = (0..1000).map(|_| term()).collect();
         let sum: Sum = terms.iter().copied().collect();
         let back: Sum = terms.iter().rev().copied().collect();
         let mut halves: Sum = terms[..300].iter().copied().collect();

@@ -87,17 +87,15 @@ fn rounded_center<const N: usize>(simplex: [&WeightedPoint; N]) -> Option<([f64;
 
 #[cfg(test)]
 mod tests {
+    use walpha_base::random::Random;
+
     use super::*;
     use crate::exact::orientation;
 
     /// Integers from −`most` to `most`, each draw another three.
-    fn draws(mut state: u64) -> impl FnMut(i64) -> [i64; 3] {
-        move |most| {
-            [0; 3].map(|_| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                (state >> 33) as i64 % (2 * most + 1) - most
-            })
-        }
+    fn draws(seed: u64) -> impl FnMut(i64) -> [i64; 3] {
+        let mut random = Random::new(seed);
+        move |most| [0; 3].map(|_| random.whole(-most, most) as i64)
     }
 
     fn plus(p: [i64; 3], q: [i64; 3], times: i64) -> [i64; 3] {

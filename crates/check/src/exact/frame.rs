@@ -153,36 +153,34 @@ pub(super) fn cross<T: Number>(u: &[T; 3], v: &[T; 3]) -> [T; 3] {
 
 #[cfg(test)]
 mod tests {
+    use walpha_base::random::Random;
+
     use super::super::formulas::{
         Power1, Power2, Power3, Power4, Radius2, Radius3, Radius4, Volume,
     };
     use super::*;
 
-    /// `SplitMix64`.
-    fn next(state: &mut u64) -> u64 {
-        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
     /// Small integers, and if `wild` their neighbours, halves, and numbers of any size.
-    fn number(state: &mut u64, wild: bool) -> f64 {
-        let small = (next(state) % 9) as f64 - 4.0;
-        match next(state) % 8 {
+    fn number(random: &mut Random, wild: bool) -> f64 {
+        let small = random.below(9) as f64 - 4.0;
+        match random.below(8) {
             _ if !wild => small,
             0 => small.next_up(),
             1 => small / 2.0,
-            2 => small * 10f64.powi((next(state) % 400) as i32 - 250),
-            3 => (next(state) as f64) / 1e19,
+            2 => small * 10f64.powi(random.below(400) as i32 - 250),
+            3 => random.next() as f64 / 1e19,
             _ => small,
         }
     }
 
     /// Which ways gave the same answer as big integers: doubles, `i128`.
-    fn agree<const N: usize>(formula: &impl Formula<N>, state: &mut u64, hits: &mut [usize; 3]) {
-        let wild = next(state).is_multiple_of(2);
-        let mut draw = || number(state, wild);
+    fn agree<const N: usize>(
+        formula: &impl Formula<N>,
+        random: &mut Random,
+        hits: &mut [usize; 3],
+    ) {
+        let wild = random.below(2) == 0;
+        let mut draw = || number(random, wild);
         let mut point = || WeightedPoint { position: [0; 3].map(|_| draw()), weight: draw() };
         let (origin, others) = (point(), [0; N].map(|_| point()));
         let alpha = draw();
@@ -202,17 +200,17 @@ mod tests {
 
     #[test]
     fn all_kinds_of_number_agree() {
-        let mut state = 7;
+        let mut random = Random::new(7);
         let mut hits = [[0; 3]; 8];
         for _ in 0..4000 {
-            agree(&Volume, &mut state, &mut hits[0]);
-            agree(&Power1, &mut state, &mut hits[1]);
-            agree(&Power2, &mut state, &mut hits[2]);
-            agree(&Power3, &mut state, &mut hits[3]);
-            agree(&Power4, &mut state, &mut hits[4]);
-            agree(&Radius2, &mut state, &mut hits[5]);
-            agree(&Radius3, &mut state, &mut hits[6]);
-            agree(&Radius4, &mut state, &mut hits[7]);
+            agree(&Volume, &mut random, &mut hits[0]);
+            agree(&Power1, &mut random, &mut hits[1]);
+            agree(&Power2, &mut random, &mut hits[2]);
+            agree(&Power3, &mut random, &mut hits[3]);
+            agree(&Power4, &mut random, &mut hits[4]);
+            agree(&Radius2, &mut random, &mut hits[5]);
+            agree(&Radius3, &mut random, &mut hits[6]);
+            agree(&Radius4, &mut random, &mut hits[7]);
         }
         for [_, quick, small] in hits {
             assert!(quick > 1000 && small > 1000, "{hits:?}");

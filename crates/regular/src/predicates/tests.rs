@@ -1,30 +1,24 @@
+use walpha_base::random::Random;
+
 use super::*;
 
-/// `SplitMix64`.
-fn next(state: &mut u64) -> u64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let z = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
-}
-
 /// Small integers, and if `wild` their neighbours, halves, and numbers of any size.
-fn number(state: &mut u64, wild: bool) -> f64 {
-    let small = (next(state) % 9) as f64 - 4.0;
-    match next(state) % 8 {
+fn number(random: &mut Random, wild: bool) -> f64 {
+    let small = random.below(9) as f64 - 4.0;
+    match random.below(8) {
         _ if !wild => small,
         0 => small.next_up(),
         1 => small / 2.0,
-        2 => small * 10f64.powi((next(state) % 240) as i32 - 120),
-        3 => next(state) as f64 / 1e19,
+        2 => small * 10f64.powi(random.below(240) as i32 - 120),
+        3 => random.next() as f64 / 1e19,
         _ => small,
     }
 }
 
 /// Five points; the lattice is theirs.
-fn draw(state: &mut u64, wild: bool) -> (Vec<[f64; 3]>, Vec<f64>) {
-    let positions = (0..5).map(|_| [0; 3].map(|_| number(state, wild))).collect();
-    (positions, (0..5).map(|_| number(state, wild)).collect())
+fn draw(random: &mut Random, wild: bool) -> (Vec<[f64; 3]>, Vec<f64>) {
+    let positions = (0..5).map(|_| [0; 3].map(|_| number(random, wild))).collect();
+    (positions, (0..5).map(|_| number(random, wild)).collect())
 }
 
 fn agree<const N: usize>(predicates: &Predicates<'_>, simplex: [u32; N], alpha: f64) -> [bool; 2] {
@@ -52,18 +46,18 @@ fn agree<const N: usize>(predicates: &Predicates<'_>, simplex: [u32; N], alpha: 
 
 #[test]
 fn doubles_and_integers_agree() {
-    let mut state = 3;
+    let mut random = Random::new(3);
     let mut bounded = 0;
     for round in 0..6000 {
         let wild = round % 2 == 1;
-        let (positions, weights) = draw(&mut state, wild);
+        let (positions, weights) = draw(&mut random, wild);
         let predicates = Predicates::new(&positions, &weights);
         let flat = |rays: &[u32]| {
             let rays: Vec<_> =
                 rays.iter().map(|&v| ray(predicates.site(0), predicates.site(v)).0).collect();
             quotient(&rays).1 <= 1e-6
         };
-        let alpha = number(&mut state, wild);
+        let alpha = number(&mut random, wild);
         // Simplices without volume have no sphere; triangulations have none of them.
         if !flat(&[1]) && !flat(&[1, 2]) && !flat(&[1, 2, 3]) {
             bounded += usize::from(agree(&predicates, [0, 1], alpha)[0]);

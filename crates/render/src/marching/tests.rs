@@ -1,6 +1,7 @@
 use std::collections::HashMap;
 
 use ndarray::Array3;
+use walpha_base::random::Random;
 
 use super::*;
 
@@ -32,17 +33,6 @@ fn assert_watertight(surface: &Isosurface, dims: [usize; 3]) {
         let in_border =
             (0..3).any(|k| p[k] == q[k] && (p[k] == 0.0 || p[k] == (dims[k] - 1) as f64));
         assert!(count.contains_key(&(b, a)) || in_border, "edge {p:?}-{q:?} is open");
-    }
-}
-
-/// A generator that is the same everywhere (xorshift, Marsaglia 2003).
-fn noise(seed: u64) -> impl FnMut() -> f32 {
-    let mut state = seed;
-    move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 40) as f32 / (1 << 24) as f32
     }
 }
 
@@ -116,9 +106,9 @@ fn every_case_meets_every_neighbour_without_a_crack() {
 #[test]
 fn noise_gives_a_closed_manifold() {
     for seed in 1..20 {
-        let mut next = noise(seed);
+        let mut random = Random::new(seed);
         let mut field = Array3::from_elem((9, 8, 7), -1.0_f32);
-        field.slice_mut(s![1..8, 1..7, 1..6]).mapv_inplace(|_| next());
+        field.slice_mut(s![1..8, 1..7, 1..6]).mapv_inplace(|_| random.unit() as f32);
         let surface = Isosurface::new(field.view(), 0.5).unwrap();
         let count = directed_edges(&surface);
         assert!(!count.is_empty());

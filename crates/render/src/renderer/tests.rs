@@ -24,7 +24,7 @@ fn ball(centre: [f64; 3], radius: f64, colour: Rgb) -> Scene {
     Scene { balls: vec![Ball { centre, radius, colour }], ..Scene::default() }
 }
 
-/// Everything at once, reproducibly scattered.
+/// Everything at once, scattered as it was when the sum of its pixels was taken.
 fn crowd() -> Scene {
     let mut state = 1_u64;
     let mut next = || {

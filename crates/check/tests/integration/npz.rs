@@ -1,0 +1,87 @@
+//! NPZ as other programs write it: any number type, byte order and order of axes.
+
+use std::io::Cursor;
+
+use walpha_check::schema::{ComplexFile, SchemaError};
+use walpha_check::{Alpha, Class};
+use zip::CompressionMethod;
+
+use crate::archive::{archive, npy};
+
+/// A tetrahedron whose cells are an array of this type and data.
+fn read(descr: &str, cells: &[u8]) -> Result<ComplexFile, SchemaError> {
+    let points: [[f32; 3]; 4] = [[0.0; 3], [1.5, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, -1.0]];
+    let points: Vec<u8> = points.as_flattened().iter().flat_map(|x| x.to_be_bytes()).collect();
+    let arrays = [
+        ("points", npy(">f4", "(4, 3)", &points)),
+        ("alpha", npy("<i8", "()", &(-2i64).to_le_bytes())),
+        ("cells", npy(descr, "(1, 4)", cells)),
+        ("cell_classes", npy("|u1", "(1,)", &[1])),
+    ];
+    ComplexFile::read_npz(Cursor::new(archive(&arrays, CompressionMethod::Deflated)))
+}
+
+#[test]
+fn any_number_type_will_do() {
+    let cell = [0u8, 3, 1, 2];
+    let little = |width: usize| -> Vec<u8> {
+        cell.iter().flat_map(|&v| [vec![v], vec![0; width - 1]].concat()).collect()
+    };
+    let big = |width: usize| -> Vec<u8> {
+        cell.iter().flat_map(|&v| [vec![0; width - 1], vec![v]].concat()).collect()
+    };
+    let float = |bytes: fn(u8) -> Vec<u8>| cell.iter().flat_map(|&v| bytes(v)).collect::<Vec<u8>>();
+    for (descr, data) in [
+        ("|u1", little(1)),
+        ("|i1", little(1)),
+        ("<u2", little(2)),
+        ("<i2", little(2)),
+        ("<u4", little(4)),
+        ("<i4", little(4)),
+        ("<u8", little(8)),
+        ("<i8", little(8)),
+        (">u2", big(2)),
+        (">i2", big(2)),
+        (">u4", big(4)),
+        (">i4", big(4)),
+        (">u8", big(8)),
+        (">i8", big(8)),
+        ("<f4", float(|v| f32::from(v).to_le_bytes().into())),
+        (">f4", float(|v| f32::from(v).to_be_bytes().into())),
+        ("<f8", float(|v| f64::from(v).to_le_bytes().into())),
+        (">f8", float(|v| f64::from(v).to_be_bytes().into())),
+    ] {
+        let file = read(descr, &data).unwrap();
+        assert_eq!(file.cells, Some(vec![[0, 3, 1, 2]]), "{descr}");
+        assert_eq!(file.points[1..], [[1.5, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, -1.0]]);
+        assert_eq!(file.alpha, Alpha::from_squared(-2.0).unwrap());
+        assert_eq!(file.classes.cells, Some(vec![Class::Interior]));
+    }
+}
+
+#[test]
+fn other_types_and_numbers_are_refused() {
+    for (descr, data, part) in [
+        ("<c16", vec![0; 64], "elements of type <c16"),
+        ("<u2", vec![0; 32], "32 bytes of elements, expected 8"),
+        ("|i1", vec![0, 1, 2, 255], "`cells` holds -1, expected a point number"),
+        ("<f4", [0.5f32; 4].map(f32::to_le_bytes).concat(), "`cells` holds 0.5"),
+    ] {
+        let error = read(descr, &data).unwrap_err().to_string();
+        assert!(error.contains(part), "{descr}: {error}");
+    }
+}
+
+/// The first axis fastest, as `numpy.asfortranarray` makes it.
+#[test]
+fn columns_may_come_first() {
+    let cells: Vec<u8> = [[0, 4], [1, 5], [2, 6], [3, 7]].concat();
+    let mut array = npy("|u1", "(2, 4)", &cells);
+    let order = array.windows(5).position(|word| word == b"False").unwrap();
+    array[order..order + 5].copy_from_slice(b"True ");
+    let alpha = npy("<f8", "()", &f64::INFINITY.to_le_bytes());
+    let bytes = archive(&[("cells", array), ("alpha", alpha)], CompressionMethod::Stored);
+    let file = ComplexFile::read_npz(Cursor::new(bytes)).unwrap();
+    assert_eq!(file.cells, Some(vec![[0, 1, 2, 3], [4, 5, 6, 7]]));
+    assert_eq!(file.alpha, Alpha::INFINITE);
+}

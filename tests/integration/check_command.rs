@@ -1,0 +1,228 @@
+//! `walpha check` and `walpha compare`.
+
+use std::path::Path;
+
+use crate::common;
+
+/// What has no sphere is a finding, and an exit code of its own.
+#[test]
+fn corners_in_one_place_are_a_finding() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = r#""points":[[0,0,0],[0,0,0],[1,0,0],[0,1,0],[0,0,1]],"alpha":1"#;
+    for rows in [r#""facets":[[0,1,2]]"#, r#""edges":[[0,1]]"#, r#""cells":[[0,1,2,3]]"#] {
+        std::fs::write(folder.path().join("c.json"), format!("{{{points},{rows}}}")).unwrap();
+        let (code, stdout, stderr) = common::run(folder.path(), &["check", "c.json"]);
+        assert_eq!(code, 3, "{rows}: {stdout}{stderr}");
+    }
+}
+
+/// The command says what it compared, and fails where that differs.
+#[test]
+fn the_command_compares_weights_and_alpha() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, weight: f64, alpha: f64| {
+        let points = "[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]";
+        let text = format!(
+            r#"{{"points":{points},"weights":[{weight},0,0,0],"alpha":{alpha},"cells":[[0,1,2,3]]}}"#
+        );
+        std::fs::write(folder.path().join(name), text).unwrap();
+    };
+    write("a.json", 0.0, 1.0);
+    write("heavy.json", 0.25, 1.0);
+    write("high.json", 0.0, 2.0);
+    for (other, code, words) in [
+        ("a.json", 0, "equal in all that was compared"),
+        ("heavy.json", 3, "weights that differ: 1"),
+        ("high.json", 3, "α: 1 in A, 2 in B"),
+    ] {
+        let (got, stdout, _) = common::run(folder.path(), &["compare", "a.json", other]);
+        assert_eq!(got, code, "{stdout}");
+        assert!(stdout.contains(words), "{stdout}");
+        assert!(stdout.contains("not compared: "), "{stdout}");
+    }
+}
+
+/// An unstructured grid as other programs write it, as text.
+fn write_grid(path: &Path, points: &[[f64; 3]], cells: &[Vec<usize>]) {
+    let numbers = |rows: Vec<String>| rows.join("\n");
+    let places = points.iter().map(|[x, y, z]| format!("{x:?} {y:?} {z:?}")).collect();
+    let rows = cells.iter().map(|cell| format!("{cell:?}").replace([',', '[', ']'], " ")).collect();
+    let ends = cells.iter().scan(0, |end, cell| {
+        *end += cell.len();
+        Some(end.to_string())
+    });
+    let kinds = cells.iter().map(|cell| [1, 3, 5, 10, 14, 0, 0, 12][cell.len() - 1].to_string());
+    let array = |kind: &str, name: &str, components: usize, text: String| {
+        format!(
+            "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
+             format=\"ascii\">\n{text}\n</DataArray>\n"
+        )
+    };
+    let text = format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" \
+         byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" \
+         NumberOfCells=\"{}\">\n<Points>\n{}</Points>\n<Cells>\n{}{}{}</Cells>\n</Piece>\n\
+         </UnstructuredGrid>\n</VTKFile>\n",
+        points.len(),
+        cells.len(),
+        array("Float64", "Points", 3, numbers(places)),
+        array("Int64", "connectivity", 1, numbers(rows)),
+        array("Int64", "offsets", 1, numbers(ends.collect())),
+        array("UInt8", "types", 1, numbers(kinds.collect())),
+    );
+    std::fs::write(path, text).unwrap();
+}
+
+/// A lattice of n³ points, and each cube of it cut into six cells around its diagonal: a Delaunay
+/// triangulation, and not the one of the rule.
+fn cubes(n: usize) -> (Vec<[f64; 3]>, Vec<Vec<usize>>) {
+    let at = |[x, y, z]: [usize; 3]| (z * n + y) * n + x;
+    let points = (0..n * n * n).map(|i| [i % n, i / n % n, i / n / n].map(|k| k as f64)).collect();
+    let mut cells = Vec::new();
+    for corner in 0..n * n * n {
+        let corner = [corner % n, corner / n % n, corner / n / n];
+        if corner.iter().any(|&k| k + 1 == n) {
+            continue;
+        }
+        for axes in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+            let mut at_corner = corner;
+            let mut cell = vec![at(corner)];
+            for axis in axes {
+                at_corner[axis] += 1;
+                cell.push(at(at_corner));
+            }
+            cells.push(cell);
+        }
+    }
+    (points, cells)
+}
+
+/// A mesh is judged by its cells, and what was judged is said first.
+#[test]
+fn cells_of_a_mesh_are_judged() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (points, cells) = cubes(4);
+    write_grid(&folder.join("cubes.vtu"), &points, &cells);
+    let fewer: Vec<_> =
+        cells.iter().enumerate().filter(|(i, _)| i % 40 != 7).map(|(_, c)| c.clone()).collect();
+    assert_eq!(fewer.len(), cells.len() - 4);
+    write_grid(&folder.join("bad.vtu"), &points, &fewer);
+    let judge = |args: &[&str]| common::run(folder, &[&["check"], args].concat());
+
+    let (code, stdout, stderr) = judge(&["cubes.vtu"]);
+    assert_eq!(code, 0, "{stdout}{stderr}");
+    assert!(stdout.starts_with("judged    the 162 tetrahedra of cubes.vtu"), "{stdout}");
+    assert!(stdout.contains("verdict   valid: another choice at "), "{stdout}");
+    let (code, stdout, stderr) = judge(&["cubes.vtu", "--ties", "exact"]);
+    assert_eq!(code, 3, "{stdout}{stderr}");
+    assert!(stdout.contains("inside by the perturbation"), "{stdout}");
+    let (code, stdout, stderr) = judge(&["bad.vtu", "--json"]);
+    assert_eq!(code, 3, "{stdout}{stderr}");
+    let facts: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!((&facts["verdict"], &facts["valid"]), (&"wrong".into(), &false.into()), "{facts:#}");
+    assert_eq!(facts["simplices"][0], 158);
+    let info = common::json(folder, &["info", "bad.vtu"]);
+    assert_eq!(info["cells"], serde_json::json!([{ "kind": "tetrahedra", "count": 158 }]));
+
+    // With an α, all that is listed is in the shape: of cubes of side 1, from 3/4 on.
+    assert_eq!(judge(&["cubes.vtu", "--alpha", "0.75"]).0, 0);
+    assert_eq!(judge(&["cubes.vtu", "--alpha", "0.74"]).0, 3);
+    let (code, _, stderr) = judge(&["cubes.vtu", "--weights", "common=0"]);
+    assert_eq!(code, 2, "{stderr}");
+}
+
+/// Our own files hold α and classes.
+#[test]
+fn our_meshes_are_judged_as_the_shapes_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let make = ["shape", "sample:phantom@16", "--weights", "min-max", "--alpha", "3"];
+    common::ok(folder, &[&make[..], &["-o", "shape.vtu"]].concat());
+    common::ok(folder, &[&make[..], &["--exterior", "-o", "whole.vtu"]].concat());
+    for (file, extent) in [("shape.vtu", "shape"), ("whole.vtu", "whole")] {
+        let facts = common::json(folder, &["check", file]);
+        assert_eq!((&facts["verdict"], &facts["extent"]), (&"exact".into(), &extent.into()));
+        let made = common::json(folder, &[&make[..], &["--exterior"]].concat());
+        let listed = |k: usize| facts["simplices"][k].as_u64().unwrap();
+        let inside = made["shape"]["cells"]["interior"].as_u64();
+        if let Some(inside) = inside.filter(|_| extent == "shape") {
+            assert_eq!(listed(0), inside, "{made:#}");
+        }
+        assert!(listed(0) > 100);
+    }
+    // An α that is changed is found.
+    let bytes = std::fs::read(folder.join("shape.vtu")).unwrap();
+    let alpha = 3f64.to_le_bytes();
+    let at = bytes.windows(8).position(|window| window == alpha).unwrap();
+    let mut other = bytes.clone();
+    other[at..at + 8].copy_from_slice(&2f64.to_le_bytes());
+    std::fs::write(folder.join("other.vtu"), other).unwrap();
+    assert_eq!(common::run(folder, &["check", "other.vtu"]).0, 3);
+    let (code, _, stderr) = common::run(folder, &["check", "shape.vtu", "--alpha", "3"]);
+    assert_eq!(code, 2, "{stderr}");
+}
+
+/// What lists cells that are not judged is refused, not judged by its points; a cloud of points is judged by
+/// our own shape of it.
+#[test]
+fn what_is_not_judged_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let make = ["shape", "sample:phantom@16", "--weights", "common=0", "--alpha", "3"];
+    let outputs = ["-o", "s.ply", "-o", "s.off", "-o", "s.obj", "-o", "s.stl", "-o", "s.vtp"];
+    common::ok(folder, &[&make[..], &outputs].concat());
+    let (points, _) = cubes(2);
+    write_grid(&folder.join("hexahedra.vtu"), &points, &[vec![0, 1, 3, 2, 4, 5, 7, 6]]);
+    for (file, kind) in [
+        ("s.ply", "faces"),
+        ("s.off", "faces"),
+        ("s.obj", "faces"),
+        ("s.stl", "facets"),
+        ("s.vtp", "polygons"),
+        ("hexahedra.vtu", "hexahedra"),
+    ] {
+        let (code, stdout, stderr) = common::run(folder, &["check", file]);
+        assert_eq!((code, stdout.as_str()), (1, ""), "{file}: {stderr}");
+        assert!(stderr.contains(kind) && stderr.contains("walpha points"), "{file}: {stderr}");
+        let info = common::json(folder, &["info", file]);
+        assert_eq!(info["cells"][0]["kind"], kind, "{info:#}");
+    }
+    write_grid(&folder.join("cloud.vtu"), &points, &(0..8).map(|v| vec![v]).collect::<Vec<_>>());
+    let stdout = common::ok(folder, &["check", "cloud.vtu", "--alpha", "1"]);
+    assert!(stdout.starts_with("judged    our own shape of cloud.vtu"), "{stdout}");
+    assert!(common::json(folder, &["info", "cloud.vtu"])["cells"].is_null());
+    for (cells, code, words) in [
+        (vec![vec![0, 1, 2, 8]], 1, "names point 8"),
+        (vec![vec![0, 1, 2, 3], vec![0, 1, 2, 4]], 3, "verdict   wrong"),
+    ] {
+        write_grid(&folder.join("wrong.vtu"), &points, &cells);
+        let (got, stdout, stderr) = common::run(folder, &["check", "wrong.vtu"]);
+        assert_eq!(got, code, "{stdout}{stderr}");
+        assert!((stdout + &stderr).contains(words), "{stderr}");
+    }
+}
+
+/// Points in a plane, as the shape and as its file.
+#[test]
+fn flat_sets_are_judged() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    std::fs::write(folder.join("t.csv"), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n1,1,0\n1.25,0.5,0\n")
+        .unwrap();
+    let mut sizes = Vec::new();
+    for alpha in ["inf", "0", "0.25", "0.5", "1.1", "-1"] {
+        for exterior in [&[][..], &["--exterior"]] {
+            let make =
+                ["shape", "t.csv", "--weights", "common=0", "--alpha", alpha, "-o", "t.json"];
+            common::ok(folder, &[&make[..], exterior].concat());
+            let facts = common::json(folder, &["check", "t.json"]);
+            assert_eq!(facts["verdict"], "exact", "{alpha} {exterior:?}: {facts:#}");
+            sizes.push(facts["simplices"].clone());
+        }
+        let make = ["check", "t.csv", "--weights", "common=0", "--alpha", alpha, "--enumerate"];
+        assert_eq!(common::json(folder, &make)["verdict"], "exact");
+    }
+    sizes.dedup();
+    assert!(sizes.len() > 4, "{sizes:?}");
+}

@@ -1,0 +1,141 @@
+//! `walpha convert`: a volume as Zarr, and nothing half-written.
+
+use std::fs::{self, File};
+use std::path::Path;
+
+use ndarray::Array3;
+use ndarray_npy::WriteNpyExt;
+use walpha::volume::{ReadOptions, VolumeWriter, open, phantom};
+use walpha::{Coordinates, Frame, Volume};
+
+use crate::common::{json, ok, run};
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap().map(Result::unwrap);
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+fn read(at: &Path, name: &str) -> Volume {
+    open(at.join(name).to_str().unwrap(), &ReadOptions::default()).unwrap()
+}
+
+fn write(at: &Path, name: &str, volume: &Volume) {
+    let path = at.join(name);
+    let writer = VolumeWriter::of(&path).unwrap();
+    writer.write(volume, &mut File::create(&path).unwrap()).unwrap();
+}
+
+/// No multiple of a chunk along any axis, all samples different from their neighbours.
+fn numbers<T>(number: impl Fn(usize) -> T) -> Array3<T> {
+    let mut next = 0..;
+    Array3::from_shape_simple_fn((67, 130, 71), || number(next.next().unwrap()))
+}
+
+#[test]
+fn values_spacing_and_origin_come_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let samples = numbers(|i| (i * 7919 % 100_003) as f32 * 0.37 - 1e4);
+    let frame =
+        Frame::from_axes([-31.7, 12.25, 1e3], [[0.4, 0., 0.], [0., 0.7, 0.], [0., 0., 1.3]]);
+    let frame = frame.unwrap().with_coordinates(Coordinates::PATIENT);
+    let volume = Volume::new(samples, frame).unwrap();
+    for name in ["scan.mha", "scan.nrrd", "scan.nii", "scan.nii.gz"] {
+        write(at, name, &volume);
+        let facts = json(at, &["convert", name, "-o", "scan.zarr"]);
+        assert_eq!(facts["dims"], serde_json::json!([71, 130, 67]), "{name}");
+        let (before, after) = (read(at, name), read(at, "scan.zarr"));
+        assert_eq!(before.as_slice(), volume.as_slice(), "{name}");
+        assert_eq!(after.as_slice(), before.as_slice(), "{name}");
+        let (a, b) = (after.frame(), before.frame());
+        assert_eq!((a.spacing, a.origin), (b.spacing, b.origin), "{name}");
+        assert_eq!(a.coordinates.unit, b.coordinates.unit, "{name}");
+        fs::remove_dir_all(at.join("scan.zarr")).unwrap();
+    }
+}
+
+/// Small integers stay small, and a region of a converted volume is the region of the volume.
+#[test]
+fn types_and_regions_come_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    numbers(|i| (i % 251) as u8).write_npy(File::create(at.join("u8.npy")).unwrap()).unwrap();
+    numbers(|i| (i * 31) as i16).write_npy(File::create(at.join("i16.npy")).unwrap()).unwrap();
+    numbers(|i| (i * 77) as u16).write_npy(File::create(at.join("u16.npy")).unwrap()).unwrap();
+    numbers(|i| i as f64 * 1e-3).write_npy(File::create(at.join("f64.npy")).unwrap()).unwrap();
+    for (name, kind) in [("u8", "uint8"), ("i16", "int16"), ("u16", "uint16"), ("f64", "float32")] {
+        let (npy, zarr) = (format!("{name}.npy"), format!("{name}.zarr"));
+        ok(at, &["convert", &npy, "-o", &zarr]);
+        assert_eq!(read(at, &zarr).as_slice(), read(at, &npy).as_slice(), "{name}");
+        let metadata = fs::read_to_string(at.join(&zarr).join("zarr.json")).unwrap();
+        assert!(metadata.contains(&format!("\"data_type\": \"{kind}\"")), "{metadata}");
+    }
+    ok(at, &["convert", "i16.npy", "--roi", "3:70,60:,5:66", "-o", "part.zarr"]);
+    let whole = numbers(|i| f32::from((i * 31) as i16));
+    let part = whole.slice(ndarray::s![5..66, 60.., 3..70]);
+    assert!(read(at, "part.zarr").as_slice().iter().eq(part.iter()));
+}
+
+#[test]
+fn a_shape_of_the_converted_volume_is_that_of_the_volume() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "head.nrrd", &phantom(70).unwrap());
+    ok(at, &["convert", "head.nrrd", "-o", "head.zarr"]);
+    let shape = |input: &str| {
+        let args = ["shape", input, "--weights", "min-max", "--blocks", "5", "-o", "out.pvtp"];
+        let mut report = json(at, &args);
+        for name in ["input", "files", "seconds", "peak_memory_bytes"] {
+            report.as_object_mut().unwrap().remove(name).expect(name);
+        }
+        report
+    };
+    assert_eq!(shape("head.zarr"), shape("head.nrrd"));
+}
+
+#[test]
+fn nothing_is_written_over_or_left_half_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let refused = |args: &[&str], expected: i32, why: &str| {
+        let (code, _, stderr) = run(at, &[&["convert"], args].concat());
+        assert!(code == expected && stderr.contains(why), "{args:?}: {code}\n{stderr}");
+        assert!(stderr.contains("\n next: "), "{stderr}");
+    };
+    refused(&["sample:phantom@20", "-o", "out.nrrd"], 2, ".zarr, the one format");
+    refused(&["sample:phantom@20", "--gray", "0..9", "-o", "out.zarr"], 2, "as they are");
+    refused(&["nowhere.nrrd", "-o", "out.zarr"], 1, "nowhere.nrrd");
+    refused(&["sample:phantom@20", "-o", "nowhere/out.zarr"], 1, "nowhere");
+    assert_eq!(names(at), [""; 0]);
+
+    // Another folder of that name.
+    fs::create_dir(at.join("kept.zarr")).unwrap();
+    fs::write(at.join("kept.zarr/mine"), "mine").unwrap();
+    refused(&["sample:phantom@20", "-o", "kept.zarr"], 1, "kept.zarr");
+    assert_eq!(names(&at.join("kept.zarr")), ["mine"]);
+    fs::remove_dir_all(at.join("kept.zarr")).unwrap();
+
+    // A chunk in the middle is damaged: found when others have been written.
+    ok(at, &["convert", "sample:phantom@130", "-o", "in.zarr"]);
+    let chunk = at.join("in.zarr/c/1/1/1");
+    assert!(chunk.exists(), "{:?}", names(&at.join("in.zarr")));
+    fs::write(chunk, "no zstd").unwrap();
+    refused(&["in.zarr", "-o", "out.zarr"], 1, "in.zarr");
+    assert_eq!(names(at), ["in.zarr"]);
+}
+
+/// What a killed run left does not come into the next one's result.
+#[test]
+fn leavings_of_a_killed_run_are_no_part_of_the_next() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let part = at.join(".walpha-out.zarr.part");
+    fs::create_dir_all(part.join("c/9")).unwrap();
+    fs::write(part.join("c/9/9"), "old").unwrap();
+    ok(at, &["convert", "sample:phantom@20", "-o", "out.zarr"]);
+    assert_eq!(names(at), ["out.zarr"]);
+    assert_eq!(names(&at.join("out.zarr/c")), ["0"]);
+}

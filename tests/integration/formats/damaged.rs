@@ -1,0 +1,160 @@
+//! A row for each damage: the file, and what its error says.
+
+use ndarray::Array3;
+
+use super::files::*;
+
+#[test]
+fn a_damaged_nrrd_says_what_is_wrong() {
+    let n = |from: &'static str, to: &'static str| nrrd(move |h| h.replace(from, to), &shorts());
+    refuses("v.nrrd", "hello", &["no NRRD file"]);
+    refuses("v.nrrd", NRRD, &["truncated"]);
+    refuses("v.nrrd", nrrd(|h| h, &shorts()[1..]), &["24 bytes, but 23 follow", "truncated"]);
+    refuses("v.nrrd", nrrd(|h| h, &[&shorts()[..], b"x"].concat()), &["25 follow", "too long"]);
+    refuses("v.nrrd", n("short", "block"), &["type block"]);
+    refuses("v.nrrd", n("raw", "hex"), &["hex", "not read"]);
+    refuses("v.nrrd", n("raw", "gzip"), &["encoded data"]);
+    refuses("v.nrrd", n("endian: little\n", ""), &["endian"]);
+    refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 3 2"), &["2 sizes"]);
+    refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 3 0 2"), &["empty"]);
+    refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 3 2 -2"), &["not numbers"]);
+    refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 3000000 2000000 2"), &["too many"]);
+    refuses("v.nrrd", n("sizes: 3 2 2", "sizes: 1600 1600 1600"), &["but 24 follow"]);
+    refuses("v.nrrd", n("3\nsizes: 3 2 2", "4\nsizes: 3 2 2 2"), &["2 volumes", "`frame`"]);
+    refuses("v.nrrd", n("key:=value", "kinds: RGB-color space space"), &["only scalar"]);
+    refuses("v.nrrd", n("key:=value", "spacings: 1 0 1"), &["spacing must not be 0"]);
+    refuses("v.nrrd", n("key:=value", "space origin: (1,2"), &["not a vector"]);
+    refuses("v.nrrd", n("key:=value", "line skip: 3"), &["line skip"]);
+    refuses("v.nrrd", n("key:=value", "no field"), &["not a field"]);
+    refuses("v.nrrd", n("key:=value", "type: short"), &["twice"]);
+    refuses("v.nrrd", n("key:=value", "data file: a%d 1 9999999 1"), &["not a row"]);
+    refuses("v.nrrd", nrrd(|h| h.replace("raw", "text"), b"1 2 3"), &["cannot hold"]);
+    let words = "1 2 3 4 5 6 7 8 9 10 11 twelve";
+    refuses(
+        "v.nrrd",
+        nrrd(|h| h.replace("raw", "text"), words.as_bytes()),
+        &["twelve", "number 12"],
+    );
+    let large = words.replace("twelve", "40000");
+    refuses("v.nrrd", nrrd(|h| h.replace("raw", "text"), large.as_bytes()), &["no i16"]);
+}
+
+#[test]
+fn a_damaged_metaimage_says_what_is_wrong() {
+    let m = |from: &str, to: &str, tail: &str| {
+        [MHA.replace(from, to).as_bytes(), tail.as_bytes(), &shorts()].concat()
+    };
+    let local = "ElementDataFile = LOCAL\n";
+    refuses("v.mha", "hello", &["no MetaImage"]);
+    refuses("v.mha", MHA, &["ElementDataFile"]);
+    refuses("v.mha", m("Image", "Tube", local), &["type Tube"]);
+    refuses("v.mha", m("NDims = 3", "NDims = 4", local), &["4 sizes"]);
+    refuses("v.mha", m("NDims = 3", "NDims = 5", local), &["NDims = 5"]);
+    refuses("v.mha", m("3 2 2", "3 2", local), &["DimSize = 3 2"]);
+    refuses("v.mha", m("3 2 2", "3 2 3", local), &["36 bytes, but 24"]);
+    refuses("v.mha", m("MET_SHORT", "MET_STRING", local), &["MET_STRING"]);
+    refuses("v.mha", m("NDims", "ElementNumberOfChannels = 3\nNDims", local), &["only scalar"]);
+    refuses("v.mha", m("NDims", "CompressedData = True\nNDims", local), &["encoded data"]);
+    refuses("v.mha", m("NDims", "ElementSpacing = 1 2\nNDims", local), &["not 3 numbers"]);
+}
+
+#[test]
+fn a_damaged_vtk_says_what_is_wrong() {
+    let v = |from: &str, to: &str| VTK.replace(from, to) + "0 1 2 3 4 5 6 7 8 9 10 11\n";
+    refuses("v.vtk", "hello", &["not a legacy VTK"]);
+    refuses("v.vtk", v("STRUCTURED_POINTS", "POLYDATA"), &["POLYDATA"]);
+    refuses("v.vtk", v("s short", "s short 3"), &["only scalar"]);
+    refuses("v.vtk", v("s short", "s string"), &["type string"]);
+    refuses("v.vtk", v("SCALARS", "VECTORS"), &["only scalar"]);
+    refuses("v.vtk", v("LOOKUP_TABLE default", "0 0"), &["LOOKUP_TABLE"]);
+    refuses("v.vtk", v("3 2 2", "3 2 3"), &["12 values for 3×2×3", "truncated"]);
+    refuses("v.vtk", v("3 2 2", "3 1 2"), &["12 values for 3×1×2"]);
+    refuses("v.vtk", v("3 2 2", "3 2"), &["not 3 numbers"]);
+    refuses("v.vtk", v("ASCII", "BINARY"), &["bytes behind the 24"]);
+    refuses("v.vtk", v("ASCII\n", ""), &["no ASCII or BINARY"]);
+    refuses("v.vtk", &VTK[..90], &["\"SPACIN\""]);
+}
+
+#[test]
+fn a_damaged_vti_says_what_is_wrong() {
+    let text = "format=\"ascii\">0 1 2 3 4 5 6 7 8 9 10 11";
+    let x = |from: &str, to: &str| {
+        String::from_utf8(vti("", text, b"")).unwrap().replace(from, to).into_bytes()
+    };
+    refuses("v.vti", "hello", &["v.vti"]);
+    refuses("v.vti", x("ImageData", "PolyData"), &["PolyData"]);
+    refuses("v.vti", x("Int16", "String"), &["String"]);
+    refuses("v.vti", x("Name=", "NumberOfComponents=\"3\" Name="), &["only scalar"]);
+    refuses("v.vti", x(" 10 11<", " 1011<"), &["but has 11"]);
+    refuses("v.vti", x(" 11<", " 11 12<"), &["more follow"]);
+    refuses("v.vti", x("Piece Extent=\"0 2", "Piece Extent=\"0 1"), &["larger image"]);
+    refuses("v.vti", x("</VTKFile>", ""), &["inside its element VTKFile"]);
+    refuses("v.vti", x("LittleEndian", "MiddleEndian"), &["MiddleEndian"]);
+    refuses("v.vti", x("ascii", "appended"), &["no appended data"]);
+    refuses("v.vti", vti("compressor=\"vtkLZMADataCompressor\"", text, b""), &["vtkLZMA"]);
+    refuses("v.vti", vti("", "format=\"binary\">GAAA", b""), &["truncated"]);
+    refuses("v.vti", vti("", "format=\"binary\">////////AAAA", b""), &["4294967295 bytes"]);
+    let lying = [u32::MAX, u32::MAX, 0, 1].map(u32::to_le_bytes).concat();
+    let blocks = format!("format=\"binary\">{}", base64(&lying));
+    refuses(
+        "v.vti",
+        vti("compressor=\"vtkZLibDataCompressor\"", &blocks, b""),
+        &["compressed blocks"],
+    );
+    // Of the file that follows, a block of 12 bytes is far too little for what it is to hold.
+    let lying = [[1u32, 1 << 20, 0, 12].map(u32::to_le_bytes).concat(), vec![0; 3000]].concat();
+    let blocks = format!("format=\"binary\">{}", base64(&lying));
+    let file = vti("compressor=\"vtkZLibDataCompressor\"", &blocks, b"");
+    refuses("v.vti", file, &["12 compressed bytes", "hold 1048576, which they cannot"]);
+}
+
+#[test]
+fn a_damaged_nifti_says_what_is_wrong() {
+    let (_, nifti) = examples().into_iter().find(|(name, _)| *name == "one.nii").unwrap();
+    let with = |place: usize, value: &[u8]| {
+        let mut bytes = nifti.clone();
+        bytes[place..place + value.len()].copy_from_slice(value);
+        bytes
+    };
+    refuses("v.nii", "hello", &["truncated"]);
+    refuses("v.nii", vec![1; 400], &["no NIfTI file"]);
+    refuses("v.nii", &nifti[..nifti.len() - 1], &["48 bytes, but 47 follow"]);
+    refuses("v.nii", [&nifti[..], b"x"].concat(), &["too long"]);
+    refuses("v.nii", with(344, b"\0\0\0\0"), &["Analyze"]);
+    refuses("v.nii", with(70, &128i16.to_le_bytes()), &["colours"]);
+    refuses("v.nii", with(70, &32i16.to_le_bytes()), &["complex"]);
+    refuses("v.nii", with(40, &9i16.to_le_bytes()), &["dim[0] = 9"]);
+    refuses("v.nii", with(42, &(-3i16).to_le_bytes()), &["damaged"]);
+    refuses("v.nii", with(40, &[4, 0, 3, 0, 2, 0, 2, 0, 2, 0]), &["2 volumes", "`frame`"]);
+    refuses("v.nii", with(108, &1e9f32.to_le_bytes()), &["ends before its samples"]);
+    refuses("v.nii.gz", gzip(&nifti[..300]), &["truncated"]);
+}
+
+#[test]
+fn a_damaged_tiff_says_what_is_wrong() {
+    let pages = tiff(2, None);
+    refuses("v.tif", &pages[..pages.len() - 9], &["v.tif"]);
+    refuses("v.tif", &pages[..9], &["truncated"]);
+    let hyper = "ImageJ=1.53\nimages=2\nslices=2\nframes=2\n";
+    refuses("v.tif", tiff(2, Some(hyper)), &["2 volumes", "`frame`"]);
+    refuses("v.tif", tiff(2, Some("<OME><Pixels SizeZ=\"x\"/></OME>")), &["OME-XML"]);
+    let many = "ImageJ=1.53\nimages=1000\nslices=1000\n";
+    refuses("v.tif", tiff(1, Some(many)), &["12000 bytes"]);
+}
+
+#[test]
+fn a_damaged_npz_says_what_is_wrong() {
+    let array = Array3::zeros((1, 1, 1));
+    refuses("v.npz", npz(&[]), &["no array of three axes"]);
+    refuses("v.npz", npz(&[("a", &array), ("b", &array)]), &["a.npy, b.npy"]);
+    refuses("v.npz", &npz(&[("a", &array)])[..40], &["no NPZ archive"]);
+}
+
+#[test]
+fn files_of_no_known_format_are_refused() {
+    refuses("v.bin", b"\x89HDF\r\n\x1a\n rest", &["HDF5"]);
+    refuses("v.png", b"\x89PNG\r\n\x1a\n rest", &["folder of all slices"]);
+    refuses("v.gz", gzip(b"something else"), &["holds no format known"]);
+    refuses("v.nrrd.gz", gzip(&nrrd(|h| h, &shorts())), &["unpack it first"]);
+    refuses("v.bin", "hello", &["no format known", "`dims`"]);
+}

@@ -1,0 +1,193 @@
+//! Points in text under their many extensions, those of extended XYZ and legacy VTK, and bare arrays.
+
+use std::process::Command;
+
+use walpha::points::{PointOptions, read_model, read_points};
+
+use super::files::save;
+use crate::common::told::Told;
+use crate::common::{fails, json, ok};
+
+const PLACES: [[f64; 3]; 2] = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
+
+#[test]
+fn text_under_many_extensions() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let cases = [
+        ("a.txt", "1 2 3\n4 5 6\n", None),
+        ("a.asc", "1 2 3 7\n4 5 6 8\n", Some(vec![7.0, 8.0])),
+        ("b.asc", "x,y,z\n1,2,3\n4,5,6\n", None),
+        ("a.xyzn", "1 2 3 0 3 0\n4 5 6 0 0 7\n", None),
+        ("a.xyzrgb", "1 2 3 0.5 0.25 1\n4 5 6 0 0 0.1\n", None),
+        ("a.pts", "2\n1 2 3 7 9 9 9\n4 5 6 8 9 9 9\n", Some(vec![7.0, 8.0])),
+        ("b.pts", "1 2 3 7\n4 5 6 8\n", Some(vec![7.0, 8.0])),
+        ("c.PTS", "2\n1 2 3\n4 5 6\n", None),
+    ];
+    for (name, text, values) in cases {
+        let path = save(f, name, text);
+        assert!(walpha::points::is_point_file(&path).unwrap(), "{name}");
+        let points = read_points(&path, None).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!((points.positions.as_slice(), points.values), (&PLACES[..], values), "{name}");
+    }
+    save(f, "short.pts", "3\n1 2 3\n4 5 6\n");
+    fails(f, 1, "info short.pts", &["claims 3 points, but has 2"]);
+    save(f, "grid.asc", "ncols 2\nnrows 2\nxllcorner 0\n1 2\n3 4\n");
+    fails(f, 1, "info grid.asc", &["ESRI ASCII", "convert it to x,y,z"]);
+    // A volume by its content stays one, whatever it is called.
+    assert!(!walpha::points::is_point_file(&save(f, "v.txt", "NRRD0004\n")).unwrap());
+}
+
+#[test]
+fn the_format_may_be_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    for name in ["a.dat", "a.csv", "a"] {
+        save(f, name, "1 2 3\n4 5 6\n7 8 10\n");
+        let told = json(f, &["info", name, "--input-format", "xyz"]);
+        assert_eq!(told["count"], 3, "{name}");
+    }
+    ok(f, &["points", "a.dat", "--input-format", ".XYZ", "-o", "b.csv"]);
+    let points = read_points(&f.join("b.csv"), None).unwrap();
+    assert_eq!(points.positions[2], [7.0, 8.0, 10.0]);
+    // Each end has its own.
+    let mut both = Command::new(env!("CARGO_BIN_EXE_walpha"));
+    both.args(["points", "-", "--input-format", "xyz", "-o", "-", "--output-format", "csv"]);
+    let done = both.stdin(std::fs::File::open(f.join("a.dat")).unwrap()).output().unwrap();
+    assert_eq!(done.stdout, std::fs::read(f.join("b.csv")).unwrap());
+    save(f, "a.ply", super::files::PLY.to_owned() + "2 0 1\n1 2 3 0 7\n4 5 6 0 8\n");
+    fails(
+        f,
+        1,
+        "info a.ply --input-format xyz",
+        &["as files of the format PLY do", "omit --input-format"],
+    );
+    save(f, "v.nrrd", "NRRD0004\n");
+    fails(
+        f,
+        1,
+        "info v.nrrd --input-format mha",
+        &["is of the format NRRD", "omit --input-format"],
+    );
+    fails(f, 2, "info a.dat --input-format foo", &["no format that is read", "xyz"]);
+}
+
+#[test]
+fn extended_xyz_states_columns_and_a_cell() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let text = |comment: &str| format!("2\n{comment}\nC 1 2 3 0.5\nH 4 5 6 7\n");
+    let properties = "Properties=species:S:1:pos:R:3:value:R:1";
+    let read = |comment: &str| {
+        let path = save(f, "e.xyz", text(comment));
+        read_model(&path, &PointOptions::default())
+    };
+    let lattice = "Lattice=\"10.0 0 0 0 20 0 0 0 30\"";
+    let (points, facts) = read(&format!("{lattice} {properties} pbc=\"T T T\"")).unwrap();
+    assert_eq!((points.positions.as_slice(), points.values), (&PLACES[..], Some(vec![0.5, 7.0])));
+    assert_eq!(facts.cell.unwrap().sides(), Some([10.0, 20.0, 30.0]));
+    // Without Properties the second word is x, and what follows z is passed over.
+    let (points, facts) = read(&format!("a title {lattice}")).unwrap();
+    assert_eq!((points.positions.as_slice(), points.values), (&PLACES[..], None));
+    assert!(facts.cell.is_some());
+    let told = ok(f, &["info", "e.xyz"]);
+    assert!(
+        told.contains("cell      a box of sides 10,20,30, and --periodic 10,20,30 makes its torus"),
+        "{told}"
+    );
+    let facts = json(f, &["info", "e.xyz"]);
+    assert_eq!(facts["cell"]["sides"], serde_json::json!([10.0, 20.0, 30.0]));
+    assert_eq!(
+        read("a title = nothing pbc=\"F F F\" Lattice=\"1 0 0 0 1 0 0 0 1\"").unwrap().1.cell,
+        None
+    );
+    assert_eq!(read("plain title").unwrap().1.cell, None);
+    for (oblique, words) in [
+        ("Lattice='1 0 0 0.5 1 0 0 0 1'", "no box along the axes: it is not supported"),
+        (
+            "Lattice=\"1 0 0 0 1 0 0 0 1\" pbc=\"T T F\"",
+            "some of its vectors only: it is not supported",
+        ),
+    ] {
+        assert_eq!(read(oblique).unwrap().1.cell.unwrap().sides(), None);
+        assert!(ok(f, &["info", "e.xyz"]).contains(words), "{words}");
+    }
+    for (wrong, words) in [
+        ("Lattice=\"1 2 3\"", "nine numbers"),
+        ("Properties=species:S:1:pos:R", "names, types and numbers"),
+        ("Properties=species:S:1:velo:R:3:x:R:1", "without pos:R:3"),
+    ] {
+        let error = read(wrong).unwrap_err().told();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+#[test]
+fn legacy_vtk_files_hold_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let head = |version: &str, kind: &str, dataset: &str| {
+        format!("# vtk DataFile Version {version}\ntitle\n{kind}\nDATASET {dataset}\n").into_bytes()
+    };
+    let big = |numbers: &[f32]| numbers.iter().flat_map(|x| x.to_be_bytes()).collect::<Vec<u8>>();
+    let places = big(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    let data = |text: &str| text.as_bytes().to_vec();
+    let scalars = data("\nPOINT_DATA 2\nSCALARS t float\nLOOKUP_TABLE default\n");
+    let cells = |numbers: &[i32]| numbers.iter().flat_map(|x| x.to_be_bytes()).collect::<Vec<u8>>();
+    let wide = |numbers: &[i64]| numbers.iter().flat_map(|x| x.to_be_bytes()).collect::<Vec<u8>>();
+    let old = [
+        head("3.0", "BINARY", "UNSTRUCTURED_GRID"),
+        data("POINTS 2 float\n"),
+        places.clone(),
+        data("\nCELLS 1 3\n"),
+        cells(&[2, 0, 1]),
+        data("\nCELL_TYPES 1\n"),
+        cells(&[3]),
+        scalars.clone(),
+        big(&[7.0, 8.0]),
+        data("\n"),
+    ];
+    let new = [
+        head("5.1", "BINARY", "POLYDATA"),
+        data("POINTS 2 float\n"),
+        places,
+        data("\nMETADATA\nINFORMATION 0\n\nLINES 2 2\nOFFSETS vtktypeint64\n"),
+        wide(&[0, 2]),
+        data("\nCONNECTIVITY vtktypeint64\n"),
+        wide(&[0, 1]),
+        scalars,
+        big(&[7.0, 8.0]),
+        data("\n"),
+    ];
+    let text = [
+        head("2.0", "ASCII", "POLYDATA"),
+        data("POINTS 2 double\n1 2 3\n4 5 6\nVERTICES 1 3\n2 0 1\nPOINT_DATA 2\nFIELD f 2\n"),
+        data("ids 1 2 int\n3 4\nvalue 1 2 float\n7 8\n"),
+    ];
+    for (name, bytes) in
+        [("old.vtk", old.concat()), ("new.vtk", new.concat()), ("text.vtk", text.concat())]
+    {
+        let path = save(f, name, bytes);
+        assert!(walpha::points::is_point_file(&path).unwrap(), "{name}");
+        let points = read_points(&path, None).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(points.positions, PLACES, "{name}");
+        assert_eq!((points.values, points.weights), (Some(vec![7.0, 8.0]), None), "{name}");
+    }
+    let cut = [head("3.0", "BINARY", "POLYDATA"), data("POINTS 2 float\n1234")].concat();
+    save(f, "cut.vtk", cut);
+    fails(f, 1, "info cut.vtk", &["POINTS of type f32"]);
+    save(f, "none.vtk", head("3.0", "ASCII", "POLYDATA"));
+    fails(f, 1, "info none.vtk", &["ends before"]);
+    save(f, "rect.vtk", head("3.0", "ASCII", "RECTILINEAR_GRID"));
+    fails(f, 1, "info rect.vtk", &["RECTILINEAR_GRID"]);
+}
+
+#[test]
+fn arrays_of_places_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let array = ndarray::arr2(&PLACES);
+    let mut bytes = Vec::new();
+    ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes).unwrap();
+    let points = read_points(&save(folder.path(), "p.npy", bytes), None).unwrap();
+    assert_eq!((points.positions.as_slice(), points.weights), (&PLACES[..], None));
+}

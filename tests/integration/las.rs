@@ -1,0 +1,94 @@
+//! LAS and LAZ against the crate that writes them.
+
+use walpha::points::{is_point_file, read_points};
+
+use crate::common::alone::alone;
+use crate::common::told::Told;
+
+/// Coordinates are whole numbers of thousandths, so that the format's scales keep them.
+fn write(path: &std::path::Path, version: (u8, u8)) {
+    let mut builder = las::Builder::from(version);
+    builder.point_format.is_compressed = path.extension().is_some_and(|e| e == "laz");
+    let transform = las::Transform { scale: 0.001, offset: 0.0 };
+    builder.transforms = las::Vector { x: transform, y: transform, z: transform };
+    let mut writer = las::Writer::from_path(path, builder.into_header().unwrap()).unwrap();
+    for k in 0..5u16 {
+        let (x, y, z) = (f64::from(k), f64::from(2 * k), -f64::from(k));
+        let point = las::Point { x, y, z, intensity: 100 * k, ..las::Point::default() };
+        writer.write_point(point).unwrap();
+    }
+    writer.close().unwrap();
+}
+
+#[test]
+fn clouds_of_scanners_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.las", "a.laz"] {
+        let path = folder.path().join(name);
+        write(&path, (1, 2));
+        // By content, whatever its name is.
+        let other = folder.path().join("cloud.dat");
+        std::fs::copy(&path, &other).unwrap();
+        for path in [&path, &other] {
+            assert!(is_point_file(path).unwrap(), "{name}");
+            let points = read_points(path, None).unwrap();
+            let expected: Vec<_> = (0..5).map(f64::from).map(|k| [k, 2.0 * k, -k]).collect();
+            assert_eq!(points.positions, expected, "{name}");
+            assert_eq!(points.values, Some(vec![0.0, 100.0, 200.0, 300.0, 400.0]), "{name}");
+        }
+        let bytes = std::fs::read(&path).unwrap();
+        std::fs::write(&path, &bytes[..bytes.len() - 30]).unwrap();
+        let error = read_points(&path, None).unwrap_err().told();
+        assert!(error.contains(name), "{error}");
+    }
+}
+
+/// Found by fuzzing: records of 58 369 bytes each, in a file of 230.
+#[cfg(target_os = "linux")]
+#[test]
+fn long_records_take_no_more_than_their_share() {
+    // The peak is that of the process.
+    alone(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("long.las");
+        write(&path, (1, 2));
+        let mut bytes = std::fs::read(&path).unwrap();
+        bytes[105..107].copy_from_slice(&58_369u16.to_le_bytes());
+        std::fs::write(&path, &bytes).unwrap();
+        let peak = || {
+            let status = std::fs::read_to_string("/proc/self/status").unwrap();
+            let line = status.lines().find_map(|line| line.strip_prefix("VmPeak:")).unwrap();
+            line.trim().trim_end_matches(" kB").parse::<u64>().unwrap()
+        };
+        let before = peak();
+        assert!(read_points(&path, None).is_err());
+        let more = peak() - before;
+        assert!(more < 1 << 20, "{more} KiB more");
+    });
+}
+
+/// Found by fuzzing: a number of points that, times the bytes of each, is more than 64 bits; and an extended
+/// record of 2⁶² bytes.
+#[test]
+fn more_than_there_can_be_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("many.las");
+    write(&path, (1, 4));
+    assert_eq!(read_points(&path, None).unwrap().len(), 5);
+    let whole = std::fs::read(&path).unwrap();
+    let mut bytes = whole.clone();
+    // The number of 32 bits of older versions goes before that of 64.
+    bytes[107..111].fill(0);
+    bytes[247..255].fill(0xff);
+    std::fs::write(&path, &bytes).unwrap();
+    let error = read_points(&path, None).unwrap_err().told();
+    assert!(error.contains("more bytes of points than a number can count"), "{error}");
+    let mut bytes = whole.clone();
+    bytes[235..243].copy_from_slice(&(whole.len() as u64).to_le_bytes());
+    bytes[243..247].copy_from_slice(&1u32.to_le_bytes());
+    bytes.extend([0; 60]);
+    bytes[whole.len() + 20..][..8].copy_from_slice(&(1u64 << 62).to_le_bytes());
+    std::fs::write(&path, &bytes).unwrap();
+    let error = read_points(&path, None).unwrap_err().told();
+    assert!(error.contains("claims a record of 4611686018427387904 bytes"), "{error}");
+}

@@ -1,0 +1,50 @@
+//! All integration tests in one program: each program links everything once more.
+
+mod blocks;
+mod blocks_command;
+mod check_certify;
+mod check_command;
+mod check_common;
+mod check_engine;
+mod check_files;
+mod cli;
+mod command_line;
+mod common;
+#[cfg(feature = "zarr")]
+mod convert;
+#[cfg(feature = "dicom")]
+mod dicom;
+mod engines;
+mod exchange;
+mod filtration;
+mod flat;
+mod formats;
+mod haar;
+mod interpolate;
+mod ladder;
+#[cfg(feature = "las")]
+mod las;
+mod laws;
+#[cfg(feature = "mpi")]
+mod mpi;
+#[cfg(unix)]
+mod outputs;
+mod periodic;
+#[cfg(feature = "paper")]
+mod plane;
+mod points;
+mod progress;
+mod refit;
+#[cfg(feature = "paper")]
+mod reproduce;
+mod skull;
+mod solid;
+mod triangulation;
+#[cfg(feature = "render")]
+mod view;
+mod volume;
+mod wvm;
+#[cfg(feature = "zarr")]
+mod zarr;
+#[cfg(feature = "zarr")]
+mod zarr_shape;

@@ -1,0 +1,158 @@
+//! Files of points.
+
+use super::*;
+
+#[test]
+fn written_points_are_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let third = 1.0 / 3.0;
+    for values in [None, Some(vec![1e-300, -7.5])] {
+        let positions = vec![[third, -2.0, 1e20], [0.0, 5.0, 6.25]];
+        let mut points = WeightedPoints::new(positions, vec![third * third, -1.0]).unwrap();
+        points.values = values;
+        assert_eq!((points.is_empty(), points.len()), (false, 2));
+        let (csv, npy) = (folder.path().join("p.csv"), folder.path().join("p.npy"));
+        for path in [csv, npy] {
+            let mut file = std::fs::File::create(&path).unwrap();
+            PointWriter::of(&path).unwrap().write(&points, &mut file).unwrap();
+            assert!(is_point_file(&path).unwrap());
+            let back = read_points(&path, None).unwrap();
+            assert_eq!(
+                weigh(&back, Weighting::Column, Alpha::from_squared(1.0).unwrap()).unwrap(),
+                points,
+                "{path:?}"
+            );
+        }
+    }
+}
+
+/// The first axis fastest, as `numpy.asfortranarray` makes it.
+#[test]
+fn columns_of_an_array_may_come_first() {
+    use ndarray::ShapeBuilder as _;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("p.npy");
+    let of = |(row, column): (usize, usize)| (10 * row + column) as f64;
+    for columns in [4, 5] {
+        let mut bytes = Vec::new();
+        let array = ndarray::Array2::from_shape_fn((3, columns).f(), of);
+        ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes).unwrap();
+        assert!(bytes.windows(22).any(|header| header == b"'fortran_order': True,"));
+        std::fs::write(&path, bytes).unwrap();
+        let points = read_points(&path, None).unwrap();
+        assert_eq!(points.positions, [[0.0, 1.0, 2.0], [10.0, 11.0, 12.0], [20.0, 21.0, 22.0]]);
+        assert_eq!(points.weights, Some(vec![3.0, 13.0, 23.0]));
+        assert_eq!(points.values, (columns == 5).then(|| vec![4.0, 14.0, 24.0]));
+    }
+}
+
+#[test]
+fn csv_columns_may_stand_anywhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.csv");
+    std::fs::write(&path, "\u{feff}name,Z, y ,weight,X\na,3,2,0.5,1\n\"b, c\",6,5,-1e1,4\n")
+        .unwrap();
+    let points = read_points(&path, None).unwrap();
+    assert_eq!(points.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    assert_eq!(points.weights, Some(vec![0.5, -10.0]));
+    assert_eq!(points.values, None);
+}
+
+/// −0 is where 0 is.
+#[test]
+fn corners_of_facets_are_points_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("p.stl");
+    let text = "solid\nvertex 0 0 1\nvertex -0 1 0\nvertex 1 0 0\nvertex 0 -0 1\nvertex 0 1 -0\nendsolid\n";
+    std::fs::write(&path, text).unwrap();
+    let points = read_points(&path, None).unwrap();
+    assert_eq!(points.positions, [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
+}
+
+/// What a file holds is known by how it begins, whatever its name says.
+#[test]
+fn content_goes_before_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut points = WeightedPoints::unweighted(vec![[1.0, 2.0, 3.0], [0.5, 0.0, -1.0]]);
+    points.values = Some(vec![7.0, 8.0]);
+    let ply = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n\
+        property float z\nend_header\n1 2 3\n0.5 0 -1\n";
+    let pcd = "# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n\
+        1 2 3\n0.5 0 -1\n";
+    let vtp = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"2\">\
+        <Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">1 2 3 0.5 0 -1\
+        </DataArray></Points></Piece></PolyData></VTKFile>";
+    let written = |name: &str| {
+        let mut bytes = Vec::new();
+        PointWriter::of(name.as_ref()).unwrap().write(&points, &mut bytes).unwrap();
+        bytes
+    };
+    for bytes in [ply.into(), pcd.into(), vtp.into(), written("p.npy"), written("p.wvm")] {
+        for name in ["points", "points.csv", "points.nii"] {
+            let path = folder.path().join(name);
+            std::fs::write(&path, &bytes).unwrap();
+            let start = String::from_utf8_lossy(&bytes[..10]);
+            assert!(is_point_file(&path).unwrap(), "{start} in {name}");
+            let found = read_points(&path, None).unwrap();
+            assert_eq!(found.positions, points.positions, "{start} in {name}");
+        }
+    }
+}
+
+#[test]
+fn formats_say_whether_they_are_built_in() {
+    let absent = FORMATS.iter().filter(|format| !format.is_built_in());
+    let absent: Vec<_> = absent.flat_map(|format| format.extensions).collect();
+    let expected: &[&str] = if cfg!(feature = "las") { &[] } else { &["las", "laz"] };
+    assert!(absent.iter().copied().eq(expected), "{absent:?}");
+}
+
+#[test]
+fn bad_point_files_say_where_they_are_bad() {
+    let folder = tempfile::tempdir().unwrap();
+    let refuse = |name: &str, bytes: &[u8], parts: &[&str]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        let text = read_points(&path, None).unwrap_err().told();
+        for part in parts.iter().chain(&[name]) {
+            assert!(text.contains(part), "{part:?} is missing in: {text}");
+        }
+    };
+    refuse("empty.csv", b"", &["first line must name"]);
+    refuse("nothing.csv", b"x,y,z\n", &["no point"]);
+    refuse("axis.csv", b"x,z\n1,2\n", &["x, y and z"]);
+    refuse("twice.csv", b"x,y,z,X\n1,2,3,4\n", &["twice"]);
+    refuse("word.csv", b"x,y,z\n1,2,3\n1,two,3\n", &["line 3", "column y", "two"]);
+    refuse("nan.csv", b"x,y,z,weight\n1,2,3,NaN\n", &["line 2", "column weight"]);
+    refuse("short.csv", b"x,y,z\n1,2,3\n1,2\n", &["line: 3"]);
+    // Commas are decimal where semicolons are between numbers, and nowhere else.
+    refuse("comma.tsv", b"x\ty\tz\n1,5\t2\t3\n", &["line 2", "column x", "1,5"]);
+    refuse("text.csv", b"x,y,z\n\xff,2,3\n", &["UTF-8"]);
+
+    let npy = |array: ndarray::Array2<f64>| {
+        let mut bytes = Vec::new();
+        ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes).unwrap();
+        bytes
+    };
+    refuse("two.npy", &npy(ndarray::arr2(&[[1.0, 2.0]])), &["[1, 2]", "n×4"]);
+    let infinite = ndarray::arr2(&[[1.0, 2.0, f64::INFINITY, 0.0]]);
+    refuse("inf.npy", &npy(infinite), &["row 0", "z is inf"]);
+    refuse("none.npy", &npy(ndarray::Array2::zeros((0, 4))), &["no point"]);
+    refuse("off.off", b"OFF\n2 0 0\n# two\n\n0 0 0\n0 zero 0\n", &["line 6", "y is \"zero\""]);
+    // The first row alone could be a place and a unit vector.
+    refuse("six.xyz", b"0 0 0 0 0 1\n0 0 1 0.5 7 300\n", &["has 6 columns"]);
+    refuse("two.pwn", b"2\n0 0 0\n1 1\n", &["line 3", "2 columns"]);
+    refuse("text.stl", b"solid\n\nvertex 0 zero 0\nendsolid\n", &["line 3", "y is \"zero\""]);
+    let binary = [&[0; 80][..], &5u32.to_le_bytes(), &[0; 150]].concat();
+    refuse("binary.stl", &binary, &["claims 5 facets, which 234 bytes cannot hold"]);
+    refuse("short.stl", &binary[..20], &["claims 0 facets"]);
+    for items in ["1.5", "-1", "nan"] {
+        let list = format!(
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n\
+             element face 1\nproperty list float int vertex_indices\nend_header\n0 0 0\n{items} 0\n"
+        );
+        refuse("list.ply", list.as_bytes(), &["has a list of"]);
+    }
+    let text = read_points(Path::new("no/such.csv"), None).unwrap_err().told();
+    assert!(text.contains("no/such.csv"), "{text}");
+}
