@@ -47,6 +47,14 @@ pub fn json(folder: &Path, args: &[&str]) -> serde_json::Value {
     value
 }
 
+/// Asserts that a text has all these words.
+#[track_caller]
+pub fn names(text: &str, words: &[&str]) {
+    for word in words {
+        assert!(text.contains(word), "no {word:?} in\n{text}");
+    }
+}
+
 /// Runs, expects this exit code, an error that names every word, nothing on standard output, and
 /// nothing new in the folder.
 pub fn fails(folder: &Path, code: i32, args: &str, words: &[&str]) {

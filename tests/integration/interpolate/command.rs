@@ -8,7 +8,7 @@ use walpha::Volume;
 use walpha::volume::{ReadOptions, read};
 
 use super::{linear, phantom};
-use crate::common::{has_skull, json, ok, run};
+use crate::common::{has_skull, json, names, ok, run};
 
 fn volume_at(path: &Path) -> Volume {
     read(path, &ReadOptions::default()).unwrap()
@@ -188,7 +188,7 @@ fn a_selection_that_ends_early_says_so() {
     let args = ["points", "sample:phantom@16", "--select", "adaptive", "--count", "3000"];
     let early = [&args[..], &["--target-rmse", "30"]].concat();
     let told = ok(folder.path(), &early);
-    assert!(told.contains("fewer than 3000: these reach an RMSE of 30 gray levels"), "{told}");
+    names(&told, &["fewer than 3000", "RMSE of 30 gray levels"]);
     let made = json(folder.path(), &early);
     assert_eq!(made["points"]["ended_early"], serde_json::json!({"asked": 3000, "rmse": 30.0}));
     // A plane of gray levels: the corners do.

@@ -48,7 +48,7 @@ fn exit_codes_say_what_was_found() {
 fn each_file_is_judged() {
     let folder = folder("each_file");
     let (_, stdout, stderr) = run(&folder, &["odd.json", "wrong.json", "right.json"]);
-    assert!(stderr.starts_with("error: \"odd.json\": the complex cannot be read as JSON"));
+    assert!(stderr.starts_with("error: \"odd.json\": ") && stderr.contains("JSON"), "{stderr}");
     let lines: Vec<&str> = stdout.lines().filter(|line| !line.contains("not judged")).collect();
     assert_eq!(lines.first(), Some(&"\"wrong.json\": wrong: 1 finding"), "{stdout}");
     assert_eq!(lines[1], "  cell [0, 1, 2, 3] is listed twice");
