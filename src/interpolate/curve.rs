@@ -26,7 +26,7 @@ pub enum Method {
     Difference,
     /// The voxels with L of at least the whole gray level nearest to that of the N-th.
     Threshold,
-    /// [`adaptive_voxels`].
+    /// [`adaptive_voxels`](super::adaptive_voxels).
     Adaptive,
     /// A lattice of about N voxels, as evenly spread as whole steps allow, corners included.
     Lattice,
@@ -78,7 +78,7 @@ pub struct CurvePoint {
     pub hidden: usize,
     /// F on the shape at α.
     pub inside: Deviation,
-    /// F on the whole grid: see [`fill`].
+    /// F on the whole grid: see [`fill`](super::fill()).
     pub filled: Deviation,
 }
 

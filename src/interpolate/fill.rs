@@ -15,7 +15,7 @@ use crate::volume::Volume;
 /// for the α of the shape.
 ///
 /// # Errors
-/// Points without values, and what [`alpha_shape`] refuses.
+/// Points without values, and what [`alpha_shape`](crate::alpha_shape) refuses.
 pub fn fill(
     shape: &AlphaShape,
     volume: Option<&Volume>,

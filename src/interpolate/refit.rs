@@ -13,7 +13,7 @@ use crate::volume::Volume;
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Refit {
-    /// All samples, with F on the whole triangulation as [`fill`] makes it.
+    /// All samples, with F on the whole triangulation as [`fill`](super::fill()) makes it.
     #[default]
     Whole,
     /// Those on the shape.
@@ -48,13 +48,13 @@ pub struct Fit {
 /// and 0 at the others, are symmetric and sparse; conjugate gradients (Hestenes and Stiefel 1952,
 /// doi:10.6028/jres.049.044) solve them to a relative residual of 10⁻⁶, beginning with the values
 /// that the points have. A value that no sample depends on stays as it is: that of a hidden point,
-/// say. So do the values of corners that [`fill`] adds. Missing samples take no part.
+/// say. So do the values of corners that [`fill`](super::fill()) adds. Missing samples take no part.
 ///
 /// O(samples + points) for each step, of which a few dozen do; 8 bytes a sample and about 200 a
 /// point. The same on any number of threads.
 ///
 /// # Errors
-/// Points without values; no memory; what [`fill`] refuses.
+/// Points without values; no memory; what [`fill`](super::fill()) refuses.
 pub fn refit(
     shape: &AlphaShape,
     volume: &Volume,

@@ -22,7 +22,7 @@ const PHANTOM_SIZE: u64 = 64;
 /// Opens what a user names: a sample, or else a file.
 ///
 /// # Errors
-/// Those of [`sample`] and [`read()`].
+/// Those of [`sample`] and [`read()`](super::read()).
 pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Volume, VolumeError> {
     open_monitored(input, options, &Monitor::silent())
 }
