@@ -11,7 +11,7 @@ pub struct AlphaShape {
     pub(super) points: WeightedPoints,
     pub(super) coordinates: Coordinates,
     pub(super) options: ShapeOptions,
-    /// Weights (α + ω)², with [`Balls::Radius`].
+    /// Weights (α + ω)², with [`Balls::Radius`](super::Balls::Radius).
     pub(super) squared: Option<Vec<f64>>,
     pub(super) complex: Complex,
     /// The points that the last points are copies of, where a torus is laid out in space.
@@ -112,12 +112,12 @@ impl AlphaShape {
         &self.options
     }
 
-    /// The weights that the triangulation is regular for: ω, or (α + ω)² for [`Balls::Radius`].
+    /// The weights that the triangulation is regular for: ω, or (α + ω)² for [`Balls::Radius`](super::Balls::Radius).
     pub fn power_weights(&self) -> &[f64] {
         self.squared.as_deref().unwrap_or(&self.points.weights)
     }
 
-    /// The squared radius that simplices are compared with: α, or 0 for [`Balls::Radius`].
+    /// The squared radius that simplices are compared with: α, or 0 for [`Balls::Radius`](super::Balls::Radius).
     pub fn power_alpha(&self) -> Alpha {
         self.options.power_alpha()
     }

@@ -16,7 +16,7 @@ use crate::{Alpha, AlphaShape, Complex, Engine, ShapeError, ShapeOptions, alpha_
 /// (Edelsbrunner and Mücke 1994, doi:10.1145/174462.156635; CGAL's `Alpha_shape_3` keeps the same
 /// intervals, in rounded numbers). Here a radius is the nearest double, and where an α is as near to the
 /// exact number, exact arithmetic decides: a shape taken from a filtration equals that of
-/// [`alpha_shape`].
+/// [`alpha_shape`](crate::alpha_shape()).
 pub struct Filtration {
     pub(super) whole: AlphaShape,
     pub(super) incidence: Incidence,
@@ -51,7 +51,7 @@ impl Filtration {
     /// cells, triangles (edges, the vertex) enter by their own spheres, and none is ever interior.
     ///
     /// # Errors
-    /// As [`alpha_shape`].
+    /// As [`alpha_shape`](crate::alpha_shape()).
     pub fn new(points: WeightedPoints) -> Result<Self, ShapeError> {
         Self::on(None, points)
     }
@@ -60,7 +60,7 @@ impl Filtration {
     /// [`ShapeOptions::periodic`].
     ///
     /// # Errors
-    /// As [`alpha_shape`] at α = ∞; so no edge of the whole triangulation may span half of the box.
+    /// As [`alpha_shape`](crate::alpha_shape()) at α = ∞; so no edge of the whole triangulation may span half of the box.
     pub fn on(torus: Option<Torus>, points: WeightedPoints) -> Result<Self, ShapeError> {
         Self::monitored(torus, points, &Monitor::silent())
     }
@@ -127,7 +127,7 @@ impl Filtration {
         &self.whole
     }
 
-    /// The shape at α, equal to that of [`alpha_shape`]. O(n log n).
+    /// The shape at α, equal to that of [`alpha_shape`](crate::alpha_shape()). O(n log n).
     pub fn shape(&self, alpha: Alpha) -> AlphaShape {
         let levels = self.levels(&[alpha]);
         let [betti] = levels.betti()[..] else { unreachable!("one level") };
