@@ -9,15 +9,16 @@ use dicom_encoding::decode::Decode;
 use dicom_encoding::decode::explicit_le::ExplicitVRLittleEndianDecoder;
 use dicom_encoding::transfer_syntax::Codec;
 use dicom_encoding::{TransferSyntax, TransferSyntaxIndex};
-use dicom_object::FileMetaTable;
+use dicom_object::{FileMetaTable, Tag};
 use dicom_parser::DataSetReader;
 use dicom_parser::dataset::DataToken;
 use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
 
-use super::slice::{PIXEL_DATA, damaged};
 use crate::read::payload::MOST_EXPANSION;
 use crate::read::{format_error, io_error};
 use crate::{Reason, VolumeError};
+
+pub(super) const PIXEL_DATA: Tag = Tag(0x7FE0, 0x0010);
 
 /// Bytes before the mark `DICM`.
 const PREAMBLE: u64 = 128;
@@ -143,4 +144,19 @@ fn believe(path: &Path, claimed: u32, length: u64) -> Result<(), VolumeError> {
         "claims an element of {claimed} bytes and has {length} in all: it is truncated or damaged"
     ));
     Err(format_error(path, reason))
+}
+
+/// The error for a file that the reader gives up on, with all that it says.
+pub(super) fn damaged(path: &Path, error: &dyn std::error::Error) -> VolumeError {
+    let mut what = error.to_string();
+    let mut cause = error.source();
+    while let Some(inner) = cause {
+        what = format!("{what}, {inner}");
+        cause = inner.source();
+    }
+    let reason = Reason::content(
+        format!("is a DICOM file that cannot be read ({what})"),
+        "copy it again, or convert the series to NRRD",
+    );
+    format_error(path, reason)
 }

@@ -7,7 +7,7 @@ use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
 use walpha_base::shown::shown;
 use walpha_base::vector::cross;
 
-use super::claims;
+use super::claims::{self, PIXEL_DATA, damaged};
 use super::header::Header;
 use crate::read::format_error;
 use crate::read::payload::MOST_EXPANSION;
@@ -38,7 +38,6 @@ const PLANE_POSITION: Tag = Tag(0x0020, 0x9113);
 const PLANE_ORIENTATION: Tag = Tag(0x0020, 0x9116);
 const PIXEL_MEASURES: Tag = Tag(0x0028, 0x9110);
 const PIXEL_VALUE_TRANSFORMATION: Tag = Tag(0x0028, 0x9145);
-pub(super) const PIXEL_DATA: Tag = Tag(0x7FE0, 0x0010);
 
 /// One slice of a series: all but its pixels.
 #[derive(Clone, Debug)]
@@ -354,18 +353,4 @@ fn dtype(bits: f64, unsigned: bool, slope: f64, intercept: f64) -> Dtype {
         (16, _) => Dtype::I16,
         _ => Dtype::F32,
     }
-}
-
-pub(super) fn damaged(path: &Path, error: &dyn std::error::Error) -> VolumeError {
-    let mut what = error.to_string();
-    let mut cause = error.source();
-    while let Some(inner) = cause {
-        what = format!("{what}, {inner}");
-        cause = inner.source();
-    }
-    let reason = Reason::content(
-        format!("is a DICOM file that cannot be read ({what})"),
-        "copy it again, or convert the series to NRRD",
-    );
-    format_error(path, reason)
 }
