@@ -1,6 +1,7 @@
 use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::memory::NoMemory;
+use walpha_base::monitor::wraps;
 
 use crate::haar::HaarError;
 use crate::points::PointsError;
@@ -56,13 +57,13 @@ pub enum InterpolateError {
     Periodic,
     /// The points make no shape.
     #[error(transparent)]
-    Shape(#[from] ShapeError),
+    Shape(ShapeError),
     /// The volume yields no points.
     #[error(transparent)]
     Points(#[from] PointsError),
     /// The volume cannot be truncated.
     #[error(transparent)]
-    Haar(#[from] HaarError),
+    Haar(HaarError),
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -73,6 +74,8 @@ pub enum InterpolateError {
     #[error("after interpolation: {0}")]
     Volume(#[from] VolumeError),
 }
+
+wraps! { InterpolateError: Shape(ShapeError), Haar(HaarError) }
 
 impl InterpolateError {
     /// What to do about it, where there is something.

@@ -1,5 +1,6 @@
 use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Setting, advice};
+use walpha_base::monitor::wraps;
 
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
@@ -12,16 +13,16 @@ use crate::shape::{AlphaError, ShapeError};
 pub enum PipelineError {
     /// The wavelet stage.
     #[error(transparent)]
-    Haar(#[from] HaarError),
+    Haar(HaarError),
     /// Selection or weights.
     #[error(transparent)]
     Points(#[from] PointsError),
     /// Adaptive selection.
     #[error(transparent)]
-    Interpolate(#[from] InterpolateError),
+    Interpolate(InterpolateError),
     /// The shape.
     #[error(transparent)]
-    Shape(#[from] ShapeError),
+    Shape(ShapeError),
     /// A voxel so large that 10 h² is not finite.
     #[error(transparent)]
     Alpha(#[from] AlphaError),
@@ -40,6 +41,8 @@ pub enum PipelineError {
     )]
     PeriodicWeights,
 }
+
+wraps! { PipelineError: Haar(HaarError), Interpolate(InterpolateError), Shape(ShapeError) }
 
 impl PipelineError {
     /// What to do about it, where there is something.

@@ -1,5 +1,6 @@
 use walpha_base::Cancelled;
 use walpha_base::advice::Advice;
+use walpha_base::monitor::wraps;
 
 use super::OffError;
 use super::plane::{NotACurvature, PlaneError};
@@ -15,13 +16,13 @@ use crate::shape::ShapeError;
 pub enum ReproduceError {
     /// The wavelet stage refused.
     #[error(transparent)]
-    Haar(#[from] HaarError),
+    Haar(HaarError),
     /// The volume yields no points.
     #[error(transparent)]
     Points(#[from] PointsError),
     /// The points have no shape.
     #[error(transparent)]
-    Shape(#[from] ShapeError),
+    Shape(ShapeError),
     /// The points in the plane have no shape.
     #[error(transparent)]
     Plane(#[from] PlaneError),
@@ -30,7 +31,7 @@ pub enum ReproduceError {
     Curvature(#[from] NotACurvature),
     /// The points have no interpolant.
     #[error(transparent)]
-    Interpolate(#[from] InterpolateError),
+    Interpolate(InterpolateError),
     /// A picture cannot be drawn.
     #[error(transparent)]
     Render(#[from] RenderError),
@@ -44,6 +45,8 @@ pub enum ReproduceError {
     #[error("cannot write a file into memory: {0}")]
     Io(#[from] std::io::Error),
 }
+
+wraps! { ReproduceError: Haar(HaarError), Shape(ShapeError), Interpolate(InterpolateError) }
 
 impl ReproduceError {
     /// What to do about it, where there is something.

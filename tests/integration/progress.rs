@@ -5,11 +5,11 @@ use std::sync::{Arc, Mutex};
 use walpha::haar::{HaarError, smooth_monitored};
 use walpha::interpolate::{Adaptive, InterpolateError, adaptive_voxels_monitored};
 use walpha::ladder::Filtration;
-use walpha::pipeline::PipelineError;
-use walpha::progress::{Cancelled, Listener, Monitor, Stage};
+use walpha::pipeline::{Choice, PipelineError};
+use walpha::progress::{Listener, Monitor, Stage};
 use walpha::shape::{Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
 use walpha::volume::{ReadOptions, VolumeError, VolumeWriter, open_monitored};
-use walpha::{Alpha, Gray, HaarOptions, Pipeline, Units, Volume, WeightedPoints, volume};
+use walpha::{Alpha, Gray, HaarOptions, Pipeline, Points, Units, Volume, WeightedPoints, volume};
 
 /// Keeps what is reported.
 #[derive(Clone, Default)]
@@ -74,10 +74,7 @@ fn lattice(side: usize) -> WeightedPoints {
 }
 
 fn is_cancelled(error: &ShapeError) -> bool {
-    match error {
-        ShapeError::Triangulation(error) => error.to_string() == Cancelled.to_string(),
-        error => matches!(error, ShapeError::Cancelled(_)),
-    }
+    matches!(error, ShapeError::Cancelled(_))
 }
 
 #[test]
@@ -158,4 +155,27 @@ fn a_pipeline_announces_its_stages_until_it_is_cancelled() {
         let all = [Stage::Haar, Stage::Points, Stage::Points, Stage::Shape].map(Stage::name);
         assert_eq!(heard[..], all[..expected]);
     }
+}
+
+/// However deep the stage is that was at work.
+#[test]
+fn a_pipeline_that_is_cancelled_within_a_stage_says_so() {
+    let pipeline = Pipeline::new().choice(Choice::Adaptive(Adaptive::new(300)));
+    assert_ends(|monitor| pipeline.weighed(&phantom(), monitor).map(drop));
+    let native = ShapeOptions::new(Alpha::ZERO).engine(Engine::Native);
+    let pipeline = Pipeline::new().alpha(Alpha::from_squared(1.0).unwrap()).shape(native);
+    let weighed = pipeline.weighed_points(Points::new(lattice(27).positions), &Monitor::silent());
+    let weighed = Mutex::new(Some(weighed.unwrap()));
+    let take = || weighed.lock().unwrap().take().unwrap();
+    assert_ends(|monitor| pipeline.finish(take(), monitor).map(drop));
+}
+
+/// Cancels work at its first report.
+fn assert_ends(work: impl FnOnce(&Monitor) -> Result<(), PipelineError>) {
+    let this = Arc::new(Mutex::new(None::<Monitor>));
+    let inside = Arc::clone(&this);
+    let monitor = Monitor::new(move |_, _| inside.lock().unwrap().as_ref().unwrap().cancel());
+    *this.lock().unwrap() = Some(monitor.clone());
+    let error = work(&monitor).unwrap_err();
+    assert!(matches!(error, PipelineError::Cancelled(_)), "{error:?}");
 }

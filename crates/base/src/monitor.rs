@@ -52,6 +52,26 @@ impl<F: Fn(u64, u64) + Send + Sync + 'static> Listener for F {
 #[error("cancelled")]
 pub struct Cancelled;
 
+/// `From` for the errors that another one wraps: each becomes its variant, but [`Cancelled`] stays what it is, however deep the
+/// work was that ended. Every type named has a variant `Cancelled`.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __wraps {
+    ($outer:ident: $($variant:ident($inner:ident)),+ $(,)?) => { $(
+        impl From<$inner> for $outer {
+            fn from(error: $inner) -> Self {
+                match error {
+                    $inner::Cancelled(cancelled) => Self::Cancelled(cancelled),
+                    other => Self::$variant(other),
+                }
+            }
+        }
+    )+ };
+}
+
+#[doc(inline)]
+pub use __wraps as wraps;
+
 /// What the reports of a monitor are parts of.
 #[derive(Clone, Copy, Default)]
 enum Scale {

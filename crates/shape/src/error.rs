@@ -1,6 +1,7 @@
 use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::memory::NoMemory;
+use walpha_base::monitor::wraps;
 use walpha_regular::{SitesError, TriangulationError, is_flat};
 
 use super::PlanError;
@@ -11,7 +12,7 @@ use super::PlanError;
 pub enum ShapeError {
     /// The points cannot be triangulated.
     #[error(transparent)]
-    Triangulation(#[from] TriangulationError),
+    Triangulation(TriangulationError),
     /// CGAL failed.
     #[error(transparent)]
     Cgal(#[from] CgalError),
@@ -153,6 +154,8 @@ impl ShapeError {
         matches!(self, Self::Triangulation(error) if is_flat(error))
     }
 }
+
+wraps! { ShapeError: Triangulation(TriangulationError) }
 
 impl From<SitesError> for ShapeError {
     fn from(error: SitesError) -> Self {
