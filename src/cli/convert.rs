@@ -7,7 +7,7 @@ use serde::Serialize;
 use walpha_base::shown::shown;
 
 use crate::progress::Stage;
-use crate::volume::{Source, convert_monitored, open};
+use crate::volume::{Source, convert_monitored, open_monitored};
 
 use super::Global;
 use super::args::InputArgs;
@@ -64,7 +64,9 @@ impl Convert {
             let source = match Source::open(input, &options) {
                 Ok(source) => source,
                 Err(_) => Source::of_volume(
-                    progress.stage(Stage::Read, || open(input, &options)).map_err(with_points)?,
+                    progress
+                        .stage(Stage::Read, || open_monitored(input, &options, &monitor))
+                        .map_err(with_points)?,
                 ),
             };
             progress.stage(Stage::Write, || convert_monitored(&source, &self.output, &monitor))?;

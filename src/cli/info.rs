@@ -4,11 +4,14 @@ use std::path::Path;
 
 use clap::Args;
 use serde::Serialize;
+use walpha_base::Monitor;
 use walpha_base::shown::number;
 
 use crate::points::{Cell, CellCount, cells_of, read_model};
 use crate::progress::Stage;
-use crate::volume::{self, Dtype, Extent, Nan, ReadOptions, Reason, Series, Source};
+use crate::volume::{
+    self, Dtype, Extent, Nan, ReadOptions, Reason, Series, Source, open_monitored,
+};
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
 
 use super::args::InputArgs;
@@ -127,15 +130,17 @@ impl From<Cell> for CellFacts {
 
 impl Info {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
-        let look = || pipeline::with_file(&self.input, |input| self.look(input));
-        let content = Progress::new(global).stage(Stage::Read, look)?;
+        let mut progress = Progress::new(global);
+        let monitor = progress.monitor();
+        let look = || pipeline::with_file(&self.input, |input| self.look(input, &monitor));
+        let content = progress.stage(Stage::Read, look)?;
         tell(
             global,
             &Facts { schema_version: SCHEMA_VERSION, input: self.input.input.to_string(), content },
         )
     }
 
-    fn look(&self, input: &Path) -> anyhow::Result<Content> {
+    fn look(&self, input: &Path, monitor: &Monitor) -> anyhow::Result<Content> {
         if pipeline::is_points(&self.input, input)? {
             let (points, facts) = read_model(input, &self.input.of_points())?;
             let axis = |end: fn(f64, f64) -> f64, start: f64, axis: usize| {
@@ -165,7 +170,7 @@ impl Info {
         }
         let path = input;
         let is_sample = input.to_str().is_some_and(|name| name.starts_with("sample:"));
-        let seen = match Seen::of(input, &options) {
+        let seen = match Seen::of(input, &options, monitor) {
             Ok(seen) => seen,
             Err(error) => match error.reason() {
                 Some(Reason::NotScalar { what, dims }) => {
@@ -174,7 +179,7 @@ impl Info {
                 }
                 Some(&Reason::Several { count }) if options.frame.is_none() => {
                     let first = options.clone().frame(0);
-                    Seen { volumes: Some(count), ..Seen::of(input, &first)? }
+                    Seen { volumes: Some(count), ..Seen::of(input, &first, monitor)? }
                 }
                 _ => return Err(pipeline::with_points(error)),
             },
@@ -215,13 +220,13 @@ struct Seen {
 
 impl Seen {
     /// Looks at a volume: part by part where its format allows that, and at all of it otherwise.
-    fn of(input: &Path, options: &ReadOptions) -> Result<Self, VolumeError> {
+    fn of(input: &Path, options: &ReadOptions, monitor: &Monitor) -> Result<Self, VolumeError> {
         let (source, extent) = if let Ok(source) = Source::open(input, options) {
             let extent = Extent::of(&source, options.nan)?;
             (source, extent)
         } else {
             // It says what is wrong where something is.
-            let opened = |nan| volume::open(input, &options.clone().nan(nan));
+            let opened = |nan| open_monitored(input, &options.clone().nan(nan), monitor);
             match opened(options.nan.or(Some(Nan::Mask))) {
                 Ok(volume) => {
                     let extent = Extent::of_volume(&volume);

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::Args;
+use walpha_base::Monitor;
 use walpha_base::shown::shown;
 
 use crate::progress::Stage;
 use crate::reproduce::{File, Report, Subject, page, reproduce};
-use crate::volume::{ReadOptions, open};
+use crate::volume::{ReadOptions, open_monitored};
 use crate::{Gray, Volume, VolumeError};
 
 use super::Global;
@@ -45,7 +46,8 @@ impl Reproduce {
         let mut progress = Progress::new(global);
         // Before the long work.
         let mut folder = Folder::open(&self.out, "--out", &["report.html", "report.json"])?;
-        let (name, volume) = progress.stage(Stage::Read, || self.volume(global))?;
+        let monitor = progress.monitor();
+        let (name, volume) = progress.stage(Stage::Read, || self.volume(global, &monitor))?;
         let (volume, range) = volume.into_gray(Gray::Automatic)?;
         let date = today();
         let subject = Subject { volume: &volume, range, name: &name, date: &date };
@@ -72,11 +74,11 @@ impl Reproduce {
         Ok(())
     }
 
-    fn volume(&self, global: Global) -> anyhow::Result<(String, Volume)> {
+    fn volume(&self, global: Global, monitor: &Monitor) -> anyhow::Result<(String, Volume)> {
         if let Some(name) = &self.input {
-            return Ok((name.clone(), open(name, &ReadOptions::default())?));
+            return Ok((name.clone(), open_monitored(name, &ReadOptions::default(), monitor)?));
         }
-        match open(SKULL, &ReadOptions::default()) {
+        match open_monitored(SKULL, &ReadOptions::default(), monitor) {
             Err(VolumeError::NoSkull { .. }) => {
                 if !global.quiet {
                     remark(&format!(
@@ -84,7 +86,7 @@ impl Reproduce {
                          libcgal-demo` brings it); going on with {PHANTOM}"
                     ));
                 }
-                Ok((PHANTOM.into(), open(PHANTOM, &ReadOptions::default())?))
+                Ok((PHANTOM.into(), open_monitored(PHANTOM, &ReadOptions::default(), monitor)?))
             }
             other => Ok((SKULL.into(), other?)),
         }

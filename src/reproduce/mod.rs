@@ -75,7 +75,7 @@ pub struct File {
 pub fn reproduce(subject: &Subject<'_>, monitor: &Monitor) -> Result<Reproduction, ReproduceError> {
     let mut clock = Clock::new(monitor);
     clock.enter("wavelets and points")?;
-    let study = Study::new(subject)?;
+    let study = Study::new(subject, monitor)?;
     let shapes = Shapes::new(&study, &mut clock)?;
     let mut bench = figures::Bench::new(&study, &shapes, monitor);
     let mut items = Vec::new();

@@ -2,12 +2,13 @@
 
 use super::stage::Stage;
 use super::{Clock, Input, ReproduceError, ShapeNumbers, Subject, text};
-use crate::haar::{HaarOptions, Truncation, smooth};
+use crate::haar::{HaarOptions, Truncation, smooth_monitored};
 use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, select, weigh,
 };
 use crate::shape::{Alpha, AlphaShape, Balls, Engine, ShapeOptions, alpha_shape};
 use crate::volume::{LengthUnit, Volume};
+use walpha_base::Monitor;
 
 /// The paper's points.
 pub(super) const PAPER_POINTS: usize = 15956;
@@ -30,9 +31,9 @@ pub(super) struct Study<'a> {
 }
 
 impl<'a> Study<'a> {
-    pub(super) fn new(subject: &'a Subject<'a>) -> Result<Self, ReproduceError> {
+    pub(super) fn new(subject: &'a Subject<'a>, monitor: &Monitor) -> Result<Self, ReproduceError> {
         let volume = subject.volume;
-        let (smoothed, truncation) = smooth(volume, &HaarOptions::default())?;
+        let (smoothed, truncation) = smooth_monitored(volume, &HaarOptions::default(), monitor)?;
         let (rule, select_option) = if volume.dims().samples() == PAPER_SAMPLES {
             (SelectionRule::Count(PAPER_POINTS as u64), format!("--count {PAPER_POINTS}"))
         } else {

@@ -1,6 +1,7 @@
 //! What a level of detail misses of the volume.
 
 use serde::Serialize;
+use walpha_base::Monitor;
 
 use crate::cli::filled::filled_in;
 use crate::interpolate::{Deviation, Grid, Interpolant, InterpolateError};
@@ -25,13 +26,14 @@ impl Errors {
         grays: &[f64],
         volume: &Volume,
         units: Units,
+        monitor: &Monitor,
     ) -> Result<Self, InterpolateError> {
         let grid = Grid::of(volume, units);
         let rmse = |interpolant: Interpolant<'_>| -> Result<Option<f64>, InterpolateError> {
             Ok(Deviation::of(volume, &interpolant.resample(&grid)?).rmse)
         };
         let inside = rmse(Interpolant::with_values(shape, grays)?)?;
-        let (whole, all) = filled_in(shape, grays, volume, units)?;
+        let (whole, all) = filled_in(shape, grays, volume, units, monitor)?;
         let filled = rmse(Interpolant::with_values(&whole, &all)?)?;
         Ok(Self { inside, filled: filled.unwrap_or_default() })
     }

@@ -9,6 +9,7 @@ use crate::ladder::Filtration;
 use crate::pipeline::{AlphaRule, Parameter, Weighed};
 use crate::progress::Stage;
 use crate::render::Differences;
+use walpha_base::Monitor;
 
 /// Levels that `--alphas auto` chooses, suggested ones not counted.
 const STOPS: usize = 28;
@@ -29,7 +30,9 @@ impl Detail {
         let filtration = progress.watch(|monitor| pipeline::filtration(None, &weighed, monitor))?;
         let differences = match source {
             Some(source) => {
-                progress.stage(Stage::Interpolate, || differences(&weighed, source, &filtration))?
+                let monitor = progress.monitor();
+                let found = || differences(&weighed, source, &filtration, &monitor);
+                progress.stage(Stage::Interpolate, found)?
             }
             None => None,
         };
@@ -70,13 +73,14 @@ fn differences(
     weighed: &Weighed,
     source: &Source,
     filtration: &Filtration,
+    monitor: &Monitor,
 ) -> anyhow::Result<Option<Differences>> {
     let Source { volume, facts } = source;
     let Some(values) = &weighed.points.values else { return Ok(None) };
     let grays: Vec<f64> = values.iter().map(|&value| facts.written.gray(value)).collect();
     let hull = filtration.levels(&[Alpha::INFINITE]);
     let hull = hull.shape(0, false, hull.betti()[0]);
-    let (whole, grays) = filled_in(&hull, &grays, volume, facts.units)?;
+    let (whole, grays) = filled_in(&hull, &grays, volume, facts.units, monitor)?;
     let interpolant = Interpolant::with_values(&whole, &grays)?;
     let grid = Grid::of(volume, facts.units);
     let mut local = interpolant.local_deviations(volume, &grid)?;

@@ -3,14 +3,16 @@
 mod facts;
 
 use crate::cli::said::refused;
+use crate::haar::smooth_monitored;
 use crate::points::{Points, Units, difference, select, weigh};
 use crate::points::{Region, focus};
 use crate::progress::Stage;
+use crate::shape::alpha_shape_monitored;
 use crate::shape::{AlphaShape, ShapeOptions};
 use crate::{
     GrayRange, HaarOptions, Selection, SelectionRule, Tolerance, Truncation, Volume, Weighting,
-    alpha_shape, haar,
 };
+use walpha_base::Monitor;
 
 use super::super::Global;
 use super::super::args::{FrozenPipelineArgs, WeightArgs};
@@ -54,7 +56,8 @@ impl Ladder {
         let alpha = parameter.alpha;
         let coordinates = units.coordinates(&volume);
         let domain = Domain::of_grid(&volume, units);
-        let mut stages = Stages { volume: &volume, units, smoothed: None };
+        let monitor = progress.monitor();
+        let mut stages = Stages { volume: &volume, units, smoothed: None, monitor: &monitor };
         let full = progress.stage(Stage::Points, || self.full(&mut stages, &range))?;
         let mut rows = Vec::new();
         for wanted in self.wanted(&range) {
@@ -69,9 +72,10 @@ impl Ladder {
             }
             let weighted = weigh(&points, weighting, alpha)?;
             let options = ShapeOptions::new(alpha);
-            let shape = progress.stage(Stage::Shape, || alpha_shape(weighted, &options))?;
+            let shape = progress
+                .stage(Stage::Shape, || alpha_shape_monitored(weighted, &options, &monitor))?;
             let shape = shape.with_coordinates(coordinates);
-            let errors = || Errors::of(&shape, &grays, &volume, units);
+            let errors = || Errors::of(&shape, &grays, &volume, units, &monitor);
             let errors = progress.stage(Stage::Interpolate, errors)?;
             let mut row = Row::of(&shape, &truncation, &domain, errors);
             progress.stage(Stage::Write, || {
@@ -154,6 +158,7 @@ struct Stages<'a> {
     volume: &'a Volume,
     units: Units,
     smoothed: Option<(HaarOptions, Volume, Truncation)>,
+    monitor: &'a Monitor,
 }
 
 impl Stages<'_> {
@@ -166,7 +171,7 @@ impl Stages<'_> {
             if let Some(known) = self.smoothed.take().filter(|s| s.0 == *options) {
                 self.smoothed.insert(known)
             } else {
-                let (smoothed, truncation) = haar::smooth(self.volume, options)?;
+                let (smoothed, truncation) = smooth_monitored(self.volume, options, self.monitor)?;
                 self.smoothed.insert((*options, smoothed, truncation))
             };
         let points = select(self.volume, smoothed, &difference(smoothed), selection, self.units)?;
