@@ -1,6 +1,6 @@
 //! Each stage alone: `cargo bench`. The front end on the phantom at 128³, the engines on the points
 //! of the phantom at 64³. `cargo run --release --example race` compares the engines on large sets,
-//! `scripts/race_wavelets.py` the front end with `PyWavelets`.
+//! `benches/race_wavelets.py` the front end with `PyWavelets`.
 
 use divan::Bencher;
 use walpha::haar::{HaarOptions, smooth};

@@ -4,15 +4,15 @@ use std::path::Path;
 
 use walpha::export::{ExportOptions, Format, Target};
 use walpha::volume::{ReadOptions, open};
-use walpha::{Alpha, Gray, Pipeline, Weighting};
+use walpha::{Alpha, Recipe, Weighting};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let input = std::env::args().nth(1).unwrap_or_else(|| "sample:phantom".into());
     let output = std::env::args().nth(2).unwrap_or_else(|| "shape.ply".into());
-    let (volume, _) = open(&input, &ReadOptions::default())?.into_gray(Gray::Automatic)?;
+    let volume = open(&input, &ReadOptions::default())?;
 
-    let pipeline = Pipeline::new().weighting(Weighting::MinMax).alpha(Alpha::from_squared(10.0)?);
-    let model = pipeline.run(&volume)?;
+    let recipe = Recipe::new().weighting(Weighting::MinMax).alpha(Alpha::from_squared(10.0)?);
+    let model = recipe.run(volume)?;
 
     let shape = model.shape;
     let exporter = Format::of(Path::new(&output))?.exporter(&ExportOptions::default());

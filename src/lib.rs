@@ -5,14 +5,13 @@
 //! weighted alpha shape of these points is computed exactly: tetrahedra, facets, edges, vertices.
 //! After "Volume Modeling of Scattered Data based on Weighted Alpha Shapes", which uses CGAL, too.
 //!
-//! [`Pipeline`] runs every stage, from a volume to the shape:
+//! A [`Recipe`] runs every stage, from a volume to the shape:
 //!
 //! ```
-//! use walpha::{Alpha, Class, Gray, Pipeline, Weighting, volume};
+//! use walpha::{Alpha, Class, Recipe, Weighting, volume};
 //!
-//! let (volume, _) = volume::sample("sample:phantom@32")?.into_gray(Gray::Automatic)?;
-//! let pipeline = Pipeline::new().weighting(Weighting::MinMax).alpha(Alpha::from_squared(10.0)?);
-//! let model = pipeline.run(&volume)?;
+//! let recipe = Recipe::new().weighting(Weighting::MinMax).alpha(Alpha::from_squared(10.0)?);
+//! let model = recipe.run(volume::sample("sample:phantom@32")?)?;
 //!
 //! let truncation = model.origin.truncation.expect("points of a volume have one");
 //! assert!(truncation.rms <= 1.0);
@@ -66,7 +65,7 @@ pub use walpha_check as check;
 
 pub use haar::{Coefficients, Decomposition, HaarOptions, Tolerance, Truncation};
 pub use interpolate::Interpolant;
-pub use pipeline::Pipeline;
+pub use pipeline::Recipe;
 pub use points::{Points, PointsError, Selection, SelectionRule, Units, Weighting};
 pub use shape::{
     Alpha, AlphaShape, Balls, CgalError, Class, Complex, Simplices, WeightedPoints, alpha_shape,

@@ -2,7 +2,7 @@
 
 pub use walpha_base::monitor::{Cancelled, Listener, Monitor};
 
-/// What a command or a [`Pipeline`](crate::Pipeline) does at a time.
+/// What a command or a [`Recipe`](crate::Recipe) does at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Stage {

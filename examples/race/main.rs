@@ -214,6 +214,6 @@ fn run_engine(
 /// Gmsh's parallel Delaunay triangulation, on one thread.
 fn hxt(points: &Path) -> Result<Run> {
     let python = std::env::var_os("GMSH_PYTHON").ok_or("GMSH_PYTHON is not set")?;
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/race_gmsh.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/race_gmsh.py");
     output(Command::new(python).arg(script).arg(points))
 }

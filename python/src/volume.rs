@@ -4,18 +4,16 @@ use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::prelude::*;
 use walpha::haar::{Decomposition, HaarOptions, Tolerance, smooth_monitored};
-use walpha::interpolate::{Adaptive, Refit};
-use walpha::pipeline::{Choice, PipelineError};
+use walpha::interpolate::Refit;
+use walpha::pipeline::{Choice, Goal, PipelineError};
 use walpha::points::{self, PointsError, Weighting};
 use walpha::progress::Stage;
-use walpha::volume::{
-    Coordinates, Frame, Gray, GrayRange, ReadOptions, Space, Volume, open_monitored,
-};
-use walpha::{Alpha, Pipeline, Points, Selection, SelectionRule, Units};
+use walpha::volume::{Coordinates, Frame, GrayRange, ReadOptions, Space, Volume, open_monitored};
+use walpha::{Alpha, Points, Recipe, Selection, SelectionRule, Units};
 
 use crate::arrays::{numbers, samples as owned};
 use crate::errors::{Told, wrong};
-use crate::shape::{Options, Shape, alpha_rule, json, options, unknown};
+use crate::shape::{Options, Shape, alpha_rule, json, unknown, with_options};
 use crate::work::run;
 
 /// A file or sample: its samples, whether they are gray levels, and its frame as JSON, in LPS where it says in
@@ -154,31 +152,31 @@ pub fn pipeline(
             Choice::Difference(Selection::default().rule(selection_rule(&rule)?).gray_min(gray_min))
         }
         Some((count, rmse, max_error, exchange)) => {
-            let goal = Adaptive::new(count).rmse(rmse).max_error(max_error);
+            let mut goal = Goal::of_count(count);
+            (goal.rmse, goal.max_error) = (Some(rmse), max_error);
             if exchange { Choice::Exchanged(goal) } else { Choice::Adaptive(goal) }
         }
     };
-    let mut pipeline = Pipeline::new()
+    let refit = match refit {
+        None => None,
+        Some("whole") => Some(Refit::Whole),
+        Some("shape") => Some(Refit::Shape),
+        Some(other) => return Err(unknown("refit", other, "'whole' and 'shape'")),
+    };
+    let recipe = Recipe::new()
+        .gray(gray.map(|(low, high)| GrayRange { low, high }))
         .haar(haar_options(&haar.0, &haar.1)?)
         .choice(choice)
         .units(units)
-        .weighting(weighting.parse().map_err(Told::told)?)
+        // Coordinates stay in the space that the frame is in.
+        .space(Some(frame.coordinates.space).filter(|space| space.is_known()))
+        .weighting(weighting.parse::<Weighting>().map_err(Told::told)?)
         .alpha(alpha_rule(alpha))
-        .shape(options(&how)?);
-    pipeline = match refit {
-        None => pipeline,
-        Some("whole") => pipeline.refit(Refit::Whole),
-        Some("shape") => pipeline.refit(Refit::Shape),
-        Some(other) => return Err(unknown("refit", other, "'whole' and 'shape'")),
-    };
-    let gray = gray.map_or(Gray::Automatic, |(low, high)| Gray::Range(GrayRange { low, high }));
+        .refit(refit);
+    let recipe = with_options(recipe, &how)?;
     let samples = owned(&samples)?;
     let model = run(py, progress.as_ref(), move |monitor| {
-        let volume = grays(samples, frame, is_gray)?.into_gray(gray).map_err(PointsError::from)?;
-        let (volume, range) = volume;
-        let pipeline = pipeline.values(range);
-        let weighed = pipeline.weighed(&volume, monitor)?;
-        pipeline.finish(weighed, monitor)
+        recipe.run_monitored(grays(samples, frame, is_gray)?, monitor)
     })?;
     Ok(Shape::of(model))
 }

@@ -65,13 +65,13 @@ pub(super) struct Sample {
 impl Field {
     /// Opens the input of a job, of which a part will be read, or all.
     pub(super) fn open(job: &Job, part: Option<&Part>) -> Result<Self, BlocksError> {
-        let source = Source::open(&job.input, &job.read)?;
+        let source = Source::open(&job.input, &job.recipe.read)?;
         if source.dims() != job.dims {
             let what = format!("it has {} samples, not {}", source.dims(), job.dims);
             return Err(BlocksError::changed(job, what));
         }
         let dims = source.dims().xyz();
-        let (bricks, nan) = (Self::bricks_of(dims), job.read.nan);
+        let (bricks, nan) = (Self::bricks_of(dims), job.recipe.read.nan);
         let seen = Seen::none_of(part.unwrap_or(&Part::whole(dims)), bricks.side(), dims);
         let input = job.input.clone();
         let (range, least) = (GrayRange::IDENTITY, 0.0);

@@ -1,89 +1,40 @@
 use serde::{Deserialize, Serialize};
 
 use super::BlocksError;
-use crate::haar::HaarOptions;
-use crate::pipeline::{AlphaRule, Parameter, ParameterOrigin};
+use crate::Recipe;
+use crate::pipeline::{Choice, Parameter};
 use crate::points::{Selection, Units, Weighting};
-use crate::shape::{Alpha, Balls, Engine};
-use crate::volume::{Dims, Frame, GrayRange, ReadOptions, Source, any_size};
+use crate::shape::{Alpha, Engine};
+use crate::volume::{Dims, Frame, GrayRange, Source, any_size};
 
-/// What is to be computed: an input and the options of every stage. Plans hold it.
+/// What is to be computed: an input, and the recipe for its shape. Plans hold it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Job {
     /// A sample or a file.
     pub input: String,
-    /// How it is read.
-    pub read: ReadOptions,
-    /// The values that become gray 0 and 255; `None` leaves unsigned bytes as they are, and takes the smallest
-    /// and largest value of others.
-    pub gray: Option<GrayRange>,
-    /// Whether points get gray levels rather than the values of the input.
-    pub gray_out: bool,
+    /// The options of all stages.
+    pub recipe: Recipe,
     /// Samples along x, y and z.
     #[serde(deserialize_with = "any_size")]
     pub dims: Dims,
-    /// Where the grid lies.
+    /// Where the grid lies, in the space that its points are in.
     pub frame: Frame,
     /// What coordinates are measured in.
     pub units: Units,
-    /// How the volume is transformed and truncated.
-    pub haar: HaarOptions,
-    /// Which samples become points.
-    pub selection: Selection,
-    /// Drops samples below this value of the input; instead of [`Selection::gray_min`].
-    pub value_min: Option<f64>,
-    /// Where weights come from.
-    pub weighting: Weighting,
-    /// The parameter α, a squared length.
-    pub alpha: f64,
-    /// Where it comes from.
-    pub alpha_origin: ParameterOrigin,
-    /// What α + ω means.
-    pub balls: Balls,
-    /// Which program computes the shape.
-    pub engine: Engine,
 }
 
 impl Job {
-    /// The default options of every stage, for the volume behind an input, which is opened.
+    /// The recipe for the volume behind an input, which is opened.
     ///
     /// # Errors
-    /// The input cannot be read in parts.
-    pub fn new(input: &str, read: ReadOptions) -> Result<Self, BlocksError> {
-        let source = Source::open(input, &read)?;
-        let mut job = Self {
-            input: input.to_owned(),
-            read,
-            gray: None,
-            gray_out: false,
-            dims: source.dims(),
-            frame: *source.frame(),
-            units: Units::default(),
-            haar: HaarOptions::default(),
-            selection: Selection::default(),
-            value_min: None,
-            weighting: Weighting::Common(0.0),
-            alpha: 0.0,
-            alpha_origin: ParameterOrigin::Default,
-            balls: Balls::default(),
-            engine: Engine::default(),
-        };
-        job.set_alpha(AlphaRule::Default)?;
+    /// The input cannot be read in parts; what is not local ([`Job::check`]).
+    pub fn new(input: &str, recipe: Recipe) -> Result<Self, BlocksError> {
+        let source = Source::open(input, &recipe.read)?;
+        let (frame, units) = recipe.place(*source.frame())?;
+        let job = Self { input: input.to_owned(), recipe, dims: source.dims(), frame, units };
+        job.check()?;
         Ok(job)
-    }
-
-    /// Takes α from a rule, in the units that are set.
-    ///
-    /// # Errors
-    /// An α that is to be found: that takes all points at once.
-    pub fn set_alpha(&mut self, rule: AlphaRule) -> Result<(), BlocksError> {
-        let found = rule.of_frame(&self.frame, self.units)?;
-        let Some(Parameter { alpha, origin, .. }) = found else {
-            return Err(BlocksError::not_local("--alpha auto", "give α as a number"));
-        };
-        (self.alpha, self.alpha_origin) = (alpha.squared(), origin);
-        Ok(())
     }
 
     /// Whether it can be done in blocks.
@@ -92,30 +43,67 @@ impl Job {
     /// [`BlocksError::NotLocal`].
     pub fn check(&self) -> Result<(), BlocksError> {
         let not_local = |what: &str, next: &'static str| Err(BlocksError::not_local(what, next));
-        if !self.alpha.is_finite() {
-            return not_local("α = inf, the convex hull,", "give a finite α");
+        let Recipe { choice, refit, exterior, hidden, periodic, engine, .. } = &self.recipe;
+        match self.rule()? {
+            None => return not_local("--alpha auto", "give α as a number"),
+            Some(Parameter { alpha, .. }) if alpha == Alpha::INFINITE => {
+                return not_local("α = inf, the convex hull,", "give a finite α");
+            }
+            Some(_) => {}
         }
-        if self.engine == Engine::Cgal {
+        if !matches!(choice, Choice::Difference(_)) {
+            return not_local("--select adaptive, which looks at all points at once,", "omit it");
+        }
+        if *exterior || *hidden {
+            return not_local("the whole triangulation", "omit --exterior and --hidden");
+        }
+        if refit.is_some() {
+            return not_local("--refit", "omit it");
+        }
+        if periodic.is_some() {
+            return not_local("--periodic", "omit it");
+        }
+        if *engine == Engine::Cgal {
             return not_local("the engine cgal", "use the engine native");
         }
-        if self.weighting == Weighting::Column {
+        if self.recipe.weighting == Some(Weighting::Column) {
             return Err(crate::points::PointsError::NoColumn.into());
         }
-        let axes = self.frame.axes();
-        if self.units == Units::World && inverse(axes).is_none() {
+        if self.units == Units::World && inverse(self.frame.axes()).is_none() {
             return not_local("a grid whose axes lie in one plane", "correct its directions");
         }
         Ok(())
     }
 
-    /// α as a parameter.
-    pub fn parameter(&self) -> Parameter {
-        let unit = self.units.coordinates_of(&self.frame).unit;
-        Parameter { alpha: self.squared(), unit, origin: self.alpha_origin }
+    /// α; `None` where it is to be found, which takes all points at once.
+    fn rule(&self) -> Result<Option<Parameter>, BlocksError> {
+        Ok(self.recipe.alpha.of_frame(&self.frame, self.units)?)
     }
 
-    pub(super) fn squared(&self) -> Alpha {
-        Alpha::from_squared(self.alpha).unwrap_or(Alpha::ZERO)
+    /// α as a parameter.
+    ///
+    /// # Panics
+    /// It is not known: [`Job::check`] refuses that.
+    pub fn parameter(&self) -> Parameter {
+        self.rule().ok().flatten().expect("a job that was checked has an α")
+    }
+
+    /// α.
+    pub(super) fn alpha(&self) -> Alpha {
+        self.parameter().alpha
+    }
+
+    /// Where weights come from.
+    pub fn weighting(&self) -> Weighting {
+        self.recipe.weighting.unwrap_or(Weighting::Common(0.0))
+    }
+
+    /// Which samples become points, where `range` became gray 0 and 255.
+    ///
+    /// # Panics
+    /// They are chosen adaptively: [`Job::check`] refuses that.
+    pub(super) fn selection(&self, range: &GrayRange) -> Selection {
+        self.recipe.selection(range).expect("a job that was checked selects by differences")
     }
 
     /// How many samples along x, y and z balls of this radius reach.

@@ -4,17 +4,17 @@
 //! functions on files. [`Plan::make`] surveys the volume, cuts it into boxes and writes a plan into a folder. [`run`]
 //! computes one block from its own samples and those around it, with no other block. [`merge`] joins blocks over
 //! their borders. What comes out is the shape that [`alpha_shape`](crate::alpha_shape)
-//! computes of the points that a [`Pipeline`](crate::Pipeline) selects, simplex by simplex and number by number:
+//! computes of the points that a [`Recipe`](crate::Recipe) selects, simplex by simplex and number by number:
 //! sums are exact, and ties are broken by indices of the volume.
 //!
 //! Processes that can send each other messages share the survey, the blocks and the writing of pieces as a [`Team`].
 //!
 //! ```
 //! use walpha::blocks::{Cutting, Job, Plan, merge, run};
-//! use walpha::volume::ReadOptions;
+//! use walpha::Recipe;
 //!
 //! let folder = tempfile::tempdir()?;
-//! let job = Job::new("sample:phantom@40", ReadOptions::default())?;
+//! let job = Job::new("sample:phantom@40", Recipe::new())?;
 //! let plan = Plan::make(job, Cutting::default().blocks(4), folder.path())?;
 //! // In any order, anywhere, as long as all see the folder; again, if one fails.
 //! for block in 0..plan.blocks.len() {

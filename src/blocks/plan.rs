@@ -12,10 +12,10 @@ use super::kept::Kept;
 use super::stamp::Stamp;
 use super::survey::{Survey, Surveyed, survey};
 use super::{Alone, BlocksError, Field, Job, Part, Team};
-use crate::Weighting;
 use crate::export::Target;
 use crate::points::{PointsError, Shares};
 use crate::shape::Alpha;
+use crate::{Recipe, Weighting};
 
 /// How a job is cut into blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,6 +28,11 @@ pub struct Cutting {
 }
 
 impl Cutting {
+    /// As a recipe has it.
+    pub fn of(recipe: &Recipe) -> Self {
+        Self { blocks: recipe.blocks.map(usize::from), memory: recipe.memory }
+    }
+
     setters! { blocks: Option<usize>, memory: Option<u64> }
 }
 
@@ -279,16 +284,16 @@ impl Plan {
 
     /// How weights come from differences, where they do.
     pub(super) fn shares(&self) -> Result<Option<Shares>, PointsError> {
-        let weighting = self.job.weighting;
+        let weighting = self.job.weighting();
         if !weighting.needs_differences() {
             return Ok(None);
         }
-        weighting.shares(&self.survey.differences, self.job.squared()).map(Some)
+        weighting.shares(&self.survey.differences, self.job.alpha()).map(Some)
     }
 
     /// The weight ω of a point.
     pub(super) fn weight(&self, shares: Option<Shares>, difference: f64) -> f64 {
-        match (shares, self.job.weighting) {
+        match (shares, self.job.weighting()) {
             (Some(shares), _) => shares.of(difference),
             (None, Weighting::Common(weight)) => weight,
             (None, _) => 0.0,
@@ -299,7 +304,7 @@ impl Plan {
     pub(super) fn margin(&self) -> Result<[usize; 3], BlocksError> {
         let (shares, differences) = (self.shares()?, &self.survey.differences);
         let weights = [differences.min, differences.max].map(|l| self.weight(shares, l));
-        let radius = |weight: f64| self.job.balls.radius(self.job.squared(), weight);
+        let radius = |weight: f64| self.job.recipe.balls.radius(self.job.alpha(), weight);
         let largest = weights.map(radius).into_iter().fold(0.0, f64::max);
         // Rounded up by more than all roundings on the way.
         Ok(self.job.reach(2.0 * largest * (1.0 + 1e-9)).map(|samples| samples.saturating_add(1)))
@@ -307,22 +312,19 @@ impl Plan {
 
     /// α, for weights and reports.
     pub fn alpha(&self) -> Alpha {
-        self.job.squared()
+        self.job.alpha()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::Engine;
-    use crate::volume::ReadOptions;
 
     /// With a digest that is right: what is in the plan decides.
     #[test]
     fn plans_that_verify_are_looked_at_still() {
         let folder = tempfile::tempdir().unwrap();
-        let mut job = Job::new("sample:phantom@12", ReadOptions::default()).unwrap();
-        job.engine = Engine::Native;
+        let job = Job::new("sample:phantom@12", Recipe::new()).unwrap();
         let plan = Plan::make(job, Cutting::default().blocks(2), folder.path()).unwrap();
         let read = Plan::of_text(&plan.text(), folder.path()).unwrap();
         assert_eq!((&read, read.digest()), (&plan, plan.digest()));

@@ -4,7 +4,7 @@ use crate::Weighting;
 use crate::haar::Decomposition;
 use crate::points::SelectionRule;
 use crate::shape::{AT_WORK, PlanError, ShapeError};
-use crate::volume::Source;
+use crate::volume::{GrayRange, Source};
 
 use super::cut::{SILENT, TILE_SAMPLE};
 use super::{BlocksError, Cutting, Field, Job};
@@ -60,7 +60,7 @@ const PEAK: f64 = 8.0;
 /// As [`Job::check`]; a selection whose count is known only when the volume was read.
 pub fn price(job: &Job, cutting: Cutting) -> Result<Price, BlocksError> {
     job.check()?;
-    let source = Source::open(&job.input, &job.read)?;
+    let source = Source::open(&job.input, &job.recipe.read)?;
     let model = Model::new(job, &source)?;
     let blocks = match cutting.blocks {
         Some(blocks) => blocks as u64,
@@ -70,9 +70,9 @@ pub fn price(job: &Job, cutting: Cutting) -> Result<Price, BlocksError> {
     let size = source.dtype().size() as f64;
     // Two layers of points at each face between blocks.
     let faces = 6.0 * ((blocks as f64).cbrt() - 1.0) * p.powf(2.0 / 3.0);
-    let is_gray = source.has_gray_levels() && job.gray.is_none();
+    let is_gray = source.has_gray_levels() && job.recipe.gray.is_none();
     let passes = PASSES[usize::from(!is_gray)];
-    let bytes_of_plan = match job.haar.decomposition {
+    let bytes_of_plan = match job.recipe.haar.decomposition {
         Decomposition::NonStandard => model.sums,
         Decomposition::Standard => IN_FILE * n as u64,
     };
@@ -110,7 +110,7 @@ struct Model {
 impl Model {
     fn new(job: &Job, source: &Source) -> Result<Self, BlocksError> {
         let samples = job.dims.samples() as f64;
-        let points = match job.selection.rule {
+        let points = match job.selection(&GrayRange::IDENTITY).rule {
             SelectionRule::Count(count) => count as f64,
             SelectionRule::Ratio(ratio) | SelectionRule::AtMost(ratio) => (ratio * samples).round(),
             SelectionRule::Threshold(_) => {
@@ -118,15 +118,15 @@ impl Model {
                 return Err(BlocksError::not_local("the number of points above a threshold", next));
             }
         };
-        let largest = match job.weighting {
+        let largest = match job.weighting() {
             Weighting::Common(weight) => weight,
-            Weighting::MinMax => job.alpha,
-            Weighting::BarycentricN => PEAK * job.alpha,
+            Weighting::MinMax => job.alpha().squared(),
+            Weighting::BarycentricN => PEAK * job.alpha().squared(),
             _ => 0.0,
         };
         // All weights but a common one are small as a rule.
-        let usual = if let Weighting::Common(weight) = job.weighting { weight } else { 0.0 };
-        let radius = |weight: f64| job.balls.radius(job.squared(), weight);
+        let usual = if let Weighting::Common(weight) = job.weighting() { weight } else { 0.0 };
+        let radius = |weight: f64| job.recipe.balls.radius(job.alpha(), weight);
         let product = |sizes: [usize; 3]| sizes.iter().product::<usize>() as u64;
         let reach = |radius: f64| job.reach(radius).into_iter().max().unwrap_or(0) as f64;
         let sums = SUM * product(Field::bricks_of(job.dims.xyz()).count());

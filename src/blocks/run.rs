@@ -107,10 +107,10 @@ pub fn run(plan: &Plan, block: usize) -> Result<(), BlocksError> {
         }
         other => other,
     };
-    let squared = job.balls.power_weights(&points.weights, job.squared()).map_err(named)?;
+    let squared = job.recipe.balls.power_weights(&points.weights, job.alpha()).map_err(named)?;
     let weights = squared.as_deref().unwrap_or(&points.weights);
     let own = Own { positions: &points.positions, weights, own: &points.own };
-    let shape = block_shape(own, job.balls.power_alpha(job.squared()).squared())?;
+    let shape = block_shape(own, job.recipe.balls.power_alpha(job.alpha()).squared())?;
     write(plan, block, &points, shape)
 }
 
@@ -144,7 +144,7 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
     }
     found.sort_unstable_by_key(|&(voxel, ..)| voxel);
     let shares = plan.shares()?;
-    let written = if job.gray_out { GrayRange::IDENTITY } else { survey.range };
+    let written = if job.recipe.gray_out { GrayRange::IDENTITY } else { survey.range };
     let [nx, ny, _] = field.dims;
     let mut points = Points::default();
     for (voxel, difference, gray) in found {

@@ -119,9 +119,9 @@ mod tests {
     use std::sync::mpsc::{Receiver, Sender, channel};
 
     use super::*;
+    use crate::Recipe;
     use crate::blocks::{Cutting, Job, Pieces, Plan, merge, run_all, run_missing};
     use crate::progress::Monitor;
-    use crate::volume::ReadOptions;
     use crate::{GrayRange, Weighting};
 
     /// Threads as processes.
@@ -185,9 +185,9 @@ mod tests {
     /// What any number of processes surveys, runs and writes, some of them without a tile or a block.
     #[test]
     fn a_team_makes_what_one_makes() {
-        let mut job = Job::new("sample:phantom@90", ReadOptions::default()).unwrap();
-        (job.gray, job.weighting) =
-            (Some(GrayRange { low: -3.0, high: 190.0 }), Weighting::Barycentric);
+        let range = GrayRange { low: -3.0, high: 190.0 };
+        let recipe = Recipe::new().gray(range).weighting(Weighting::Barycentric);
+        let job = Job::new("sample:phantom@90", recipe).unwrap();
         let cutting = Cutting { blocks: Some(3), ..Cutting::default() };
         let folder = tempfile::tempdir().unwrap();
         let expected = Plan::make(job.clone(), cutting, folder.path()).unwrap();

@@ -49,7 +49,7 @@ pub fn whole(plan: &Plan, merged: &Merged) -> Result<AlphaShape, BlocksError> {
         points,
         coordinates: job.units.coordinates_of(&job.frame),
         options: ShapeOptions::new(plan.alpha())
-            .balls(job.balls)
+            .balls(job.recipe.balls)
             .engine(Engine::Native)
             .refuse_flat(true),
         complex,

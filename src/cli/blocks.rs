@@ -8,6 +8,7 @@ use walpha_base::Monitor;
 use walpha_base::shown::shown;
 use walpha_files::{Working, fill_all, keep_input};
 
+use crate::Recipe;
 use crate::blocks::merge_monitored;
 use crate::blocks::{
     Alone, BlocksError, Checked, Cutting, Finding, Job, Merged, Pieces, Plan, Team, price, run,
@@ -17,12 +18,12 @@ use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target}
 use crate::progress::Stage;
 use crate::volume::files_of;
 
-use super::args::{PipelineArgs, ShapeArgs};
+use super::args::{InputArgs, PipelineArgs, ShapeArgs};
 use super::block_facts::{CheckFacts, PlanFacts, PriceFacts, RunFacts};
 use super::output::tell;
 use super::progress::Progress;
 use super::report::Report;
-use super::said::misused;
+use super::said::{Said, misused};
 use super::{DIFFERENT, Global, folder, pipeline};
 
 /// Compute a shape in blocks, on as many machines as see one folder: plan, run each block, merge.
@@ -138,15 +139,16 @@ impl PlanStep {
     fn run(self, global: Global) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
         let monitor = progress.monitor();
-        let job = job(&self.pipeline, &self.shape)?;
+        let recipe = self.pipeline.recipe_of(&self.shape, None)?;
+        let cutting = Cutting::of(&recipe);
+        let job = job(&self.pipeline.input, recipe)?;
         let Some(folder) = self.output else {
             progress.finish();
-            return tell(global, &PriceFacts(price(&job, cutting(&self.shape))?));
+            return tell(global, &PriceFacts(price(&job, cutting)?));
         };
         let new = folder::make(&folder, "with --output")?;
-        let plan = progress.stage(Stage::Points, || {
-            Plan::make_with(job, cutting(&self.shape), &folder, &Alone, &monitor)
-        })?;
+        let plan = progress
+            .stage(Stage::Points, || Plan::make_with(job, cutting, &folder, &Alone, &monitor))?;
         if let Some(new) = new {
             new.keep();
         }
@@ -260,46 +262,25 @@ impl Outputs {
     }
 }
 
-/// What the options ask for.
-pub(super) fn job(args: &PipelineArgs, shape: &ShapeArgs) -> anyhow::Result<Job> {
-    let PipelineArgs { input, haar, select, weights, .. } = args;
-    if input.input.is_stdin() {
+/// A shape of INPUT in blocks.
+pub(super) fn job(args: &InputArgs, recipe: Recipe) -> anyhow::Result<Job> {
+    let input = &args.input;
+    if input.is_stdin() {
         misused!("standard input cannot be read in parts, as blocks are" => "name a file");
     }
-    if input.input.path().to_str().is_none() {
-        misused!("the plan of blocks is a text, and {} is no name in UTF-8", input.input => "name a link to it");
+    if input.path().to_str().is_none() {
+        misused!("the plan of blocks is a text, and {input} is no name in UTF-8" => "name a link to it");
     }
-    if pipeline::is_points(input, input.input.path())? {
-        let name = shown(input.input.path());
+    if recipe.is_points(input.path())? {
+        let name = shown(input.path());
         misused!("{name} holds points, and blocks are cut from volumes" => "start one process, and write another format than .pvtu and .pvtp");
     }
-    input.given.refuse(&["columns"], format!("{} holds a volume", input.input))?;
+    args.given.refuse(&["columns"], format!("{input} holds a volume"))?;
     let alone = ["refit", "exchange", "max_error"];
-    input.given.refuse(&alone, "blocks look at a part of the volume each")?;
-    let options = shape.options();
-    if options.exterior {
-        misused!("--exterior needs the whole triangulation, which blocks do not have" => "omit it");
-    }
-    let mut job = Job::new(&input.input, input.options()).map_err(|error| match error {
+    args.given.refuse(&alone, "blocks look at a part of the volume each")?;
+    Job::new(input, recipe).map_err(|error| match error {
         BlocksError::Volume(error) => pipeline::with_points(error),
+        error @ BlocksError::NotLocal { .. } => Said::usage_of(&error).into(),
         other => other.into(),
-    })?;
-    (job.frame, job.units) = select.place_frame(job.frame)?;
-    (job.selection, job.value_min) = select.in_blocks()?;
-    job.gray = input.gray_range();
-    job.gray_out = input.gray_out();
-    job.haar = haar.options();
-    (job.balls, job.engine) = (options.balls, options.engine);
-    job.set_alpha(weights.alpha())?;
-    if let Some(weighting) = weights.weights {
-        job.weighting = weighting;
-    }
-    job.check()?;
-    Ok(job)
-}
-
-/// How the options cut it.
-pub(super) fn cutting(shape: &ShapeArgs) -> Cutting {
-    let options = shape.options();
-    Cutting { blocks: options.blocks.map(usize::from), memory: options.memory }
+    })
 }

@@ -125,7 +125,7 @@ impl Check {
         let path = file.path();
         let mut progress = Progress::new(global);
         if !judged::is_named(path) {
-            if pipeline::is_points(&self.pipeline.input, path)? {
+            if self.pipeline.input.recipe().is_points(path)? {
                 let cells = points::cells_of(path, &self.pipeline.input.of_points())?;
                 if !cells.is_empty() {
                     return self.mesh(global, input, &cells, progress);
@@ -209,21 +209,19 @@ impl Check {
     /// The shape of INPUT, by an engine.
     fn made(&self, path: &Path, progress: &mut Progress) -> anyhow::Result<PlacedComplex> {
         let periodic = self.periodic.periodic;
-        self.shape.check(self.pipeline.weights.alpha(), periodic)?;
+        let mut recipe = self.pipeline.recipe_of(&self.shape, periodic)?;
         if self.points.is_some() {
             misused!("--points belongs to a complex (.json, .npz), and {} is none", shown(path) => "omit it");
         }
         let given = &self.pipeline.input.given;
         given.refuse(&["refit"], "values are not judged")?;
-        let mut options = self.shape.options().periodic(periodic);
-        let stages = pipeline::stages(&self.pipeline);
-        let (weighed, _) = pipeline::weighted_points(&self.pipeline, stages, progress)?;
+        let (weighed, _) = pipeline::weighted_points(&self.pipeline.input, &recipe, progress)?;
         // The whole triangulation can be judged wholly. Several blocks are judged as they are; and of a
         // torus the shape may have no long edge where the whole has one.
-        options.exterior |= options.blocks.is_none_or(|blocks| blocks.get() == 1)
-            && options.memory.is_none()
+        recipe.exterior |= recipe.blocks.is_none_or(|blocks| blocks.get() == 1)
+            && recipe.memory.is_none()
             && periodic.is_none();
-        let model = pipeline::shape(weighed, options, progress)?;
+        let model = pipeline::shape(weighed, &recipe, progress)?;
         Ok(placed_complex(&model.shape))
     }
 

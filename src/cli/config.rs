@@ -46,7 +46,12 @@ pub(super) fn with_file(
     command: &Command,
     mut args: Vec<OsString>,
 ) -> anyhow::Result<Vec<OsString>> {
-    // What is wrong with the arguments is reported once all of them are parsed.
+    let names_file = |arg: &OsString| arg.to_string_lossy().starts_with("--config");
+    if !args.iter().any(names_file) {
+        return Ok(args);
+    }
+    // Parsed once before, to learn what the file may not set. What is wrong with the arguments is reported once all of
+    // them are parsed.
     let lenient = command.clone().ignore_errors(true).try_get_matches_from(&args);
     let Some((given, (name, of_command))) =
         lenient.as_ref().ok().and_then(|given| Some((given, given.subcommand()?)))

@@ -11,12 +11,13 @@ use crate::haar::smooth_monitored;
 #[cfg(feature = "render")]
 use crate::interpolate::error_figure;
 use crate::interpolate::{CurveOptions, CurvePoint, error_curve, write_curve_csv};
+use crate::pipeline::{Input, Source};
 use crate::progress::Stage;
 use crate::{LengthUnit, SelectionRule, Volume, Weighting};
 
-use super::args::{PipelineArgs, SelectArgs};
+use super::args::{PipelineArgs, SelectArgs, one_alpha};
 use super::output::{name, tell};
-use super::pipeline::{Grays, Input, read};
+use super::pipeline::read;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 use super::said::{misused, refused};
@@ -36,25 +37,27 @@ struct Facts {
 
 /// Measures the curve and writes it as CSV, PNG and SVG.
 pub(super) fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Result<()> {
-    let PipelineArgs { input, haar, select, weights, .. } = pipeline;
+    let PipelineArgs { input, select, .. } = pipeline;
+    let recipe = pipeline.recipe()?;
     let (new, paths) = paths(base)?;
     let targets = paths.iter().map(|path| Target::open(path)).collect::<Result<Vec<_>, _>>()?;
     let mut progress = Progress::new(global);
-    let Input::Volume(Grays { volume, range, .. }) = read(input, &mut progress)? else {
+    let Input::Volume(grays) = read(input, &recipe, &mut progress)? else {
         refused!("{} holds points, and --curve needs a volume", input.input);
     };
-    let (volume, units) = select.place(volume)?;
+    let source = recipe.source(grays)?;
+    let Source { ref volume, units, range, .. } = source;
     let monitor = progress.monitor();
     let (smoothed, _) =
-        progress.stage(Stage::Haar, || smooth_monitored(&volume, &haar.options(), &monitor))?;
+        progress.stage(Stage::Haar, || smooth_monitored(volume, &recipe.haar, &monitor))?;
     let options = CurveOptions {
-        counts: counts(&volume, select)?,
+        counts: counts(volume, select)?,
         weightings: vec![Weighting::Common(0.0), Weighting::MinMax, Weighting::Barycentric],
-        alpha: weights.of_volume(&volume, units)?.alpha,
+        alpha: one_alpha(recipe.alpha, &source)?.alpha,
         units,
     };
     let curve =
-        progress.stage(Stage::Curve, || error_curve(&volume, &smoothed, &options, &monitor))?;
+        progress.stage(Stage::Curve, || error_curve(volume, &smoothed, &options, &monitor))?;
     let mut csv = Vec::new();
     write_curve_csv(&curve, range.step(), &mut csv)?;
     let alpha = options.alpha.squared();
@@ -79,7 +82,7 @@ pub(super) fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyho
         schema_version: SCHEMA_VERSION,
         input: input.input.to_string(),
         alpha,
-        unit: units.coordinates(&volume).unit,
+        unit: units.coordinates(volume).unit,
         curve,
         files: paths.iter().map(|path| path.display().to_string()).collect(),
         seconds,

@@ -8,12 +8,11 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
+use crate::Coordinates;
 use crate::export::{Content, FiltrationFormat, Target, write_all};
 use crate::ladder::Ordered;
 use crate::pipeline::{Parameter, Weighed};
 use crate::progress::Stage;
-use crate::shape::ShapeOptions;
-use crate::{Alpha, Coordinates};
 
 use super::args::{FrozenPipelineArgs, OutputArgs, PeriodicArgs};
 use super::formats::filtration_output;
@@ -103,9 +102,8 @@ impl Filtration {
         let mut progress = Progress::new(global);
         input.given.refuse(&["refit"], "a filtration has no values")?;
         let torus = self.periodic.periodic;
-        let options = ShapeOptions::new(Alpha::INFINITE).periodic(torus);
-        let stages = pipeline::stages(&self.pipeline).shape(options);
-        let (mut weighed, _) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
+        let recipe = self.pipeline.recipe()?.periodic(torus);
+        let (mut weighed, _) = pipeline::weighted_points(input, &recipe, &mut progress)?;
         weighed.on_torus(torus)?;
         let filtration =
             progress.watch(|monitor| pipeline::filtration(torus, &weighed, monitor))?;

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::export::Target;
 use crate::haar::smooth_monitored;
+use crate::pipeline::{Grays, Input};
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
 
@@ -14,7 +15,7 @@ use super::Global;
 use super::args::{HaarArgs, InputArgs, OutputArgs};
 use super::formats::volume_output;
 use super::output::tell;
-use super::pipeline::{Grays, Input, read};
+use super::pipeline::{accept, read};
 use super::progress::Progress;
 use super::report::{HaarReport, SCHEMA_VERSION};
 use super::said::refused;
@@ -53,11 +54,11 @@ impl Haar {
             Some(path) => Some((VolumeWriter::of(&self.format.named(path)?)?, Target::open(path)?)),
         };
         let mut progress = Progress::new(global);
-        let read = read(&self.input, &mut progress)?;
+        let read = read(&self.input, &self.input.recipe(), &mut progress)?;
         if matches!(read, Input::Volume(..)) {
-            read.accepts(&self.input)?;
+            accept(&read, &self.input)?;
         }
-        let Input::Volume(Grays { volume, range, written }) = read else {
+        let Input::Volume(Grays { volume, range, written, .. }) = read else {
             refused!("{} holds points", self.input.input => "name a volume");
         };
         let options = self.haar.options();

@@ -141,7 +141,7 @@ impl Info {
     }
 
     fn look(&self, input: &Path, monitor: &Monitor) -> anyhow::Result<Content> {
-        if pipeline::is_points(&self.input, input)? {
+        if self.input.recipe().is_points(input)? {
             let (points, facts) = read_model(input, &self.input.of_points())?;
             let axis = |end: fn(f64, f64) -> f64, start: f64, axis: usize| {
                 points.positions.iter().fold(start, |so_far, p| end(so_far, p[axis]))

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::export::{Content, Target, TargetError, write_all};
 use crate::interpolate::{Deviation, Grid, Interpolant, Resampled, fill_monitored};
-use crate::pipeline::Weighed;
+use crate::pipeline::{Source, Values, Weighed};
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
 use crate::{AlphaShape, Dims, GrayRange, Units, Volume};
@@ -18,7 +18,7 @@ use walpha_base::number_or_null_or_name;
 use super::args::{OutputArgs, PipelineArgs, ShapeArgs};
 use super::formats::volume_output;
 use super::output::tell;
-use super::pipeline::{Source, Values, VolumeFacts};
+use super::pipeline::VolumeFacts;
 use super::progress::Progress;
 use super::report::Report;
 use super::said::{misused, refused};
@@ -121,22 +121,6 @@ impl Error {
     }
 }
 
-/// The volume that F is measured against: its samples and how they became gray levels.
-#[derive(Clone, Copy)]
-struct Original<'a> {
-    volume: &'a Volume,
-    units: Units,
-    range: GrayRange,
-    written: GrayRange,
-}
-
-impl<'a> Original<'a> {
-    fn of(Source { volume, facts }: &'a Source) -> Self {
-        let VolumeFacts { units, range, written, .. } = *facts;
-        Self { volume, units, range, written }
-    }
-}
-
 fn output_help() -> String {
     let files = volume_output("Volume to write F to");
     format!("{files}. With --curve: a folder, or what names of files begin with")
@@ -152,22 +136,22 @@ impl Interpolate {
             return curve::run(global, &self.pipeline, base);
         }
         self.format.check(self.output.iter())?;
-        self.shape.check(self.pipeline.weights.alpha(), None)?;
+        let recipe = self.pipeline.recipe_of(&self.shape, None)?;
         let output = match &self.output {
             None => None,
             Some(path) => Some((VolumeWriter::of(&self.format.named(path)?)?, Target::open(path)?)),
         };
         let mask = self.mask.as_deref().map(open).transpose()?;
         let mut progress = Progress::new(global);
-        let stages = pipeline::stages_to(&self.pipeline, self.shape.options())?;
+        let input = &self.pipeline.input;
         let (weighed, source) =
-            pipeline::points_and_volume(&self.pipeline, stages, Values::Gray, &mut progress)?;
-        let original = source.as_ref().map(Original::of);
-        let facts = source.as_ref().map(|source| &source.facts);
-        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, facts);
+            pipeline::points_and_volume(input, &recipe, Values::Gray, &mut progress)?;
+        let original = source.as_ref();
+        let facts = original.map(VolumeFacts::of);
+        let mut report = Report::of_points(&input.input, &weighed, facts.as_ref());
         let grid = self.grid(original, &weighed)?;
         let written = original.map(|original| original.written).or(weighed.origin.range);
-        let model = pipeline::shape(weighed, self.shape.options(), &mut progress)?;
+        let model = pipeline::shape(weighed, &recipe, &mut progress)?;
         report.add_model(&model);
         let shape = model.shape;
         let sampled = progress.stage(Stage::Interpolate, || sample(&shape, &grid, original))?;
@@ -177,7 +161,7 @@ impl Interpolate {
             let units = original.map_or(Units::Voxel, |original| original.units);
             let monitor = progress.monitor();
             let whole = progress.stage(Stage::Fill, || {
-                fill_monitored(&shape, original.map(|original| original.volume), units, &monitor)
+                fill_monitored(&shape, original.map(|original| &original.volume), units, &monitor)
             })?;
             let filled = progress.stage(Stage::Interpolate, || sample(&whole, &grid, original))?;
             (sampled.error, filled.error, filled.resampled)
@@ -200,12 +184,12 @@ impl Interpolate {
     }
 
     /// The grid asked for.
-    fn grid(&self, original: Option<Original>, weighed: &Weighed) -> anyhow::Result<Grid> {
+    fn grid(&self, original: Option<&Source>, weighed: &Weighed) -> anyhow::Result<Grid> {
         let asked = self.pipeline.input.raw.grid();
         asked.map(Dims::bounded).transpose()?;
         match (original, weighed.origin.grid, asked) {
-            (Some(Original { volume, units, .. }), _, None) => Ok(Grid::of(volume, units)),
-            (Some(Original { volume, units, .. }), _, Some(dims)) => {
+            (Some(&Source { ref volume, units, .. }), _, None) => Ok(Grid::of(volume, units)),
+            (Some(&Source { ref volume, units, .. }), _, Some(dims)) => {
                 Ok(Grid::over(volume, dims, units))
             }
             (None, Some(samples), asked) => {
@@ -232,12 +216,12 @@ struct Sampled {
     error: Option<Error>,
 }
 
-fn sample(shape: &AlphaShape, grid: &Grid, original: Option<Original>) -> anyhow::Result<Sampled> {
+fn sample(shape: &AlphaShape, grid: &Grid, original: Option<&Source>) -> anyhow::Result<Sampled> {
     let interpolant = Interpolant::new(shape)?;
     let resampled = interpolant.resample(grid)?;
     let error = match original {
         None => None,
-        Some(Original { volume, units, range, .. }) => {
+        Some(&Source { ref volume, units, range, .. }) => {
             let deviation = if volume.dims() == grid.dims() {
                 Deviation::of(volume, &resampled)
             } else {

@@ -61,8 +61,9 @@ impl Points {
             self.pipeline.input.given.refuse(&["value_error", "layers"], why)?;
         }
         let mut progress = Progress::new(global);
-        let stages = pipeline::stages(&self.pipeline);
-        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
+        let PipelineArgs { input, .. } = &self.pipeline;
+        let recipe = self.pipeline.recipe()?;
+        let (weighed, volume) = pipeline::weighted_points(input, &recipe, &mut progress)?;
         if self.layers > 1 && weighed.order().is_none() {
             misused!("--layers has no effect: which points are the most important is known only where they are selected from a volume" => "omit it");
         }

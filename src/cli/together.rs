@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use walpha_base::memory;
 
+use crate::Recipe;
 use crate::blocks::merge_monitored;
 use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, Team, run_missing};
 use crate::export::{NewFolder, Target};
 use crate::progress::Stage;
 
-use super::args::{PipelineArgs, ShapeArgs};
-use super::blocks::{Outputs, cutting, job};
+use super::args::InputArgs;
+use super::blocks::{Outputs, job};
 use super::progress::Progress;
 use super::report::Report;
 use super::{Global, folder, start_threads};
@@ -32,14 +33,15 @@ pub(super) struct Work {
 impl Work {
     /// What the options ask for, in a [working folder](folder()).
     pub(super) fn new(
-        pipeline: &PipelineArgs,
-        shape: &ShapeArgs,
+        input: &InputArgs,
+        recipe: Recipe,
         pieces: Vec<(Pieces, PathBuf)>,
         folder: PathBuf,
         global: Global,
     ) -> anyhow::Result<Self> {
         let threads = global.threads.unwrap_or(1);
-        Ok(Self { job: job(pipeline, shape)?, cutting: cutting(shape), folder, pieces, threads })
+        let cutting = Cutting::of(&recipe);
+        Ok(Self { job: job(input, recipe)?, cutting, folder, pieces, threads })
     }
 
     /// Does the work as the first process, and writes what is written in one file.

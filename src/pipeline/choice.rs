@@ -1,22 +1,54 @@
+use serde::{Deserialize, Serialize};
 use walpha_base::Monitor;
 
 use super::PipelineError;
 use super::weighed::Importance;
 use crate::interpolate::{Adaptive, adaptive_voxels_monitored, exchange_monitored};
-use crate::points::{Points, Selection, Units, difference, points_at, select};
+use crate::points::{Points, Selection, SelectionRule, Units, difference, points_at, select};
 use crate::volume::Volume;
 
 /// Which samples of a volume become points.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Choice {
     /// Those of the largest differences, as in the paper.
     Difference(Selection),
     /// Those where the interpolant of the ones before is worst.
-    Adaptive(Adaptive),
+    Adaptive(Goal),
     /// The same, and then those whose loss costs little exchanged for others
     /// ([`exchange`](crate::interpolate::exchange())).
-    Exchanged(Adaptive),
+    Exchanged(Goal),
+}
+
+/// Where adaptive selection ends: at whichever comes first. Without any goal at the paper's share of all samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Goal {
+    /// So many points.
+    pub count: Option<u64>,
+    /// This share of all samples, in place of `count`.
+    pub ratio: Option<f64>,
+    /// A root mean square error of the interpolant over all samples, in gray levels.
+    pub rmse: Option<f64>,
+    /// An error of the interpolant at any sample, in gray levels; points are chosen by that error.
+    pub max_error: Option<f64>,
+}
+
+impl Goal {
+    /// So many points.
+    pub fn of_count(count: u64) -> Self {
+        Self { count: Some(count), ..Self::default() }
+    }
+
+    /// The same for a volume of so many samples.
+    fn of(&self, samples: u64) -> Adaptive {
+        let share = |ratio: f64| (ratio * samples as f64).round() as u64;
+        let asked = self.count.or(self.ratio.map(share));
+        let all = self.rmse.or(self.max_error).map(|_| samples);
+        let count = asked.or(all).unwrap_or_else(|| share(SelectionRule::PAPER));
+        Adaptive::new(count).rmse(self.rmse.unwrap_or(0.0)).max_error(self.max_error)
+    }
 }
 
 impl Default for Choice {
@@ -34,6 +66,30 @@ pub(super) struct Chosen {
 }
 
 impl Choice {
+    /// The same without samples below a gray level, where there is one.
+    pub(super) fn at_least(self, gray_min: Option<f64>) -> Self {
+        match (self, gray_min) {
+            (Self::Difference(selection), Some(_)) => {
+                let gray_min = selection.gray_min.or(gray_min);
+                Self::Difference(Selection { gray_min, ..selection })
+            }
+            _ => self,
+        }
+    }
+
+    /// The same with so many points, however many there were to be.
+    #[must_use]
+    pub fn with_count(self, count: u64) -> Self {
+        let goal = |goal: Goal| Goal { count: Some(count), ratio: None, ..goal };
+        match self {
+            Self::Difference(selection) => {
+                Self::Difference(Selection { rule: SelectionRule::Count(count), ..selection })
+            }
+            Self::Adaptive(of) => Self::Adaptive(goal(of)),
+            Self::Exchanged(of) => Self::Exchanged(goal(of)),
+        }
+    }
+
     /// Chooses samples of a volume, of which `smoothed` is what truncation left.
     pub(super) fn points(
         &self,
@@ -50,9 +106,9 @@ impl Choice {
                 let importance = Importance::Differences(by_difference);
                 return Ok(Chosen { points, importance, ended: None });
             }
-            Self::Adaptive(goal) | Self::Exchanged(goal) => goal,
+            Self::Adaptive(goal) | Self::Exchanged(goal) => goal.of(volume.dims().samples() as u64),
         };
-        let mut voxels = adaptive_voxels_monitored(volume, goal, units, monitor)?;
+        let mut voxels = adaptive_voxels_monitored(volume, &goal, units, monitor)?;
         if matches!(self, Self::Exchanged(_)) {
             voxels = exchange_monitored(volume, &voxels, units, monitor)?;
         }
@@ -65,6 +121,6 @@ impl Choice {
         let asked = goal.count < volume.dims().samples() as u64;
         let fewer = asked && (voxels.len() as u64) < goal.count;
         let points = points_at(volume, &differences, &voxels, units);
-        Ok(Chosen { points, importance, ended: fewer.then_some(*goal) })
+        Ok(Chosen { points, importance, ended: fewer.then_some(goal) })
     }
 }

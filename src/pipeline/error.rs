@@ -35,6 +35,12 @@ pub enum PipelineError {
         /// The radius of the α that was found.
         radius: f64,
     },
+    /// A space of coordinates in voxels.
+    #[error("a space is for world coordinates, and these are voxels")]
+    SpaceOfVoxels,
+    /// A space for a volume that does not say how it lies in one.
+    #[error("the input does not say how its axes lie in a patient, so that no space can be chosen")]
+    UnknownSpace,
     /// Weights of scattered points from differences to neighbours, on a torus.
     #[error(
         "these weights come from differences to neighbours, and those beyond the sides of a periodic box are not looked for"
@@ -54,6 +60,7 @@ impl PipelineError {
             Self::Shape(error) => error.advice(),
             Self::Alpha(error) => Some(error.advice().into()),
             Self::Cancelled(_) => None,
+            Self::SpaceOfVoxels | Self::UnknownSpace => Some(advice!["omit ", Setting::Space]),
             Self::PeriodicWeights => {
                 Some(advice!["give weights as a column of the input, or omit ", Setting::Periodic])
             }

@@ -13,7 +13,10 @@ use crate::shape::{Alpha, AlphaError, ShapeError, Torus};
 use crate::volume::{Frame, LengthUnit, Volume};
 
 /// Which α a shape is made at.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+///
+/// It is written as `default`, `auto` or a number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
 #[non_exhaustive]
 pub enum AlphaRule {
     /// For a volume 10 h², h³ being the volume of a voxel; [`AlphaRule::Auto`] for scattered points.
@@ -38,6 +41,24 @@ impl FromStr for AlphaRule {
     /// `auto`, or α as a number.
     fn from_str(text: &str) -> Result<Self, AlphaError> {
         if text.trim() == "auto" { Ok(Self::Auto) } else { Ok(Self::Given(text.trim().parse()?)) }
+    }
+}
+
+impl From<AlphaRule> for String {
+    fn from(rule: AlphaRule) -> Self {
+        match rule {
+            AlphaRule::Default => "default".into(),
+            AlphaRule::Auto => "auto".into(),
+            AlphaRule::Given(alpha) => alpha.squared().to_string(),
+        }
+    }
+}
+
+impl TryFrom<String> for AlphaRule {
+    type Error = AlphaError;
+
+    fn try_from(text: String) -> Result<Self, AlphaError> {
+        if text == "default" { Ok(Self::Default) } else { text.parse() }
     }
 }
 

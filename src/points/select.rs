@@ -42,10 +42,15 @@ pub enum SelectionRule {
     Threshold(f64),
 }
 
-/// 6.09 %: the paper keeps 15956 of 262144 points.
+impl SelectionRule {
+    /// 6.09 %: the paper keeps 15956 of 262144 points.
+    pub(crate) const PAPER: f64 = 0.0609;
+}
+
+/// The paper's share.
 impl Default for SelectionRule {
     fn default() -> Self {
-        Self::AtMost(0.0609)
+        Self::AtMost(Self::PAPER)
     }
 }
 

@@ -1,7 +1,7 @@
 //! What compressors of volumes make of the skull: constants, because they are not part of this program; and
 //! what our own slowest choice of points makes of it, which takes longer than the report may.
 //!
-//! `scripts/race_compressors.py sample:skull` measures all of them again.
+//! `benches/race_compressors.py sample:skull` measures all of them again.
 
 /// The day of the measurement.
 pub(super) const DATE: &str = "2026-11-22";

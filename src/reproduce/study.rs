@@ -73,9 +73,9 @@ impl<'a> Study<'a> {
     }
 
     /// The shape with these weights at this α, in its whole triangulation.
-    pub(super) fn shape(&self, recipe: Recipe) -> Result<Shaped, ReproduceError> {
-        let Recipe { weighting, alpha, balls } = recipe;
-        let alpha = Alpha::from_squared(alpha).expect("a recipe's α is a number");
+    pub(super) fn shape(&self, variant: Variant) -> Result<Shaped, ReproduceError> {
+        let Variant { weighting, alpha, balls } = variant;
+        let alpha = Alpha::from_squared(alpha).expect("a variant's α is a number");
         let weighted = weigh(&self.points, weighting, alpha)?;
         // CGAL as the paper used it.
         let engine = Engine::Cgal;
@@ -88,21 +88,21 @@ impl<'a> Study<'a> {
             command += " --balls radius";
         }
         command += " --exterior";
-        let numbers = ShapeNumbers::of(&shape, recipe.label(), command);
+        let numbers = ShapeNumbers::of(&shape, variant.label(), command);
         Ok(Shaped { shape, numbers })
     }
 }
 
 /// How a shape is made of the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Recipe {
+pub(super) struct Variant {
     weighting: Weighting,
     /// Squared.
     alpha: f64,
     balls: Balls,
 }
 
-impl Recipe {
+impl Variant {
     pub(super) fn plain(alpha: f64) -> Self {
         Self { weighting: Weighting::Common(0.0), alpha, balls: Balls::Power }
     }
@@ -158,28 +158,28 @@ const LADDER: [f64; 5] = [1.0, 3.0, 50.0, 200.0, f64::INFINITY];
 
 impl Shapes {
     pub(super) fn new(study: &Study<'_>, clock: &mut Clock<'_>) -> Result<Self, ReproduceError> {
-        let mut make = |name, recipe| {
+        let mut make = |name, variant| {
             clock.enter(name)?;
-            study.shape(recipe)
+            study.shape(variant)
         };
-        let min_max = make("shape: min-max", Recipe::weighted(Weighting::MinMax))?;
-        let radius = Recipe { balls: Balls::Radius, ..Recipe::weighted(Weighting::MinMax) };
+        let min_max = make("shape: min-max", Variant::weighted(Weighting::MinMax))?;
+        let radius = Variant { balls: Balls::Radius, ..Variant::weighted(Weighting::MinMax) };
         let mean = min_max.numbers.weights.mean;
         Ok(Self {
-            plain: make("shape: ω = 0", Recipe::plain(ALPHA))?,
-            common: make("shape: ω = 10", Recipe::weighted(Weighting::Common(COMMON)))?,
-            shifted: make("shape: α = 20", Recipe::plain(ALPHA + COMMON))?,
+            plain: make("shape: ω = 0", Variant::plain(ALPHA))?,
+            common: make("shape: ω = 10", Variant::weighted(Weighting::Common(COMMON)))?,
+            shifted: make("shape: α = 20", Variant::plain(ALPHA + COMMON))?,
             min_max_radius: make("shape: radius α + ω", radius)?,
-            min_max_mean: make("shape: mean of min-max", Recipe::plain(ALPHA + mean))?,
+            min_max_mean: make("shape: mean of min-max", Variant::plain(ALPHA + mean))?,
             min_max,
-            barycentric: make("shape: barycentric", Recipe::weighted(Weighting::Barycentric))?,
+            barycentric: make("shape: barycentric", Variant::weighted(Weighting::Barycentric))?,
             barycentric_n: make(
                 "shape: N × barycentric",
-                Recipe::weighted(Weighting::BarycentricN),
+                Variant::weighted(Weighting::BarycentricN),
             )?,
             ladder: LADDER
                 .iter()
-                .map(|&alpha| make("shape: other α", Recipe::plain(alpha)))
+                .map(|&alpha| make("shape: other α", Variant::plain(alpha)))
                 .collect::<Result<_, _>>()?,
         })
     }

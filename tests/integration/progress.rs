@@ -5,11 +5,11 @@ use std::sync::{Arc, Mutex};
 use walpha::haar::{HaarError, smooth_monitored};
 use walpha::interpolate::{Adaptive, InterpolateError, adaptive_voxels_monitored};
 use walpha::ladder::Filtration;
-use walpha::pipeline::{Choice, PipelineError};
+use walpha::pipeline::{Choice, Goal, PipelineError, Values};
 use walpha::progress::{Listener, Monitor, Stage};
 use walpha::shape::{Engine, ShapeError, ShapeOptions, alpha_shape_monitored};
 use walpha::volume::{ReadOptions, VolumeError, VolumeWriter, open_monitored};
-use walpha::{Alpha, Gray, HaarOptions, Pipeline, Points, Units, Volume, WeightedPoints, volume};
+use walpha::{Alpha, Gray, HaarOptions, Points, Recipe, Units, Volume, WeightedPoints, volume};
 
 /// Keeps what is reported.
 #[derive(Clone, Default)]
@@ -138,15 +138,12 @@ fn a_pipeline_announces_its_stages_until_it_is_cancelled() {
         }
         fn progress(&self, _: u64, _: u64) {}
     }
-    let pipeline = Pipeline::new();
+    let recipe = Recipe::new();
     for (last, expected) in [("", 4), ("points", 2), ("shape", 4)] {
         let heard = Arc::default();
         let monitor = Monitor::new(Until(last, Arc::clone(&heard)));
         heard.lock().unwrap().1 = Some(monitor.clone());
-        let volume = phantom();
-        let model = pipeline
-            .weighed(&volume, &monitor)
-            .and_then(|weighed| pipeline.finish(weighed, &monitor));
+        let model = recipe.run_monitored(phantom(), &monitor);
         assert_eq!(model.is_ok(), last.is_empty());
         if let Err(error) = model {
             assert!(matches!(error, PipelineError::Cancelled(_)), "{error:?}");
@@ -160,14 +157,13 @@ fn a_pipeline_announces_its_stages_until_it_is_cancelled() {
 /// However deep the stage is that was at work.
 #[test]
 fn a_pipeline_that_is_cancelled_within_a_stage_says_so() {
-    let pipeline = Pipeline::new().choice(Choice::Adaptive(Adaptive::new(300)));
-    assert_ends(|monitor| pipeline.weighed(&phantom(), monitor).map(drop));
-    let native = ShapeOptions::new(Alpha::ZERO).engine(Engine::Native);
-    let pipeline = Pipeline::new().alpha(Alpha::from_squared(1.0).unwrap()).shape(native);
-    let weighed = pipeline.weighed_points(Points::new(lattice(27).positions), &Monitor::silent());
-    let weighed = Mutex::new(Some(weighed.unwrap()));
-    let take = || weighed.lock().unwrap().take().unwrap();
-    assert_ends(|monitor| pipeline.finish(take(), monitor).map(drop));
+    let recipe = Recipe::new().choice(Choice::Adaptive(Goal::of_count(300)));
+    let source = recipe.source(recipe.grays(phantom()).unwrap()).unwrap();
+    assert_ends(|monitor| recipe.weighed(&source, Values::Written, monitor).map(drop));
+    let alpha = Alpha::from_squared(1.0).unwrap();
+    let recipe = Recipe::new().alpha(alpha).engine(Engine::Native);
+    let points = || Points::new(lattice(27).positions);
+    assert_ends(|monitor| recipe.run_points_monitored(points(), monitor).map(drop));
 }
 
 /// Cancels work at its first report.

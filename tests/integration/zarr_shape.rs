@@ -4,9 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use walpha::shape::{ShapeOptions, Simplices};
+use walpha::shape::Simplices;
 use walpha::volume::{ReadOptions, open};
-use walpha::{Alpha, Gray, Pipeline, Weighting};
+use walpha::{Alpha, Recipe, Weighting};
 use zarrs::array::{Array, ElementOwned};
 use zarrs::filesystem::FilesystemStore;
 
@@ -60,10 +60,9 @@ fn arrays_have_every_simplex_once() {
     let zarr = at.join("out.zarr");
 
     let volume = open(&input, &ReadOptions::default()).unwrap();
-    let (volume, range) = volume.into_gray(Gray::Automatic).unwrap();
     let alpha = Alpha::from_squared(6.0).unwrap();
-    let pipeline = Pipeline::new().values(range).weighting(Weighting::MinMax).alpha(alpha);
-    let model = pipeline.shape(ShapeOptions::new(alpha)).run(&volume).unwrap();
+    let recipe = Recipe::new().weighting(Weighting::MinMax).alpha(alpha);
+    let model = recipe.run(volume).unwrap();
     let (points, complex) = (model.shape.points(), model.shape.complex());
     let voxel =
         |p: &[f64; 3]| p[0] as u64 + SIDE as u64 * (p[1] as u64 + SIDE as u64 * p[2] as u64);

@@ -55,6 +55,7 @@ pub enum Setting {
     Series,
     SkipDamaged,
     Solid,
+    Space,
     Threshold,
 }
 
@@ -88,6 +89,7 @@ impl Setting {
             Self::Series => "series",
             Self::SkipDamaged => "skip_damaged",
             Self::Solid => "solid",
+            Self::Space => "space",
             Self::Threshold => "threshold",
         }
     }

@@ -3,8 +3,8 @@
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use walpha::pipeline::AlphaRule;
-use walpha::shape::{Balls, Engine, ShapeOptions, Torus};
-use walpha::{Alpha, Pipeline, Points};
+use walpha::shape::{Balls, Engine, Torus};
+use walpha::{Alpha, Points, Recipe};
 
 use super::Shape;
 use crate::arrays::{numbers, rows};
@@ -14,8 +14,11 @@ use crate::work::run;
 /// Engine and balls by the names that Python has, and whether exterior simplices and hidden points are wanted.
 pub type Options = (String, String, bool, bool);
 
-/// How a shape is computed.
-pub fn options((engine, balls, exterior, hidden): &Options) -> PyResult<ShapeOptions> {
+/// A recipe with these options of the shape.
+pub fn with_options(
+    recipe: Recipe,
+    (engine, balls, exterior, hidden): &Options,
+) -> PyResult<Recipe> {
     let engine = match &engine[..] {
         "auto" => Engine::Auto,
         "cgal" => Engine::Cgal,
@@ -27,8 +30,7 @@ pub fn options((engine, balls, exterior, hidden): &Options) -> PyResult<ShapeOpt
         "radius" => Balls::Radius,
         _ => return Err(unknown("balls", balls, "'power' and 'radius'")),
     };
-    let options = ShapeOptions::new(Alpha::INFINITE).engine(engine).balls(balls);
-    Ok(options.exterior(*exterior).hidden(*hidden))
+    Ok(recipe.engine(engine).balls(balls).exterior(*exterior).hidden(*hidden))
 }
 
 /// The periodic box by its sides.
@@ -62,13 +64,11 @@ pub fn alpha_shape(
     periodic: Option<[f64; 3]>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Shape> {
-    let options = options(&how)?.periodic(torus(periodic)?);
+    let recipe = with_options(Recipe::new().alpha(alpha_rule(alpha)), &how)?;
+    let recipe = recipe.periodic(torus(periodic)?);
     let points = weighted(&points, weights.as_ref(), values.as_ref())?;
-    let pipeline = Pipeline::new().alpha(alpha_rule(alpha)).shape(options);
-    let model = run(py, progress.as_ref(), move |monitor| {
-        let weighed = pipeline.weighed_points(points, monitor)?;
-        pipeline.finish(weighed, monitor)
-    })?;
+    let shape = move |monitor: &_| recipe.run_points_monitored(points, monitor);
+    let model = run(py, progress.as_ref(), shape)?;
     Ok(Shape::of(model))
 }
 

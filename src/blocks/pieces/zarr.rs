@@ -87,7 +87,7 @@ impl File<'_> {
             "input": plan.job.input,
             "dims": plan.job.dims.xyz(),
             "coordinates": coordinates,
-            "alpha": plan.job.alpha,
+            "alpha": plan.job.alpha().squared(),
             "betti": merged.betti,
             "classes": { "1": "interior", "2": "regular", "3": "singular" },
         }});

@@ -4,7 +4,7 @@ use super::super::field::{Field, Sample, Truncated};
 use super::super::passes::Passes;
 use super::super::{BlocksError, Job};
 use super::FEW;
-use crate::points::{Asked, PointsError, check_least};
+use crate::points::{Asked, PointsError, Selection, check_least};
 use crate::select::{Budget, Counts, Cut, Search};
 
 /// Which samples are points.
@@ -46,9 +46,9 @@ pub(super) fn choose(
     truncated: &Truncated,
     passes: &mut Passes<'_>,
 ) -> Result<Chosen, BlocksError> {
-    let gray_min = job.selection.gray_min.or(job.value_min.map(|value| field.range.gray(value)));
+    let Selection { rule, gray_min } = job.selection(&field.range);
     check_least(gray_min)?;
-    let most = match job.selection.rule.asked(job.dims.samples() as u64)? {
+    let most = match rule.asked(job.dims.samples() as u64)? {
         Asked::Largest(most) => most,
         Asked::AtLeast(least) => return Ok(Chosen { rule: Rule::Threshold(least), gray_min }),
     };

@@ -9,12 +9,12 @@ pub(super) fn gray_levels(
     field: &mut Field,
     passes: &mut Passes<'_>,
 ) -> Result<(), BlocksError> {
-    if field.is_gray() && job.gray.is_none() {
+    if field.is_gray() && job.recipe.gray.is_none() {
         return Ok(());
     }
     // Missing values must not be the least.
     field.least = f32::MAX;
-    let masks = job.read.nan == Some(Nan::Mask);
+    let masks = job.recipe.read.nan == Some(Nan::Mask);
     let mut found = (f32::INFINITY, f32::NEG_INFINITY);
     let wider = |a: &mut (f32, f32), b: (f32, f32)| *a = (a.0.min(b.0), a.1.max(b.1));
     passes.each(
@@ -33,7 +33,7 @@ pub(super) fn gray_levels(
         return Err(VolumeError::NotFinite { value: f32::INFINITY, at: [0; 3] }.into());
     }
     field.least = low;
-    let Some(range) = job.gray else {
+    let Some(range) = job.recipe.gray else {
         field.range = GrayRange { low: low.into(), high: high.into() };
         return Ok(());
     };

@@ -93,7 +93,7 @@ pub(super) fn truncated(
     folder: &Path,
     passes: &mut Passes<'_>,
 ) -> Result<(Truncation, Truncated, Vec<Kept>), BlocksError> {
-    match job.haar.decomposition {
+    match job.recipe.haar.decomposition {
         Decomposition::NonStandard => {
             let (truncation, truncated) = truncate(job, field, passes)?;
             Ok((truncation, truncated, Vec::new()))

@@ -57,7 +57,7 @@ impl Work<'_> {
         field: &Field,
         passes: &mut Passes<'_>,
     ) -> Result<(Truncation, Option<Kept>), BlocksError> {
-        let (tolerance, total) = (job.haar.tolerance, job.dims.samples() as u64);
+        let (tolerance, total) = (job.recipe.haar.tolerance, job.dims.samples() as u64);
         tolerance.check()?;
         let [planes, walls] = [self.cut(2), self.cut(1)];
         passes.serial(&planes, |planes| {

@@ -13,7 +13,7 @@ pub(super) fn truncate(
     passes: &mut Passes<'_>,
 ) -> Result<(Truncation, Truncated), BlocksError> {
     let total = job.dims.samples() as u64;
-    let tolerance = job.haar.tolerance;
+    let tolerance = job.recipe.haar.tolerance;
     tolerance.check()?;
     let search = Search::new(tolerance.budget(total), FEW);
     let mut sums = vec![0.0; field.bricks.count().iter().product()];

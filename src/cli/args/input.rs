@@ -9,7 +9,7 @@ use crate::cli::ranges;
 use crate::cli::said::Said;
 use crate::points::{Columns, PointOptions};
 use crate::volume::{Dtype, Endian, Nan, RawLayout, ReadOptions, Region};
-use crate::{Dims, Gray, GrayRange};
+use crate::{Dims, GrayRange, Recipe};
 
 use super::name::InputName;
 use super::values::{dims, gray_range, input_format, nan};
@@ -68,12 +68,18 @@ impl InputArgs {
         self.input_format.as_ref().map(|format| format!(".{format}")).unwrap_or_default()
     }
 
+    /// A recipe with these options.
+    pub(crate) fn recipe(&self) -> Recipe {
+        Recipe::new()
+            .read(self.options())
+            .columns(self.columns.clone())
+            .gray(self.gray)
+            .gray_out(self.gray_out)
+    }
+
     /// How to read points.
     pub(crate) fn of_points(&self) -> PointOptions {
-        PointOptions::default()
-            .columns(self.columns.clone())
-            .level(self.part.level)
-            .format(self.input_format.clone())
+        self.recipe().of_points()
     }
 
     /// Refuses a format of INPUT that is a sample, or a folder.
@@ -84,26 +90,6 @@ impl InputArgs {
             self.given.refuse(&["input_format"], "a folder says what it holds")?;
         }
         Ok(())
-    }
-
-    /// How values become gray levels.
-    pub(crate) fn gray(&self) -> Gray {
-        self.gray.map_or(Gray::Automatic, Gray::Range)
-    }
-
-    /// The values that become gray 0 and 255, if they were given.
-    pub(crate) fn gray_range(&self) -> Option<GrayRange> {
-        self.gray
-    }
-
-    /// Whether gray levels are written.
-    pub(crate) fn gray_out(&self) -> bool {
-        self.gray_out
-    }
-
-    /// The values that gray levels stand for in what is written, where `range` became 0..255.
-    pub(crate) fn written(&self, range: GrayRange) -> GrayRange {
-        if self.gray_out { GrayRange::IDENTITY } else { range }
     }
 }
 

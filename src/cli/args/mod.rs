@@ -20,7 +20,12 @@ pub(super) use shape::ShapeArgs;
 pub(super) use values::not_negative;
 #[cfg(feature = "render")]
 pub(super) use values::number;
-pub(super) use weights::{Alphas, FrozenArgs, WeightArgs};
+pub(super) use weights::{Alphas, FrozenArgs, WeightArgs, one_alpha};
+
+use super::said::{Said, misused};
+use crate::Recipe;
+use crate::interpolate::Refit;
+use crate::shape::Torus;
 
 /// From an input to weighted points.
 #[derive(Args, Clone)]
@@ -35,6 +40,34 @@ pub(super) struct PipelineArgs<W: Args = WeightArgs> {
     pub refit: RefitArgs,
     #[command(flatten)]
     pub weights: W,
+}
+
+impl<W: Args + Copy + Into<WeightArgs>> PipelineArgs<W> {
+    /// The options of all stages, but how the shape is computed.
+    pub(super) fn recipe(&self) -> Result<Recipe, Said> {
+        let recipe = self.input.recipe().haar(self.haar.options()).refit(self.refit.refit);
+        Ok(self.weights.into().set(self.select.set(recipe)?))
+    }
+}
+
+impl PipelineArgs {
+    /// The options of all stages.
+    pub(super) fn recipe_of(
+        &self,
+        shape: &ShapeArgs,
+        periodic: Option<Torus>,
+    ) -> Result<Recipe, Said> {
+        let recipe = shape.set(self.recipe()?.periodic(periodic))?;
+        if periodic.is_some() {
+            self.input
+                .given
+                .refuse(&["refit"], "a periodic box repeats, and F is fitted in space")?;
+        }
+        if recipe.refit == Some(Refit::Whole) && recipe.memory.is_some() {
+            misused!("--memory has no effect: --refit fits values on the whole triangulation" => "omit it, or give --refit=shape");
+        }
+        Ok(recipe)
+    }
 }
 
 /// The same with weights that stay as they are while α varies.

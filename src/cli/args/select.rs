@@ -2,12 +2,11 @@
 
 use clap::{Args, ValueEnum};
 
-use crate::cli::said::{misused, refused};
-use crate::interpolate::{Adaptive, Refit};
-use crate::pipeline::Choice;
+use crate::cli::said::{Said, misused};
+use crate::interpolate::Refit;
+use crate::pipeline::{Choice, Goal};
 use crate::{
-    Coordinates, Decomposition, Frame, GrayRange, HaarOptions, LengthUnit, Selection,
-    SelectionRule, Space, Tolerance, Units, Volume,
+    Decomposition, HaarOptions, Recipe, Selection, SelectionRule, Space, Tolerance, Units,
 };
 
 use super::values::{count, not_nan, not_negative, share};
@@ -111,32 +110,6 @@ pub(super) struct PlaceArgs {
     space: Option<Space>,
 }
 
-impl PlaceArgs {
-    /// What the coordinates of this volume's points are measured in, and the volume in the space that
-    /// they are in.
-    pub(super) fn place(self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
-        let (frame, units) = self.place_frame(*volume.frame())?;
-        Ok((volume.with_frame(frame), units))
-    }
-
-    /// The same of a grid.
-    pub(super) fn place_frame(self, frame: Frame) -> anyhow::Result<(Frame, Units)> {
-        let Coordinates { space, unit } = frame.coordinates;
-        let silent = if unit == LengthUnit::Voxel { Units::Voxel } else { Units::World };
-        let units = self.units.unwrap_or(silent);
-        let asked = match self.space {
-            Some(_) if units == Units::Voxel => {
-                refused!("--space is for world coordinates, and these are voxels" => "omit it")
-            }
-            Some(_) if !space.is_known() => {
-                refused!("the input does not say how its axes lie in a patient, and --space cannot know" => "omit it")
-            }
-            asked => asked.unwrap_or(Space::Lps),
-        };
-        Ok((frame.to(Coordinates { space: asked, unit }), units))
-    }
-}
-
 #[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
 enum SelectArg {
     #[default]
@@ -145,12 +118,6 @@ enum SelectArg {
 }
 
 impl SelectArgs {
-    /// The stage's options, for a volume whose values `range` are gray 0..255.
-    pub(crate) fn selection(&self, range: &GrayRange) -> Selection {
-        let gray_min = self.gray_min.or(self.value_min.map(|value| range.gray(value)));
-        Selection { rule: self.rule(), gray_min }
-    }
-
     /// By what rule samples are chosen.
     pub(crate) fn rule(&self) -> SelectionRule {
         match (self.count, self.threshold) {
@@ -160,8 +127,8 @@ impl SelectArgs {
         }
     }
 
-    /// Which samples, of so many, become points.
-    pub(crate) fn choice(&self, range: &GrayRange, samples: usize) -> anyhow::Result<Choice> {
+    /// Which samples become points, and the least value of the input.
+    fn choice(&self) -> Result<(Choice, Option<f64>), Said> {
         if self.select != SelectArg::Adaptive {
             if self.target_rmse.is_some() {
                 misused!("--target-rmse belongs to --select adaptive" => "add it, or use --count");
@@ -169,47 +136,25 @@ impl SelectArgs {
             if self.max_error.is_some() || self.exchange {
                 misused!("--max-error and --exchange belong to --select adaptive" => "add it");
             }
-            return Ok(Choice::Difference(self.selection(range)));
+            let selection = Selection { rule: self.rule(), gray_min: self.gray_min };
+            return Ok((Choice::Difference(selection), self.value_min));
         }
         if self.threshold.is_some() || self.gray_min.or(self.value_min).is_some() {
             misused!("--threshold, --gray-min and --value-min choose by gray levels, which --select adaptive does not" => "use --count, --ratio or --target-rmse");
         }
-        let rmse = self.target_rmse.unwrap_or(0.0);
-        let count = match self.rule() {
-            SelectionRule::Count(count) => count,
-            SelectionRule::AtMost(_) if self.target_rmse.or(self.max_error).is_some() => {
-                samples as u64
-            }
-            SelectionRule::Ratio(ratio) | SelectionRule::AtMost(ratio) => {
-                (ratio * samples as f64).round() as u64
-            }
-            SelectionRule::Threshold(_) => unreachable!("refused above"),
+        let goal = Goal {
+            count: self.count,
+            ratio: self.ratio,
+            rmse: self.target_rmse,
+            max_error: self.max_error,
         };
-        let goal = Adaptive { count, rmse, max_error: self.max_error };
-        Ok(if self.exchange { Choice::Exchanged(goal) } else { Choice::Adaptive(goal) })
+        Ok((if self.exchange { Choice::Exchanged(goal) } else { Choice::Adaptive(goal) }, None))
     }
 
-    /// The same with so many samples.
-    #[cfg(feature = "render")]
-    pub(crate) fn with_count(self, count: u64) -> Self {
-        Self { count: Some(count), ratio: None, threshold: None, ..self }
-    }
-
-    /// Which samples become points where that is decided in blocks, and the least value of the input.
-    pub(crate) fn in_blocks(&self) -> anyhow::Result<(Selection, Option<f64>)> {
-        if self.select == SelectArg::Adaptive || self.target_rmse.is_some() {
-            misused!("--select adaptive looks at all points at once, which blocks do not" => "omit it");
-        }
-        Ok((Selection { rule: self.rule(), gray_min: self.gray_min }, self.value_min))
-    }
-
-    /// In what coordinates the points of a grid are.
-    pub(crate) fn place_frame(&self, frame: Frame) -> anyhow::Result<(Frame, Units)> {
-        self.place.place_frame(frame)
-    }
-
-    /// In what coordinates the points are.
-    pub(crate) fn place(&self, volume: Volume) -> anyhow::Result<(Volume, Units)> {
-        self.place.place(volume)
+    /// A recipe with these options.
+    pub(super) fn set(&self, recipe: Recipe) -> Result<Recipe, Said> {
+        let (choice, value_min) = self.choice()?;
+        let PlaceArgs { units, space } = self.place;
+        Ok(recipe.choice(choice).value_min(value_min).units(units).space(space))
     }
 }

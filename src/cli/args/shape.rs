@@ -5,9 +5,8 @@ use std::num::NonZeroUsize;
 use clap::Args;
 
 use crate::cli::said::{Said, misused};
-use crate::pipeline::AlphaRule;
-use crate::shape::{Engine, ShapeOptions, Torus};
-use crate::{Alpha, Balls};
+use crate::shape::Engine;
+use crate::{Balls, Recipe};
 
 use super::values::bytes;
 
@@ -37,29 +36,20 @@ pub(crate) struct ShapeArgs {
 }
 
 impl ShapeArgs {
-    /// Refuses options that have no use for each other, before the work.
-    pub(crate) fn check(&self, alpha: AlphaRule, periodic: Option<Torus>) -> anyhow::Result<()> {
-        if self.engine == Engine::Cgal && self.blocks.is_some_and(|blocks| blocks.get() > 1) {
+    /// A recipe with these options, which are refused where they have no use for each other.
+    pub(crate) fn set(&self, recipe: Recipe) -> Result<Recipe, Said> {
+        let Self { balls, engine, exterior, hidden, blocks, memory } = *self;
+        if engine == Engine::Cgal && blocks.is_some_and(|blocks| blocks.get() > 1) {
             misused!("--blocks has no effect: the engine cgal knows no blocks" => "omit it, or take --engine native");
         }
-        // What is found is finite.
-        let alpha = match alpha {
-            AlphaRule::Given(alpha) => alpha,
-            _ => Alpha::from_squared(0.0)?,
-        };
-        let options = self.options().alpha(alpha).periodic(periodic);
-        Ok(options.check().map_err(|error| Said::usage_of(&error))?)
-    }
-
-    /// The stage's options, at α = ∞.
-    pub(crate) fn options(&self) -> ShapeOptions {
-        let Self { balls, engine, exterior, hidden, blocks, memory } = *self;
-        ShapeOptions::new(Alpha::INFINITE)
+        let recipe = recipe
             .balls(balls)
             .engine(engine)
             .exterior(exterior)
             .hidden(hidden)
             .blocks(blocks)
-            .memory(memory)
+            .memory(memory);
+        recipe.check().map_err(|error| Said::usage_of(&error))?;
+        Ok(recipe)
     }
 }

@@ -5,8 +5,8 @@ use std::str::FromStr;
 use clap::Args;
 
 use crate::cli::said::{Said, said};
-use crate::pipeline::{AlphaRule, Parameter};
-use crate::{Alpha, Units, Volume, Weighting};
+use crate::pipeline::{AlphaRule, Parameter, Source};
+use crate::{Alpha, Recipe, Weighting};
 
 use super::values::alpha_radius;
 
@@ -33,16 +33,21 @@ impl WeightArgs {
         self.alpha_radius.map(AlphaRule::Given).or(self.alpha).unwrap_or_default()
     }
 
-    /// α for work on a volume that makes several sets of points.
-    pub(crate) fn of_volume(&self, volume: &Volume, units: Units) -> anyhow::Result<Parameter> {
-        self.alpha().of_volume(volume, units)?.ok_or_else(|| {
-            said!(
-                "there are several sets of points, each with an `auto` of its own" => "give α as a \
-                 number"
-            )
-            .into()
-        })
+    /// A recipe with these options.
+    pub(super) fn set(self, recipe: Recipe) -> Recipe {
+        recipe.alpha(self.alpha()).weighting(self.weights)
     }
+}
+
+/// α for work on a volume that makes several sets of points.
+pub(crate) fn one_alpha(rule: AlphaRule, source: &Source) -> anyhow::Result<Parameter> {
+    rule.of_volume(&source.volume, source.units)?.ok_or_else(|| {
+        said!(
+            "there are several sets of points, each with an `auto` of its own" => "give α as a \
+             number"
+        )
+        .into()
+    })
 }
 
 /// Weights in proportion to an α at which they are frozen.

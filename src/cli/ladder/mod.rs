@@ -118,8 +118,9 @@ impl Ladder {
         mut folder: Folder,
     ) -> anyhow::Result<()> {
         let mut progress = Progress::new(global);
-        let stages = pipeline::stages(&self.pipeline);
-        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, &mut progress)?;
+        let recipe = self.pipeline.recipe()?;
+        let input = &self.pipeline.input;
+        let (weighed, volume) = pipeline::weighted_points(input, &recipe, &mut progress)?;
         let domain = pipeline::domain(&weighed, volume.as_ref());
         let filtration = progress.watch(|monitor| pipeline::filtration(None, &weighed, monitor))?;
         let coordinates = weighed.origin.coordinates;

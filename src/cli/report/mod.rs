@@ -132,7 +132,7 @@ impl Report {
             },
             alpha: Some(parameter),
             weights: WeightsReport {
-                kind: job.weighting.to_string(),
+                kind: job.weighting().to_string(),
                 of_radii: false,
                 min,
                 mean,

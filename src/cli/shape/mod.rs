@@ -8,6 +8,7 @@ use clap::Args;
 use walpha_base::shown::shown;
 use walpha_files::Working;
 
+use crate::Recipe;
 use crate::blocks::{Pieces, Team};
 use crate::export::{FORMATS, Format};
 use crate::progress::Stage;
@@ -75,8 +76,8 @@ fn unused(name: &str, given: bool, why: &str) -> anyhow::Result<()> {
 }
 
 impl Shape {
-    /// Refuses options that no output has a use for.
-    fn check(&self) -> anyhow::Result<()> {
+    /// The options of all stages; refuses those that no output has a use for.
+    fn recipe(&self) -> anyhow::Result<Recipe> {
         let input = &self.pipeline.input;
         self.format.check(self.output.iter())?;
         let names: Vec<PathBuf> =
@@ -92,7 +93,6 @@ impl Shape {
                 _ => names.concat(),
             }
         };
-        self.shape.check(self.pipeline.weights.alpha(), self.periodic.periodic)?;
         if self.solid && self.periodic.periodic.is_some() {
             misused!("--solid is for shapes in space, and the boundary of one of a torus is cut open at the sides of the box" => "omit it, or omit --periodic");
         }
@@ -111,12 +111,13 @@ impl Shape {
         if !written(|format| format.boundary) {
             unused("--solid", self.solid, "no output holds a boundary alone")?;
         }
-        Ok(())
+        let recipe = self.pipeline.recipe_of(&self.shape, self.periodic.periodic)?;
+        Ok(recipe.refuse_flat(self.dimension.is_some()))
     }
 
     pub(super) fn run(self, global: Global, team: &dyn Team) -> anyhow::Result<()> {
         // Before the long work: a bad option, extension or place costs nothing yet.
-        self.check()?;
+        let recipe = self.recipe()?;
         let folder = together::folder(&self.output, &self.pipeline.input.input);
         let in_blocks =
             team.size() > 1 || self.output.iter().any(|path| Pieces::of(path).is_some());
@@ -126,9 +127,9 @@ impl Shape {
         drop(working);
         let mut progress = Progress::new(global);
         let mut report = if in_blocks {
-            self.in_blocks(outputs, folder, global, &mut progress, team)?
+            self.in_blocks(recipe, outputs, folder, global, &mut progress, team)?
         } else {
-            self.at_once(outputs, global, &mut progress)?
+            self.at_once(&recipe, outputs, global, &mut progress)?
         };
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
@@ -141,6 +142,7 @@ impl Shape {
     /// Makes the shape in blocks, from file to file.
     fn in_blocks(
         &self,
+        recipe: Recipe,
         outputs: Outputs,
         folder: PathBuf,
         global: Global,
@@ -158,25 +160,23 @@ impl Shape {
         }
         let outputs = blocks::Outputs { pieces: outputs.pieces, whole: outputs.whole };
         let pieces = outputs.pieces.clone();
-        let work = Work::new(&self.pipeline, &self.shape, pieces, folder, global)?;
+        let work = Work::new(&self.pipeline.input, recipe, pieces, folder, global)?;
         work.lead(outputs, progress, team)
     }
 
     /// Makes the shape in memory.
     fn at_once(
         &self,
+        recipe: &Recipe,
         outputs: Outputs,
         global: Global,
         progress: &mut Progress,
     ) -> anyhow::Result<Report> {
-        let refuse_flat = self.dimension.is_some();
-        let periodic = self.periodic.periodic;
-        let options = self.shape.options().refuse_flat(refuse_flat).periodic(periodic);
-        let stages = pipeline::stages_to(&self.pipeline, options)?;
-        let (weighed, volume) = pipeline::weighted_points(&self.pipeline, stages, progress)?;
-        let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
+        let input = &self.pipeline.input;
+        let (weighed, volume) = pipeline::weighted_points(input, recipe, progress)?;
+        let mut report = Report::of_points(&input.input, &weighed, volume.as_ref());
         let mut facts = pipeline::model_facts(&weighed, volume.as_ref());
-        let model = pipeline::shape(weighed, options, progress)?;
+        let model = pipeline::shape(weighed, recipe, progress)?;
         facts.alpha = Some(model.parameter.alpha);
         report.add_model(&model);
         if self.solid {

@@ -2,11 +2,11 @@
 
 use crate::Alpha;
 use crate::cli::filled::filled_in;
-use crate::cli::pipeline::{self, Source};
+use crate::cli::pipeline;
 use crate::cli::progress::Progress;
 use crate::interpolate::{Deviation, Grid, Interpolant};
 use crate::ladder::Filtration;
-use crate::pipeline::{AlphaRule, Parameter, Weighed};
+use crate::pipeline::{AlphaRule, Parameter, Source, Weighed};
 use crate::progress::Stage;
 use crate::render::Differences;
 use walpha_base::Monitor;
@@ -75,17 +75,17 @@ fn differences(
     filtration: &Filtration,
     monitor: &Monitor,
 ) -> anyhow::Result<Option<Differences>> {
-    let Source { volume, facts } = source;
+    let Source { volume, units, written, .. } = source;
     let Some(values) = &weighed.points.values else { return Ok(None) };
-    let grays: Vec<f64> = values.iter().map(|&value| facts.written.gray(value)).collect();
+    let grays: Vec<f64> = values.iter().map(|&value| written.gray(value)).collect();
     let hull = filtration.levels(&[Alpha::INFINITE]);
     let hull = hull.shape(0, false, hull.betti()[0]);
-    let (whole, grays) = filled_in(&hull, &grays, volume, facts.units, monitor)?;
+    let (whole, grays) = filled_in(&hull, &grays, volume, *units, monitor)?;
     let interpolant = Interpolant::with_values(&whole, &grays)?;
-    let grid = Grid::of(volume, facts.units);
+    let grid = Grid::of(volume, *units);
     let mut local = interpolant.local_deviations(volume, &grid)?;
     local.truncate(weighed.points.len());
-    let step = facts.written.step();
+    let step = written.step();
     local.iter_mut().for_each(|difference| *difference *= step);
     let rmse = Deviation::of(volume, &interpolant.resample(&grid)?).rmse.unwrap_or_default() * step;
     Ok(Some(Differences { local, rmse }))

@@ -8,19 +8,20 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::Args;
+use walpha_base::Monitor;
 use walpha_base::shown::{number, shown};
 
 use crate::export::Target;
-use crate::pipeline::{AlphaRule, Parameter, Weighed};
+use crate::pipeline::{AlphaRule, Input, Parameter, Source, Values, Weighed};
 use crate::progress::Stage;
 use crate::render::{self, Original, Page, Subject};
 use crate::volume::UnknownFormat;
-use crate::{Frame, GrayRange, Units};
+use crate::{Frame, GrayRange, Recipe, Units};
 
 use super::Global;
 use super::args::{Alphas, FrozenPipelineArgs};
 use super::output::{remark, tell};
-use super::pipeline::{self, Input, Source, Values, VolumeFacts};
+use super::pipeline::{self, VolumeFacts};
 use super::progress::Progress;
 use super::report::{SCHEMA_VERSION, WeightsReport};
 use super::said::misused;
@@ -103,10 +104,9 @@ impl View {
     /// volume that they come from.
     fn weighed(&self, progress: &mut Progress) -> anyhow::Result<(Vec<Weighed>, Option<Source>)> {
         let input = &self.pipeline.input;
-        let read = pipeline::read(input, progress)?;
-        read.accepts(input)?;
-        let stages = pipeline::stages(&self.pipeline);
-        let select = &self.pipeline.select;
+        let recipe = self.pipeline.recipe()?;
+        let read = pipeline::read(input, &recipe, progress)?;
+        pipeline::accept(&read, input)?;
         let grays = match read {
             Input::Points(..) => {
                 if self.isovalue.is_some() {
@@ -115,28 +115,22 @@ impl View {
                 if !self.counts.is_empty() {
                     misused!("--counts chooses samples of a volume, and {} holds points", input.input => "omit it");
                 }
-                let (weighed, _) =
-                    pipeline::weigh_input(read, stages, select, Values::Written, progress)?;
+                let weigh = |monitor: &Monitor| recipe.weigh(read, Values::Written, monitor);
+                let (weighed, _) = progress.watch(weigh)?;
                 return Ok((vec![weighed], None));
             }
             Input::Volume(grays) => grays,
         };
-        let source = pipeline::place(grays, select)?;
+        let source = recipe.source(grays)?;
         let mut counts = self.counts.clone();
         counts.sort_unstable();
         counts.dedup();
-        let coarse = counts.into_iter().map(|count| select.with_count(count));
-        let mut details = Vec::new();
-        for select in coarse.chain([*select]) {
-            let stages = stages.clone();
-            details.push(pipeline::weigh_source(
-                &source,
-                stages,
-                &select,
-                Values::Written,
-                progress,
-            )?);
-        }
+        let selected = |count| recipe.clone().choice(recipe.choice.with_count(count));
+        let coarse: Vec<Recipe> = counts.into_iter().map(selected).collect();
+        let weigh = |recipe: &Recipe| {
+            progress.watch(|monitor| recipe.weighed(&source, Values::Written, monitor))
+        };
+        let details = coarse.iter().chain([&recipe]).map(weigh).collect::<Result<_, _>>()?;
         Ok((details, Some(source)))
     }
 
@@ -148,12 +142,13 @@ impl View {
         progress: &mut Progress,
     ) -> anyhow::Result<(Page, Vec<DetailFacts>)> {
         let last = details.last().expect("the level of the shape");
-        let facts = source.map(|source| &source.facts);
+        let facts = source.map(VolumeFacts::of);
+        let facts = facts.as_ref();
         let told = self.told(&last.weighed, facts, last.reference());
-        let original = source.map(|Source { volume, facts }| Original {
+        let original = source.map(|Source { volume, units, range, .. }| Original {
             volume,
-            isovalue: self.isovalue.unwrap_or_default().gray(&facts.range),
-            frame: match facts.units {
+            isovalue: self.isovalue.unwrap_or_default().gray(range),
+            frame: match units {
                 Units::Voxel => &Frame::VOXEL,
                 Units::World => volume.frame(),
             },

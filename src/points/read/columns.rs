@@ -1,5 +1,6 @@
 use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
 use walpha_base::advice::Advice;
 
 use super::COLUMNS;
@@ -18,7 +19,8 @@ use super::COLUMNS;
 /// assert!("x,y,value".parse::<Columns>().is_ok(), "points of a plane");
 /// # Ok::<(), walpha::points::UnknownColumns>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
 pub struct Columns(pub(super) Vec<Option<usize>>);
 
 /// Names that do not say where x, y and z are.
@@ -90,6 +92,22 @@ impl Columns {
             return Err(UnknownColumns { names: names.join(","), what, next });
         }
         Ok(Self(columns))
+    }
+}
+
+/// The names, with `-` for a column that is passed over.
+impl From<Columns> for String {
+    fn from(columns: Columns) -> Self {
+        let name = |column: &Option<usize>| column.map_or("-", |column| COLUMNS[column]);
+        columns.0.iter().map(name).collect::<Vec<_>>().join(",")
+    }
+}
+
+impl TryFrom<String> for Columns {
+    type Error = UnknownColumns;
+
+    fn try_from(names: String) -> Result<Self, UnknownColumns> {
+        names.parse()
     }
 }
 

@@ -31,8 +31,8 @@ fn merged(plan: &Plan) -> Result<Vec<u8>, BlocksError> {
 
 fn small(decomposition: Decomposition) -> Job {
     let mut job = super::job("sample:phantom@12");
-    job.weighting = Weighting::MinMax;
-    job.haar = job.haar.decomposition(decomposition).tolerance(Tolerance::Rms(2.0));
+    job.recipe.weighting = Some(Weighting::MinMax);
+    job.recipe.haar = job.recipe.haar.decomposition(decomposition).tolerance(Tolerance::Rms(2.0));
     job
 }
 
@@ -54,7 +54,7 @@ fn no_flipped_bit_makes_a_wrong_shape() {
         let folder = tempfile::tempdir().unwrap();
         let mut job = small(decomposition);
         // Not a point more than it takes.
-        job.selection.rule = walpha::SelectionRule::Count(16);
+        job.recipe.choice = super::selected(walpha::SelectionRule::Count(16));
         let plan = done(&job, 2, folder.path());
         let expected = merged(&plan).unwrap();
         assert!(plan.check().unwrap().is_whole());
@@ -182,7 +182,7 @@ fn an_input_that_changed_is_refused_where_it_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let input = folder.path().join("a.npy");
     written(&input, |_| {});
-    let job = Job::new(input.to_str().unwrap(), ReadOptions::default()).unwrap();
+    let job = Job::new(input.to_str().unwrap(), walpha::Recipe::new()).unwrap();
     let work = folder.path().join("work");
     fs::create_dir(&work).unwrap();
     let plan = planned(&job, 4, &work);
@@ -225,7 +225,7 @@ fn work_goes_on_where_an_input_was_touched_and_anew_where_it_changed() {
     let (input, work) = (folder.path().join("a.npy"), folder.path().join("work"));
     fs::create_dir(&work).unwrap();
     written(&input, |_| {});
-    let job = Job::new(input.to_str().unwrap(), ReadOptions::default()).unwrap();
+    let job = Job::new(input.to_str().unwrap(), walpha::Recipe::new()).unwrap();
     let cutting = walpha::blocks::Cutting::default().blocks(4);
     let plan = Plan::resume(job.clone(), cutting, &work).unwrap();
     run(&plan, 0).unwrap();
@@ -264,7 +264,7 @@ fn a_chunk_that_changed_is_refused() {
     let other = convert("b.zarr", |samples| samples[samples.len() - 1] += 1e-3);
     let work = folder.path().join("work");
     fs::create_dir(&work).unwrap();
-    let job = Job::new(input.to_str().unwrap(), ReadOptions::default()).unwrap();
+    let job = Job::new(input.to_str().unwrap(), walpha::Recipe::new()).unwrap();
     let plan = planned(&job, 2, &work);
     run(&plan, 0).unwrap();
     let chunk = Path::new("c/1/1/1");

@@ -4,14 +4,14 @@ use std::fs::File;
 use std::path::Path;
 
 use walpha::blocks::{Cutting, Job, Plan};
+use walpha::pipeline::Choice;
 use walpha::volume::{Nan, ReadOptions, open};
 use walpha::{
-    Alpha, Balls, Decomposition, Gray, GrayRange, Pipeline, Selection, SelectionRule, Tolerance,
-    Units, Weighting,
+    Balls, Decomposition, GrayRange, Recipe, Selection, SelectionRule, Tolerance, Units, Weighting,
 };
 use walpha_base::random::Random;
 
-use super::{compare, in_blocks, job};
+use super::{alpha, compare, in_blocks, job, selected};
 
 /// Noise in a file: singular simplices of all kinds and thousands of components.
 fn noise(folder: &Path, [x, y, z]: [usize; 3], levels: usize) -> String {
@@ -29,14 +29,14 @@ fn noise_in_blocks_is_noise() {
     let folder = tempfile::tempdir().unwrap();
     let input = noise(folder.path(), [37, 22, 29], 1 << 24);
     let mut job = job(&input);
-    for alpha in [0.3, 1.0, 2.25] {
-        job.alpha = alpha;
-        job.selection.rule = SelectionRule::Ratio(0.1);
+    for squared in [0.3, 1.0, 2.25] {
+        job.recipe.alpha = alpha(squared);
+        job.recipe.choice = selected(SelectionRule::Ratio(0.1));
         let one = compare(&job, &[5, 40]);
-        assert!(one.shape.betti().unwrap().b0 > 1 || alpha > 0.3);
+        assert!(one.shape.betti().unwrap().b0 > 1 || squared > 0.3);
     }
-    job.balls = Balls::Radius;
-    job.weighting = Weighting::MinMax;
+    job.recipe.balls = Balls::Radius;
+    job.recipe.weighting = Some(Weighting::MinMax);
     compare(&job, &[6]);
 }
 
@@ -46,17 +46,20 @@ fn ties_across_blocks_are_broken_as_in_one_piece() {
     let folder = tempfile::tempdir().unwrap();
     let input = noise(folder.path(), [33, 20, 24], 4);
     let mut job = job(&input);
-    job.haar = job.haar.tolerance(Tolerance::Coefficients(5001));
+    job.recipe.haar = job.recipe.haar.tolerance(Tolerance::Coefficients(5001));
     for count in [777, 3000, 15840] {
-        job.selection.rule = SelectionRule::Count(count);
-        job.alpha = 3.0;
+        job.recipe.choice = selected(SelectionRule::Count(count));
+        job.recipe.alpha = alpha(3.0);
         compare(&job, &[4, 25]);
     }
-    job.selection = Selection::default().rule(SelectionRule::Threshold(60.0)).gray_min(80.0);
+    job.recipe.choice = Choice::Difference(
+        Selection::default().rule(SelectionRule::Threshold(60.0)).gray_min(80.0),
+    );
     compare(&job, &[4]);
-    job.selection = Selection::default().rule(SelectionRule::Count(500)).gray_min(170.0);
+    job.recipe.choice =
+        Choice::Difference(Selection::default().rule(SelectionRule::Count(500)).gray_min(170.0));
     compare(&job, &[3]);
-    job.haar.decomposition = Decomposition::Standard;
+    job.recipe.haar.decomposition = Decomposition::Standard;
     compare(&job, &[3]);
 }
 
@@ -72,9 +75,9 @@ fn missing_samples_and_given_ranges_are_the_same_in_blocks() {
     let input = path.to_str().unwrap();
     for nan in [Nan::Mask, Nan::Value(50.0)] {
         let read = ReadOptions::default().nan(nan);
-        let mut job = Job::new(input, read).unwrap();
+        let mut job = Job::new(input, Recipe::new().read(read)).unwrap();
         compare(&job, &[5]);
-        job.gray = Some(GrayRange { low: 100.0, high: 700.0 });
+        job.recipe.gray = Some(GrayRange { low: 100.0, high: 700.0 });
         compare(&job, &[3]);
     }
     let error = Plan::make(job(input), Cutting::default(), folder.path()).unwrap_err();
@@ -96,10 +99,9 @@ fn world_coordinates_and_regions_are_the_same_in_blocks() {
     let region = walpha::volume::Region { first: [3, 0, 5], end: [Some(37), None, Some(33)] };
     for region in [None, Some(region)] {
         let read = ReadOptions::default().region(region);
-        let mut job = Job::new(path.to_str().unwrap(), read).unwrap();
-        job.units = Units::World;
-        job.set_alpha(walpha::pipeline::AlphaRule::Default).unwrap();
-        job.weighting = Weighting::MinMax;
+        let recipe = Recipe::new().read(read).weighting(Weighting::MinMax);
+        let job = Job::new(path.to_str().unwrap(), recipe).unwrap();
+        assert_eq!(job.units, Units::World);
         compare(&job, &[1, 6]);
     }
 }
@@ -111,11 +113,8 @@ fn flat_volumes_are_the_same_in_blocks() {
     let input = noise(folder.path(), [60, 50, 1], 1000);
     let job = job(&input);
     let (_, merged, shape) = in_blocks(&job, 6);
-    let mut pipeline = Pipeline::new();
-    pipeline = pipeline.alpha(Alpha::from_squared(job.alpha).unwrap());
-    let volume = open(&input, &job.read).unwrap();
-    let (volume, range) = volume.into_gray(Gray::Automatic).unwrap();
-    let one = pipeline.values(range).run(&volume).unwrap();
+    let volume = open(&input, &ReadOptions::default()).unwrap();
+    let one = job.recipe.run(volume).unwrap();
     assert_eq!(shape.points(), one.shape.points());
     assert_eq!(shape.complex().facets.len(), {
         let mut complex = one.shape.complex().clone();

@@ -8,34 +8,20 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use walpha::blocks::{Cutting, Job, Merged, Plan, merge, run, whole};
-use walpha::pipeline::{Choice, Model};
-use walpha::shape::{Component, Engine, ShapeOptions};
-use walpha::volume::{ReadOptions, open};
+use walpha::pipeline::{AlphaRule, Choice, Model};
+use walpha::shape::{Component, Engine};
+use walpha::volume::open;
 use walpha::{
-    Alpha, AlphaShape, Decomposition, Gray, Pipeline, SelectionRule, Tolerance, Weighting,
+    Alpha, AlphaShape, Decomposition, Recipe, Selection, SelectionRule, Tolerance, Weighting,
 };
 
 use crate::common::has_skull;
 
 /// The job in one piece, in as many blocks of a k-d tree as asked for.
 fn in_one_piece(job: &Job, blocks: usize) -> Model {
-    let volume = open(&job.input, &job.read).unwrap();
-    let gray = job.gray.map_or(Gray::Automatic, Gray::Range);
-    let (volume, range) = volume.into_gray(gray).unwrap();
-    let options = ShapeOptions::new(Alpha::from_squared(job.alpha).unwrap())
-        .balls(job.balls)
-        .engine(job.engine)
-        .blocks(NonZeroUsize::new(blocks))
-        .refuse_flat(true);
-    let pipeline = Pipeline::new()
-        .haar(job.haar)
-        .choice(Choice::Difference(job.selection))
-        .units(job.units)
-        .values(range)
-        .weighting(job.weighting)
-        .alpha(options.alpha)
-        .shape(options);
-    pipeline.run(&volume).unwrap()
+    let volume = open(&job.input, &job.recipe.read).unwrap();
+    let recipe = job.recipe.clone().blocks(NonZeroUsize::new(blocks)).refuse_flat(true);
+    recipe.run(volume).unwrap()
 }
 
 fn planned(job: &Job, blocks: usize, folder: &Path) -> Plan {
@@ -60,7 +46,7 @@ fn compare(job: &Job, cuts: &[usize]) -> Model {
     let one = in_one_piece(job, 3);
     let expected = &one.shape;
     for &blocks in cuts {
-        let what = format!("{} in {blocks} blocks, {}", job.input, job.weighting);
+        let what = format!("{} in {blocks} blocks, {}", job.input, job.weighting());
         let (plan, merged, shape) = in_blocks(job, blocks);
         assert!(plan.blocks.len() <= blocks && (blocks == 1) == (plan.blocks.len() == 1), "{what}");
         assert_eq!(plan.survey.truncation, one.origin.truncation.unwrap(), "{what}");
@@ -88,8 +74,17 @@ fn compare(job: &Job, cuts: &[usize]) -> Model {
     one
 }
 
+/// The samples of the largest differences.
+fn selected(rule: SelectionRule) -> Choice {
+    Choice::Difference(Selection::default().rule(rule))
+}
+
+fn alpha(squared: f64) -> AlphaRule {
+    AlphaRule::Given(Alpha::from_squared(squared).unwrap())
+}
+
 fn job(input: &str) -> Job {
-    Job::new(input, ReadOptions::default()).unwrap()
+    Job::new(input, Recipe::new()).unwrap()
 }
 
 const WEIGHTS: [Weighting; 4] =
@@ -99,10 +94,10 @@ const WEIGHTS: [Weighting; 4] =
 fn the_phantom_in_blocks_is_the_phantom() {
     let mut job = job("sample:phantom@50");
     for weighting in WEIGHTS {
-        job.weighting = weighting;
+        job.recipe.weighting = Some(weighting);
         compare(&job, &[1, 5, 64]);
     }
-    job.engine = Engine::Native;
+    job.recipe.engine = Engine::Native;
     compare(&job, &[2]);
 }
 
@@ -113,7 +108,7 @@ fn the_skull_in_blocks_is_the_skull() {
     }
     let mut job = job("sample:skull");
     for (weighting, blocks) in WEIGHTS.into_iter().zip([[5, 64], [1, 7], [2, 3], [4, 30]]) {
-        job.weighting = weighting;
+        job.recipe.weighting = Some(weighting);
         let one = compare(&job, &blocks);
         let betti = one.shape.betti().unwrap();
         let has_tunnels = betti.b1 > 0 || weighting != Weighting::Common(0.0);
@@ -124,7 +119,7 @@ fn the_skull_in_blocks_is_the_skull() {
 #[test]
 fn a_larger_phantom_in_blocks_is_the_phantom() {
     let mut job = job("sample:phantom@128");
-    (job.engine, job.weighting) = (Engine::Native, Weighting::MinMax);
+    (job.recipe.engine, job.recipe.weighting) = (Engine::Native, Some(Weighting::MinMax));
     compare(&job, &[5, 64]);
 }
 
@@ -132,8 +127,8 @@ fn a_larger_phantom_in_blocks_is_the_phantom() {
 #[test]
 fn a_phantom_of_no_power_of_two_in_blocks_is_the_phantom() {
     let mut job = job("sample:phantom@200");
-    job.selection.rule = SelectionRule::Count(30_000);
-    (job.alpha, job.weighting) = (30.0, Weighting::BarycentricN);
+    job.recipe.choice = selected(SelectionRule::Count(30_000));
+    (job.recipe.alpha, job.recipe.weighting) = (alpha(30.0), Some(Weighting::BarycentricN));
     compare(&job, &[5, 64]);
 }
 
@@ -141,21 +136,22 @@ fn a_phantom_of_no_power_of_two_in_blocks_is_the_phantom() {
 #[test]
 fn the_standard_decomposition_in_blocks_is_the_same() {
     let mut job = job("sample:phantom@50");
-    job.haar.decomposition = Decomposition::Standard;
+    job.recipe.haar.decomposition = Decomposition::Standard;
     for (weighting, tolerance) in WEIGHTS.into_iter().zip([
         Tolerance::Rms(2.0),
         Tolerance::Coefficients(5000),
         Tolerance::Rms(0.0),
         Tolerance::Epsilon(700.0),
     ]) {
-        (job.weighting, job.haar.tolerance) = (weighting, tolerance);
+        (job.recipe.weighting, job.recipe.haar.tolerance) = (Some(weighting), tolerance);
         let one = compare(&job, &[1, 5, 64]);
         let exact = tolerance == Tolerance::Rms(0.0);
         assert_eq!(one.origin.truncation.unwrap().epsilon == 0.0, exact);
     }
     job = self::job("sample:phantom@200");
-    job.haar = job.haar.decomposition(Decomposition::Standard).tolerance(Tolerance::Rms(3.0));
-    job.selection.rule = SelectionRule::Count(30_000);
-    (job.alpha, job.engine) = (30.0, Engine::Native);
+    job.recipe.haar =
+        job.recipe.haar.decomposition(Decomposition::Standard).tolerance(Tolerance::Rms(3.0));
+    job.recipe.choice = selected(SelectionRule::Count(30_000));
+    (job.recipe.alpha, job.recipe.engine) = (alpha(30.0), Engine::Native);
     compare(&job, &[6]);
 }

@@ -3,10 +3,13 @@
 use std::fs::File;
 
 use walpha::blocks::{BlocksError, Job, merge, run};
+use walpha::interpolate::Refit;
+use walpha::pipeline::{AlphaRule, Choice, Goal};
 use walpha::shape::Engine;
-use walpha::volume::ReadOptions;
+use walpha::shape::Torus;
+use walpha::{Alpha, Recipe};
 
-use super::{job, planned};
+use super::{alpha, job, planned};
 
 #[test]
 fn what_is_not_local_is_refused() {
@@ -15,14 +18,22 @@ fn what_is_not_local_is_refused() {
         assert!(matches!(error, BlocksError::NotLocal { .. }), "{error}");
         assert!(error.advice().is_some());
     };
-    let fresh = Job::new("sample:phantom@20", ReadOptions::default()).unwrap();
-    let (mut hull, mut reference, mut auto) = (fresh.clone(), fresh.clone(), fresh);
-    hull.alpha = f64::INFINITY;
-    refused(&hull);
-    reference.engine = Engine::Cgal;
-    refused(&reference);
-    let error = auto.set_alpha(walpha::pipeline::AlphaRule::Auto).unwrap_err();
-    assert!(matches!(error, BlocksError::NotLocal { .. }), "{error}");
+    let fresh = Job::new("sample:phantom@20", Recipe::new()).unwrap();
+    let recipes = [
+        Recipe::new().alpha(Alpha::INFINITE),
+        Recipe::new().alpha(AlphaRule::Auto),
+        Recipe::new().engine(Engine::Cgal),
+        Recipe::new().choice(Choice::Adaptive(Goal::default())),
+        Recipe::new().exterior(true),
+        Recipe::new().hidden(true),
+        Recipe::new().refit(Refit::Shape),
+        Recipe::new().periodic(Torus::new([20.0; 3]).ok()),
+    ];
+    for recipe in recipes {
+        let mut job = fresh.clone();
+        job.recipe = recipe;
+        refused(&job);
+    }
 }
 
 #[test]
@@ -44,7 +55,7 @@ fn blocks_that_are_missing_or_of_another_plan_are_named() {
     assert!(matches!(run(&plan, 4), Err(BlocksError::NoBlock { index: 4, count: 4 })));
 
     // The same folder, another α: what is there does not belong to it.
-    job.alpha = 5.0;
+    job.recipe.alpha = alpha(5.0);
     let other = planned(&job, 4, folder.path());
     assert_ne!(other.digest(), plan.digest());
     assert!(matches!(merge(&other), Err(BlocksError::OtherPlan { .. })));

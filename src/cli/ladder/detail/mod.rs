@@ -2,23 +2,24 @@
 
 mod facts;
 
-use crate::cli::said::refused;
+use crate::cli::said::{misused, refused};
 use crate::haar::smooth_monitored;
+use crate::pipeline::{Input, Source};
 use crate::points::{Points, Units, difference, select, weigh};
 use crate::points::{Region, focus};
 use crate::progress::Stage;
 use crate::shape::alpha_shape_monitored;
 use crate::shape::{AlphaShape, ShapeOptions};
 use crate::{
-    GrayRange, HaarOptions, Selection, SelectionRule, Tolerance, Truncation, Volume, Weighting,
+    HaarOptions, Recipe, Selection, SelectionRule, Tolerance, Truncation, Volume, Weighting,
 };
 use walpha_base::Monitor;
 
 use super::super::Global;
-use super::super::args::{FrozenPipelineArgs, WeightArgs};
+use super::super::args::one_alpha;
 use super::super::folder::Folder;
 use super::super::output::tell;
-use super::super::pipeline::{Domain, Grays, Input, read};
+use super::super::pipeline::{Domain, read};
 use super::super::progress::Progress;
 use super::super::report::SCHEMA_VERSION;
 use super::errors::Errors;
@@ -44,23 +45,25 @@ impl Ladder {
         let given = &self.pipeline.input.given;
         given.refuse(&["refit"], "levels of detail keep the values of the samples")?;
         let mut progress = Progress::new(global);
-        let Input::Volume(Grays { volume, range, written }) =
-            read(&self.pipeline.input, &mut progress)?
-        else {
+        let recipe = self.pipeline.recipe()?;
+        let Input::Volume(grays) = read(&self.pipeline.input, &recipe, &mut progress)? else {
             refused!("levels of detail are made of a volume, and this is a point file" => "use --alphas");
         };
-        let weights = WeightArgs::from(self.pipeline.weights);
-        let weighting = weights.weights.unwrap_or(Weighting::Common(0.0));
-        let (volume, units) = self.pipeline.select.place(volume)?;
-        let parameter = weights.of_volume(&volume, units)?;
+        let weighting = recipe.weighting.unwrap_or(Weighting::Common(0.0));
+        let source = recipe.source(grays)?;
+        let parameter = one_alpha(recipe.alpha, &source)?;
+        let Source { ref volume, units, written, .. } = source;
         let alpha = parameter.alpha;
-        let coordinates = units.coordinates(&volume);
-        let domain = Domain::of_grid(&volume, units);
+        let coordinates = units.coordinates(volume);
+        let domain = Domain::of_grid(volume, units);
         let monitor = progress.monitor();
-        let mut stages = Stages { volume: &volume, units, smoothed: None, monitor: &monitor };
-        let full = progress.stage(Stage::Points, || self.full(&mut stages, &range))?;
+        let Some(selection) = recipe.selection(&source.range) else {
+            misused!("--select adaptive has no effect: levels of detail are selected by differences" => "omit it");
+        };
+        let mut stages = Stages { volume, units, smoothed: None, monitor: &monitor };
+        let full = progress.stage(Stage::Points, || self.full(&mut stages, &recipe, selection))?;
         let mut rows = Vec::new();
-        for wanted in self.wanted(&range) {
+        for wanted in self.wanted(&recipe, selection) {
             let found = || stages.points(&wanted.haar, &wanted.selection);
             let (mut points, truncation) = progress.stage(Stage::Points, found)?;
             if let Some((full, region)) = &full {
@@ -75,7 +78,7 @@ impl Ladder {
             let shape = progress
                 .stage(Stage::Shape, || alpha_shape_monitored(weighted, &options, &monitor))?;
             let shape = shape.with_coordinates(coordinates);
-            let errors = || Errors::of(&shape, &grays, &volume, units, &monitor);
+            let errors = || Errors::of(&shape, &grays, volume, units, &monitor);
             let errors = progress.stage(Stage::Interpolate, errors)?;
             let mut row = Row::of(&shape, &truncation, &domain, errors);
             progress.stage(Stage::Write, || {
@@ -104,20 +107,19 @@ impl Ladder {
     fn full(
         &self,
         stages: &mut Stages<'_>,
-        range: &GrayRange,
+        recipe: &Recipe,
+        selection: Selection,
     ) -> anyhow::Result<Option<(Points, &Region)>> {
         let Some(region) = &self.focus else { return Ok(None) };
-        let FrozenPipelineArgs { haar, select, .. } = &self.pipeline;
-        let (points, _) = stages.points(&haar.options(), &select.selection(range))?;
+        let (points, _) = stages.points(&recipe.haar, &selection)?;
         if inside(&points, region) == 0 {
             refused!("no point lies in --focus: it is in the units of the points, x first");
         }
         Ok(Some((points, region)))
     }
 
-    fn wanted(&self, range: &GrayRange) -> Vec<Wanted> {
-        let FrozenPipelineArgs { haar, select, .. } = &self.pipeline;
-        let (haar, selection) = (haar.options(), select.selection(range));
+    fn wanted(&self, recipe: &Recipe, selection: Selection) -> Vec<Wanted> {
+        let haar = recipe.haar;
         let by_count = self.counts.iter().map(|&count| Wanted {
             name: count.to_string(),
             haar,

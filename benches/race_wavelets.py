@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Races walpha's front end against PyWavelets on the same volume.
 
-    scripts/race_wavelets.py [--walpha target/release/walpha] [--size 256] [--env /tmp/walpha-wavelets]
+    benches/race_wavelets.py [--walpha target/release/walpha] [--size 256] [--env /tmp/walpha-wavelets]
 
 Ours is the whole front end of `walpha points`: forward, truncate, inverse, difference, select, weigh.
 Theirs is wavedecn, threshold and waverecn in float32, no more. Runs are interleaved; medians of five.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Races `.wvm` against compressors of volumes on the same samples.
 
-    scripts/race_compressors.py [INPUT…] [--walpha target/release/walpha] [--out race] [--env DIR]
+    benches/race_compressors.py [INPUT…] [--walpha target/release/walpha] [--out race] [--env DIR]
 
 INPUT is what walpha reads; by default sample:skull and sample:phantom@128. Everyone gets the same gray
 levels 0..255 as float32 (JPEG 2000: as 16-bit integers of 1/256 gray level). Whole files count, headers

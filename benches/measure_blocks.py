@@ -2,9 +2,9 @@
 """Measures what a shape in blocks costs, beside what `walpha blocks plan --dry-run` predicts.
 
     cargo build --release --features zarr,mpi
-    scripts/measure_blocks.py steps 512 --blocks 8 --folder /scratch    # plan, run and merge, one thread
-    scripts/measure_blocks.py ranks 512 --blocks 16 --folder /scratch   # `mpirun -n 1 … 8 walpha shape`
-    scripts/measure_blocks.py prices 1024 2048 4096 8192                # the table of docs/clusters.md, by the model alone
+    benches/measure_blocks.py steps 512 --blocks 8 --folder /scratch    # plan, run and merge, one thread
+    benches/measure_blocks.py ranks 512 --blocks 16 --folder /scratch   # `mpirun -n 1 … 8 walpha shape`
+    benches/measure_blocks.py prices 1024 2048 4096 8192                # the table of docs/clusters.md, by the model alone
 
 The phantom is converted to Zarr first, once. Prints lines of the tables of docs/clusters.md: CPU time is that of user and system
 together, which other work on the machine hardly changes; memory is the largest resident set of a process.

@@ -1,0 +1,278 @@
+use std::num::NonZeroUsize;
+
+use serde::{Deserialize, Serialize};
+use walpha_base::setters;
+
+use super::{AlphaRule, Choice, Parameter, PipelineError};
+use crate::haar::HaarOptions;
+use crate::interpolate::Refit;
+use crate::points::{Columns, PointOptions, Points, Selection, Units, Weighting};
+use crate::shape::{Alpha, Balls, Engine, ShapeError, ShapeOptions, Torus};
+use crate::volume::{Coordinates, Frame, Gray, GrayRange, LengthUnit, ReadOptions, Space};
+
+/// The options of all stages, from an input to its shape. By default those of the paper, without weights.
+///
+/// The command makes one of its arguments, a plan of blocks holds one, and so can a file: it can be serialised.
+///
+/// ```
+/// use walpha::{Alpha, Recipe, Weighting};
+///
+/// let recipe = Recipe::new().weighting(Weighting::MinMax).alpha(Alpha::from_squared(10.0)?);
+/// let text = serde_json::to_string(&recipe)?;
+/// assert_eq!(serde_json::from_str::<Recipe>(&text)?, recipe);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[must_use]
+#[non_exhaustive]
+#[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
+pub struct Recipe {
+    /// How a volume is read.
+    pub read: ReadOptions,
+    /// What the columns of a table of points hold; `None` leaves that to its header or its numbers.
+    pub columns: Option<Columns>,
+    /// The values that become gray 0 and 255; `None` leaves unsigned bytes as they are, and takes the smallest
+    /// and largest value of others.
+    pub gray: Option<GrayRange>,
+    /// Whether points get gray levels rather than the values of the input.
+    pub gray_out: bool,
+    /// What coordinates are measured in; `None` is [`Units::World`] where the input states a unit of length, a spacing
+    /// or an origin, else [`Units::Voxel`].
+    pub units: Option<Units>,
+    /// Direction of world coordinates, where the input states the patient's orientation; `None` is [`Space::Lps`].
+    pub space: Option<Space>,
+    /// How the volume is transformed and truncated.
+    pub haar: HaarOptions,
+    /// Which samples become points.
+    pub choice: Choice,
+    /// Drops samples below this value of the input; instead of [`Selection::gray_min`].
+    pub value_min: Option<f64>,
+    /// Fits the values of points to the volume by least squares; `None` leaves them those of its samples.
+    pub refit: Option<Refit>,
+    /// Where weights come from; `None` is a column of the input, or else they are 0.
+    pub weighting: Option<Weighting>,
+    /// α, or how to find it.
+    pub alpha: AlphaRule,
+    /// What α + ω means.
+    pub balls: Balls,
+    /// Which program computes the shape.
+    pub engine: Engine,
+    /// Whether the simplices outside the shape are listed, too ([`ShapeOptions::exterior`]).
+    pub exterior: bool,
+    /// Whether hidden points are listed ([`ShapeOptions::hidden`]).
+    pub hidden: bool,
+    /// The number of blocks that the points are cut into ([`ShapeOptions::blocks`]).
+    pub blocks: Option<NonZeroUsize>,
+    /// A bound on memory in bytes ([`ShapeOptions::memory`]).
+    pub memory: Option<u64>,
+    /// Whether points that span no volume are an error ([`ShapeOptions::refuse_flat`]).
+    pub refuse_flat: bool,
+    /// The periodic box, if there is one; written as its sides.
+    #[serde(with = "sides")]
+    pub periodic: Option<Torus>,
+}
+
+impl Recipe {
+    /// The paper's options.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    setters! {
+        read: ReadOptions,
+        columns: Option<Columns>,
+        gray_out: bool,
+        haar: HaarOptions,
+        choice: Choice,
+        value_min: Option<f64>,
+        balls: Balls,
+        engine: Engine,
+        exterior: bool,
+        hidden: bool,
+        blocks: Option<NonZeroUsize>,
+        memory: Option<u64>,
+        refuse_flat: bool,
+        periodic: Option<Torus>,
+    }
+
+    /// Sets `gray`: a range, or `None`.
+    pub fn gray(self, gray: impl Into<Option<GrayRange>>) -> Self {
+        Self { gray: gray.into(), ..self }
+    }
+
+    /// Sets `units`, or leaves them to the input.
+    pub fn units(self, units: impl Into<Option<Units>>) -> Self {
+        Self { units: units.into(), ..self }
+    }
+
+    /// Sets `space`, or leaves it at LPS.
+    pub fn space(self, space: impl Into<Option<Space>>) -> Self {
+        Self { space: space.into(), ..self }
+    }
+
+    /// Sets `refit`, or leaves values as they are.
+    pub fn refit(self, to: impl Into<Option<Refit>>) -> Self {
+        Self { refit: to.into(), ..self }
+    }
+
+    /// Sets `weighting`, or leaves weights to the input.
+    pub fn weighting(self, weighting: impl Into<Option<Weighting>>) -> Self {
+        Self { weighting: weighting.into(), ..self }
+    }
+
+    /// Sets `alpha`: a number, or a rule.
+    pub fn alpha(self, alpha: impl Into<AlphaRule>) -> Self {
+        Self { alpha: alpha.into(), ..self }
+    }
+
+    /// How points are read.
+    pub(crate) fn of_points(&self) -> PointOptions {
+        PointOptions::default()
+            .columns(self.columns.clone())
+            .level(self.read.level)
+            .format(self.read.format.clone())
+    }
+
+    /// How values become gray levels.
+    pub(crate) fn gray_levels(&self) -> Gray {
+        self.gray.map_or(Gray::Automatic, Gray::Range)
+    }
+
+    /// The values that gray levels stand for in what is written, where `range` became 0..255.
+    pub(crate) fn written(&self, range: GrayRange) -> GrayRange {
+        if self.gray_out { GrayRange::IDENTITY } else { range }
+    }
+
+    /// A grid in the space that its points are in, and what their coordinates are measured in.
+    ///
+    /// # Errors
+    /// [`PipelineError::SpaceOfVoxels`] and [`PipelineError::UnknownSpace`].
+    pub fn place(&self, frame: Frame) -> Result<(Frame, Units), PipelineError> {
+        let Coordinates { space, unit } = frame.coordinates;
+        let stated = if unit == LengthUnit::Voxel { Units::Voxel } else { Units::World };
+        let units = self.units.unwrap_or(stated);
+        if self.space.is_some() && units == Units::Voxel {
+            return Err(PipelineError::SpaceOfVoxels);
+        }
+        if self.space.is_some() && !space.is_known() {
+            return Err(PipelineError::UnknownSpace);
+        }
+        let space = self.space.unwrap_or(Space::Lps);
+        Ok((frame.to(Coordinates { space, unit }), units))
+    }
+
+    /// The selection by differences of a volume whose values `range` are gray 0..255; `None` where points are chosen
+    /// adaptively.
+    pub(crate) fn selection(&self, range: &GrayRange) -> Option<Selection> {
+        match self.choice.at_least(self.value_min.map(|value| range.gray(value))) {
+            Choice::Difference(selection) => Some(selection),
+            Choice::Adaptive(_) | Choice::Exchanged(_) => None,
+        }
+    }
+
+    /// Where the weights of these points come from.
+    pub(super) fn weighting_of(&self, points: &Points) -> Weighting {
+        let of_input =
+            if points.weights.is_some() { Weighting::Column } else { Weighting::Common(0.0) };
+        self.weighting.unwrap_or(of_input)
+    }
+
+    /// The options of the shape at α.
+    pub fn shape_at(&self, alpha: Alpha) -> ShapeOptions {
+        ShapeOptions::new(alpha)
+            .balls(self.balls)
+            .engine(self.engine)
+            .exterior(self.exterior)
+            .hidden(self.hidden)
+            .blocks(self.blocks)
+            .memory(self.memory)
+            .refuse_flat(self.refuse_flat)
+            .periodic(self.periodic)
+    }
+
+    /// Checks before all work that the options of the shape are compatible, as far as α is known.
+    ///
+    /// # Errors
+    /// Those of [`ShapeOptions::check`].
+    pub fn check(&self) -> Result<(), ShapeError> {
+        let alpha = match self.alpha {
+            AlphaRule::Given(alpha) => alpha,
+            // What is found is finite.
+            AlphaRule::Auto | AlphaRule::Default => Alpha::ZERO,
+        };
+        self.shape_at(alpha).check()
+    }
+
+    /// The options of the shape at an α that was given or found.
+    pub(super) fn shape_of(&self, parameter: Parameter) -> Result<ShapeOptions, PipelineError> {
+        if self.balls == Balls::Radius && parameter.is_found() {
+            return Err(PipelineError::Radii { radius: parameter.alpha.squared().abs().sqrt() });
+        }
+        Ok(self.shape_at(parameter.alpha))
+    }
+}
+
+/// A periodic box as its sides.
+mod sides {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    use crate::shape::Torus;
+
+    #[expect(clippy::ref_option, reason = "serde hands over the field")]
+    pub(super) fn serialize<S: Serializer>(
+        torus: &Option<Torus>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        torus.map(|torus| torus.sides()).serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<Torus>, D::Error> {
+        let sides = Option::<[f64; 3]>::deserialize(deserializer)?;
+        sides.map(|sides| Torus::new(sides).map_err(D::Error::custom)).transpose()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SelectionRule;
+    use crate::pipeline::Goal;
+
+    /// Also what JSON has no number for, and what α is to be found.
+    #[test]
+    fn recipes_survive_json() {
+        let base = Recipe::new()
+            .columns(Some("x,y,other,z,value".parse().unwrap()))
+            .gray(GrayRange { low: -1000.0, high: 0.1 })
+            .units(Units::World)
+            .space(Space::Ras)
+            .value_min(Some(-0.3))
+            .refit(Refit::Shape)
+            .weighting(Weighting::Common(2.5))
+            .blocks(NonZeroUsize::new(3))
+            .memory(Some(1 << 40))
+            .periodic(Some(Torus::new([1.0, 2.5, 0.7]).unwrap()));
+        let goal = Goal { ratio: Some(0.1), max_error: Some(3.5), ..Goal::default() };
+        let selection = Selection::default().rule(SelectionRule::Threshold(30.0)).gray_min(64.5);
+        let alphas = ["auto", "inf", "0.1", "-3"];
+        for alpha in
+            alphas.map(|text| text.parse().unwrap()).into_iter().chain([AlphaRule::Default])
+        {
+            for choice in
+                [Choice::Difference(selection), Choice::Adaptive(goal), Choice::Exchanged(goal)]
+            {
+                let recipe = base.clone().alpha(alpha).choice(choice);
+                let text = serde_json::to_string(&recipe).unwrap();
+                assert_eq!(serde_json::from_str::<Recipe>(&text).unwrap(), recipe, "{text}");
+            }
+        }
+        assert_eq!(serde_json::from_str::<Recipe>("{}").unwrap(), Recipe::new());
+        let wrong = [r#"{"alfa": "1"}"#, r#"{"alpha": "nan"}"#, r#"{"periodic": [1, 0, 1]}"#];
+        for text in wrong {
+            assert!(serde_json::from_str::<Recipe>(text).is_err(), "{text}");
+        }
+    }
+}
