@@ -31,7 +31,6 @@
 
 pub use ndarray;
 
-pub mod blocks;
 #[cfg(feature = "cgal")]
 mod cgal;
 #[cfg(feature = "cli")]
@@ -39,6 +38,7 @@ pub mod cli;
 pub mod export;
 pub mod haar;
 pub mod interpolate;
+pub mod outofcore;
 pub mod pipeline;
 pub mod points;
 pub mod progress;

@@ -5,7 +5,7 @@ use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use walpha::blocks::{Cutting, Job, Pieces, Plan, merge, run, whole};
+use walpha::outofcore::{Cutting, Job, Pieces, Plan, merge, run, whole};
 use walpha::check::certify_filtration;
 use walpha::check::schema::{ComplexFile, FiltrationFile, SchemaError};
 use walpha::points::{PointOptions, cells_of, is_point_file, read_complex, read_points};

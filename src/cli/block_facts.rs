@@ -8,7 +8,7 @@ use std::path::Path;
 
 use walpha_base::memory::readable;
 
-use crate::blocks::{Checked, Plan, Price};
+use crate::outofcore::{Checked, Plan, Price};
 
 use super::output::name;
 

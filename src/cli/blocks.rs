@@ -9,12 +9,12 @@ use walpha_base::shown::shown;
 use walpha_files::{Working, fill_all, keep_input};
 
 use crate::Recipe;
-use crate::blocks::merge_monitored;
-use crate::blocks::{
+use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target};
+use crate::outofcore::merge_monitored;
+use crate::outofcore::{
     Alone, BlocksError, Checked, Cutting, Finding, Job, Merged, Pieces, Plan, Team, price, run,
     run_all, whole,
 };
-use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target};
 use crate::progress::Stage;
 use crate::volume::files_of;
 
@@ -249,13 +249,13 @@ impl Outputs {
         });
         let whole = fill_all(whole)?;
         // Nothing gets its name before all is written, and what names other files comes after these.
-        team.meet();
+        team.barrier();
         if team.is_first() {
-            team.meet();
+            team.barrier();
         }
         whole.put(files)?;
         if !team.is_first() {
-            team.meet();
+            team.barrier();
         }
         folders.into_iter().for_each(NewFolder::keep);
         Ok(())

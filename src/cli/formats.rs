@@ -1,6 +1,6 @@
 //! What help says of formats, from the library's tables.
 
-use crate::blocks::Pieces;
+use crate::outofcore::Pieces;
 use crate::{export, points, volume};
 
 /// What INPUT may be.

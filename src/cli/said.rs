@@ -6,12 +6,12 @@ use walpha_base::advice::{Advice, Setting};
 use walpha_base::memory::NoMemory;
 use walpha_regular::{SitesError, TriangulationError};
 
-use crate::blocks::BlocksError;
 use crate::check::schema::SchemaError;
 use crate::check::{CertifyError, CertifyFiltrationError, CompareError};
 use crate::export::TargetError;
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
+use crate::outofcore::BlocksError;
 use crate::pipeline::PipelineError;
 use crate::points::{UnknownColumns, UnknownWeighting};
 #[cfg(feature = "paper")]

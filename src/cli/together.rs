@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use walpha_base::memory;
 
 use crate::Recipe;
-use crate::blocks::merge_monitored;
-use crate::blocks::{Cutting, Job, Merged, Pieces, Plan, Team, run_missing};
 use crate::export::{NewFolder, Target};
+use crate::outofcore::merge_monitored;
+use crate::outofcore::{Cutting, Job, Merged, Pieces, Plan, Team, run_missing};
 use crate::progress::Stage;
 
 use super::args::InputArgs;
@@ -85,12 +85,12 @@ impl Work {
 }
 
 fn order(team: &dyn Team, work: Option<String>) {
-    team.told(Some(work));
+    team.broadcast(Some(work));
 }
 
 /// Does what the first process orders, until it [dismisses](dismiss) this one.
 pub(super) fn serve(team: &dyn Team) -> anyhow::Result<()> {
-    while let Some(work) = team.told::<Option<String>>(None) {
+    while let Some(work) = team.broadcast::<Option<String>>(None) {
         let work: Work = serde_json::from_str(&work)?;
         start_threads(Some(work.threads))?;
         let silent = Global { quiet: true, ..Global::default() };
@@ -108,7 +108,7 @@ pub(super) fn dismiss(team: &dyn Team) {
 
 /// The most memory that any process held, in bytes; every process asks at the end of its work.
 pub(super) fn peak(team: &dyn Team) -> Option<u64> {
-    team.joined(memory::peak_bytes(), |most, other| *most = (*most).max(other))
+    team.reduce(memory::peak_bytes(), |most, other| *most = (*most).max(other))
 }
 
 /// Where unfinished work is kept: beside the first output with pieces, `bone.blocks` for `bone.pvtp`, or else the

@@ -1,6 +1,5 @@
 //! All integration tests in one program: each program links everything once more.
 
-mod blocks;
 mod blocks_command;
 mod check_certify;
 mod check_command;
@@ -27,6 +26,7 @@ mod las;
 mod laws;
 #[cfg(feature = "mpi")]
 mod mpi;
+mod outofcore;
 #[cfg(unix)]
 mod outputs;
 mod periodic;

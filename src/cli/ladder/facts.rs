@@ -11,9 +11,9 @@ use crate::ladder::{Curve, Filtration, Ladder, Level, Suggestions};
 use crate::pipeline::{Parameter, Weighed};
 use crate::shape::{Alpha, Betti, ByClass, Measures, Void};
 
-use super::super::output::name;
-use super::super::pipeline::Domain;
-use super::super::report::{SCHEMA_VERSION, WeightsReport, ending};
+use crate::cli::output::name;
+use crate::cli::pipeline::Domain;
+use crate::cli::report::{SCHEMA_VERSION, WeightsReport, ending};
 
 /// What `walpha ladder` did over α.
 #[derive(Serialize)]

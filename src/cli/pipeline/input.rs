@@ -8,10 +8,10 @@ use crate::progress::Stage;
 use crate::volume::Reason;
 use crate::{PointsError, Recipe, VolumeError};
 
-use super::super::args::{self, InputArgs};
-use super::super::complaint::{is_usage, reasons};
-use super::super::progress::Progress;
-use super::super::said::{Said, said};
+use crate::cli::args::{self, InputArgs};
+use crate::cli::complaint::{is_usage, reasons};
+use crate::cli::progress::Progress;
+use crate::cli::said::{Said, said};
 
 /// Reads INPUT.
 pub(in crate::cli) fn read(

@@ -7,7 +7,7 @@ use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
-use crate::blocks::{Alone, Team};
+use crate::outofcore::{Alone, Team};
 
 use super::said::{Said, said};
 use super::{PANICKED, USAGE, complaint};

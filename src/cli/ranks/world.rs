@@ -8,7 +8,7 @@ use mpi::request;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Destination, Source};
 
-use crate::blocks::Team;
+use crate::outofcore::Team;
 
 /// Bytes sent at once: the counts of MPI have 32 bits.
 const CHUNK: usize = 1 << 20;

@@ -9,8 +9,8 @@ use std::fmt::{self, Display};
 use serde::Serialize;
 use walpha_base::memory;
 
-use crate::blocks::{Merged, Plan};
 use crate::interpolate::{Adaptive, Fit, Refit};
+use crate::outofcore::{Merged, Plan};
 use crate::pipeline::{Model, Parameter, Weighed};
 use crate::points::WeightSummary;
 use crate::shape::{Cuts, Engine};

@@ -9,7 +9,7 @@ use crate::pipeline::Weighed;
 use crate::points::WeightSummary;
 use crate::{GrayRange, LengthUnit, Truncation, Weighting};
 
-use super::super::output::name;
+use crate::cli::output::name;
 
 #[derive(Serialize)]
 pub(super) struct InputReport {

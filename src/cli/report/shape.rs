@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 use serde::Serialize;
 
 use crate::AlphaShape;
-use crate::blocks::Merged;
+use crate::outofcore::Merged;
 use crate::shape::{Betti, ByClass, Component, Void};
 
 #[derive(Serialize)]

@@ -9,8 +9,8 @@ use walpha_base::shown::shown;
 use walpha_files::Working;
 
 use crate::Recipe;
-use crate::blocks::{Pieces, Team};
 use crate::export::{FORMATS, Format};
+use crate::outofcore::{Pieces, Team};
 use crate::progress::Stage;
 use crate::shape::Surface;
 

@@ -6,12 +6,12 @@ use std::path::PathBuf;
 use walpha_base::shown::shown;
 
 use crate::AlphaShape;
-use crate::blocks::Pieces;
 use crate::cli::picture::PictureArgs;
 use crate::cli::said::option;
 use crate::export::{
     Content, ExportOptions, Exporter, FORMATS, Format, Target, TargetError, write_all,
 };
+use crate::outofcore::Pieces;
 use crate::points::{ModelFacts, Packing, PointWriter};
 use crate::volume::UnknownFormat;
 

@@ -2,9 +2,9 @@
 
 use walpha_complex::Alpha;
 
-use super::super::formats::MODEL;
-use super::super::{ModelFacts, SampleGrid, Units};
 use super::fields::{In, Out};
+use crate::points::formats::MODEL;
+use crate::points::{ModelFacts, SampleGrid, Units};
 use crate::volume::{Coordinates, Dims, Frame, GrayRange, Reason};
 
 /// The version that is written, and the only one that is read.

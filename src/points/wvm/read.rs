@@ -7,18 +7,21 @@ use std::path::Path;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::room;
 
-use super::super::read::format;
-use super::super::{ModelFacts, Points, PointsError, SampleGrid, WeightedPoints};
 use super::coder::Decoder;
 use super::column;
 use super::header::{CHECKSUM, Header, Layer, Values, Weights, damaged, fits};
 use super::write::{Coders, in_order};
+use crate::points::read::format;
+use crate::points::{ModelFacts, Points, PointsError, SampleGrid, WeightedPoints};
 use crate::volume::{Reason, io_error};
 
 /// Reads points without the last `level` layers, and what is known of them.
 ///
 /// Memory is in proportion to the file, whatever its header claims: a byte holds 64 points at most.
-pub(in super::super) fn read(path: &Path, level: u32) -> Result<(Points, ModelFacts), PointsError> {
+pub(in crate::points) fn read(
+    path: &Path,
+    level: u32,
+) -> Result<(Points, ModelFacts), PointsError> {
     let said = |reason: Reason| format(path, reason);
     let mut file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();

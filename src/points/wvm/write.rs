@@ -2,13 +2,13 @@
 
 use std::io::{self, Write};
 
-use super::super::{ModelFacts, Packing, SampleGrid, WeightedPoints};
 use super::blocks::Cell;
 use super::coder::Encoder;
 use super::column;
 use super::header::{Header, Layer, POINTS_PER_BYTE, Values, Weights};
 use super::places::Places;
 use super::values;
+use crate::points::{ModelFacts, Packing, SampleGrid, WeightedPoints};
 
 /// Writes points and what is known of them.
 ///
@@ -18,7 +18,7 @@ use super::values;
 ///
 /// # Errors
 /// Whatever `out` returns.
-pub(in super::super) fn write(
+pub(in crate::points) fn write(
     points: &WeightedPoints,
     facts: &ModelFacts,
     packing: &Packing,

@@ -1,8 +1,8 @@
-use super::super::compare::{Difference, same_set};
-use super::super::study::{ALPHA, Shapes};
-use super::super::{Fact, Item, ReproduceError, ShapeNumbers, Verdict, text};
 use super::claim::{Claim, judge};
 use super::{Bench, figure};
+use crate::reproduce::compare::{Difference, same_set};
+use crate::reproduce::study::{ALPHA, Shapes};
+use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Verdict, text};
 
 /// The shapes of barycentric weights beside that of none.
 struct Evidence {

@@ -1,4 +1,4 @@
-use super::super::{Finding, Verdict};
+use crate::reproduce::{Finding, Verdict};
 
 /// A claim of the paper, and how what was measured decides it.
 pub(super) struct Claim<Evidence> {

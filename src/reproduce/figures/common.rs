@@ -1,7 +1,7 @@
-use super::super::study::{ALPHA, COMMON, Shapes};
-use super::super::{Item, ReproduceError, ShapeNumbers, Verdict, text};
 use super::claim::{Claim, judge};
 use super::{Bench, figure};
+use crate::reproduce::study::{ALPHA, COMMON, Shapes};
+use crate::reproduce::{Item, ReproduceError, ShapeNumbers, Verdict, text};
 use crate::shape::Complex;
 
 /// The α without weights that a common factor comes to.

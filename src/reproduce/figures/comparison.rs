@@ -1,9 +1,9 @@
-use super::super::compare::{Difference, PixelDifference, same_set};
-use super::super::stage::Eye;
-use super::super::study::ALPHA;
-use super::super::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 use super::claim::{Claim, judge};
 use super::{Bench, figure};
+use crate::reproduce::compare::{Difference, PixelDifference, same_set};
+use crate::reproduce::stage::Eye;
+use crate::reproduce::study::ALPHA;
+use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 
 /// Four shapes, and how far the paper's two differ: without weights, left, and with barycentric
 /// ones, right.

@@ -1,5 +1,3 @@
-use super::super::compressors::{self, Compressor};
-use super::super::{Fact, Item, ReproduceError, Table, text};
 use super::Bench;
 use crate::export::Scratch;
 use crate::interpolate::{
@@ -9,6 +7,8 @@ use crate::points::{
     ModelFacts, Packing, PointOptions, PointWriter, SampleGrid, Units, WeightedPoints, read_model,
 };
 use crate::render::{RateCurve, rate_figure};
+use crate::reproduce::compressors::{self, Compressor};
+use crate::reproduce::{Fact, Item, ReproduceError, Table, text};
 use crate::shape::{Alpha, ShapeOptions, alpha_shape};
 use crate::volume::{Coordinates, Volume};
 use walpha_base::Monitor;

@@ -1,10 +1,10 @@
-use super::super::study::ALPHA;
-use super::super::{Fact, Item, ReproduceError, Table, text};
 use super::Bench;
 use crate::interpolate::{
     CurveOptions, CurvePoint, Method, error_curve, error_figure, write_curve_csv,
 };
 use crate::points::{Units, Weighting};
+use crate::reproduce::study::ALPHA;
+use crate::reproduce::{Fact, Item, ReproduceError, Table, text};
 use crate::shape::Alpha;
 
 /// What the paper does not measure: how well F, linear on the cells, approximates the volume.

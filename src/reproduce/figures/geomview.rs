@@ -1,12 +1,12 @@
-use super::super::compare::{PixelDifference, same_set};
-use super::super::off::OffMesh;
-use super::super::stage::{Eye, panel};
-use super::super::study::{ALPHA, Shaped};
-use super::super::{Fact, Item, ReproduceError, ShapeNumbers, Verdict};
 use super::claim::{Claim, judge};
 use super::{Bench, figure};
 use crate::export::{ExportOptions, Exporter, Off};
 use crate::render::{Figure, Panel, Picture};
+use crate::reproduce::compare::{PixelDifference, same_set};
+use crate::reproduce::off::OffMesh;
+use crate::reproduce::stage::{Eye, panel};
+use crate::reproduce::study::{ALPHA, Shaped};
+use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Verdict};
 use crate::shape::{Betti, Surface};
 
 /// The pair, read back from its files.

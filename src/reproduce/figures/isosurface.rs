@@ -1,10 +1,10 @@
-use super::super::stage::{Eye, panel};
-use super::super::study::{PAPER_POINTS, PAPER_SAMPLES, Study};
-use super::super::{Fact, Item, ReproduceError, Table, Verdict};
 use super::claim::{Claim, judge};
 use super::{Bench, VIEWS, figure};
 use crate::points::difference;
 use crate::render::{Figure, Isosurface, Scene};
+use crate::reproduce::stage::{Eye, panel};
+use crate::reproduce::study::{PAPER_POINTS, PAPER_SAMPLES, Study};
+use crate::reproduce::{Fact, Item, ReproduceError, Table, Verdict};
 use crate::volume::Volume;
 
 /// The paper's threshold, in gray levels.

@@ -1,8 +1,8 @@
-use super::super::compare::Difference;
-use super::super::study::{ALPHA, Shapes};
-use super::super::{Fact, Item, ReproduceError, ShapeNumbers, Verdict, text};
 use super::claim::{Claim, judge};
 use super::{Bench, figure};
+use crate::reproduce::compare::Difference;
+use crate::reproduce::study::{ALPHA, Shapes};
+use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Verdict, text};
 
 /// The shape in both readings of "radius".
 struct Evidence {

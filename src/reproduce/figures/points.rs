@@ -1,10 +1,10 @@
-use super::super::stage::panel;
-use super::super::study::Study;
-use super::super::{Fact, Item, ReproduceError, Verdict, text};
 use super::claim::{Claim, judge};
 use super::{Bench, figure};
 use crate::haar::Truncation;
 use crate::render::{Ball, ColourBar, ColourMap, Figure, Scene, Size};
+use crate::reproduce::stage::panel;
+use crate::reproduce::study::Study;
+use crate::reproduce::{Fact, Item, ReproduceError, Verdict, text};
 
 /// The truncation, and the points.
 struct Evidence {

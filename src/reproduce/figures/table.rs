@@ -1,8 +1,8 @@
-use super::super::{Item, ReproduceError, Table, Verdict, text};
 use super::Bench;
 use super::claim::{Claim, judge};
 use crate::haar::Unnormalised;
 use crate::points::difference_row;
+use crate::reproduce::{Item, ReproduceError, Table, Verdict, text};
 
 /// The paper's row of gray levels.
 const ROW: [f64; 4] = [9.0, 7.0, 3.0, 5.0];

@@ -1,8 +1,8 @@
-use super::super::hull::Hull;
-use super::super::study::{ALPHA, Shapes};
-use super::super::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 use super::claim::{Claim, judge};
 use super::{Bench, figure};
+use crate::reproduce::hull::Hull;
+use crate::reproduce::study::{ALPHA, Shapes};
+use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 
 /// The unweighted shapes by ascending α, the last of which is ∞.
 struct Evidence {

@@ -15,15 +15,15 @@ use crate::{
 };
 use walpha_base::Monitor;
 
-use super::super::Global;
-use super::super::args::one_alpha;
-use super::super::folder::Folder;
-use super::super::output::tell;
-use super::super::pipeline::{Domain, read};
-use super::super::progress::Progress;
-use super::super::report::SCHEMA_VERSION;
 use super::errors::Errors;
 use super::{Ladder, Mesh, short};
+use crate::cli::Global;
+use crate::cli::args::one_alpha;
+use crate::cli::folder::Folder;
+use crate::cli::output::tell;
+use crate::cli::pipeline::{Domain, read};
+use crate::cli::progress::Progress;
+use crate::cli::report::SCHEMA_VERSION;
 use facts::{Facts, Row, write_rows};
 
 /// What a level asks for.

@@ -1,10 +1,10 @@
 //! Figures 2 and 3: the shapes of Edelsbrunner, Kirkpatrick and Seidel over α.
 
-use super::super::Bench;
-use super::super::claim::{Claim, judge};
 use super::draw::{GRAY, panel};
 use super::rung::{Rung, draw_hull, draw_shape};
 use crate::render::{Figure, PALETTE, Size};
+use crate::reproduce::figures::Bench;
+use crate::reproduce::figures::claim::{Claim, judge};
 use crate::reproduce::plane::sample_points;
 use crate::reproduce::{Fact, Item, ReproduceError, Table, Verdict, text};
 
@@ -77,7 +77,9 @@ const LIMITED: Claim<Limit> = Claim {
 };
 
 /// Figure 2: α-shapes of negative α.
-pub(in super::super) fn figure_2(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
+pub(in crate::reproduce::figures) fn figure_2(
+    bench: &mut Bench<'_>,
+) -> Result<Item, ReproduceError> {
     let title = "Figure 2. α-shapes of negative α, α increasing from top to bottom";
     let mut ladder = ladder(&NEGATIVE)?;
     let item = item(bench, title, "figure-02", &ladder)?;
@@ -101,7 +103,9 @@ pub(in super::super) fn figure_2(bench: &mut Bench<'_>) -> Result<Item, Reproduc
 }
 
 /// Figure 3: α-shapes of positive α.
-pub(in super::super) fn figure_3(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
+pub(in crate::reproduce::figures) fn figure_3(
+    bench: &mut Bench<'_>,
+) -> Result<Item, ReproduceError> {
     let title = "Figure 3. α-shapes of positive α, α increasing from top to bottom";
     let mut ladder = ladder(&POSITIVE)?;
     let item = item(bench, title, "figure-03", &ladder)?;

@@ -10,7 +10,7 @@ use serde::de::DeserializeOwned;
 /// the others, which would wait for it.
 ///
 /// ```
-/// use walpha::blocks::{Alone, Team};
+/// use walpha::outofcore::{Alone, Team};
 ///
 /// assert_eq!((Alone.rank(), Alone.size()), (0, 1));
 /// ```
@@ -60,7 +60,7 @@ impl dyn Team + '_ {
 
     /// Joins what each process has, in an order that may be any, and gives it to all. ⌈log₂ size⌉ messages
     /// of each process, to the first and back.
-    pub(crate) fn joined<T: Serialize + DeserializeOwned>(
+    pub(crate) fn reduce<T: Serialize + DeserializeOwned>(
         &self,
         mut mine: T,
         mut join: impl FnMut(&mut T, T),
@@ -77,11 +77,11 @@ impl dyn Team + '_ {
             }
             step *= 2;
         }
-        self.told(self.is_first().then_some(mine))
+        self.broadcast(self.is_first().then_some(mine))
     }
 
     /// Gives to all what the first process has; the others have nothing.
-    pub(crate) fn told<T: Serialize + DeserializeOwned>(&self, first: Option<T>) -> T {
+    pub(crate) fn broadcast<T: Serialize + DeserializeOwned>(&self, first: Option<T>) -> T {
         let (rank, size) = (self.rank(), self.size());
         let (mut known, mut message) = (first, Vec::new());
         if let Some(known) = known.as_ref().filter(|_| size > 1) {
@@ -99,8 +99,8 @@ impl dyn Team + '_ {
     }
 
     /// Waits until all are here.
-    pub(crate) fn meet(&self) {
-        self.joined((), |(), ()| ());
+    pub(crate) fn barrier(&self) {
+        self.reduce((), |(), ()| ());
     }
 }
 
@@ -120,7 +120,7 @@ mod tests {
 
     use super::*;
     use crate::Recipe;
-    use crate::blocks::{Cutting, Job, Pieces, Plan, merge, run_all, run_missing};
+    use crate::outofcore::{Cutting, Job, Pieces, Plan, merge, run_all, run_missing};
     use crate::progress::Monitor;
     use crate::{GrayRange, Weighting};
 
@@ -169,13 +169,13 @@ mod tests {
                 for member in team(size) {
                     scope.spawn(move || {
                         let team: &dyn Team = &member;
-                        let all = team.joined(vec![team.rank()], Extend::extend);
+                        let all = team.reduce(vec![team.rank()], Extend::extend);
                         let mut sorted = all.clone();
                         sorted.sort_unstable();
                         assert_eq!(sorted, (0..size).collect::<Vec<_>>());
-                        let told = team.told(team.is_first().then_some(all.clone()));
+                        let told = team.broadcast(team.is_first().then_some(all.clone()));
                         assert_eq!(told, all);
-                        team.meet();
+                        team.barrier();
                     });
                 }
             });

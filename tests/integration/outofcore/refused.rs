@@ -2,8 +2,8 @@
 
 use std::fs::File;
 
-use walpha::blocks::{BlocksError, Job, merge, run};
 use walpha::interpolate::Refit;
+use walpha::outofcore::{BlocksError, Job, merge, run};
 use walpha::pipeline::{AlphaRule, Choice, Goal};
 use walpha::shape::Engine;
 use walpha::shape::Torus;

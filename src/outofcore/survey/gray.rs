@@ -1,6 +1,6 @@
-use super::super::field::Field;
-use super::super::passes::Passes;
-use super::super::{BlocksError, Job};
+use crate::outofcore::field::Field;
+use crate::outofcore::passes::Passes;
+use crate::outofcore::{BlocksError, Job};
 use crate::volume::{GrayRange, Nan, VolumeError};
 
 /// Finds the values that become gray 0 and 255.
@@ -28,7 +28,7 @@ pub(super) fn gray_levels(
         },
         |of_tile| wider(&mut found, of_tile),
     )?;
-    let (low, high) = passes.team.joined(found, wider);
+    let (low, high) = passes.team.reduce(found, wider);
     if masks && low > high {
         return Err(VolumeError::NotFinite { value: f32::INFINITY, at: [0; 3] }.into());
     }

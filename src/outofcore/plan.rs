@@ -11,7 +11,7 @@ use super::file::read_file;
 use super::kept::Kept;
 use super::stamp::Stamp;
 use super::survey::{Survey, Surveyed, survey};
-use super::{Alone, BlocksError, Field, Job, Part, Team};
+use super::{Alone, BlocksError, Field, Job, SampleBox, Team};
 use crate::export::Target;
 use crate::points::{PointsError, Shares};
 use crate::shape::Alpha;
@@ -66,7 +66,7 @@ pub struct Plan {
 #[non_exhaustive]
 pub struct BlockPlan {
     /// Its samples.
-    pub part: Part,
+    pub part: SampleBox,
     /// Its points.
     pub points: u64,
     /// The points around it that it may need, counted by bricks.
@@ -121,11 +121,11 @@ impl Plan {
         } else {
             None
         };
-        Self::told(plan, folder, team)
+        Self::broadcast(plan, folder, team)
     }
 
     /// Gives to all what the first process has.
-    pub(super) fn told(
+    pub(super) fn broadcast(
         first: Option<Self>,
         folder: &Path,
         team: &dyn Team,
@@ -134,7 +134,7 @@ impl Plan {
             return Ok(first.expect("the first process has it"));
         }
         let text = first.map(|plan| plan.text());
-        Self::of_text(&team.told(text), folder)
+        Self::of_text(&team.broadcast(text), folder)
     }
 
     /// Cuts a surveyed volume, and writes what the plan keeps.
@@ -168,11 +168,13 @@ impl Plan {
         let margin = plan.margin()?;
         let bricks = margin.map(|samples| samples.div_ceil(side));
         let cut = boxes.planned(cutting, bricks, tile, processes)?;
-        let of_bricks = |(part, halo): (Part, u64)| {
+        let of_bricks = |(part, halo): (SampleBox, u64)| {
             let points = boxes.points(&part);
-            let whole = Part::whole(field.dims);
-            let part =
-                Part { first: part.first.map(|i| i * side), size: part.size.map(|n| n * side) };
+            let whole = SampleBox::whole(field.dims);
+            let part = SampleBox {
+                first: part.first.map(|i| i * side),
+                size: part.size.map(|n| n * side),
+            };
             let part = part.common(&whole);
             let read = Self::read_around(&part, margin, field.dims);
             let input = field.seen.digest(&read);
@@ -190,7 +192,7 @@ impl Plan {
 
     /// The samples that are read for a part of which the points within a margin are looked at: differences
     /// take one sample more.
-    pub(super) fn read_around(part: &Part, margin: [usize; 3], dims: [usize; 3]) -> Part {
+    pub(super) fn read_around(part: &SampleBox, margin: [usize; 3], dims: [usize; 3]) -> SampleBox {
         part.grown(margin, dims).grown([1; 3], dims)
     }
 
@@ -251,7 +253,7 @@ impl Plan {
     /// Whether its blocks are in the volume.
     fn fits(&self) -> bool {
         let dims = self.job.dims.xyz();
-        let is_inside = |BlockPlan { part: Part { first, size }, .. }: &BlockPlan| {
+        let is_inside = |BlockPlan { part: SampleBox { first, size }, .. }: &BlockPlan| {
             (0..3).all(|k| {
                 size[k] > 0 && first[k].checked_add(size[k]).is_some_and(|end| end <= dims[k])
             })

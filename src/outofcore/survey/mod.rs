@@ -15,7 +15,7 @@ use super::field::{Field, Truncated};
 use super::kept::Kept;
 use super::passes::Passes;
 use super::seen::Seen;
-use super::{BlocksError, Job, Part, Team};
+use super::{BlocksError, Job, SampleBox, Team};
 use crate::haar::{Decomposition, Truncation};
 use crate::points::{Differences, PointsError};
 use crate::select::Cut;
@@ -67,7 +67,7 @@ pub(super) fn survey(
     team: &dyn Team,
     monitor: &Monitor,
 ) -> Result<Surveyed, BlocksError> {
-    let tiles = Part::whole(field.dims).tiles(field.tile());
+    let tiles = SampleBox::whole(field.dims).tiles(field.tile());
     let mut passes = Passes::new(team, &tiles, monitor);
     gray_levels(job, field, &mut passes)?;
     let (truncation, mut truncated, kept) = truncated(job, field, folder, &mut passes)?;
@@ -107,7 +107,7 @@ fn all_saw(seen: &mut Seen, job: &Job, team: &dyn Team) -> Result<(), BlocksErro
     if team.size() == 1 {
         return Ok(());
     }
-    let (all, same) = team.joined((seen.told(), true), |(all, same), (others, too)| {
+    let (all, same) = team.reduce((seen.told(), true), |(all, same), (others, too)| {
         *same &= too & Seen::join(all, &others);
     });
     if !same {

@@ -10,7 +10,7 @@
 //! Processes that can send each other messages share the survey, the blocks and the writing of pieces as a [`Team`].
 //!
 //! ```
-//! use walpha::blocks::{Cutting, Job, Plan, merge, run};
+//! use walpha::outofcore::{Cutting, Job, Plan, merge, run};
 //! use walpha::Recipe;
 //!
 //! let folder = tempfile::tempdir()?;
@@ -34,13 +34,13 @@ mod file;
 mod job;
 mod kept;
 mod merge;
-mod part;
 mod passes;
 mod pieces;
 mod plan;
 mod price;
 mod rows;
 mod run;
+mod sample_box;
 mod seen;
 mod stamp;
 mod survey;
@@ -53,12 +53,12 @@ pub use error::BlocksError;
 use field::Field;
 pub use job::Job;
 pub use merge::{Merged, merge, merge_monitored};
-pub use part::Part;
 pub use pieces::Pieces;
 pub use plan::{BlockPlan, Cutting, Plan};
 pub use price::{Price, price};
 use run::Facts;
 pub use run::run;
+pub use sample_box::SampleBox;
 pub use survey::Survey;
 pub use team::{Alone, Team};
 pub use turn::{run_all, run_missing};

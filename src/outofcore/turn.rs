@@ -38,8 +38,8 @@ impl Plan {
             plan.job == job && plan.cutting == cutting && plan.stamp == Stamp::of(&job)
         };
         let there = team.is_first().then(|| Self::open(folder).ok().filter(is_same));
-        if team.told(there.as_ref().map(Option::is_some)) {
-            Self::told(there.flatten(), folder, team)
+        if team.broadcast(there.as_ref().map(Option::is_some)) {
+            Self::broadcast(there.flatten(), folder, team)
         } else {
             Self::make_with(job, cutting, folder, team, monitor)
         }
@@ -106,10 +106,10 @@ pub fn run_all(plan: &Plan, blocks: &[usize], monitor: &Monitor) -> Result<(), B
 /// As [`run_all`]. The others of the team would wait for a process that ends with an error.
 pub fn run_missing(plan: &Plan, team: &dyn Team, monitor: &Monitor) -> Result<(), BlocksError> {
     let missing = if team.is_first() { Some(plan.missing()?) } else { None };
-    let missing = team.told(missing);
+    let missing = team.broadcast(missing);
     let size = |block: usize| plan.blocks[block].points + plan.blocks[block].halo;
     run_all(plan, &shared(missing, size, team.size())[team.rank()], monitor)?;
-    team.meet();
+    team.barrier();
     Ok(())
 }
 

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use walpha::blocks::{BlocksError, Job, Plan, merge, run, whole};
 use walpha::export::{ExportOptions, Format};
+use walpha::outofcore::{BlocksError, Job, Plan, merge, run, whole};
 #[cfg(feature = "zarr")]
 use walpha::volume::Source;
 use walpha::volume::{ReadOptions, open};
@@ -226,7 +226,7 @@ fn work_goes_on_where_an_input_was_touched_and_anew_where_it_changed() {
     fs::create_dir(&work).unwrap();
     written(&input, |_| {});
     let job = Job::new(input.to_str().unwrap(), walpha::Recipe::new()).unwrap();
-    let cutting = walpha::blocks::Cutting::default().blocks(4);
+    let cutting = walpha::outofcore::Cutting::default().blocks(4);
     let plan = Plan::resume(job.clone(), cutting, &work).unwrap();
     run(&plan, 0).unwrap();
     let touch = |seconds| {

@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 
 /// A box of samples of a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Part {
+pub struct SampleBox {
     /// Its first sample along x, y and z.
     pub first: [usize; 3],
     /// How many it has along x, y and z.
     pub size: [usize; 3],
 }
 
-impl Part {
+impl SampleBox {
     /// All of a grid.
     pub(super) fn whole(dims: [usize; 3]) -> Self {
         Self { first: [0; 3], size: dims }
@@ -86,13 +86,13 @@ mod tests {
     #[test]
     fn tiles_cover_a_box_once() {
         let dims = [50, 20, 33];
-        let part = Part { first: [7, 0, 16], size: [40, 20, 17] };
+        let part = SampleBox { first: [7, 0, 16], size: [40, 20, 17] };
         let tiles = part.tiles([16, 32, 8]);
-        assert_eq!(tiles.iter().map(Part::samples).sum::<usize>(), part.samples());
+        assert_eq!(tiles.iter().map(SampleBox::samples).sum::<usize>(), part.samples());
         assert!(tiles.iter().all(|tile| tile.common(&part) == *tile && tile.samples() > 0));
         let around = part.grown([1, 1, 1], dims).aligned(8, dims);
-        assert_eq!(around, Part { first: [0, 0, 8], size: [48, 20, 25] });
+        assert_eq!(around, SampleBox { first: [0, 0, 8], size: [48, 20, 25] });
         assert!(part.holds([46, 19, 32]) && !part.holds([47, 19, 32]));
-        assert_eq!(part.common(&Part { first: [47, 0, 0], size: [3, 3, 3] }).samples(), 0);
+        assert_eq!(part.common(&SampleBox { first: [47, 0, 0], size: [3, 3, 3] }).samples(), 0);
     }
 }

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
-use super::Part;
+use super::SampleBox;
 use super::digest::{Digest, Hasher};
 
 /// Digests of the bricks of a box: 8 bytes for each, of 8³ or 16³ samples.
@@ -13,7 +13,7 @@ pub(super) struct Seen {
     dims: [usize; 3],
     side: usize,
     /// In bricks.
-    part: Part,
+    part: SampleBox,
     /// 0 where nothing was read yet.
     bricks: Vec<AtomicU64>,
     /// Whether a brick was not what it had been.
@@ -22,16 +22,16 @@ pub(super) struct Seen {
 
 impl Seen {
     /// Nothing yet of a box of samples of a volume.
-    pub(super) fn none_of(part: &Part, side: usize, dims: [usize; 3]) -> Self {
+    pub(super) fn none_of(part: &SampleBox, side: usize, dims: [usize; 3]) -> Self {
         let part = Self::around(part, side, dims);
         let bricks = (0..part.samples()).map(|_| AtomicU64::new(0)).collect();
         Self { dims, side, part, bricks, differs: AtomicBool::new(false) }
     }
 
     /// The bricks that have samples of a box.
-    fn around(part: &Part, side: usize, dims: [usize; 3]) -> Part {
-        let Part { first, size } = part.aligned(side, dims);
-        Part { first: first.map(|i| i / side), size: size.map(|n| n.div_ceil(side)) }
+    fn around(part: &SampleBox, side: usize, dims: [usize; 3]) -> SampleBox {
+        let SampleBox { first, size } = part.aligned(side, dims);
+        SampleBox { first: first.map(|i| i / side), size: size.map(|n| n.div_ceil(side)) }
     }
 
     fn index(&self, [x, y, z]: [usize; 3]) -> usize {
@@ -41,9 +41,9 @@ impl Seen {
 
     /// Notes the samples of a box; says whether all bricks, those of earlier reads too, are what they were.
     /// Bricks that are not whole in the box, or beyond that of this, are left out.
-    pub(super) fn note(&self, part: &Part, samples: &[f32]) -> bool {
+    pub(super) fn note(&self, part: &SampleBox, samples: &[f32]) -> bool {
         let bricks = Self::around(part, self.side, self.dims).common(&self.part);
-        let Part { first, size: [nx, ny, _] } = bricks;
+        let SampleBox { first, size: [nx, ny, _] } = bricks;
         (0..bricks.samples()).into_par_iter().for_each(|i| {
             let at = [i % nx, i / nx % ny, i / (nx * ny)];
             let at = [0, 1, 2].map(|k| first[k] + at[k]);
@@ -60,9 +60,9 @@ impl Seen {
     }
 
     /// What is kept of a brick; `None` where the box has not all of it.
-    fn of_brick(&self, at: [usize; 3], part: &Part, samples: &[f32]) -> Option<u64> {
-        let whole = Part { first: at.map(|i| i * self.side), size: [self.side; 3] };
-        let whole = whole.common(&Part::whole(self.dims));
+    fn of_brick(&self, at: [usize; 3], part: &SampleBox, samples: &[f32]) -> Option<u64> {
+        let whole = SampleBox { first: at.map(|i| i * self.side), size: [self.side; 3] };
+        let whole = whole.common(&SampleBox::whole(self.dims));
         if whole.common(part) != whole {
             return None;
         }
@@ -81,7 +81,7 @@ impl Seen {
     }
 
     /// The digest of the bricks that have samples of a box, in their order.
-    pub(super) fn digest(&self, part: &Part) -> Digest {
+    pub(super) fn digest(&self, part: &SampleBox) -> Digest {
         let bricks = Self::around(part, self.side, self.dims).common(&self.part);
         let mut hasher = Hasher::default();
         for z in bricks.first[2]..bricks.first[2] + bricks.size[2] {
@@ -120,7 +120,7 @@ impl Seen {
 mod tests {
     use super::*;
 
-    fn samples(part: &Part, dims: [usize; 3]) -> Vec<f32> {
+    fn samples(part: &SampleBox, dims: [usize; 3]) -> Vec<f32> {
         let mut samples = Vec::new();
         for z in part.first[2]..part.first[2] + part.size[2] {
             for y in part.first[1]..part.first[1] + part.size[1] {
@@ -138,10 +138,10 @@ mod tests {
     #[test]
     fn bricks_are_known_again() {
         let dims = [21, 17, 30];
-        let whole = Part::whole(dims);
+        let whole = SampleBox::whole(dims);
         let planned = Seen::none_of(&whole, 8, dims);
         assert!(planned.note(&whole, &samples(&whole, dims)));
-        let block = Part { first: [9, 3, 8], size: [4, 9, 15] };
+        let block = SampleBox { first: [9, 3, 8], size: [4, 9, 15] };
         let around = block.aligned(8, dims);
         let again = Seen::none_of(&block, 8, dims);
         assert_ne!(again.digest(&block), planned.digest(&block), "nothing was read yet");
@@ -160,7 +160,7 @@ mod tests {
             planned.differs.store(false, Ordering::Relaxed);
         }
         // A part that has no brick as a whole says nothing.
-        let part = Part { first: [1, 0, 0], size: [7, 17, 30] };
+        let part = SampleBox { first: [1, 0, 0], size: [7, 17, 30] };
         assert!(planned.note(&part, &vec![0.0; part.samples()]));
     }
 

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use walpha_base::Monitor;
 
 use super::{Piece, Written};
-use crate::blocks::{BlocksError, Merged, Plan, Team};
 use crate::export::{Corners, Filled, Made, NewFolder, Parts, Target, write_grid, write_surface};
+use crate::outofcore::{BlocksError, Merged, Plan, Team};
 use crate::shape::{Complex, Surface};
 
 /// What is written.
@@ -46,7 +46,7 @@ impl Kind {
         let numbers = if let (1, Some(merged)) = (team.size(), merged) {
             &merged.numbers
         } else {
-            told = team.told(merged.map(|merged| merged.numbers.clone()));
+            told = team.broadcast(merged.map(|merged| merged.numbers.clone()));
             &told
         };
         let folder = Self::folder(path);
@@ -69,7 +69,7 @@ impl Kind {
         let filled: Result<Vec<_>, _> = own.into_par_iter().map(fill).collect();
         let (blocks, files): (Vec<usize>, Vec<Filled>) = filled?.into_iter().flatten().unzip();
         let mut written = Written { files, new };
-        let mut blocks = team.joined(blocks, Extend::extend);
+        let mut blocks = team.reduce(blocks, Extend::extend);
         blocks.sort_unstable();
         if let Some(index) = index {
             let names: Vec<String> =

@@ -1,8 +1,8 @@
-use super::super::field::{Field, Truncated};
-use super::super::passes::Passes;
-use super::super::{BlocksError, Job};
 use super::FEW;
 use crate::haar::Truncation;
+use crate::outofcore::field::{Field, Truncated};
+use crate::outofcore::passes::Passes;
+use crate::outofcore::{BlocksError, Job};
 use crate::select::{Counts, Search};
 
 /// Finds which coefficients of the non-standard decomposition stay, and the sums of bricks of the truncated
@@ -38,10 +38,10 @@ pub(super) fn truncate(
                 }
             },
         )?;
-        counts = passes.team.joined(counts, Counts::join);
+        counts = passes.team.reduce(counts, Counts::join);
         if is_first {
             let mine = std::mem::take(&mut sums);
-            sums = passes.team.joined(mine, |sums, others| either(sums, others));
+            sums = passes.team.reduce(mine, |sums, others| either(sums, others));
             field.bricks.coarse(&mut sums);
             is_first = false;
         }

@@ -14,7 +14,7 @@ use super::file::{digest_of, numbers, read_file};
 use super::passes::Passes;
 use super::seen::Seen;
 use super::survey::truncated;
-use super::{Alone, BlocksError, Part, Plan};
+use super::{Alone, BlocksError, Plan, SampleBox};
 use crate::export::Target;
 use crate::volume::{Dims, Dtype, RawLayout, ReadOptions, Source};
 
@@ -64,7 +64,7 @@ impl Plan {
     ///
     /// # Errors
     /// Its file is not there or does not verify. Of the samples in a file it is known when they were read.
-    pub(super) fn truncated(&self, part: &Part) -> Result<Truncated, BlocksError> {
+    pub(super) fn truncated(&self, part: &SampleBox) -> Result<Truncated, BlocksError> {
         if let Some(cut) = self.survey.cut {
             let path = self.folder.join(Self::SUMS);
             let damaged =
@@ -101,7 +101,7 @@ impl Plan {
         let options = ReadOptions::default().raw(RawLayout::new(dims, Dtype::F32));
         let source = Source::open(&path, &options)?;
         let dims = dims.xyz();
-        Ok((source, Seen::none_of(&Part::whole(dims), Field::bricks_of(dims).side(), dims)))
+        Ok((source, Seen::none_of(&SampleBox::whole(dims), Field::bricks_of(dims).side(), dims)))
     }
 
     /// Reads the files beside the plan, and looks whether they are what was written.
@@ -126,7 +126,7 @@ impl Plan {
         }
         let mut field = Field::open(&self.job, None)?;
         (field.range, field.least) = (self.survey.range, self.survey.least);
-        let tiles = Part::whole(field.dims).tiles(field.tile());
+        let tiles = SampleBox::whole(field.dims).tiles(field.tile());
         let silent = Monitor::silent();
         let mut passes = Passes::new(&Alone, &tiles, &silent);
         let (_, truncated, mut made) = truncated(&self.job, &field, &self.folder, &mut passes)?;

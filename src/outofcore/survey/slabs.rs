@@ -4,14 +4,14 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use super::super::digest::Hasher;
-use super::super::field::{Field, Truncated};
-use super::super::kept::Kept;
-use super::super::passes::Passes;
-use super::super::{BlocksError, Job, Part, Plan};
 use super::FEW;
 use crate::export::Target;
 use crate::haar::{Slabs, Truncation};
+use crate::outofcore::digest::Hasher;
+use crate::outofcore::field::{Field, Truncated};
+use crate::outofcore::kept::Kept;
+use crate::outofcore::passes::Passes;
+use crate::outofcore::{BlocksError, Job, Plan, SampleBox};
 use crate::select::{Counts, Cut, Search};
 
 /// Samples of a slab, about; it has at least a plane or a wall.
@@ -34,7 +34,7 @@ pub(super) fn truncate_to_file(
     } else {
         None
     };
-    let (truncation, kept) = passes.team.told(mine);
+    let (truncation, kept) = passes.team.broadcast(mine);
     let Some(kept) = kept else { return Ok((truncation, Truncated::Same, Vec::new())) };
     let (source, seen) = Plan::smoothed(folder, job.dims)?;
     Ok((truncation, Truncated::File(source, seen), vec![kept]))
@@ -93,7 +93,7 @@ impl Work<'_> {
     fn smooth(
         &mut self,
         cut: Cut,
-        [planes, walls]: [&[Part]; 2],
+        [planes, walls]: [&[SampleBox]; 2],
         passes: &mut Passes<'_>,
     ) -> Result<Kept, BlocksError> {
         passes.serial(walls, |walls| {
@@ -131,17 +131,17 @@ impl Work<'_> {
     }
 
     /// Whole planes (axis 2) or whole walls (axis 1), of about [`SLAB`] samples each.
-    fn cut(&self, axis: usize) -> Vec<Part> {
+    fn cut(&self, axis: usize) -> Vec<SampleBox> {
         let mut size = self.dims;
         size[axis] = (SLAB * self.dims[axis] / self.dims.iter().product::<usize>()).max(1);
         size[axis] = size[axis].min(self.dims[axis]);
-        Part::whole(self.dims).tiles(size)
+        SampleBox::whole(self.dims).tiles(size)
     }
 
     /// Coefficients of a part with their indices in the volume.
     fn indexed<'v>(
         &self,
-        part: &Part,
+        part: &SampleBox,
         values: &'v [f64],
     ) -> impl Iterator<Item = (f64, u64)> + use<'v> {
         let ([nx, ny, _], part) = (self.dims, *part);
@@ -154,14 +154,14 @@ impl Work<'_> {
     }
 
     /// Reads a part that has all samples along x.
-    fn read(&self, part: &Part) -> Result<Vec<f64>, BlocksError> {
+    fn read(&self, part: &SampleBox) -> Result<Vec<f64>, BlocksError> {
         let mut bytes = vec![0; 8 * part.samples()];
         self.each_run(part, |mut file, run| file.read_exact(&mut bytes[run]))?;
         let (numbers, _) = bytes.as_chunks::<8>();
         Ok(numbers.iter().map(|&number| f64::from_le_bytes(number)).collect())
     }
 
-    fn write(&self, part: &Part, values: &[f64]) -> Result<(), BlocksError> {
+    fn write(&self, part: &SampleBox, values: &[f64]) -> Result<(), BlocksError> {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         self.each_run(part, |mut file, run| file.write_all(&bytes[run]))
     }
@@ -169,7 +169,7 @@ impl Work<'_> {
     /// Visits the bytes of a part that follow each other in the file, which is at them then.
     fn each_run(
         &self,
-        part: &Part,
+        part: &SampleBox,
         mut work: impl FnMut(&File, std::ops::Range<usize>) -> io::Result<()>,
     ) -> Result<(), BlocksError> {
         let [nx, ny, _] = self.dims;

@@ -3,20 +3,20 @@
 use rayon::prelude::*;
 use walpha_base::Monitor;
 
-use super::{BlocksError, Part, Team};
+use super::{BlocksError, SampleBox, Team};
 
 /// Passes over all tiles.
 pub(super) struct Passes<'a> {
     pub team: &'a dyn Team,
     monitor: &'a Monitor,
     /// Those of this process.
-    tiles: Vec<Part>,
+    tiles: Vec<SampleBox>,
     done: u64,
 }
 
 impl<'a> Passes<'a> {
     /// Those of a process of a team, none of them done.
-    pub(super) fn new(team: &'a dyn Team, tiles: &[Part], monitor: &'a Monitor) -> Self {
+    pub(super) fn new(team: &'a dyn Team, tiles: &[SampleBox], monitor: &'a Monitor) -> Self {
         let tiles = team.own(tiles.len()).map(|tile| tiles[tile]).collect();
         Self { team, monitor, tiles, done: 0 }
     }
@@ -27,7 +27,7 @@ impl<'a> Passes<'a> {
     /// Works on each tile of this process, several at a time, and joins what they give in their order.
     pub(super) fn each<T: Send>(
         &mut self,
-        work: impl Fn(&Part) -> Result<T, BlocksError> + Sync,
+        work: impl Fn(&SampleBox) -> Result<T, BlocksError> + Sync,
         mut join: impl FnMut(T),
     ) -> Result<(), BlocksError> {
         let all = self.tiles.len() as u64;
@@ -46,8 +46,8 @@ impl<'a> Passes<'a> {
     /// Works on pieces of the volume one after the other, in this process alone.
     pub(super) fn serial(
         &mut self,
-        pieces: &[Part],
-        mut work: impl FnMut(&Part) -> Result<(), BlocksError>,
+        pieces: &[SampleBox],
+        mut work: impl FnMut(&SampleBox) -> Result<(), BlocksError>,
     ) -> Result<(), BlocksError> {
         let all = pieces.len() as u64;
         let total = Self::USUAL.max(self.done + 1) * all;

@@ -1,9 +1,9 @@
 use serde::{Deserialize, Serialize};
 
-use super::super::BlocksError;
-use super::super::field::{Field, Truncated};
-use super::super::passes::Passes;
 use super::Chosen;
+use crate::outofcore::BlocksError;
+use crate::outofcore::field::{Field, Truncated};
+use crate::outofcore::passes::Passes;
 use crate::points::Differences;
 
 /// What is known of the points together.
@@ -57,5 +57,5 @@ pub(super) fn count(
             }
         },
     )?;
-    Ok(passes.team.joined(all, Counted::join))
+    Ok(passes.team.reduce(all, Counted::join))
 }

@@ -7,7 +7,7 @@ mod refused;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use walpha::blocks::{Cutting, Job, Merged, Plan, merge, run, whole};
+use walpha::outofcore::{Cutting, Job, Merged, Plan, merge, run, whole};
 use walpha::pipeline::{AlphaRule, Choice, Model};
 use walpha::shape::{Component, Engine};
 use walpha::volume::open;

@@ -14,7 +14,7 @@ use zarrs::filesystem::FilesystemStore;
 use zarrs::group::GroupBuilder;
 
 use super::Piece;
-use crate::blocks::{BlocksError, Merged, Plan};
+use crate::outofcore::{BlocksError, Merged, Plan};
 use crate::shape::Simplices;
 
 /// Rows of a chunk.

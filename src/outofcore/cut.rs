@@ -2,7 +2,7 @@
 
 use walpha_base::memory;
 
-use super::{Cutting, Part};
+use super::{Cutting, SampleBox};
 use crate::shape::{AT_WORK, PlanError, ShapeError};
 
 /// Bytes of memory that blocks keep to where nothing is said.
@@ -20,13 +20,13 @@ pub(super) struct Boxes<'a> {
 
 impl Boxes<'_> {
     /// The points of a box.
-    pub(super) fn points(&self, part: &Part) -> u64 {
+    pub(super) fn points(&self, part: &SampleBox) -> u64 {
         let mut points = 0;
         self.rows(part, |_, row| points += row.iter().map(|&n| u64::from(n)).sum::<u64>());
         points
     }
 
-    fn rows(&self, part: &Part, mut visit: impl FnMut([usize; 2], &[u32])) {
+    fn rows(&self, part: &SampleBox, mut visit: impl FnMut([usize; 2], &[u32])) {
         let [cx, cy, _] = self.bricks;
         for z in part.first[2]..part.first[2] + part.size[2] {
             for y in part.first[1]..part.first[1] + part.size[1] {
@@ -38,8 +38,8 @@ impl Boxes<'_> {
 
     /// Cuts all bricks into so many boxes with about equally many points, each across its longest side, and
     /// fewer where a box is one brick. O(bricks log boxes).
-    fn cut(&self, blocks: usize) -> Vec<Part> {
-        let mut pending = vec![(Part::whole(self.bricks), blocks)];
+    fn cut(&self, blocks: usize) -> Vec<SampleBox> {
+        let mut pending = vec![(SampleBox::whole(self.bricks), blocks)];
         let mut cut = Vec::new();
         while let Some((part, blocks)) = pending.pop() {
             // Of equals the last, the slowest in memory.
@@ -79,9 +79,9 @@ impl Boxes<'_> {
         margin: [usize; 3],
         tile: u64,
         processes: usize,
-    ) -> Result<Vec<(Part, u64)>, ShapeError> {
-        let with_halo = |blocks: usize| -> Vec<(Part, u64)> {
-            let around = |part: &Part| self.points(&part.grown(margin, self.bricks));
+    ) -> Result<Vec<(SampleBox, u64)>, ShapeError> {
+        let with_halo = |blocks: usize| -> Vec<(SampleBox, u64)> {
+            let around = |part: &SampleBox| self.points(&part.grown(margin, self.bricks));
             self.cut(blocks).into_iter().map(|part| (part, around(&part))).collect()
         };
         if let Some(blocks) = cutting.blocks {
@@ -124,7 +124,7 @@ mod tests {
         for blocks in [1, 2, 5, 64, 1000] {
             let cut = boxes.cut(blocks);
             assert!(cut.len() <= blocks && (blocks > 64 || cut.len() * 2 > blocks), "{blocks}");
-            assert_eq!(cut.iter().map(Part::samples).sum::<usize>(), 140);
+            assert_eq!(cut.iter().map(SampleBox::samples).sum::<usize>(), 140);
             let points: u64 = cut.iter().map(|part| boxes.points(part)).sum();
             assert_eq!(points, counts.iter().map(|&n| u64::from(n)).sum::<u64>());
         }

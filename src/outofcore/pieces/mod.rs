@@ -94,7 +94,7 @@ impl Pieces {
     ) -> Result<(), BlocksError> {
         let Written { new, files } = self.fill(plan, merged, path, team, &Monitor::silent())?;
         // The first process has the file that names the others.
-        team.meet();
+        team.barrier();
         let put = || -> Result<(), BlocksError> {
             put_all(files)?;
             if let Some(new) = new {
@@ -103,11 +103,11 @@ impl Pieces {
             Ok(())
         };
         if team.is_first() {
-            team.meet();
+            team.barrier();
             put()
         } else {
             put()?;
-            team.meet();
+            team.barrier();
             Ok(())
         }
     }

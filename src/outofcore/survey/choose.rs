@@ -1,15 +1,15 @@
 use serde::{Deserialize, Serialize};
 
-use super::super::field::{Field, Sample, Truncated};
-use super::super::passes::Passes;
-use super::super::{BlocksError, Job};
 use super::FEW;
+use crate::outofcore::field::{Field, Sample, Truncated};
+use crate::outofcore::passes::Passes;
+use crate::outofcore::{BlocksError, Job};
 use crate::points::{Asked, PointsError, Selection, check_least};
 use crate::select::{Budget, Counts, Cut, Search};
 
 /// Which samples are points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(in super::super) struct Chosen {
+pub(in crate::outofcore) struct Chosen {
     rule: Rule,
     /// The least truncated gray level.
     gray_min: Option<f64>,
@@ -30,7 +30,7 @@ impl Chosen {
     }
 
     /// Whether a sample is a point.
-    pub(in super::super) fn is_point(&self, sample: &Sample) -> bool {
+    pub(in crate::outofcore) fn is_point(&self, sample: &Sample) -> bool {
         let difference = Self::masked(self.gray_min, sample);
         match self.rule {
             Rule::Largest(cut) => cut.keeps(difference, sample.voxel),
@@ -93,5 +93,5 @@ fn round(
         },
         |more| join(&mut all, more),
     )?;
-    Ok(passes.team.joined(all, join))
+    Ok(passes.team.reduce(all, join))
 }

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
-use walpha::blocks::{Cutting, Job, Plan};
+use walpha::outofcore::{Cutting, Job, Plan};
 use walpha::pipeline::Choice;
 use walpha::volume::{Nan, ReadOptions, open};
 use walpha::{

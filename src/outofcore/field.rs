@@ -4,7 +4,7 @@ use ndarray::Array3;
 use rayon::prelude::*;
 
 use super::seen::Seen;
-use super::{BlocksError, Job, Part};
+use super::{BlocksError, Job, SampleBox};
 use crate::haar::{Bricks, HaarError};
 use crate::points::difference;
 use crate::select::Cut;
@@ -64,7 +64,7 @@ pub(super) struct Sample {
 
 impl Field {
     /// Opens the input of a job, of which a part will be read, or all.
-    pub(super) fn open(job: &Job, part: Option<&Part>) -> Result<Self, BlocksError> {
+    pub(super) fn open(job: &Job, part: Option<&SampleBox>) -> Result<Self, BlocksError> {
         let source = Source::open(&job.input, &job.recipe.read)?;
         if source.dims() != job.dims {
             let what = format!("it has {} samples, not {}", source.dims(), job.dims);
@@ -72,7 +72,7 @@ impl Field {
         }
         let dims = source.dims().xyz();
         let (bricks, nan) = (Self::bricks_of(dims), job.recipe.read.nan);
-        let seen = Seen::none_of(part.unwrap_or(&Part::whole(dims)), bricks.side(), dims);
+        let seen = Seen::none_of(part.unwrap_or(&SampleBox::whole(dims)), bricks.side(), dims);
         let input = job.input.clone();
         let (range, least) = (GrayRange::IDENTITY, 0.0);
         Ok(Self { source, input, dims, bricks, nan, range, least, seen })
@@ -123,7 +123,7 @@ impl Field {
     }
 
     /// The values of a part, where NaN and infinities are values or [missing](Nan::Mask).
-    pub(super) fn values(&self, part: &Part) -> Result<Grays, BlocksError> {
+    pub(super) fn values(&self, part: &SampleBox) -> Result<Grays, BlocksError> {
         let mut values = self.source.read(part.first, part.size)?;
         if !self.seen.note(part, &values) {
             let what = "a part of it was read twice, and was not the same".to_owned();
@@ -153,7 +153,7 @@ impl Field {
     }
 
     /// The gray levels of a part.
-    pub(super) fn grays(&self, part: &Part) -> Result<Grays, BlocksError> {
+    pub(super) fn grays(&self, part: &SampleBox) -> Result<Grays, BlocksError> {
         let mut grays = self.values(part)?;
         if !self.range.is_identity() {
             let range = self.range;
@@ -163,7 +163,7 @@ impl Field {
     }
 
     /// Coefficients of a part of whole bricks, with the sum of each brick at its first place.
-    pub(super) fn coefficients(&self, part: &Part, grays: &[f32]) -> Vec<f64> {
+    pub(super) fn coefficients(&self, part: &SampleBox, grays: &[f32]) -> Vec<f64> {
         let mut values: Vec<f64> = grays.par_iter().map(|&v| f64::from(v)).collect();
         self.bricks.fine(&mut values, part.size);
         values
@@ -171,7 +171,11 @@ impl Field {
 
     /// Visits the places of a part of whole bricks: the place in the part, the index in the volume, and
     /// the number of the brick whose first place it is, if it is one.
-    pub(super) fn places(&self, part: &Part, mut visit: impl FnMut(usize, u64, Option<usize>)) {
+    pub(super) fn places(
+        &self,
+        part: &SampleBox,
+        mut visit: impl FnMut(usize, u64, Option<usize>),
+    ) {
         let side = self.bricks.side();
         let [cx, cy, _] = self.bricks.count();
         let mut place = 0;
@@ -192,7 +196,7 @@ impl Field {
     /// Truncated gray levels of a part of whole bricks.
     fn smoothed(
         &self,
-        part: &Part,
+        part: &SampleBox,
         grays: &[f32],
         truncated: &Truncated,
     ) -> Result<Volume, BlocksError> {
@@ -225,7 +229,7 @@ impl Field {
     /// Visits the samples of a part in order of their index. Bricks around it are computed, too.
     pub(super) fn samples(
         &self,
-        part: &Part,
+        part: &SampleBox,
         truncated: &Truncated,
         mut visit: impl FnMut(Sample),
     ) -> Result<(), BlocksError> {
