@@ -19,7 +19,7 @@ use crate::progress::Stage;
 use crate::volume::files_of;
 
 use super::args::{InputArgs, PipelineArgs, ShapeArgs};
-use super::block_facts::{CheckFacts, PlanFacts, PriceFacts, RunFacts};
+use super::block_summaries::{CheckSummary, PlanSummary, PriceSummary, RunSummary};
 use super::output::tell;
 use super::progress::Progress;
 use super::report::Report;
@@ -120,12 +120,12 @@ impl CheckStep {
         let facts = match Plan::open(folder) {
             Ok(plan) => {
                 let checked = progress.stage(Stage::Shape, || plan.check())?;
-                CheckFacts::of(folder, Some(&plan), checked)
+                CheckSummary::of(folder, Some(&plan), checked)
             }
             Err(BlocksError::NoPlan { path, what }) => {
                 let mut checked = Checked::default();
                 checked.findings.push(Finding { path, what });
-                CheckFacts::of(folder, None, checked)
+                CheckSummary::of(folder, None, checked)
             }
             Err(error) => return Err(error.into()),
         };
@@ -144,7 +144,7 @@ impl PlanStep {
         let job = job(&self.pipeline.input, recipe)?;
         let Some(folder) = self.output else {
             progress.finish();
-            return tell(global, &PriceFacts(price(&job, cutting)?));
+            return tell(global, &PriceSummary(price(&job, cutting)?));
         };
         let new = folder::make(&folder, "with --output")?;
         let plan = progress
@@ -153,7 +153,7 @@ impl PlanStep {
             new.keep();
         }
         let seconds = progress.total();
-        tell(global, &PlanFacts::of(&plan, seconds))
+        tell(global, &PlanSummary::of(&plan, seconds))
     }
 }
 
@@ -174,7 +174,7 @@ impl RunStep {
         })?;
         let seconds = progress.total();
         let folder = self.folder.display().to_string();
-        tell(global, &RunFacts { folder, blocks, seconds })
+        tell(global, &RunSummary { folder, blocks, seconds })
     }
 }
 

@@ -80,7 +80,7 @@ const MOST_LISTED: usize = 1000;
 
 /// What was found in a complex or filtration.
 #[derive(Serialize)]
-struct Facts<F, C> {
+struct CheckSummary<F, C> {
     schema_version: u32,
     input: String,
     /// In words: the complex of a file, or our own shape.
@@ -257,7 +257,7 @@ impl Check {
         let is_excused = |comparison: &Comparison| {
             comparison.is_equal() || self.ties == Ties::Any && certificate.verdict == Verdict::Valid
         };
-        let facts = Facts {
+        let facts = CheckSummary {
             schema_version: SCHEMA_VERSION,
             input: input.to_owned(),
             judged: words,
@@ -298,7 +298,7 @@ impl Check {
         progress.finish();
         let of_triangulation = certificate.triangulation.not_judged.iter().map(ToString::to_string);
         let of_values = certificate.not_judged.iter().map(ToString::to_string);
-        let facts = Facts {
+        let facts = CheckSummary {
             schema_version: SCHEMA_VERSION,
             input: input.to_owned(),
             judged,
@@ -332,7 +332,7 @@ fn by_definition(judged: &PlacedComplex) -> anyhow::Result<Comparison> {
     Ok(compare(judged, judged.with_complex(&made.complex))?)
 }
 
-impl<F: Serialize + Display, C: Serialize> Facts<F, C> {
+impl<F: Serialize + Display, C: Serialize> CheckSummary<F, C> {
     /// Prints them.
     fn tell(mut self, global: Global) -> anyhow::Result<ExitCode> {
         self.findings.truncate(MOST_LISTED);
@@ -341,7 +341,7 @@ impl<F: Serialize + Display, C: Serialize> Facts<F, C> {
     }
 }
 
-impl<F: Display, C> Display for Facts<F, C> {
+impl<F: Display, C> Display for CheckSummary<F, C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [cells, facets, edges, vertices] = self.simplices;
         writeln!(f, "judged    {}, over {} points", self.judged, self.points)?;

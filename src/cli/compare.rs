@@ -39,7 +39,7 @@ pub(super) struct Compare {
 }
 
 #[derive(Serialize)]
-struct Facts<C> {
+struct CompareSummary<C> {
     schema_version: u32,
     a: String,
     b: String,
@@ -76,12 +76,12 @@ impl Compare {
         comparison: impl Serialize + Display,
     ) -> anyhow::Result<ExitCode> {
         let [a, b] = [&self.a, &self.b].map(|path| path.display().to_string());
-        tell(global, &Facts { schema_version: SCHEMA_VERSION, a, b, equal, comparison })?;
+        tell(global, &CompareSummary { schema_version: SCHEMA_VERSION, a, b, equal, comparison })?;
         Ok(if equal { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
     }
 }
 
-impl<C: Display> Display for Facts<C> {
+impl<C: Display> Display for CompareSummary<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "A         {}\nB         {}", name(&self.a), name(&self.b))?;
         writeln!(f, "{}", self.comparison)?;

@@ -34,14 +34,14 @@ pub(super) struct Convert {
 }
 
 #[derive(Serialize)]
-struct Facts {
+struct ConvertSummary {
     input: String,
     dims: [usize; 3],
     file: String,
     seconds: f64,
 }
 
-impl std::fmt::Display for Facts {
+impl std::fmt::Display for ConvertSummary {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let [x, y, z] = self.dims;
         writeln!(f, "input     {}  {x}×{y}×{z} samples", name(&self.input))?;
@@ -74,6 +74,6 @@ impl Convert {
         })?;
         let seconds = progress.total();
         let (input, file) = (self.input.input.to_string(), self.output.display().to_string());
-        tell(global, &Facts { input, dims, file, seconds })
+        tell(global, &ConvertSummary { input, dims, file, seconds })
     }
 }

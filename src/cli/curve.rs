@@ -24,7 +24,7 @@ use super::said::{misused, refused};
 use super::{Global, folder};
 
 #[derive(Serialize)]
-struct Facts {
+struct CurveSummary {
     schema_version: u32,
     input: String,
     /// Squared, in the square of the unit.
@@ -78,7 +78,7 @@ pub(super) fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyho
         new.keep();
     }
     let seconds = progress.total();
-    let facts = Facts {
+    let facts = CurveSummary {
         schema_version: SCHEMA_VERSION,
         input: input.input.to_string(),
         alpha,
@@ -134,7 +134,7 @@ fn paths(base: &Path) -> anyhow::Result<(Option<NewFolder>, Vec<PathBuf>)> {
     Ok((new, EXTENSIONS.iter().map(named).collect()))
 }
 
-impl Display for Facts {
+impl Display for CurveSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let unit = self.unit.symbol();
         let input = name(&self.input);

@@ -49,7 +49,7 @@ pub(super) struct Filtration {
 }
 
 #[derive(Serialize)]
-struct Facts {
+struct FiltrationSummary {
     schema_version: u32,
     input: String,
     points: usize,
@@ -117,7 +117,7 @@ impl Filtration {
                 (target, Box::new(content) as Content<'_>)
             }))
         })?;
-        let mut facts = Facts::new(&input.input, &weighed, &ordered);
+        let mut facts = FiltrationSummary::new(&input.input, &weighed, &ordered);
         if global.json {
             facts.persistence = Some(progress.stage(Stage::Pairs, || Persistence::of(&ordered)));
         }
@@ -127,7 +127,7 @@ impl Filtration {
     }
 }
 
-impl Facts {
+impl FiltrationSummary {
     fn new(input: &str, weighed: &Weighed, ordered: &Ordered<'_>) -> Self {
         let whole = ordered.filtration().whole();
         let [vertices, edges, facets, cells] = [0, 1, 2, 3].map(|dimension| {
@@ -178,7 +178,7 @@ impl Display for Count {
     }
 }
 
-impl Display for Facts {
+impl Display for FiltrationSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "input     {}", name(&self.input))?;
         let Self { points, duplicates, hidden, .. } = self;

@@ -40,7 +40,7 @@ pub(super) struct Haar {
 }
 
 #[derive(Serialize)]
-struct Facts {
+struct HaarSummary {
     schema_version: u32,
     input: String,
     haar: HaarReport,
@@ -73,12 +73,16 @@ impl Haar {
         let haar = HaarReport::new(&truncation, &range);
         tell(
             global,
-            &Facts { schema_version: SCHEMA_VERSION, input: self.input.input.to_string(), haar },
+            &HaarSummary {
+                schema_version: SCHEMA_VERSION,
+                input: self.input.input.to_string(),
+                haar,
+            },
         )
     }
 }
 
-impl std::fmt::Display for Facts {
+impl std::fmt::Display for HaarSummary {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         writeln!(f, "{}", self.haar)
     }

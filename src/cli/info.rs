@@ -36,7 +36,7 @@ pub(super) struct Info {
 }
 
 #[derive(Serialize)]
-struct Facts {
+struct InfoSummary {
     schema_version: u32,
     input: String,
     #[serde(flatten)]
@@ -93,7 +93,7 @@ enum Content {
         cells: Vec<CellCount>,
         /// The cell in which they repeat; absent where the file states none.
         #[serde(skip_serializing_if = "Option::is_none")]
-        cell: Option<CellFacts>,
+        cell: Option<CellSummary>,
         /// Samples along x, y and z of their grid; null where the file states none.
         grid: Option<[usize; 3]>,
         coordinates: Coordinates,
@@ -106,7 +106,7 @@ enum Content {
 
 /// A cell in which points repeat.
 #[derive(Serialize)]
-struct CellFacts {
+struct CellSummary {
     vectors: [[f64; 3]; 3],
     repeats: [bool; 3],
     /// What --periodic takes; null where the cell is no box along the axes.
@@ -115,7 +115,7 @@ struct CellFacts {
     told: String,
 }
 
-impl From<Cell> for CellFacts {
+impl From<Cell> for CellSummary {
     fn from(cell: Cell) -> Self {
         let told = match cell.sides() {
             Some(sides) => {
@@ -136,7 +136,11 @@ impl Info {
         let content = progress.stage(Stage::Read, look)?;
         tell(
             global,
-            &Facts { schema_version: SCHEMA_VERSION, input: self.input.input.to_string(), content },
+            &InfoSummary {
+                schema_version: SCHEMA_VERSION,
+                input: self.input.input.to_string(),
+                content,
+            },
         )
     }
 
@@ -246,7 +250,7 @@ impl Seen {
     }
 }
 
-impl std::fmt::Display for Facts {
+impl std::fmt::Display for InfoSummary {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.content.fmt(f)
     }
@@ -379,7 +383,7 @@ impl std::fmt::Display for Content {
                 let has = |there: bool| if there { "yes" } else { "no" };
                 let squares = if *of_radii { ", squares of its radii" } else { "" };
                 writeln!(f, "weights   {}{squares}\nvalues    {}", has(*weights), has(*values))?;
-                if let Some(CellFacts { told, .. }) = cell {
+                if let Some(CellSummary { told, .. }) = cell {
                     writeln!(f, "cell      {told}")?;
                 }
                 if let Some([x, y, z]) = grid {

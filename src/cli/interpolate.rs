@@ -18,7 +18,7 @@ use walpha_base::number_or_null_or_name;
 use super::args::{OutputArgs, PipelineArgs, ShapeArgs};
 use super::formats::volume_output;
 use super::output::tell;
-use super::pipeline::VolumeFacts;
+use super::pipeline::VolumeSummary;
 use super::progress::Progress;
 use super::report::Report;
 use super::said::{misused, refused};
@@ -75,7 +75,7 @@ pub(super) struct Interpolate {
 }
 
 #[derive(Serialize)]
-struct Facts {
+struct InterpolateSummary {
     #[serde(flatten)]
     report: Report,
     interpolation: Interpolation,
@@ -147,7 +147,7 @@ impl Interpolate {
         let (weighed, source) =
             pipeline::points_and_volume(input, &recipe, Values::Gray, &mut progress)?;
         let original = source.as_ref();
-        let facts = original.map(VolumeFacts::of);
+        let facts = original.map(VolumeSummary::of);
         let mut report = Report::of_points(&input.input, &weighed, facts.as_ref());
         let grid = self.grid(original, &weighed)?;
         let written = original.map(|original| original.written).or(weighed.origin.range);
@@ -179,7 +179,10 @@ impl Interpolate {
         let grid = grid.dims().xyz();
         tell(
             global,
-            &Facts { report, interpolation: Interpolation { grid, on_shape, inside, filled } },
+            &InterpolateSummary {
+                report,
+                interpolation: Interpolation { grid, on_shape, inside, filled },
+            },
         )
     }
 
@@ -234,14 +237,14 @@ fn sample(shape: &AlphaShape, grid: &Grid, original: Option<&Source>) -> anyhow:
 }
 
 /// Where a volume goes.
-type Place = (&'static VolumeWriter, Target);
+type Output = (&'static VolumeWriter, Target);
 
-fn open(path: &Path) -> anyhow::Result<Place> {
+fn open(path: &Path) -> anyhow::Result<Output> {
     Ok((VolumeWriter::of(path)?, Target::open(path)?))
 }
 
 /// Writes volumes where they go, if there are both.
-fn write(volumes: [(Option<Place>, Option<&Volume>); 2]) -> Result<(), TargetError> {
+fn write(volumes: [(Option<Output>, Option<&Volume>); 2]) -> Result<(), TargetError> {
     write_all(volumes.into_iter().filter_map(|(place, volume)| {
         let ((format, target), volume) = (place?, volume?);
         let content = move |out: &mut dyn Write| format.write(volume, out);
@@ -249,7 +252,7 @@ fn write(volumes: [(Option<Place>, Option<&Volume>); 2]) -> Result<(), TargetErr
     }))
 }
 
-impl Display for Facts {
+impl Display for InterpolateSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Interpolation { grid: [x, y, z], on_shape, inside, filled } = &self.interpolation;
         write!(f, "{}", self.report)?;

@@ -1,7 +1,7 @@
 //! The command. It parses, calls the library, prints, and chooses an exit code.
 
 mod args;
-mod block_facts;
+mod block_summaries;
 mod blocks;
 mod check;
 mod compare;

@@ -48,7 +48,7 @@ pub use off::Off;
 pub use ply::Ply;
 pub use stl::Stl;
 pub use vtp::Vtp;
-pub(crate) use vtp::{Parts, write_surface};
+pub(crate) use vtp::{Membership, write_surface};
 pub use vtu::Vtu;
 pub(crate) use vtu::{Corners, Made, write_grid};
 pub use walpha_files::{

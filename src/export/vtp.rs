@@ -16,17 +16,17 @@ pub struct Vtp(pub ExportOptions);
 
 impl Exporter for Vtp {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let parts = Parts {
+        let membership = Membership {
             components: &shape.component_numbers(),
             sheets: shape.sheets().filter(|_| !self.0.solid),
         };
         let made = Made::of(shape, &self.0);
-        write_surface(&self.0.surface(shape), &Corners::of(shape), &parts, &made, out)
+        write_surface(&self.0.surface(shape), &Corners::of(shape), &membership, &made, out)
     }
 }
 
 /// What a surface is part of.
-pub(crate) struct Parts<'a> {
+pub(crate) struct Membership<'a> {
     /// The component of each point, by its number.
     pub components: &'a [u32],
     /// The sheets of its facets and edges.
@@ -37,7 +37,7 @@ pub(crate) struct Parts<'a> {
 pub(crate) fn write_surface(
     surface: &Surface,
     corners: &Corners<'_>,
-    parts: &Parts<'_>,
+    membership: &Membership<'_>,
     made: &Made<'_>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
@@ -66,7 +66,7 @@ pub(crate) fn write_surface(
     }
     corners.names(&mut file, surface.indices())?;
     write!(file.xml, "</PointData>\n<CellData>\n")?;
-    cell_data(&mut file, surface, parts)?;
+    cell_data(&mut file, surface, membership)?;
     write!(file.xml, "</CellData>\n<Points>\n")?;
     let positions = surface.positions(corners.positions).flatten();
     file.array("Float64", "Points", 3, bytes(positions.map(f64::to_le_bytes)))?;
@@ -82,7 +82,11 @@ pub(crate) fn write_surface(
 }
 
 /// Class, component and sheets of each cell.
-fn cell_data(file: &mut Appended, surface: &Surface, parts: &Parts<'_>) -> io::Result<()> {
+fn cell_data(
+    file: &mut Appended,
+    surface: &Surface,
+    membership: &Membership<'_>,
+) -> io::Result<()> {
     let vertices: Vec<u32> = surface.indices().collect();
     let facets = surface.regular.len() + surface.singular.len();
     // VTK counts cells in this order: vertices, lines, polygons.
@@ -94,9 +98,9 @@ fn cell_data(file: &mut Appended, surface: &Surface, parts: &Parts<'_>) -> io::R
     let firsts = (surface.points.iter().copied())
         .chain(surface.edges.iter().map(|edge| edge[0]))
         .chain(surface.facets().map(|facet| facet[0]));
-    let component = |v: u32| parts.components[vertices[v as usize] as usize].to_le_bytes();
+    let component = |v: u32| membership.components[vertices[v as usize] as usize].to_le_bytes();
     file.array("UInt32", "component", 1, bytes(firsts.map(component)))?;
-    if let Some(sheets) = parts.sheets {
+    if let Some(sheets) = membership.sheets {
         let none = surface.points.iter().map(|_| [Sheets::NONE; 2]);
         let edges = sheets.edges.iter().map(|&sheet| [sheet as i32, Sheets::NONE]);
         let sides: Vec<_> = none.chain(edges).chain(sheets.sides()).collect();

@@ -29,7 +29,7 @@ const CHUNK: usize = 256;
 pub struct Interpolant<'a> {
     positions: &'a [[f64; 3]],
     values: &'a [f64],
-    parts: Vec<Part>,
+    parts: Vec<Support>,
     bit_range: BitRange,
     /// Made when a single place is asked for; grids do without.
     tree: OnceLock<Tree>,
@@ -37,14 +37,14 @@ pub struct Interpolant<'a> {
 
 /// A simplex with a function on it: its vertices, as many as count.
 #[derive(Clone, Copy, Debug)]
-struct Part {
+struct Support {
     vertices: [u32; 4],
     count: u8,
 }
 
 /// Where a place lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place<'a> {
+pub struct Location<'a> {
     /// The simplex it belongs to: input indices of one to four vertices.
     pub simplex: &'a [u32],
     /// Its barycentric coordinates there, one for each vertex, then zeros.
@@ -100,10 +100,10 @@ impl<'a> Interpolant<'a> {
     }
 
     /// The simplex that a place belongs to, and its coordinates there.
-    pub fn locate(&self, place: [f64; 3]) -> Option<Place<'_>> {
+    pub fn locate(&self, place: [f64; 3]) -> Option<Location<'_>> {
         let part = self.part_at(place)?;
         let simplex = self.parts[part as usize].vertices();
-        Some(Place { simplex, coordinates: self.coordinates(part, place)? })
+        Some(Location { simplex, coordinates: self.coordinates(part, place)? })
     }
 
     /// The number of simplices with a function on them.
@@ -193,17 +193,17 @@ impl Pieces for Interpolant<'_> {
     }
 }
 
-impl Part {
+impl Support {
     fn vertices(&self) -> &[u32] {
         &self.vertices[..usize::from(self.count)]
     }
 }
 
 /// Adds the simplices of a class, in their order.
-fn add<const N: usize>(parts: &mut Vec<Part>, simplices: &Simplices<N>, class: Class) {
+fn add<const N: usize>(parts: &mut Vec<Support>, simplices: &Simplices<N>, class: Class) {
     parts.extend(simplices.of(class).map(|row| {
         let mut vertices = [row[0]; 4];
         vertices[..N].copy_from_slice(row);
-        Part { vertices, count: N as u8 }
+        Support { vertices, count: N as u8 }
     }));
 }

@@ -63,6 +63,6 @@ pub use error::InterpolateError;
 pub use exchange::{exchange, exchange_monitored};
 pub use fill::{fill, fill_monitored};
 pub use grid::Grid;
-pub use interpolant::{Interpolant, Place};
+pub use interpolant::{Interpolant, Location};
 pub use refit::{Fit, Refit, Refitted, refit, refit_monitored};
 pub use resample::Resampled;

@@ -66,7 +66,8 @@ impl<'a> Trial<'a> {
             return Ok(None);
         };
         let rows = hole.filling.iter().map(|cell| cell.corners);
-        let cells = Pieces::of(rows.filter(|row| row.iter().all(|&v| v >= Growing::FIRST)), self);
+        let cells =
+            LinearCells::of(rows.filter(|row| row.iter().all(|&v| v >= Growing::FIRST)), self);
         let mut loss = 0.0;
         for &sample in hole.star.iter().flat_map(|&cell| self.samples.of(cell)) {
             let Some((row, shares)) = cells.at(self.sampled.place(sample)) else {
@@ -82,7 +83,7 @@ impl<'a> Trial<'a> {
     pub(super) fn gain(&self, point: u32) -> Option<Gain> {
         let cell = self.sampled.owners()[self.sampled.voxels()[point as usize] as usize];
         let insertion = self.growing().insertion(self.screen, point, cell);
-        let cells = Pieces::of(insertion.cells.iter().copied(), self);
+        let cells = LinearCells::of(insertion.cells.iter().copied(), self);
         // Of the errors without the new value, e, and its shares φ: Σe², Σφe, Σφ².
         let (mut before, mut errors, mut products, mut squares) = (0.0, 0.0, 0.0, 0.0);
         for &sample in insertion.removed.iter().flat_map(|&cell| self.samples.of(cell)) {
@@ -126,18 +127,18 @@ impl<'a> Trial<'a> {
 }
 
 /// A few cells, each with the map from a place to its coordinates there.
-struct Pieces(Vec<Piece>);
+struct LinearCells(Vec<LinearCell>);
 
-struct Piece {
+struct LinearCell {
     row: [u32; 4],
     origin: [f64; 3],
     /// The gradients of the last three coordinates.
     gradients: [[f64; 3]; 3],
 }
 
-impl Pieces {
+impl LinearCells {
     fn of(rows: impl Iterator<Item = [u32; 4]>, trial: &Trial<'_>) -> Self {
-        Self(rows.filter_map(|row| Piece::of(row, trial.growing().positions())).collect())
+        Self(rows.filter_map(|row| LinearCell::of(row, trial.growing().positions())).collect())
     }
 
     /// The cell that a place is in, or nearest to being in, and its coordinates there. Rounding decides
@@ -145,12 +146,12 @@ impl Pieces {
     fn at(&self, place: [f64; 3]) -> Option<([u32; 4], [f64; 4])> {
         let mut best = None;
         let mut depth = f64::NEG_INFINITY;
-        for piece in &self.0 {
-            let shares = piece.shares(place);
+        for cell in &self.0 {
+            let shares = cell.shares(place);
             let least = shares.iter().copied().fold(f64::INFINITY, f64::min);
             if least > depth {
                 depth = least;
-                best = Some((piece.row, shares));
+                best = Some((cell.row, shares));
                 if least >= 0.0 {
                     break;
                 }
@@ -161,7 +162,7 @@ impl Pieces {
 
     /// The vertices, without one.
     fn vertices(&self, without: u32) -> Vec<u32> {
-        let all = self.0.iter().flat_map(|piece| piece.row);
+        let all = self.0.iter().flat_map(|cell| cell.row);
         let mut vertices: Vec<u32> = all.filter(|&v| v != without).collect();
         vertices.sort_unstable();
         vertices.dedup();
@@ -169,7 +170,7 @@ impl Pieces {
     }
 }
 
-impl Piece {
+impl LinearCell {
     /// `None` for a cell without volume, as there are among points on one sphere.
     fn of(row: [u32; 4], positions: &[[f64; 3]]) -> Option<Self> {
         let [a, b, c, d] = row.map(|v| positions[v as usize]);

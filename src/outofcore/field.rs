@@ -3,7 +3,7 @@
 use ndarray::Array3;
 use rayon::prelude::*;
 
-use super::seen::Seen;
+use super::read_digests::ReadDigests;
 use super::{BlocksError, Job, SampleBox};
 use crate::haar::{Bricks, HaarError};
 use crate::points::difference;
@@ -29,7 +29,7 @@ pub(super) struct Field {
     /// The least value, which stands in for missing ones.
     pub least: f32,
     /// What was read of it.
-    pub seen: Seen,
+    pub seen: ReadDigests,
 }
 
 /// What is known of the truncated volume as a whole.
@@ -41,7 +41,7 @@ pub(super) enum Truncated {
     /// truncated volume.
     Bricks { cut: Cut, sums: Vec<f64> },
     /// Of the standard decomposition: its samples, and what was read of them.
-    File(Source, Seen),
+    File(Source, ReadDigests),
 }
 
 /// Gray levels of a part, and which samples are missing.
@@ -72,7 +72,8 @@ impl Field {
         }
         let dims = source.dims().xyz();
         let (bricks, nan) = (Self::bricks_of(dims), job.recipe.read.nan);
-        let seen = Seen::none_of(part.unwrap_or(&SampleBox::whole(dims)), bricks.side(), dims);
+        let seen =
+            ReadDigests::none_of(part.unwrap_or(&SampleBox::whole(dims)), bricks.side(), dims);
         let input = job.input.clone();
         let (range, least) = (GrayRange::IDENTITY, 0.0);
         Ok(Self { source, input, dims, bricks, nan, range, least, seen })

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::digest::{Digest, Hasher};
-use super::{BlocksError, Facts, Plan};
+use super::{BlockSummary, BlocksError, Plan};
 use crate::export::Target;
 
 /// How a file of a block begins. The length of the header in 64 bits follows, and its digest.
@@ -86,7 +86,7 @@ struct Header {
     plan: Digest,
     /// The number of the block.
     block: usize,
-    facts: Facts,
+    facts: BlockSummary,
     arrays: Vec<Array>,
 }
 
@@ -116,7 +116,12 @@ impl Arrays {
     }
 
     /// Writes the file of a block, which appears when it is whole.
-    pub(super) fn write(self, plan: &Plan, block: usize, facts: Facts) -> Result<(), BlocksError> {
+    pub(super) fn write(
+        self,
+        plan: &Plan,
+        block: usize,
+        facts: BlockSummary,
+    ) -> Result<(), BlocksError> {
         let array = |(name, bytes): &(&str, Vec<u8>)| Array {
             name: (*name).into(),
             bytes: bytes.len() as u64,
@@ -140,7 +145,7 @@ impl Arrays {
 /// A finished block.
 pub(super) struct BlockFile {
     path: PathBuf,
-    pub facts: Facts,
+    pub facts: BlockSummary,
     /// Arrays, and where they begin.
     arrays: Vec<(Array, u64)>,
     /// Samples of the volume.
@@ -205,7 +210,7 @@ impl BlockFile {
     /// Whether the facts are those of the arrays, by their lengths. A block that was written is; what is wrong
     /// here nobody has to expect later.
     fn fits(&self, points: u64) -> bool {
-        let Facts { cells, facets, edges, vertices, components, sheets, .. } = &self.facts;
+        let BlockSummary { cells, facets, edges, vertices, components, sheets, .. } = &self.facts;
         let sum = |counts: &[usize; 3]| counts.iter().map(|&count| count as u128).sum::<u128>();
         let has = |name: &str, size: u128, count: u128| {
             let array = self.arrays.iter().find(|(known, _)| known.name == name);

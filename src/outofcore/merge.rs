@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use walpha_base::{Monitor, Sum, UnionFind};
 
 use super::file::BlockFile;
-use super::run::{BlockComponent, BlockSheet, Facts, Met, Weights};
+use super::run::{BlockComponent, BlockSheet, BlockSummary, Met, Weights};
 use super::{BlocksError, Plan};
 use crate::points::WeightSummary;
 use crate::shape::{
@@ -92,7 +92,7 @@ pub fn merge_monitored(plan: &Plan, monitor: &Monitor) -> Result<Merged, BlocksE
 /// The facts of all blocks, side by side.
 #[derive(Default)]
 struct Union {
-    facts: Vec<Facts>,
+    facts: Vec<BlockSummary>,
     /// The components of all blocks, and pairs that are one.
     components: u32,
     sheets: u32,
@@ -265,7 +265,7 @@ struct Totals {
 }
 
 impl Totals {
-    fn of(all: &[Facts]) -> Self {
+    fn of(all: &[BlockSummary]) -> Self {
         let mut totals = Self::default();
         let (mut min, mut max, mut sum) = (f64::INFINITY, f64::NEG_INFINITY, Sum::default());
         let add = |to: &mut ByClass<usize>, [interior, regular, singular]: [usize; 3]| {

@@ -6,9 +6,9 @@ use walpha_base::setters;
 
 use super::cut::{Boxes, MOST};
 use super::digest::Digest;
+use super::digested::DigestedFile;
 use super::field::Truncated;
 use super::file::read_file;
-use super::kept::Kept;
 use super::stamp::Stamp;
 use super::survey::{Survey, Surveyed, survey};
 use super::{Alone, BlocksError, Field, Job, SampleBox, Team};
@@ -52,7 +52,7 @@ pub struct Plan {
     /// The blocks.
     pub blocks: Vec<BlockPlan>,
     /// The files beside it.
-    pub(super) kept: Vec<Kept>,
+    pub(super) kept: Vec<DigestedFile>,
     /// How the files of the input looked.
     pub(super) stamp: Stamp,
     #[serde(skip)]
@@ -162,7 +162,7 @@ impl Plan {
             digest: Digest::default(),
         };
         if let Truncated::Bricks { sums, .. } = &truncated {
-            kept.push(Kept::write_sums(sums, folder)?);
+            kept.push(DigestedFile::write_sums(sums, folder)?);
         }
         plan.kept = kept;
         let margin = plan.margin()?;

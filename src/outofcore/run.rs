@@ -12,7 +12,7 @@ use crate::volume::GrayRange;
 
 /// The facts of a block: all that merging needs but for keys and rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Facts {
+pub(super) struct BlockSummary {
     pub points: u64,
     pub halo: u64,
     pub cells: usize,
@@ -206,7 +206,7 @@ fn write(plan: &Plan, block: usize, points: &Points, shape: BlockShape) -> Resul
         [Class::Interior, Class::Regular, Class::Singular].map(|class| counts[class])
     };
     let own = || points.own.iter().zip(&points.weights).filter(|(own, _)| **own).map(|(_, w)| *w);
-    let facts = Facts {
+    let facts = BlockSummary {
         points: own().count() as u64,
         halo: shape.halo,
         cells: complex.cells.len(),

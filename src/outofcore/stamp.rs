@@ -10,7 +10,7 @@ use super::Job;
 use crate::volume::files_of;
 
 /// How many files an input has, how large they are, and when one was written last. A hint: a file may be touched
-/// and stay what it was. What was read of it is known by its digests ([`Seen`](super::seen::Seen)).
+/// and stay what it was. What was read of it is known by its digests ([`ReadDigests`](super::read_digests::ReadDigests)).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Stamp {
     files: u64,

@@ -64,7 +64,7 @@ impl TryFrom<String> for AlphaRule {
 
 /// α, and where it comes from.
 #[derive(Clone, Copy, Debug, Serialize)]
-#[serde(into = "Facts")]
+#[serde(into = "ParameterFields")]
 #[non_exhaustive]
 pub struct Parameter {
     /// A squared length.
@@ -94,7 +94,7 @@ pub enum ParameterOrigin {
 
 /// α as a squared length and as a radius.
 #[derive(Serialize)]
-struct Facts {
+struct ParameterFields {
     squared: Alpha,
     #[serde(serialize_with = "number_or_null_or_name")]
     radius: Option<f64>,
@@ -175,7 +175,7 @@ impl Parameter {
     }
 }
 
-impl From<Parameter> for Facts {
+impl From<Parameter> for ParameterFields {
     fn from(Parameter { alpha, unit, origin }: Parameter) -> Self {
         Self { squared: alpha, radius: alpha.radius(), unit, origin }
     }

@@ -17,10 +17,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod destination;
 mod folder;
 mod inputs;
-mod part;
-mod place;
+mod partial;
 mod scratch;
 mod target;
 mod unfinished;

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use walpha_base::advice::Advice;
 use walpha_base::shown::shown;
 
+use crate::destination::{Claim, Destination, Key};
 use crate::folder::PartFolder;
 use crate::inputs::{self, Refused};
-use crate::part::{Part, Whole};
-use crate::place::{Claim, Key, Place};
+use crate::partial::{PartialFile, Whole};
 use crate::unfinished::gate;
 
 /// A file to be: opened before the long work, so that a bad place is known at once, and put under
@@ -31,7 +31,7 @@ pub struct Target {
 
 #[derive(Debug)]
 enum Sink {
-    Part(Box<Part>),
+    PartialFile(Box<PartialFile>),
     Device,
     Stdout,
 }
@@ -107,12 +107,12 @@ impl Target {
             walpha_base::standard_output::check()?;
             return Ok((Sink::Stdout, Some(Claim::of_stdout()?)));
         }
-        let place = Place::of(path)?;
+        let place = Destination::of(path)?;
         if place.is_stream() {
             return Ok((Sink::Device, None));
         }
         let claim = Claim::of(&place)?;
-        Ok((Sink::Part(Part::beside(place)?.into()), Some(claim)))
+        Ok((Sink::PartialFile(PartialFile::beside(place)?.into()), Some(claim)))
     }
 
     /// Refuses what [`open`](Self::open) would because it is read, or in a working folder; of folders, too.
@@ -151,7 +151,7 @@ impl Target {
     ) -> Result<Filled, TargetError> {
         let Self { path, sink, claim } = self;
         let (filled, left) = match sink {
-            Sink::Part(part) => (
+            Sink::PartialFile(part) => (
                 part.fill(content).map(|(whole, bytes)| (Some(whole), bytes)),
                 TargetError::NOTHING_LEFT,
             ),
@@ -244,7 +244,7 @@ pub struct FilledAll<'a> {
 pub fn fill_all<'a>(
     files: impl IntoIterator<Item = (Target, Content<'a>)>,
 ) -> Result<FilledAll<'a>, TargetError> {
-    let is_part = |(target, _): &(Target, Content<'_>)| matches!(target.sink, Sink::Part(_));
+    let is_part = |(target, _): &(Target, Content<'_>)| matches!(target.sink, Sink::PartialFile(_));
     let (files, streams): (Vec<_>, Vec<_>) = files.into_iter().partition(is_part);
     let filled = files.into_iter().map(|(target, content)| target.fill(content));
     Ok(FilledAll { files: filled.collect::<Result<_, _>>()?, streams })

@@ -1,4 +1,4 @@
-//! Parts of a volume, and coarser ones.
+//! BoxReader of a volume, and coarser ones.
 
 use std::num::NonZeroUsize;
 use std::ops::Range;

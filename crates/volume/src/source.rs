@@ -5,7 +5,7 @@ use std::path::Path;
 use walpha_base::advice::Setting;
 
 use super::read::CONVERT;
-use super::sample::PhantomParts;
+use super::sample::PhantomBoxes;
 use super::{Dims, Dtype, Frame, ReadOptions, Reason, Volume, VolumeError, open};
 
 /// A volume of which any box can be read without the rest.
@@ -23,7 +23,7 @@ pub struct Source {
     frame: Frame,
     dtype: Dtype,
     grain: [usize; 3],
-    parts: Box<dyn Parts>,
+    parts: Box<dyn BoxReader>,
     /// Whether samples are gray levels as they are.
     gray_levels: bool,
     /// Where the volume begins in what is read.
@@ -31,7 +31,7 @@ pub struct Source {
 }
 
 /// Where samples come from, box by box.
-pub(crate) trait Parts: Send + Sync {
+pub(crate) trait BoxReader: Send + Sync {
     /// The samples from `first` on, `size` along x, y and z, x fastest; NaN may be among them.
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError>;
 }
@@ -53,7 +53,7 @@ impl Source {
         frame: Frame,
         dtype: Dtype,
         grain: [usize; 3],
-        parts: Box<dyn Parts>,
+        parts: Box<dyn BoxReader>,
     ) -> Self {
         let gray_levels = dtype == Dtype::U8;
         Self { dims, frame, dtype, grain, parts, gray_levels, first: [0; 3] }
@@ -79,7 +79,7 @@ impl Source {
             return Err(VolumeError::Format { path: path.into(), reason });
         }
         let source = match name.strip_prefix("sample:phantom@").map(str::parse) {
-            Some(Ok(size)) => PhantomParts::source(size)?,
+            Some(Ok(size)) => PhantomBoxes::source(size)?,
             _ if name.starts_with("sample:") => {
                 Self::of_volume(open(path, &ReadOptions::default())?)
             }
@@ -143,7 +143,7 @@ impl Source {
     }
 }
 
-impl Parts for Volume {
+impl BoxReader for Volume {
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
         let [x, y, z] = [0, 1, 2].map(|k| first[k]..first[k] + size[k]);
         Ok(self.samples().slice(ndarray::s![z, y, x]).iter().copied().collect())

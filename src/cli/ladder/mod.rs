@@ -2,7 +2,7 @@
 
 mod detail;
 mod errors;
-mod facts;
+mod summary;
 
 use std::fmt::{Display, LowerExp};
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ use super::folder::Folder;
 use super::output::tell;
 use super::pipeline;
 use super::progress::Progress;
-use facts::{Facts, write_levels, write_voids};
+use summary::{LadderSummary, write_levels, write_voids};
 
 /// Compute shapes at many α from one triangulation, or at several levels of detail.
 ///
@@ -126,7 +126,7 @@ impl Ladder {
         let coordinates = weighed.origin.coordinates;
         let found = || Parameter::of_filtration(&filtration, coordinates.unit);
         let reference = weighed.parameter.unwrap_or_else(found);
-        let mut facts = Facts::new(&self.pipeline.input.input, &weighed, reference, domain);
+        let mut facts = LadderSummary::new(&self.pipeline.input.input, &weighed, reference, domain);
         let curve = progress.stage(Stage::Curve, || filtration.curve());
         let suggested = progress.stage(Stage::Curve, || filtration.suggest(&curve));
         let alphas = match &self.alphas {

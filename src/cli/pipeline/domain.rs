@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::pipeline::Weighed;
 use crate::{LengthUnit, Units, Volume};
 
-use super::VolumeFacts;
+use super::VolumeSummary;
 
 /// The volume that coverage is a share of.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -34,7 +34,7 @@ impl Display for Domain {
 }
 
 /// The domain of weighted points: that of the grid they come from, or their own box.
-pub(in crate::cli) fn domain(weighed: &Weighed, volume: Option<&VolumeFacts>) -> Domain {
+pub(in crate::cli) fn domain(weighed: &Weighed, volume: Option<&VolumeSummary>) -> Domain {
     let unit = weighed.origin.coordinates.unit;
     if let Some(volume) = volume {
         return Domain { volume: volume.extent, unit, of: "the box of the samples" };

@@ -21,7 +21,7 @@ pub(super) use input::{accept, read, with_file, with_points};
 
 /// What is reported about a volume.
 #[derive(Clone, Copy)]
-pub(super) struct VolumeFacts {
+pub(super) struct VolumeSummary {
     pub dims: [usize; 3],
     /// The volume of the samples' box.
     pub extent: f64,
@@ -29,7 +29,7 @@ pub(super) struct VolumeFacts {
     pub written: GrayRange,
 }
 
-impl VolumeFacts {
+impl VolumeSummary {
     pub(super) fn of(source: &Source) -> Self {
         let Source { volume, units, range, written, .. } = source;
         let extent = box_volume(volume, *units);
@@ -42,9 +42,9 @@ pub(super) fn weighted_points(
     args: &InputArgs,
     recipe: &Recipe,
     progress: &mut Progress,
-) -> anyhow::Result<(Weighed, Option<VolumeFacts>)> {
+) -> anyhow::Result<(Weighed, Option<VolumeSummary>)> {
     let (weighed, source) = points_and_volume(args, recipe, Values::Written, progress)?;
-    Ok((weighed, source.as_ref().map(VolumeFacts::of)))
+    Ok((weighed, source.as_ref().map(VolumeSummary::of)))
 }
 
 /// The same, and the volume they come from.
@@ -60,7 +60,7 @@ pub(super) fn points_and_volume(
 }
 
 /// What a file of a model keeps besides its points, but for their order.
-pub(super) fn model_facts(weighed: &Weighed, volume: Option<&VolumeFacts>) -> ModelFacts {
+pub(super) fn model_facts(weighed: &Weighed, volume: Option<&VolumeSummary>) -> ModelFacts {
     let origin = weighed.origin;
     ModelFacts {
         grid: origin.grid,

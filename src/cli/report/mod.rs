@@ -17,7 +17,7 @@ use crate::shape::{Cuts, Engine};
 use crate::{Coordinates, GrayRange};
 
 use super::output::name;
-use super::pipeline::VolumeFacts;
+use super::pipeline::VolumeSummary;
 use parts::{Ended, InputReport, PointsReport};
 pub(super) use parts::{Folded, HaarReport, WeightsReport};
 use shape::ShapeReport;
@@ -58,7 +58,7 @@ pub(super) struct Report {
 
 impl Report {
     /// What is known before there is a shape.
-    pub(super) fn of_points(name: &str, weighed: &Weighed, volume: Option<&VolumeFacts>) -> Self {
+    pub(super) fn of_points(name: &str, weighed: &Weighed, volume: Option<&VolumeSummary>) -> Self {
         let origin = weighed.origin;
         let truncation = origin.truncation.as_ref().zip(volume);
         Self {
@@ -67,7 +67,7 @@ impl Report {
                 name: name.to_owned(),
                 dims: volume.map(|v| v.dims),
                 gray_range: volume
-                    .map(|VolumeFacts { range: GrayRange { low, high }, .. }| [*low, *high]),
+                    .map(|VolumeSummary { range: GrayRange { low, high }, .. }| [*low, *high]),
             },
             coordinates: origin.coordinates,
             haar: truncation.map(|(truncation, v)| HaarReport::new(truncation, &v.range)),

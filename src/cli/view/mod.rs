@@ -1,8 +1,8 @@
 //! `walpha view`: a page to look at.
 
 mod detail;
-mod facts;
 mod isovalue;
+mod summary;
 
 use std::path::PathBuf;
 
@@ -21,14 +21,14 @@ use crate::{Frame, GrayRange, Recipe, Units};
 use super::Global;
 use super::args::{Alphas, FrozenPipelineArgs};
 use super::output::{remark, tell};
-use super::pipeline::{self, VolumeFacts};
+use super::pipeline::{self, VolumeSummary};
 use super::progress::Progress;
 use super::report::{SCHEMA_VERSION, WeightsReport};
 use super::said::misused;
 
 use detail::Detail;
-use facts::{DetailFacts, Facts};
 use isovalue::Isovalue;
+use summary::{DetailSummary, ViewSummary};
 
 /// Write an interactive page for the browser: self-contained, no network needed.
 ///
@@ -88,7 +88,7 @@ impl View {
             }
         }
         progress.stage(Stage::Write, || target.write(|out| out.write_all(page.html.as_bytes())))?;
-        let facts = Facts {
+        let facts = ViewSummary {
             schema_version: SCHEMA_VERSION,
             input: self.pipeline.input.input.to_string(),
             details: facts,
@@ -140,9 +140,9 @@ impl View {
         details: &[Detail],
         source: Option<&Source>,
         progress: &mut Progress,
-    ) -> anyhow::Result<(Page, Vec<DetailFacts>)> {
+    ) -> anyhow::Result<(Page, Vec<DetailSummary>)> {
         let last = details.last().expect("the level of the shape");
-        let facts = source.map(VolumeFacts::of);
+        let facts = source.map(VolumeSummary::of);
         let facts = facts.as_ref();
         let told = self.told(&last.weighed, facts, last.reference());
         let original = source.map(|Source { volume, units, range, .. }| Original {
@@ -194,14 +194,14 @@ impl View {
             original,
         };
         let page = progress.stage(Stage::Page, || Page::new(&subject))?;
-        Ok((page, rendered.iter().map(DetailFacts::of).collect()))
+        Ok((page, rendered.iter().map(DetailSummary::of).collect()))
     }
 
     /// What the page shows besides the levels' numbers.
     fn told(
         &self,
         weighed: &Weighed,
-        volume: Option<&VolumeFacts>,
+        volume: Option<&VolumeSummary>,
         reference: Parameter,
     ) -> Vec<(String, String)> {
         let mut told = vec![("input".to_owned(), self.pipeline.input.input.to_string())];

@@ -7,7 +7,9 @@ use rayon::prelude::*;
 use walpha_base::Monitor;
 
 use super::{Piece, Written};
-use crate::export::{Corners, Filled, Made, NewFolder, Parts, Target, write_grid, write_surface};
+use crate::export::{
+    Corners, Filled, Made, Membership, NewFolder, Target, write_grid, write_surface,
+};
 use crate::outofcore::{BlocksError, Merged, Plan, Team};
 use crate::shape::{Complex, Surface};
 
@@ -136,7 +138,7 @@ impl Piece {
             Kind::Grid => write_grid(&self.complex, &self.corners(), &corners, &made, out),
             Kind::Surface => {
                 let surface = Surface::of_complex(&self.complex);
-                let parts = Parts { components: &self.components, sheets: Some(&self.sheets) };
+                let parts = Membership { components: &self.components, sheets: Some(&self.sheets) };
                 write_surface(&surface, &corners, &parts, &made, out)
             }
         }

@@ -17,7 +17,7 @@ use super::Piece;
 use crate::outofcore::{BlocksError, Merged, Plan};
 use crate::shape::Simplices;
 
-/// Rows of a chunk.
+/// SimplexArrays of a chunk.
 const ROWS: u64 = 1 << 18;
 
 /// Fills a folder that is not there yet.
@@ -106,7 +106,7 @@ impl File<'_> {
     }
 
     /// An array of so many rows, each of one number or of `width`.
-    fn array<T: Kept>(
+    fn array<T: DigestedFile>(
         &self,
         name: &str,
         rows: usize,
@@ -126,22 +126,22 @@ impl File<'_> {
     }
 
     /// The arrays of simplices of a dimension.
-    fn rows<const N: usize>(&self, name: &str, rows: usize) -> Result<Rows, BlocksError> {
+    fn rows<const N: usize>(&self, name: &str, rows: usize) -> Result<SimplexArrays, BlocksError> {
         let corners = self.array(&format!("{name}/corners"), rows, Some(N), &0u64)?;
         let classes = self.array(&format!("{name}/classes"), rows, None, &0u8)?;
-        Ok(Rows { corners, classes })
+        Ok(SimplexArrays { corners, classes })
     }
 }
 
 /// A number that an array holds.
-trait Kept: Element + Copy {
+trait DigestedFile: Element + Copy {
     const TYPE: DataType;
     fn fill(self) -> FillValue;
 }
 
 macro_rules! kept {
     ($($number:ty: $data_type:ident),*) => {
-        $(impl Kept for $number {
+        $(impl DigestedFile for $number {
             const TYPE: DataType = DataType::$data_type;
             fn fill(self) -> FillValue {
                 FillValue::from(self)
@@ -156,12 +156,12 @@ kept!(u8: UInt8, u32: UInt32, u64: UInt64, f64: Float64);
 struct Growing {
     array: Array<FilesystemStore>,
     width: usize,
-    /// Rows that are there.
+    /// SimplexArrays that are there.
     rows: u64,
 }
 
 impl Growing {
-    fn push<T: Kept>(
+    fn push<T: DigestedFile>(
         &mut self,
         file: &File<'_>,
         numbers: impl AsRef<[T]>,
@@ -185,12 +185,12 @@ impl Growing {
 }
 
 /// Simplices of a dimension.
-struct Rows {
+struct SimplexArrays {
     corners: Growing,
     classes: Growing,
 }
 
-impl Rows {
+impl SimplexArrays {
     fn push<const N: usize>(
         &mut self,
         file: &File<'_>,

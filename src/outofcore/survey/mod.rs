@@ -11,10 +11,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use walpha_base::Monitor;
 
+use super::digested::DigestedFile;
 use super::field::{Field, Truncated};
-use super::kept::Kept;
 use super::passes::Passes;
-use super::seen::Seen;
+use super::read_digests::ReadDigests;
 use super::{BlocksError, Job, SampleBox, Team};
 use crate::haar::{Decomposition, Truncation};
 use crate::points::{Differences, PointsError};
@@ -54,7 +54,7 @@ pub(super) struct Surveyed {
     /// How many points each brick has.
     pub counts: Vec<u32>,
     /// Files that are written.
-    pub kept: Vec<Kept>,
+    pub kept: Vec<DigestedFile>,
 }
 
 /// Surveys the volume of a job: reads it five or six times. Each process of a team reads its share of the
@@ -92,7 +92,7 @@ pub(super) fn truncated(
     field: &Field,
     folder: &Path,
     passes: &mut Passes<'_>,
-) -> Result<(Truncation, Truncated, Vec<Kept>), BlocksError> {
+) -> Result<(Truncation, Truncated, Vec<DigestedFile>), BlocksError> {
     match job.recipe.haar.decomposition {
         Decomposition::NonStandard => {
             let (truncation, truncated) = truncate(job, field, passes)?;
@@ -103,12 +103,12 @@ pub(super) fn truncated(
 }
 
 /// Joins what the processes of a team read.
-fn all_saw(seen: &mut Seen, job: &Job, team: &dyn Team) -> Result<(), BlocksError> {
+fn all_saw(seen: &mut ReadDigests, job: &Job, team: &dyn Team) -> Result<(), BlocksError> {
     if team.size() == 1 {
         return Ok(());
     }
-    let (all, same) = team.reduce((seen.told(), true), |(all, same), (others, too)| {
-        *same &= too & Seen::join(all, &others);
+    let (all, same) = team.reduce((seen.bricks(), true), |(all, same), (others, too)| {
+        *same &= too & ReadDigests::join(all, &others);
     });
     if !same {
         let what = "processes read other samples at one place".to_owned();

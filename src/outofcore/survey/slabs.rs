@@ -8,8 +8,8 @@ use super::FEW;
 use crate::export::Target;
 use crate::haar::{Slabs, Truncation};
 use crate::outofcore::digest::Hasher;
+use crate::outofcore::digested::DigestedFile;
 use crate::outofcore::field::{Field, Truncated};
-use crate::outofcore::kept::Kept;
 use crate::outofcore::passes::Passes;
 use crate::outofcore::{BlocksError, Job, Plan, SampleBox};
 use crate::select::{Counts, Cut, Search};
@@ -25,7 +25,7 @@ pub(super) fn truncate_to_file(
     field: &Field,
     folder: &Path,
     passes: &mut Passes<'_>,
-) -> Result<(Truncation, Truncated, Vec<Kept>), BlocksError> {
+) -> Result<(Truncation, Truncated, Vec<DigestedFile>), BlocksError> {
     let mine = if passes.team.is_first() {
         let io = |source| BlocksError::Written { path: folder.join(Plan::SMOOTHED), source };
         let file = tempfile::tempfile_in(folder).map_err(io)?;
@@ -56,7 +56,7 @@ impl Work<'_> {
         job: &Job,
         field: &Field,
         passes: &mut Passes<'_>,
-    ) -> Result<(Truncation, Option<Kept>), BlocksError> {
+    ) -> Result<(Truncation, Option<DigestedFile>), BlocksError> {
         let (tolerance, total) = (job.recipe.haar.tolerance, job.dims.samples() as u64);
         tolerance.check()?;
         let [planes, walls] = [self.cut(2), self.cut(1)];
@@ -95,7 +95,7 @@ impl Work<'_> {
         cut: Cut,
         [planes, walls]: [&[SampleBox]; 2],
         passes: &mut Passes<'_>,
-    ) -> Result<Kept, BlocksError> {
+    ) -> Result<DigestedFile, BlocksError> {
         passes.serial(walls, |walls| {
             let mut values = self.read(walls)?;
             let kept: Vec<f64> = self
@@ -127,7 +127,7 @@ impl Work<'_> {
             return Err(error);
         }
         written?;
-        Ok(Kept { name: Plan::SMOOTHED.into(), bytes: length, digest: hasher.digest() })
+        Ok(DigestedFile { name: Plan::SMOOTHED.into(), bytes: length, digest: hasher.digest() })
     }
 
     /// Whole planes (axis 2) or whole walls (axis 1), of about [`SLAB`] samples each.

@@ -42,11 +42,11 @@ impl Columns {
     }
 }
 
-/// Rows that are looked at before anything is said about columns without names.
+/// TextRows that are looked at before anything is said about columns without names.
 const LOOKED_AT: usize = 100;
 
 /// Makes points of rows of text.
-pub(super) struct Rows<'a> {
+pub(super) struct TextRows<'a> {
     path: &'a Path,
     columns: Option<Columns>,
     /// The first lines, while their columns are not known.
@@ -59,7 +59,7 @@ pub(super) struct Rows<'a> {
     radii: Option<Vec<f64>>,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> TextRows<'a> {
     pub(super) fn new(path: &'a Path, columns: Option<Columns>) -> Self {
         let (waiting, points) = (Vec::new(), Points::default());
         Self { path, columns, waiting, decimal_comma: false, usual: None, points, radii: None }

@@ -1,7 +1,7 @@
 use std::io::BufReader;
 use std::path::Path;
 
-use super::rows::Rows;
+use super::rows::TextRows;
 use super::{Columns, Points, PointsError, format};
 use crate::volume::{Lines, Reason, io_error};
 
@@ -18,7 +18,7 @@ pub(crate) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, Poi
         .trim(csv::Trim::All)
         .from_path(path)
         .map_err(said)?;
-    let mut rows = Rows::new(path, columns.cloned());
+    let mut rows = TextRows::new(path, columns.cloned());
     rows.decimal_comma = delimiter == b';';
     let mut record = csv::StringRecord::new();
     let mut first = true;

@@ -2,7 +2,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use super::extended::Comment;
-use super::rows::Rows;
+use super::rows::TextRows;
 use super::{COLUMNS, Columns, Points, PointsError, format};
 use crate::points::ModelFacts;
 use crate::volume::{Lines, Reason, io_error};
@@ -42,7 +42,7 @@ pub(crate) fn read(
 ) -> Result<(Points, ModelFacts), PointsError> {
     let file = std::fs::File::open(path).map_err(io_error(path))?;
     let mut lines = Lines::new(BufReader::new(file));
-    let mut rows = Rows::new(path, columns.cloned());
+    let mut rows = TextRows::new(path, columns.cloned());
     rows.usual = lay.usual();
     let (mut number, mut first, mut claimed) = (0, true, None);
     while let Some(line) = lines.read_line().map_err(io_error(path))? {
@@ -127,7 +127,7 @@ fn atoms(
     let Comment { columns, cell } = Comment::read(path, &line)?;
     let facts = ModelFacts { cell, ..ModelFacts::default() };
     let mut points = Points::default();
-    let mut rows = columns.map(|columns| Rows::new(path, Some(columns)));
+    let mut rows = columns.map(|columns| TextRows::new(path, Some(columns)));
     let mut number = 2;
     while let Some(line) = lines.read_line().map_err(io_error(path))? {
         number += 1;

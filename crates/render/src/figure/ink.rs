@@ -19,7 +19,7 @@ impl Drawing {
         } else {
             (corner, size)
         };
-        let place = Place::new(self.bounds, corner, size, self.axes.is_some());
+        let place = PlaneToPanel::new(self.bounds, corner, size, self.axes.is_some());
         let [x, y] = corner.map(num);
         let [w, h] = size.map(num);
         let _ = writeln!(
@@ -40,7 +40,7 @@ impl Drawing {
         &self,
         svg: &mut String,
         [x_label, y_label]: &[String; 2],
-        place: &Place,
+        place: &PlaneToPanel,
         (corner, size): ([f64; 2], [f64; 2]),
         letters: f64,
     ) {
@@ -88,12 +88,12 @@ impl Drawing {
 const LETTERS: f64 = 0.034;
 
 /// From the plane to the panel.
-struct Place {
+struct PlaneToPanel {
     scale: [f64; 2],
     shift: [f64; 2],
 }
 
-impl Place {
+impl PlaneToPanel {
     fn new([low, high]: [[f64; 2]; 2], corner: [f64; 2], size: [f64; 2], stretch: bool) -> Self {
         let extent = [0, 1].map(|k| if high[k] > low[k] { high[k] - low[k] } else { 1.0 });
         let mut scale = [size[0] / extent[0], size[1] / extent[1]];
@@ -113,7 +113,7 @@ impl Place {
     }
 }
 
-fn write_shape(svg: &mut String, shape: &Shape, pen: &Pen, place: &Place, unit: f64) {
+fn write_shape(svg: &mut String, shape: &Shape, pen: &Pen, place: &PlaneToPanel, unit: f64) {
     let look = look(pen, unit);
     let _ = match shape {
         Shape::Path { start, steps, closed } => {
@@ -146,7 +146,7 @@ fn write_shape(svg: &mut String, shape: &Shape, pen: &Pen, place: &Place, unit: 
     };
 }
 
-fn write_step(path: &mut String, step: &Step, place: &Place) {
+fn write_step(path: &mut String, step: &Step, place: &PlaneToPanel) {
     let _ = match *step {
         Step::Line(to) => {
             let [x, y] = place.at(to).map(num);

@@ -7,7 +7,7 @@ use super::detached::{self, beside};
 use super::frames::Frames;
 use super::lines::Lines;
 use super::nrrd::numbered;
-use super::rows::Rows;
+use super::uncompressed::Uncompressed;
 use super::{format_error, io_error};
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume, VolumeError};
 use walpha_base::Monitor;
@@ -43,13 +43,15 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume lie, to be read part by part.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
     let header = Header::read(path, &mut lines)?;
     let described = header.described(path, frame)?;
     match header.names(path, &mut lines)? {
-        None => Rows::behind(path, described, lines.bytes(), Some(0)),
-        Some(names) => Rows::beside(path, described, &beside(path, &names), header.skip(path)?),
+        None => Uncompressed::behind(path, described, lines.bytes(), Some(0)),
+        Some(names) => {
+            Uncompressed::beside(path, described, &beside(path, &names), header.skip(path)?)
+        }
     }
 }
 

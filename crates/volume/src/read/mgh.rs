@@ -6,7 +6,7 @@ use std::path::Path;
 use super::described::{Described, Encoding, frame};
 use super::frames::Frames;
 use super::payload::{Length, Payload};
-use super::rows::Rows;
+use super::uncompressed::Uncompressed;
 use super::{format_error, io_error, payload_error, unpacked};
 use crate::{
     Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Space, Volume, VolumeError,
@@ -44,7 +44,7 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume that is not compressed lie, to be read part by part.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let mut file = std::fs::File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
     let described = described(path, &mut file, frame)?;
@@ -55,7 +55,7 @@ pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError>
         return Err(format_error(path, Reason::Length { claim, needed, found, bound: "" }));
     }
     let offset = HEADER as u64 + frames.index * described.each();
-    Ok(Rows::new(path, dims, frame, dtype, endian, offset))
+    Ok(Uncompressed::new(path, dims, frame, dtype, endian, offset))
 }
 
 /// Reads a header.

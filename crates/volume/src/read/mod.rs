@@ -25,7 +25,6 @@ pub(super) mod npz;
 pub(super) mod nrrd;
 mod payload;
 pub(super) mod raw;
-mod rows;
 pub(super) mod series;
 #[cfg(feature = "formats")]
 pub(super) mod slices;
@@ -33,6 +32,7 @@ pub(super) mod slices;
 mod text;
 #[cfg(feature = "formats")]
 pub(super) mod tiff;
+mod uncompressed;
 #[cfg(feature = "formats")]
 pub(super) mod vti;
 #[cfg(feature = "formats")]
@@ -61,8 +61,8 @@ pub use payload::Element;
 pub(crate) use payload::Length;
 use payload::PayloadError;
 pub use raw::RawLayout;
-pub(super) use rows::CONVERT;
 pub use series::Series;
+pub(super) use uncompressed::CONVERT;
 #[cfg(feature = "formats")]
 pub use vtk::VtkPoints;
 #[cfg(feature = "formats")]

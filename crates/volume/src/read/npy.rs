@@ -8,7 +8,7 @@ use walpha_base::npy::{Header, MAGIC, NpyError};
 
 use super::frames::Frames;
 use super::payload::{Element, Length, Payload};
-use super::rows::Rows;
+use super::uncompressed::Uncompressed;
 use super::{io_error, payload_error_of};
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
@@ -52,7 +52,7 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume lie, to be read part by part: in C order.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let said = |reason: Reason| VolumeError::Format { path: path.into(), reason };
     let length = std::fs::metadata(path).map_err(io_error(path))?.len();
     let file = NpyFile::open(path)?;
@@ -75,7 +75,7 @@ pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError>
     let offset = length - found + frames.index * each;
     // Booleans are bytes, and no gray levels.
     let dtype = if file.boolean { Dtype::I8 } else { file.dtype };
-    Ok(Rows::new(path, dims, Frame::VOXEL, dtype, file.endian, offset))
+    Ok(Uncompressed::new(path, dims, Frame::VOXEL, dtype, file.endian, offset))
 }
 
 /// The volume an array is.

@@ -9,7 +9,7 @@ use walpha_base::advice::{Setting, advice};
 use walpha_base::setters;
 
 use super::payload::{Length, Payload, PayloadError};
-use super::rows::Rows;
+use super::uncompressed::Uncompressed;
 use super::{io_error, payload_error};
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError, any_size};
 
@@ -63,7 +63,7 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume lie, to be read part by part.
-pub(crate) fn rows(path: &Path, layout: &RawLayout) -> Result<Rows, VolumeError> {
+pub(crate) fn rows(path: &Path, layout: &RawLayout) -> Result<Uncompressed, VolumeError> {
     let RawLayout { dims, dtype, endian, offset } = *layout;
     let length = std::fs::metadata(path).map_err(io_error(path))?.len();
     let needed = (dims.samples() * dtype.size()) as u64;
@@ -71,7 +71,7 @@ pub(crate) fn rows(path: &Path, layout: &RawLayout) -> Result<Rows, VolumeError>
         let reason = wrong_length(layout, needed, length);
         return Err(VolumeError::Format { path: path.into(), reason });
     }
-    Ok(Rows::new(path, dims, Frame::VOXEL, dtype, endian, offset))
+    Ok(Uncompressed::new(path, dims, Frame::VOXEL, dtype, endian, offset))
 }
 
 fn wrong_length(layout: &RawLayout, needed: u64, length: u64) -> Reason {

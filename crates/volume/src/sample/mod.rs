@@ -5,7 +5,7 @@ mod skull;
 
 use std::path::Path;
 
-pub(super) use phantom::PhantomParts;
+pub(super) use phantom::PhantomBoxes;
 pub use phantom::phantom;
 
 use walpha_base::Monitor;

@@ -2,7 +2,7 @@ use ndarray::Array3;
 use rayon::prelude::*;
 use walpha_base::memory::room;
 
-use crate::source::{Parts, Source};
+use crate::source::{BoxReader, Source};
 use crate::{Dims, Dtype, Frame, Volume, VolumeError};
 
 /// Half the head's box is 1; an edge fades over this much, one voxel of a 64³ phantom.
@@ -48,9 +48,9 @@ fn fill(n: usize, [x, y, z]: [usize; 3], samples: &mut [f32]) {
 }
 
 /// The phantom part by part, of any size.
-pub(in super::super) struct PhantomParts(usize);
+pub(in super::super) struct PhantomBoxes(usize);
 
-impl PhantomParts {
+impl PhantomBoxes {
     pub(crate) fn source(size: u64) -> Result<Source, VolumeError> {
         let dims = Dims::unbounded(size, size, size)?;
         let parts = Box::new(Self(dims.x()));
@@ -58,7 +58,7 @@ impl PhantomParts {
     }
 }
 
-impl Parts for PhantomParts {
+impl BoxReader for PhantomBoxes {
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
         let mut samples = vec![0.0; size.iter().product()];
         samples.par_chunks_mut(size[0]).enumerate().for_each(|(row, samples)| {

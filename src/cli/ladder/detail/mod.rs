@@ -1,6 +1,6 @@
 //! Levels of detail: fewer points, or a coarser volume, and full detail in a region.
 
-mod facts;
+mod summary;
 
 use crate::cli::said::{misused, refused};
 use crate::haar::smooth_monitored;
@@ -24,7 +24,7 @@ use crate::cli::output::tell;
 use crate::cli::pipeline::{Domain, read};
 use crate::cli::progress::Progress;
 use crate::cli::report::SCHEMA_VERSION;
-use facts::{Facts, Row, write_rows};
+use summary::{DetailSummary, Row, write_rows};
 
 /// What a level asks for.
 struct Wanted {
@@ -60,11 +60,12 @@ impl Ladder {
         let Some(selection) = recipe.selection(&source.range) else {
             misused!("--select adaptive has no effect: levels of detail are selected by differences" => "omit it");
         };
-        let mut stages = Stages { volume, units, smoothed: None, monitor: &monitor };
-        let full = progress.stage(Stage::Points, || self.full(&mut stages, &recipe, selection))?;
+        let mut front_end = FrontEnd { volume, units, smoothed: None, monitor: &monitor };
+        let full =
+            progress.stage(Stage::Points, || self.full(&mut front_end, &recipe, selection))?;
         let mut rows = Vec::new();
         for wanted in self.wanted(&recipe, selection) {
-            let found = || stages.points(&wanted.haar, &wanted.selection);
+            let found = || front_end.points(&wanted.haar, &wanted.selection);
             let (mut points, truncation) = progress.stage(Stage::Points, found)?;
             if let Some((full, region)) = &full {
                 points = focus(full, &points, region);
@@ -86,7 +87,7 @@ impl Ladder {
             })?;
             rows.push(row);
         }
-        let facts = Facts {
+        let facts = DetailSummary {
             schema_version: SCHEMA_VERSION,
             input: self.pipeline.input.input.to_string(),
             coordinates,
@@ -106,12 +107,12 @@ impl Ladder {
     /// The points of full detail, and the region that keeps them, if one does.
     fn full(
         &self,
-        stages: &mut Stages<'_>,
+        front_end: &mut FrontEnd<'_>,
         recipe: &Recipe,
         selection: Selection,
     ) -> anyhow::Result<Option<(Points, &Region)>> {
         let Some(region) = &self.focus else { return Ok(None) };
-        let (points, _) = stages.points(&recipe.haar, &selection)?;
+        let (points, _) = front_end.points(&recipe.haar, &selection)?;
         if inside(&points, region) == 0 {
             refused!("no point lies in --focus: it is in the units of the points, x first");
         }
@@ -155,15 +156,15 @@ fn write_meshes(
     Ok(())
 }
 
-/// The stages before weights; the truncated volume is kept for the next level.
-struct Stages<'a> {
+/// The front_end before weights; the truncated volume is kept for the next level.
+struct FrontEnd<'a> {
     volume: &'a Volume,
     units: Units,
     smoothed: Option<(HaarOptions, Volume, Truncation)>,
     monitor: &'a Monitor,
 }
 
-impl Stages<'_> {
+impl FrontEnd<'_> {
     fn points(
         &mut self,
         options: &HaarOptions,

@@ -169,7 +169,7 @@ fn judge(
     spans: &Spans,
 ) -> Vec<FiltrationFinding> {
     let vertices: Vec<[u32; 1]> = file.vertices.iter().map(|&v| [v]).collect();
-    let rows = Rows {
+    let rows = RowNumbers {
         vertices: vertices.iter().map(|&row| structure.vertices.row(row) as usize).collect(),
         edges: file.edges.iter().map(|&row| structure.edges.row(row) as usize).collect(),
         facets: file.facets.iter().map(|&row| structure.facets.row(row) as usize).collect(),
@@ -223,7 +223,7 @@ fn judge(
 }
 
 /// The row in the triangulation of each simplex of the file.
-struct Rows {
+struct RowNumbers {
     vertices: Vec<usize>,
     edges: Vec<usize>,
     facets: Vec<usize>,

@@ -5,14 +5,14 @@ use walpha_complex::canonical::sorted;
 use super::finding::FiltrationFinding;
 use super::spans::Spans;
 use super::values::Ranks;
-use super::{FiltrationFile, Rows};
+use super::{FiltrationFile, RowNumbers};
 use crate::certify::Simplex;
 
 /// Judges that each simplex is in the order once, and comes after the one before it: by the exact
 /// number, then by dimension, then by vertices.
 pub(super) fn judge(
     file: &FiltrationFile,
-    rows: &Rows,
+    rows: &RowNumbers,
     ranks: &Ranks,
     spans: &Spans,
 ) -> Vec<FiltrationFinding> {
@@ -31,11 +31,11 @@ pub(super) fn judge(
     if !findings.is_empty() {
         return findings;
     }
-    let place = |number: u32| Place::of(file, number, counts, rows, spans);
+    let place = |number: u32| OrderKey::of(file, number, counts, rows, spans);
     for pair in file.order.windows(2) {
         let [before, after] = [pair[0], pair[1]].map(place);
         if before.key() > after.key() {
-            let exact = |place: &Place| ranks.exact(place.rank).cloned().unwrap_or_default();
+            let exact = |place: &OrderKey| ranks.exact(place.rank).cloned().unwrap_or_default();
             let values = [exact(&before), exact(&after)];
             findings.push(FiltrationFinding::Order {
                 before: before.simplex(),
@@ -48,18 +48,18 @@ pub(super) fn judge(
 }
 
 /// What decides where a simplex comes.
-struct Place {
+struct OrderKey {
     rank: u32,
     /// Ascending.
     vertices: Vec<u32>,
 }
 
-impl Place {
+impl OrderKey {
     fn of(
         file: &FiltrationFile,
         number: u32,
         counts: [usize; 4],
-        rows: &Rows,
+        rows: &RowNumbers,
         spans: &Spans,
     ) -> Self {
         let mut row = number as usize;

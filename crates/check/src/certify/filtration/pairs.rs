@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Rows;
+use super::RowNumbers;
 use super::finding::FiltrationFinding;
 use super::spans::Spans;
 use crate::certify::structure::Structure;
@@ -15,7 +15,7 @@ pub(super) fn judge(
     file: &FiltrationFile,
     given: &PairsFile,
     structure: &Structure,
-    rows: &Rows,
+    rows: &RowNumbers,
     spans: &Spans,
 ) -> Vec<FiltrationFinding> {
     let pairing = Pairing { file, structure, rows, spans };
@@ -49,7 +49,7 @@ fn differences(
 struct Pairing<'a> {
     file: &'a FiltrationFile,
     structure: &'a Structure<'a>,
-    rows: &'a Rows,
+    rows: &'a RowNumbers,
     spans: &'a Spans,
 }
 

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use super::described::Described;
 use super::detached::naming;
 use super::payload::{Length, Payload};
-use super::rows::Rows;
+use super::uncompressed::Uncompressed;
 use super::{format_error, io_error, payload_error, unpacked};
 use crate::formats::{nifti_version, start_of};
 use crate::{Dtype, Reason, Volume, VolumeError};
@@ -55,15 +55,15 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume lie, to be read part by part.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let header = Header::read(path, &mut File::open(path).map_err(io_error(path))?)?;
     let described = header.described(path, frame)?;
     let scaling = header.scaling();
     let rows = if header.is_pair(path)? {
         let offset = header.vox_offset().max(0.0) as u64;
-        Rows::beside(path, described, &[path.with_extension("img")], Some(offset))?
+        Uncompressed::beside(path, described, &[path.with_extension("img")], Some(offset))?
     } else {
-        Rows::behind(path, described, header.offset(path)?, Some(0))?
+        Uncompressed::behind(path, described, header.offset(path)?, Some(0))?
     };
     Ok(rows.scaled(scaling))
 }

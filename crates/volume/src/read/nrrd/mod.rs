@@ -10,7 +10,7 @@ use super::described::{Described, Encoding};
 use super::detached::{self, beside};
 use super::frames::Frames;
 use super::lines::Lines;
-use super::rows::Rows;
+use super::uncompressed::Uncompressed;
 use super::{format_error, io_error};
 use crate::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
 use files::named;
@@ -60,14 +60,14 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume lie, to be read part by part.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Rows, VolumeError> {
+pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
     let header = Header::read(path, &mut lines)?;
     let described = header.described(path, frame)?;
     let skip = header.skip(path, &described)?;
     match &header.files {
-        None => Rows::behind(path, described, lines.bytes(), skip),
-        Some(names) => Rows::beside(path, described, &beside(path, names), skip),
+        None => Uncompressed::behind(path, described, lines.bytes(), skip),
+        Some(names) => Uncompressed::beside(path, described, &beside(path, names), skip),
     }
 }
 

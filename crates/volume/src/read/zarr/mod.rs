@@ -17,7 +17,7 @@ use crate::source::Source;
 use crate::{Dims, Endian, Frame, Reason, Volume, VolumeError};
 
 use open::open;
-use samples::{ZarrParts, check_chunk, dtype, samples};
+use samples::{ZarrBoxes, check_chunk, dtype, samples};
 
 /// Reads a Zarr array of version 2 or 3 in a folder, or a level of an OME-Zarr pyramid (0, the finest,
 /// unless `level` says otherwise).
@@ -49,7 +49,7 @@ pub(crate) fn source(
     let chunk = array.chunk_shape(&vec![0; axes]).map_err(|error| damaged(path, &error))?;
     let grain = [1, 2, 3].map(|axis| chunk[axes - axis].get() as usize);
     check_chunk(path, &chunk, dims)?;
-    let parts = ZarrParts { path: path.into(), array, leading };
+    let parts = ZarrBoxes { path: path.into(), array, leading };
     Ok(Source::new(dims, frame, dtype, grain, Box::new(parts)))
 }
 

@@ -13,7 +13,7 @@ use zarrs::filesystem::FilesystemStore;
 
 use super::super::format_error;
 use super::{damaged, shards};
-use crate::source::Parts;
+use crate::source::BoxReader;
 use crate::{Dims, Dtype, Reason, VolumeError};
 
 /// Calls a method with what turns samples of this type into `f32`.
@@ -94,14 +94,14 @@ pub(super) fn check_chunk(
 }
 
 /// An array that is read part by part.
-pub(super) struct ZarrParts {
+pub(super) struct ZarrBoxes {
     pub path: PathBuf,
     pub array: Array<FilesystemStore>,
     /// Indices along the axes before the last three.
     pub leading: Vec<u64>,
 }
 
-impl Parts for ZarrParts {
+impl BoxReader for ZarrBoxes {
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
         let dtype = dtype(&self.path, self.array.data_type())?;
         let mut ranges: Vec<_> = self.leading.iter().map(|&i| i..i + 1).collect();
@@ -111,7 +111,7 @@ impl Parts for ZarrParts {
     }
 }
 
-impl ZarrParts {
+impl ZarrBoxes {
     fn part<T: ElementOwned + Copy>(
         &self,
         part: &ArraySubset,

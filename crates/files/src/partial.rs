@@ -4,12 +4,12 @@ use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use crate::place::Place;
+use crate::destination::Destination;
 use crate::unfinished::{Gate, Temporary};
 
 /// A temporary file to be filled.
 #[derive(Debug)]
-pub(super) struct Part {
+pub(super) struct PartialFile {
     file: File,
     whole: Whole,
 }
@@ -18,7 +18,7 @@ pub(super) struct Part {
 #[derive(Debug)]
 pub(super) struct Whole {
     temporary: Temporary,
-    place: Place,
+    place: Destination,
     way: Way,
 }
 
@@ -33,8 +33,8 @@ enum Way {
     Copied,
 }
 
-impl Part {
-    pub(super) fn beside(place: Place) -> io::Result<Self> {
+impl PartialFile {
+    pub(super) fn beside(place: Destination) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(".walpha-").suffix(".part");
         let private = place.existing.is_some();
@@ -110,7 +110,7 @@ fn create(path: &Path, _: bool) -> io::Result<File> {
 
 /// Makes a file like the one it is to replace, or says that it cannot be.
 #[cfg(unix)]
-fn way(file: &File, existing: &Metadata, place: &Place) -> io::Result<Way> {
+fn way(file: &File, existing: &Metadata, place: &Destination) -> io::Result<Way> {
     use std::fs::Permissions;
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
     let ours = file.metadata()?;
@@ -127,7 +127,7 @@ fn way(file: &File, existing: &Metadata, place: &Place) -> io::Result<Way> {
 }
 
 #[cfg(not(unix))]
-fn way(_: &File, _: &Metadata, _: &Place) -> io::Result<Way> {
+fn way(_: &File, _: &Metadata, _: &Destination) -> io::Result<Way> {
     Ok(Way::Renamed)
 }
 

@@ -15,7 +15,7 @@ use crate::{Coordinates, Truncation};
 
 /// What `walpha ladder` did over detail.
 #[derive(Serialize)]
-pub(super) struct Facts {
+pub(super) struct DetailSummary {
     pub schema_version: u32,
     pub input: String,
     /// Of points and all lengths.
@@ -79,7 +79,7 @@ impl Row {
     }
 }
 
-impl Display for Facts {
+impl Display for DetailSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "input     {}", name(&self.input))?;
         writeln!(f, "lengths   in {}", self.coordinates)?;

@@ -9,11 +9,11 @@ use crate::cli::output::name;
 use crate::render;
 
 #[derive(Serialize)]
-pub(super) struct Facts {
+pub(super) struct ViewSummary {
     pub schema_version: u32,
     pub input: String,
     /// The coarsest first; the shape's own is the last.
-    pub details: Vec<DetailFacts>,
+    pub details: Vec<DetailSummary>,
     pub bytes: usize,
     /// What was left out for display, if anything.
     pub simplified: Option<String>,
@@ -23,14 +23,14 @@ pub(super) struct Facts {
 
 /// A level of detail.
 #[derive(Serialize)]
-pub(super) struct DetailFacts {
+pub(super) struct DetailSummary {
     points: usize,
     levels: usize,
     /// Of F, filled in, on all samples, in the values that are written; null without a volume.
     rmse_filled: Option<f64>,
 }
 
-impl DetailFacts {
+impl DetailSummary {
     pub(super) fn of(detail: &render::Detail<'_>) -> Self {
         Self {
             points: detail.levels.points().len(),
@@ -40,10 +40,10 @@ impl DetailFacts {
     }
 }
 
-impl Display for Facts {
+impl Display for ViewSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "input     {}", name(&self.input))?;
-        for DetailFacts { points, levels, rmse_filled } in &self.details {
+        for DetailSummary { points, levels, rmse_filled } in &self.details {
             write!(f, "detail    {points} points, {levels} levels")?;
             match rmse_filled {
                 Some(rmse) => writeln!(f, ", RMSE of F {rmse:.4} (filled in)")?,

@@ -8,7 +8,7 @@ use super::SampleBox;
 use super::digest::{Digest, Hasher};
 
 /// Digests of the bricks of a box: 8 bytes for each, of 8³ or 16³ samples.
-pub(super) struct Seen {
+pub(super) struct ReadDigests {
     /// Samples along x, y and z of the volume, and of a brick.
     dims: [usize; 3],
     side: usize,
@@ -20,7 +20,7 @@ pub(super) struct Seen {
     differs: AtomicBool,
 }
 
-impl Seen {
+impl ReadDigests {
     /// Nothing yet of a box of samples of a volume.
     pub(super) fn none_of(part: &SampleBox, side: usize, dims: [usize; 3]) -> Self {
         let part = Self::around(part, side, dims);
@@ -96,7 +96,7 @@ impl Seen {
     }
 
     /// What this process saw, to be told to others.
-    pub(super) fn told(&self) -> Vec<u64> {
+    pub(super) fn bricks(&self) -> Vec<u64> {
         self.bricks.iter().map(|brick| brick.load(Ordering::Relaxed)).collect()
     }
 
@@ -139,11 +139,11 @@ mod tests {
     fn bricks_are_known_again() {
         let dims = [21, 17, 30];
         let whole = SampleBox::whole(dims);
-        let planned = Seen::none_of(&whole, 8, dims);
+        let planned = ReadDigests::none_of(&whole, 8, dims);
         assert!(planned.note(&whole, &samples(&whole, dims)));
         let block = SampleBox { first: [9, 3, 8], size: [4, 9, 15] };
         let around = block.aligned(8, dims);
-        let again = Seen::none_of(&block, 8, dims);
+        let again = ReadDigests::none_of(&block, 8, dims);
         assert_ne!(again.digest(&block), planned.digest(&block), "nothing was read yet");
         for tile in around.tiles([16, 8, 8]) {
             let outer = tile.grown([1; 3], dims).aligned(8, dims);
@@ -151,7 +151,7 @@ mod tests {
         }
         assert_eq!(again.digest(&block), planned.digest(&block));
         for at in 0..around.samples() {
-            let other = Seen::none_of(&block, 8, dims);
+            let other = ReadDigests::none_of(&block, 8, dims);
             let mut values = samples(&around, dims);
             values[at] += 0.5;
             assert!(other.note(&around, &values));
@@ -167,8 +167,8 @@ mod tests {
     #[test]
     fn processes_join_what_they_saw() {
         let mut mine = vec![0, 5, 7, 0];
-        assert!(Seen::join(&mut mine, &[3, 5, 0, 0]));
+        assert!(ReadDigests::join(&mut mine, &[3, 5, 0, 0]));
         assert_eq!(mine, [3, 5, 7, 0]);
-        assert!(!Seen::join(&mut mine, &[0, 6, 0, 0]));
+        assert!(!ReadDigests::join(&mut mine, &[0, 6, 0, 0]));
     }
 }

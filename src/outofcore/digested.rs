@@ -12,7 +12,7 @@ use super::digest::Digest;
 use super::field::{Field, Truncated};
 use super::file::{digest_of, numbers, read_file};
 use super::passes::Passes;
-use super::seen::Seen;
+use super::read_digests::ReadDigests;
 use super::survey::truncated;
 use super::{Alone, BlocksError, Plan, SampleBox};
 use crate::export::Target;
@@ -20,13 +20,13 @@ use crate::volume::{Dims, Dtype, RawLayout, ReadOptions, Source};
 
 /// A file that the plan has the digest of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Kept {
+pub(super) struct DigestedFile {
     pub name: String,
     pub bytes: u64,
     pub digest: Digest,
 }
 
-impl Kept {
+impl DigestedFile {
     /// Writes the sums of bricks into a folder.
     pub(super) fn write_sums(sums: &[f64], folder: &Path) -> Result<Self, BlocksError> {
         let bytes: Vec<u8> = sums.iter().flat_map(|sum| sum.to_le_bytes()).collect();
@@ -68,7 +68,7 @@ impl Plan {
         if let Some(cut) = self.survey.cut {
             let path = self.folder.join(Self::SUMS);
             let damaged =
-                || BlocksError::Damaged { path: path.clone(), what: Kept::DAMAGED.into() };
+                || BlocksError::Damaged { path: path.clone(), what: DigestedFile::DAMAGED.into() };
             let bytes = match read_file(&path) {
                 Err(BlocksError::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound => {
                     let what = "is not there".into();
@@ -87,7 +87,7 @@ impl Plan {
                 what: format!("cannot be read: {error}"),
             })?;
             let dims = self.job.dims.xyz();
-            let seen = Seen::none_of(part, Field::bricks_of(dims).side(), dims);
+            let seen = ReadDigests::none_of(part, Field::bricks_of(dims).side(), dims);
             Ok(Truncated::File(source, seen))
         } else {
             Ok(Truncated::Same)
@@ -96,12 +96,18 @@ impl Plan {
 
     /// The truncated volume that a plan of the standard decomposition left in its folder, and that nothing
     /// was read of it.
-    pub(super) fn smoothed(folder: &Path, dims: Dims) -> Result<(Source, Seen), BlocksError> {
+    pub(super) fn smoothed(
+        folder: &Path,
+        dims: Dims,
+    ) -> Result<(Source, ReadDigests), BlocksError> {
         let path = folder.join(Self::SMOOTHED);
         let options = ReadOptions::default().raw(RawLayout::new(dims, Dtype::F32));
         let source = Source::open(&path, &options)?;
         let dims = dims.xyz();
-        Ok((source, Seen::none_of(&SampleBox::whole(dims), Field::bricks_of(dims).side(), dims)))
+        Ok((
+            source,
+            ReadDigests::none_of(&SampleBox::whole(dims), Field::bricks_of(dims).side(), dims),
+        ))
     }
 
     /// Reads the files beside the plan, and looks whether they are what was written.
@@ -131,7 +137,7 @@ impl Plan {
         let mut passes = Passes::new(&Alone, &tiles, &silent);
         let (_, truncated, mut made) = truncated(&self.job, &field, &self.folder, &mut passes)?;
         if let Truncated::Bricks { sums, .. } = &truncated {
-            made.push(Kept::write_sums(sums, &self.folder)?);
+            made.push(DigestedFile::write_sums(sums, &self.folder)?);
         }
         if made != self.kept {
             let what = "its truncated volume is another".to_owned();

@@ -14,7 +14,7 @@ use super::output::name;
 
 /// What a plan is.
 #[derive(Serialize)]
-pub(super) struct PlanFacts {
+pub(super) struct PlanSummary {
     folder: String,
     plan: String,
     input: String,
@@ -27,7 +27,7 @@ pub(super) struct PlanFacts {
     seconds: f64,
 }
 
-impl PlanFacts {
+impl PlanSummary {
     pub(super) fn of(plan: &Plan, seconds: f64) -> Self {
         let points = plan.blocks.iter().map(|block| block.points).sum::<u64>();
         let halo = plan.blocks.iter().map(|block| block.halo).sum::<u64>();
@@ -45,7 +45,7 @@ impl PlanFacts {
     }
 }
 
-impl Display for PlanFacts {
+impl Display for PlanSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "plan      {} of {}", self.plan, self.input)?;
         writeln!(f, "points    {} of {} samples", self.points, self.samples)?;
@@ -63,9 +63,9 @@ impl Display for PlanFacts {
 /// What work will cost.
 #[derive(Serialize)]
 #[serde(transparent)]
-pub(super) struct PriceFacts(pub Price);
+pub(super) struct PriceSummary(pub Price);
 
-impl Display for PriceFacts {
+impl Display for PriceSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Price { samples, points, blocks, halo_share, memory_per_block, .. } = self.0;
         let [by_plan, by_blocks] = self.0.bytes_read.map(readable);
@@ -91,13 +91,13 @@ impl Display for PriceFacts {
 
 /// What was run.
 #[derive(Serialize)]
-pub(super) struct RunFacts {
+pub(super) struct RunSummary {
     pub folder: String,
     pub blocks: Vec<usize>,
     pub seconds: f64,
 }
 
-impl Display for RunFacts {
+impl Display for RunSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { folder, blocks, seconds } = self;
         let folder = name(folder);
@@ -107,7 +107,7 @@ impl Display for RunFacts {
 
 /// What was found of the files of a plan.
 #[derive(Serialize)]
-pub(super) struct CheckFacts {
+pub(super) struct CheckSummary {
     folder: String,
     /// What identifies the plan; nothing where it cannot be read.
     plan: Option<String>,
@@ -126,7 +126,7 @@ struct Found {
     what: String,
 }
 
-impl CheckFacts {
+impl CheckSummary {
     pub(super) fn of(folder: &Path, plan: Option<&Plan>, checked: Checked) -> Self {
         let whole = checked.is_whole();
         let found = checked.findings.into_iter();
@@ -143,7 +143,7 @@ impl CheckFacts {
     }
 }
 
-impl Display for CheckFacts {
+impl Display for CheckSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for Found { path, what } in &self.findings {
             writeln!(f, "{}: {what}", name(path))?;

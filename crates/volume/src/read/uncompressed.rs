@@ -10,12 +10,12 @@ use super::io_error;
 use super::payload::Element;
 #[cfg(feature = "formats")]
 use crate::Reason;
-use crate::source::{Parts, Source};
+use crate::source::{BoxReader, Source};
 use crate::{Dims, Dtype, Endian, Frame, VolumeError};
 
 /// The samples of a volume as they lie in a file, x fastest, not compressed: any box of them can be read
 /// alone.
-pub(crate) struct Rows {
+pub(crate) struct Uncompressed {
     path: PathBuf,
     dims: Dims,
     frame: Frame,
@@ -27,7 +27,7 @@ pub(crate) struct Rows {
     scaling: Option<(f64, f64)>,
 }
 
-impl Rows {
+impl Uncompressed {
     pub(crate) fn new(
         path: &Path,
         dims: Dims,
@@ -109,7 +109,7 @@ impl Rows {
     /// The volume they are.
     pub(crate) fn source(self) -> Source {
         let dtype = if self.scaling.is_some() { Dtype::F32 } else { self.dtype };
-        // Rows lie one behind the other: whole ones are read in one piece.
+        // Uncompressed lie one behind the other: whole ones are read in one piece.
         let grain = [self.dims.x(), 1, 1];
         Source::new(self.dims, self.frame, dtype, grain, Box::new(self))
     }
@@ -119,7 +119,7 @@ impl Rows {
 pub(crate) const CONVERT: &str =
     "convert it to uncompressed NRRD, MetaImage, NIfTI or NPY, or to Zarr";
 
-impl Parts for Rows {
+impl BoxReader for Uncompressed {
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {
         let Self { path, dims, dtype, offset, .. } = self;
         let failed = io_error(path);
@@ -143,7 +143,7 @@ impl Parts for Rows {
     }
 }
 
-impl Rows {
+impl Uncompressed {
     fn decode(&self, bytes: &[u8], samples: &mut [f32]) {
         let Self { dtype, endian, scaling, .. } = *self;
         let Some((slope, inter)) = scaling else {

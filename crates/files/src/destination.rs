@@ -11,12 +11,12 @@ use crate::unfinished::gate;
 
 /// A place for a file, with all links followed, and what is there now.
 #[derive(Debug)]
-pub(super) struct Place {
+pub(super) struct Destination {
     pub path: PathBuf,
     pub existing: Option<Metadata>,
 }
 
-impl Place {
+impl Destination {
     /// Refuses at once what can be known to fail later: a missing folder, a name that is too long, a
     /// folder or a write-protected file of this name.
     pub(super) fn of(path: &Path) -> io::Result<Self> {
@@ -112,7 +112,7 @@ pub(super) struct Claim(Key);
 
 impl Claim {
     /// Refuses a place that another target is open for: one of the two files would be lost.
-    pub(super) fn of(place: &Place) -> io::Result<Self> {
+    pub(super) fn of(place: &Destination) -> io::Result<Self> {
         let key = Key::of(&place.path)?;
         inputs::check(&key)?;
         Self::new(key)

@@ -17,7 +17,7 @@ use crate::cli::report::{SCHEMA_VERSION, WeightsReport, ending};
 
 /// What `walpha ladder` did over α.
 #[derive(Serialize)]
-pub(super) struct Facts {
+pub(super) struct LadderSummary {
     schema_version: u32,
     input: String,
     points: usize,
@@ -58,7 +58,7 @@ struct Row {
     largest_void: Option<Void>,
 }
 
-impl Facts {
+impl LadderSummary {
     pub(super) fn new(
         input: &str,
         weighed: &Weighed,
@@ -127,7 +127,7 @@ impl Facts {
     }
 }
 
-impl Display for Facts {
+impl Display for LadderSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [cells, facets, edges, vertices] = self.simplices;
         writeln!(f, "input     {}", name(&self.input))?;
@@ -155,7 +155,7 @@ impl Display for Facts {
 const STAGES: [&str; 8] =
     ["read", "haar", "points", "filtration", "curve", "ladder", "write", "total"];
 
-impl Facts {
+impl LadderSummary {
     fn print_suggested(&self, f: &mut fmt::Formatter<'_>, s: &Suggestions) -> fmt::Result {
         writeln!(f, "curve     {} critical values; α to try:", self.critical_values)?;
         writeln!(f, "          {:<12} the first with every point in a cell", s.all_points)?;
