@@ -7,6 +7,7 @@ use std::path::Path;
 
 use walpha_check::schema::ComplexFile;
 
+use super::model::MODEL;
 #[cfg(feature = "formats")]
 use super::read::xyz::{self, Lay};
 use super::read::{format, npy};
@@ -240,9 +241,6 @@ pub static FORMATS: [PointFormat; 15] = [
         ..PLAIN
     },
 ];
-
-/// How a `.wvm` begins. As with PNG, a transfer that changes the ends of lines damages it.
-pub(super) const MODEL: &[u8] = b"\x89wvm\r\n\x1a\n";
 
 /// The writers of models, where these are built in.
 const MODEL_WRITERS: &[PointWriter] = &[

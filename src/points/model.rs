@@ -158,3 +158,6 @@ impl SampleGrid {
         Some(Self { dims, frame: Frame::VOXEL.with_coordinates(coordinates), units: Units::Voxel })
     }
 }
+
+/// How a `.wvm` begins. As with PNG, a transfer that changes the ends of lines damages it.
+pub(super) const MODEL: &[u8] = b"\x89wvm\r\n\x1a\n";

@@ -1,4 +1,4 @@
-//! Where a file will be, and whether two names are one place.
+//! Where a file will be, and that no other target goes there.
 
 use std::fs::{self, Metadata, OpenOptions};
 use std::io::{self, ErrorKind};
@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use walpha_base::shown::shown;
 
+use crate::identity::{Key, behind_links, folder};
 use crate::inputs;
 use crate::unfinished::gate;
 
@@ -58,54 +59,6 @@ impl Destination {
     }
 }
 
-fn folder(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    }
-}
-
-/// The path that links of this name lead to, whether it exists or not.
-fn behind_links(path: &Path) -> PathBuf {
-    /// As many as Linux follows.
-    const MOST_LINKS: usize = 40;
-    let mut path = path.to_owned();
-    for _ in 0..MOST_LINKS {
-        let Ok(link) = fs::read_link(&path) else { break };
-        path = folder(&path).join(link);
-    }
-    path
-}
-
-/// The identity of a place.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Key {
-    pub path: PathBuf,
-    /// Device and inode of an existing file: hard links are one file.
-    file: Option<(u64, u64)>,
-}
-
-impl Key {
-    /// That of a place, whose folder is there.
-    pub(super) fn of(path: &Path) -> io::Result<Self> {
-        let path = behind_links(path);
-        let name = path.file_name().ok_or(ErrorKind::InvalidFilename)?;
-        let file = fs::metadata(&path).ok().as_ref().and_then(number);
-        Ok(Self { path: fs::canonicalize(folder(&path))?.join(name), file })
-    }
-
-    /// That of a file that is there.
-    pub(super) fn of_existing(path: &Path) -> Option<Self> {
-        let file = fs::metadata(path).ok().as_ref().and_then(number);
-        fs::canonicalize(path).ok().map(|path| Self { path, file })
-    }
-
-    /// Whether two places are one.
-    pub(super) fn is(&self, other: &Self) -> bool {
-        self.path == other.path || self.file.is_some() && self.file == other.file
-    }
-}
-
 /// A place that is one target's alone, until this is dropped.
 #[derive(Debug)]
 pub(super) struct Claim(Key);
@@ -120,7 +73,7 @@ impl Claim {
 
     /// The same for standard output.
     pub(super) fn of_stdout() -> io::Result<Self> {
-        Self::new(Key { path: crate::Target::STDOUT.into(), file: None })
+        Self::new(Key::of_stdout())
     }
 
     fn new(key: Key) -> io::Result<Self> {
@@ -140,16 +93,4 @@ impl Drop for Claim {
             claimed.swap_remove(at);
         }
     }
-}
-
-#[cfg(unix)]
-#[expect(clippy::unnecessary_wraps, reason = "elsewhere there is none")]
-fn number(existing: &Metadata) -> Option<(u64, u64)> {
-    use std::os::unix::fs::MetadataExt;
-    Some((existing.dev(), existing.ino()))
-}
-
-#[cfg(not(unix))]
-fn number(_: &Metadata) -> Option<(u64, u64)> {
-    None
 }

@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use walpha_base::advice::{Advice, Setting};
 
-use crate::destination::Key;
+use crate::identity::Key;
 
 /// What lists the files that belong to an input: those that a header names, or those of a folder that are read.
 pub type FilesOf = fn(&Path) -> Vec<PathBuf>;

@@ -19,6 +19,7 @@
 
 mod destination;
 mod folder;
+mod identity;
 mod inputs;
 mod partial;
 mod scratch;

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use walpha_base::advice::Advice;
 use walpha_base::shown::shown;
 
-use crate::destination::{Claim, Destination, Key};
+use crate::destination::{Claim, Destination};
 use crate::folder::PartFolder;
+use crate::identity::Key;
 use crate::inputs::{self, Refused};
 use crate::partial::{PartialFile, Whole};
 use crate::unfinished::gate;

@@ -31,7 +31,7 @@ static FIRST: OnceLock<&'static Entry> = OnceLock::new();
 pub(super) struct Gate {
     last: Option<&'static Entry>,
     /// The files that targets are open for.
-    pub claimed: Vec<super::destination::Key>,
+    pub claimed: Vec<super::identity::Key>,
 }
 
 pub(super) fn gate() -> MutexGuard<'static, Gate> {

@@ -1,4 +1,4 @@
-//! BoxReader of a volume, and coarser ones.
+//! Parts of a volume, and coarser ones.
 
 use std::num::NonZeroUsize;
 use std::ops::Range;

@@ -17,7 +17,7 @@ use super::Piece;
 use crate::outofcore::{BlocksError, Merged, Plan};
 use crate::shape::Simplices;
 
-/// SimplexArrays of a chunk.
+/// Rows of a chunk.
 const ROWS: u64 = 1 << 18;
 
 /// Fills a folder that is not there yet.
@@ -156,7 +156,7 @@ kept!(u8: UInt8, u32: UInt32, u64: UInt64, f64: Float64);
 struct Growing {
     array: Array<FilesystemStore>,
     width: usize,
-    /// SimplexArrays that are there.
+    /// Rows that are there.
     rows: u64,
 }
 

@@ -1,4 +1,4 @@
-//! Points from files: by what the file holds first, then by its extension.
+//! Readers of the formats of points.
 
 mod columns;
 #[cfg(feature = "formats")]
@@ -29,137 +29,19 @@ pub use columns::{Columns, UnknownColumns};
 
 use std::path::Path;
 
-use walpha_base::advice::Setting;
-use walpha_base::setters;
 #[cfg(feature = "formats")]
 use walpha_base::shown::shown;
 
-use super::formats::{FORMATS, PointFormat};
+use super::{Points, PointsError};
 #[cfg(feature = "formats")]
 use super::mesh::CellCount;
-use super::{ModelFacts, Points, PointsError};
-use crate::volume::{Reason, begins_as_volume, start_of};
+use crate::volume::Reason;
 
 /// The columns of a point file that are read.
-const COLUMNS: [&str; 6] = ["x", "y", "z", "weight", "value", "radius"];
+pub(super) const COLUMNS: [&str; 6] = ["x", "y", "z", "weight", "value", "radius"];
 /// The place among them of the radius, whose square is a weight.
 #[cfg(feature = "formats")]
 const RADIUS: usize = 5;
-
-/// What a user says about a file of points beyond its name.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub struct PointOptions {
-    /// What the columns of a table hold.
-    pub columns: Option<Columns>,
-    /// How many of the last layers of a `.wvm` are left out: each level is a coarser model, of a quarter of
-    /// the points.
-    pub level: Option<u32>,
-    /// The extension of the format that the file is of, whatever its own; content still says more.
-    pub format: Option<String>,
-}
-
-impl PointOptions {
-    setters! { columns: Option<Columns>, level: Option<u32>, format: Option<String> }
-
-    /// Whether a file so described holds points rather than a volume, as [`is_point_file`].
-    ///
-    /// # Errors
-    /// As [`is_point_file`].
-    pub fn is_point_file(&self, path: &Path) -> Result<bool, PointsError> {
-        self.found(path)?.map_or(Ok(false), |format| format.holds_points(path))
-    }
-
-    /// The format of a file, by its content and then its extension.
-    pub(in crate::points) fn found(
-        &self,
-        path: &Path,
-    ) -> Result<Option<&'static PointFormat>, PointsError> {
-        if path.is_file() {
-            let start = start_of(path)?;
-            if let Some(format) = FORMATS.iter().find(|format| format.begins(&start)) {
-                return Ok(Some(format));
-            }
-            if begins_as_volume(&start) {
-                return Ok(None);
-            }
-        }
-        let own = path.extension().unwrap_or_default().to_string_lossy();
-        let extension = self.format.as_deref().unwrap_or(&own);
-        Ok(FORMATS.iter().find(|format| format.is_named(extension)))
-    }
-}
-
-/// Whether a file holds points rather than a volume, by its content or else by its extension
-/// ([`FORMATS`](super::FORMATS)); NPY files do where their array has two axes, VTK's XML where it is
-/// geometry.
-///
-/// # Errors
-/// A file that begins as NPY or VTK's XML does and cannot be read.
-pub fn is_point_file(path: &Path) -> Result<bool, PointsError> {
-    PointOptions::default().is_point_file(path)
-}
-
-/// Reads points, with their weights and values where the file has such columns. Points are counted
-/// from 0.
-///
-/// - CSV, TSV (fields between commas, semicolons or tabs) and XYZ (between white space): the first line
-///   may name the columns: x, y, z, optionally weight (or radius, whose square is the weight) and value, in
-///   any order and case; others are skipped. Without names, `columns` gives them; without both, x y z are
-///   read, followed by a value, or by a normal or a colour, which are skipped. XYZ may be atoms as
-///   chemistry writes them, too, with the columns and the cell that extended XYZ states.
-/// - PTS: as XYZ, after a line with the number of points or without; the intensity is the value.
-/// - PWN: as XYZ; or the number of points, the points, and as many normals.
-/// - OFF, OBJ, STL: the vertices; of STL each place once.
-/// - PCD: the fields x, y, z, optionally weight or radius, and value or else intensity.
-/// - LAS and LAZ: coordinates, and the intensity as value.
-/// - PLY (text, or binary of either byte order), VTU, VTP and legacy VTK: the vertices, with their properties
-///   or point data `weight` or `radius`, and `value`; VTK's active scalars are the values where none are
-///   named so.
-/// - NPY: an array n×3 (x, y, z), n×4 (…, weight) or n×5 (…, value).
-/// - WVM: all layers ([`read_model`] knows more).
-///
-/// # Errors
-/// The file cannot be read, is truncated or longer than it claims, a column is missing or named twice,
-/// a number is not finite or a radius negative (the message has its place), the file holds no point, or
-/// `columns` are given for a format that names its own.
-pub fn read_points(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
-    Ok(read_model(path, &PointOptions::default().columns(columns.cloned()))?.0)
-}
-
-/// Reads points with what is known of them besides; nothing, where their format keeps nothing.
-///
-/// # Errors
-/// As [`read_points`]; a level that the file does not have; another format than the content is of.
-pub fn read_model(
-    path: &Path,
-    options: &PointOptions,
-) -> Result<(Points, ModelFacts), PointsError> {
-    let known = options.found(path)?.unwrap_or(&FORMATS[0]);
-    let PointOptions { columns, level, format: named } = options;
-    let (columns, level) = (columns.as_ref(), *level);
-    if named.as_ref().is_some_and(|named| !known.is_named(named)) {
-        let what = format!("begins as files of the format {} do", known.name);
-        return Err(format(path, Reason::needless(Setting::Format, what)));
-    }
-    if columns.is_some() && !known.takes_columns {
-        let reason = Reason::needless(Setting::Columns, "says itself what its columns are");
-        return Err(format(path, reason));
-    }
-    if level.is_some() && !known.has_levels() {
-        let reason = Reason::needless(Setting::Level, "has no layers of points");
-        return Err(format(path, reason));
-    }
-    let (points, facts) = known.read(path, columns, level.unwrap_or_default())?;
-    if points.is_empty() {
-        return Err(format(
-            path,
-            Reason::content("holds no point: there is nothing to shape", "name another file"),
-        ));
-    }
-    finite(path, &points)?;
-    Ok((points, facts))
-}
 
 pub(super) fn format(path: &Path, reason: Reason) -> PointsError {
     PointsError::Format { path: path.into(), reason }
@@ -187,21 +69,5 @@ fn take_radii(
     }
     points.weights = Some(radii.iter().map(|radius| radius * radius).collect());
     points.of_radii = true;
-    Ok(())
-}
-
-/// Refuses NaN and infinities.
-fn finite(path: &Path, points: &Points) -> Result<(), PointsError> {
-    for (row, position) in points.positions.iter().enumerate() {
-        let [weight, value] =
-            [&points.weights, &points.values].map(|column| column.as_ref().map_or(0.0, |c| c[row]));
-        let numbers = [position[0], position[1], position[2], weight, value];
-        if let Some(column) = numbers.iter().position(|number| !number.is_finite()) {
-            let (name, value) = (COLUMNS[column], numbers[column]);
-            let reason =
-                Reason::value(format!("row {row}: {name} is {value}, and must be a finite number"));
-            return Err(format(path, reason));
-        }
-    }
     Ok(())
 }

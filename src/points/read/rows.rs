@@ -42,7 +42,7 @@ impl Columns {
     }
 }
 
-/// TextRows that are looked at before anything is said about columns without names.
+/// Rows that are looked at before anything is said about columns without names.
 const LOOKED_AT: usize = 100;
 
 /// Makes points of rows of text.

@@ -3,7 +3,7 @@
 use walpha_complex::Alpha;
 
 use super::fields::{In, Out};
-use crate::points::formats::MODEL;
+use crate::points::model::MODEL;
 use crate::points::{ModelFacts, SampleGrid, Units};
 use crate::volume::{Coordinates, Dims, Frame, GrayRange, Reason};
 

@@ -4,7 +4,6 @@ mod certificate;
 mod claim;
 mod classes;
 mod emptiness;
-mod faces;
 mod filtration;
 mod finding;
 mod flat;

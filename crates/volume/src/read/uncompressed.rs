@@ -109,7 +109,7 @@ impl Uncompressed {
     /// The volume they are.
     pub(crate) fn source(self) -> Source {
         let dtype = if self.scaling.is_some() { Dtype::F32 } else { self.dtype };
-        // Uncompressed lie one behind the other: whole ones are read in one piece.
+        // Rows lie one behind the other: whole ones are read in one piece.
         let grain = [self.dims.x(), 1, 1];
         Source::new(self.dims, self.frame, dtype, grain, Box::new(self))
     }

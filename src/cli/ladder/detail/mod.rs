@@ -156,7 +156,7 @@ fn write_meshes(
     Ok(())
 }
 
-/// The front_end before weights; the truncated volume is kept for the next level.
+/// What comes before weights; the truncated volume is kept for the next level.
 struct FrontEnd<'a> {
     volume: &'a Volume,
     units: Units,

@@ -1,0 +1,71 @@
+//! Whether two names are one file.
+
+use std::fs::{self, Metadata};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// The folder that a file is in.
+pub(super) fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// The path that links of this name lead to, whether it exists or not.
+pub(super) fn behind_links(path: &Path) -> PathBuf {
+    /// As many as Linux follows.
+    const MOST_LINKS: usize = 40;
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(link) = fs::read_link(&path) else { break };
+        path = folder(&path).join(link);
+    }
+    path
+}
+
+/// The identity of a place.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Key {
+    pub path: PathBuf,
+    /// Device and inode of an existing file: hard links are one file.
+    file: Option<(u64, u64)>,
+}
+
+impl Key {
+    /// That of a place, whose folder is there.
+    pub(super) fn of(path: &Path) -> io::Result<Self> {
+        let path = behind_links(path);
+        let name = path.file_name().ok_or(ErrorKind::InvalidFilename)?;
+        let file = fs::metadata(&path).ok().as_ref().and_then(number);
+        Ok(Self { path: fs::canonicalize(folder(&path))?.join(name), file })
+    }
+
+    /// That of a file that is there.
+    pub(super) fn of_existing(path: &Path) -> Option<Self> {
+        let file = fs::metadata(path).ok().as_ref().and_then(number);
+        fs::canonicalize(path).ok().map(|path| Self { path, file })
+    }
+
+    /// That of standard output.
+    pub(super) fn of_stdout() -> Self {
+        Self { path: crate::Target::STDOUT.into(), file: None }
+    }
+
+    /// Whether two places are one.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        self.path == other.path || self.file.is_some() && self.file == other.file
+    }
+}
+
+#[cfg(unix)]
+#[expect(clippy::unnecessary_wraps, reason = "elsewhere there is none")]
+fn number(existing: &Metadata) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    Some((existing.dev(), existing.ino()))
+}
+
+#[cfg(not(unix))]
+fn number(_: &Metadata) -> Option<(u64, u64)> {
+    None
+}
