@@ -52,7 +52,7 @@ fn selection(bencher: Bencher) {
 fn weights(bencher: Bencher, weighting: &str) {
     let (points, weighting) = (selected(128), parsed(weighting));
     let alpha = Alpha::from_squared(10.0).expect("a number");
-    bencher.bench_local(|| weigh(&points, weighting, alpha));
+    bencher.bench_local(|| weigh(points.clone(), weighting, alpha));
 }
 
 #[divan::bench(args = WEIGHTINGS)]
@@ -67,7 +67,7 @@ fn native(bencher: Bencher, weighting: &str) {
 
 fn engine(bencher: Bencher, engine: Engine, weighting: &str) {
     let alpha = Alpha::from_squared(10.0).expect("an alpha");
-    let points = weigh(&selected(64), parsed(weighting), alpha).expect("weights");
+    let points = weigh(selected(64), parsed(weighting), alpha).expect("weights");
     let options = ShapeOptions::new(alpha).engine(engine);
     bencher
         .with_inputs(|| points.clone())
@@ -109,7 +109,7 @@ fn whole_shape(points: WeightedPoints) -> AlphaShape {
 /// The points of the phantom at 64³ with min-max weights.
 fn heavy() -> WeightedPoints {
     let alpha = Alpha::from_squared(10.0).expect("a number");
-    weigh(&selected(64), parsed("min-max"), alpha).expect("weights")
+    weigh(selected(64), parsed("min-max"), alpha).expect("weights")
 }
 
 fn parsed(weighting: &str) -> Weighting {

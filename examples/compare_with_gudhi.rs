@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let alpha = Alpha::from_squared(0.75)?;
 
     let points = Points::new(positions.clone());
-    let weighted = weigh(&points, Weighting::Common(0.0), alpha)?;
+    let weighted = weigh(points, Weighting::Common(0.0), alpha)?;
     let shape = alpha_shape(weighted, &ShapeOptions::new(alpha))?;
 
     let given = serde_json::json!({ "points": positions, "alpha": alpha });

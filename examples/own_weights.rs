@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for alpha in [0.0, 0.0005, 0.001, 0.002, 0.004] {
         let alpha = Alpha::from_squared(alpha)?;
         // `Column` takes the weights that the points brought along.
-        let weighted = weigh(&points, Weighting::Column, alpha)?;
+        let weighted = weigh(points.clone(), Weighting::Column, alpha)?;
         let shape = alpha_shape(weighted, &ShapeOptions::new(alpha))?;
         let facets = shape.complex().facets.len();
         let betti = shape.betti().ok_or("this engine does not count")?;

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{name}, {count} points\nweights         factor   RMSE, own values   fitted   hidden");
     for (kind, factor) in kinds() {
         let alpha = Alpha::from_squared(factor.abs())?;
-        let mut weighted = weigh(&points, kind, alpha)?;
+        let mut weighted = weigh(points.clone(), kind, alpha)?;
         weighted.weights.iter_mut().for_each(|weight| *weight *= factor.signum());
         let Judged { own, fitted, hidden, .. } = Judged::new(&volume, weighted)?;
         println!("{:<15} {factor:<8} {own:<18.4} {fitted:<8.4} {hidden}", kind.to_string());
@@ -58,7 +58,7 @@ fn kinds() -> Vec<(Weighting, f64)> {
 /// The search, from weights of 0.
 fn search(volume: &Volume, points: &Points, steps: usize) -> Result<(), Box<dyn Error>> {
     let mut random = Random(1);
-    let mut best = weigh(points, Weighting::Common(0.0), Alpha::INFINITE)?;
+    let mut best = weigh(points.clone(), Weighting::Common(0.0), Alpha::INFINITE)?;
     let blocks = in_blocks(volume, &best.positions);
     let mut judged = Judged::new(volume, best.clone())?;
     for step in 1..=steps {

@@ -13,7 +13,7 @@ pub(super) fn weighted(set: &str, weighting: &str, alpha: f64) -> Result<Weighte
         Some((_, count)) => random(count.parse()?),
         None => return Err("no such set".into()),
     };
-    Ok(weigh(&points, weighting, Alpha::from_squared(alpha)?)?)
+    Ok(weigh(points, weighting, Alpha::from_squared(alpha)?)?)
 }
 
 fn skull(size: usize) -> Result<Points> {

@@ -116,13 +116,13 @@ pub fn weigh<'py>(
     let weighting: Weighting = weighting.parse().map_err(Told::told)?;
     let differences = numbers(&differences)?;
     let alpha = Alpha::from_squared(alpha).map_err(Told::told)?;
-    let weighed = run(py, None, move |_| {
+    let weights = run(py, None, move |_| {
         // Places do not count here.
         let positions = vec![[0.0; 3]; differences.len()];
         let points = Points::new(positions).with_differences(differences)?;
-        points::weigh(&points, weighting, alpha)
+        points::weights(&points, weighting, alpha)
     })?;
-    Ok(weighed.weights.into_pyarray(py))
+    Ok(weights.into_pyarray(py))
 }
 
 /// All stages. `gray` is the range of values that becomes 0 to 255, `frame` JSON; without one, coordinates are

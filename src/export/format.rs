@@ -1,3 +1,4 @@
+use std::borrow::Cow;
 use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
@@ -46,7 +47,7 @@ pub trait Exporter {
 pub struct ExportOptions {
     /// Text where the format has a binary form too: PLY.
     pub ascii: bool,
-    /// The boundary as that of a [solid](Surface::solid): regular facets alone, closed, oriented and
+    /// The boundary as that of a [solid](AlphaShape::solid): regular facets alone, closed, oriented and
     /// cut apart into a manifold. For formats of boundaries.
     pub solid: bool,
     /// Separate regular and singular facets, where some programs do not expect it: by groups (OBJ, edges
@@ -60,8 +61,8 @@ impl ExportOptions {
     setters! { ascii: bool, solid: bool, groups: bool, input: Option<String> }
 
     /// The boundary to write.
-    pub(super) fn surface(&self, shape: &AlphaShape) -> Surface {
-        if self.solid { Surface::solid(shape).0 } else { Surface::of(shape) }
+    pub(super) fn surface<'a>(&self, shape: &'a AlphaShape) -> Cow<'a, Surface> {
+        if self.solid { Cow::Borrowed(shape.solid().0) } else { Cow::Owned(Surface::of(shape)) }
     }
 }
 

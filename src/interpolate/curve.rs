@@ -207,7 +207,7 @@ impl Bench<'_> {
         points: &Points,
     ) -> Result<Option<CurvePoint>, InterpolateError> {
         let Self { volume, options: &CurveOptions { alpha, units, .. }, .. } = *self;
-        let weighted = weigh(points, weighting, alpha)?;
+        let weighted = weigh(points.clone(), weighting, alpha)?;
         let solid = ShapeOptions::new(alpha).refuse_flat(true).engine(Engine::Native);
         let shape = match alpha_shape_monitored(weighted, &solid, &self.monitor) {
             Err(ShapeError::Triangulation(TriangulationError::Sites(_))) => return Ok(None),

@@ -164,7 +164,7 @@ impl Parameter {
         unit: LengthUnit,
         monitor: &Monitor,
     ) -> Result<Self, PipelineError> {
-        let points = weigh(points, Weighting::Common(0.0), Alpha::INFINITE)?;
+        let points = weigh(points.clone(), Weighting::Common(0.0), Alpha::INFINITE)?;
         let found = Self::find(&points, None, unit, monitor)?;
         Ok(Self { origin: ParameterOrigin::AutoUnweighted, ..found })
     }

@@ -4,7 +4,9 @@ use walpha_base::Monitor;
 use super::{Parameter, PipelineError};
 use crate::haar::Truncation;
 use crate::interpolate::{Adaptive, Fit};
-use crate::points::{Points, SampleGrid, WeightedPoints, Weighting, scattered_difference, weigh};
+use crate::points::{
+    Points, SampleGrid, WeightedPoints, Weighting, scattered_difference, weigh, weights,
+};
 use crate::progress::Stage;
 use crate::shape::{Alpha, Torus};
 use crate::volume::{Coordinates, GrayRange};
@@ -74,14 +76,14 @@ impl Weighed {
         }
         if parameter.is_none() && weighting.needs_differences() {
             // Weights are checked before the search.
-            weigh(&points, weighting, Alpha::from_squared(0.0)?)?;
+            weights(&points, weighting, Alpha::ZERO)?;
             Stage::Alpha.begin(monitor)?;
             parameter = Some(Parameter::find_unweighted(&points, coordinates.unit, monitor)?);
             Stage::Points.begin(monitor)?;
         }
         // Weights that do not depend on α are the same at ∞.
         let alpha = parameter.map_or(Alpha::INFINITE, |parameter| parameter.alpha);
-        let points = weigh(&points, weighting, alpha)?;
+        let points = weigh(points, weighting, alpha)?;
         Ok(Self { points, origin, parameter, importance: None })
     }
 

@@ -13,7 +13,7 @@
 //! let (smoothed, _) = smooth(&volume, &HaarOptions::default())?;
 //! let points = select(&volume, &smoothed, &difference(&smoothed), &Selection::default(), Units::Voxel)?;
 //! assert_eq!(points.len(), 1996); // 6.09 % of 32³
-//! let weighted = weigh(&points, Weighting::MinMax, Alpha::from_squared(10.0)?)?;
+//! let weighted = weigh(points, Weighting::MinMax, Alpha::from_squared(10.0)?)?;
 //! assert_eq!((weighted.summary().min, weighted.summary().max), (0.0, 10.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -48,4 +48,4 @@ pub(crate) use select::{Asked, check_least};
 pub use select::{Selection, SelectionRule, Units, points_at, select};
 pub use sets::Points;
 pub(crate) use weigh::{Differences, Shares};
-pub use weigh::{UnknownWeighting, Weighting, weigh};
+pub use weigh::{UnknownWeighting, Weighting, weigh, weights};

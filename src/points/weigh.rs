@@ -35,19 +35,35 @@ impl Weighting {
     }
 }
 
-/// Gives points their weights. `alpha` is that of the shape, or the one at which weights are
+/// Gives points their weights, as [`weights`] computes them.
+///
+/// # Errors
+/// Those of [`weights`].
+pub fn weigh(
+    mut points: Points,
+    weighting: Weighting,
+    alpha: Alpha,
+) -> Result<WeightedPoints, PointsError> {
+    let weights = match weighting {
+        Weighting::Column => finite(points.weights.take().ok_or(PointsError::NoColumn)?)?,
+        _ => weights(&points, weighting, alpha)?,
+    };
+    Ok(WeightedPoints { positions: points.positions, weights, values: points.values })
+}
+
+/// The weights of points. `alpha` is that of the shape, or the one at which weights are
 /// frozen; common and column weights do not depend on it. O(n).
 ///
 /// # Errors
 /// α is infinite or NaN where weights are proportional to it; points without differences (those of
 /// scattered points are [`scattered_difference`](super::scattered_difference)s) or without a column of
 /// weights, where these are needed; a weight that is not a finite number.
-pub fn weigh(
+pub fn weights(
     points: &Points,
     weighting: Weighting,
     alpha: Alpha,
-) -> Result<WeightedPoints, PointsError> {
-    let weights = match (&weighting.kind().rule, weighting) {
+) -> Result<Vec<f64>, PointsError> {
+    finite(match (&weighting.kind().rule, weighting) {
         (Rule::Common, Weighting::Common(weight)) => vec![weight; points.len()],
         (Rule::Common | Rule::Column, _) => points.weights.clone().ok_or(PointsError::NoColumn)?,
         (Rule::Proportional(_), _) => {
@@ -56,15 +72,15 @@ pub fn weigh(
             let shares = weighting.shares(&Differences::of(differences), alpha)?;
             differences.iter().map(|&l| shares.of(l)).collect()
         }
-    };
-    if let Some(index) = weights.iter().position(|weight| !weight.is_finite()) {
-        return Err(PointsError::Weight { index, weight: weights[index] });
-    }
-    Ok(WeightedPoints {
-        positions: points.positions.clone(),
-        weights,
-        values: points.values.clone(),
     })
+}
+
+/// Weights, all of which are finite numbers.
+fn finite(weights: Vec<f64>) -> Result<Vec<f64>, PointsError> {
+    match weights.iter().position(|weight| !weight.is_finite()) {
+        Some(index) => Err(PointsError::Weight { index, weight: weights[index] }),
+        None => Ok(weights),
+    }
 }
 
 /// What weights in proportion to differences need to know of all of them.

@@ -76,7 +76,7 @@ impl<'a> Study<'a> {
     pub(super) fn shape(&self, variant: Variant) -> Result<Shaped, ReproduceError> {
         let Variant { weighting, alpha, balls } = variant;
         let alpha = Alpha::from_squared(alpha).expect("a variant's α is a number");
-        let weighted = weigh(&self.points, weighting, alpha)?;
+        let weighted = weigh(self.points.clone(), weighting, alpha)?;
         // CGAL as the paper used it.
         let engine = Engine::Cgal;
         let options =

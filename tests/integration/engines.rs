@@ -182,7 +182,7 @@ fn the_skull() {
     let points =
         select(&volume, &volume, &differences, &Selection::default(), Units::Voxel).unwrap();
     for weighting in [Weighting::Common(0.0), Weighting::MinMax, Weighting::BarycentricN] {
-        check(&weigh(&points, weighting, Alpha::from_squared(10.0).unwrap()).unwrap(), 10.0);
+        check(&weigh(points.clone(), weighting, Alpha::from_squared(10.0).unwrap()).unwrap(), 10.0);
     }
 }
 

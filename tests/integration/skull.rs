@@ -15,7 +15,7 @@ fn points() -> Points {
 }
 
 fn shape(points: &Points, weighting: Weighting, alpha: f64) -> AlphaShape {
-    let points = weigh(points, weighting, Alpha::from_squared(alpha).unwrap()).unwrap();
+    let points = weigh(points.clone(), weighting, Alpha::from_squared(alpha).unwrap()).unwrap();
     alpha_shape(points, &ShapeOptions::new(Alpha::from_squared(alpha).unwrap())).unwrap()
 }
 

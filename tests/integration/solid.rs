@@ -19,7 +19,7 @@ fn unweighted(positions: &[[f64; 3]]) -> WeightedPoints {
 /// Each edge is walked along once in each direction, around each vertex is one fan, and the boundary
 /// holds the volume of the cells.
 fn is_solid(shape: &AlphaShape) -> Cuts {
-    let (surface, cuts) = Surface::solid(shape);
+    let (surface, cuts) = shape.solid();
     assert!(surface.singular.is_empty() && surface.edges.is_empty() && surface.points.is_empty());
     let mut edges: HashMap<[u32; 2], i32> = HashMap::new();
     for [a, b, c] in &surface.regular {
@@ -64,7 +64,7 @@ const CUBE: [[f64; 3]; 8] = [
 fn a_manifold_stays_as_it_is() {
     let shape = shape(unweighted(&CUBE), 0.75);
     assert_eq!(is_solid(&shape), Cuts::default());
-    let (solid, _) = Surface::solid(&shape);
+    let (solid, _) = shape.solid();
     assert_eq!(solid.vertices, Surface::of(&shape).vertices);
     assert_eq!(solid.regular, Surface::of(&shape).regular);
 }
@@ -112,7 +112,7 @@ fn sheets_that_share_both_ends_are_bent_apart() {
     let shape = shape(unweighted(&positions), 2.4);
     let cuts = is_solid(&shape);
     assert_eq!((cuts.edges, cuts.midpoints), (1, 1), "{cuts:?}");
-    let (solid, _) = Surface::solid(&shape);
+    let (solid, _) = shape.solid();
     let values = shape.points().values.as_ref().unwrap();
     let value = solid.numbers(values).last().unwrap();
     let ends = solid.midpoints[0].map(|v| values[solid.vertices[v as usize] as usize]);
@@ -129,7 +129,7 @@ fn any_shape_of_a_volume_is_a_solid() {
     for weighting in [Weighting::Common(0.0), Weighting::MinMax] {
         for alpha in [0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0] {
             let cuts = is_solid(&shape(
-                weigh(&points, weighting, Alpha::from_squared(alpha).unwrap()).unwrap(),
+                weigh(points.clone(), weighting, Alpha::from_squared(alpha).unwrap()).unwrap(),
                 alpha,
             ));
             seen.edges += cuts.edges;

@@ -2,6 +2,7 @@ use walpha_base::Coordinates;
 use walpha_complex::Placed;
 
 use super::measure::together;
+use super::solid::Solid;
 use super::{Alpha, Betti, Complex, Measures, ShapeError, ShapeOptions, Sheets, WeightedPoints};
 
 /// The weighted alpha shape of a set of points: a classified subcomplex of their regular
@@ -21,6 +22,7 @@ pub struct AlphaShape {
     pub(super) betti: Option<Betti>,
     pub(super) sheets: Option<Sheets>,
     pub(super) measures: Measures,
+    pub(super) solid: Solid,
 }
 
 /// The parts of a shape that has been computed elsewhere, in canonical order.
@@ -57,6 +59,7 @@ impl AlphaShape {
             betti: Some(parts.betti),
             sheets: Some(parts.sheets),
             measures: parts.measures,
+            solid: Solid::default(),
         })
     }
 
@@ -76,6 +79,7 @@ impl AlphaShape {
             betti: Some(betti),
             sheets: None,
             measures,
+            solid: Solid::default(),
         }
     }
 

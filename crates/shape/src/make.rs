@@ -7,6 +7,7 @@ use walpha_regular::{Sites, check_numbers, lattice};
 use super::blocks::{self, Limits, Plan, Question, Reach};
 use super::flat::{self, flat};
 use super::parts::connected_on_torus;
+use super::solid::Solid;
 use super::topology::{components, sheet_betti, torus_betti};
 use super::{
     AlphaShape, Betti, CgalError, Complex, Engine, Measures, ShapeError, ShapeOptions, Sheets,
@@ -135,6 +136,7 @@ fn shape_by(
         betti: betti.or(counted),
         sheets: boundary.map(|(_, sheets, _)| sheets),
         measures,
+        solid: Solid::default(),
     })
 }
 

@@ -1,6 +1,7 @@
 //! The boundary of a shape as a closed, oriented manifold, which other programs accept as the boundary of a solid.
 
 use std::collections::{BTreeMap, HashMap};
+use std::sync::{Arc, OnceLock};
 
 use serde::Serialize;
 use walpha_base::UnionFind;
@@ -21,15 +22,32 @@ pub struct Cuts {
 /// A corner of a facet: 3·row + corner.
 type Corner = u32;
 
-impl Surface {
+/// A solid once it has been asked for. It follows from the rest of its shape, so all are equal.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Solid(OnceLock<Arc<(Surface, Cuts)>>);
+
+impl PartialEq for Solid {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl AlphaShape {
     /// The regular facets alone, as the boundary of a solid: each edge is on two facets, which go
     /// along it in opposite directions, and the facets around a vertex are one fan. Where the shape
     /// is not a manifold, its parts are cut apart: facets that bound the same cells stay together, and
     /// vertices between others occur once for each fan. Where that leaves an edge on four facets, as both
     /// of its ends are in one fan, two of them get a vertex at its midpoint. No vertex moves; only such midpoints
-    /// are rounded. O(n log n).
-    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
-    pub fn solid(shape: &AlphaShape) -> (Self, Cuts) {
+    /// are rounded. O(n log n) for the first call; the shape keeps it.
+    pub fn solid(&self) -> (&Surface, Cuts) {
+        let solid = self.solid.0.get_or_init(|| Arc::new(Surface::solid(self)));
+        (&solid.0, solid.1)
+    }
+}
+
+impl Surface {
+    /// As [`AlphaShape::solid`] says.
+    fn solid(shape: &AlphaShape) -> (Self, Cuts) {
         let whole = Self::of(shape);
         let pairs = Pairs::of(shape, &whole);
         let mut fans = UnionFind::new(3 * whole.regular.len());

@@ -11,7 +11,7 @@ use super::{AlphaShape, Class, Complex};
 pub struct Surface {
     /// Input indices of the vertices used below, ascending.
     pub vertices: Vec<u32>,
-    /// Further vertices, each the midpoint of two of those; in [`Surface::solid`] only.
+    /// Further vertices, each the midpoint of two of those; of a [solid](AlphaShape::solid) only.
     pub midpoints: Vec<[u32; 2]>,
     /// Regular facets, counter-clockwise seen from outside.
     pub regular: Vec<[u32; 3]>,

@@ -18,7 +18,7 @@ pub type Boundary<'py> = (
     (usize, usize, usize),
 );
 
-/// The boundary as it is, or as [`Surface::solid`] makes it.
+/// The boundary as it is, or as [`AlphaShape::solid`] makes it.
 pub fn boundary<'py>(
     py: Python<'py>,
     shape: Arc<AlphaShape>,
@@ -26,7 +26,10 @@ pub fn boundary<'py>(
 ) -> PyResult<Boundary<'py>> {
     let (places, triangles, indices, cuts) = run(py, None, move |_| {
         let (surface, cuts) = match solid {
-            true => Surface::solid(&shape),
+            true => {
+                let (surface, cuts) = shape.solid();
+                (surface.clone(), cuts)
+            }
             false => (Surface::of(&shape), Default::default()),
         };
         let places: Vec<[f64; 3]> = surface.positions(&shape.points().positions).collect();

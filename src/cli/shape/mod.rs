@@ -12,7 +12,6 @@ use crate::Recipe;
 use crate::export::{FORMATS, Format};
 use crate::outofcore::{Pieces, Team};
 use crate::progress::Stage;
-use crate::shape::Surface;
 
 use super::args::{OutputArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::formats::shape_output;
@@ -180,7 +179,7 @@ impl Shape {
         facts.alpha = Some(model.parameter.alpha);
         report.add_model(&model);
         if self.solid {
-            report.add_solid(Surface::solid(&model.shape).1);
+            report.add_solid(model.shape.solid().1);
         }
         let remarks = outputs.remarks(&model.shape);
         progress.stage(Stage::Write, || outputs.write(&model.shape, &facts))?;

@@ -32,9 +32,9 @@ use std::path::Path;
 #[cfg(feature = "formats")]
 use walpha_base::shown::shown;
 
-use super::{Points, PointsError};
 #[cfg(feature = "formats")]
 use super::mesh::CellCount;
+use super::{Points, PointsError};
 use crate::volume::Reason;
 
 /// The columns of a point file that are read.

@@ -11,7 +11,7 @@ use crate::common::{has_skull, json};
 fn rmse_of(volume: &Volume, voxels: &[u32]) -> f64 {
     let points = points_at(volume, &difference(volume), voxels, Units::Voxel);
     let shape = shape(
-        weigh(&points, Weighting::Common(0.0), Alpha::from_squared(1.0).unwrap()).unwrap(),
+        weigh(points, Weighting::Common(0.0), Alpha::from_squared(1.0).unwrap()).unwrap(),
         f64::INFINITY,
     );
     let whole = fill(&shape, Some(volume), Units::Voxel).unwrap();

@@ -60,7 +60,7 @@ fn anywhere() -> impl Strategy<Value = Vec<Place>> {
 fn phantom_points(volume: &Volume, count: u64) -> WeightedPoints {
     let selection = Selection::default().rule(SelectionRule::Count(count));
     let points = select(volume, volume, &difference(volume), &selection, Units::Voxel).unwrap();
-    weigh(&points, Weighting::Common(0.0), Alpha::from_squared(1.0).unwrap()).unwrap()
+    weigh(points, Weighting::Common(0.0), Alpha::from_squared(1.0).unwrap()).unwrap()
 }
 
 fn minus(a: Place, b: Place) -> Place {

@@ -40,8 +40,10 @@ fn filling_covers_the_grid_and_keeps_the_points() {
     let selection = Selection::default().rule(SelectionRule::Count(300));
     let selected = select(&volume, &volume, &differences, &selection, Units::Voxel).unwrap();
     for weighting in [Weighting::Common(0.0), Weighting::MinMax, Weighting::BarycentricN] {
-        let shape =
-            shape(weigh(&selected, weighting, Alpha::from_squared(10.0).unwrap()).unwrap(), 10.0);
+        let shape = shape(
+            weigh(selected.clone(), weighting, Alpha::from_squared(10.0).unwrap()).unwrap(),
+            10.0,
+        );
         let whole = fill(&shape, Some(&volume), Units::Voxel).unwrap();
         assert_eq!(whole.points().len(), 308);
         let grid = Grid::of(&volume, Units::Voxel);

@@ -220,7 +220,7 @@ fn skull(weighting: walpha::Weighting) -> Option<WeightedPoints> {
         let differences = difference(&volume);
         let selection = Selection::default();
         let points = select(&volume, &volume, &differences, &selection, Units::Voxel).unwrap();
-        weigh(&points, weighting, Alpha::from_squared(10.0).unwrap()).unwrap()
+        weigh(points.clone(), weighting, Alpha::from_squared(10.0).unwrap()).unwrap()
     })
 }
 

@@ -18,7 +18,7 @@ fn written_points_are_read_back() {
             assert!(is_point_file(&path).unwrap());
             let back = read_points(&path, None).unwrap();
             assert_eq!(
-                weigh(&back, Weighting::Column, Alpha::from_squared(1.0).unwrap()).unwrap(),
+                weigh(back, Weighting::Column, Alpha::from_squared(1.0).unwrap()).unwrap(),
                 points,
                 "{path:?}"
             );

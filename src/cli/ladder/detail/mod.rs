@@ -74,7 +74,7 @@ impl Ladder {
             if let Some(values) = &mut points.values {
                 values.iter_mut().for_each(|value| *value = written.value(*value));
             }
-            let weighted = weigh(&points, weighting, alpha)?;
+            let weighted = weigh(points, weighting, alpha)?;
             let options = ShapeOptions::new(alpha);
             let shape = progress
                 .stage(Stage::Shape, || alpha_shape_monitored(weighted, &options, &monitor))?;
