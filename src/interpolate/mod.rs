@@ -5,6 +5,12 @@
 //! decided exactly, so F is defined everywhere on the shape and nowhere else, and each sample of a
 //! grid belongs to one simplex, whatever the number of threads.
 //!
+//! `barycentric.rs` computes coordinates in plain doubles where a lattice makes these exact, otherwise behind an error
+//! bound with big integers to fall back on. `raster.rs` fills grids in parallel over the simplices: each sample keeps the
+//! least number written to it. `adaptive.rs` chooses points by the error they leave, over `sampled.rs`, which keeps F at all
+//! samples while points come and leave; `trial.rs` says what one point more or less would change, and `exchange.rs` exchanges
+//! the cheapest points for the best samples. `refit.rs` fits values by least squares.
+//!
 //! ```
 //! use walpha::interpolate::{Deviation, Grid, Interpolant, fill};
 //! use walpha::points::{difference, select, weigh};

@@ -15,8 +15,7 @@ use crate::volume::{Coordinates, GrayRange};
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Weighed {
-    /// Their values are gray levels, where they come from a volume, or what
-    /// [`Pipeline::values`](super::Pipeline::values) makes of these.
+    /// Their values are those that [`Values`](super::Values) asked for.
     pub points: WeightedPoints,
     /// How it all came about.
     pub origin: Origin,

@@ -1,4 +1,11 @@
-//! The sheets of a shape's boundary.
+//! The sheets of a shape's boundary: the components of the boundary of a thin neighbourhood of the shape.
+//!
+//! Corners of exterior cells (infinite ones included) that meet at a point through an exterior facet are in one sector of
+//! the space around that point; the corners on one side of a boundary facet, and those at both ends of a singular edge, are on
+//! one sheet. One pass over the facets with a union-find over corners finds the sheets. A component with k voids has k + 1
+//! sheets, so b2 = sheets − b0. This is local: a block unites only corners at its own points, and blocks agree on the
+//! sheets that cross their borders by sides of facets. Of a whole triangulation that another program classified, the
+//! sheets are found from their definition, on the finished complex, and the tests compare the two.
 
 use rayon::prelude::*;
 use walpha_base::UnionFind;
