@@ -6,7 +6,7 @@
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-use walpha::check::schema::ComplexFile;
+use walpha::check::schema::{ComplexFile, PlacedComplex};
 use walpha::check::{Placed, compare};
 use walpha::points::{Points, Weighting, weigh};
 use walpha::shape::{Alpha, ShapeOptions, alpha_shape};
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if !answer.status.success() {
         return Err("GUDHI did not answer: pip install gudhi numpy".into());
     }
-    let theirs = ComplexFile::read_json(&answer.stdout[..])?.into_complex()?;
+    let theirs = PlacedComplex::try_from(ComplexFile::read_json(&answer.stdout[..])?)?;
 
     let ours = Placed::new(&positions, shape.power_weights(), shape.power_alpha(), shape.complex());
     let comparison = compare(ours, theirs.placed())?;

@@ -5,13 +5,12 @@ use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use walpha::outofcore::{Cutting, Job, Pieces, Plan, merge, run, whole};
 use walpha::check::certify_filtration;
-use walpha::check::schema::{ComplexFile, FiltrationFile, SchemaError};
+use walpha::check::schema::{ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
+use walpha::outofcore::{Cutting, Job, Pieces, Plan, merge, run, whole};
 use walpha::points::{PointOptions, cells_of, is_point_file, read_complex, read_points};
-use walpha::shape::Engine;
 use walpha::volume::{ReadOptions, read};
-use walpha::{Decomposition, Tolerance};
+use walpha::{Decomposition, HaarOptions, Recipe, Tolerance};
 
 /// Reads bytes as a volume file of this name.
 pub fn volume(name: &str, bytes: &[u8]) {
@@ -26,7 +25,7 @@ pub fn points(name: &str, bytes: &[u8]) {
     let _ = read_points(&path, None);
     let options = PointOptions::default();
     if cells_of(&path, &options).is_ok_and(|cells| !cells.is_empty()) {
-        let _ = read_complex(&path, &options).map(ComplexFile::into_complex);
+        let _ = read_complex(&path, &options).map(PlacedComplex::try_from);
     }
 }
 
@@ -44,7 +43,7 @@ pub fn complex(bytes: &[u8]) {
     } else {
         ComplexFile::read_json(bytes)
     };
-    let _ = file.and_then(ComplexFile::into_complex);
+    let _ = file.and_then(PlacedComplex::try_from);
 }
 
 /// Reads bytes as a complex in JSON and judges it.
@@ -58,7 +57,7 @@ pub fn check_npz(bytes: &[u8]) {
 }
 
 fn judge(file: Result<ComplexFile, SchemaError>) {
-    let Ok(placed) = file.and_then(ComplexFile::into_complex) else { return };
+    let Ok(placed) = file.and_then(PlacedComplex::try_from) else { return };
     if let Ok((findings, _)) = placed.findings() {
         findings.iter().for_each(|finding| assert!(!finding.to_string().is_empty()));
     }
@@ -127,9 +126,9 @@ fn planned(decomposition: Decomposition) -> &'static std::path::Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
         let folder = tempfile::tempdir().expect("a folder for temporary files").keep();
-        let mut job = Job::new("sample:phantom@12", ReadOptions::default()).expect("a sample");
-        job.engine = Engine::Native;
-        job.haar = job.haar.decomposition(decomposition).tolerance(Tolerance::Rms(2.0));
+        let haar =
+            HaarOptions::default().decomposition(decomposition).tolerance(Tolerance::Rms(2.0));
+        let job = Job::new("sample:phantom@12", Recipe::new().haar(haar)).expect("a sample");
         let plan = Plan::make(job, Cutting::default().blocks(2), &folder).expect("room for a plan");
         (0..plan.blocks.len()).for_each(|block| run(&plan, block).expect("room for a block"));
         folder

@@ -56,7 +56,7 @@ impl Complex {
         file.classes.vertices = classes("vertex_classes", &vertices)?;
         file.hidden = hidden.as_ref().map(numbers).transpose()?;
         file.duplicates = duplicates.as_ref().map(|pairs| rows("duplicates", pairs)).transpose()?;
-        Ok(Self(Arc::new(run(py, None, move |_| file.into_complex())?)))
+        Ok(Self(Arc::new(run(py, None, move |_| PlacedComplex::try_from(file))?)))
     }
 
     /// What a shape claims to be.

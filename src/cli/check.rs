@@ -182,7 +182,7 @@ impl Check {
                 }
                 file.alpha = alpha;
             }
-            Ok((file.into_complex()?, states_alpha))
+            Ok((PlacedComplex::try_from(file)?, states_alpha))
         };
         let (complex, states_alpha) = progress.stage(Stage::Read, read)?;
         let mut judged = format!("the {listed} of {}", name(input));

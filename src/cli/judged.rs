@@ -39,7 +39,7 @@ pub(super) fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<Judged>
         *weights = points.weights.or(weights.take());
     }
     let judged = match file {
-        AnyFile::Complex(file) => file.into_complex().map(Judged::Complex),
+        AnyFile::Complex(file) => PlacedComplex::try_from(file).map(Judged::Complex),
         AnyFile::Filtration(file) => file.check().map(|()| Judged::Filtration(file)),
     };
     judged.map_err(|error| refusal(path, error))

@@ -16,7 +16,7 @@ impl Exporter for Json {
     }
 
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
-        let mut file = ComplexFile::new(claim(shape));
+        let mut file = ComplexFile::from(claim(shape));
         file.periodic = shape.options().periodic.map(|torus| torus.sides());
         file.info = Some(serde_json::json!({
             "program": concat!("walpha ", env!("CARGO_PKG_VERSION")),

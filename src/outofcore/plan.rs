@@ -250,7 +250,7 @@ impl Plan {
         Ok(Self { digest: plan.computed_digest(), ..plan })
     }
 
-    /// Whether its blocks are in the volume.
+    /// Whether its job can be done in blocks, and its blocks are in the volume.
     fn fits(&self) -> bool {
         let dims = self.job.dims.xyz();
         let is_inside = |BlockPlan { part: SampleBox { first, size }, .. }: &BlockPlan| {
@@ -258,7 +258,8 @@ impl Plan {
                 size[k] > 0 && first[k].checked_add(size[k]).is_some_and(|end| end <= dims[k])
             })
         };
-        (1..=MOST).contains(&self.blocks.len())
+        self.job.check().is_ok()
+            && (1..=MOST).contains(&self.blocks.len())
             && self.blocks.iter().all(is_inside)
             && self.survey.first < self.job.dims.samples() as u64
             && self.kept.iter().all(|kept| [Self::SUMS, Self::SMOOTHED].contains(&&*kept.name))
@@ -321,6 +322,7 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pipeline::AlphaRule;
 
     /// With a digest that is right: what is in the plan decides.
     #[test]
@@ -341,6 +343,7 @@ mod tests {
         refused(|plan| plan.blocks[1].part.size[0] += 1, "contradicts itself");
         refused(|plan| plan.blocks[0].part.first[2] = usize::MAX, "contradicts itself");
         refused(|plan| plan.blocks.clear(), "contradicts itself");
+        refused(|plan| plan.job.recipe.alpha = AlphaRule::Auto, "contradicts itself");
         refused(|plan| plan.survey.first = 12 * 12 * 12, "contradicts itself");
     }
 }

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
 use walpha_base::{standard_output, threads};
-use walpha_check::schema::{AnyFile, SchemaError};
+use walpha_check::schema::{AnyFile, PlacedComplex, SchemaError};
 use walpha_check::{CertifyError, CertifyFiltrationError, Unjudged, certify_filtration};
 
 /// Judge weighted alpha shapes exactly.
@@ -141,7 +141,7 @@ impl Failure {
 fn judge(path: &Path, ties: Ties) -> Result<bool, Failure> {
     match AnyFile::open(path)? {
         AnyFile::Complex(file) => {
-            let (mut findings, certificate) = file.into_complex()?.findings()?;
+            let (mut findings, certificate) = PlacedComplex::try_from(file)?.findings()?;
             findings.retain(|finding| ties == Ties::Exact || !finding.is_tie());
             print(path, &certificate, &findings, &certificate.not_judged, &[])?;
             Ok(findings.is_empty())

@@ -18,6 +18,7 @@ pub mod canonical;
 mod class;
 mod complex;
 mod placed;
+pub mod schema;
 mod simplices;
 
 pub use alpha::{Alpha, AlphaError};

@@ -135,8 +135,9 @@ fn files_hold_the_box() {
     let (mut json, mut npz) = (Vec::new(), Vec::new());
     Json.write_any(&shape, &mut json).unwrap();
     Npz.write_any(&shape, &mut npz).unwrap();
-    let json = ComplexFile::read_json(&json[..]).unwrap().into_complex().unwrap();
-    let npz = ComplexFile::read_npz(std::io::Cursor::new(npz)).unwrap().into_complex().unwrap();
+    let json = PlacedComplex::try_from(ComplexFile::read_json(&json[..]).unwrap()).unwrap();
+    let npz =
+        PlacedComplex::try_from(ComplexFile::read_npz(std::io::Cursor::new(npz)).unwrap()).unwrap();
     assert_eq!(json.periodic, Some(sides));
     assert_eq!((&json, &json), (&npz, &placed_complex(&shape)));
 }

@@ -7,28 +7,30 @@ use crate::certify::torus::{moved, nearest};
 use crate::exact::orientation;
 use crate::{Class, Complex, Simplices};
 
-impl ComplexFile {
+impl TryFrom<ComplexFile> for PlacedComplex {
+    type Error = SchemaError;
+
     /// Fills in what is missing, turns cells and regular facets the canonical way, and sorts.
     /// Flat cells and repeated rows stay, for the checker to find.
     ///
     /// # Errors
     /// Fields that do not pair up, point numbers out of range, no points or simplices at all.
-    pub fn into_complex(self) -> Result<PlacedComplex, SchemaError> {
-        let n = self.points.len();
+    fn try_from(file: ComplexFile) -> Result<Self, SchemaError> {
+        let n = file.points.len();
         if n == 0 {
             return Err(SchemaError::NoPoints);
         }
         if [
-            self.cells.is_none(),
-            self.facets.is_none(),
-            self.edges.is_none(),
-            self.vertices.is_none(),
+            file.cells.is_none(),
+            file.facets.is_none(),
+            file.edges.is_none(),
+            file.vertices.is_none(),
         ] == [true; 4]
         {
             return Err(SchemaError::NoSimplices);
         }
         if let Some(side) =
-            self.periodic.iter().flatten().find(|side| !(side.is_finite() && **side > 0.0))
+            file.periodic.iter().flatten().find(|side| !(side.is_finite() && **side > 0.0))
         {
             return Err(SchemaError::Value {
                 name: "periodic",
@@ -36,18 +38,18 @@ impl ComplexFile {
                 expected: "the length of a side",
             });
         }
-        let weights = self.weights.unwrap_or_else(|| vec![0.0; n]);
-        paired("weights", weights.len(), "points", n)?;
-        let numbers = self.hidden.iter().flatten();
-        in_range("hidden", numbers, n)?;
-        in_range("duplicates", self.duplicates.iter().flatten().flatten(), n)?;
+        let weights = file.weights.unwrap_or_else(|| vec![0.0; n]);
+        SchemaError::paired("weights", weights.len(), "points", n)?;
+        let numbers = file.hidden.iter().flatten();
+        SchemaError::in_range("hidden", numbers, n)?;
+        SchemaError::in_range("duplicates", file.duplicates.iter().flatten().flatten(), n)?;
 
-        let vertices = self.vertices.map(|list| list.into_iter().map(|v| [v]).collect());
-        let given = self.classes;
+        let vertices = file.vertices.map(|list| list.into_iter().map(|v| [v]).collect());
+        let given = file.classes;
         let cells =
-            rows(Names("cells", "classes.cells"), self.cells.or(Some(Vec::new())), given.cells, n)?;
-        let facets = rows(Names("facets", "classes.facets"), self.facets, given.facets, n)?;
-        let edges = rows(Names("edges", "classes.edges"), self.edges, given.edges, n)?;
+            rows(Names("cells", "classes.cells"), file.cells.or(Some(Vec::new())), given.cells, n)?;
+        let facets = rows(Names("facets", "classes.facets"), file.facets, given.facets, n)?;
+        let edges = rows(Names("edges", "classes.edges"), file.edges, given.edges, n)?;
         let vertices = rows(Names("vertices", "classes.vertices"), vertices, given.vertices, n)?;
 
         let cells = settle(cells, |_| Vec::new(), &Simplices::<4>::default());
@@ -57,16 +59,16 @@ impl ComplexFile {
         let edges = settle(edges, of_facet, &facets);
         let vertices = settle(vertices, |&[a, b]: &[u32; 2]| vec![[a], [b]], &edges);
         let mut complex = Complex { cells, facets, edges, vertices };
-        turn(&mut complex, &self.points, self.periodic);
+        turn(&mut complex, &file.points, file.periodic);
         sort(&mut complex);
-        Ok(PlacedComplex {
-            positions: self.points,
+        Ok(Self {
+            positions: file.points,
             weights,
-            alpha: self.alpha,
+            alpha: file.alpha,
             complex,
-            hidden: self.hidden,
-            duplicates: self.duplicates,
-            periodic: self.periodic,
+            hidden: file.hidden,
+            duplicates: file.duplicates,
+            periodic: file.periodic,
         })
     }
 }
@@ -86,31 +88,11 @@ fn rows<const N: usize>(
     classes: Option<Vec<Class>>,
     points: usize,
 ) -> Result<Listed<N>, SchemaError> {
-    in_range(name, rows.iter().flatten().flatten(), points)?;
+    SchemaError::in_range(name, rows.iter().flatten().flatten(), points)?;
     if let Some(classes) = &classes {
-        paired(of_classes, classes.len(), name, rows.as_ref().map_or(0, Vec::len))?;
+        SchemaError::paired(of_classes, classes.len(), name, rows.as_ref().map_or(0, Vec::len))?;
     }
     Ok(Listed { rows, classes })
-}
-
-pub(super) fn paired(
-    name: &'static str,
-    got: usize,
-    of: &'static str,
-    expected: usize,
-) -> Result<(), SchemaError> {
-    if got == expected { Ok(()) } else { Err(SchemaError::Lengths { name, got, expected, of }) }
-}
-
-pub(super) fn in_range<'a>(
-    name: &'static str,
-    mut indices: impl Iterator<Item = &'a u32>,
-    points: usize,
-) -> Result<(), SchemaError> {
-    match indices.find(|&&index| index as usize >= points) {
-        Some(&index) => Err(SchemaError::Index { name, index, points }),
-        None => Ok(()),
-    }
 }
 
 /// What the simplices above say of a face: whether any is in the shape, whether all are interior.

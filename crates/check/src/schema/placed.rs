@@ -1,3 +1,4 @@
+use super::ComplexFile;
 use crate::certify::torus;
 use crate::{Alpha, Certificate, CertifyError, Claim, Complex, Finding, Placed};
 
@@ -65,5 +66,15 @@ impl From<Claim<'_>> for PlacedComplex {
             duplicates: claim.duplicates.map(<[_]>::to_vec),
             periodic: None,
         }
+    }
+}
+
+/// With what it claims of hidden points and duplicates.
+impl From<Claim<'_>> for ComplexFile {
+    fn from(claim: Claim<'_>) -> Self {
+        let mut file = Self::new(claim.placed);
+        file.hidden = claim.hidden.map(<[_]>::to_vec);
+        file.duplicates = claim.duplicates.map(<[_]>::to_vec);
+        file
     }
 }

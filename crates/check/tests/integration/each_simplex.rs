@@ -1,6 +1,6 @@
 //! Each simplex of a complex dropped, and each class exchanged, is found.
 
-use walpha_check::schema::{Classes, ComplexFile};
+use walpha_check::schema::{Classes, ComplexFile, PlacedComplex};
 use walpha_check::{Claim, Class, Extent, Finding, Simplices};
 
 use crate::base::{base, findings};
@@ -56,12 +56,12 @@ fn is_missing(all: &[Finding], dropped: &[u32]) -> bool {
 fn each_dropped_cell_of_a_file_without_classes() {
     let (case, answer) = base();
     let shape = shape_of(&answer);
-    let mut whole = ComplexFile::new(Claim::new(case.placed(&shape.complex)));
+    let mut whole = ComplexFile::from(Claim::new(case.placed(&shape.complex)));
     whole.classes = Classes::default();
     for row in 0..shape.complex.cells.len() {
         let mut file = whole.clone();
         let dropped = sorted(&file.cells.as_mut().unwrap().remove(row));
-        let complex = file.into_complex().unwrap().complex;
+        let complex = PlacedComplex::try_from(file).unwrap().complex;
         let all = findings(&case, &answer.with(complex), Extent::Shape);
         assert!(is_missing(&all, &dropped), "{dropped:?}: {all:?}");
     }

@@ -1,7 +1,7 @@
 //! Complexes and filtrations of points in one plane, on one line, or of one alone.
 
 use walpha_base::random::Random;
-use walpha_check::schema::{ComplexFile, FiltrationFile};
+use walpha_check::schema::{ComplexFile, FiltrationFile, PlacedComplex};
 use walpha_check::{Alpha, Claim, Class, Extent, Finding, Verdict, certify_filtration, enumerate};
 
 use crate::base::findings;
@@ -115,7 +115,7 @@ fn rules_of_the_plane() {
         let mut file = ComplexFile::of_points(positions, Alpha::INFINITE);
         file.weights = Some(vec![0.0, 0.0, 0.0, 0.0, weight]);
         file.facets = Some(facets.to_vec());
-        file.into_complex().unwrap().findings().unwrap().0
+        PlacedComplex::try_from(file).unwrap().findings().unwrap().0
     };
     assert_eq!(flat(&[[0, 1, 2], [1, 2, 3]], -20.0), []);
     let found = flat(&[[0, 1, 3], [0, 2, 3]], -20.0);

@@ -3,7 +3,7 @@
 use std::io::Cursor;
 
 use walpha_base::random::Random;
-use walpha_check::schema::{ComplexFile, SchemaError};
+use walpha_check::schema::{ComplexFile, PlacedComplex, SchemaError};
 use walpha_check::{Extent, Finding};
 use zip::CompressionMethod;
 
@@ -17,7 +17,7 @@ fn judge(bytes: &[u8]) -> Result<Vec<Finding>, String> {
     } else {
         ComplexFile::read_json(bytes)
     };
-    let placed = file.and_then(ComplexFile::into_complex).map_err(|error| error.to_string())?;
+    let placed = file.and_then(PlacedComplex::try_from).map_err(|error| error.to_string())?;
     let (findings, _) = placed.claim().findings().map_err(|error| error.to_string())?;
     findings.iter().for_each(|finding| assert!(!finding.to_string().is_empty()));
     Ok(findings)
@@ -114,7 +114,7 @@ fn files() -> [Vec<u8>; 2] {
     let weights = vec![0.0, 0.5, 0.0, 0.0, 0.0, 0.25, 0.0, 0.0, -1.0, 0.0];
     let case = crate::common::Case { positions, weights, alpha: 1.0 };
     let answer = definition(&case).unwrap();
-    let file = ComplexFile::new(case.claim(&answer, Extent::Whole));
+    let file = ComplexFile::from(case.claim(&answer, Extent::Whole));
     let mut json = Vec::new();
     file.write_json(&mut json).unwrap();
     let ints = |rows: &[u32]| rows.iter().flat_map(|i| i.to_le_bytes()).collect::<Vec<u8>>();

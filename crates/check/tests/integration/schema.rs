@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use walpha_base::random::Random;
-use walpha_check::schema::{AnyFile, Classes, ComplexFile, FiltrationFile, SchemaError};
+use walpha_check::schema::{
+    AnyFile, Classes, ComplexFile, FiltrationFile, PlacedComplex, SchemaError,
+};
 use walpha_check::{ByClass, Claim, Class, Extent};
 use zip::CompressionMethod;
 
@@ -29,11 +31,11 @@ fn round_trips() {
     for alpha in [0.9, f64::INFINITY, f64::NEG_INFINITY] {
         let case = Case { alpha, ..case() };
         let answer = definition(&case).unwrap();
-        let file = ComplexFile::new(case.claim(&answer, Extent::Whole));
+        let file = ComplexFile::from(case.claim(&answer, Extent::Whole));
         let mut json = Vec::new();
         file.write_json(&mut json).unwrap();
         assert_eq!(ComplexFile::read_json(&json[..]).unwrap(), file);
-        let placed = file.into_complex().unwrap();
+        let placed = PlacedComplex::try_from(file).unwrap();
         assert_eq!(placed.complex, answer.complex);
         assert_eq!(placed.positions, case.positions);
         assert_eq!(placed.hidden, Some(answer.hidden));
@@ -47,11 +49,11 @@ fn classes_follow_from_a_shape_alone() {
         let case = Case { alpha, ..case() };
         let answer = definition(&case).unwrap();
         let shape = shape_of(&answer).complex;
-        let mut file = ComplexFile::new(Claim::new(case.placed(&shape)));
+        let mut file = ComplexFile::from(Claim::new(case.placed(&shape)));
         file.classes = Classes::default();
         file.cells.iter_mut().flatten().for_each(|row| row.sort_unstable());
         file.facets.iter_mut().flatten().for_each(|row| row.sort_unstable());
-        assert_eq!(file.clone().into_complex().unwrap().complex, shape, "α = {alpha}");
+        assert_eq!(PlacedComplex::try_from(file.clone()).unwrap().complex, shape, "α = {alpha}");
     }
 }
 
@@ -59,7 +61,7 @@ fn classes_follow_from_a_shape_alone() {
 fn missing_dimensions_are_faces() {
     let json = r#"{ "points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1,1]],
                     "alpha": 3, "cells": [[1,0,2,3],[3,2,1,4]] }"#;
-    let placed = parse(json).unwrap().into_complex().unwrap();
+    let placed = PlacedComplex::try_from(parse(json).unwrap()).unwrap();
     let complex = &placed.complex;
     assert_eq!(complex.cells.rows(), [[0, 1, 2, 3], [1, 2, 3, 4]]);
     let facets = ByClass { interior: 1, regular: 6, ..ByClass::default() };
@@ -73,14 +75,14 @@ fn missing_dimensions_are_faces() {
 fn faces_of_exterior_cells_are_exterior() {
     let json = r#"{ "points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], "alpha": -1,
                     "cells": [[0,1,2,3]], "classes": { "cells": ["exterior"] } }"#;
-    let complex = parse(json).unwrap().into_complex().unwrap().complex;
+    let complex = PlacedComplex::try_from(parse(json).unwrap()).unwrap().complex;
     assert_eq!(complex.vertices.classes(), [Class::Exterior; 4]);
 }
 
 #[test]
 fn errors_name_the_field() {
     let message = |json: &str| match parse(json) {
-        Ok(file) => file.into_complex().unwrap_err().to_string(),
+        Ok(file) => PlacedComplex::try_from(file).unwrap_err().to_string(),
         Err(error) => error.to_string(),
     };
     let points = r#""points": [[0,0,0],[1,0,0]]"#;

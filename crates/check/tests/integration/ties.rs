@@ -1,7 +1,7 @@
 //! Other choices among ties and equal points: valid, and not exact; and what only looks like one.
 
 use walpha_base::random::Random;
-use walpha_check::schema::{ComplexFile, FiltrationFile};
+use walpha_check::schema::{ComplexFile, FiltrationFile, PlacedComplex};
 use walpha_check::{
     Alpha, Class, Complex, Extent, FiltrationFinding, Finding, Verdict, certify_filtration,
 };
@@ -21,8 +21,9 @@ fn otherwise(case: &Case, turn: [usize; 3], signs: [f64; 3]) -> Answer {
 /// With cells and facets turned as in the case's own space.
 fn turned_back(case: &Case, made: Answer) -> Answer {
     let placed = case.placed(&made.complex);
-    let complex =
-        ComplexFile::new(walpha_check::Claim::new(placed)).into_complex().unwrap().complex;
+    let complex = PlacedComplex::try_from(ComplexFile::from(walpha_check::Claim::new(placed)))
+        .unwrap()
+        .complex;
     Answer { complex, ..made }
 }
 
@@ -114,7 +115,7 @@ fn mixed_choices_are_wrong() {
         {
             continue;
         }
-        let mixed = Answer { complex: file.into_complex().unwrap().complex, ..one };
+        let mixed = Answer { complex: PlacedComplex::try_from(file).unwrap().complex, ..one };
         assert_eq!(verdict(&case, &mixed, Extent::Shape), Verdict::Wrong, "{case:?}");
         wrong += 1;
     }
@@ -137,7 +138,7 @@ fn cubes_that_do_not_fit_are_wrong() {
     let shape = |left: &Complex, right: &Complex| {
         let mut file = ComplexFile::of_points(case.positions.clone(), case.alpha());
         file.cells = Some([of(left, 0.5), of(right, 1.5)].concat());
-        Answer::of(file.into_complex().unwrap().complex)
+        Answer::of(PlacedComplex::try_from(file).unwrap().complex)
     };
     assert_eq!(verdict(&case, &shape(&own, &own), Extent::Shape), Verdict::Exact);
     assert_eq!(verdict(&case, &shape(&mirrored, &mirrored), Extent::Shape), Verdict::Valid);
@@ -157,7 +158,7 @@ fn a_square_is_cut_once() {
         let mut file = ComplexFile::of_points(case.positions.clone(), case.alpha());
         file.facets = Some(facets.to_vec());
         file.vertices = Some(vec![0, 1, 2, 3, 4]);
-        Answer::of(file.into_complex().unwrap().complex)
+        Answer::of(PlacedComplex::try_from(file).unwrap().complex)
     };
     let own = shape_of(&definition(&case).unwrap());
     let facets: Vec<_> = own.complex.facets.rows().to_vec();
@@ -208,7 +209,7 @@ fn a_part_of_a_choice_is_wrong() {
         let mut file = ComplexFile::of_points(case.positions.clone(), case.alpha());
         file.cells = Some(vec![cell]);
         file.vertices = Some((0..8).collect());
-        let part = Answer::of(file.into_complex().unwrap().complex);
+        let part = Answer::of(PlacedComplex::try_from(file).unwrap().complex);
         let found = findings(&case, &part, Extent::Shape);
         // Where the rule has this cell, nothing says that others are missing.
         if !found.is_empty() {
@@ -238,7 +239,7 @@ fn what_spans_a_tied_sphere_is_listed() {
         // Those of facets come by themselves.
         file.edges = (!edges.is_empty()).then(|| edges.to_vec());
         file.vertices = Some((0..positions.len() as u32).collect());
-        let less = Answer::of(file.into_complex().unwrap().complex);
+        let less = Answer::of(PlacedComplex::try_from(file).unwrap().complex);
         let found = findings(&case, &less, Extent::Shape);
         assert!(matches!(found[..], [Finding::SpannedSphere { .. }]), "{found:?}");
     };
@@ -288,7 +289,7 @@ fn a_face_is_cut_as_its_cells_are() {
         file.cells = Some(cells.clone());
         let own: Vec<_> = own.facets.rows().iter().map(|row| sorted(*row)).collect();
         file.facets = Some([&own[..], &other].concat());
-        let crossed = Answer::of(file.into_complex().unwrap().complex);
+        let crossed = Answer::of(PlacedComplex::try_from(file).unwrap().complex);
         let found = findings(&case, &crossed, Extent::Shape);
         assert!(found.iter().any(|f| matches!(f, Finding::TiedFacets { .. })), "{found:?}");
     }

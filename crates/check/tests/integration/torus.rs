@@ -1,6 +1,6 @@
 //! Complexes of a periodic box, by hand.
 
-use walpha_check::schema::{ComplexFile, SchemaError};
+use walpha_check::schema::{ComplexFile, PlacedComplex, SchemaError};
 use walpha_check::{Alpha, CertifyError, Finding};
 
 /// What is found of an edge from the origin along x.
@@ -10,7 +10,7 @@ fn findings(end: f64, side: f64) -> Result<Vec<Finding>, CertifyError> {
     file.edges = Some(vec![[0, 1]]);
     file.vertices = Some(vec![0, 1]);
     file.periodic = Some([side; 3]);
-    Ok(file.into_complex().unwrap().findings()?.0)
+    Ok(PlacedComplex::try_from(file).unwrap().findings()?.0)
 }
 
 #[test]
@@ -36,7 +36,7 @@ fn sides_are_positive_numbers() {
         let mut file = ComplexFile::of_points(vec![[0.0; 3]], Alpha::ZERO);
         file.vertices = Some(vec![0]);
         file.periodic = Some([8.0, side, 8.0]);
-        let refused = file.into_complex().unwrap_err();
+        let refused = PlacedComplex::try_from(file).unwrap_err();
         assert!(
             matches!(refused, SchemaError::Value { name: "periodic", .. }),
             "{side}: {refused}"

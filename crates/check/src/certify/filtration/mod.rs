@@ -148,17 +148,15 @@ pub fn certify_filtration(
 
 /// The complex at α = ∞.
 fn whole(file: &FiltrationFile) -> Result<PlacedComplex, SchemaError> {
-    let complex = ComplexFile {
-        weights: file.weights.clone(),
-        cells: Some(file.cells.clone()),
-        facets: Some(file.facets.clone()),
-        edges: Some(file.edges.clone()),
-        vertices: Some(file.vertices.clone()),
-        hidden: file.hidden.clone(),
-        duplicates: file.duplicates.clone(),
-        ..ComplexFile::of_points(file.points.clone(), Alpha::INFINITE)
-    };
-    complex.into_complex()
+    let mut complex = ComplexFile::of_points(file.points.clone(), Alpha::INFINITE);
+    complex.weights.clone_from(&file.weights);
+    complex.cells = Some(file.cells.clone());
+    complex.facets = Some(file.facets.clone());
+    complex.edges = Some(file.edges.clone());
+    complex.vertices = Some(file.vertices.clone());
+    complex.hidden.clone_from(&file.hidden);
+    complex.duplicates.clone_from(&file.duplicates);
+    PlacedComplex::try_from(complex)
 }
 
 /// What the file says of the simplices, which are those of the triangulation, against what is so.

@@ -88,6 +88,30 @@ pub enum SchemaError {
 }
 
 impl SchemaError {
+    /// Refuses two fields that do not pair up.
+    #[doc(hidden)]
+    pub fn paired(
+        name: &'static str,
+        got: usize,
+        of: &'static str,
+        expected: usize,
+    ) -> Result<(), Self> {
+        if got == expected { Ok(()) } else { Err(Self::Lengths { name, got, expected, of }) }
+    }
+
+    /// Refuses numbers of points that are not there.
+    #[doc(hidden)]
+    pub fn in_range<'a>(
+        name: &'static str,
+        mut indices: impl Iterator<Item = &'a u32>,
+        points: usize,
+    ) -> Result<(), Self> {
+        match indices.find(|&&index| index as usize >= points) {
+            Some(&index) => Err(Self::Index { name, index, points }),
+            None => Ok(()),
+        }
+    }
+
     /// What to do about it, where there is something.
     pub fn advice(&self) -> Option<&'static str> {
         Some(match self {

@@ -8,7 +8,6 @@ mod npz;
 use serde::{Deserialize, Serialize};
 
 use super::SchemaError;
-use super::build::{in_range, paired};
 use crate::Alpha;
 
 /// A filtration as a file holds it: every simplex of a regular triangulation, and when it comes.
@@ -148,15 +147,15 @@ impl FiltrationFile {
         if n == 0 {
             return Err(SchemaError::NoPoints);
         }
-        paired("weights", self.weights.as_ref().map_or(n, Vec::len), "points", n)?;
-        in_range("vertices", self.vertices.iter(), n)?;
-        in_range("edges", self.edges.iter().flatten(), n)?;
-        in_range("facets", self.facets.iter().flatten(), n)?;
-        in_range("cells", self.cells.iter().flatten(), n)?;
+        SchemaError::paired("weights", self.weights.as_ref().map_or(n, Vec::len), "points", n)?;
+        SchemaError::in_range("vertices", self.vertices.iter(), n)?;
+        SchemaError::in_range("edges", self.edges.iter().flatten(), n)?;
+        SchemaError::in_range("facets", self.facets.iter().flatten(), n)?;
+        SchemaError::in_range("cells", self.cells.iter().flatten(), n)?;
         let (values, cells) = (&self.values, self.cells.len());
         let of_values = [&values.vertices, &values.edges, &values.facets].map(Vec::len);
         self.paired(["values.vertices", "values.edges", "values.facets"], of_values)?;
-        paired("values.cells", values.cells.len(), "cells", cells)?;
+        SchemaError::paired("values.cells", values.cells.len(), "cells", cells)?;
         if let Some(gabriel) = &self.gabriel {
             self.paired(["gabriel.vertices", "gabriel.edges", "gabriel.facets"], gabriel.counts())?;
         }
@@ -172,9 +171,9 @@ impl FiltrationFile {
 
     /// Whether there are as many of something as simplices below cells.
     fn paired(&self, names: [&'static str; 3], counts: [usize; 3]) -> Result<(), SchemaError> {
-        paired(names[0], counts[0], "vertices", self.vertices.len())?;
-        paired(names[1], counts[1], "edges", self.edges.len())?;
-        paired(names[2], counts[2], "facets", self.facets.len())
+        SchemaError::paired(names[0], counts[0], "vertices", self.vertices.len())?;
+        SchemaError::paired(names[1], counts[1], "edges", self.edges.len())?;
+        SchemaError::paired(names[2], counts[2], "facets", self.facets.len())
     }
 }
 

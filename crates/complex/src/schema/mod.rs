@@ -1,0 +1,165 @@
+//! A small file format for complexes, so that those of any program can be judged and compared.
+//!
+//! In JSON:
+//!
+//! ```json
+//! { "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+//!   "weights": [0, 0, 0, 0],
+//!   "alpha": 0.75,
+//!   "cells": [[0, 1, 2, 3]],
+//!   "facets": [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]],
+//!   "edges": [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]],
+//!   "vertices": [0, 1, 2, 3],
+//!   "classes": { "cells": ["interior"] },
+//!   "hidden": [],
+//!   "duplicates": [] }
+//! ```
+//!
+//! - `points` and `alpha` are required. `alpha` is a **squared** length: a number, `"inf"` or
+//!   `"-inf"`. A program that works with radii r has α = r².
+//! - `weights` are power weights, squared lengths; without them all are 0.
+//! - Simplices are rows of point numbers from 0, in any order and winding. If a dimension is
+//!   missing, it consists of the faces of the dimension above.
+//! - `classes` (`exterior`, `interior`, `regular`, `singular`) give the class of each row of a
+//!   dimension. Without them, all listed simplices count as in the shape, and their classes follow:
+//!   a facet with two cells is interior, with one regular, with none singular, and so on down.
+//! - `hidden` lists the points that are not vertices, `duplicates` pairs (went, stayed) of points
+//!   at one place. Both are optional.
+//! - `periodic` are the sides of a box that repeats along x, y and z: the complex is then one of a
+//!   torus. All points are in the box, from 0 to less than its sides, and the vertices of a simplex
+//!   that are meant are the copies nearest to its first one, which is nearer than half a side along each axis.
+//! - `info` is for whatever the writer wants to add.
+//!
+//! In NPZ (`numpy.savez`, `numpy.savez_compressed`) the same names are arrays of any integer or
+//! floating-point type: `points` n×3, `weights` n, `alpha` a scalar, `cells` m×4, `facets` m×3,
+//! `edges` m×2, `vertices` m, `hidden` m, `duplicates` m×2. Classes are arrays `cell_classes`,
+//! `facet_classes`, `edge_classes` and `vertex_classes`, with 0 exterior, 1 interior, 2 regular,
+//! 3 singular.
+//!
+//! A [`FiltrationFile`] is a complex at all values of α; [`AnyFile`] opens either.
+
+mod error;
+mod filtration;
+#[cfg(feature = "json")]
+mod json;
+#[cfg(feature = "npz")]
+mod npz;
+#[cfg(feature = "npz")]
+mod numbers;
+mod open;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Alpha, Class, Placed};
+
+pub use error::SchemaError;
+pub use filtration::{Below, FiltrationFile, PairsFile, Values};
+pub use open::AnyFile;
+
+/// A complex as a file holds it; see the [module](self) for the meaning of the fields.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct ComplexFile {
+    /// x, y, z of each point.
+    #[serde(default)]
+    pub points: Vec<[f64; 3]>,
+    /// Power weights, squared lengths; all 0 if missing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights: Option<Vec<f64>>,
+    /// α.
+    pub alpha: Alpha,
+    /// Tetrahedra.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cells: Option<Vec<[u32; 4]>>,
+    /// Triangles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub facets: Option<Vec<[u32; 3]>>,
+    /// Edges.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub edges: Option<Vec<[u32; 2]>>,
+    /// Vertices.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vertices: Option<Vec<u32>>,
+    /// Classes of the simplices listed.
+    #[serde(default, skip_serializing_if = "Classes::is_empty")]
+    pub classes: Classes,
+    /// Points that are not vertices.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hidden: Option<Vec<u32>>,
+    /// Pairs (went, stayed) of points at one place.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duplicates: Option<Vec<[u32; 2]>>,
+    /// The sides of the box that repeats, if one does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub periodic: Option<[f64; 3]>,
+    /// Whatever the writer wants to add.
+    #[cfg(feature = "json")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub info: Option<serde_json::Value>,
+}
+
+/// Classes by dimension, as many as simplices where present.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct Classes {
+    /// Of the cells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cells: Option<Vec<Class>>,
+    /// Of the facets.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub facets: Option<Vec<Class>>,
+    /// Of the edges.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub edges: Option<Vec<Class>>,
+    /// Of the vertices.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vertices: Option<Vec<Class>>,
+}
+
+impl Classes {
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl ComplexFile {
+    /// The file of a complex with its points.
+    pub fn new(placed: Placed<'_>) -> Self {
+        let Placed { positions, weights, alpha, complex } = placed;
+        Self {
+            weights: Some(weights.to_vec()),
+            cells: Some(complex.cells.rows().to_vec()),
+            facets: Some(complex.facets.rows().to_vec()),
+            edges: Some(complex.edges.rows().to_vec()),
+            vertices: Some(complex.vertices.rows().as_flattened().to_vec()),
+            classes: Classes {
+                cells: Some(complex.cells.classes().to_vec()),
+                facets: Some(complex.facets.classes().to_vec()),
+                edges: Some(complex.edges.classes().to_vec()),
+                vertices: Some(complex.vertices.classes().to_vec()),
+            },
+            ..Self::of_points(positions.to_vec(), alpha)
+        }
+    }
+
+    /// A file of points and α, to which simplices are yet to be added.
+    pub fn of_points(points: Vec<[f64; 3]>, alpha: Alpha) -> Self {
+        Self {
+            points,
+            weights: None,
+            alpha,
+            cells: None,
+            facets: None,
+            edges: None,
+            vertices: None,
+            classes: Classes::default(),
+            hidden: None,
+            duplicates: None,
+            periodic: None,
+            #[cfg(feature = "json")]
+            info: None,
+        }
+    }
+}
