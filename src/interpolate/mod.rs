@@ -1,8 +1,8 @@
 //! The function F on a shape, what it misses of the volume, and points that miss less.
 //!
 //! F is linear on each simplex of the shape: on interior cells, and on the facets, edges and
-//! vertices that are faces of none, at places exactly on them. Which simplex holds a place is
-//! decided exactly, so F is defined everywhere on the shape and nowhere else, and each sample of a
+//! vertices that are faces of no other simplex, at positions exactly on them. Which simplex holds a
+//! position is decided exactly, so F is defined everywhere on the shape and nowhere else, and each sample of a
 //! grid belongs to one simplex, whatever the number of threads.
 //!
 //! `barycentric.rs` computes coordinates in plain doubles where a lattice makes these exact, otherwise behind an error
@@ -23,7 +23,8 @@
 //! let shape = alpha_shape(weighted, &ShapeOptions::new(Alpha::from_squared(10.0)?))?;
 //!
 //! let interpolant = Interpolant::new(&shape)?;
-//! // At a point F is the point's value, bit for bit; far away there is none.
+//! let points = shape.points();
+//! // At a point F is the point's value, bit for bit; outside the shape it has none.
 //! let value = interpolant.value_at(points.positions[0]);
 //! assert_eq!(value, Some(points.values.as_ref().unwrap()[0]));
 //! assert_eq!(interpolant.value_at([-5.0, 0.0, 0.0]), None);
