@@ -19,7 +19,7 @@
 //!
 //! let volume = volume::sample("sample:phantom@24")?;
 //! let points = select(&volume, &volume, &difference(&volume), &Selection::default(), Units::Voxel)?;
-//! let weighted = weigh(points.clone(), Weighting::Common(0.0), Alpha::from_squared(10.0)?)?;
+//! let weighted = weigh(points, Weighting::Common(0.0), Alpha::from_squared(10.0)?)?;
 //! let shape = alpha_shape(weighted, &ShapeOptions::new(Alpha::from_squared(10.0)?))?;
 //!
 //! let interpolant = Interpolant::new(&shape)?;
