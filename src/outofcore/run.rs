@@ -8,7 +8,6 @@ use super::{BlockPlan, BlocksError, Plan};
 use crate::shape::{
     BlockShape, ByClass, Class, ComponentSums, Own, ShapeError, SheetSums, Side, block_shape,
 };
-use crate::volume::GrayRange;
 
 /// The facts of a block: all that merging needs but for keys and rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -144,7 +143,7 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
     }
     found.sort_unstable_by_key(|&(voxel, ..)| voxel);
     let shares = plan.shares()?;
-    let written = if job.recipe.gray_out { GrayRange::IDENTITY } else { survey.range };
+    let written = job.recipe.written(survey.range);
     let [nx, ny, _] = field.dims;
     let mut points = Points::default();
     for (voxel, difference, gray) in found {

@@ -8,7 +8,7 @@ use walpha_base::shown::{number, six_digits};
 
 use super::PipelineError;
 use crate::ladder::Filtration;
-use crate::points::{Points, Units, WeightedPoints, Weighting, weigh};
+use crate::points::{Points, Units, WeightedPoints};
 use crate::shape::{Alpha, AlphaError, ShapeError, Torus};
 use crate::volume::{Frame, LengthUnit, Volume};
 
@@ -164,8 +164,8 @@ impl Parameter {
         unit: LengthUnit,
         monitor: &Monitor,
     ) -> Result<Self, PipelineError> {
-        let points = weigh(points.clone(), Weighting::Common(0.0), Alpha::INFINITE)?;
-        let found = Self::find(&points, None, unit, monitor)?;
+        let unweighted = WeightedPoints::unweighted(points.positions.clone());
+        let found = Self::of_filtration(&Filtration::monitored(None, unweighted, monitor)?, unit);
         Ok(Self { origin: ParameterOrigin::AutoUnweighted, ..found })
     }
 
