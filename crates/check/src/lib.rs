@@ -31,6 +31,7 @@ mod compare;
 mod enumerate;
 mod exact;
 mod flat;
+mod periodic;
 pub mod schema;
 
 pub use certify::{

@@ -1,6 +1,6 @@
 use serde::Serialize;
 
-use super::claim::MOST;
+use super::structure::MAX_CELLS;
 use crate::exact::Exact;
 
 /// What a complex is found to be.
@@ -149,7 +149,7 @@ pub enum CertifyError {
     #[error("point {0} is not in the periodic box, or so fine that its copies would be rounded")]
     NotInBox(usize),
     /// More simplices or points than 32-bit numbers.
-    #[error("{0} cells or points are too many to check: at most {max} fit", max = MOST)]
+    #[error("{0} cells or points are too many to check: at most {max} fit", max = MAX_CELLS)]
     TooMany(usize),
     /// Memory for the links between simplices cannot be had.
     #[error("the check of {cells} cells needs {bytes} bytes of memory, which cannot be had")]

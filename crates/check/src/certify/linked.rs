@@ -1,5 +1,5 @@
 use super::structure::Structure;
-use super::{Extent, Finding, Points, geometry, hull};
+use super::{Extent, Finding, Points, geometry, hull, places};
 use crate::Complex;
 
 /// A complex with its simplices linked, and which rules of structure and geometry it breaks.
@@ -30,4 +30,19 @@ impl<'a> Linked<'a> {
     pub(super) fn is_regular(&self) -> bool {
         self.broken.is_empty() && self.irregular.iter().all(Finding::is_tie)
     }
+}
+
+/// All findings on cells as a whole triangulation of some points, such as those on one sphere.
+pub(super) fn triangulation_findings(cells: &Complex, points: Points) -> Vec<Finding> {
+    let linked = Linked::new(cells, points, Extent::Whole);
+    let regular = linked.is_regular();
+    let mut found = linked.broken;
+    found.extend(hull::volume(&linked.structure, points));
+    found.extend(linked.irregular);
+    if regular {
+        let own: Vec<u32> = (0..points.len() as u32).collect();
+        let hidden = places::hidden(&linked.structure, &own);
+        found.extend(places::hiddenness(&linked.structure, points, &hidden));
+    }
+    found
 }

@@ -14,13 +14,15 @@ mod index;
 mod linked;
 mod message;
 mod near;
+mod placed;
 mod places;
 mod points;
 mod rules;
 mod simplex;
 mod structure;
 mod ties;
-pub(crate) mod torus;
+mod torus;
+mod verify;
 
 use points::Points;
 

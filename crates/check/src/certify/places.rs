@@ -159,7 +159,7 @@ pub(super) fn of_shape(
     stays: &[u32],
     claim: &Claim,
 ) -> Vec<Finding> {
-    let points = Points::of(claim);
+    let points = Points::of(claim.placed);
     let mut standings = standings(structure, stays);
     let missing = |&point: &u32| {
         let site = points.get(point);

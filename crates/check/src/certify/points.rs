@@ -1,4 +1,4 @@
-use super::Claim;
+use crate::Placed;
 use crate::exact::WeightedPoint;
 
 /// The input points.
@@ -9,9 +9,9 @@ pub(super) struct Points<'a> {
 }
 
 impl<'a> Points<'a> {
-    /// Those of a claim.
-    pub(super) fn of(claim: &Claim<'a>) -> Self {
-        Self { positions: claim.placed.positions, weights: claim.placed.weights }
+    /// The points of a complex.
+    pub(super) fn of(placed: Placed<'a>) -> Self {
+        Self { positions: placed.positions, weights: placed.weights }
     }
 
     pub(super) fn len(self) -> usize {

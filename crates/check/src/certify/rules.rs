@@ -10,7 +10,6 @@ use super::flat::Cone;
 use super::linked::Linked;
 use super::structure;
 use super::{Claim, Extent, Finding, Points, gaps, hull, places, ties};
-use crate::Complex;
 use crate::exact::Exact;
 use crate::flat::auxiliary;
 
@@ -25,7 +24,7 @@ pub(super) fn apply(
     volume: &mut Option<Exact>,
 ) -> ControlFlow<()> {
     let (complex, alpha) = (claim.placed.complex, claim.placed.alpha);
-    let points = Points::of(claim);
+    let points = Points::of(claim.placed);
     let whole = claim.extent == Extent::Whole;
     let rows = structure::rows(complex, points.len());
     let bad_rows = !rows.is_empty();
@@ -117,7 +116,7 @@ fn apply_to(
 /// a cone over it.
 fn flat(claim: &Claim, cone: &Cone, report: &mut Report) -> ControlFlow<()> {
     let complex = claim.placed.complex;
-    let points = Points::of(claim);
+    let points = Points::of(claim.placed);
     let (stays, equal) = places::staying(points, complex, claim.duplicates);
     report(equal)?;
     let linked = Linked::new(&cone.complex, cone.points(), Extent::Whole);
@@ -145,19 +144,4 @@ fn flat(claim: &Claim, cone: &Cone, report: &mut Report) -> ControlFlow<()> {
     };
     report(classes::judge(&structure, &judge))?;
     if regular { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-}
-
-/// What is wrong with cells as a whole triangulation of points, but for ties: those of a sphere, say.
-pub(super) fn wrong_triangulation(cells: &Complex, points: Points) -> Vec<Finding> {
-    let linked = Linked::new(cells, points, Extent::Whole);
-    let regular = linked.is_regular();
-    let mut found = linked.broken;
-    found.extend(hull::volume(&linked.structure, points));
-    found.extend(linked.irregular);
-    if regular {
-        let own: Vec<u32> = (0..points.len() as u32).collect();
-        let hidden = places::hidden(&linked.structure, &own);
-        found.extend(places::hiddenness(&linked.structure, points, &hidden));
-    }
-    found
 }

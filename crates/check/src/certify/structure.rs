@@ -7,6 +7,9 @@ use super::index::{Index, NONE};
 use super::{Finding, Points};
 use crate::Complex;
 
+/// As many cells as the 32-bit numbers of their sides, 4 · cell + 0..4, leave room for.
+pub(super) const MAX_CELLS: usize = (u32::MAX / 4) as usize;
+
 /// The listed simplices, linked: cells to facets and back, and each found by its vertices.
 pub(super) struct Structure<'a> {
     pub complex: &'a Complex,

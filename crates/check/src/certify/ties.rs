@@ -12,7 +12,7 @@ use walpha_complex::canonical::{outward_facets, sorted};
 
 use super::emptiness::Emptiness;
 use super::flat::{Cone, closed};
-use super::rules::wrong_triangulation;
+use super::linked::triangulation_findings;
 use super::structure::Structure;
 use super::{Finding, Points};
 use crate::exact::{collinear, orientation};
@@ -93,7 +93,7 @@ pub(super) fn cells(
         let own: Vec<_> = rows.iter().map(|&row| local(cells[row], on)).collect();
         let (positions, weights) = placed(on, points);
         let of_sphere = Points { positions: &positions, weights: &weights };
-        let wrong = wrong_triangulation(&closed(&own), of_sphere);
+        let wrong = triangulation_findings(&closed(&own), of_sphere);
         wrong.iter().any(|finding| !finding.is_tie()).then(|| Finding::TiedSphere {
             simplex: cells[rows[0]].into(),
             points: on.clone(),
@@ -178,7 +178,7 @@ fn flat_findings(
     let of_sphere = Points { positions: &positions, weights: &weights };
     let beside = auxiliary(positions.iter().copied()).unwrap_or_default();
     let found = Cone::over(complex, of_sphere, &beside)
-        .map(|cone| cone.at_base(wrong_triangulation(&cone.complex, cone.points())));
+        .map(|cone| cone.at_base(triangulation_findings(&cone.complex, cone.points())));
     match found {
         Some(found) if found.iter().all(Finding::is_tie) => {
             found.into_iter().map(|finding| finding.renumbered(on)).collect()

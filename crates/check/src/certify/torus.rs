@@ -14,6 +14,7 @@ use super::{
     Certificate, CertifyError, Claim, Extent, Finding, NotJudged, Points, Verdict, hull, structure,
 };
 use crate::exact::Exact;
+use crate::periodic::{moved, nearest_copy};
 use crate::schema::PlacedComplex;
 use crate::{Alpha, Complex, Placed, Simplices};
 
@@ -21,7 +22,7 @@ use crate::{Alpha, Complex, Placed, Simplices};
 ///
 /// # Errors
 /// [`CertifyError`]; points of which no exact copies can be made.
-pub(crate) fn findings(
+pub(super) fn findings(
     placed: &PlacedComplex,
     sides: [f64; 3],
 ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
@@ -91,19 +92,6 @@ fn long_edges(complex: &Complex, points: Points, sides: [f64; 3]) -> Vec<Finding
     };
     let long = complex.edges.rows().iter().filter(is_long);
     long.map(|&edge| Finding::LongEdge { edge: edge.into() }).collect()
-}
-
-/// By how many sides the copy of a place that is nearest to another one is moved.
-pub(crate) fn nearest(sides: [f64; 3], from: [f64; 3], to: [f64; 3]) -> [i32; 3] {
-    [0, 1, 2].map(|k| {
-        let (way, half) = (to[k] - from[k], sides[k] / 2.0);
-        i32::from(way < -half) - i32::from(way > half)
-    })
-}
-
-/// A place moved by multiples of the sides.
-pub(crate) fn moved(sides: [f64; 3], place: [f64; 3], by: [i32; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| place[k] + f64::from(by[k]) * sides[k])
 }
 
 /// A complex copied, those of the box itself first.
@@ -224,7 +212,7 @@ impl<'a> Layout<'a> {
     fn row<const N: usize>(&self, mut row: [u32; N], by: [i32; 3]) -> Option<[u32; N]> {
         let first = self.positions[row[0] as usize];
         for v in &mut row {
-            let way = nearest(self.sides, first, self.positions[*v as usize]);
+            let way = nearest_copy(self.sides, first, self.positions[*v as usize]);
             let by = [0, 1, 2].map(|k| by[k] + way[k]);
             *v += is_beside(by).then(|| self.numbers[&by])? * self.positions.len() as u32;
         }

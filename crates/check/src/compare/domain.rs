@@ -5,7 +5,7 @@ use dashu_int::IBig;
 use serde::Serialize;
 use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 
-use super::{Places, weights_by_place};
+use super::places::{Places, weights_by_place};
 use crate::exact::{Exact, Lattice, Lift, WeightedPoint, orientation};
 use crate::schema::turn;
 use crate::{Claim, Class, Placed, Verdict};

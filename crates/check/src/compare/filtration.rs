@@ -6,8 +6,9 @@ use std::fmt::{self, Display};
 use serde::Serialize;
 use walpha_complex::canonical::sorted;
 
+use super::WeightDifference;
+use super::places::{Places, weights_by_place};
 use super::text::{PRINTED, rows};
-use super::{Places, WeightDifference, weights_by_place};
 use crate::schema::{Below, FiltrationFile, SchemaError};
 use crate::{Alpha, Simplex};
 

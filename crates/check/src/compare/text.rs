@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display};
 
-use super::Comparison;
+use super::{Comparison, WeightDifference};
 
 /// How many differences of a kind are printed one by one.
 pub(super) const PRINTED: usize = 10;
@@ -19,7 +19,7 @@ impl Display for Comparison {
             writeln!(f, "weights: equal where both have a point")?;
         }
         let weight =
-            |w: &super::WeightDifference| format!("point {}: {} in A, {} in B", w.point, w.a, w.b);
+            |w: &WeightDifference| format!("point {}: {} in A, {} in B", w.point, w.a, w.b);
         rows(f, "weights that differ", self.weights.iter().map(weight))?;
         match self.alpha {
             [a, b] if a == b => writeln!(f, "α: {a} in both")?,

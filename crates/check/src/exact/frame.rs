@@ -155,10 +155,10 @@ pub(super) fn cross<T: Number>(u: &[T; 3], v: &[T; 3]) -> [T; 3] {
 mod tests {
     use walpha_base::random::Random;
 
-    use super::super::formulas::{
+    use super::*;
+    use crate::exact::formulas::{
         Power1, Power2, Power3, Power4, Radius2, Radius3, Radius4, Volume,
     };
-    use super::*;
 
     /// Small integers, and if `wild` their neighbours, halves, and numbers of any size.
     fn number(random: &mut Random, wild: bool) -> f64 {

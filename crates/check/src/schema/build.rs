@@ -3,8 +3,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
 use super::{ComplexFile, PlacedComplex, SchemaError};
-use crate::certify::torus::{moved, nearest};
 use crate::exact::orientation;
+use crate::periodic::{moved, nearest_copy};
 use crate::{Class, Complex, Simplices};
 
 impl TryFrom<ComplexFile> for PlacedComplex {
@@ -144,7 +144,7 @@ pub(crate) fn turn(complex: &mut Complex, points: &[[f64; 3]], periodic: Option<
         let mut places = cell.map(|v| points[v as usize]);
         if let Some(sides) = periodic {
             let first = places[0];
-            places = places.map(|place| moved(sides, place, nearest(sides, first, place)));
+            places = places.map(|place| moved(sides, place, nearest_copy(sides, first, place)));
         }
         let [a, b, c, d] = places;
         if finite(&[a, b, c, d]) && orientation(a, b, c, d).is_lt() {

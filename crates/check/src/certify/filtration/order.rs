@@ -3,10 +3,11 @@
 use walpha_complex::canonical::sorted;
 
 use super::finding::FiltrationFinding;
+use super::row_numbers::RowNumbers;
 use super::spans::Spans;
 use super::values::Ranks;
-use super::{FiltrationFile, RowNumbers};
 use crate::certify::Simplex;
+use crate::schema::FiltrationFile;
 
 /// Judges that each simplex is in the order once, and comes after the one before it: by the exact
 /// number, then by dimension, then by vertices.

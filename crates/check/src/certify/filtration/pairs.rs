@@ -3,8 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::RowNumbers;
 use super::finding::FiltrationFinding;
+use super::row_numbers::RowNumbers;
 use super::spans::Spans;
 use crate::certify::structure::Structure;
 use crate::schema::{FiltrationFile, PairsFile};

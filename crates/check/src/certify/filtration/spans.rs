@@ -1,7 +1,7 @@
 //! From which value on each simplex is in the shape, a face of another one there, and off its boundary.
 
-use super::super::structure::Structure;
 use super::values::{ATTACHED, NEVER, Ranks};
+use crate::certify::structure::Structure;
 
 /// Places among the values; [`NEVER`] where there is none.
 #[derive(Clone, Copy)]

@@ -4,9 +4,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::super::Points;
-use super::super::structure::Structure;
 use crate::Alpha;
+use crate::certify::Points;
+use crate::certify::structure::Structure;
 use crate::exact::{Exact, Side, radius_value, side};
 
 /// No empty sphere of its own.

@@ -1,0 +1,82 @@
+use serde::Serialize;
+
+use crate::certify::certificate::verdict_in_words;
+use crate::certify::{Certificate, CertifyError, Verdict};
+use crate::schema::SchemaError;
+
+/// What was judged of a filtration, and what not.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct FiltrationCertificate {
+    /// What follows from all findings: valid if only the triangulation departs from the rule, at ties.
+    pub verdict: Verdict,
+    /// How many findings there are.
+    pub findings: usize,
+    /// That of the triangulation, which is the complex at α = ∞.
+    pub triangulation: Certificate,
+    /// Values that are different numbers.
+    pub values: usize,
+    /// What was not judged.
+    pub not_judged: Vec<Unjudged>,
+}
+
+/// The verdict with its reason, in one line.
+impl std::fmt::Display for FiltrationCertificate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        verdict_in_words(f, self.verdict, self.findings, self.triangulation.ties, true)
+    }
+}
+
+/// Parts of a filtration that are not judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Unjudged {
+    /// Values, classes and order: the triangulation is wrong.
+    AfterFindings,
+    /// Which simplices are Gabriel: the file does not say.
+    Gabriel,
+    /// From when on simplices are regular and interior: the file does not say.
+    Intervals,
+    /// Persistence pairs: the file lists none.
+    Pairs,
+}
+
+impl std::fmt::Display for Unjudged {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::AfterFindings => "values, classes and order (they rest on the triangulation)",
+            Self::Gabriel => "which simplices are Gabriel (the file does not say)",
+            Self::Intervals => {
+                "from when on simplices are regular and interior (the file does not say)"
+            }
+            Self::Pairs => "persistence pairs (the file lists none)",
+        })
+    }
+}
+
+/// Why a file cannot be judged as a filtration.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CertifyFiltrationError {
+    /// Fields do not fit together.
+    #[error(transparent)]
+    Schema(#[from] SchemaError),
+    /// The triangulation cannot be judged.
+    #[error(transparent)]
+    Triangulation(#[from] CertifyError),
+    /// The points are those of a torus.
+    #[error("filtrations of a periodic box are not judged")]
+    Periodic,
+}
+
+impl CertifyFiltrationError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Schema(error) => error.advice(),
+            Self::Triangulation(error) => error.advice(),
+            Self::Periodic => Some("judge the complexes at some α instead"),
+        }
+    }
+}

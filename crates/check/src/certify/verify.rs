@@ -1,0 +1,131 @@
+//! Judging a claim: what can be judged, and the verdict that the findings make.
+
+use std::ops::ControlFlow;
+
+use super::structure::{MAX_CELLS, Structure};
+use super::{Certificate, CertifyError, Claim, Extent, Finding, NotJudged, Verdict, rules};
+use crate::exact::Exact;
+use crate::{Complex, Placed};
+
+impl Claim<'_> {
+    /// Whether it is exact, valid or wrong, as far as it can be judged.
+    ///
+    /// # Errors
+    /// [`CertifyError`].
+    pub fn verdict(&self) -> Result<Verdict, CertifyError> {
+        Ok(self.visit(&mut |_| ControlFlow::Continue(()))?.verdict)
+    }
+
+    /// The first broken rule, or choice among ties that is not the rule's.
+    ///
+    /// # Errors
+    /// [`CertifyError`].
+    pub fn first_finding(&self) -> Result<Option<Finding>, CertifyError> {
+        let mut first = None;
+        self.visit(&mut |finding| {
+            first = Some(finding);
+            ControlFlow::Break(())
+        })?;
+        Ok(first)
+    }
+
+    /// All broken rules and [ties](Finding::is_tie) that are not decided by the rule, and what was judged.
+    ///
+    /// # Errors
+    /// [`CertifyError`].
+    pub fn findings(&self) -> Result<(Vec<Finding>, Certificate), CertifyError> {
+        let mut all = Vec::new();
+        let certificate = self.visit(&mut |finding| {
+            all.push(finding);
+            ControlFlow::Continue(())
+        })?;
+        Ok((all, certificate))
+    }
+
+    /// Judges the complex, handing each finding to `visitor` until it breaks.
+    ///
+    /// The rules, each exact and each linear in the number of simplices (up to sorting):
+    /// 1. rows name distinct input points, and no simplex is listed twice;
+    /// 2. every face of a simplex is listed, so is each cell that has all its faces listed, and in
+    ///    a whole triangulation nothing else is;
+    /// 3. cells are positively oriented; a facet has at most two cells, one on each side;
+    /// 4. no cell is refuted by its neighbours' vertices, by the perturbed power test; in a shape
+    ///    alone, by no point nearby, and what is listed on a sphere with more points fits together;
+    /// 5. the hull is convex, goes around once, and the cells' volumes add up to what it
+    ///    encloses (whole triangulations only);
+    /// 6. no point is more than one of vertex, hidden and duplicate, and each is one of them (in a
+    ///    shape alone: each that has no other inside or on its sphere is a vertex);
+    /// 7. every class is what the definition says, and regular facets turn counter-clockwise seen
+    ///    from outside.
+    ///
+    /// Points that span no volume are judged in their plane, on their line, or as the one point that they are:
+    /// a whole triangulation has no cells then, and the rules on cells hold for its largest simplices.
+    ///
+    /// Rules that mean nothing once others are broken are not applied then; the certificate says
+    /// so. What only departs from the rule of ties is a finding, too, and [is a tie](Finding::is_tie).
+    ///
+    /// Findings come in the same order on any number of threads. In a shape alone, cost also
+    /// grows with the number of points within √(α + largest weight) of a simplex.
+    ///
+    /// # Errors
+    /// [`CertifyError`].
+    pub fn visit(
+        &self,
+        visitor: &mut dyn FnMut(Finding) -> ControlFlow<()>,
+    ) -> Result<Certificate, CertifyError> {
+        self.check()?;
+        let mut certificate = Certificate {
+            verdict: Verdict::Exact,
+            findings: 0,
+            ties: 0,
+            six_volumes: Exact::default(),
+            not_judged: Vec::new(),
+        };
+        if self.extent == Extent::Shape {
+            certificate.not_judged.extend([NotJudged::MissingSimplices, NotJudged::HiddenAndHull]);
+        }
+        if self.duplicates.is_none() {
+            certificate.not_judged.push(NotJudged::Duplicates);
+        }
+        let mut report = |findings: Vec<Finding>| {
+            findings.into_iter().try_for_each(|finding| {
+                certificate.findings += 1;
+                certificate.ties += usize::from(finding.is_tie());
+                visitor(finding)
+            })
+        };
+        let mut volume = None;
+        let all_rules = rules::apply(self, &mut report, &mut volume).is_continue();
+        certificate.verdict = Verdict::of(certificate.findings, certificate.ties);
+        certificate.six_volumes = volume.unwrap_or_default();
+        if !all_rules {
+            certificate.not_judged.push(NotJudged::AfterFindings);
+        }
+        Ok(certificate)
+    }
+
+    fn check(&self) -> Result<(), CertifyError> {
+        let Placed { positions, weights, complex, .. } = self.placed;
+        if positions.len() != weights.len() {
+            let (positions, weights) = (positions.len(), weights.len());
+            return Err(CertifyError::Lengths { positions, weights });
+        }
+        let most = positions.len().max(complex.cells.len());
+        if most > MAX_CELLS {
+            return Err(CertifyError::TooMany(most));
+        }
+        let finite = |i: &usize| positions[*i].iter().chain([&weights[*i]]).all(|x| x.is_finite());
+        match (0..positions.len()).find(|i| !finite(i)) {
+            Some(index) => Err(CertifyError::NotFinite(index)),
+            None => afford(complex),
+        }
+    }
+}
+
+/// Asks for the memory that the check takes piece by piece, and gives it back: better refused now
+/// than halfway.
+fn afford(complex: &Complex) -> Result<(), CertifyError> {
+    let bytes = Structure::bytes(complex);
+    let cells = complex.cells.len();
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| CertifyError::Memory { cells, bytes })
+}

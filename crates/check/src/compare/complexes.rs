@@ -1,0 +1,219 @@
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use walpha_complex::canonical::sorted;
+
+use super::domain::{self, Domain};
+use super::places::{Places, weights_by_place};
+use crate::{Alpha, Class, Placed, Simplex, Simplices};
+
+/// What two complexes A and B have in common, and what not.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Comparison {
+    /// α of A and of B.
+    pub alpha: [Alpha; 2],
+    /// Points at places that both have, whose weights differ. Of several points at one place the
+    /// heaviest counts, which is the one that stays.
+    pub weights: Vec<WeightDifference>,
+    /// Points of A at places where B has none, by A's indices.
+    pub points_only_a: Vec<u32>,
+    /// Points of B at places where A has none, by B's indices.
+    pub points_only_b: Vec<u32>,
+    /// Whether exterior simplices were compared: only if both complexes list some.
+    pub exterior: bool,
+    /// Vertices, edges, facets and cells.
+    pub dimensions: [Differences; 4],
+    /// What the cells of the two shapes cover.
+    pub domain: Domain,
+}
+
+/// Differences among the simplices of one dimension.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct Differences {
+    /// How many simplices are in both with the same class.
+    pub equal: usize,
+    /// Simplices that only A has, by A's indices, and their classes.
+    pub only_a: Vec<(Simplex, Class)>,
+    /// Simplices that only B has, by B's indices, and their classes.
+    pub only_b: Vec<(Simplex, Class)>,
+    /// Simplices that both have with different classes.
+    pub classes: Vec<ClassDifference>,
+}
+
+/// A simplex whose class differs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct ClassDifference {
+    /// The simplex, by A's indices.
+    pub simplex: Simplex,
+    /// Its class in A.
+    pub a: Class,
+    /// Its class in B.
+    pub b: Class,
+}
+
+/// A place where the weights differ.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct WeightDifference {
+    /// The first point there, by A's indices.
+    pub point: u32,
+    /// The largest weight there in A.
+    pub a: f64,
+    /// The largest weight there in B.
+    pub b: f64,
+}
+
+/// Why two complexes cannot be compared.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// Positions and weights do not pair up.
+    #[error("complex {which} has {positions} points but {weights} weights: each needs one")]
+    Lengths {
+        /// `A` or `B`.
+        which: char,
+        /// Points given.
+        positions: usize,
+        /// Weights given.
+        weights: usize,
+    },
+    /// A coordinate or weight is NaN or infinite.
+    #[error("point {point} of complex {which} has a coordinate or weight that is not finite")]
+    NotFinite {
+        /// `A` or `B`.
+        which: char,
+        /// The point.
+        point: usize,
+    },
+    /// A row names a point that does not exist.
+    #[error("{simplex} of complex {which} names a point that does not exist")]
+    Index {
+        /// `A` or `B`.
+        which: char,
+        /// The simplex.
+        simplex: Simplex,
+    },
+}
+
+impl CompareError {
+    /// What to do about it, where there is something.
+    pub fn advice(&self) -> Option<&'static str> {
+        matches!(self, Self::NotFinite { .. }).then_some("clean the input")
+    }
+}
+
+/// Compares two complexes with their weights and α, matching points by their places, so that the
+/// two may number them differently.
+///
+/// Windings do not count, nor do lists of hidden points and duplicates. Cost O(n log n).
+///
+/// # Errors
+/// [`CompareError`].
+pub fn compare(a: Placed, b: Placed) -> Result<Comparison, CompareError> {
+    check('A', a)?;
+    check('B', b)?;
+    let places = Places::new(a.positions, b.positions);
+    let exterior = a.complex.lists_exterior() && b.complex.lists_exterior();
+    let (of_a, of_b) = (a.complex, b.complex);
+    let dimensions = [
+        differences(&of_a.vertices, &of_b.vertices, &places, exterior),
+        differences(&of_a.edges, &of_b.edges, &places, exterior),
+        differences(&of_a.facets, &of_b.facets, &places, exterior),
+        differences(&of_a.cells, &of_b.cells, &places, exterior),
+    ];
+    let only = |own: &[u32], other: &[u32]| {
+        let other: std::collections::BTreeSet<_> = other.iter().collect();
+        (0..).zip(own).filter(|(_, place)| !other.contains(place)).map(|(i, _)| i).collect()
+    };
+    Ok(Comparison {
+        alpha: [a.alpha, b.alpha],
+        weights: different_weights(a, b, &places),
+        points_only_a: only(&places.a, &places.b),
+        points_only_b: only(&places.b, &places.a),
+        exterior,
+        dimensions,
+        domain: domain::compare(a, b, &places),
+    })
+}
+
+impl Comparison {
+    /// Whether the points, their weights, α and all compared simplices with their classes are the
+    /// same.
+    pub fn is_equal(&self) -> bool {
+        let same =
+            |d: &Differences| d.only_a.is_empty() && d.only_b.is_empty() && d.classes.is_empty();
+        self.alpha[0] == self.alpha[1]
+            && self.weights.is_empty()
+            && self.points_only_a.is_empty()
+            && self.points_only_b.is_empty()
+            && self.dimensions.iter().all(same)
+    }
+}
+
+fn different_weights(a: Placed, b: Placed, places: &Places) -> Vec<WeightDifference> {
+    let mut in_a = weights_by_place(a.weights, &places.a);
+    let in_b = weights_by_place(b.weights, &places.b);
+    let difference = |(point, &place): (u32, &u32)| {
+        // Each place once: what is taken is gone.
+        let a = std::mem::replace(&mut in_a[place as usize], f64::NEG_INFINITY);
+        let b = in_b.get(place as usize).copied().filter(|b| *b != f64::NEG_INFINITY)?;
+        (a != b && a != f64::NEG_INFINITY).then_some(WeightDifference { point, a, b })
+    };
+    (0..).zip(&places.a).filter_map(difference).collect()
+}
+
+fn check(
+    which: char,
+    Placed { positions, weights, complex, .. }: Placed,
+) -> Result<(), CompareError> {
+    if positions.len() != weights.len() {
+        let (positions, weights) = (positions.len(), weights.len());
+        return Err(CompareError::Lengths { which, positions, weights });
+    }
+    let finite = |(p, w): (&[f64; 3], &f64)| p.iter().chain([w]).all(|x| x.is_finite());
+    if let Some(point) = positions.iter().zip(weights).position(|point| !finite(point)) {
+        return Err(CompareError::NotFinite { which, point });
+    }
+    let n = positions.len();
+    let bad = bad_row(&complex.cells, n)
+        .or_else(|| bad_row(&complex.facets, n))
+        .or_else(|| bad_row(&complex.edges, n))
+        .or_else(|| bad_row(&complex.vertices, n));
+    bad.map_or(Ok(()), |simplex| Err(CompareError::Index { which, simplex }))
+}
+
+fn bad_row<const N: usize>(simplices: &Simplices<N>, points: usize) -> Option<Simplex> {
+    let bad = |row: &&[u32; N]| row.iter().any(|&v| v as usize >= points);
+    simplices.rows().iter().find(bad).map(|row| (*row).into())
+}
+
+fn differences<const N: usize>(
+    a: &Simplices<N>,
+    b: &Simplices<N>,
+    places: &Places,
+    exterior: bool,
+) -> Differences {
+    let listed = |simplices: &Simplices<N>, places: &[u32]| -> BTreeMap<[u32; N], _> {
+        let rows = simplices.iter().filter(|(_, class)| exterior || *class != Class::Exterior);
+        rows.map(|(row, class)| (sorted(row.map(|v| places[v as usize])), (*row, class))).collect()
+    };
+    let a = listed(a, &places.a);
+    let mut b = listed(b, &places.b);
+    let mut differences = Differences::default();
+    for (key, (row, class)) in a {
+        match b.remove(&key) {
+            None => differences.only_a.push((row.into(), class)),
+            Some((_, other)) if other == class => differences.equal += 1,
+            Some((_, other)) => {
+                let simplex = row.into();
+                differences.classes.push(ClassDifference { simplex, a: class, b: other });
+            }
+        }
+    }
+    let rest = b.into_values();
+    differences.only_b = rest.map(|(row, class)| (Simplex::from(row), class)).collect();
+    differences
+}
