@@ -3,30 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::Filled;
-
-/// A folder beside the one it is to become. Dropped before it is put there, it goes with all that is in it.
-#[derive(Debug)]
-pub(super) struct PartFolder(Option<PathBuf>);
-
-impl PartFolder {
-    /// Gives the folder its name.
-    pub(super) fn put(&mut self, path: &Path) -> io::Result<()> {
-        let Some(part) = &self.0 else { return Ok(()) };
-        std::fs::rename(part, path)?;
-        self.0 = None;
-        Ok(())
-    }
-}
-
-impl Drop for PartFolder {
-    fn drop(&mut self) {
-        if let Some(part) = &self.0 {
-            // The error reported is an earlier one.
-            let _ = std::fs::remove_dir_all(part);
-        }
-    }
-}
+use crate::filled::Filled;
+use crate::partial::PartialFolder;
 
 /// Makes a folder that is not there yet: `fill` fills one beside it, which gets its name by
 /// [`put_all`](crate::put_all). `failed` says what an error of the system is called.
@@ -38,7 +16,7 @@ pub fn fill_folder<E>(
     failed: impl Fn(io::Error) -> E,
     fill: impl FnOnce(&Path) -> Result<(), E>,
 ) -> Result<Filled, E> {
-    let part = part_of(folder, failed, fill)?;
+    let part = filled_beside(folder, failed, fill)?;
     Ok(Filled::folder(folder, part))
 }
 
@@ -51,14 +29,14 @@ pub fn make_folder<E>(
     failed: impl Fn(io::Error) -> E,
     fill: impl FnOnce(&Path) -> Result<(), E>,
 ) -> Result<(), E> {
-    part_of(folder, &failed, fill)?.put(folder).map_err(failed)
+    filled_beside(folder, &failed, fill)?.put(folder).map_err(failed)
 }
 
-fn part_of<E>(
+fn filled_beside<E>(
     folder: &Path,
     failed: impl Fn(io::Error) -> E,
     fill: impl FnOnce(&Path) -> Result<(), E>,
-) -> Result<PartFolder, E> {
+) -> Result<PartialFolder, E> {
     if folder.exists() {
         return Err(failed(io::ErrorKind::AlreadyExists.into()));
     }
@@ -67,7 +45,7 @@ fn part_of<E>(
     // Of a run that was killed.
     let _ = std::fs::remove_dir_all(&part);
     std::fs::create_dir(&part).map_err(&failed)?;
-    let made = PartFolder(Some(part.clone()));
+    let made = PartialFolder::of(part.clone());
     fill(&part)?;
     Ok(made)
 }

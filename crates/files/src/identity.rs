@@ -4,6 +4,9 @@ use std::fs::{self, Metadata};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
+/// The path that means standard output.
+pub(super) const STDOUT: &str = "-";
+
 /// The folder that a file is in.
 pub(super) fn folder(path: &Path) -> &Path {
     match path.parent() {
@@ -49,7 +52,7 @@ impl Key {
 
     /// That of standard output.
     pub(super) fn of_stdout() -> Self {
-        Self { path: crate::Target::STDOUT.into(), file: None }
+        Self { path: STDOUT.into(), file: None }
     }
 
     /// Whether two places are one.

@@ -18,6 +18,8 @@
 //! ```
 
 mod destination;
+mod error;
+mod filled;
 mod folder;
 mod identity;
 mod inputs;
@@ -26,10 +28,12 @@ mod scratch;
 mod target;
 mod unfinished;
 
+pub use error::TargetError;
+pub use filled::{Filled, put_all};
 pub use folder::{fill_folder, make_folder};
 pub use inputs::{FilesOf, Working, keep_input};
 pub use scratch::Scratch;
-pub use target::{Content, Filled, FilledAll, Target, TargetError, fill_all, put_all, write_all};
+pub use target::{Content, FilledAll, Target, fill_all, write_all};
 pub use unfinished::{NewFolder, abandon, sweep};
 
 /// The example in the README runs.

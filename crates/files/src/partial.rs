@@ -1,8 +1,8 @@
-//! A file that is not complete yet, beside the one it is to become.
+//! Files and folders that are not complete yet, next to those that they are to become.
 
-use std::fs::{File, Metadata, OpenOptions};
+use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::destination::Destination;
 use crate::unfinished::{Gate, Temporary};
@@ -75,6 +75,33 @@ impl Whole {
         }
         self.temporary.settle(gate);
         Ok(())
+    }
+}
+
+/// A folder beside the one it is to become. Dropped before it is put there, it goes with all that is in it.
+#[derive(Debug)]
+pub(super) struct PartialFolder(Option<PathBuf>);
+
+impl PartialFolder {
+    pub(super) fn of(path: PathBuf) -> Self {
+        Self(Some(path))
+    }
+
+    /// Gives the folder its name.
+    pub(super) fn put(&mut self, path: &Path) -> io::Result<()> {
+        let Some(part) = &self.0 else { return Ok(()) };
+        fs::rename(part, path)?;
+        self.0 = None;
+        Ok(())
+    }
+}
+
+impl Drop for PartialFolder {
+    fn drop(&mut self) {
+        if let Some(part) = &self.0 {
+            // The error reported is an earlier one.
+            let _ = fs::remove_dir_all(part);
+        }
     }
 }
 

@@ -1,16 +1,13 @@
 use std::fs::OpenOptions;
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use walpha_base::advice::Advice;
-use walpha_base::shown::shown;
-
 use crate::destination::{Claim, Destination};
-use crate::folder::PartFolder;
-use crate::identity::Key;
-use crate::inputs::{self, Refused};
+use crate::error::TargetError;
+use crate::filled::{Filled, put_all};
+use crate::identity::{Key, STDOUT};
+use crate::inputs;
 use crate::partial::{PartialFile, Whole};
-use crate::unfinished::gate;
 
 /// A file to be: opened before the long work, so that a bad place is known at once, and put under
 /// its name only when it is complete. Dropped before that, it leaves nothing behind.
@@ -37,60 +34,12 @@ enum Sink {
     Stdout,
 }
 
-/// A file cannot be written.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot write {}: {source}", shown(path))]
-pub struct TargetError {
-    path: PathBuf,
-    source: io::Error,
-    /// What became of the outputs; empty where that is plain.
-    left: String,
-}
-
-impl TargetError {
-    /// What became of the outputs, and what to do.
-    pub fn advice(&self) -> Advice {
-        let refused = self.source.get_ref().and_then(|error| error.downcast_ref::<Refused>());
-        if refused.is_some() {
-            return Refused::advice();
-        }
-        format!("{}{}", self.left, next_step(&self.source)).into()
-    }
-
-    const NOTHING_LEFT: &str = "nothing was left behind, ";
-
-    fn of(path: &Path, left: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
-        move |source| Self { path: path.to_owned(), source, left: left.into() }
-    }
-}
-
-/// What to do about an error of the system.
-fn next_step(error: &io::Error) -> &'static str {
-    #[cfg(unix)]
-    if error.raw_os_error() == Some(rustix::io::Errno::MFILE.raw_os_error()) {
-        return "allow more with `ulimit -n`";
-    }
-    match error.kind() {
-        ErrorKind::NotFound => "make it first, or choose a place that is there",
-        ErrorKind::AlreadyExists => "give each output a name of its own",
-        ErrorKind::InvalidFilename => "choose a shorter name",
-        ErrorKind::IsADirectory => "name a file in it",
-        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            "make it writable, or choose a place that you may write to"
-        }
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
-            "choose a place with room"
-        }
-        _ => "choose a place with room that you may write to",
-    }
-}
-
 /// What writes a file.
 pub type Content<'a> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>;
 
 impl Target {
     /// The path that is standard output.
-    pub const STDOUT: &str = "-";
+    pub const STDOUT: &str = STDOUT;
 
     /// Opens a temporary file in the folder of `path`.
     ///
@@ -163,62 +112,11 @@ impl Target {
             }
         };
         let (whole, bytes) = filled.map_err(TargetError::of(&path, left))?;
-        let output = whole.map_or(Output::Stream, Output::File);
-        Ok(Filled { path, output, bytes, _claim: claim })
+        Ok(match whole {
+            Some(whole) => Filled::file(path, whole, bytes, claim),
+            None => Filled::stream(path, claim),
+        })
     }
-}
-
-/// A complete file or folder to be put in its place; dropped before that, it is removed.
-#[derive(Debug)]
-pub struct Filled {
-    path: PathBuf,
-    output: Output,
-    bytes: u64,
-    _claim: Option<Claim>,
-}
-
-#[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "nearly all are files")]
-enum Output {
-    File(Whole),
-    Folder(PartFolder),
-    /// It has taken all there is.
-    Stream,
-}
-
-impl Filled {
-    pub(super) fn folder(path: &Path, part: PartFolder) -> Self {
-        Self { path: path.to_owned(), output: Output::Folder(part), bytes: 0, _claim: None }
-    }
-
-    /// Bytes of the file; 0 of a stream.
-    pub fn bytes(&self) -> u64 {
-        self.bytes
-    }
-}
-
-/// Puts complete files in their places. An interrupt waits until all are in place.
-///
-/// # Errors
-/// What the system said of the first that cannot be put there; the others after it go.
-pub fn put_all(mut files: Vec<Filled>) -> Result<(), TargetError> {
-    // Files that are dropped take the gate themselves.
-    let gate = gate();
-    for (done, Filled { path, output, .. }) in files.iter_mut().enumerate() {
-        let left = match done {
-            0 => TargetError::NOTHING_LEFT.to_owned(),
-            1 => "one other output is complete, ".to_owned(),
-            _ => format!("{done} other outputs are complete, "),
-        };
-        let put = match output {
-            Output::File(whole) => whole.put(&gate),
-            Output::Folder(part) => part.put(path),
-            Output::Stream => continue,
-        };
-        put.map_err(TargetError::of(path, left))?;
-    }
-    drop(gate);
-    Ok(())
 }
 
 /// Writes all of several files, or none of them; then what goes to streams, whose readers may have
@@ -275,6 +173,8 @@ fn through(
 
 #[cfg(test)]
 mod tests {
+    use std::io::ErrorKind;
+
     use super::*;
 
     #[test]

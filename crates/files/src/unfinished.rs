@@ -8,6 +8,8 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use tempfile::TempPath;
 
+use crate::identity::Key;
+
 /// A file or folder that is removed unless it is finished. Entries are never freed, and their list
 /// is read without a lock: the handler of a signal may do so at any moment.
 #[derive(Debug)]
@@ -31,7 +33,7 @@ static FIRST: OnceLock<&'static Entry> = OnceLock::new();
 pub(super) struct Gate {
     last: Option<&'static Entry>,
     /// The files that targets are open for.
-    pub claimed: Vec<super::identity::Key>,
+    pub claimed: Vec<Key>,
 }
 
 pub(super) fn gate() -> MutexGuard<'static, Gate> {
