@@ -2,8 +2,10 @@ use walpha_base::Coordinates;
 use walpha_complex::Placed;
 
 use super::measure::together;
-use super::solid::Solid;
-use super::{Alpha, Betti, Complex, Measures, ShapeError, ShapeOptions, Sheets, WeightedPoints};
+use super::solid::{Cuts, Solid};
+use super::{
+    Alpha, Betti, Complex, Measures, ShapeError, ShapeOptions, Sheets, Surface, WeightedPoints,
+};
 
 /// The weighted alpha shape of a set of points: a classified subcomplex of their regular
 /// triangulation, by input index.
@@ -166,5 +168,23 @@ impl AlphaShape {
     /// Number of points that are vertices of the shape.
     pub fn points_in_shape(&self) -> usize {
         self.complex.vertices.counts().in_shape()
+    }
+
+    /// The regular facets alone, as the boundary of a solid: each edge is on two facets, which go
+    /// along it in opposite directions, and the facets around a vertex are one fan. Where the shape
+    /// is not a manifold, its parts are cut apart: facets that bound the same cells stay together, and
+    /// vertices between others occur once for each fan. Where that leaves an edge on four facets, as both
+    /// of its ends are in one fan, two of them get a vertex at its midpoint. No vertex moves; only such midpoints
+    /// are rounded. O(n log n) for the first call; the shape keeps it.
+    pub fn solid(&self) -> (&Surface, Cuts) {
+        let (surface, cuts) = self.solid.of(&self.complex);
+        (surface, *cuts)
+    }
+}
+
+impl Surface {
+    /// The surface of a shape. O(n log n).
+    pub fn of(shape: &AlphaShape) -> Self {
+        Self::of_complex(shape.complex())
     }
 }

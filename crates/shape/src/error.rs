@@ -1,10 +1,8 @@
 use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Setting, advice};
-use walpha_base::memory::NoMemory;
+use walpha_base::memory::{self, NoMemory};
 use walpha_base::monitor::wraps;
 use walpha_regular::{SitesError, TriangulationError, is_flat};
-
-use super::PlanError;
 
 /// Why a shape cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -80,6 +78,29 @@ pub enum ShapeError {
         /// The side of the box along that axis.
         side: f64,
     },
+}
+
+/// The memory allowed is not enough.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{} of memory is not enough: with {blocks} blocks, one at a time, about {} are needed",
+    memory::readable(*asked),
+    memory::readable(*needed)
+)]
+pub struct PlanError {
+    /// Bytes allowed.
+    pub asked: u64,
+    /// Bytes that the most economical plan needs.
+    pub needed: u64,
+    /// Its number of blocks.
+    pub blocks: usize,
+}
+
+impl PlanError {
+    /// How to resolve the error.
+    pub fn advice(&self) -> Advice {
+        "allow more, or select fewer points".into()
+    }
 }
 
 /// What requires the whole triangulation.

@@ -21,7 +21,10 @@
 //! ```
 
 mod alpha_shape;
+mod betti;
 mod blocks;
+mod complement;
+mod components;
 mod error;
 mod flat;
 pub mod ladder;
@@ -29,7 +32,6 @@ mod make;
 mod manifold;
 mod measure;
 mod options;
-mod parts;
 mod points;
 mod sheets;
 mod solid;
@@ -41,18 +43,19 @@ mod voids;
 mod winding;
 
 pub use alpha_shape::AlphaShape;
-pub use blocks::PlanError;
-pub use error::{CgalError, ShapeError, Whole};
+pub use betti::Betti;
+pub use components::NO_COMPONENT;
+pub use error::{CgalError, PlanError, ShapeError, Whole};
 pub use make::{alpha_shape, alpha_shape_by, alpha_shape_monitored};
 pub use manifold::ManifoldDefects;
 pub use measure::Measures;
 pub use options::{Balls, Engine, ShapeOptions};
-pub use parts::{Component, Enclosed, NO_COMPONENT};
 pub use points::{LengthsError, WeightSummary, WeightedPoints};
 pub use sheets::Sheets;
 pub use solid::Cuts;
+pub use sums::{Component, Enclosed};
 pub use surface::Surface;
-pub use topology::{Betti, direct_betti};
+pub use topology::direct_betti;
 pub use voids::Void;
 pub use walpha_base::{Coordinates, LengthUnit, Space};
 pub use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Placed, Simplices};
@@ -64,11 +67,11 @@ pub use alpha_shape::Assembled;
 #[doc(hidden)]
 pub use blocks::{AT_WORK, BlockShape, Own, Side, block_shape};
 #[doc(hidden)]
+pub use complement::between;
+#[doc(hidden)]
 pub use measure::{facet_area, six_volumes};
 #[doc(hidden)]
 pub use sums::{ComponentSums, SheetSums, components_of_sums};
-#[doc(hidden)]
-pub use topology::between;
 #[doc(hidden)]
 pub use voids::Hollow;
 #[doc(hidden)]

@@ -6,9 +6,8 @@ use walpha_regular::{Sites, check_numbers, lattice};
 
 use super::blocks::{self, Limits, Plan, Question, Reach};
 use super::flat::{self, flat};
-use super::parts::connected_on_torus;
 use super::solid::Solid;
-use super::topology::{components, sheet_betti, torus_betti};
+use super::topology::{components, connected_on_torus, sheet_betti, torus_betti};
 use super::{
     AlphaShape, Betti, CgalError, Complex, Engine, Measures, ShapeError, ShapeOptions, Sheets,
     Simplices, WeightedPoints,
@@ -202,7 +201,8 @@ fn by_blocks(
     let lattice = lattice(sites.positions(), sites.weights(), sites.torus());
     let question = Question { alpha, lattice, exterior };
     let answer = blocks::run(sites, &plan, &question, monitor)?;
-    let boundary = Some((answer.b0, Sheets::of(&answer), answer.sheet_windings));
+    let sheets = Sheets::numbered(&answer.complex, &answer.facet_sheets, &answer.edge_sheets);
+    let boundary = Some((answer.b0, sheets, answer.sheet_windings));
     let duplicates = sites.duplicates().to_vec();
     Ok(Found { complex: answer.complex, boundary, hidden: answer.hidden, duplicates, betti: None })
 }

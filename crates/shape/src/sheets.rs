@@ -11,8 +11,7 @@ use rayon::prelude::*;
 use walpha_base::UnionFind;
 use walpha_complex::canonical::{smallest_even, sorted};
 
-use super::blocks::Answer;
-use super::topology::sides;
+use super::complement::sides;
 use super::{Class, Complex};
 
 /// The sheets of a shape's boundary: the connected components of the boundary of a thin neighbourhood of the shape.
@@ -35,11 +34,6 @@ pub struct Sheets {
 const UNNUMBERED: u32 = u32::MAX;
 
 impl Sheets {
-    /// Renumbers the sheets of blocks so that numbers do not depend on the blocks. O(n).
-    pub(super) fn of(answer: &Answer) -> Self {
-        Self::numbered(&answer.complex, &answer.facet_sheets, &answer.edge_sheets)
-    }
-
     /// The sheets of a shape within its *whole* triangulation in space, exterior simplices included, from their
     /// definition: two corners of exterior cells are on one sheet if they are at one vertex of the shape and their
     /// cells share an exterior facet there, or if they are at the two ends of an edge of the shape in one cell.
@@ -54,9 +48,9 @@ impl Sheets {
         Self::numbered(whole, &facets, &edges)
     }
 
-    /// Numbers sheets in the order of their first appearance. `facets` has one name for each regular facet and two for
+    /// Numbers sheets in the order of their first appearance, so that numbers do not depend on blocks. O(n). `facets` has one name for each regular facet and two for
     /// each singular one, in the order of the facets; `edges` has one for each singular edge.
-    fn numbered(complex: &Complex, facets: &[u32], edges: &[u32]) -> Self {
+    pub(super) fn numbered(complex: &Complex, facets: &[u32], edges: &[u32]) -> Self {
         let named = facets.iter().chain(edges);
         let mut numbers =
             vec![UNNUMBERED; named.clone().max().map_or(0, |&most| most as usize + 1)];

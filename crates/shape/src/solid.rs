@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use serde::Serialize;
 use walpha_base::UnionFind;
 
-use super::{AlphaShape, Surface};
+use super::{Class, Complex, Surface};
 
 /// Where a boundary was cut apart to become a manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -26,30 +26,24 @@ type Corner = u32;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Solid(OnceLock<Arc<(Surface, Cuts)>>);
 
+impl Solid {
+    /// The solid of this complex, which is computed once.
+    pub(crate) fn of(&self, complex: &Complex) -> &(Surface, Cuts) {
+        self.0.get_or_init(|| Arc::new(Surface::solid(complex)))
+    }
+}
+
 impl PartialEq for Solid {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-impl AlphaShape {
-    /// The regular facets alone, as the boundary of a solid: each edge is on two facets, which go
-    /// along it in opposite directions, and the facets around a vertex are one fan. Where the shape
-    /// is not a manifold, its parts are cut apart: facets that bound the same cells stay together, and
-    /// vertices between others occur once for each fan. Where that leaves an edge on four facets, as both
-    /// of its ends are in one fan, two of them get a vertex at its midpoint. No vertex moves; only such midpoints
-    /// are rounded. O(n log n) for the first call; the shape keeps it.
-    pub fn solid(&self) -> (&Surface, Cuts) {
-        let solid = self.solid.0.get_or_init(|| Arc::new(Surface::solid(self)));
-        (&solid.0, solid.1)
-    }
-}
-
 impl Surface {
-    /// As [`AlphaShape::solid`] says.
-    fn solid(shape: &AlphaShape) -> (Self, Cuts) {
-        let whole = Self::of(shape);
-        let pairs = Pairs::of(shape, &whole);
+    /// As [`AlphaShape::solid`](crate::AlphaShape::solid) says.
+    fn solid(complex: &Complex) -> (Self, Cuts) {
+        let whole = Self::of_complex(complex);
+        let pairs = Pairs::of(complex, &whole);
         let mut fans = UnionFind::new(3 * whole.regular.len());
         for [a, b] in &pairs.corners {
             fans.unite(a[0], b[0]);
@@ -131,7 +125,7 @@ struct Pairs {
 }
 
 impl Pairs {
-    fn of(shape: &AlphaShape, surface: &Surface) -> Self {
+    fn of(complex: &Complex, surface: &Surface) -> Self {
         let sides = surface.sides();
         let around: Vec<_> = sides.chunk_by(|a, b| a.0 == b.0).collect();
         let number = |end: u32| surface.vertices[end as usize];
@@ -139,7 +133,7 @@ impl Pairs {
             .filter(|(_, sides)| sides.len() > 2)
             .map(|(k, sides)| (sides[0].0.map(number), k))
             .collect();
-        let wedges = wedges(shape, &touching);
+        let wedges = wedges(complex, &touching);
         let mut corners = Vec::new();
         for sides in &around {
             if let [(_, a), (_, b)] = sides {
@@ -168,15 +162,12 @@ impl Pairs {
 }
 
 /// By edge, the third and fourth corners of the cells of the shape around it: the link of the edge in the shape.
-fn wedges(
-    shape: &AlphaShape,
-    edges: &HashMap<[u32; 2], usize>,
-) -> HashMap<[u32; 2], Vec<[u32; 2]>> {
+fn wedges(complex: &Complex, edges: &HashMap<[u32; 2], usize>) -> HashMap<[u32; 2], Vec<[u32; 2]>> {
     let mut wedges: HashMap<[u32; 2], Vec<[u32; 2]>> = HashMap::new();
     if edges.is_empty() {
         return wedges;
     }
-    for cell in shape.complex().cells.of(super::Class::Interior) {
+    for cell in complex.cells.of(Class::Interior) {
         for (i, j, k, l) in
             [(0, 1, 2, 3), (0, 2, 1, 3), (0, 3, 1, 2), (1, 2, 0, 3), (1, 3, 0, 2), (2, 3, 0, 1)]
         {

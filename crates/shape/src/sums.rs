@@ -1,9 +1,49 @@
-//! Sums over components and sheets, accumulated part by part.
+//! Components and the voids in them, from sums over components and sheets that are accumulated part by part.
 
 use serde::{Deserialize, Serialize};
 use walpha_base::Sum;
 
-use super::{Class, Component, Enclosed, Measures, facet_area, six_volumes};
+use super::measure::{facet_area, six_volumes};
+use super::{Class, Measures};
+
+/// A connected component of a shape.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Component {
+    /// Number of its vertices.
+    pub vertices: usize,
+    /// Number of its cells; 0 for a component that is nowhere solid.
+    pub cells: usize,
+    /// The volume of its cells, in cubed units of the points.
+    pub volume: f64,
+    /// The area of its regular facets, the boundary of its solid part.
+    pub area: f64,
+    /// The area of its singular facets, one side of each.
+    pub singular_area: f64,
+    /// The smallest coordinates of its box, (x, y, z).
+    pub low: [f64; 3],
+    /// The largest coordinates of its box, (x, y, z).
+    pub high: [f64; 3],
+    /// The voids that its boundary encloses, largest first; `None` where sheets are not known, and on a torus,
+    /// where a sheet need not enclose anything ([`AlphaShape::voids`]).
+    pub voids: Option<Vec<Enclosed>>,
+    /// On a torus: the number of independent directions in which it winds round. Its box is that of one of its copies,
+    /// and the whole side along axes that it winds along.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rounds: Option<usize>,
+}
+
+/// A void, described by the sheet around it. The volume includes that of other components inside.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Enclosed {
+    /// The number of the sheet.
+    pub sheet: u32,
+    /// The volume enclosed by the sheet, in cubed units of the points.
+    pub volume: f64,
+    /// The smallest coordinates of its box, (x, y, z).
+    pub low: [f64; 3],
+    /// The largest coordinates of its box, (x, y, z).
+    pub high: [f64; 3],
+}
 
 /// Sums over a component, or over a part of one. Parts are [joined](Self::join) in any order, with the same result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

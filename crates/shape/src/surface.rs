@@ -1,6 +1,6 @@
 use std::collections::BTreeSet;
 
-use super::{AlphaShape, Class, Complex};
+use super::{Class, Complex};
 
 /// The visible part of a shape: regular facets and all singular simplices, with a compact numbering of their
 /// vertices.
@@ -11,7 +11,7 @@ use super::{AlphaShape, Class, Complex};
 pub struct Surface {
     /// Input indices of the vertices used below, ascending.
     pub vertices: Vec<u32>,
-    /// Further vertices, each the midpoint of two of those; of a [solid](AlphaShape::solid) only.
+    /// Further vertices, each the midpoint of two of those; of a [solid](crate::AlphaShape::solid) only.
     pub midpoints: Vec<[u32; 2]>,
     /// Regular facets, counter-clockwise seen from outside.
     pub regular: Vec<[u32; 3]>,
@@ -24,11 +24,6 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The surface of a shape. O(n log n).
-    pub fn of(shape: &AlphaShape) -> Self {
-        Self::of_complex(shape.complex())
-    }
-
     /// The surface of a complex, or of some of its simplices. O(n log n).
     pub fn of_complex(complex: &Complex) -> Self {
         let regular: Vec<_> = complex.facets.of(Class::Regular).copied().collect();

@@ -3,8 +3,8 @@ use std::cmp::Ordering;
 use serde::{Deserialize, Serialize};
 use walpha_regular::{Interval, Predicates, Torus};
 
+use super::complement::{Complement, complement_on};
 use super::measure::six_volumes;
-use super::topology::{Complement, complement_on};
 use super::winding::{Winding, WindingSets};
 use super::{Alpha, AlphaShape, Class};
 

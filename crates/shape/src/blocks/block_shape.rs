@@ -5,10 +5,10 @@ use walpha_base::UnionFind;
 use walpha_regular::Lattice;
 use walpha_regular::Sites;
 
+use super::block::{Block, Question};
 use super::classify::{Buckets, Dimension, Owned, classify};
 use super::partition::Neighbourhood;
 use super::spanning::spanning;
-use super::{Block, Question};
 use crate::{Class, Complex, ShapeError, Simplices};
 
 /// The points of a block and those around it, in the order of their indices in the whole set.

@@ -6,8 +6,10 @@ use rayon::prelude::*;
 use walpha_base::UnionFind;
 use walpha_regular::Sites;
 
+use super::block::{Answer, Question};
 use super::classify::{Bucket, Buckets, Dimension, Owned, Rows, Side, Starts};
-use super::{Answer, Partition, Plan, Question};
+use super::partition::Partition;
+use super::plan::Plan;
 use crate::winding::{WindingSets, minus};
 use crate::{Class, Complex, Simplices};
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 use walpha_regular::Sites;
 
-use super::{Block, Copies};
+use super::block::{Block, Copies};
 
 /// A k-d tree of boxes, each cut across its longest side, into blocks of about equally many sites.
 pub(crate) struct Partition {

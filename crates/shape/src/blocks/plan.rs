@@ -1,10 +1,10 @@
 //! The number of blocks, from the number of threads and the memory allowed.
 
-use walpha_base::advice::Advice;
 use walpha_base::memory::{self, NoMemory};
 use walpha_regular::Sites;
 
-use super::{Partition, Reach};
+use super::partition::{Partition, Reach};
+use crate::PlanError;
 
 /// The blocks, and how many of them are computed at once.
 pub(crate) struct Plan {
@@ -33,29 +33,6 @@ pub(crate) struct Limits {
     pub blocks: Option<usize>,
     /// Bytes allowed.
     pub memory: Option<u64>,
-}
-
-/// The memory allowed is not enough.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{} of memory is not enough: with {blocks} blocks, one at a time, about {} are needed",
-    memory::readable(*asked),
-    memory::readable(*needed)
-)]
-pub struct PlanError {
-    /// Bytes allowed.
-    pub asked: u64,
-    /// Bytes that the most economical plan needs.
-    pub needed: u64,
-    /// Its number of blocks.
-    pub blocks: usize,
-}
-
-impl PlanError {
-    /// How to resolve the error.
-    pub fn advice(&self) -> Advice {
-        "allow more, or select fewer points".into()
-    }
 }
 
 /// Bytes per point of finished blocks: the rows and classes of about 5 cells, 11 facets and 7

@@ -3,7 +3,7 @@
 use walpha_base::monitor::Units;
 use walpha_regular::{SitesError, Triangulation, TriangulationError, auxiliary_positions};
 
-use super::{Block, triangulate};
+use super::block::{Block, triangulate};
 
 /// Triangulates a block. Where its points span no volume, auxiliary points are added, with input indices from `next`
 /// on. Their balls at α are empty, so they are in no simplex of the shape and refute none.
@@ -32,7 +32,9 @@ mod tests {
     use walpha_regular::Lattice;
     use walpha_regular::Sites;
 
-    use crate::blocks::{Partition, Question, in_space};
+    use crate::blocks::block::Question;
+    use crate::blocks::partition::Partition;
+    use crate::blocks::run::in_space;
 
     /// Blocks of a line once took all points with them: quadratic in the number of blocks.
     #[test]

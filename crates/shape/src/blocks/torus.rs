@@ -7,8 +7,9 @@ use walpha_regular::{
     AXES, Predicates, Sites, SitesError, Torus, Triangulation, TriangulationError,
 };
 
+use super::block::{Block, Question, triangulate};
 use super::classify::Long;
-use super::{Block, Partition, Question, Reach, triangulate};
+use super::partition::{Partition, Reach};
 use crate::ShapeError;
 
 /// A block with its halo, its triangulation, and the lattice of its points. The halo is as large as the largest empty

@@ -27,6 +27,7 @@ mod critical;
 mod filtration;
 mod incidence;
 mod levels;
+mod maximal;
 mod ordered;
 mod table;
 mod topology;
@@ -36,5 +37,4 @@ pub use critical::{Curve, Suggestions};
 pub use filtration::Filtration;
 pub use levels::{Levels, Span};
 pub use ordered::{Entry, Ordered, Pairs};
-
 pub use table::{Ladder, Level};

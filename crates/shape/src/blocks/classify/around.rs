@@ -3,8 +3,11 @@
 
 use walpha_base::UnionFind;
 
+use super::cells::Boundary;
+use super::local::{Local, even};
 use super::rows::{Long, Owned, Side};
-use super::{Boundary, Local, Sheets, State, even};
+use super::sheets::Sheets;
+use super::state::State;
 use crate::Class;
 
 /// The star of each owned vertex: its cells, as 4·cell + the corner that is the vertex.

@@ -8,15 +8,17 @@
 
 mod around;
 mod cells;
+mod local;
 mod rows;
 mod sheets;
+mod state;
 
 use walpha_base::UnionFind;
 use walpha_regular::{Predicates, Triangulation};
 
-use super::{Block, Question};
+use super::block::{Block, Question};
 use around::{Stars, Walker};
-use cells::{Boundary, State};
+use local::Local;
 pub use rows::Side;
 pub(super) use rows::{Bucket, Buckets, Dimension, Long, Owned, Rows, Starts};
 use sheets::Sheets;
@@ -54,45 +56,6 @@ pub(super) fn classify(
     owned
 }
 
-/// A block with its triangulation and the parameters of the shape. Vertices are numbers of the block's points.
-struct Local<'a> {
-    block: &'a Block,
-    cells: &'a [[u32; 4]],
-    ghost: u32,
-    predicates: Predicates<'a>,
-    alpha: f64,
-    exterior: bool,
-}
-
-impl Local<'_> {
-    /// Whether a vertex is one of the block's own points; the ghost is nobody's.
-    #[inline(always)]
-    fn owned(&self, v: u32) -> bool {
-        v < self.block.own
-    }
-
-    /// The input index of a point, which orders the vertices of simplices.
-    #[inline(always)]
-    fn input(&self, v: u32) -> u32 {
-        self.block.input[v as usize]
-    }
-
-    /// Whether the smallest orthogonal sphere has a squared radius of at most α. Exact.
-    fn fits<const N: usize>(&self, simplex: [u32; N]) -> bool {
-        self.alpha == f64::INFINITY || self.predicates.fits(simplex, self.alpha)
-    }
-}
-
-impl Local<'_> {
-    /// Whether an edge spans half of the box of a torus or more, along one axis at least. Exact.
-    fn is_long(&self, [v, u]: [u32; 2]) -> bool {
-        self.block.copies.as_ref().is_some_and(|copies| {
-            let [p, q] = [v, u].map(|v| self.block.positions[v as usize]);
-            (0..3).any(|k| 2.0 * (p[k] - q[k]).abs() >= copies.torus.sides()[k])
-        })
-    }
-}
-
 /// Each point that is not the representative of its component, with that, by input index.
 fn component_pairs(components: &mut UnionFind, input: &[u32]) -> Vec<[u32; 2]> {
     let pair = |v: u32| {
@@ -100,17 +63,4 @@ fn component_pairs(components: &mut UnionFind, input: &[u32]) -> Vec<[u32; 2]> {
         (root != v).then(|| [input[v as usize], input[root as usize]])
     };
     (0..input.len() as u32).filter_map(pair).collect()
-}
-
-/// Whether the permutation of 0..4 that starts with a, b, c is even.
-#[inline(always)]
-fn even(a: usize, b: usize, c: usize) -> bool {
-    let d = 6 - a - b - c;
-    let inversions = u8::from(a > b)
-        + u8::from(a > c)
-        + u8::from(a > d)
-        + u8::from(b > c)
-        + u8::from(b > d)
-        + u8::from(c > d);
-    inversions % 2 == 0
 }

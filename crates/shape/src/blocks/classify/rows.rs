@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::State;
+use super::state::State;
 use crate::Class;
 
 /// The simplices that a block owns, and what the merge of blocks needs besides.
@@ -238,7 +238,10 @@ mod tests {
     use walpha_regular::Sites;
 
     use super::*;
-    use crate::blocks::{Limits, Plan, Question, Reach, decide, merge};
+    use crate::blocks::block::Question;
+    use crate::blocks::merge::merge;
+    use crate::blocks::run::decide;
+    use crate::blocks::{Limits, Plan, Reach};
 
     #[test]
     fn merged_rows_take_the_bytes_foreseen() {

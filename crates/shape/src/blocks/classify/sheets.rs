@@ -1,7 +1,8 @@
 use walpha_base::UnionFind;
 
+use super::local::{Local, even};
 use super::rows::{Bucket, Owned, Side};
-use super::{Local, State, even};
+use super::state::State;
 
 /// Sheets of the boundary: a union-find over the corners of exterior cells.
 ///

@@ -1,21 +1,21 @@
 //! All simplices of a filtration in the order in which they enter.
 
+mod numbers;
 mod pairs;
 mod rank;
 
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
-use walpha_base::Monitor;
+use walpha_base::{Monitor, memory};
+use walpha_regular::TriangulationError;
 
 use super::filtration::Radius;
 use super::levels::OwnLevels;
 use super::{Filtration, Levels};
-use crate::{Alpha, Betti, Complex, ShapeError};
-pub use pairs::Pairs;
+use crate::{Alpha, Betti, ShapeError};
+use numbers::Numbers;
 use rank::{NONE, Ranks};
-use walpha_base::memory;
-use walpha_regular::TriangulationError;
 
 /// All simplices of a regular triangulation with their values of α: where each enters the shape, becomes regular, and
 /// becomes interior.
@@ -33,7 +33,7 @@ use walpha_regular::TriangulationError;
 pub struct Ordered<'a> {
     /// A level for each value.
     pub(super) levels: Levels<'a>,
-    pub(super) numbers: Numbers,
+    numbers: Numbers,
     cells: Vec<[u32; 4]>,
     /// The row of each of them in the triangulation.
     cell_rows: Vec<u32>,
@@ -57,6 +57,26 @@ pub struct Entry<'a> {
     pub regular: f64,
     /// From which on it is off the boundary; ∞ on the convex hull. Of cells, the value.
     pub interior: f64,
+}
+
+/// Persistence pairs by the numbers of simplices: the simplex that creates a component or void, and the one that merges
+/// it with an older component, or fills it.
+///
+/// Pairs of persistence 0, whose simplices have the same value, are included.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Pairs {
+    /// Components: a vertex, and the edge that unites its component with one that came before; in
+    /// the order of edges. All vertices but one have such an edge.
+    pub components: Vec<[u32; 2]>,
+    /// The vertex whose component is essential: one.
+    pub lasting: Vec<u32>,
+    /// Voids: a facet, and the cell that fills what it has shut in; in the order of facets. All
+    /// cells have such a facet, on a torus all but one.
+    pub voids: Vec<[u32; 2]>,
+    /// On a torus: the facets that create its three essential classes of dimension 2.
+    pub lasting_voids: Vec<u32>,
+    /// On a torus: the last cell, which creates its class of dimension 3, and is in none of the pairs above.
+    pub last: Option<u32>,
 }
 
 impl Filtration {
@@ -264,54 +284,6 @@ impl Ordered<'_> {
             (2, row) => self.levels.facets[row].first,
             (_, row) => self.levels.cells[self.cell_rows[row] as usize],
         }
-    }
-}
-
-/// How simplices of all dimensions are numbered: vertices first, then edges, facets, cells.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Numbers {
-    /// The first number of each dimension.
-    pub first: [u32; 4],
-    all: u32,
-}
-
-impl Numbers {
-    /// The numbers of the simplices of a complex; `None` if there are more than 32-bit numbers below `u32::MAX`.
-    pub(crate) fn of(complex: &Complex) -> Option<Self> {
-        let counts = [
-            complex.vertices.len(),
-            complex.edges.len(),
-            complex.facets.len(),
-            complex.cells.len(),
-        ];
-        let mut first = [0; 4];
-        let mut all: u32 = 0;
-        for (first, count) in first.iter_mut().zip(counts) {
-            *first = all;
-            all = u32::try_from(count).ok().and_then(|count| all.checked_add(count))?;
-        }
-        (all < u32::MAX).then_some(Self { first, all })
-    }
-
-    /// The number of simplices.
-    pub(crate) fn all(self) -> usize {
-        self.all as usize
-    }
-
-    /// The number of simplices of a dimension.
-    pub(crate) fn count(self, dimension: usize) -> usize {
-        let end = self.first.get(dimension + 1).copied().unwrap_or(self.all);
-        (end - self.first[dimension]) as usize
-    }
-
-    /// The dimension of a simplex, and its row among those.
-    #[inline]
-    pub(crate) fn row(self, simplex: u32) -> (usize, usize) {
-        let [_, edges, facets, cells] = self.first;
-        let dimension = usize::from(simplex >= edges)
-            + usize::from(simplex >= facets)
-            + usize::from(simplex >= cells);
-        (dimension, (simplex - self.first[dimension]) as usize)
     }
 }
 

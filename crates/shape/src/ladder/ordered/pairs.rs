@@ -4,30 +4,10 @@
 
 use walpha_base::UnionFind;
 
-use super::Ordered;
+use super::{Ordered, Pairs};
 use crate::ladder::Filtration;
 use crate::ladder::incidence::Incidence;
 use crate::{Directions, Torus, United, WindingSets, between};
-
-/// Persistence pairs by the numbers of simplices: the simplex that creates a component or void, and the one that merges
-/// it with an older component, or fills it.
-///
-/// Pairs of persistence 0, whose simplices have the same value, are included.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Pairs {
-    /// Components: a vertex, and the edge that unites its component with one that came before; in
-    /// the order of edges. All vertices but one have such an edge.
-    pub components: Vec<[u32; 2]>,
-    /// The vertex whose component is essential: one.
-    pub lasting: Vec<u32>,
-    /// Voids: a facet, and the cell that fills what it has shut in; in the order of facets. All
-    /// cells have such a facet, on a torus all but one.
-    pub voids: Vec<[u32; 2]>,
-    /// On a torus: the facets that create its three essential classes of dimension 2.
-    pub lasting_voids: Vec<u32>,
-    /// On a torus: the last cell, which creates its class of dimension 3, and is in none of the pairs above.
-    pub last: Option<u32>,
-}
 
 impl Ordered<'_> {
     /// Persistence pairs of dimensions 0 and 2. O(n α(n)). Those of dimension 1, between the edges and

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use walpha_base::memory::{self, NoMemory};
 use walpha_regular::{Predicates, Ratio, SmallRadius};
 
-use super::Numbers;
+use super::numbers::Numbers;
 use crate::ladder::Filtration;
 use crate::ladder::values::{Key, is_small_lattice, key};
 

@@ -1,51 +1,11 @@
 //! The components of a shape.
 
-use serde::{Deserialize, Serialize};
-use walpha_base::UnionFind;
 use walpha_regular::Torus;
 
 use super::sums::{ComponentSums, SheetSums, components_of_sums};
+use super::topology::{connected, connected_on_torus};
 use super::winding::WindingSets;
-use super::{AlphaShape, Class, Complex, Sheets};
-
-/// A connected component of a shape.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Component {
-    /// Number of its vertices.
-    pub vertices: usize,
-    /// Number of its cells; 0 for a component that is nowhere solid.
-    pub cells: usize,
-    /// The volume of its cells, in cubed units of the points.
-    pub volume: f64,
-    /// The area of its regular facets, the boundary of its solid part.
-    pub area: f64,
-    /// The area of its singular facets, one side of each.
-    pub singular_area: f64,
-    /// The smallest coordinates of its box, (x, y, z).
-    pub low: [f64; 3],
-    /// The largest coordinates of its box, (x, y, z).
-    pub high: [f64; 3],
-    /// The voids that its boundary encloses, largest first; `None` where sheets are not known, and on a torus,
-    /// where a sheet need not enclose anything ([`AlphaShape::voids`]).
-    pub voids: Option<Vec<Enclosed>>,
-    /// On a torus: the number of independent directions in which it winds round. Its box is that of one of its copies,
-    /// and the whole side along axes that it winds along.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rounds: Option<usize>,
-}
-
-/// A void, described by the sheet around it. The volume includes that of other components inside.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Enclosed {
-    /// The number of the sheet.
-    pub sheet: u32,
-    /// The volume enclosed by the sheet, in cubed units of the points.
-    pub volume: f64,
-    /// The smallest coordinates of its box, (x, y, z).
-    pub low: [f64; 3],
-    /// The largest coordinates of its box, (x, y, z).
-    pub high: [f64; 3],
-}
+use super::{AlphaShape, Class, Component, Sheets};
 
 /// Stands in [`AlphaShape::component_numbers`] for points that are no vertices of the shape.
 pub const NO_COMPONENT: u32 = u32::MAX;
@@ -159,33 +119,4 @@ impl AlphaShape {
         let numbered = (0..).zip(found);
         numbered.filter_map(|(sheet, found)| found.map(|(c, sums)| (sheet, c, sums))).collect()
     }
-}
-
-/// The vertices of a shape of a torus, united along its edges.
-pub(super) fn connected_on_torus(
-    complex: &Complex,
-    positions: &[[f64; 3]],
-    torus: Torus,
-) -> WindingSets {
-    let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
-    let mut sets = WindingSets::new(points);
-    for (&[a, b], class) in complex.edges.iter() {
-        if class != Class::Exterior {
-            let [from, to] = [a, b].map(|v| positions[v as usize]);
-            sets.unite(a, b, torus.windings(from, to));
-        }
-    }
-    sets
-}
-
-/// The vertices of a shape, united along its edges.
-pub(super) fn connected(complex: &Complex) -> UnionFind {
-    let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
-    let mut sets = UnionFind::new(points);
-    for (&[a, b], class) in complex.edges.iter() {
-        if class != Class::Exterior {
-            sets.unite(a, b);
-        }
-    }
-    sets
 }

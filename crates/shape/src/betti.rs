@@ -1,0 +1,55 @@
+use serde::{Deserialize, Serialize};
+
+/// The Betti numbers of a shape: components, tunnels, voids. Written `[b0, b1, b2]`, of a torus
+/// `[b0, b1, b2, b3]`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "Vec<u64>", try_from = "Vec<u64>")]
+pub struct Betti {
+    /// Connected components.
+    pub b0: u64,
+    /// Tunnels: independent loops that bound nothing. On a torus those that go round it, too.
+    pub b1: u64,
+    /// Voids: bounded components of the complement. On a torus independent closed surfaces that bound
+    /// nothing: of a shape that leaves something out, those around the parts of the complement, one less than
+    /// there are, and one for each direction in which the complement does not go round.
+    pub b2: u64,
+    /// On a torus: 1 for the whole of it, else 0. `None` in space, where it is always 0.
+    pub b3: Option<u64>,
+}
+
+impl Betti {
+    /// The Betti numbers of a shape in space.
+    pub fn in_space(b0: u64, b1: u64, b2: u64) -> Self {
+        Self { b0, b1, b2, b3: None }
+    }
+
+    /// The Betti numbers, with b1 from the Euler characteristic: b1 = b0 + b2 − b3 − χ.
+    pub(crate) fn with_euler(b0: u64, b2: u64, b3: Option<u64>, euler: i64) -> Self {
+        let b1 = (b0 + b2) as i64 - b3.unwrap_or(0) as i64 - euler;
+        Self { b0, b1: u64::try_from(b1).expect("b1 counts something"), b2, b3 }
+    }
+}
+
+impl From<Betti> for [u64; 3] {
+    fn from(betti: Betti) -> Self {
+        [betti.b0, betti.b1, betti.b2]
+    }
+}
+
+impl From<Betti> for Vec<u64> {
+    fn from(Betti { b0, b1, b2, b3 }: Betti) -> Self {
+        [b0, b1, b2].into_iter().chain(b3).collect()
+    }
+}
+
+impl TryFrom<Vec<u64>> for Betti {
+    type Error = &'static str;
+
+    fn try_from(numbers: Vec<u64>) -> Result<Self, Self::Error> {
+        match numbers[..] {
+            [b0, b1, b2] => Ok(Self::in_space(b0, b1, b2)),
+            [b0, b1, b2, b3] => Ok(Self { b0, b1, b2, b3: Some(b3) }),
+            _ => Err("three Betti numbers, or four of a torus"),
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! A block, what is asked of it, and the merged result of all blocks.
+
+use walpha_base::monitor::Units;
+use walpha_regular::{Lattice, Torus, Triangulation, TriangulationError, insert_all};
+
+use crate::Complex;
+
+/// The parameters of the shape, the same for all blocks.
+#[derive(Clone, Copy)]
+pub(crate) struct Question {
+    /// A squared length or +∞.
+    pub alpha: f64,
+    /// The lattice of the whole set.
+    pub lattice: Lattice,
+    /// Whether exterior simplices are wanted, too. They are defined by the triangulation of all points only.
+    pub exterior: bool,
+}
+
+/// The merged result of all blocks.
+pub(crate) struct Answer {
+    pub complex: Complex,
+    /// Number of components.
+    pub b0: u64,
+    /// One sheet for each regular facet and two for each singular one, in the order of the facets.
+    pub facet_sheets: Vec<u32>,
+    /// The sheet of each singular edge, in their order.
+    pub edge_sheets: Vec<u32>,
+    /// Input indices of hidden sites, where the whole triangulation was made.
+    pub hidden: Option<Vec<u32>>,
+    /// Number of independent directions in which loops on the sheets wind round a torus.
+    pub sheet_windings: usize,
+}
+
+/// The sites of a block and those of its halo, each along the curve.
+pub(crate) struct Block {
+    /// The block's own points, then its halo.
+    pub positions: Vec<[f64; 3]>,
+    /// Power weights.
+    pub weights: Vec<f64>,
+    /// Input indices.
+    pub input: Vec<u32>,
+    /// Number of the block's own points.
+    pub own: u32,
+    /// On a torus: how the points of the halo were moved.
+    pub copies: Option<Copies>,
+}
+
+/// The copies that a halo consists of, on a torus.
+pub(crate) struct Copies {
+    pub torus: Torus,
+    /// The multiples of the sides by which each is moved.
+    pub windings: Vec<[i32; 3]>,
+}
+
+impl Block {
+    /// The multiples of the sides by which a point is moved; 0 for the block's own.
+    pub(super) fn windings(&self, v: u32) -> [i32; 3] {
+        let beyond = v.checked_sub(self.own).zip(self.copies.as_ref());
+        beyond.map_or([0; 3], |(at, copies)| copies.windings[at as usize])
+    }
+}
+
+/// Units of progress of a point, and how many of them its triangulation counts.
+pub(super) const WORK: u64 = 3;
+pub(super) const TRIANGULATION: u64 = 2;
+
+/// Triangulates a block, and reports progress for its own points.
+pub(super) fn triangulate(
+    points: &Block,
+    work: &Units<'_>,
+) -> Result<Triangulation, TriangulationError> {
+    let (own, all) = (TRIANGULATION * u64::from(points.own), points.input.len() as u64);
+    let (mut inside, mut counted) = (0, 0);
+    let made = insert_all(&points.positions, &points.weights, |more| {
+        inside += more as u64;
+        let units = own * inside / all;
+        let fresh = units - counted;
+        counted = units;
+        work.add(fresh)
+    })?;
+    work.add(own - counted)?;
+    Ok(made)
+}

@@ -1,0 +1,88 @@
+use rayon::prelude::*;
+use walpha_base::Monitor;
+use walpha_base::monitor::Units;
+use walpha_regular::{Lattice, Sites, Triangulation, TriangulationError, check_span};
+
+use super::block::{Answer, Block, Question, TRIANGULATION, WORK};
+use super::classify::{Buckets, Owned, classify};
+use super::merge::merge;
+use super::partition::{Partition, Reach};
+use super::plan::Plan;
+use super::spanning::spanning;
+use super::torus::{on_torus, too_long};
+use crate::ShapeError;
+
+/// The α-complex of sites; with exterior simplices, which need one block, the whole triangulation.
+pub(crate) fn run(
+    sites: &Sites<'_>,
+    plan: &Plan,
+    question: &Question,
+    monitor: &Monitor,
+) -> Result<Answer, ShapeError> {
+    let partition = &plan.partition;
+    if sites.torus().is_none() {
+        check_span(sites).map_err(TriangulationError::from)?;
+    }
+    tracing::debug!(blocks = partition.len(), at_once = plan.at_once, "cut");
+    // A batch of blocks frees its working memory before the next one starts.
+    let buckets = Buckets::new(sites.input(), plan.buckets());
+    let blocks: Vec<usize> = (0..partition.len()).collect();
+    let mut owned: Vec<Owned> = Vec::with_capacity(blocks.len());
+    let (mut bytes, mut points) = (0, 0);
+    let work = monitor.units(WORK * sites.input().len() as u64);
+    for batch in blocks.chunks(plan.at_once) {
+        let done: Result<Vec<_>, ShapeError> = batch
+            .par_iter()
+            .map(|&block| decide(sites, partition, block, question, buckets, &work))
+            .collect();
+        for done in done? {
+            bytes += done.merged_bytes();
+            points += done.points();
+            owned.push(done);
+        }
+        plan.keeps(bytes, points, sites.input().len())?;
+        plan.give_back();
+    }
+    Ok(merge(sites, plan, owned, question, buckets))
+}
+
+/// Classifies the simplices that a block owns.
+pub(super) fn decide(
+    sites: &Sites<'_>,
+    partition: &Partition,
+    block: usize,
+    question: &Question,
+    buckets: Buckets,
+    work: &Units<'_>,
+) -> Result<Owned, ShapeError> {
+    let (points, made, lattice) = match sites.torus() {
+        None => in_space(sites, partition, block, question, work)?,
+        Some(torus) => on_torus(sites, torus, partition, block, question, work)?,
+    };
+    let owned = classify(&points, made, &Question { lattice, ..*question }, buckets);
+    work.add((WORK - TRIANGULATION) * u64::from(points.own))?;
+    match (owned.long, sites.torus()) {
+        (Some(edge), Some(torus)) => Err(too_long(torus, edge)),
+        _ => Ok(owned),
+    }
+}
+
+/// A block with its halo, its triangulation, and the lattice of its points.
+pub(super) fn in_space(
+    sites: &Sites<'_>,
+    partition: &Partition,
+    block: usize,
+    question: &Question,
+    work: &Units<'_>,
+) -> Result<(Block, Triangulation, Lattice), ShapeError> {
+    let mut points = partition.block(sites, Reach::Balls(question.alpha), block);
+    let (inside, next) = (points.input.len(), sites.input().last().map_or(0, |last| last + 1));
+    let made = spanning(&mut points, question.alpha, next, work)?;
+    // Auxiliary points need not be on the lattice of the set.
+    let lattice = if points.input.len() > inside {
+        Lattice::of(&points.positions, &points.weights)
+    } else {
+        question.lattice
+    };
+    Ok((points, made, lattice))
+}

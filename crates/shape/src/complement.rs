@@ -1,0 +1,107 @@
+//! The complement of a shape within the whole triangulation.
+
+use rayon::prelude::*;
+use walpha_base::UnionFind;
+use walpha_complex::canonical::sorted;
+use walpha_regular::Torus;
+
+use super::winding::{Winding, WindingSets, minus};
+use super::{Class, Complex};
+
+/// The facets of the cells of some classes as sorted rows, each with its cell; ascending, so that the two
+/// cells of a facet are consecutive.
+pub(super) fn sides(whole: &Complex, of: impl Fn(Class) -> bool + Sync) -> Vec<([u32; 3], u32)> {
+    let mut sides: Vec<([u32; 3], u32)> = whole
+        .cells
+        .rows()
+        .par_iter()
+        .zip(whole.cells.classes())
+        .enumerate()
+        .filter(|(_, (_, class))| of(**class))
+        .flat_map_iter(|(id, (&[a, b, c, d], _))| {
+            [[b, c, d], [a, c, d], [a, b, d], [a, b, c]].map(|facet| (sorted(facet), id as u32))
+        })
+        .collect();
+    sides.par_sort_unstable();
+    sides
+}
+
+/// The complement of a shape within the *whole* triangulation of a torus: exterior cells joined through
+/// exterior facets. Each cell is where its first vertex is in the box. O(n log n).
+pub(super) fn complement_on(torus: Torus, whole: &Complex, positions: &[[f64; 3]]) -> WindingSets {
+    let cells = whole.cells.rows();
+    let mut sets = WindingSets::new(cells.len());
+    let sides = sides(whole, |class| class == Class::Exterior);
+    let mut pairs = sides.chunk_by(|a, b| a.0 == b.0);
+    // Exterior facets are sorted rows in ascending order, so both lists run side by side.
+    for facet in whole.facets.of(Class::Exterior) {
+        let pair = pairs.find(|pair| pair[0].0 == *facet);
+        let Some(&[(_, a), (_, b)]) = pair else {
+            unreachable!("an exterior facet of a torus has exterior cells on both sides")
+        };
+        let beside = [cells[a as usize], cells[b as usize]];
+        sets.unite(a, b, between(torus, beside, facet[0], positions));
+    }
+    sets
+}
+
+/// The multiples of the sides by which the second of two cells must be moved so that a common vertex coincides, where
+/// each cell is the copy whose first vertex is in the box.
+pub fn between(torus: Torus, cells: [[u32; 4]; 2], vertex: u32, positions: &[[f64; 3]]) -> Winding {
+    let way =
+        |cell: [u32; 4]| torus.windings(positions[cell[0] as usize], positions[vertex as usize]);
+    minus(way(cells[0]), way(cells[1]))
+}
+
+/// The complement of a shape within its *whole* triangulation: exterior cells and the outside of the
+/// convex hull, joined through exterior facets.
+pub(super) struct Complement {
+    sets: UnionFind,
+    outside: u32,
+    /// The number of components, that of the outside included.
+    components: u64,
+}
+
+impl Complement {
+    /// The number of components, that of the outside included.
+    pub(super) fn components(&self) -> u64 {
+        self.components
+    }
+
+    /// The unbounded component.
+    pub(super) fn outside(&mut self) -> u32 {
+        self.sets.find(self.outside)
+    }
+
+    /// The component of an exterior cell, by its smallest cell.
+    pub(super) fn component(&mut self, cell: u32) -> u32 {
+        self.sets.find(cell)
+    }
+
+    /// Finds the components. O(n log n).
+    pub(super) fn of(whole: &Complex) -> Self {
+        let sides = sides(whole, |class| class == Class::Exterior);
+        let outside = whole.cells.len() as u32;
+        let mut sets = UnionFind::new(whole.cells.len() + 1);
+        let exterior_cells = whole.cells.counts().exterior;
+        let mut united = 0;
+        let mut at = 0;
+        // Exterior facets are sorted rows in ascending order, so both lists run side by side.
+        for facet in whole.facets.of(Class::Exterior) {
+            while at < sides.len() && sides[at].0 < *facet {
+                at += 1;
+            }
+            let cells: Vec<u32> =
+                sides[at..].iter().take_while(|side| side.0 == *facet).map(|side| side.1).collect();
+            let (a, b) = match cells[..] {
+                [a, b] => (a, b),
+                [a] => (a, outside),
+                _ => unreachable!(
+                    "an exterior facet has exterior cells on both sides, or the outside"
+                ),
+            };
+            united += u64::from(sets.unite(a, b));
+        }
+        Self { sets, outside, components: exterior_cells as u64 + 1 - united }
+    }
+}
