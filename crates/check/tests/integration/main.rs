@@ -1,6 +1,8 @@
 //! All integration tests in one program: each program links everything once more.
 
-#[cfg(feature = "npz")]
+/// NPZ by hand, shared with the tests of walpha-complex.
+#[cfg(all(feature = "json", feature = "npz"))]
+#[path = "../../../complex/tests/integration/archive.rs"]
 mod archive;
 mod base;
 #[cfg(feature = "cli")]
@@ -16,10 +18,7 @@ mod geometry;
 mod mutations;
 #[cfg(all(feature = "json", feature = "npz"))]
 mod nonsense;
-#[cfg(feature = "npz")]
-mod npz;
-#[cfg(all(feature = "json", feature = "npz"))]
+#[cfg(feature = "json")]
 mod schema;
 mod ties;
 mod torus;
-mod types;

@@ -1,9 +1,9 @@
-//! NPZ as other programs write it: any number type, byte order and order of axes.
+//! NPZ as other programs write it, in any number type, byte order and order of axes; and NPZ that claims too much.
 
 use std::io::Cursor;
 
-use walpha_check::schema::{ComplexFile, SchemaError};
-use walpha_check::{Alpha, Class};
+use walpha_complex::schema::{ComplexFile, SchemaError};
+use walpha_complex::{Alpha, Class};
 use zip::CompressionMethod;
 
 use crate::archive::{archive, npy};
@@ -84,4 +84,34 @@ fn columns_may_come_first() {
     let file = ComplexFile::read_npz(Cursor::new(bytes)).unwrap();
     assert_eq!(file.cells, Some(vec![[0, 1, 2, 3], [4, 5, 6, 7]]));
     assert_eq!(file.alpha, Alpha::INFINITE);
+}
+
+fn npz_error(arrays: &[(&str, Vec<u8>)], method: CompressionMethod) -> SchemaError {
+    ComplexFile::read_npz(Cursor::new(archive(arrays, method))).unwrap_err()
+}
+
+/// A header is held against the bytes there are before anything is reserved.
+#[test]
+fn an_array_that_claims_what_is_not_there() {
+    let alpha = ("alpha", npy("<f8", "()", &1f64.to_le_bytes()));
+    let cells = ("cells", npy("<u4", "(0, 4)", &[]));
+    let points = ("points", npy("<f8", "(1099511627776, 3)", &[0; 48]));
+    let error = npz_error(&[points, alpha.clone(), cells.clone()], CompressionMethod::Stored);
+    assert!(matches!(error, SchemaError::Array { name: "points", .. }), "{error}");
+    assert!(error.to_string().contains("[1099511627776, 3]"), "{error}");
+    let few = ("points", npy("<f8", "(2, 3)", &[0; 48]));
+    let weights = ("weights", npy("<f8", "(1099511627776,)", &[0; 48]));
+    let error = npz_error(&[few, weights, alpha, cells], CompressionMethod::Stored);
+    assert!(matches!(error, SchemaError::Lengths { name: "weights", .. }), "{error}");
+}
+
+/// A bomb: 48 MB of zeros in 48 kB. No points that differ pack so well.
+#[test]
+fn an_array_that_only_repeats_itself() {
+    let zeros = npy("<f8", "(2000000, 3)", &vec![0; 48_000_000]);
+    let alpha = ("alpha", npy("<f8", "()", &1f64.to_le_bytes()));
+    let cells = ("cells", npy("<u4", "(0, 4)", &[]));
+    let error = npz_error(&[("points", zeros), alpha, cells], CompressionMethod::Deflated);
+    assert!(matches!(error, SchemaError::Array { name: "points", .. }), "{error}");
+    assert!(error.to_string().contains("does not repeat itself"), "{error}");
 }

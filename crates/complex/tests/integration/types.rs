@@ -1,7 +1,7 @@
 //! α, simplices and counts.
 
 use serde_json::json;
-use walpha_check::{Alpha, AlphaError, ByClass, Class, Complex, Simplices, SimplicesError};
+use walpha_complex::{Alpha, AlphaError, ByClass, Class, Complex, Simplices, SimplicesError};
 
 #[test]
 fn alpha_is_read_as_it_is_printed() {
