@@ -95,7 +95,7 @@ impl Judge<'_> {
             let class = if inside { Class::Interior } else { Class::Exterior };
             let refuter = self.emptiness.filter(|_| inside);
             let finding = refuter.and_then(|near| near.refuter_of_cell(cell)).map(|point| {
-                let corners = self.points.at(cell);
+                let corners = self.points.corners(cell);
                 let power = power_value(corners.each_ref(), &self.points.get(point));
                 Finding::NotRegular { cell: cell.into(), point, power }
             });
@@ -116,7 +116,7 @@ impl Judge<'_> {
             if self.flat(facet) || !self.small(facet) {
                 return Verdict::of(Class::Exterior);
             }
-            let corners = self.points.at(facet);
+            let corners = self.points.corners(facet);
             let inside = |&q: &u32| side(corners.each_ref(), &self.points.get(q)) == Side::Inside;
             let neighbours = structure.halves(i).map(|half| structure.apex(half));
             self.alone(facet, neighbours.filter(inside).min())
@@ -142,7 +142,7 @@ impl Judge<'_> {
         let rows = given.rows().par_iter().zip(given.classes()).zip(verdicts);
         rows.filter(|((_, given), verdict)| **given != verdict.class)
             .map(|((&row, &given), verdict)| {
-                let corners = self.points.at(row);
+                let corners = self.points.corners(row);
                 let corners = corners.each_ref();
                 let refuted_by = Some(verdict.refuted_by).filter(|&point| point != NONE);
                 Finding::Class {
@@ -158,16 +158,16 @@ impl Judge<'_> {
     }
 
     pub(super) fn small<const N: usize>(&self, row: [u32; N]) -> bool {
-        radius(self.points.at(row).each_ref(), self.alpha).is_le()
+        radius(self.points.corners(row).each_ref(), self.alpha).is_le()
     }
 
     pub(super) fn inside<const N: usize>(&self, row: [u32; N], q: u32) -> bool {
-        side(self.points.at(row).each_ref(), &self.points.get(q)) == Side::Inside
+        side(self.points.corners(row).each_ref(), &self.points.get(q)) == Side::Inside
     }
 
     /// Whether the corners are affinely dependent, so that they have no orthogonal sphere.
     pub(super) fn flat<const N: usize>(&self, row: [u32; N]) -> bool {
-        match self.points.places(row)[..] {
+        match self.points.positions_of(row)[..] {
             [a, b] => a == b,
             [a, b, c] => collinear(a, b, c),
             [a, b, c, d] => orientation(a, b, c, d).is_eq(),

@@ -16,7 +16,7 @@ pub enum Finding {
     Index {
         /// The row.
         simplex: Simplex,
-        /// How many input points there are.
+        /// Number of input points.
         points: usize,
     },
     /// A row names a point twice.
@@ -41,7 +41,7 @@ pub enum Finding {
         /// The simplex.
         simplex: Simplex,
     },
-    /// A whole triangulation has no cells, nor what takes their place where points span no volume.
+    /// A whole triangulation has no cells, or, where points span no volume, none of the largest simplices.
     NoCells,
     /// A cell is not positively oriented, or flat.
     Orientation {
@@ -50,7 +50,7 @@ pub enum Finding {
         /// det(b−a, c−a, d−a), which must be positive.
         six_volumes: Exact,
     },
-    /// On a torus: an edge spans half of the box, so that the copies it joins are not clear.
+    /// On a torus: an edge spans half of the box or more, so that it is ambiguous which copies it joins.
     LongEdge {
         /// The edge.
         edge: Simplex,
@@ -82,7 +82,7 @@ pub enum Finding {
     HullEdge {
         /// The edge.
         edge: Simplex,
-        /// How many facets with only one cell it has.
+        /// Number of its facets with only one cell.
         facets: usize,
     },
     /// The hull bends inwards between two of its facets.
@@ -98,7 +98,7 @@ pub enum Finding {
     HullWraps {
         /// The first facet of the hull.
         first: Simplex,
-        /// A facet that does not see the first cell's centroid from outside, or that lies in the same direction
+        /// A facet that does not face away from the first cell's centroid, or that lies in the same direction
         /// from it as the first facet.
         facet: Simplex,
     },
@@ -117,17 +117,17 @@ pub enum Finding {
         given: Class,
         /// The class it has.
         expected: Class,
-        /// The squared radius of its smallest orthogonal sphere; none for a flat simplex.
+        /// The squared radius of its smallest orthogonal sphere; `None` for a flat simplex.
         radius_squared: Option<Exact>,
-        /// A point strictly inside that sphere, if this is what keeps the simplex out, and its
+        /// A point strictly inside that sphere, if that is why the simplex is not in the shape, and its
         /// |point − centre|² − R² − ω.
         refuted_by: Option<(u32, Exact)>,
     },
-    /// A facet on the boundary turns clockwise seen from outside the shape.
+    /// A boundary facet turns clockwise seen from outside the shape.
     Winding {
         /// The facet.
         facet: Simplex,
-        /// The vertex of the shape's cell beside it, which must lie behind the facet.
+        /// The vertex opposite the facet in the shape's cell at it, which must lie behind the facet.
         behind: u32,
     },
     /// A point that is not a vertex is not hidden: it refutes the cell it lies in.
@@ -143,7 +143,7 @@ pub enum Finding {
     OutsideHull {
         /// The point.
         point: u32,
-        /// The facet of the hull that it is outside of.
+        /// The facet of the hull that it lies beyond.
         facet: Simplex,
         /// Six times the volume between them.
         six_volumes: Exact,
@@ -176,32 +176,32 @@ pub enum Finding {
         /// The point.
         point: u32,
     },
-    /// A point at the place of another is accounted for wrongly.
+    /// The list of duplicates is wrong about a point.
     Duplicate {
         /// The point.
         point: u32,
-        /// The point listed as staying in its place, if any.
+        /// The point listed as kept at its position, if any.
         given: Option<u32>,
-        /// The point that stays: the heaviest, of equal weights the first; none if the point
-        /// itself does.
+        /// The point to be kept: the heaviest, of equal weights the first; `None` if it is the point
+        /// itself.
         expected: Option<u32>,
     },
-    /// Of several points with equal places and weights another stays than the first, which the rule names: a
-    /// choice among ties.
+    /// Of several points with equal positions and weights, one other than the first is kept, which the rule
+    /// names: a choice among ties.
     EqualPoint {
-        /// The point that stays.
+        /// The point that is kept.
         point: u32,
         /// The first of its equals.
         first: u32,
     },
-    /// In a shape alone: what is listed on one empty sphere with further points is no triangulation of
-    /// all its points, so no choice among ties makes it.
+    /// In a shape alone: the simplices listed on one empty sphere with further points do not triangulate
+    /// all its points, so they follow from no choice among ties.
     TiedSphere {
         /// A simplex whose smallest orthogonal sphere it is.
         simplex: Simplex,
         /// All points on the sphere.
         points: Vec<u32>,
-        /// How many simplices of this dimension are listed on it.
+        /// Number of simplices of this dimension listed on it.
         listed: usize,
     },
     /// In a shape alone: on a flat part of a tied sphere, not all facets have cells on the same sides, so
@@ -212,26 +212,26 @@ pub enum Finding {
         /// One in the same plane, on the same sphere, with cells on another side.
         other: Simplex,
     },
-    /// In a shape alone: a simplex in no other one has further points on its smallest orthogonal sphere that
-    /// span more than it does, so that a larger simplex is missing.
+    /// In a shape alone: a simplex that is a face of no other has further points on its smallest orthogonal
+    /// sphere that span more than it does, so a larger simplex is missing.
     SpannedSphere {
         /// The simplex.
         simplex: Simplex,
         /// Another point on its sphere.
         point: u32,
     },
-    /// A point that gives way to a heavier or earlier one at its place is a vertex.
+    /// A point at whose position a heavier or earlier one is kept is a vertex.
     DuplicateVertex {
         /// The vertex.
         point: u32,
-        /// The point that stays in its place.
-        stays: u32,
+        /// The point kept at its position.
+        kept: u32,
     },
 }
 
 impl Finding {
-    /// What is found of copies, by the numbers of the points, of which there are `count`; none if it is
-    /// about copies alone.
+    /// A finding on copies, in terms of the `count` points of the box; `None` if it concerns copies outside
+    /// the box only.
     pub(super) fn at_box(mut self, count: u32) -> Option<Self> {
         let point_at_box = |point: &mut u32| {
             let is_at_box = *point < count;
@@ -284,7 +284,7 @@ impl Finding {
                 given.iter_mut().chain(expected).for_each(|other| *other %= count);
                 point_at_box(point)
             }
-            Self::DuplicateVertex { point, stays: other }
+            Self::DuplicateVertex { point, kept: other }
             | Self::EqualPoint { point, first: other } => {
                 *other %= count;
                 point_at_box(point)
@@ -306,8 +306,8 @@ impl Finding {
         is_at_box.then_some(self)
     }
 
-    /// Whether this is no fault but another choice where the definition leaves one: between points on one
-    /// empty sphere, or with equal places and weights.
+    /// Whether this is not an error but another choice where the definition leaves one: among points on one
+    /// empty sphere, or with equal positions and weights.
     pub fn is_tie(&self) -> bool {
         match self {
             Self::NotRegular { power, .. } | Self::NotHidden { power, .. } => power.is_zero(),
@@ -316,7 +316,7 @@ impl Finding {
         }
     }
 
-    /// The simplices named, for their vertices to be renumbered.
+    /// The simplices named, so that their vertices can be renumbered.
     fn simplices_mut(&mut self) -> Vec<&mut Simplex> {
         match self {
             Self::Index { simplex, .. }
@@ -357,7 +357,7 @@ impl Finding {
         self
     }
 
-    /// A tie, with the points that its numbers stand for.
+    /// A tie, with each vertex `v` replaced by `numbers[v]`.
     pub(super) fn renumbered(mut self, numbers: &[u32]) -> Self {
         self.simplices_mut().into_iter().for_each(|simplex| simplex.renumber(numbers));
         if let Self::NotRegular { point, .. } | Self::NotHidden { point, .. } = &mut self {
@@ -393,7 +393,7 @@ mod tests {
         let folded = Some(duplicate(4, Some(3), Some(2)));
         assert_eq!(duplicate(4, Some(13), Some(7)).at_box(5), folded);
         assert_eq!(duplicate(5, Some(3), None).at_box(5), None);
-        let vertex = |point, stays| Finding::DuplicateVertex { point, stays };
+        let vertex = |point, kept| Finding::DuplicateVertex { point, kept };
         assert_eq!(vertex(0, 9).at_box(5), Some(vertex(0, 4)));
         assert_eq!(Finding::NoCells.at_box(5), Some(Finding::NoCells));
     }

@@ -59,13 +59,13 @@ fn judge(
     [a, b, c, d]: [u32; 4],
     facets: [u32; 4],
 ) -> Option<([u32; 4], Class)> {
-    let [p, q, r, s] = points.places([a, b, c, d]);
+    let [p, q, r, s] = points.positions_of([a, b, c, d]);
     let cell = match orientation(p, q, r, s) {
         std::cmp::Ordering::Greater => [a, b, c, d],
         std::cmp::Ordering::Less => [a, b, d, c],
         std::cmp::Ordering::Equal => return None,
     };
-    let corners = points.at(cell);
+    let corners = points.corners(cell);
     let sides = outward_facets(cell).map(|facet| (sorted(facet), smallest_even(facet)));
     for half in facets.iter().flat_map(|&facet| structure.halves(facet as usize)) {
         let outward = structure.outward(half);
@@ -95,7 +95,7 @@ pub(super) fn findings(missing: &[([u32; 4], Class)], points: Points) -> Vec<Fin
     let finding = |&(cell, class): &([u32; 4], Class)| Finding::MissingCell {
         cell: smallest_even(cell).into(),
         class,
-        radius_squared: radius_value(points.at(cell).each_ref()),
+        radius_squared: radius_value(points.corners(cell).each_ref()),
     };
     missing.iter().map(finding).collect()
 }

@@ -9,7 +9,7 @@ use crate::exact::{in_conflict, orientation, power_value, six_volume};
 /// Each cell is positively oriented.
 pub(super) fn orientations(cells: &[[u32; 4]], points: Points) -> Vec<Finding> {
     let judge = |cell: &[u32; 4]| {
-        let corners = points.at(*cell);
+        let corners = points.corners(*cell);
         let [a, b, c, d] = corners.map(|p| p.position);
         (!orientation(a, b, c, d).is_gt()).then(|| Finding::Orientation {
             cell: (*cell).into(),
@@ -44,7 +44,7 @@ fn overlap(structure: &Structure, one: Half, other: Half) -> Option<Finding> {
 fn refuted(structure: &Structure, points: Points, one: Half, other: Half) -> Option<Finding> {
     let cell = structure.complex.cells.rows()[one.cell];
     let point = structure.apex(other);
-    let (corners, q) = (points.at(cell), points.get(point));
+    let (corners, q) = (points.corners(cell), points.get(point));
     in_conflict(corners.each_ref(), &q).then(|| Finding::NotRegular {
         cell: cell.into(),
         point,

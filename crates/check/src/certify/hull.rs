@@ -10,7 +10,7 @@ use crate::exact::{Exact, Lattice, Star, orientation, six_volume};
 /// Six times the volume of all cells.
 pub(super) fn six_volumes(cells: &[[u32; 4]], points: Points) -> (IBig, i64) {
     let lattice = Lattice::through(points.positions);
-    let sum = lattice.six_volumes(cells.len(), |i| points.places(cells[i]));
+    let sum = lattice.six_volumes(cells.len(), |i| points.positions_of(cells[i]));
     (sum, 3 * i64::from(lattice.exponent()))
 }
 
@@ -21,7 +21,7 @@ pub(super) fn volume(structure: &Structure, points: Points) -> Vec<Finding> {
     let top = points.positions[0];
     let lattice = Lattice::through(points.positions);
     let cone = |i: usize| {
-        let [a, b, c] = points.places(hull[i]);
+        let [a, b, c] = points.positions_of(hull[i]);
         [top, a, b, c]
     };
     let enclosed = lattice.six_volumes(hull.len(), cone);
@@ -66,10 +66,10 @@ fn edges(hull: &[[u32; 3]], points: Points) -> Vec<Finding> {
 }
 
 fn bend(facet: [u32; 3], point: u32, points: Points) -> Option<Finding> {
-    let [a, b, c] = points.places(facet);
+    let [a, b, c] = points.positions_of(facet);
     let q = points.get(point);
     orientation(a, b, c, q.position).is_gt().then(|| {
-        let [a, b, c] = points.at(facet);
+        let [a, b, c] = points.corners(facet);
         let six_volumes = six_volume([&a, &b, &c, &q]);
         Finding::HullBends { facet: facet.into(), point, six_volumes }
     })
@@ -77,10 +77,10 @@ fn bend(facet: [u32; 3], point: u32, points: Points) -> Option<Finding> {
 
 fn wraps(structure: &Structure, hull: &[[u32; 3]], points: Points) -> Vec<Finding> {
     let lattice = Lattice::through(points.positions);
-    let star = Star::new(lattice, points.places(structure.complex.cells.rows()[0]));
-    let first = points.places(hull[0]);
+    let star = Star::new(lattice, points.positions_of(structure.complex.cells.rows()[0]));
+    let first = points.positions_of(hull[0]);
     let judge = |(i, facet): (usize, &[u32; 3])| {
-        let place = points.places(*facet);
+        let place = points.positions_of(*facet);
         let wrong = !star.inside(place) || i > 0 && star.ray_meets(first, place);
         wrong.then(|| Finding::HullWraps { first: hull[0].into(), facet: (*facet).into() })
     };

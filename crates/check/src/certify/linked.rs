@@ -1,5 +1,5 @@
 use super::structure::Structure;
-use super::{Extent, Finding, Points, geometry, hull, places};
+use super::{Extent, Finding, Points, geometry, hull, non_vertices};
 use crate::Complex;
 
 /// A complex with its simplices linked, and which rules of structure and geometry it breaks.
@@ -41,8 +41,8 @@ pub(super) fn triangulation_findings(cells: &Complex, points: Points) -> Vec<Fin
     found.extend(linked.irregular);
     if regular {
         let own: Vec<u32> = (0..points.len() as u32).collect();
-        let hidden = places::hidden(&linked.structure, &own);
-        found.extend(places::hiddenness(&linked.structure, points, &hidden));
+        let hidden = non_vertices::hidden(&linked.structure, &own);
+        found.extend(non_vertices::hiddenness(&linked.structure, points, &hidden));
     }
     found
 }

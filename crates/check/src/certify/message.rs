@@ -1,4 +1,4 @@
-//! Findings in words, one line each.
+//! Findings as text, one line each.
 
 use std::fmt::{self, Formatter};
 
@@ -24,7 +24,7 @@ impl fmt::Display for Finding {
             Self::LongEdge { edge } => {
                 write!(
                     f,
-                    "{edge} spans half of the periodic box: which copies it joins is not clear"
+                    "{edge} spans half of the periodic box or more: which copies it joins is ambiguous"
                 )
             }
             Self::Crowded { facet, cells } => crowded(f, facet, cells),
@@ -64,11 +64,11 @@ impl fmt::Display for Finding {
             Self::Duplicate { point, given, expected } => duplicate(f, *point, *given, *expected),
             Self::EqualPoint { point, first } => write!(
                 f,
-                "point {point} stays at its place, where point {first} with the same weight comes first"
+                "point {point} is kept at its position, where point {first} with the same weight comes first"
             ),
             Self::TiedSphere { simplex, points, listed } => write!(
                 f,
-                "{} points lie on the sphere of {simplex}, and the {listed} of its kind that are listed there do not triangulate them",
+                "{} points lie on the sphere of {simplex}, and the {listed} simplices of its dimension that are listed there do not triangulate them",
                 points.len()
             ),
             Self::TiedFacets { facet, other } => write!(
@@ -77,10 +77,10 @@ impl fmt::Display for Finding {
             ),
             Self::SpannedSphere { simplex, point } => write!(
                 f,
-                "{simplex} is listed as a face of nothing, but point {point} is on its sphere, too: what they span is missing"
+                "{simplex} is not a face of any listed simplex, but point {point} lies on its sphere, too: the simplex that they span is missing"
             ),
-            Self::DuplicateVertex { point, stays } => {
-                write!(f, "point {point} is a vertex, but gives way to point {stays} at its place")
+            Self::DuplicateVertex { point, kept } => {
+                write!(f, "point {point} is a vertex, but point {kept} is kept at its position")
             }
         }
     }
@@ -118,7 +118,7 @@ fn volume(f: &mut Formatter<'_>, cells: &Exact, hull: &Exact) -> fmt::Result {
     )
 }
 
-/// Why a class is another than the given one.
+/// Why the class is not the given one.
 fn reason(
     f: &mut Formatter<'_>,
     radius_squared: Option<&Exact>,
@@ -126,7 +126,7 @@ fn reason(
 ) -> fmt::Result {
     match radius_squared {
         Some(radius) => write!(f, " (squared radius {radius})")?,
-        None => write!(f, " (its corners are in one place or on one line or plane)")?,
+        None => write!(f, " (its corners are at one position, or on one line or plane)")?,
     }
     match refuted_by {
         Some((point, power)) => {
@@ -183,17 +183,22 @@ fn duplicate(
     given: Option<u32>,
     expected: Option<u32>,
 ) -> fmt::Result {
-    let stays = |who: Option<u32>| match who {
-        Some(other) => format!("gives way to point {other}"),
-        None => "stays".into(),
+    let status = |kept: Option<u32>| match kept {
+        Some(kept) => format!("a duplicate of point {kept}"),
+        None => "no duplicate".into(),
     };
-    write!(f, "point {point} {}, but the list says that it {}", stays(expected), stays(given))
+    write!(
+        f,
+        "point {point} is {}, but the list says that it is {}",
+        status(expected),
+        status(given)
+    )
 }
 
-/// How deep a point is inside a sphere.
+/// By how much a point is inside a sphere.
 fn by_power(f: &mut Formatter<'_>, power: &Exact) -> fmt::Result {
     if power.is_zero() {
-        write!(f, " (on it, and inside by the perturbation)")
+        write!(f, " (on the sphere, and inside by the perturbation)")
     } else {
         write!(f, " (power {power})")
     }

@@ -22,11 +22,13 @@ impl<'a> Points<'a> {
         WeightedPoint { position: self.positions[i as usize], weight: self.weights[i as usize] }
     }
 
-    pub(super) fn at<const N: usize>(self, row: [u32; N]) -> [WeightedPoint; N] {
+    /// The corners of a row.
+    pub(super) fn corners<const N: usize>(self, row: [u32; N]) -> [WeightedPoint; N] {
         row.map(|i| self.get(i))
     }
 
-    pub(super) fn places<const N: usize>(self, row: [u32; N]) -> [[f64; 3]; N] {
+    /// Their positions.
+    pub(super) fn positions_of<const N: usize>(self, row: [u32; N]) -> [[f64; 3]; N] {
         row.map(|i| self.positions[i as usize])
     }
 }

@@ -9,7 +9,7 @@ use super::emptiness::Emptiness;
 use super::flat::Cone;
 use super::linked::Linked;
 use super::structure;
-use super::{Claim, Extent, Finding, Points, gaps, hull, places, ties};
+use super::{Claim, Extent, Finding, Points, gaps, hull, non_vertices, ties};
 use crate::exact::Exact;
 use crate::flat::auxiliary;
 
@@ -43,9 +43,9 @@ pub(super) fn apply(
     let (sum, exponent) = hull::six_volumes(complex.cells.rows(), points);
     *volume = Some(Exact::integer(sum, exponent));
 
-    let (stays, equal) = places::staying(points, complex, claim.duplicates);
+    let (kept, equal) = non_vertices::kept_points(points, complex, claim.duplicates);
     report(equal)?;
-    let emptiness = (!whole).then(|| Emptiness::new(points, alpha, &stays));
+    let emptiness = (!whole).then(|| Emptiness::new(points, alpha, &kept));
     let extent = claim.extent;
     let judge = Judge { points, alpha, extent, dimension: 3, emptiness: emptiness.as_ref() };
     let listed = Linked::new(complex, points, extent);
@@ -63,10 +63,10 @@ pub(super) fn apply(
             };
             let mut lasting =
                 |findings: Vec<Finding>| report(findings.into_iter().filter(in_both).collect());
-            return apply_to(filled, claim, &judge, &stays, &mut lasting);
+            return apply_to(filled, claim, &judge, &kept, &mut lasting);
         }
     }
-    apply_to(listed, claim, &judge, &stays, report)
+    apply_to(listed, claim, &judge, &kept, report)
 }
 
 /// The rules after those on rows.
@@ -74,7 +74,7 @@ fn apply_to(
     linked: Linked,
     claim: &Claim,
     judge: &Judge,
-    stays: &[u32],
+    kept: &[u32],
     report: &mut Report,
 ) -> ControlFlow<()> {
     let regular = linked.is_regular();
@@ -91,14 +91,14 @@ fn apply_to(
         report(hull::volume(&structure, points))?;
     }
     report(irregular)?;
-    report(places::duplicates(&structure, stays, claim.duplicates))?;
+    report(non_vertices::duplicates(&structure, kept, claim.duplicates))?;
     if let Some(emptiness) = judge.emptiness {
-        report(places::of_shape(&structure, emptiness, stays, claim))?;
+        report(non_vertices::of_shape(&structure, emptiness, kept, claim))?;
     } else {
-        report(places::of_whole(&structure, stays, claim))?;
+        report(non_vertices::of_whole(&structure, kept, claim))?;
         if regular {
-            let hidden = places::hidden(&structure, stays);
-            report(places::hiddenness(&structure, points, &hidden))?;
+            let hidden = non_vertices::hidden(&structure, kept);
+            report(non_vertices::hiddenness(&structure, points, &hidden))?;
         }
     }
     report(classes::judge(&structure, judge))?;
@@ -117,7 +117,7 @@ fn apply_to(
 fn flat(claim: &Claim, cone: &Cone, report: &mut Report) -> ControlFlow<()> {
     let complex = claim.placed.complex;
     let points = Points::of(claim.placed);
-    let (stays, equal) = places::staying(points, complex, claim.duplicates);
+    let (kept, equal) = non_vertices::kept_points(points, complex, claim.duplicates);
     report(equal)?;
     let linked = Linked::new(&cone.complex, cone.points(), Extent::Whole);
     let regular = linked.is_regular();
@@ -128,11 +128,11 @@ fn flat(claim: &Claim, cone: &Cone, report: &mut Report) -> ControlFlow<()> {
     let repeated = repeated.into_iter().filter(|finding| !broken.contains(finding)).collect();
     report(broken)?;
     report(repeated)?;
-    report(places::duplicates(&structure, &stays, claim.duplicates))?;
-    report(places::of_whole(&structure, &stays, claim))?;
+    report(non_vertices::duplicates(&structure, &kept, claim.duplicates))?;
+    report(non_vertices::of_whole(&structure, &kept, claim))?;
     if regular {
-        let hidden = places::hidden(&structure, &stays);
-        let found = places::hiddenness(&linked.structure, cone.points(), &hidden);
+        let hidden = non_vertices::hidden(&structure, &kept);
+        let found = non_vertices::hiddenness(&linked.structure, cone.points(), &hidden);
         report(cone.at_base(found))?;
     }
     let judge = Judge {

@@ -32,13 +32,13 @@ impl Simplex {
         self.0.retain(|&v| v < first);
     }
 
-    /// With the vertices that these numbers stand for.
+    /// Replaces each vertex `v` by `numbers[v]`.
     pub(super) fn renumber(&mut self, numbers: &[u32]) {
         self.0.iter_mut().for_each(|v| *v = numbers[*v as usize]);
     }
 
-    /// By the numbers of points of which there are `count`, where copies follow; says whether a vertex is
-    /// none of these.
+    /// Replaces copies by the `count` points that they are copies of. Returns whether any vertex is not a
+    /// copy.
     pub(super) fn fold(&mut self, count: u32) -> bool {
         let is_at_box = self.0.iter().any(|&v| v < count);
         self.0.iter_mut().for_each(|v| *v %= count);

@@ -36,7 +36,7 @@ pub(super) fn singular(
     }
     let mut lines = BTreeMap::<Vec<u32>, Vec<u32>>::new();
     for (row, edge, on) in tied(&complex.edges, emptiness) {
-        let [a, b] = points.places(edge);
+        let [a, b] = points.positions_of(edge);
         match on.iter().find(|&&q| !collinear(a, b, points.get(q).position)) {
             Some(_) => findings.push(spanned(edge, &on)),
             None => lines.entry(on).or_default().push(row),
@@ -44,7 +44,7 @@ pub(super) fn singular(
     }
     let mut circles = Circles::new();
     for (row, facet, on) in tied(&complex.facets, emptiness) {
-        let [a, b, c] = points.places(facet);
+        let [a, b, c] = points.positions_of(facet);
         match on.iter().find(|&&q| orientation(a, b, c, points.get(q).position).is_ne()) {
             Some(_) => findings.push(spanned(facet, &on)),
             None => circles.entry(on).or_default().push(row),
@@ -115,7 +115,7 @@ pub(super) fn cells(
     for (on, rows) in &spheres {
         for &row in rows {
             for (k, facet) in outward_facets(cells[row]).into_iter().enumerate() {
-                let [a, b, c] = points.places(facet);
+                let [a, b, c] = points.positions_of(facet);
                 let flat = |&&q: &&u32| orientation(a, b, c, points.get(q).position).is_eq();
                 let face: Vec<u32> = on.iter().filter(flat).copied().collect();
                 if face.len() > 3 {

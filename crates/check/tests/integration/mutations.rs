@@ -185,6 +185,6 @@ fn wrong_duplicates() {
     );
     found!(
         |c, _| c.weights[DUPLICATE as usize] = 1.0,
-        Finding::DuplicateVertex { point: 0, stays: DUPLICATE }
+        Finding::DuplicateVertex { point: 0, kept: DUPLICATE }
     );
 }

@@ -31,7 +31,7 @@ fn corners_in_one_place_are_a_finding() {
     }
     let findings = judge(format!(r#"{{{points},"edges":[[0,1]]}}"#).as_bytes()).unwrap();
     let lines: Vec<String> = findings.iter().map(Finding::to_string).collect();
-    assert!(lines.iter().any(|line| line.contains("corners are in one place")), "{lines:?}");
+    assert!(lines.iter().any(|line| line.contains("corners are at one position")), "{lines:?}");
 }
 
 /// Three cells on one facet are named.

@@ -77,7 +77,7 @@ fn radii<const N: usize>(
 ) -> Vec<Option<(f64, Exact)>> {
     let radius = |(&row, held): (&[u32; N], &AtomicBool)| {
         (!held.load(Ordering::Relaxed)).then(|| {
-            let exact = radius_value(points.at(row).each_ref());
+            let exact = radius_value(points.corners(row).each_ref());
             (exact.nearest(), exact)
         })
     };
@@ -89,7 +89,7 @@ fn flags(count: usize) -> Vec<AtomicBool> {
 }
 
 fn inside<const N: usize>(points: Points, row: [u32; N], q: u32) -> bool {
-    side(points.at(row).each_ref(), &points.get(q)) == Side::Inside
+    side(points.corners(row).each_ref(), &points.get(q)) == Side::Inside
 }
 
 fn held_facets(structure: &Structure, points: Points) -> Vec<AtomicBool> {

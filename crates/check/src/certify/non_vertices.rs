@@ -12,31 +12,32 @@ use super::{Claim, Finding, Points};
 use crate::Complex;
 use crate::exact::{in_conflict, orientation, power_value, radius, radius_value, six_volume};
 
-/// For each point, the one that stays at its place by the rule: the heaviest, of equal weights the first.
+/// For each point, the one kept at its position by the rule: the heaviest, of equal weights the first.
 fn by_rule(points: Points) -> Vec<u32> {
-    let place = |i: u32| points.positions[i as usize];
+    let position = |i: u32| points.positions[i as usize];
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    let by_place = |a: u32, b: u32| place(a).partial_cmp(&place(b)).expect("no coordinate is NaN");
+    let by_position =
+        |a: u32, b: u32| position(a).partial_cmp(&position(b)).expect("no coordinate is NaN");
     let weight = |i: u32| points.weights[i as usize];
     order.par_sort_unstable_by(|&a, &b| {
         // Not `total_cmp`, to which −0 is less than 0.
         let heavier = weight(b).partial_cmp(&weight(a)).expect("no weight is NaN");
-        by_place(a, b).then(heavier).then(a.cmp(&b))
+        by_position(a, b).then(heavier).then(a.cmp(&b))
     });
-    let mut stays = vec![0; order.len()];
-    for same_place in order.chunk_by(|&a, &b| place(a) == place(b)) {
-        for &i in same_place {
-            stays[i as usize] = same_place[0];
+    let mut kept = vec![0; order.len()];
+    for coincident in order.chunk_by(|&a, &b| position(a) == position(b)) {
+        for &i in coincident {
+            kept[i as usize] = coincident[0];
         }
     }
-    stays
+    kept
 }
 
-/// For each point, the one that stays at its place, and where that is another than the rule names.
+/// For each point, the one kept at its position, and findings where that is not the one the rule names.
 ///
-/// Of points with equal places and weights any may stay: the one that is a vertex does, or else the one
+/// Of points with equal positions and weights any may be kept: the one that is a vertex is, or else the one
 /// that the list of duplicates names.
-pub(super) fn staying(
+pub(super) fn kept_points(
     points: Points,
     complex: &Complex,
     listed: Option<&[[u32; 2]]>,
@@ -46,7 +47,7 @@ pub(super) fn staying(
     let mut is_vertex = vec![false; by_rule.len()];
     complex.vertices.rows().iter().for_each(|[v]| is_vertex[*v as usize] = true);
     let vertices = complex.vertices.rows().iter().map(|&[v]| v);
-    let named = listed.unwrap_or_default().iter().map(|&[_, stayed]| stayed);
+    let named = listed.unwrap_or_default().iter().map(|&[_, kept]| kept);
     let mut instead = BTreeMap::new();
     for point in vertices.chain(named) {
         let Some(&first) = by_rule.get(point as usize) else { continue };
@@ -54,37 +55,37 @@ pub(super) fn staying(
             instead.entry(first).or_insert(point);
         }
     }
-    let stays = by_rule.into_iter().map(|first| *instead.get(&first).unwrap_or(&first)).collect();
+    let kept = by_rule.into_iter().map(|first| *instead.get(&first).unwrap_or(&first)).collect();
     let equal = |(first, point)| Finding::EqualPoint { point, first };
-    (stays, instead.into_iter().map(equal).collect())
+    (kept, instead.into_iter().map(equal).collect())
 }
 
-/// Duplicates are not vertices, and the list of them, if there is one, is right.
+/// Judges that duplicates are not vertices, and that their list, if there is one, is right.
 pub(super) fn duplicates(
     structure: &Structure,
-    stays: &[u32],
+    kept: &[u32],
     listed: Option<&[[u32; 2]]>,
 ) -> Vec<Finding> {
     let vertices = structure.complex.vertices.rows().iter();
     let mut findings: Vec<_> = vertices
-        .filter(|[v]| stays[*v as usize] != *v)
-        .map(|&[point]| Finding::DuplicateVertex { point, stays: stays[point as usize] })
+        .filter(|[v]| kept[*v as usize] != *v)
+        .map(|&[point]| Finding::DuplicateVertex { point, kept: kept[point as usize] })
         .collect();
     let Some(listed) = listed else { return findings };
-    let mut given = vec![None; stays.len()];
-    for &[went, stayed] in listed {
-        match given.get_mut(went as usize) {
-            Some(slot @ None) => *slot = Some(stayed),
+    let mut given = vec![None; kept.len()];
+    for &[removed, kept] in listed {
+        match given.get_mut(removed as usize) {
+            Some(slot @ None) => *slot = Some(kept),
             // A point that does not exist, or is listed twice.
             _ => findings.push(Finding::Duplicate {
-                point: went,
-                given: Some(stayed),
+                point: removed,
+                given: Some(kept),
                 expected: None,
             }),
         }
     }
     for (point, given) in given.into_iter().enumerate() {
-        let expected = Some(stays[point]).filter(|&stayed| stayed != point as u32);
+        let expected = Some(kept[point]).filter(|&kept| kept != point as u32);
         if given != expected {
             findings.push(Finding::Duplicate { point: point as u32, given, expected });
         }
@@ -92,43 +93,47 @@ pub(super) fn duplicates(
     findings
 }
 
-/// What a complex says of each point that is not a vertex.
+/// How a claim accounts for a point.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Standing {
-    /// Nothing yet.
-    Unknown,
-    /// A vertex, or listed as hidden.
-    Known,
-    /// Another one stays at its place.
+enum Status {
+    /// Not yet.
+    Unaccounted,
+    /// As a vertex, or as a listed hidden point.
+    Accounted,
+    /// Another point is kept at its position.
     Duplicate,
 }
 
 /// Which points are neither vertices nor duplicates.
-pub(super) fn hidden(structure: &Structure, stays: &[u32]) -> Vec<u32> {
-    let standings = standings(structure, stays);
-    (0..).zip(standings).filter(|(_, known)| *known == Standing::Unknown).map(|(i, _)| i).collect()
+pub(super) fn hidden(structure: &Structure, kept: &[u32]) -> Vec<u32> {
+    let statuses = statuses(structure, kept);
+    (0..)
+        .zip(statuses)
+        .filter(|(_, status)| *status == Status::Unaccounted)
+        .map(|(i, _)| i)
+        .collect()
 }
 
-fn standings(structure: &Structure, stays: &[u32]) -> Vec<Standing> {
-    let of = |(i, &stayed): (u32, &u32)| {
-        if stayed == i { Standing::Unknown } else { Standing::Duplicate }
+fn statuses(structure: &Structure, kept: &[u32]) -> Vec<Status> {
+    let of = |(i, &kept): (u32, &u32)| {
+        if kept == i { Status::Unaccounted } else { Status::Duplicate }
     };
-    let mut standings: Vec<_> = (0..).zip(stays).map(of).collect();
+    let mut statuses: Vec<_> = (0..).zip(kept).map(of).collect();
     for [v] in structure.complex.vertices.rows() {
-        standings[*v as usize] = Standing::Known;
+        statuses[*v as usize] = Status::Accounted;
     }
-    standings
+    statuses
 }
 
-/// The list of hidden points, if there is one, names none that is anything else. It may name duplicates
-/// where these have no list of their own.
-fn listed_hidden(standings: &mut [Standing], claim: &Claim) -> Vec<Finding> {
+/// Judges that the list of hidden points, if there is one, names only hidden points. Without a list of
+/// duplicates it may name these, too.
+fn listed_hidden(statuses: &mut [Status], claim: &Claim) -> Vec<Finding> {
     let mut findings = Vec::new();
     for &point in claim.hidden.unwrap_or_default() {
-        match standings.get_mut(point as usize) {
-            Some(standing @ Standing::Unknown) => *standing = Standing::Known,
-            Some(standing @ Standing::Duplicate) if claim.duplicates.is_none() => {
-                *standing = Standing::Known;
+        match statuses.get_mut(point as usize) {
+            Some(status @ Status::Unaccounted) => *status = Status::Accounted,
+            Some(status @ Status::Duplicate) if claim.duplicates.is_none() => {
+                *status = Status::Accounted;
             }
             _ => findings.push(Finding::NotOnlyHidden { point }),
         }
@@ -136,34 +141,35 @@ fn listed_hidden(standings: &mut [Standing], claim: &Claim) -> Vec<Finding> {
     findings
 }
 
-/// In a whole triangulation: the list of hidden points, if there is one, has just those that are neither
+/// Judges a whole triangulation: the list of hidden points, if there is one, has exactly those that are neither
 /// vertices nor duplicates.
-pub(super) fn of_whole(structure: &Structure, stays: &[u32], claim: &Claim) -> Vec<Finding> {
-    let mut standings = standings(structure, stays);
-    let mut findings = listed_hidden(&mut standings, claim);
+pub(super) fn of_whole(structure: &Structure, kept: &[u32], claim: &Claim) -> Vec<Finding> {
+    let mut statuses = statuses(structure, kept);
+    let mut findings = listed_hidden(&mut statuses, claim);
     if claim.hidden.is_some() {
-        let unknown = (0..).zip(&standings).filter(|(_, known)| **known == Standing::Unknown);
-        findings.extend(unknown.map(|(point, _)| Finding::Unaccounted { point }));
+        let unaccounted =
+            (0..).zip(&statuses).filter(|(_, status)| **status == Status::Unaccounted);
+        findings.extend(unaccounted.map(|(point, _)| Finding::Unaccounted { point }));
     }
     findings
 }
 
-/// In a shape alone: points listed as hidden are not vertices, and points that are in the shape by
-/// themselves are.
+/// Judges a shape alone: points listed as hidden are not vertices, and points that are in the shape by
+/// themselves are vertices.
 ///
 /// A point whose sphere of squared radius −ω has all others strictly outside is below them all
 /// once it is lifted, so it is a vertex of the regular triangulation; a tie may hide it.
 pub(super) fn of_shape(
     structure: &Structure,
     emptiness: &Emptiness,
-    stays: &[u32],
+    kept: &[u32],
     claim: &Claim,
 ) -> Vec<Finding> {
     let points = Points::of(claim.placed);
-    let mut standings = standings(structure, stays);
+    let mut statuses = statuses(structure, kept);
     let missing = |&point: &u32| {
         let site = points.get(point);
-        standings[point as usize] == Standing::Unknown
+        statuses[point as usize] == Status::Unaccounted
             && radius([&site], claim.placed.alpha).is_le()
             && emptiness.alone(point)
     };
@@ -173,16 +179,16 @@ pub(super) fn of_shape(
         Finding::MissingVertex { point, radius_squared }
     };
     let mut findings: Vec<_> = all.filter(missing).map(finding).collect();
-    findings.extend(listed_hidden(&mut standings, claim));
+    findings.extend(listed_hidden(&mut statuses, claim));
     findings
 }
 
-/// Each hidden point is hidden: it does not refute the cell it lies in.
+/// Judges that each hidden point is hidden: it does not refute the cell it lies in.
 ///
-/// The lifted cells are a convex function, so a point above it where it lies is above it for good.
+/// The lifted cells are a convex function, so a point that lies above it in its own cell lies above the whole lower hull.
 /// The cell is found by a walk from a vertex nearby, which ends in a regular triangulation because its
 /// cells have no cycle in front of any point (Edelsbrunner, Combinatorica 10, 1990,
-/// doi:10.1007/BF02122779). The triangulation must have been found regular, but for ties, and its hull convex.
+/// doi:10.1007/BF02122779). The triangulation must have been found regular up to ties, and its hull convex.
 pub(super) fn hiddenness(structure: &Structure, points: Points, hidden: &[u32]) -> Vec<Finding> {
     if hidden.is_empty() {
         return Vec::new();
@@ -203,7 +209,7 @@ pub(super) fn hiddenness(structure: &Structure, points: Points, hidden: &[u32]) 
         let start = grid.some_near(q.position).map_or(0, |v| cell_of[v as usize]);
         match walk(structure, points, start, q.position) {
             Ok(cell) => {
-                let corners = points.at(cells[cell]);
+                let corners = points.corners(cells[cell]);
                 in_conflict(corners.each_ref(), &q).then(|| Finding::NotHidden {
                     point,
                     cell: cells[cell].into(),
@@ -211,7 +217,7 @@ pub(super) fn hiddenness(structure: &Structure, points: Points, hidden: &[u32]) 
                 })
             }
             Err(facet) => {
-                let [a, b, c] = points.at(facet);
+                let [a, b, c] = points.corners(facet);
                 let six_volumes = six_volume([&a, &b, &c, &q]);
                 Some(Finding::OutsideHull { point, facet: facet.into(), six_volumes })
             }
@@ -220,20 +226,20 @@ pub(super) fn hiddenness(structure: &Structure, points: Points, hidden: &[u32]) 
     hidden.par_iter().filter_map(judge).collect()
 }
 
-/// The cell that contains a place, or a facet of the hull that it is outside of.
+/// The cell that contains a position, or a facet of the hull that it lies beyond.
 ///
-/// Among cells on one sphere a walk may go round for ever, as any choice among ties need not be the
-/// projection of a convex surface: then all cells are looked at.
+/// Among cells on one sphere a walk may cycle, as an arbitrary choice among ties need not be the
+/// projection of a convex surface: then all cells are searched.
 fn walk(
     structure: &Structure,
     points: Points,
     start: usize,
-    place: [f64; 3],
+    position: [f64; 3],
 ) -> Result<usize, [u32; 3]> {
     let cells = structure.complex.cells.rows();
     let beyond = |facet: &[u32; 3]| {
-        let [a, b, c] = points.places(*facet);
-        orientation(a, b, c, place).is_gt()
+        let [a, b, c] = points.positions_of(*facet);
+        orientation(a, b, c, position).is_gt()
     };
     let mut cell = start;
     for _ in 0..cells.len() {
