@@ -8,15 +8,15 @@ use crate::exact::{Side, WeightedPoint, in_conflict, orientation, radius, side};
 use crate::flat::{Flat, flat_simplices};
 use crate::{Alpha, Class, Complex};
 
-/// What the definition makes of a set of weighted points.
+/// The result of the definition for a set of weighted points.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Enumeration {
     /// The whole triangulation with its classes, in canonical order.
     pub complex: Complex,
-    /// Points that are not vertices though no other point stays at their place, ascending.
+    /// Points that are not vertices although no other point is kept at their position, ascending.
     pub hidden: Vec<u32>,
-    /// Pairs (went, stayed) of points at one place, ascending: the heaviest stays, of equal
+    /// Pairs (removed, kept) of points at one position, ascending: the heaviest is kept, of equal
     /// weights the first.
     pub duplicates: Vec<[u32; 2]>,
 }
@@ -25,7 +25,7 @@ pub struct Enumeration {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnumerateError {
-    /// Positions and weights do not pair up.
+    /// The numbers of positions and weights differ.
     #[error("{positions} positions but {weights} weights: each point needs one weight")]
     Lengths {
         /// Positions given.
@@ -34,7 +34,7 @@ pub enum EnumerateError {
         weights: usize,
     },
     /// A coordinate or weight is NaN or infinite.
-    #[error("point {0} has a coordinate or weight that is not finite; clean the input")]
+    #[error("point {0} has a coordinate or weight that is not finite; remove such points")]
     NotFinite(usize),
     /// No points.
     #[error("there are no points: give at least one")]
@@ -73,7 +73,7 @@ pub fn enumerate(
         .zip(weights)
         .map(|(&position, &weight)| WeightedPoint { position, weight })
         .collect();
-    let (sites, duplicates) = heaviest_of_each_place(&points);
+    let (sites, duplicates) = heaviest_at_each_position(&points);
     if sites.is_empty() {
         return Err(EnumerateError::Empty);
     }
@@ -85,23 +85,21 @@ pub fn enumerate(
     Ok(Enumeration { complex, hidden, duplicates })
 }
 
-/// Points that stay, and pairs (went, stayed), both ascending.
-fn heaviest_of_each_place(points: &[WeightedPoint]) -> (Vec<u32>, Vec<[u32; 2]>) {
-    // −0 and 0 are one place.
-    let place = |p: &WeightedPoint| p.position.map(|x| (x + 0.0).to_bits());
+/// Points that are kept, and pairs (removed, kept), both ascending.
+fn heaviest_at_each_position(points: &[WeightedPoint]) -> (Vec<u32>, Vec<[u32; 2]>) {
+    // −0 and 0 are one position.
+    let position = |p: &WeightedPoint| p.position.map(|x| (x + 0.0).to_bits());
     let mut best: HashMap<[u64; 3], usize> = HashMap::new();
     for (i, p) in points.iter().enumerate() {
-        let stays = best.entry(place(p)).or_insert(i);
-        if p.weight > points[*stays].weight {
-            *stays = i;
+        let kept = best.entry(position(p)).or_insert(i);
+        if p.weight > points[*kept].weight {
+            *kept = i;
         }
     }
-    let stay_of: Vec<usize> = points.iter().map(|p| best[&place(p)]).collect();
-    let sites = (0..points.len()).filter(|&i| stay_of[i] == i).map(|i| i as u32).collect();
-    let duplicates = (0..points.len())
-        .filter(|&i| stay_of[i] != i)
-        .map(|i| [i as u32, stay_of[i] as u32])
-        .collect();
+    let kept: Vec<usize> = points.iter().map(|p| best[&position(p)]).collect();
+    let sites = (0..points.len()).filter(|&i| kept[i] == i).map(|i| i as u32).collect();
+    let duplicates =
+        (0..points.len()).filter(|&i| kept[i] != i).map(|i| [i as u32, kept[i] as u32]).collect();
     (sites, duplicates)
 }
 
@@ -109,8 +107,8 @@ fn heaviest_of_each_place(points: &[WeightedPoint]) -> (Vec<u32>, Vec<[u32; 2]>)
 fn regular_cells(points: &[WeightedPoint], sites: &[u32]) -> Vec<[u32; 4]> {
     let point = |i: u32| &points[i as usize];
     let judge = |[a, b, c, d]: [u32; 4]| -> Option<[u32; 4]> {
-        let place = |i: u32| point(i).position;
-        let cell = match orientation(place(a), place(b), place(c), place(d)) {
+        let position = |i: u32| point(i).position;
+        let cell = match orientation(position(a), position(b), position(c), position(d)) {
             Ordering::Greater => [a, b, c, d],
             Ordering::Less => [a, b, d, c],
             Ordering::Equal => return None,
@@ -137,7 +135,7 @@ struct Definition<'a> {
     alpha: Alpha,
 }
 
-/// What is known of a simplex below a cell.
+/// What is known of a simplex below cells from its star.
 #[derive(Default)]
 struct Star {
     /// Some incident cell is in the shape.

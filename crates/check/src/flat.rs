@@ -1,4 +1,4 @@
-//! The regular triangulation of points in one plane, on one line, or of one alone, from the
+//! The regular triangulation of points in one plane, on one line, or of a single point, from the
 //! definition.
 
 use std::cmp::Ordering;
@@ -17,47 +17,47 @@ pub(crate) struct Flat {
 
 /// All triples (pairs, single points) that no other site refutes.
 ///
-/// Which points are within a circle of a plane is the same for every sphere through it; so places
-/// beside the plane make a cell of each triple, and the power test of space with its perturbation
-/// decides. The one beside is on no side of the plane's points: in the perturbation its part is zero.
+/// Which points of a plane lie inside a circle is the same for every sphere through that circle; so an
+/// auxiliary apex outside the plane makes a cell of each triple, and the power test of space with its
+/// perturbation decides. The apex has no influence on the perturbation: its coefficient there is zero.
 pub(crate) fn flat_simplices(points: &[WeightedPoint], sites: &[u32]) -> Flat {
-    let Some(beside) = Beside::of(points, sites) else { return Flat::default() };
+    let Some(cones) = Cones::of(points, sites) else { return Flat::default() };
     let n = sites.len();
     let mut flat = Flat::default();
-    match &beside.places[..] {
+    match &cones.apexes[..] {
         [v] => {
             let triples = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
             let triples = triples.flat_map(|(i, j)| (j + 1..n).map(move |k| [i, j, k]));
             let triples = triples.map(|triple| sorted(triple.map(|k| sites[k])));
-            flat.facets.extend(triples.filter(|&[a, b, c]| beside.stands([a, b, c], &[*v])));
+            flat.facets.extend(triples.filter(|&[a, b, c]| cones.is_regular([a, b, c], &[*v])));
         }
         [_, _] => {
             let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| sorted([sites[i], sites[j]])));
-            flat.edges.extend(pairs.filter(|&pair| beside.stands(pair, &beside.places)));
+            flat.edges.extend(pairs.filter(|&pair| cones.is_regular(pair, &cones.apexes)));
         }
         _ => flat.vertices.extend(sites.first().map(|&v| [v])),
     }
     flat
 }
 
-/// Sites, and auxiliary places that span a volume together with them.
-struct Beside<'a> {
+/// Sites, and auxiliary apexes that span a volume together with them.
+struct Cones<'a> {
     points: &'a [WeightedPoint],
     sites: &'a [u32],
-    places: Vec<[f64; 3]>,
+    apexes: Vec<[f64; 3]>,
 }
 
-impl<'a> Beside<'a> {
+impl<'a> Cones<'a> {
     fn of(points: &'a [WeightedPoint], sites: &'a [u32]) -> Option<Self> {
-        let places = auxiliary(sites.iter().map(|&i| points[i as usize].position))?;
-        Some(Self { points, sites, places })
+        let apexes = auxiliary_positions(sites.iter().map(|&i| points[i as usize].position))?;
+        Some(Self { points, sites, apexes })
     }
 
-    /// Whether a simplex makes a cell with places beside it, and no other site refutes it.
-    fn stands<const N: usize>(&self, row: [u32; N], beside: &[[f64; 3]]) -> bool {
+    /// Whether a simplex and the apexes make a cell that no other site refutes.
+    fn is_regular<const N: usize>(&self, row: [u32; N], apexes: &[[f64; 3]]) -> bool {
         let mut corners: Vec<WeightedPoint> =
             row.iter().map(|&i| self.points[i as usize]).collect();
-        corners.extend(beside.iter().map(|&position| WeightedPoint { position, weight: 0.0 }));
+        corners.extend(apexes.iter().map(|&position| WeightedPoint { position, weight: 0.0 }));
         let [a, b, c, d] = corners[..] else { unreachable!("four corners in all") };
         let [p, q, r, s] = [a, b, c, d].map(|corner| corner.position);
         let cell = match orientation(p, q, r, s) {
@@ -70,35 +70,37 @@ impl<'a> Beside<'a> {
     }
 }
 
-/// The places, at most three, that span a volume together with given ones: one beside a plane, two beside a
-/// line, three beside a single place, and none where these span a volume themselves. None if there are no places.
-pub(crate) fn auxiliary(places: impl Iterator<Item = [f64; 3]> + Clone) -> Option<Vec<[f64; 3]>> {
-    let first = places.clone().next()?;
+/// Positions, at most three, that span a volume together with given ones: one for a plane, two for a line, three for
+/// a single position, and none where these span a volume themselves. `None` if no positions are given.
+pub(crate) fn auxiliary_positions(
+    positions: impl Iterator<Item = [f64; 3]> + Clone,
+) -> Option<Vec<[f64; 3]>> {
+    let first = positions.clone().next()?;
     let mut basis = vec![first];
-    for place in places.clone() {
-        if is_free(&basis, place) {
-            basis.push(place);
+    for position in positions.clone() {
+        if is_independent(&basis, position) {
+            basis.push(position);
         }
     }
     let spanned = basis.len();
-    let far = places.flatten().fold(1e-100f64, |most, x| most.max(x.abs()));
+    let far = positions.flatten().fold(1e-100f64, |most, x| most.max(x.abs()));
     for axis in 0..3 {
-        let mut beside = first;
-        // Towards the origin and beyond, so that it stays a number.
-        beside[axis] = if beside[axis] > 0.0 { -far } else { far };
-        if is_free(&basis, beside) {
-            basis.push(beside);
+        let mut outside = first;
+        // Towards the origin and beyond, so that it remains finite.
+        outside[axis] = if outside[axis] > 0.0 { -far } else { far };
+        if is_independent(&basis, outside) {
+            basis.push(outside);
         }
     }
     Some(basis.split_off(spanned))
 }
 
-/// Whether a place is not in what others span.
-fn is_free(basis: &[[f64; 3]], place: [f64; 3]) -> bool {
+/// Whether a position is outside the affine hull of others.
+fn is_independent(basis: &[[f64; 3]], position: [f64; 3]) -> bool {
     match *basis {
-        [a] => a != place,
-        [a, b] => !collinear(a, b, place),
-        [a, b, c] => orientation(a, b, c, place).is_ne(),
+        [a] => a != position,
+        [a, b] => !collinear(a, b, position),
+        [a, b, c] => orientation(a, b, c, position).is_ne(),
         _ => false,
     }
 }

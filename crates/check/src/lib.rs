@@ -1,10 +1,9 @@
 //! An exact checker for weighted alpha shapes and regular triangulations in 3D, in Rust alone.
 //!
-//! [`enumerate`] makes the answer of few points from the definition; [`Claim`] judges any answer,
-//! of any size, by rules that are linear in it; [`compare()`] says how two answers differ;
-//! [`certify_filtration`] and [`compare_filtrations`] do the same with all values of α at once;
-//! [`schema`] reads and writes the answers of other programs. Every decision is exact, from the
-//! input doubles on.
+//! [`enumerate`] computes the complex of a few points from the definition; [`Claim`] judges complexes of any
+//! size, by rules that take linear time; [`compare()`] says how two complexes differ;
+//! [`certify_filtration`] and [`compare_filtrations`] do the same for all values of α at once;
+//! [`schema`] reads and writes the complexes of other programs. Every decision is exact on the input doubles.
 //!
 //! ```
 //! use walpha_check::{Alpha, Claim, Placed, Verdict, compare, enumerate};

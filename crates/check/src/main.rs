@@ -13,54 +13,54 @@ use walpha_check::{CertifyError, CertifyFiltrationError, Unjudged, certify_filtr
 /// Judge weighted alpha shapes exactly.
 ///
 /// Each FILE is a complex in JSON or NPZ: points, power weights, α, simplices and, if known, their
-/// classes; or a filtration: every simplex, when it comes, and the order. A file is exact; valid, which is
-/// right with another choice at ties, where more points lie on one empty sphere than a simplex has corners
+/// classes; or a filtration: every simplex, the α at which it enters, and the order. A file is exact; or valid:
+/// right, with another choice at ties, where more points lie on one empty sphere than a simplex has corners
 /// or points are equal; or wrong. Findings name the simplex and the rule that it breaks.
 ///
 /// Exit code: 0 if all files are exact or valid, 1 if a file cannot be judged, 2 for a wrong command line, 3
-/// if a file is wrong, 141 if nobody reads the result.
+/// if a file is wrong, 141 if standard output is closed by its reader.
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
     /// Complexes and filtrations: .json or .npz.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Which choice at ties is right: any, or that of the perturbation alone (exact), so that another
-    /// choice is a finding.
+    /// Which choices at ties are accepted: any, or only that of the perturbation (exact), so that any other is
+    /// a finding.
     #[arg(long, value_enum, default_value_t, value_name = "CHOICE")]
     ties: Ties,
 }
 
-/// Which choice at ties is right.
+/// Which choices at ties are accepted.
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 enum Ties {
     /// Any.
     #[default]
     Any,
-    /// That of the perturbation, as CGAL has it.
+    /// That of the perturbation, which CGAL uses, too.
     Exact,
 }
 
-/// Findings printed for a file; all are counted.
+/// The most findings printed for a file; all are counted.
 const MOST_PRINTED: usize = 20;
 const FAILED: u8 = 1;
 const USAGE: u8 = 2;
 const FOUND: u8 = 3;
-/// As shells have it for what the signal PIPE ends.
+/// The exit code that shells report for a process ended by SIGPIPE.
 const UNREAD: u8 = 141;
 
 #[expect(clippy::unnecessary_debug_formatting, reason = "it escapes control characters")]
 fn main() -> ExitCode {
     let Arguments { files, ties } = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) => return told(&error),
+        Err(error) => return print_usage(&error),
     };
     start_threads();
     let (mut failed, mut found) = (false, false);
     for path in &files {
         match judge(path, ties) {
             Ok(right) => found |= !right,
-            // What comes after would be lost, too.
+            // Further output would be lost, too.
             Err(Failure::Output(error)) => return unprinted(&error),
             Err(failure) => {
                 failed = true;
@@ -78,8 +78,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints help and the version, or what is wrong with the command line.
-fn told(error: &clap::Error) -> ExitCode {
+/// Prints the help, the version, or the error in the command line.
+fn print_usage(error: &clap::Error) -> ExitCode {
     if error.use_stderr() {
         let _ = error.print();
         return ExitCode::from(USAGE);
@@ -91,29 +91,29 @@ fn told(error: &clap::Error) -> ExitCode {
     }
 }
 
-/// Says that the result cannot be printed.
+/// Reports that the result cannot be printed.
 fn unprinted(error: &io::Error) -> ExitCode {
     complain(&format!("error: the result cannot be printed: {error}"));
     ExitCode::from(if error.kind() == ErrorKind::BrokenPipe { UNREAD } else { FAILED })
 }
 
-/// Says something on standard error, if anybody hears it.
+/// Prints to standard error, and ignores failures.
 fn complain(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// As many threads as are right; fewer where not so many can be had, and this one where none can.
+/// Starts the threads of rayon: fewer where the system refuses more, and none but this one where it refuses all.
 fn start_threads() {
-    /// As rayon has it.
+    /// The default stack size of rayon.
     const STACK: usize = 2 << 20;
     let count = threads::available(threads::wanted(None), STACK);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count.max(1));
     let pool = if count == 0 { pool.use_current_thread() } else { pool };
-    // Where that fails, rayon tries again by itself when it is first needed.
+    // If that fails, rayon tries again by itself when it is first needed.
     let _ = pool.build_global();
 }
 
-/// Why a file was not judged, or not to the end.
+/// Why a file was not judged, or not completely.
 #[derive(Debug, thiserror::Error)]
 enum Failure {
     #[error(transparent)]
@@ -137,7 +137,7 @@ impl Failure {
     }
 }
 
-/// Judges a file, prints what is found, and gives whether it is right.
+/// Judges a file, prints the findings, and returns whether it is right.
 fn judge(path: &Path, ties: Ties) -> Result<bool, Failure> {
     match AnyFile::open(path)? {
         AnyFile::Complex(file) => {
@@ -156,7 +156,7 @@ fn judge(path: &Path, ties: Ties) -> Result<bool, Failure> {
     }
 }
 
-/// Prints the verdict, what is found and what was not judged.
+/// Prints the verdict, the findings, and what was not judged.
 #[expect(clippy::unnecessary_debug_formatting, reason = "it escapes control characters")]
 fn print(
     path: &Path,

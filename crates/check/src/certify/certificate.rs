@@ -3,21 +3,21 @@ use serde::Serialize;
 use super::structure::MAX_CELLS;
 use crate::exact::Exact;
 
-/// What a complex is found to be.
+/// The result of judging a complex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// What the definition makes, ties decided by the rule.
+    /// The complex of the definition, with ties decided by the rule.
     Exact,
-    /// Right, with another choice where the definition leaves one: between points on one empty sphere, or
-    /// with equal places and weights. Each sphere is empty, and a whole triangulation fills its hull.
+    /// Right, with another choice where the definition leaves one: among points on one empty sphere, or
+    /// with equal positions and weights. Each sphere is empty, and a whole triangulation fills its hull.
     Valid,
-    /// Neither.
+    /// Neither exact nor valid.
     Wrong,
 }
 
 impl Verdict {
-    /// That of so many findings, of which so many are ties.
+    /// The verdict for a number of findings, some of which are ties.
     pub(super) fn of(findings: usize, ties: usize) -> Self {
         match (findings, ties) {
             (0, _) => Self::Exact,
@@ -38,17 +38,17 @@ impl std::fmt::Display for Verdict {
     }
 }
 
-/// What was judged, and what could not be.
+/// The verdict on a complex, and what was not judged.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Certificate {
     /// What follows from the findings.
     pub verdict: Verdict,
-    /// How many findings there were before the visitor stopped.
+    /// Number of findings before the visitor stopped.
     pub findings: usize,
-    /// How many of these are [ties](crate::Finding::is_tie), which leave a complex valid.
+    /// Number of those that are [ties](crate::Finding::is_tie), which leave a complex valid.
     pub ties: usize,
-    /// Six times the volume of all cells; zero if rows were too wrong to add up.
+    /// Six times the volume of all cells; zero if rows are invalid.
     pub six_volumes: Exact,
     /// What was not judged, and why.
     pub not_judged: Vec<NotJudged>,
@@ -64,12 +64,12 @@ impl Certificate {
 /// The verdict with its reason, in one line.
 impl std::fmt::Display for Certificate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        verdict_in_words(f, self.verdict, self.findings, self.ties, self.is_of_whole())
+        write_verdict(f, self.verdict, self.findings, self.ties, self.is_of_whole())
     }
 }
 
-/// A verdict with its reason: how many findings, of which so many are ties.
-pub(super) fn verdict_in_words(
+/// Writes a verdict with its reason: the number of findings, and of ties among them.
+pub(super) fn write_verdict(
     f: &mut std::fmt::Formatter<'_>,
     verdict: Verdict,
     findings: usize,
@@ -119,13 +119,13 @@ impl std::fmt::Display for NotJudged {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::MissingSimplices => {
-                "whether whole parts of the shape are missing (needs the exterior simplices)"
+                "whether whole parts of the shape are missing (that takes the exterior simplices)"
             }
             Self::HiddenAndHull => {
-                "hidden points and the convex hull (need the exterior simplices)"
+                "hidden points and the convex hull (that takes the exterior simplices)"
             }
             Self::Duplicates => "the list of duplicates (none is given)",
-            Self::AfterFindings => "rules that rest on the broken ones",
+            Self::AfterFindings => "rules that depend on the broken ones",
         })
     }
 }
@@ -145,27 +145,29 @@ pub enum CertifyError {
     /// A coordinate or weight is NaN or infinite.
     #[error("point {0} has a coordinate or weight that is not finite")]
     NotFinite(usize),
-    /// On a torus: a point that is not in the box, or of which no exact copies can be made.
-    #[error("point {0} is not in the periodic box, or so fine that its copies would be rounded")]
+    /// On a torus: a point that is not in the box, or whose copies cannot be represented exactly.
+    #[error(
+        "point {0} is not in the periodic box, or has so many digits that its copies would be rounded"
+    )]
     NotInBox(usize),
     /// More simplices or points than 32-bit numbers.
     #[error("{0} cells or points are too many to check: at most {max} fit", max = MAX_CELLS)]
     TooMany(usize),
-    /// Memory for the links between simplices cannot be had.
-    #[error("the check of {cells} cells needs {bytes} bytes of memory, which cannot be had")]
+    /// There is not enough memory for the links between simplices.
+    #[error("the check of {cells} cells needs {bytes} bytes of memory, which are not available")]
     Memory {
         /// Cells of the complex.
         cells: usize,
-        /// Bytes for it and its faces.
+        /// Bytes needed.
         bytes: usize,
     },
 }
 
 impl CertifyError {
-    /// What to do about it, where there is something.
+    /// How to resolve the error, if there is a way.
     pub fn advice(&self) -> Option<&'static str> {
         Some(match self {
-            Self::NotFinite(_) => "clean the input",
+            Self::NotFinite(_) => "remove such points from the input",
             Self::NotInBox(_) => "give coordinates from 0 to less than the sides of the box",
             Self::Memory { .. } => "judge a part of it",
             _ => return None,

@@ -1,6 +1,6 @@
 use crate::{Alpha, Complex, Placed};
 
-/// How much a complex claims to hold.
+/// How much of the triangulation a complex claims to list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// The whole regular triangulation, with the simplices that are not in the shape.
@@ -28,31 +28,31 @@ pub struct Claim<'a> {
     pub extent: Extent,
     /// The points listed as hidden, if they are listed.
     pub hidden: Option<&'a [u32]>,
-    /// Pairs (went, stayed) of points at one place, if they are listed.
+    /// Pairs (removed, kept) of points at one position, if they are listed.
     pub duplicates: Option<&'a [[u32; 2]]>,
 }
 
 impl<'a> Claim<'a> {
-    /// The claim of a complex that says nothing of hidden points and duplicates; its extent is
+    /// The claim of a complex without lists of hidden points and duplicates; its extent is
     /// that of [`Extent::of`].
     pub fn new(placed: Placed<'a>) -> Self {
         let extent = Extent::of(placed.complex, placed.alpha);
         Self { placed, extent, hidden: None, duplicates: None }
     }
 
-    /// With another extent.
+    /// The same claim with another extent.
     #[must_use]
     pub fn with_extent(self, extent: Extent) -> Self {
         Self { extent, ..self }
     }
 
-    /// With these points listed as hidden.
+    /// The same claim with these points listed as hidden.
     #[must_use]
     pub fn with_hidden(self, hidden: impl Into<Option<&'a [u32]>>) -> Self {
         Self { hidden: hidden.into(), ..self }
     }
 
-    /// With these pairs (went, stayed) listed as duplicates.
+    /// The same claim with these pairs (removed, kept) listed as duplicates.
     #[must_use]
     pub fn with_duplicates(self, duplicates: impl Into<Option<&'a [[u32; 2]]>>) -> Self {
         Self { duplicates: duplicates.into(), ..self }

@@ -1,4 +1,4 @@
-//! The rules on classes: what the definition makes of each simplex against what it was given.
+//! The rules on classes: the class that each simplex has by the definition, against the one it was given.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU8, AtomicU32, Ordering};
@@ -14,12 +14,12 @@ use crate::exact::{Side, collinear, orientation, power_value, radius, radius_val
 use crate::{Alpha, Class, Simplices};
 
 /// Judges the classes of all simplices, that faces are listed, and that regular facets turn
-/// outward. Below cells a simplex is interior when all around it is, regular when it is a face
-/// of something in the shape, and singular when its own sphere has squared radius ≤ α and no
+/// outward. Below cells a simplex is interior when all its cofaces are, regular when it is a face
+/// of a simplex of the shape, and singular when its own sphere has squared radius ≤ α and no
 /// point strictly inside.
 ///
-/// In a whole triangulation that was found regular, only the neighbours of a simplex can be the
-/// first inside its sphere, so only they are asked; in a shape alone, all points nearby are.
+/// In a whole triangulation that was found regular, a sphere that contains any point contains a
+/// neighbour of its simplex, so only neighbours are tested; in a shape alone, all points nearby are.
 pub(super) fn judge(structure: &Structure, judge: &Judge) -> Vec<Finding> {
     let complex = structure.complex;
     let (cells, mut findings) = judge.cells(&complex.cells);
@@ -58,18 +58,18 @@ pub(super) fn judge(structure: &Structure, judge: &Judge) -> Vec<Finding> {
     findings
 }
 
-/// What a class depends on.
+/// What the class of a simplex depends on.
 pub(super) struct Judge<'a> {
     pub points: Points<'a>,
     pub alpha: Alpha,
     pub extent: Extent,
-    /// That of the points: 3, or less where they span no volume.
+    /// The dimension of the affine hull of the points: less than 3 where they span no volume.
     pub dimension: usize,
-    /// In a shape alone.
+    /// Only in a shape alone.
     pub emptiness: Option<&'a Emptiness<'a>>,
 }
 
-/// The class a simplex has, and the point that keeps it out of the shape, or [`NONE`].
+/// The class that a simplex has, and the point in its sphere that excludes it from the shape, or [`NONE`].
 #[derive(Clone, Copy)]
 pub(super) struct Verdict {
     pub(super) class: Class,
@@ -83,15 +83,15 @@ impl Verdict {
 }
 
 impl Judge<'_> {
-    /// Whether simplices with so many corners must be faces of others: below the largest of a whole
-    /// triangulation.
+    /// Whether simplices with `N` corners must be faces of others: those of a whole triangulation that are not
+    /// of the largest dimension.
     pub(super) fn has_strays<const N: usize>(&self) -> bool {
         self.extent == Extent::Whole && N != self.dimension + 1
     }
 
     fn cells(&self, cells: &Simplices<4>) -> (Vec<Verdict>, Vec<Finding>) {
         let verdict = |&cell: &[u32; 4]| {
-            let inside = !self.flat(cell) && self.small(cell);
+            let inside = !self.flat(cell) && self.fits(cell);
             let class = if inside { Class::Interior } else { Class::Exterior };
             let refuter = self.emptiness.filter(|_| inside);
             let finding = refuter.and_then(|near| near.refuter_of_cell(cell)).map(|point| {
@@ -113,7 +113,7 @@ impl Judge<'_> {
             if inside > 0 {
                 return Verdict::of(if inside == 2 { Class::Interior } else { Class::Regular });
             }
-            if self.flat(facet) || !self.small(facet) {
+            if self.flat(facet) || !self.fits(facet) {
                 return Verdict::of(Class::Exterior);
             }
             let corners = self.points.corners(facet);
@@ -124,7 +124,7 @@ impl Judge<'_> {
         rows.map(verdict).collect()
     }
 
-    /// The verdict on a simplex with a small sphere and nothing of the shape above it.
+    /// The verdict on a simplex whose sphere fits α and that has no coface in the shape.
     pub(super) fn alone<const N: usize>(
         &self,
         row: [u32; N],
@@ -137,7 +137,7 @@ impl Judge<'_> {
         }
     }
 
-    /// Where given classes differ from the verdicts.
+    /// Findings where given classes differ from the verdicts.
     fn compare<const N: usize>(&self, given: &Simplices<N>, verdicts: &[Verdict]) -> Vec<Finding> {
         let rows = given.rows().par_iter().zip(given.classes()).zip(verdicts);
         rows.filter(|((_, given), verdict)| **given != verdict.class)
@@ -157,7 +157,7 @@ impl Judge<'_> {
             .collect()
     }
 
-    pub(super) fn small<const N: usize>(&self, row: [u32; N]) -> bool {
+    pub(super) fn fits<const N: usize>(&self, row: [u32; N]) -> bool {
         radius(self.points.corners(row).each_ref(), self.alpha).is_le()
     }
 
@@ -199,16 +199,16 @@ pub(super) struct Faces<'a, const N: usize, const M: usize> {
     pub(super) index: &'a Index<M>,
 }
 
-/// What the higher simplices around one say of it. They are visited in parallel.
+/// What is known of a simplex from its cofaces, which are visited in parallel.
 #[derive(Default)]
-struct Around(AtomicU8);
+struct Cofaces(AtomicU8);
 
-impl Around {
-    /// Some higher simplex has it as a face.
+impl Cofaces {
+    /// It has a coface.
     const SEEN: u8 = 1;
-    /// One in the shape has.
+    /// It has a coface in the shape.
     const COVERED: u8 = 2;
-    /// One that is not interior has.
+    /// It has a coface that is not interior.
     const OPEN: u8 = 4;
 
     fn add(&self, class: Class) {
@@ -225,26 +225,26 @@ impl Around {
     }
 }
 
-/// What is known of a simplex once everything around it was seen.
+/// What is known of a simplex once all its cofaces were visited.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum State {
-    /// A face of something in the shape, and all around it is interior.
+    /// It has a coface in the shape, and all of them are interior.
     Closed,
-    /// A face of something in the shape, and not all around it is interior.
+    /// It has a coface in the shape, and not all of them are interior.
     Open,
-    /// Nothing in the shape has it as a face, and its own sphere is small enough for α.
+    /// It has no coface in the shape, and its own sphere fits α.
     Candidate,
-    /// Nothing in the shape has it as a face, and it is flat or its sphere is too large.
+    /// It has no coface in the shape, and it is flat or its sphere is too large.
     Outside,
 }
 
 impl<const N: usize, const M: usize> Faces<'_, N, M> {
-    /// The verdict on each lower simplex, which of them are missing, and in a whole triangulation
-    /// which belong to nothing.
+    /// The verdict on each lower simplex, and findings on those that are missing and, in a whole triangulation,
+    /// on those that are no faces.
     pub(super) fn judge(&self, judge: &Judge) -> (Vec<Verdict>, Vec<Finding>) {
-        let (around, mut findings) = self.look_around();
-        let states: Vec<State> = (self.lower.rows().par_iter().zip(&around))
-            .map(|(&row, around)| state(row, around, judge))
+        let (cofaces, mut findings) = self.cofaces();
+        let states: Vec<State> = (self.lower.rows().par_iter().zip(&cofaces))
+            .map(|(&row, cofaces)| state(row, cofaces, judge))
             .collect();
         let refuters = self.neighbours_inside(&states, judge);
         let verdict = |((&row, &state), refuter): ((&[u32; M], &State), AtomicU32)| match state {
@@ -258,24 +258,24 @@ impl<const N: usize, const M: usize> Faces<'_, N, M> {
         let rows = self.lower.rows().par_iter();
         let verdicts = rows.zip(&states).zip(refuters).map(verdict).collect();
         if judge.has_strays::<M>() {
-            let strays = self.lower.rows().iter().zip(&around);
-            let strays = strays.filter(|(_, around)| !around.has(Around::SEEN));
+            let strays = self.lower.rows().iter().zip(&cofaces);
+            let strays = strays.filter(|(_, cofaces)| !cofaces.has(Cofaces::SEEN));
             findings.extend(strays.map(|(row, _)| Finding::Stray { simplex: (*row).into() }));
         }
         (verdicts, findings)
     }
 
-    /// What is around each lower simplex, and which faces are not listed.
-    fn look_around(&self) -> (Vec<Around>, Vec<Finding>) {
-        let around: Vec<Around> = self.lower.rows().iter().map(|_| Around::default()).collect();
+    /// What each lower simplex has for cofaces, and which faces are not listed.
+    fn cofaces(&self) -> (Vec<Cofaces>, Vec<Finding>) {
+        let cofaces: Vec<Cofaces> = self.lower.rows().iter().map(|_| Cofaces::default()).collect();
         let rows = self.higher.rows().par_iter().zip(self.verdicts);
         let missing = rows.flat_map_iter(|(row, verdict)| {
-            let around = &around;
+            let cofaces = &cofaces;
             self.corners.iter().filter_map(move |corners| {
                 let face = corners.map(|k| row[k]);
-                match around.get(self.index.row(face) as usize) {
-                    Some(around) => {
-                        around.add(verdict.class);
+                match cofaces.get(self.index.row(face) as usize) {
+                    Some(cofaces) => {
+                        cofaces.add(verdict.class);
                         None
                     }
                     None => Some((face, *row)),
@@ -283,13 +283,13 @@ impl<const N: usize, const M: usize> Faces<'_, N, M> {
             })
         });
         let missing: Vec<([u32; M], [u32; N])> = missing.collect();
-        // Of several simplices with a face, the first is named.
+        // Of several simplices with the face, the first is named.
         let missing: BTreeMap<_, _> = missing.into_iter().rev().collect();
         let finding = |(face, of): ([u32; M], [u32; N])| Finding::MissingFace {
             face: face.into(),
             of: of.into(),
         };
-        (around, missing.into_iter().map(finding).collect())
+        (cofaces, missing.into_iter().map(finding).collect())
     }
 
     /// For each candidate the smallest corner opposite to it, in an exterior higher simplex, that
@@ -313,11 +313,11 @@ impl<const N: usize, const M: usize> Faces<'_, N, M> {
     }
 }
 
-fn state<const M: usize>(row: [u32; M], around: &Around, judge: &Judge) -> State {
-    match (around.has(Around::COVERED), around.has(Around::OPEN)) {
+fn state<const M: usize>(row: [u32; M], cofaces: &Cofaces, judge: &Judge) -> State {
+    match (cofaces.has(Cofaces::COVERED), cofaces.has(Cofaces::OPEN)) {
         (true, false) => State::Closed,
         (true, true) => State::Open,
-        (false, _) if !judge.flat(row) && judge.small(row) => State::Candidate,
+        (false, _) if !judge.flat(row) && judge.fits(row) => State::Candidate,
         (false, _) => State::Outside,
     }
 }

@@ -9,29 +9,30 @@ use super::{Finding, Points};
 use crate::exact::orientation;
 use crate::{Class, Complex, Simplices};
 
-/// Cells over the largest simplices of a flat triangulation, with auxiliary corners beside it.
+/// A cone over a flat triangulation: cells over its largest simplices, with auxiliary apexes outside its plane
+/// or line.
 ///
-/// Which points are within a circle of a plane is the same for every sphere through it, and auxiliary
-/// corners have no part in the perturbation. So the cone is the regular triangulation of the points with
-/// the auxiliary ones if and only if its base is that of the points.
+/// Which points of a plane lie inside a circle is the same for every sphere through that circle, and the
+/// auxiliary apexes have no influence on the perturbation. So the cone is the regular triangulation of the
+/// points and the apexes if and only if its base is that of the points.
 pub(super) struct Cone {
     pub complex: Complex,
-    /// Of the base: 0 to 2.
+    /// The dimension of the base, 0 to 2.
     pub dimension: usize,
     positions: Vec<[f64; 3]>,
     weights: Vec<f64>,
-    /// The number of the first auxiliary corner.
+    /// The index of the first apex.
     first: u32,
 }
 
 impl Cone {
-    /// Over a complex without cells, of which the rows are valid. None if nothing is listed of the
+    /// The cone over a complex without cells whose rows are valid. `None` if no simplex is listed of the
     /// dimension that the points span.
-    pub(super) fn over(complex: &Complex, points: Points, beside: &[[f64; 3]]) -> Option<Self> {
+    pub(super) fn over(complex: &Complex, points: Points, apexes: &[[f64; 3]]) -> Option<Self> {
         let first = points.len() as u32;
-        let positions = [points.positions, beside].concat();
+        let positions = [points.positions, apexes].concat();
         let at = |k: u32| first + k;
-        let cells: Vec<[u32; 4]> = match beside.len() {
+        let cells: Vec<[u32; 4]> = match apexes.len() {
             1 => complex.facets.rows().iter().map(|&[a, b, c]| [a, b, c, at(0)]).collect(),
             2 => complex.edges.rows().iter().map(|&[a, b]| [a, b, at(0), at(1)]).collect(),
             3 => complex.vertices.rows().iter().map(|&[a]| [a, at(0), at(1), at(2)]).collect(),
@@ -45,8 +46,8 @@ impl Cone {
             if orientation(p, q, r, s) == Ordering::Less { [b, a, c, d] } else { [a, b, c, d] }
         };
         let cells: Vec<_> = cells.into_iter().map(positive).collect();
-        let weights = [points.weights, &[0.0; 3][..beside.len()]].concat();
-        let dimension = 3 - beside.len();
+        let weights = [points.weights, &[0.0; 3][..apexes.len()]].concat();
+        let dimension = 3 - apexes.len();
         Some(Self { complex: closed(&cells), dimension, positions, weights, first })
     }
 
@@ -54,7 +55,7 @@ impl Cone {
         Points { positions: &self.positions, weights: &self.weights }
     }
 
-    /// What is found of the cone, of its base; each once.
+    /// Findings on the cone in terms of its base, each once.
     pub(super) fn at_base(&self, found: Vec<Finding>) -> Vec<Finding> {
         let mut findings: Vec<Finding> = Vec::new();
         for finding in found.into_iter().map(|finding| finding.without(self.first)) {

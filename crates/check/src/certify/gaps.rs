@@ -1,4 +1,4 @@
-//! Cells that are not listed though all their faces are.
+//! Cells that are not listed although all their faces are.
 
 use rayon::prelude::*;
 use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
@@ -10,11 +10,11 @@ use super::{Finding, Points};
 use crate::exact::{Side, orientation, radius, radius_value, side};
 use crate::{Alpha, Class, Complex};
 
-/// The cells that fill gaps between four listed facets, positively oriented, with their classes.
+/// The cells that belong into gaps between four listed facets, positively oriented, with their classes.
 ///
-/// A gap is bounded by facets that lack a cell on its side. Of a whole triangulation none of the
-/// neighbours' vertices may be inside the sphere of its cell; of a shape alone it must fit α, and no point
-/// nearby may. Where further points are on the sphere, their cells are listed, or the gap is one.
+/// A gap is bounded by facets that lack a cell on its side. In a whole triangulation, no vertex of a
+/// neighbour may be inside the sphere of its cell; in a shape alone, the sphere must fit α, and no point
+/// nearby may be inside. Where further points are on the sphere, their cells are listed, or the gap is a missing cell.
 pub(super) fn missing_cells(
     structure: &Structure,
     points: Points,

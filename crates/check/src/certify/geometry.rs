@@ -6,7 +6,7 @@ use super::structure::{Half, Structure};
 use super::{Finding, Points};
 use crate::exact::{in_conflict, orientation, power_value, six_volume};
 
-/// Each cell is positively oriented.
+/// Judges that each cell is positively oriented.
 pub(super) fn orientations(cells: &[[u32; 4]], points: Points) -> Vec<Finding> {
     let judge = |cell: &[u32; 4]| {
         let corners = points.corners(*cell);
@@ -19,7 +19,7 @@ pub(super) fn orientations(cells: &[[u32; 4]], points: Points) -> Vec<Finding> {
     cells.par_iter().filter_map(judge).collect()
 }
 
-/// The cells on a facet are on different sides of it, and neither is refuted by the other's
+/// Judges that the cells on a facet are on different sides of it, and neither is refuted by the other's
 /// vertex. Cells must be positively oriented.
 ///
 /// Over a convex domain this proves that the whole triangulation is regular: the lifted cells
@@ -35,7 +35,7 @@ pub(super) fn neighbours(structure: &Structure, points: Points) -> Vec<Finding> 
 
 fn overlap(structure: &Structure, one: Half, other: Half) -> Option<Finding> {
     let [a, b, c] = structure.outward(one);
-    // Seen from the two sides, a facet turns the two ways.
+    // Seen from its two sides, a facet turns in opposite directions.
     let same_turn = [[a, b, c], [b, c, a], [c, a, b]].contains(&structure.outward(other));
     let cell = |half: Half| structure.complex.cells.rows()[half.cell].into();
     same_turn.then(|| Finding::Overlap { facet: [a, b, c].into(), cells: [cell(one), cell(other)] })

@@ -1,4 +1,4 @@
-//! Rules on the surface made of the facets with one cell.
+//! Rules on the hull, the surface of the facets with one cell.
 
 use dashu_int::IBig;
 use rayon::prelude::*;
@@ -14,7 +14,7 @@ pub(super) fn six_volumes(cells: &[[u32; 4]], points: Points) -> (IBig, i64) {
     (sum, 3 * i64::from(lattice.exponent()))
 }
 
-/// The cells fill the volume that the hull encloses.
+/// Judges that the cells fill the volume that the hull encloses.
 pub(super) fn volume(structure: &Structure, points: Points) -> Vec<Finding> {
     let (cells, exponent) = six_volumes(structure.complex.cells.rows(), points);
     let hull = structure.hull();
@@ -32,7 +32,7 @@ pub(super) fn volume(structure: &Structure, points: Points) -> Vec<Finding> {
     vec![Finding::Volume { cells: exact(cells), hull: exact(enclosed) }]
 }
 
-/// The hull is a convex surface that goes around the first cell once.
+/// Judges that the hull is a convex surface that goes around the first cell once.
 ///
 /// By Mehlhorn et al., "Checking geometric programs or verification of geometric structures",
 /// Comput. Geom. 12, 1999, doi:10.1016/S0925-7721(98)00036-4: a closed surface is the boundary of
@@ -80,8 +80,8 @@ fn wraps(structure: &Structure, hull: &[[u32; 3]], points: Points) -> Vec<Findin
     let star = Star::new(lattice, points.positions_of(structure.complex.cells.rows()[0]));
     let first = points.positions_of(hull[0]);
     let judge = |(i, facet): (usize, &[u32; 3])| {
-        let place = points.positions_of(*facet);
-        let wrong = !star.inside(place) || i > 0 && star.ray_meets(first, place);
+        let triangle = points.positions_of(*facet);
+        let wrong = !star.inside(triangle) || i > 0 && star.ray_meets(first, triangle);
         wrong.then(|| Finding::HullWraps { first: hull[0].into(), facet: (*facet).into() })
     };
     hull.par_iter().enumerate().filter_map(judge).collect()

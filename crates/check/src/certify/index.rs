@@ -3,7 +3,7 @@ use walpha_complex::canonical::sorted;
 
 use super::Finding;
 
-/// Marks a simplex or cell that is not there.
+/// Stands for the absence of a simplex or cell.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// Finds listed simplices by their vertices, in any order.
@@ -15,7 +15,7 @@ pub(super) struct Index<const N: usize> {
 }
 
 impl<const N: usize> Index<N> {
-    /// Indexes rows of valid vertices; says which are listed twice.
+    /// Indexes rows of valid vertices, with findings on those that are listed twice.
     pub(super) fn new(rows: &[[u32; N]], points: usize) -> (Self, Vec<Finding>) {
         let mut entries: Vec<_> =
             rows.par_iter().enumerate().map(|(i, row)| (sorted(*row), i as u32)).collect();

@@ -2,12 +2,12 @@ use super::structure::Structure;
 use super::{Extent, Finding, Points, geometry, hull, non_vertices};
 use crate::Complex;
 
-/// A complex with its simplices linked, and which rules of structure and geometry it breaks.
+/// A complex with its simplices linked, and the rules of structure and geometry that it breaks.
 pub(super) struct Linked<'a> {
     pub structure: Structure<'a>,
-    /// Rules without which the others mean nothing.
+    /// Broken rules without which the others mean nothing.
     pub broken: Vec<Finding>,
-    /// Neighbours and hull, judged if nothing is broken.
+    /// Findings on neighbours and hull, which are judged if `broken` is empty.
     pub irregular: Vec<Finding>,
 }
 
@@ -25,8 +25,8 @@ impl<'a> Linked<'a> {
         Self { structure, broken, irregular }
     }
 
-    /// Whether no point is inside the sphere of a neighbour, and the hull of a whole triangulation is
-    /// convex: it is regular then, but for the choice among ties.
+    /// Whether no vertex is inside the sphere of a neighbouring cell, and the hull of a whole triangulation is
+    /// convex: then it is regular, up to the choice among ties.
     pub(super) fn is_regular(&self) -> bool {
         self.broken.is_empty() && self.irregular.iter().all(Finding::is_tie)
     }

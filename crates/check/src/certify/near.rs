@@ -1,9 +1,9 @@
-/// Points in the boxes of a uniform grid.
+/// Points sorted into the boxes of a uniform grid.
 pub(super) struct Grid {
     low: [f64; 3],
     step: f64,
     counts: [usize; 3],
-    /// Where the points of each box start, x fastest.
+    /// Where the points of each box start; x varies fastest.
     starts: Vec<u32>,
     points: Vec<u32>,
 }
@@ -56,14 +56,14 @@ impl Grid {
     }
 
     /// Calls `visit` with every point within `radius` of `center`, and some beyond, until it
-    /// returns something.
+    /// returns a value.
     pub(super) fn within<T>(
         &self,
         center: [f64; 3],
         radius: f64,
         visit: impl Fn(u32) -> Option<T>,
     ) -> Option<T> {
-        // Rounding is monotone, so a point between two places is in a box between theirs.
+        // Rounding is monotonic, so a point between two positions is in a box between theirs.
         let from = self.at(center.map(|x| (x - radius).next_down()));
         let to = self.at(center.map(|x| (x + radius).next_up()));
         for z in from[2]..=to[2] {
@@ -79,9 +79,9 @@ impl Grid {
         None
     }
 
-    /// Some point not far from a place, if there is any point.
-    pub(super) fn some_near(&self, place: [f64; 3]) -> Option<u32> {
-        let center = self.at(place);
+    /// Some point near a position, if there are points.
+    pub(super) fn some_near(&self, position: [f64; 3]) -> Option<u32> {
+        let center = self.at(position);
         let reach = *self.counts.iter().max().expect("three axes");
         (0..reach).find_map(|ring| {
             let from: [usize; 3] = std::array::from_fn(|k| center[k].saturating_sub(ring));
@@ -99,10 +99,10 @@ impl Grid {
         })
     }
 
-    fn at(&self, place: [f64; 3]) -> [usize; 3] {
+    fn at(&self, position: [f64; 3]) -> [usize; 3] {
         std::array::from_fn(|k| {
-            // A cast takes what is below zero, and NaN of an infinite box, to 0.
-            (((place[k] - self.low[k]) / self.step) as usize).min(self.counts[k] - 1)
+            // The cast turns negative numbers, and the NaN of an infinite box, into 0.
+            (((position[k] - self.low[k]) / self.step) as usize).min(self.counts[k] - 1)
         })
     }
 

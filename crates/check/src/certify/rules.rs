@@ -1,4 +1,4 @@
-//! The rules in their order, and which are skipped once others are broken.
+//! The rules in their order, and which of them are skipped once others are broken.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -11,9 +11,9 @@ use super::linked::Linked;
 use super::structure;
 use super::{Claim, Extent, Finding, Points, gaps, hull, non_vertices, ties};
 use crate::exact::Exact;
-use crate::flat::auxiliary;
+use crate::flat::auxiliary_positions;
 
-/// Takes the findings of a rule; breaks if the visitor has seen enough.
+/// Takes the findings of a rule; breaks when the visitor wants no more.
 type Report<'r> = dyn FnMut(Vec<Finding>) -> ControlFlow<()> + 'r;
 
 /// Applies all rules in turn. Breaks if the visitor does, or if a rule is broken without which
@@ -33,8 +33,8 @@ pub(super) fn apply(
         return ControlFlow::Break(());
     }
     if whole && complex.cells.is_empty() {
-        let beside = auxiliary(points.positions.iter().copied()).unwrap_or_default();
-        if let Some(cone) = Cone::over(complex, points, &beside) {
+        let apexes = auxiliary_positions(points.positions.iter().copied()).unwrap_or_default();
+        if let Some(cone) = Cone::over(complex, points, &apexes) {
             return flat(claim, &cone, report);
         }
         report(vec![Finding::NoCells])?;
@@ -69,7 +69,7 @@ pub(super) fn apply(
     apply_to(listed, claim, &judge, &kept, report)
 }
 
-/// The rules after those on rows.
+/// Applies the rules after those on rows.
 fn apply_to(
     linked: Linked,
     claim: &Claim,
@@ -112,8 +112,7 @@ fn apply_to(
     if regular { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
-/// The rules for a whole triangulation of points that span no volume: those for cells are applied to
-/// a cone over it.
+/// Applies the rules to a whole triangulation of points that span no volume: those on cells to a cone over it.
 fn flat(claim: &Claim, cone: &Cone, report: &mut Report) -> ControlFlow<()> {
     let complex = claim.placed.complex;
     let points = Points::of(claim.placed);

@@ -17,23 +17,23 @@ pub(super) struct Structure<'a> {
     pub facets: Index<3>,
     pub edges: Index<2>,
     pub vertices: Index<1>,
-    /// For each facet, the sides that cells have on it: 4 · cell + the number of the opposite
-    /// vertex, ascending; [`NONE`] for a missing one. Of a crowded facet the first two.
+    /// For each facet, its sides in cells as 4 · cell + the corner opposite to it,
+    /// ascending; [`NONE`] for a missing one. Of a crowded facet the first two.
     pub sides: Vec<[u32; 2]>,
     /// The rows of each cell's facets, opposite to its vertices.
     pub cell_facets: Vec<[u32; 4]>,
 }
 
-/// A cell's side on a facet.
+/// A facet seen from one of its cells.
 #[derive(Clone, Copy)]
 pub(super) struct Half {
     pub cell: usize,
-    /// Which vertex of the cell is opposite.
+    /// The corner of the cell that is opposite.
     pub opposite: usize,
 }
 
 impl<'a> Structure<'a> {
-    /// Bytes that linking a complex takes, besides the complex itself.
+    /// Bytes needed to link a complex, besides the complex itself.
     pub(super) fn bytes(complex: &Complex) -> usize {
         let cell = size_of::<([u32; 4], u32)>() + size_of::<[u32; 4]>();
         let facet = size_of::<([u32; 3], u32)>() + size_of::<[u32; 2]>();
@@ -83,7 +83,7 @@ impl<'a> Structure<'a> {
         (Self { complex, cells, facets, edges, vertices, sides, cell_facets }, findings)
     }
 
-    /// The cells on a facet, at most two.
+    /// The half-facets of a facet, at most two.
     pub(super) fn halves(&self, facet: usize) -> impl Iterator<Item = Half> + use<> {
         let present = self.sides[facet].into_iter().filter(|&half| half != NONE);
         present.map(|half| Half { cell: half as usize / 4, opposite: half as usize % 4 })
@@ -101,12 +101,12 @@ impl<'a> Structure<'a> {
             .collect()
     }
 
-    /// The facet of a half, counter-clockwise seen from outside its cell.
+    /// The facet of a half-facet, counter-clockwise seen from outside its cell.
     pub(super) fn outward(&self, half: Half) -> [u32; 3] {
         outward_facets(self.complex.cells.rows()[half.cell])[half.opposite]
     }
 
-    /// The vertex of a half's cell that is not on its facet.
+    /// The vertex of a half-facet's cell that is opposite to it.
     pub(super) fn apex(&self, half: Half) -> u32 {
         self.complex.cells.rows()[half.cell][half.opposite]
     }
@@ -117,7 +117,7 @@ fn cells_with(cells: &[[u32; 4]], facets: &[[u32; 4]], row: u32) -> Vec<super::S
     cells.iter().zip(facets).filter(has).map(|(cell, _)| (*cell).into()).collect()
 }
 
-/// What is wrong with single rows: vertices that do not exist, or come twice.
+/// Findings on single rows: vertices that do not exist, or occur twice.
 pub(super) fn rows(complex: &Complex, points: usize) -> Vec<Finding> {
     let mut findings = row_findings(complex.cells.rows(), points);
     findings.extend(row_findings(complex.facets.rows(), points));
@@ -145,7 +145,7 @@ mod tests {
     use super::*;
     use crate::Class;
 
-    /// A corner is 4 bytes, and so is a number of a row; a facet has 8 for its two halves.
+    /// A vertex takes 4 bytes, and so does the number of a row; a facet takes 8 for its two sides.
     #[test]
     fn bytes_are_those_of_all_rows() {
         let complex = Complex {

@@ -1,9 +1,9 @@
-//! In a shape alone: whether what is listed on tied spheres fits together.
+//! In a shape alone: whether the simplices listed on tied spheres fit together.
 //!
 //! Where more points lie on one empty sphere than a simplex has corners, their polytope may be cut in
-//! several ways. A whole triangulation shows by its hull and volume that one way was taken. In a shape
+//! several ways. For a whole triangulation, hull and volume prove that it is cut in one of them. In a shape
 //! alone each polytope is judged by itself, as a whole triangulation of the points on its sphere; and
-//! on each of its flat faces, where the one beyond may be cut, too, all facets must have cells on the same sides.
+//! on each of its flat faces, which the polytope beyond may cut, too, all facets must have cells on the same sides.
 
 use std::collections::BTreeMap;
 
@@ -16,14 +16,14 @@ use super::linked::triangulation_findings;
 use super::structure::Structure;
 use super::{Finding, Points};
 use crate::exact::{collinear, orientation};
-use crate::flat::auxiliary;
+use crate::flat::auxiliary_positions;
 use crate::{Class, Complex, Simplices};
 
-/// Facets in the shape by themselves on tied circles: the points of each circle, and the rows.
+/// Singular facets on tied circles: the points of each circle, and the rows.
 pub(super) type Circles = BTreeMap<Vec<u32>, Vec<u32>>;
 
-/// Judges simplices that are in the shape by themselves and have further points on their spheres:
-/// they must be those of a triangulation of these points, by the rule or by another choice.
+/// Judges singular simplices with further points on their spheres: they must be those of a
+/// triangulation of these points, by the rule or by another choice.
 pub(super) fn singular(
     structure: &Structure,
     points: Points,
@@ -70,7 +70,7 @@ pub(super) fn singular(
     (circles, findings)
 }
 
-/// Judges cells with further points on their spheres, and what is listed on the flat faces between them.
+/// Judges cells with further points on their spheres, and the facets listed on the flat faces between them.
 pub(super) fn cells(
     structure: &Structure,
     points: Points,
@@ -102,7 +102,7 @@ pub(super) fn cells(
     };
     let mut findings: Vec<Finding> = spheres.par_iter().filter_map(judge).collect();
 
-    // Of each flat face with more than three corners one facet, and its sides with cells.
+    // For each flat face with more than three corners, one facet and the sides on which it has cells.
     let mut faces = BTreeMap::<Vec<u32>, (u32, [bool; 2])>::new();
     let mut crossing = BTreeMap::<u32, u32>::new();
     let mut add = |face: Vec<u32>, facet: u32| {
@@ -133,11 +133,11 @@ pub(super) fn cells(
     findings
 }
 
-/// On which sides of a flat face a facet of it has cells.
+/// The sides of a flat face on which a facet of it has cells.
 fn sides(structure: &Structure, points: Points, face: &[u32], facet: u32) -> [bool; 2] {
     let [a, b] = [face[0], face[1]].map(|v| points.get(v).position);
-    let places = face[2..].iter().map(|&v| points.get(v).position);
-    let c = places.into_iter().find(|&c| !collinear(a, b, c)).expect("a face spans a plane");
+    let others = face[2..].iter().map(|&v| points.get(v).position);
+    let c = others.into_iter().find(|&c| !collinear(a, b, c)).expect("a face spans a plane");
     let mut sides = [false; 2];
     for half in structure.halves(facet as usize) {
         let apex = points.get(structure.apex(half)).position;
@@ -146,8 +146,8 @@ fn sides(structure: &Structure, points: Points, face: &[u32], facet: u32) -> [bo
     sides
 }
 
-/// Simplices in the shape by themselves with further points on their spheres: the row, the
-/// simplex, and all points on the sphere.
+/// Singular simplices with further points on their spheres: the row, the simplex, and all points on the
+/// sphere.
 fn tied<const N: usize>(
     simplices: &Simplices<N>,
     emptiness: &Emptiness,
@@ -165,8 +165,8 @@ fn spanned<const N: usize>(simplex: [u32; N], on: &[u32]) -> Finding {
     Finding::SpannedSphere { simplex: simplex.into(), point }
 }
 
-/// What is found of flat simplices as a whole triangulation of the points on a sphere, of which the
-/// first simplex is given: other choices one by one, or else that it is none.
+/// Findings on flat simplices as a whole triangulation of the points `on` a sphere: each other choice among
+/// ties, or a single finding if they are no triangulation. `simplex` is the first of them.
 fn flat_findings(
     on: &[u32],
     complex: &Complex,
@@ -176,8 +176,8 @@ fn flat_findings(
     let listed = complex.facets.len() + complex.edges.len();
     let (positions, weights) = placed(on, points);
     let of_sphere = Points { positions: &positions, weights: &weights };
-    let beside = auxiliary(positions.iter().copied()).unwrap_or_default();
-    let found = Cone::over(complex, of_sphere, &beside)
+    let apexes = auxiliary_positions(positions.iter().copied()).unwrap_or_default();
+    let found = Cone::over(complex, of_sphere, &apexes)
         .map(|cone| cone.at_base(triangulation_findings(&cone.complex, cone.points())));
     match found {
         Some(found) if found.iter().all(Finding::is_tie) => {
@@ -187,11 +187,12 @@ fn flat_findings(
     }
 }
 
-/// A row by places in a list of points, ascending, that has all of them.
+/// A row as indices into an ascending list of points that contains all of its vertices.
 fn local<const N: usize>(row: [u32; N], on: &[u32]) -> [u32; N] {
     row.map(|v| on.binary_search(&v).expect("corners are on their sphere") as u32)
 }
 
+/// Positions and weights of some points.
 fn placed(on: &[u32], points: Points) -> (Vec<[f64; 3]>, Vec<f64>) {
     on.iter().map(|&v| (points.positions[v as usize], points.weights[v as usize])).unzip()
 }

@@ -1,8 +1,8 @@
-//! Complexes of a torus: their copies in space are judged, around one box.
+//! Complexes of a torus: their copies in space around one box are judged.
 //!
 //! No edge may span half of the box. Then all simplices around one that touches the box have their vertices in
-//! it or in a copy of it beside it, so among 27 copies of the complex what touches the middle one is judged as in
-//! space, by the rules for a shape alone. If the complex is whole (it lists exterior simplices, or α = ∞), then where no
+//! it or in a neighbouring copy, so among 27 copies of the complex the simplices that touch the middle one are judged
+//! as in space, by the rules for a shape alone. If the complex is whole (it lists exterior simplices, or α = ∞), then where no
 //! facet is between other than two cells, on its two sides, and the cells' volumes add up to that of the box,
 //! they cover it once.
 
@@ -18,16 +18,18 @@ use crate::periodic::{moved, nearest_copy};
 use crate::schema::PlacedComplex;
 use crate::{Alpha, Complex, Placed, Simplices};
 
-/// All broken rules of a complex of a torus with these sides, and what was judged.
+/// All broken rules of a complex of a torus with these sides, and the certificate.
 ///
 /// # Errors
-/// [`CertifyError`]; points of which no exact copies can be made.
+/// [`CertifyError`]; points whose copies cannot be represented exactly.
 pub(super) fn findings(
     placed: &PlacedComplex,
     sides: [f64; 3],
 ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
     let bad = |index| Err(CertifyError::NotInBox(index));
-    if let Some(index) = placed.positions.iter().position(|place| !has_copies(place, sides)) {
+    if let Some(index) =
+        placed.positions.iter().position(|position| !has_exact_copies(position, sides))
+    {
         return bad(index);
     }
     let points = Points { positions: &placed.positions, weights: &placed.weights };
@@ -50,7 +52,7 @@ pub(super) fn findings(
     let (all, mut certificate) = claim.findings()?;
     let count = placed.positions.len() as u32;
     let mut seen = BTreeSet::new();
-    // Of a sphere that reaches beyond the copied simplices not all of them are there.
+    // A sphere that reaches beyond the copied simplices lacks some of its own.
     let is_copied = |finding: &Finding| match finding {
         Finding::TiedSphere { points, .. } => points.iter().all(|&point| copies.is_copied(point)),
         _ => true,
@@ -61,7 +63,7 @@ pub(super) fn findings(
     let whole = Extent::of(&placed.complex, placed.alpha) == Extent::Whole;
     let (volume, missing) = copies.volume(count, sides);
     certificate.six_volumes = volume;
-    // Cells that fill the box are all there are.
+    // Cells that fill the box are all of the cells.
     if whole || missing.is_none() {
         certificate.not_judged.retain(|rule| *rule != NotJudged::MissingSimplices);
     }
@@ -74,9 +76,9 @@ pub(super) fn findings(
     Ok((found, certificate))
 }
 
-/// Whether a place is in the box, and all its copies nearby are exact.
-fn has_copies(place: &[f64; 3], sides: [f64; 3]) -> bool {
-    place.iter().zip(sides).all(|(&x, side)| {
+/// Whether a position is in the box, and its nearby copies are exact.
+fn has_exact_copies(position: &[f64; 3], sides: [f64; 3]) -> bool {
+    position.iter().zip(sides).all(|(&x, side)| {
         let exact = |by: f64| (x + by) - by == x && (x + by) - x == by;
         (0.0..side).contains(&x) && [-2.0, -1.0, 1.0, 2.0].iter().all(|n| exact(n * side))
     })
@@ -94,7 +96,7 @@ fn long_edges(complex: &Complex, points: Points, sides: [f64; 3]) -> Vec<Finding
     long.map(|&edge| Finding::LongEdge { edge: edge.into() }).collect()
 }
 
-/// A complex copied, those of the box itself first.
+/// Copies of a complex, those of the box itself first.
 struct Copies {
     positions: Vec<[f64; 3]>,
     weights: Vec<f64>,
@@ -102,7 +104,7 @@ struct Copies {
     complex: Complex,
     hidden: Option<Vec<u32>>,
     duplicates: Option<Vec<[u32; 2]>>,
-    /// By how many sides each copy of the box is moved.
+    /// The multiples of the sides by which each copy of the box is moved.
     moves: Vec<[i32; 3]>,
 }
 
@@ -128,7 +130,7 @@ impl Copies {
         let moves = &layout.moves;
         Self {
             positions: (moves.iter())
-                .flat_map(|&by| positions.iter().map(move |&place| moved(sides, place, by)))
+                .flat_map(|&by| positions.iter().map(move |&position| moved(sides, position, by)))
                 .collect(),
             weights: moves.iter().flat_map(|_| weights.iter().copied()).collect(),
             alpha: Alpha::from_squared(alpha).expect("a number"),
@@ -139,9 +141,9 @@ impl Copies {
         }
     }
 
-    /// Whether simplices with this copy of a point are copied.
+    /// Whether the simplices at this copy of a point are copied.
     fn is_copied(&self, point: u32) -> bool {
-        is_beside(self.moves[point as usize / (self.positions.len() / self.moves.len())])
+        is_neighbour(self.moves[point as usize / (self.positions.len() / self.moves.len())])
     }
 
     fn claim(&self) -> Claim<'_> {
@@ -150,9 +152,9 @@ impl Copies {
         claim.with_hidden(self.hidden.as_deref()).with_duplicates(self.duplicates.as_deref())
     }
 
-    /// Six times the volume of the cells of one box, and what is found if they do not fill it.
+    /// Six times the volume of the cells of one box, and a finding if they do not fill it.
     fn volume(&self, count: u32, sides: [f64; 3]) -> (Exact, Option<Finding>) {
-        // Each cell once: where its smallest point, by the number in the box, is in the box.
+        // Each cell once: the copy whose smallest vertex, by its number in the box, is in the box.
         let of_box =
             |cell: &&[u32; 4]| cell.iter().min_by_key(|&&v| v % count).is_some_and(|&v| v < count);
         let cells: Vec<_> = self.complex.cells.rows().iter().filter(of_box).copied().collect();
@@ -177,13 +179,13 @@ const BOX: [[u32; 4]; 6] =
 struct Layout<'a> {
     positions: &'a [[f64; 3]],
     sides: [f64; 3],
-    /// By how many sides each copy of the box is moved; the first by none.
+    /// The multiples of the sides by which each copy of the box is moved; 0 for the first.
     moves: Vec<[i32; 3]>,
     numbers: BTreeMap<[i32; 3], u32>,
 }
 
 impl<'a> Layout<'a> {
-    /// With the copies that hold all places within `reach` of the box.
+    /// With the copies that contain all positions within `reach` of the box.
     fn new(positions: &'a [[f64; 3]], sides: [f64; 3], reach: f64) -> Self {
         let [x, y, z] = sides.map(|side| {
             let around = (reach / side).ceil().max(1.0) as i32;
@@ -200,11 +202,11 @@ impl<'a> Layout<'a> {
         Self { positions, sides, moves, numbers }
     }
 
-    /// Those copies of simplices that have no vertex beyond the copies beside the box.
+    /// The copies of simplices whose vertices are all in the box or in a neighbouring copy.
     fn copied<const N: usize>(&self, simplices: &Simplices<N>) -> Simplices<N> {
-        let beside = || self.moves.iter().filter(|by| is_beside(**by));
+        let neighbours = || self.moves.iter().filter(|by| is_neighbour(**by));
         let copies = simplices.iter().flat_map(|(&row, class)| {
-            beside().filter_map(move |&by| Some((self.row(row, by)?, class)))
+            neighbours().filter_map(move |&by| Some((self.row(row, by)?, class)))
         });
         copies.collect()
     }
@@ -214,7 +216,7 @@ impl<'a> Layout<'a> {
         for v in &mut row {
             let way = nearest_copy(self.sides, first, self.positions[*v as usize]);
             let by = [0, 1, 2].map(|k| by[k] + way[k]);
-            *v += is_beside(by).then(|| self.numbers[&by])? * self.positions.len() as u32;
+            *v += is_neighbour(by).then(|| self.numbers[&by])? * self.positions.len() as u32;
         }
         Some(row)
     }
@@ -227,6 +229,7 @@ impl<'a> Layout<'a> {
     }
 }
 
-fn is_beside(by: [i32; 3]) -> bool {
+/// Whether a copy is the box itself or touches it.
+fn is_neighbour(by: [i32; 3]) -> bool {
     by.iter().all(|n| n.abs() <= 1)
 }

@@ -1,4 +1,4 @@
-//! Judging a claim: what can be judged, and the verdict that the findings make.
+//! Judging a claim: whether it can be judged, the findings, and the verdict that follows from them.
 
 use std::ops::ControlFlow;
 
@@ -16,7 +16,7 @@ impl Claim<'_> {
         Ok(self.visit(&mut |_| ControlFlow::Continue(()))?.verdict)
     }
 
-    /// The first broken rule, or choice among ties that is not the rule's.
+    /// The first finding: a broken rule, or a choice among ties other than the rule's.
     ///
     /// # Errors
     /// [`CertifyError`].
@@ -29,7 +29,7 @@ impl Claim<'_> {
         Ok(first)
     }
 
-    /// All broken rules and [ties](Finding::is_tie) that are not decided by the rule, and what was judged.
+    /// All broken rules and [ties](Finding::is_tie) that are not decided by the rule, and the certificate.
     ///
     /// # Errors
     /// [`CertifyError`].
@@ -50,7 +50,7 @@ impl Claim<'_> {
     ///    a whole triangulation nothing else is;
     /// 3. cells are positively oriented; a facet has at most two cells, one on each side;
     /// 4. no cell is refuted by its neighbours' vertices, by the perturbed power test; in a shape
-    ///    alone, by no point nearby, and what is listed on a sphere with more points fits together;
+    ///    alone, by no point nearby, and the cells listed on a sphere with more points fit together;
     /// 5. the hull is convex, goes around once, and the cells' volumes add up to what it
     ///    encloses (whole triangulations only);
     /// 6. no point is more than one of vertex, hidden and duplicate, and each is one of them (in a
@@ -58,11 +58,11 @@ impl Claim<'_> {
     /// 7. every class is what the definition says, and regular facets turn counter-clockwise seen
     ///    from outside.
     ///
-    /// Points that span no volume are judged in their plane, on their line, or as the one point that they are:
-    /// a whole triangulation has no cells then, and the rules on cells hold for its largest simplices.
+    /// Points that span no volume are judged in their plane, on their line, or as a single point:
+    /// a whole triangulation then has no cells, and the rules on cells hold for its largest simplices.
     ///
-    /// Rules that mean nothing once others are broken are not applied then; the certificate says
-    /// so. What only departs from the rule of ties is a finding, too, and [is a tie](Finding::is_tie).
+    /// Rules that mean nothing once others are broken are then not applied; the certificate says
+    /// so. A choice that departs only from the rule for ties is a finding, too, and [is a tie](Finding::is_tie).
     ///
     /// Findings come in the same order on any number of threads. In a shape alone, cost also
     /// grows with the number of points within √(α + largest weight) of a simplex.
@@ -122,7 +122,7 @@ impl Claim<'_> {
     }
 }
 
-/// Asks for the memory that the check takes piece by piece, and gives it back: better refused now
+/// Checks that the memory which the judgement takes piece by piece is available: it is better to fail now
 /// than halfway.
 fn afford(complex: &Complex) -> Result<(), CertifyError> {
     let bytes = Structure::bytes(complex);

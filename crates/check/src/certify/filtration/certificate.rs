@@ -1,20 +1,20 @@
 use serde::Serialize;
 
-use crate::certify::certificate::verdict_in_words;
+use crate::certify::certificate::write_verdict;
 use crate::certify::{Certificate, CertifyError, Verdict};
 use crate::schema::SchemaError;
 
-/// What was judged of a filtration, and what not.
+/// The verdict on a filtration, and what was not judged.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct FiltrationCertificate {
-    /// What follows from all findings: valid if only the triangulation departs from the rule, at ties.
+    /// The verdict from all findings: valid if only the triangulation departs from the rule, at ties.
     pub verdict: Verdict,
-    /// How many findings there are.
+    /// Number of findings.
     pub findings: usize,
-    /// That of the triangulation, which is the complex at α = ∞.
+    /// The certificate of the triangulation, which is the complex at α = ∞.
     pub triangulation: Certificate,
-    /// Values that are different numbers.
+    /// Number of distinct exact values.
     pub values: usize,
     /// What was not judged.
     pub not_judged: Vec<Unjudged>,
@@ -23,7 +23,7 @@ pub struct FiltrationCertificate {
 /// The verdict with its reason, in one line.
 impl std::fmt::Display for FiltrationCertificate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        verdict_in_words(f, self.verdict, self.findings, self.triangulation.ties, true)
+        write_verdict(f, self.verdict, self.findings, self.triangulation.ties, true)
     }
 }
 
@@ -32,23 +32,23 @@ impl std::fmt::Display for FiltrationCertificate {
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Unjudged {
-    /// Values, classes and order: the triangulation is wrong.
+    /// Values, classes and order, as the triangulation is wrong.
     AfterFindings,
-    /// Which simplices are Gabriel: the file does not say.
+    /// Which simplices are Gabriel, as the file does not say.
     Gabriel,
-    /// From when on simplices are regular and interior: the file does not say.
+    /// From which α on simplices are regular and interior, as the file does not say.
     Intervals,
-    /// Persistence pairs: the file lists none.
+    /// Persistence pairs, as the file lists none.
     Pairs,
 }
 
 impl std::fmt::Display for Unjudged {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::AfterFindings => "values, classes and order (they rest on the triangulation)",
+            Self::AfterFindings => "values, classes and order (they depend on the triangulation)",
             Self::Gabriel => "which simplices are Gabriel (the file does not say)",
             Self::Intervals => {
-                "from when on simplices are regular and interior (the file does not say)"
+                "from which α on simplices are regular and interior (the file does not say)"
             }
             Self::Pairs => "persistence pairs (the file lists none)",
         })
@@ -59,7 +59,7 @@ impl std::fmt::Display for Unjudged {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CertifyFiltrationError {
-    /// Fields do not fit together.
+    /// Fields contradict each other.
     #[error(transparent)]
     Schema(#[from] SchemaError),
     /// The triangulation cannot be judged.
@@ -71,12 +71,12 @@ pub enum CertifyFiltrationError {
 }
 
 impl CertifyFiltrationError {
-    /// What to do about it, where there is something.
+    /// How to resolve the error, if there is a way.
     pub fn advice(&self) -> Option<&'static str> {
         match self {
             Self::Schema(error) => error.advice(),
             Self::Triangulation(error) => error.advice(),
-            Self::Periodic => Some("judge the complexes at some α instead"),
+            Self::Periodic => Some("judge its complexes at single values of α instead"),
         }
     }
 }

@@ -6,37 +6,37 @@ use crate::Alpha;
 use crate::certify::{Finding, Simplex};
 use crate::exact::Exact;
 
-/// What is wrong with a filtration: the rule that is broken, the simplex that breaks it, and the exact
+/// An error of a filtration: the rule that is broken, the simplex that breaks it, and the exact
 /// number that shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "rule", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum FiltrationFinding {
-    /// A simplex does not come, turn regular or turn interior when the file says.
+    /// A simplex does not enter, or become regular or interior, at the α that the file says.
     When {
         /// The simplex.
         simplex: Simplex,
-        /// Which of these.
+        /// Which of these three.
         bound: Bound,
         /// As given.
         given: Alpha,
         /// The double nearest to the exact number; ∞ for never.
         expected: Alpha,
-        /// The exact number; none for never.
+        /// The exact number; `None` for never.
         exact: Option<Exact>,
     },
     /// A simplex is Gabriel, or attached, and the file says otherwise.
     Gabriel {
         /// The simplex.
         simplex: Simplex,
-        /// What it is.
+        /// Whether it is Gabriel.
         expected: bool,
     },
     /// The order names a simplex a second time, or one that does not exist.
     Number {
         /// The number.
         number: u32,
-        /// How many simplices there are.
+        /// Number of simplices.
         simplices: usize,
     },
     /// The order leaves a simplex out.
@@ -44,30 +44,30 @@ pub enum FiltrationFinding {
         /// Its number.
         number: u32,
     },
-    /// A simplex comes before another that it must come after: by value, then dimension, then
+    /// A simplex precedes another that must come first: the order is by value, then dimension, then
     /// vertices.
     Order {
-        /// The one that comes first in the file.
+        /// The one that precedes in the file.
         before: Simplex,
         /// The one right after it.
         after: Simplex,
         /// Their values.
         values: [Exact; 2],
     },
-    /// A persistence pair that is listed is none, or is listed twice; or one is missing.
+    /// A pair is listed that is not a persistence pair, or is listed twice; or a persistence pair is missing.
     Pair {
         /// 0 for components, 2 for voids.
         dimension: usize,
-        /// Numbers of simplices: what begins it, and what ends it.
+        /// Numbers of simplices: the one that creates it, and the one that ends it.
         pair: [u32; 2],
         /// Whether it is listed.
         listed: bool,
     },
-    /// The components that last for ever are others.
+    /// The listed essential components, which never end, are wrong.
     Lasting {
         /// Numbers of vertices, as given.
         given: Vec<u32>,
-        /// As they are.
+        /// The right ones.
         expected: Vec<u32>,
     },
     /// The simplices are not the regular triangulation.
@@ -76,13 +76,13 @@ pub enum FiltrationFinding {
 }
 
 impl FiltrationFinding {
-    /// Whether this is no fault but [another choice](Finding::is_tie) where the definition leaves one.
+    /// Whether this is not an error but [another choice](Finding::is_tie) where the definition leaves one.
     pub fn is_tie(&self) -> bool {
         matches!(self, Self::Triangulation(finding) if finding.is_tie())
     }
 }
 
-/// An α at which a simplex becomes something.
+/// What a simplex becomes at an α.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
@@ -100,7 +100,7 @@ impl fmt::Display for FiltrationFinding {
             Self::Triangulation(finding) => finding.fmt(f),
             Self::When { simplex, bound, given, expected, exact } => {
                 let what = match bound {
-                    Bound::Value => "comes",
+                    Bound::Value => "enters",
                     Bound::Regular => "becomes regular",
                     Bound::Interior => "becomes interior",
                 };
@@ -146,7 +146,7 @@ impl fmt::Display for FiltrationFinding {
     }
 }
 
-/// Where given doubles are not those expected: for the i-th simplex the double, and the exact number.
+/// Findings where given doubles are not those expected: for the i-th simplex the double, and the exact number.
 pub(super) fn differences<'a, const N: usize>(
     bound: Bound,
     rows: &[[u32; N]],
@@ -166,7 +166,7 @@ pub(super) fn differences<'a, const N: usize>(
     rows.iter().zip(given).enumerate().filter_map(judge).collect()
 }
 
-/// Where a simplex is Gabriel, or not, and the file says otherwise.
+/// Findings where the file is wrong about whether a simplex is Gabriel.
 pub(super) fn gabriel<const N: usize>(
     rows: &[[u32; N]],
     given: &[bool],

@@ -9,20 +9,20 @@ use crate::certify::structure::Structure;
 use crate::certify::{Points, Verdict};
 use crate::schema::{Below, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
 
-/// Judges a filtration: that its simplices are a whole regular triangulation (the rules of
-/// [`Claim::visit`](crate::Claim::visit) at α = ∞; of points that span no volume, that of their plane or
-/// line), the value of each, whether it is Gabriel, from
-/// which α on it is regular and interior, the order, and where that is right the persistence pairs. All
-/// by exact numbers; the doubles of a file must be the nearest.
+/// Judges a filtration: that its simplices are a whole regular triangulation (by the rules of
+/// [`Claim::visit`](crate::Claim::visit) at α = ∞; of points that span no volume, the triangulation of their
+/// plane or line), the value of each simplex, whether it is Gabriel, from which α on it is regular and
+/// interior, the order and, where that is right, the persistence pairs. All by exact numbers; the doubles in
+/// a file must be the nearest ones.
 ///
 /// With the intervals every class at every α is judged: below its value a simplex is exterior, then
 /// singular, regular and interior. Faces come before their cofaces where the order is right: no value
-/// is smaller than that of a face, and the order of equal ones is by dimension.
+/// is smaller than that of a face, and equal ones are ordered by dimension.
 ///
-/// Linear up to sorting, some microseconds for each simplex.
+/// Linear up to sorting, a few microseconds for each simplex.
 ///
 /// # Errors
-/// [`CertifyFiltrationError`]: fields that do not pair up, numbers out of range; points of a torus.
+/// [`CertifyFiltrationError`]: fields of different lengths, numbers out of range; points of a torus.
 pub fn certify_filtration(
     file: &FiltrationFile,
 ) -> Result<(Vec<FiltrationFinding>, FiltrationCertificate), CertifyFiltrationError> {
@@ -71,7 +71,7 @@ fn whole(file: &FiltrationFile) -> Result<PlacedComplex, SchemaError> {
     PlacedComplex::try_from(complex)
 }
 
-/// What the file says of the simplices, which are those of the triangulation, against what is so.
+/// Compares what the file says of the simplices, which are those of the triangulation, with the exact values.
 fn judge(
     file: &FiltrationFile,
     structure: &Structure,

@@ -1,4 +1,4 @@
-//! The order in which simplices come.
+//! The order in which simplices enter.
 
 use walpha_complex::canonical::sorted;
 
@@ -32,11 +32,11 @@ pub(super) fn judge(
     if !findings.is_empty() {
         return findings;
     }
-    let place = |number: u32| OrderKey::of(file, number, counts, rows, spans);
+    let key_of = |number: u32| OrderKey::of(file, number, counts, rows, spans);
     for pair in file.order.windows(2) {
-        let [before, after] = [pair[0], pair[1]].map(place);
+        let [before, after] = [pair[0], pair[1]].map(key_of);
         if before.key() > after.key() {
-            let exact = |place: &OrderKey| ranks.exact(place.rank).cloned().unwrap_or_default();
+            let exact = |key: &OrderKey| ranks.exact(key.rank).cloned().unwrap_or_default();
             let values = [exact(&before), exact(&after)];
             findings.push(FiltrationFinding::Order {
                 before: before.simplex(),
@@ -48,7 +48,7 @@ pub(super) fn judge(
     findings
 }
 
-/// What decides where a simplex comes.
+/// What determines the position of a simplex in the order.
 struct OrderKey {
     rank: u32,
     /// Ascending.

@@ -1,5 +1,5 @@
-//! Persistence pairs of dimensions 0 and 2, by the definition of each: which of two components, or of two
-//! parts of the complement, is the younger when a simplex joins them.
+//! Persistence pairs of dimensions 0 and 2 by the elder rule: which of two components of the shape, or of its
+//! complement, is the younger when a simplex joins them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,8 +9,8 @@ use super::spans::Spans;
 use crate::certify::structure::Structure;
 use crate::schema::{FiltrationFile, PairsFile};
 
-/// Judges the pairs of a file whose simplices and order are right: those whose simplices have different values,
-/// each once, and the components that last for ever.
+/// Judges the pairs of a file whose simplices and order are right: the pairs whose simplices have different values,
+/// each once, and the components that never end.
 pub(super) fn judge(
     file: &FiltrationFile,
     given: &PairsFile,
@@ -30,7 +30,7 @@ pub(super) fn judge(
     findings
 }
 
-/// Pairs that are listed and are none, or twice, and those that are missing.
+/// Findings on wrong, repeated and missing pairs.
 fn differences(
     dimension: usize,
     given: &[[u32; 2]],
@@ -54,7 +54,7 @@ struct Pairing<'a> {
 }
 
 impl Pairing<'_> {
-    /// Upwards: a vertex begins a component, an edge between two ends the younger one.
+    /// In order: a vertex creates a component, and an edge between two components ends the younger one.
     fn components(&self) -> (BTreeSet<[u32; 2]>, BTreeSet<u32>) {
         let vertices = self.file.vertices.len() as u32;
         let edges = self.file.edges.len() as u32;
@@ -78,8 +78,8 @@ impl Pairing<'_> {
         (pairs, oldest.remaining())
     }
 
-    /// Downwards: a cell begins a part of the complement, a facet between two ends the younger one. The
-    /// outside was there before all.
+    /// In reverse order: a cell creates a component of the complement, and a facet between two components ends the
+    /// younger one. The outside is the oldest.
     fn voids(&self) -> BTreeSet<[u32; 2]> {
         let below = self.file.vertices.len() + self.file.edges.len();
         let [facets, cells] = [below, below + self.file.facets.len()].map(|n| n as u32);
@@ -107,13 +107,13 @@ impl Pairing<'_> {
     }
 }
 
-/// No number of a simplex.
+/// Stands for the outside of the hull; no simplex has this number.
 const OUTSIDE: u32 = u32::MAX;
 
-/// Sets, each with the member that began first; all others point towards it.
+/// Disjoint sets whose representatives are their oldest members.
 #[derive(Default)]
 struct Oldest {
-    /// Of each member an older one of its set, or itself; and when it began.
+    /// For each member an older one of its set, or itself; and its age.
     older: BTreeMap<u32, (u32, usize)>,
 }
 
@@ -124,19 +124,19 @@ impl Oldest {
     }
 
     fn find(&mut self, member: u32) -> (u32, usize) {
-        let mut way = Vec::new();
+        let mut path = Vec::new();
         let mut at = member;
         while self.older[&at].0 != at {
-            way.push(at);
+            path.push(at);
             at = self.older[&at].0;
         }
-        for on_way in way {
-            self.older.entry(on_way).and_modify(|entry| entry.0 = at);
+        for member in path {
+            self.older.entry(member).and_modify(|entry| entry.0 = at);
         }
         self.older[&at]
     }
 
-    /// Joins the sets of two members; gives the younger of those that began them, if there were two.
+    /// Unites the sets of two members. Returns the younger of their oldest members, if there were two sets.
     fn join(&mut self, ends: [u32; 2]) -> Option<u32> {
         let [(a, from_a), (b, from_b)] = ends.map(|end| self.find(end));
         if a == b {
@@ -147,7 +147,7 @@ impl Oldest {
         Some(younger)
     }
 
-    /// The members that began the sets there are.
+    /// The oldest member of each set.
     fn remaining(&self) -> BTreeSet<u32> {
         let all = self.older.iter();
         all.filter(|(member, (older, _))| *member == older).map(|(&member, _)| member).collect()

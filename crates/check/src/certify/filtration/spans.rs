@@ -1,9 +1,9 @@
-//! From which value on each simplex is in the shape, a face of another one there, and off its boundary.
+//! The values from which on each simplex is in the shape, a face of another simplex of it, and off its boundary.
 
 use super::values::{ATTACHED, NEVER, Ranks};
 use crate::certify::structure::Structure;
 
-/// Places among the values; [`NEVER`] where there is none.
+/// Ranks of values; [`NEVER`] where there is none.
 #[derive(Clone, Copy)]
 pub(super) struct Span {
     pub first: u32,
@@ -11,7 +11,7 @@ pub(super) struct Span {
     pub interior: u32,
 }
 
-/// Those of all simplices, by row; of cells only the first, as they have no cofaces.
+/// The spans of all simplices, by row; of cells only the first rank, as they have no cofaces.
 pub(super) struct Spans {
     pub cells: Vec<u32>,
     pub facets: Vec<Span>,
@@ -28,7 +28,7 @@ impl Spans {
                 let sides: Vec<u32> =
                     structure.halves(facet).map(|half| cells[half.cell]).collect();
                 let regular = sides.iter().copied().min().unwrap_or(NEVER);
-                // A facet of the hull has one cell, and the outside beyond.
+                // A facet of the hull has one cell, and the outside on its other side.
                 let last = if sides.len() == 2 { sides.into_iter().max() } else { None };
                 span(ranks.facets[facet], regular, last.unwrap_or(NEVER))
             })
@@ -43,7 +43,7 @@ impl Spans {
     }
 }
 
-/// The spans of faces from those of the simplices that have them.
+/// The spans of faces from those of their cofaces.
 fn below<const M: usize>(
     higher: &[Span],
     faces: impl Iterator<Item = [usize; M]>,

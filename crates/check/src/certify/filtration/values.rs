@@ -9,12 +9,12 @@ use crate::certify::Points;
 use crate::certify::structure::Structure;
 use crate::exact::{Exact, Side, radius_value, side};
 
-/// No empty sphere of its own.
+/// The rank of a simplex whose own smallest orthogonal sphere is not empty.
 pub(super) const ATTACHED: u32 = u32::MAX;
-/// Beyond all values.
+/// The rank beyond all values.
 pub(super) const NEVER: u32 = u32::MAX;
 
-/// By row, the place of each simplex's own squared radius among all different ones, or
+/// By row, the rank of each simplex's own squared radius among all distinct ones, or
 /// [`ATTACHED`].
 pub(super) struct Ranks {
     pub values: Vec<(f64, Exact)>,
@@ -25,13 +25,14 @@ pub(super) struct Ranks {
 }
 
 impl Ranks {
-    /// Of a whole triangulation, found regular: there a sphere that is not empty holds a neighbour.
+    /// Ranks of a whole triangulation that was found regular: there a sphere that is not empty contains a
+    /// neighbour.
     pub(super) fn of(structure: &Structure, points: Points) -> Self {
         let complex = structure.complex;
         let spheres = [
-            radii(complex.vertices.rows(), &held_vertices(structure, points), points),
-            radii(complex.edges.rows(), &held_edges(structure, points), points),
-            radii(complex.facets.rows(), &held_facets(structure, points), points),
+            radii(complex.vertices.rows(), &attached_vertices(structure, points), points),
+            radii(complex.edges.rows(), &attached_edges(structure, points), points),
+            radii(complex.facets.rows(), &attached_facets(structure, points), points),
             radii(complex.cells.rows(), &flags(complex.cells.len()), points),
         ];
         let counts = spheres.each_ref().map(Vec::len);
@@ -72,16 +73,16 @@ impl Ranks {
 
 fn radii<const N: usize>(
     rows: &[[u32; N]],
-    held: &[AtomicBool],
+    attached: &[AtomicBool],
     points: Points,
 ) -> Vec<Option<(f64, Exact)>> {
-    let radius = |(&row, held): (&[u32; N], &AtomicBool)| {
-        (!held.load(Ordering::Relaxed)).then(|| {
+    let radius = |(&row, attached): (&[u32; N], &AtomicBool)| {
+        (!attached.load(Ordering::Relaxed)).then(|| {
             let exact = radius_value(points.corners(row).each_ref());
             (exact.nearest(), exact)
         })
     };
-    rows.par_iter().zip(held).map(radius).collect()
+    rows.par_iter().zip(attached).map(radius).collect()
 }
 
 fn flags(count: usize) -> Vec<AtomicBool> {
@@ -92,34 +93,34 @@ fn inside<const N: usize>(points: Points, row: [u32; N], q: u32) -> bool {
     side(points.corners(row).each_ref(), &points.get(q)) == Side::Inside
 }
 
-fn held_facets(structure: &Structure, points: Points) -> Vec<AtomicBool> {
+fn attached_facets(structure: &Structure, points: Points) -> Vec<AtomicBool> {
     let rows = structure.complex.facets.rows().par_iter().enumerate();
-    let held = |(i, &facet): (usize, &[u32; 3])| {
+    let attached = |(i, &facet): (usize, &[u32; 3])| {
         structure.halves(i).any(|half| inside(points, facet, structure.apex(half)))
     };
-    rows.map(|row| AtomicBool::new(held(row))).collect()
+    rows.map(|row| AtomicBool::new(attached(row))).collect()
 }
 
-fn held_edges(structure: &Structure, points: Points) -> Vec<AtomicBool> {
-    let held = flags(structure.complex.edges.len());
+fn attached_edges(structure: &Structure, points: Points) -> Vec<AtomicBool> {
+    let attached = flags(structure.complex.edges.len());
     structure.complex.facets.rows().par_iter().for_each(|&[a, b, c]| {
         for (edge, q) in [([b, c], a), ([a, c], b), ([a, b], c)] {
             if inside(points, edge, q) {
-                held[structure.edges.row(edge) as usize].store(true, Ordering::Relaxed);
+                attached[structure.edges.row(edge) as usize].store(true, Ordering::Relaxed);
             }
         }
     });
-    held
+    attached
 }
 
-fn held_vertices(structure: &Structure, points: Points) -> Vec<AtomicBool> {
-    let held = flags(structure.complex.vertices.len());
+fn attached_vertices(structure: &Structure, points: Points) -> Vec<AtomicBool> {
+    let attached = flags(structure.complex.vertices.len());
     structure.complex.edges.rows().par_iter().for_each(|&[a, b]| {
         for (v, q) in [(a, b), (b, a)] {
             if inside(points, [v], q) {
-                held[structure.vertices.row([v]) as usize].store(true, Ordering::Relaxed);
+                attached[structure.vertices.row([v]) as usize].store(true, Ordering::Relaxed);
             }
         }
     });
-    held
+    attached
 }
