@@ -235,7 +235,7 @@ impl Definition<'_> {
     }
 
     /// Whether no point at all, not even a hidden one, is strictly inside the smallest orthogonal
-    /// sphere. Duplicates are lighter than what stayed in their place, so they cannot be alone in
+    /// sphere. Duplicates are no heavier than the point kept at their position, so they are never the only ones in
     /// it.
     fn is_empty<const N: usize>(&self, simplex: [u32; N]) -> bool {
         let corners = simplex.map(|i| &self.points[i as usize]);

@@ -5,16 +5,16 @@ use crate::Placed;
 use crate::schema::{ComplexFile, PlacedComplex};
 
 impl PlacedComplex {
-    /// What it claims, to be judged as a complex in space.
+    /// The claim of the complex, judged as one in space.
     pub fn claim(&self) -> Claim<'_> {
         Claim::new(self.placed())
             .with_hidden(self.hidden.as_deref())
             .with_duplicates(self.duplicates.as_deref())
     }
 
-    /// All broken rules, and what was judged: in space those of [`Claim::visit`]. On a torus the same, around
-    /// each simplex; that no edge spans half of the box; and of a whole triangulation that it fills the
-    /// box, instead of the rules on the hull.
+    /// All broken rules, and the certificate. In space the rules are those of [`Claim::visit`]. On a torus they
+    /// are the same around each simplex; besides, no edge may span half of the box; and a whole triangulation
+    /// must fill the box, instead of the rules on the hull.
     ///
     /// # Errors
     /// [`CertifyError`].
@@ -41,7 +41,7 @@ impl From<Claim<'_>> for PlacedComplex {
     }
 }
 
-/// With what it claims of hidden points and duplicates.
+/// The file includes the claimed lists of hidden points and duplicates.
 impl From<Claim<'_>> for ComplexFile {
     fn from(claim: Claim<'_>) -> Self {
         let mut file = Self::new(claim.placed);

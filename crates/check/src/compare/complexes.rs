@@ -3,28 +3,28 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use walpha_complex::canonical::sorted;
 
+use super::common_positions::{CommonPositions, weights_by_position};
 use super::domain::{self, Domain};
-use super::places::{Places, weights_by_place};
 use crate::{Alpha, Class, Placed, Simplex, Simplices};
 
-/// What two complexes A and B have in common, and what not.
+/// The differences between two complexes A and B.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Comparison {
     /// α of A and of B.
     pub alpha: [Alpha; 2],
-    /// Points at places that both have, whose weights differ. Of several points at one place the
-    /// heaviest counts, which is the one that stays.
+    /// Points at positions of both, whose weights differ. Of several points at one position the
+    /// heaviest counts, which is the one that is kept.
     pub weights: Vec<WeightDifference>,
-    /// Points of A at places where B has none, by A's indices.
+    /// Points of A at positions where B has none, by A's indices.
     pub points_only_a: Vec<u32>,
-    /// Points of B at places where A has none, by B's indices.
+    /// Points of B at positions where A has none, by B's indices.
     pub points_only_b: Vec<u32>,
     /// Whether exterior simplices were compared: only if both complexes list some.
     pub exterior: bool,
     /// Vertices, edges, facets and cells.
     pub dimensions: [Differences; 4],
-    /// What the cells of the two shapes cover.
+    /// How the regions that the cells cover are related.
     pub domain: Domain,
 }
 
@@ -32,7 +32,7 @@ pub struct Comparison {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Differences {
-    /// How many simplices are in both with the same class.
+    /// Number of simplices that both have with the same class.
     pub equal: usize,
     /// Simplices that only A has, by A's indices, and their classes.
     pub only_a: Vec<(Simplex, Class)>,
@@ -54,7 +54,7 @@ pub struct ClassDifference {
     pub b: Class,
 }
 
-/// A place where the weights differ.
+/// A position where the weights differ.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct WeightDifference {
@@ -70,7 +70,7 @@ pub struct WeightDifference {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
-    /// Positions and weights do not pair up.
+    /// The numbers of positions and weights differ.
     #[error("complex {which} has {positions} points but {weights} weights: each needs one")]
     Lengths {
         /// `A` or `B`.
@@ -99,13 +99,13 @@ pub enum CompareError {
 }
 
 impl CompareError {
-    /// What to do about it, where there is something.
+    /// How to resolve the error, if there is a way.
     pub fn advice(&self) -> Option<&'static str> {
-        matches!(self, Self::NotFinite { .. }).then_some("clean the input")
+        matches!(self, Self::NotFinite { .. }).then_some("remove such points from the input")
     }
 }
 
-/// Compares two complexes with their weights and α, matching points by their places, so that the
+/// Compares two complexes with their weights and α, matching points by their positions, so that the
 /// two may number them differently.
 ///
 /// Windings do not count, nor do lists of hidden points and duplicates. Cost O(n log n).
@@ -115,27 +115,27 @@ impl CompareError {
 pub fn compare(a: Placed, b: Placed) -> Result<Comparison, CompareError> {
     check('A', a)?;
     check('B', b)?;
-    let places = Places::new(a.positions, b.positions);
+    let common = CommonPositions::new(a.positions, b.positions);
     let exterior = a.complex.lists_exterior() && b.complex.lists_exterior();
     let (of_a, of_b) = (a.complex, b.complex);
     let dimensions = [
-        differences(&of_a.vertices, &of_b.vertices, &places, exterior),
-        differences(&of_a.edges, &of_b.edges, &places, exterior),
-        differences(&of_a.facets, &of_b.facets, &places, exterior),
-        differences(&of_a.cells, &of_b.cells, &places, exterior),
+        differences(&of_a.vertices, &of_b.vertices, &common, exterior),
+        differences(&of_a.edges, &of_b.edges, &common, exterior),
+        differences(&of_a.facets, &of_b.facets, &common, exterior),
+        differences(&of_a.cells, &of_b.cells, &common, exterior),
     ];
     let only = |own: &[u32], other: &[u32]| {
         let other: std::collections::BTreeSet<_> = other.iter().collect();
-        (0..).zip(own).filter(|(_, place)| !other.contains(place)).map(|(i, _)| i).collect()
+        (0..).zip(own).filter(|(_, position)| !other.contains(position)).map(|(i, _)| i).collect()
     };
     Ok(Comparison {
         alpha: [a.alpha, b.alpha],
-        weights: different_weights(a, b, &places),
-        points_only_a: only(&places.a, &places.b),
-        points_only_b: only(&places.b, &places.a),
+        weights: different_weights(a, b, &common),
+        points_only_a: only(&common.a, &common.b),
+        points_only_b: only(&common.b, &common.a),
         exterior,
         dimensions,
-        domain: domain::compare(a, b, &places),
+        domain: domain::compare(a, b, &common),
     })
 }
 
@@ -153,16 +153,16 @@ impl Comparison {
     }
 }
 
-fn different_weights(a: Placed, b: Placed, places: &Places) -> Vec<WeightDifference> {
-    let mut in_a = weights_by_place(a.weights, &places.a);
-    let in_b = weights_by_place(b.weights, &places.b);
-    let difference = |(point, &place): (u32, &u32)| {
-        // Each place once: what is taken is gone.
-        let a = std::mem::replace(&mut in_a[place as usize], f64::NEG_INFINITY);
-        let b = in_b.get(place as usize).copied().filter(|b| *b != f64::NEG_INFINITY)?;
+fn different_weights(a: Placed, b: Placed, common: &CommonPositions) -> Vec<WeightDifference> {
+    let mut in_a = weights_by_position(a.weights, &common.a);
+    let in_b = weights_by_position(b.weights, &common.b);
+    let difference = |(point, &position): (u32, &u32)| {
+        // Each position once: its weight is replaced.
+        let a = std::mem::replace(&mut in_a[position as usize], f64::NEG_INFINITY);
+        let b = in_b.get(position as usize).copied().filter(|b| *b != f64::NEG_INFINITY)?;
         (a != b && a != f64::NEG_INFINITY).then_some(WeightDifference { point, a, b })
     };
-    (0..).zip(&places.a).filter_map(difference).collect()
+    (0..).zip(&common.a).filter_map(difference).collect()
 }
 
 fn check(
@@ -193,15 +193,16 @@ fn bad_row<const N: usize>(simplices: &Simplices<N>, points: usize) -> Option<Si
 fn differences<const N: usize>(
     a: &Simplices<N>,
     b: &Simplices<N>,
-    places: &Places,
+    common: &CommonPositions,
     exterior: bool,
 ) -> Differences {
-    let listed = |simplices: &Simplices<N>, places: &[u32]| -> BTreeMap<[u32; N], _> {
+    let listed = |simplices: &Simplices<N>, position_of: &[u32]| -> BTreeMap<[u32; N], _> {
         let rows = simplices.iter().filter(|(_, class)| exterior || *class != Class::Exterior);
-        rows.map(|(row, class)| (sorted(row.map(|v| places[v as usize])), (*row, class))).collect()
+        rows.map(|(row, class)| (sorted(row.map(|v| position_of[v as usize])), (*row, class)))
+            .collect()
     };
-    let a = listed(a, &places.a);
-    let mut b = listed(b, &places.b);
+    let a = listed(a, &common.a);
+    let mut b = listed(b, &common.b);
     let mut differences = Differences::default();
     for (key, (row, class)) in a {
         match b.remove(&key) {

@@ -5,12 +5,12 @@ use dashu_int::IBig;
 use serde::Serialize;
 use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 
-use super::places::{Places, weights_by_place};
+use super::common_positions::{CommonPositions, weights_by_position};
 use crate::exact::{Exact, Lattice, Lift, WeightedPoint, orientation};
-use crate::schema::turn;
+use crate::schema::orient;
 use crate::{Claim, Class, Placed, Verdict};
 
-/// What the cells of two shapes cover.
+/// How the regions that the cells of two shapes cover are related.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -21,12 +21,11 @@ pub enum Domain {
     SameRegion {
         /// Six times the volume of the region.
         six_volumes: Exact,
-        /// Whether the cells that differ also cover the same on each orthogonal sphere. If not, one of
+        /// Whether the cells that differ also cover the same region on each orthogonal sphere. If not, one of
         /// the two is not a regular triangulation.
         tied: bool,
-        /// Where they do, what A and B are found to be each by itself. Only if neither is wrong is this a
-        /// choice: where more than four points lie on one empty sphere, their polytope may be cut in
-        /// any way.
+        /// If they do, the verdicts on A and on B. Only if neither is wrong is this a choice among ties:
+        /// where more than four points lie on one empty sphere, their polytope may be cut in any way.
         #[serde(skip_serializing_if = "Option::is_none")]
         verdicts: Option<[Verdict; 2]>,
     },
@@ -46,7 +45,7 @@ impl fmt::Display for Domain {
             Self::SameRegion { six_volumes, verdicts, .. } => {
                 let why = match verdicts {
                     None => {
-                        "which are not on the same spheres: no tie, and at most one of A and B is regular"
+                        "which are not on the same spheres: this is no tie, and at most one of A and B is regular"
                     }
                     Some([Verdict::Wrong, Verdict::Wrong]) => {
                         "but A and B are wrong by themselves (check them)"
@@ -70,25 +69,25 @@ impl fmt::Display for Domain {
 
 /// Compares the regions that the interior cells cover, exactly.
 ///
-/// Two sets of cells cover the same region if their boundaries are the same surface: what is in
-/// one region only would have no boundary. The boundaries are compared plane by plane, because
-/// a flat face may be cut into other triangles: within a plane, two sets of triangles cover the
-/// same if their boundaries cancel, edge by directed edge.
-pub(super) fn compare(a: Placed, b: Placed, places: &Places) -> Domain {
-    let in_a = interior_cells(a, &places.a, places);
-    let in_b = interior_cells(b, &places.b, places);
+/// Two sets of cells cover the same region if their boundaries are the same surface: their difference
+/// would have no boundary. The boundaries are compared plane by plane, because a flat face may be cut
+/// into other triangles: within a plane, two sets of triangles cover the same region if their
+/// boundaries cancel, edge by directed edge.
+pub(super) fn compare(a: Placed, b: Placed, common: &CommonPositions) -> Domain {
+    let in_a = interior_cells(a, &common.a, common);
+    let in_b = interior_cells(b, &common.b, common);
     if in_a == in_b {
         return Domain::SameCells;
     }
-    let lattice = Lattice::through(&places.positions);
+    let lattice = Lattice::through(&common.positions);
     let six_volumes = |cells: &BTreeSet<[u32; 4]>| {
-        let cells: Vec<_> = cells.iter().map(|cell| at(places, *cell)).collect();
+        let cells: Vec<_> = cells.iter().map(|cell| at(common, *cell)).collect();
         let sum = lattice.six_volumes(cells.len(), |i| cells[i]);
         Exact::integer(sum, 3 * i64::from(lattice.exponent()))
     };
     let (six_volumes_a, six_volumes_b) = (six_volumes(&in_a), six_volumes(&in_b));
-    if six_volumes_a == six_volumes_b && same_surface(&in_a, &in_b, places, lattice) {
-        let tied = tied(Side::new(a, &places.a, &in_a), Side::new(b, &places.b, &in_b), places);
+    if six_volumes_a == six_volumes_b && same_surface(&in_a, &in_b, common, lattice) {
+        let tied = tied(Side::new(a, &common.a, &in_a), Side::new(b, &common.b, &in_b), common);
         let verdicts = tied.then(|| [a, b].map(verdict));
         Domain::SameRegion { six_volumes: six_volumes_a, tied, verdicts }
     } else {
@@ -96,24 +95,24 @@ pub(super) fn compare(a: Placed, b: Placed, places: &Places) -> Domain {
     }
 }
 
-/// What a complex is found to be, with its simplices turned the canonical way, as windings are not compared.
-/// What cannot be judged is not excused.
+/// The verdict on a complex whose simplices are oriented canonically first, as windings are not compared.
+/// A complex that cannot be judged counts as wrong.
 fn verdict(placed: Placed) -> Verdict {
     let mut complex = placed.complex.clone();
-    turn(&mut complex, placed.positions, None);
+    orient(&mut complex, placed.positions, None);
     Claim::new(placed.with_complex(&complex)).verdict().unwrap_or(Verdict::Wrong)
 }
 
-/// The interior cells by places, positively oriented, flat ones left out.
+/// The interior cells in terms of positions, positively oriented, without flat ones.
 fn interior_cells(
     Placed { complex, .. }: Placed,
-    place: &[u32],
-    places: &Places,
+    position: &[u32],
+    common: &CommonPositions,
 ) -> BTreeSet<[u32; 4]> {
     let cells = complex.cells.of(Class::Interior);
     let oriented = cells.filter_map(|cell| {
-        let [a, b, c, d] = cell.map(|v| place[v as usize]);
-        let [p, q, r, s] = at(places, [a, b, c, d]);
+        let [a, b, c, d] = cell.map(|v| position[v as usize]);
+        let [p, q, r, s] = at(common, [a, b, c, d]);
         match orientation(p, q, r, s) {
             std::cmp::Ordering::Greater => Some([a, b, c, d]),
             std::cmp::Ordering::Less => Some([a, b, d, c]),
@@ -123,49 +122,49 @@ fn interior_cells(
     oriented.map(smallest_even).collect()
 }
 
-/// The cells of a complex, and the weight at each place that it has a point at.
+/// The cells of a complex, and the largest weight at each position.
 struct Side<'a> {
     cells: &'a BTreeSet<[u32; 4]>,
     weights: Vec<f64>,
 }
 
 impl<'a> Side<'a> {
-    fn new(placed: Placed, place: &[u32], cells: &'a BTreeSet<[u32; 4]>) -> Self {
-        Self { cells, weights: weights_by_place(placed.weights, place) }
+    fn new(placed: Placed, position: &[u32], cells: &'a BTreeSet<[u32; 4]>) -> Self {
+        Self { cells, weights: weights_by_position(placed.weights, position) }
     }
 }
 
-/// Whether the cells that only one has are the same regions with the same lifted heights: for each
-/// hyperplane, and so for each orthogonal sphere, cells of A and of B must cover the same.
-fn tied(a: Side, b: Side, places: &Places) -> bool {
-    let corner = |side: &Side, place: u32| WeightedPoint {
-        position: places.positions[place as usize],
-        weight: side.weights[place as usize],
+/// Whether the cells that only one has cover the same region with the same lifted heights: for each
+/// hyperplane, and so for each orthogonal sphere, cells of A and of B must cover the same region.
+fn tied(a: Side, b: Side, common: &CommonPositions) -> bool {
+    let corner = |side: &Side, position: u32| WeightedPoint {
+        position: common.positions[position as usize],
+        weight: side.weights[position as usize],
     };
     let only = [(&a, a.cells - b.cells), (&b, b.cells - a.cells)];
-    let corners = only
-        .iter()
-        .flat_map(|(side, cells)| cells.iter().flatten().map(move |&place| corner(side, place)));
+    let corners = only.iter().flat_map(|(side, cells)| {
+        cells.iter().flatten().map(move |&position| corner(side, position))
+    });
     let lift = Lift::through(corners);
     let mut spheres = BTreeMap::<[IBig; 5], [BTreeSet<[u32; 4]>; 2]>::new();
     for (which, (side, cells)) in only.iter().enumerate() {
         for cell in cells {
-            let plane = lift.hyperplane(cell.map(|place| corner(side, place)));
+            let plane = lift.hyperplane(cell.map(|position| corner(side, position)));
             spheres.entry(plane).or_default()[which].insert(*cell);
         }
     }
-    let lattice = Lattice::through(&places.positions);
+    let lattice = Lattice::through(&common.positions);
     let volume = |cells: &BTreeSet<[u32; 4]>| {
-        let cells: Vec<_> = cells.iter().map(|cell| at(places, *cell)).collect();
+        let cells: Vec<_> = cells.iter().map(|cell| at(common, *cell)).collect();
         lattice.six_volumes(cells.len(), |i| cells[i])
     };
-    spheres.values().all(|[a, b]| volume(a) == volume(b) && same_surface(a, b, places, lattice))
+    spheres.values().all(|[a, b]| volume(a) == volume(b) && same_surface(a, b, common, lattice))
 }
 
 fn same_surface(
     a: &BTreeSet<[u32; 4]>,
     b: &BTreeSet<[u32; 4]>,
-    places: &Places,
+    common: &CommonPositions,
     lattice: Lattice,
 ) -> bool {
     // Facets as a chain: +1 for each cell of A behind them, −1 for each of B. The two sides of a
@@ -180,7 +179,7 @@ fn same_surface(
     }
     let mut planes = BTreeMap::<[IBig; 4], BTreeMap<[u32; 2], i64>>::new();
     for ([u, v, w], turns) in chain.into_iter().filter(|(_, turns)| *turns != 0) {
-        let border = planes.entry(lattice.plane(at(places, [u, v, w]))).or_default();
+        let border = planes.entry(lattice.plane(at(common, [u, v, w]))).or_default();
         // The rows are sorted, so u → v → w → u has the edges uv, vw forward and uw backward.
         for (edge, sign) in [([u, v], 1), ([v, w], 1), ([u, w], -1)] {
             *border.entry(edge).or_default() += sign * turns;
@@ -189,6 +188,6 @@ fn same_surface(
     planes.values().flat_map(BTreeMap::values).all(|&turns| turns == 0)
 }
 
-fn at<const N: usize>(places: &Places, row: [u32; N]) -> [[f64; 3]; N] {
-    row.map(|v| places.positions[v as usize])
+fn at<const N: usize>(common: &CommonPositions, row: [u32; N]) -> [[f64; 3]; N] {
+    row.map(|v| common.positions[v as usize])
 }

@@ -7,23 +7,23 @@ use serde::Serialize;
 use walpha_complex::canonical::sorted;
 
 use super::WeightDifference;
-use super::places::{Places, weights_by_place};
+use super::common_positions::{CommonPositions, weights_by_position};
 use super::text::{PRINTED, rows};
 use crate::schema::{Below, FiltrationFile, SchemaError};
 use crate::{Alpha, Simplex};
 
-/// What two filtrations A and B have in common, and what not.
+/// The differences between two filtrations A and B.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct FiltrationComparison {
-    /// Points at places that both have, whose weights differ; of several at one place the heaviest
+    /// Points at positions of both, whose weights differ; of several at one position the heaviest
     /// counts.
     pub weights: Vec<WeightDifference>,
-    /// Points of A at places where B has none, by A's indices.
+    /// Points of A at positions where B has none, by A's indices.
     pub points_only_a: Vec<u32>,
-    /// Points of B at places where A has none, by B's indices.
+    /// Points of B at positions where A has none, by B's indices.
     pub points_only_b: Vec<u32>,
-    /// How many simplices both have, with equal values.
+    /// Number of simplices that both have with equal values.
     pub equal: usize,
     /// Simplices that only A has, by A's indices.
     pub only_a: Vec<Simplex>,
@@ -33,12 +33,12 @@ pub struct FiltrationComparison {
     pub values: Vec<ValueDifference>,
     /// The largest difference of values, as a share of the larger.
     pub largest_share: f64,
-    /// Simplices that one says to be Gabriel and the other not; none if not both say.
+    /// Simplices that are Gabriel in one and not in the other; empty unless both say which are.
     pub gabriel: Vec<Simplex>,
-    /// Simplices that become regular or interior at different α; none if not both say.
+    /// Simplices that become regular or interior at different α; empty unless both say when.
     pub intervals: Vec<Simplex>,
-    /// The first simplex, by A's indices, that comes at another place in the order; none if there is
-    /// none, if the simplices are not the same, or if points are numbered differently.
+    /// The first simplex, by A's indices, that has another rank in the order; `None` if there is no such
+    /// simplex, if the simplices are not the same, or if points are numbered differently.
     pub order: Option<Simplex>,
     /// Whether the order was compared.
     pub order_compared: bool,
@@ -54,20 +54,20 @@ pub struct ValueDifference {
     pub values: [Alpha; 2],
 }
 
-/// What a file says of a simplex.
+/// The data of a simplex in a file.
 #[derive(Clone, Copy)]
-struct Said {
+struct Listing {
     value: Alpha,
     gabriel: Option<bool>,
     interval: Option<[Alpha; 2]>,
     number: u32,
 }
 
-/// Compares two filtrations, matching points by their places, so that the two may number them
+/// Compares two filtrations, matching points by their positions, so that the two may number them
 /// differently. Values are compared as doubles. Cost O(n log n).
 ///
 /// # Errors
-/// Fields that do not pair up, point numbers out of range.
+/// Fields of different lengths, point numbers out of range.
 pub fn compare_filtrations(
     a: &FiltrationFile,
     b: &FiltrationFile,
@@ -76,13 +76,13 @@ pub fn compare_filtrations(
     b.check()?;
     finite(a)?;
     finite(b)?;
-    let places = Places::new(&a.points, &b.points);
-    let of_a = simplices(a, &places.a);
-    let mut of_b = simplices(b, &places.b);
+    let common = CommonPositions::new(&a.points, &b.points);
+    let of_a = simplices(a, &common.a);
+    let mut of_b = simplices(b, &common.b);
     let mut found = FiltrationComparison {
-        weights: weights(a, b, &places),
-        points_only_a: only(&places.a, &places.b),
-        points_only_b: only(&places.b, &places.a),
+        weights: weights(a, b, &common),
+        points_only_a: only(&common.a, &common.b),
+        points_only_b: only(&common.b, &common.a),
         equal: 0,
         only_a: Vec::new(),
         only_b: Vec::new(),
@@ -104,7 +104,7 @@ pub fn compare_filtrations(
     }
     found.only_b = of_b.into_values().map(|(simplex, _)| simplex).collect();
     found.order_compared =
-        places.a == places.b && found.only_a.is_empty() && found.only_b.is_empty();
+        common.a == common.b && found.only_a.is_empty() && found.only_b.is_empty();
     if found.order_compared {
         let differs = |(x, y): &(&u32, &u32)| same.get(x).is_none_or(|(number, _)| number != *y);
         let first = a.order.iter().zip(&b.order).find(differs);
@@ -114,7 +114,7 @@ pub fn compare_filtrations(
 }
 
 impl FiltrationComparison {
-    fn compare(&mut self, simplex: &Simplex, a: Said, b: Said) {
+    fn compare(&mut self, simplex: &Simplex, a: Listing, b: Listing) {
         if a.value == b.value {
             self.equal += 1;
         } else {
@@ -159,41 +159,48 @@ fn finite(file: &FiltrationFile) -> Result<(), SchemaError> {
 
 fn only(own: &[u32], other: &[u32]) -> Vec<u32> {
     let other: std::collections::BTreeSet<_> = other.iter().collect();
-    (0..).zip(own).filter(|(_, place)| !other.contains(place)).map(|(i, _)| i).collect()
+    (0..).zip(own).filter(|(_, position)| !other.contains(position)).map(|(i, _)| i).collect()
 }
 
-fn weights(a: &FiltrationFile, b: &FiltrationFile, places: &Places) -> Vec<WeightDifference> {
+fn weights(
+    a: &FiltrationFile,
+    b: &FiltrationFile,
+    common: &CommonPositions,
+) -> Vec<WeightDifference> {
     let of = |file: &FiltrationFile| {
         file.weights.clone().unwrap_or_else(|| vec![0.0; file.points.len()])
     };
-    let mut in_a = weights_by_place(&of(a), &places.a);
-    let in_b = weights_by_place(&of(b), &places.b);
-    let difference = |(point, &place): (u32, &u32)| {
-        // Each place once: what is taken is gone.
-        let a = std::mem::replace(&mut in_a[place as usize], f64::NEG_INFINITY);
-        let b = in_b.get(place as usize).copied().filter(|b| *b != f64::NEG_INFINITY)?;
+    let mut in_a = weights_by_position(&of(a), &common.a);
+    let in_b = weights_by_position(&of(b), &common.b);
+    let difference = |(point, &position): (u32, &u32)| {
+        // Each position once: its weight is replaced.
+        let a = std::mem::replace(&mut in_a[position as usize], f64::NEG_INFINITY);
+        let b = in_b.get(position as usize).copied().filter(|b| *b != f64::NEG_INFINITY)?;
         (a != b && a != f64::NEG_INFINITY).then_some(WeightDifference { point, a, b })
     };
-    (0..).zip(&places.a).filter_map(difference).collect()
+    (0..).zip(&common.a).filter_map(difference).collect()
 }
 
-/// All simplices by their places.
-fn simplices(file: &FiltrationFile, places: &[u32]) -> BTreeMap<Vec<u32>, (Simplex, Said)> {
+/// All simplices by the positions of their vertices.
+fn simplices(file: &FiltrationFile, position_of: &[u32]) -> BTreeMap<Vec<u32>, (Simplex, Listing)> {
     let mut found = BTreeMap::new();
     let mut number = 0;
     let vertices: Vec<[u32; 1]> = file.vertices.iter().map(|&v| [v]).collect();
     let values = &file.values;
     fn add<const N: usize>(
-        found: &mut BTreeMap<Vec<u32>, (Simplex, Said)>,
-        places: &[u32],
+        found: &mut BTreeMap<Vec<u32>, (Simplex, Listing)>,
+        position_of: &[u32],
         rows: &[[u32; N]],
         number: &mut u32,
-        said: impl Fn(usize) -> (Alpha, Option<bool>, Option<[Alpha; 2]>),
+        data: impl Fn(usize) -> (Alpha, Option<bool>, Option<[Alpha; 2]>),
     ) {
         for (i, row) in rows.iter().enumerate() {
-            let key = sorted(row.map(|v| places[v as usize])).to_vec();
-            let (value, gabriel, interval) = said(i);
-            found.insert(key, ((*row).into(), Said { value, gabriel, interval, number: *number }));
+            let key = sorted(row.map(|v| position_of[v as usize])).to_vec();
+            let (value, gabriel, interval) = data(i);
+            found.insert(
+                key,
+                ((*row).into(), Listing { value, gabriel, interval, number: *number }),
+            );
             *number += 1;
         }
     }
@@ -204,19 +211,19 @@ fn simplices(file: &FiltrationFile, places: &[u32]) -> BTreeMap<Vec<u32>, (Simpl
             .map(|(regular, interior)| [regular, interior].map(|bound| of(bound, dimension)[i]));
         (gabriel, interval)
     };
-    add(&mut found, places, &vertices, &mut number, |i| {
+    add(&mut found, position_of, &vertices, &mut number, |i| {
         let (gabriel, interval) = below(0, i);
         (values.vertices[i], gabriel, interval)
     });
-    add(&mut found, places, &file.edges, &mut number, |i| {
+    add(&mut found, position_of, &file.edges, &mut number, |i| {
         let (gabriel, interval) = below(1, i);
         (values.edges[i], gabriel, interval)
     });
-    add(&mut found, places, &file.facets, &mut number, |i| {
+    add(&mut found, position_of, &file.facets, &mut number, |i| {
         let (gabriel, interval) = below(2, i);
         (values.facets[i], gabriel, interval)
     });
-    add(&mut found, places, &file.cells, &mut number, |i| (values.cells[i], None, None));
+    add(&mut found, position_of, &file.cells, &mut number, |i| (values.cells[i], None, None));
     found
 }
 
@@ -235,7 +242,7 @@ impl Display for FiltrationComparison {
         writeln!(f, "weights: {} differ", self.weights.len())?;
         writeln!(
             f,
-            "simplices: {} with equal values, {} with others, {} only in A, {} only in B",
+            "simplices: {} with equal values, {} with different values, {} only in A, {} only in B",
             self.equal,
             self.values.len(),
             self.only_a.len(),
@@ -252,13 +259,13 @@ impl Display for FiltrationComparison {
             ("only in A", &self.only_a),
             ("only in B", &self.only_b),
             ("Gabriel in one", &self.gabriel),
-            ("regular or interior from another α on", &self.intervals),
+            ("regular or interior from different α on", &self.intervals),
         ];
         for (what, simplices) in kinds {
             rows(f, what, simplices.iter())?;
         }
         match (&self.order, self.order_compared) {
-            (Some(simplex), _) => write!(f, "order: another from {simplex} on"),
+            (Some(simplex), _) => write!(f, "order: different from {simplex} on"),
             (None, true) => write!(f, "order: the same"),
             (None, false) => write!(
                 f,

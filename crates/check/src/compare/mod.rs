@@ -1,9 +1,9 @@
 //! Comparison of two complexes, or of two filtrations, over the same points.
 
+mod common_positions;
 mod complexes;
 mod domain;
 mod filtration;
-mod places;
 mod text;
 
 pub use complexes::{

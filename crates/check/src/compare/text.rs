@@ -1,17 +1,17 @@
-//! A comparison in words.
+//! A comparison as text.
 
 use std::fmt::{self, Display};
 
 use super::{Comparison, WeightDifference};
 
-/// How many differences of a kind are printed one by one.
+/// The most differences of a kind that are listed.
 pub(super) const PRINTED: usize = 10;
 
 impl Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (only_a, only_b) = (&self.points_only_a, &self.points_only_b);
         if only_a.is_empty() && only_b.is_empty() {
-            writeln!(f, "points: at the same places")?;
+            writeln!(f, "points: at the same positions")?;
         }
         rows(f, "points only in A", only_a.iter())?;
         rows(f, "points only in B", only_b.iter())?;
@@ -54,7 +54,7 @@ impl Display for Comparison {
     }
 }
 
-/// How many there are, and the first of them; nothing if there are none.
+/// Writes the number of rows and the first of them; nothing if there are none.
 pub(super) fn rows<T: Display>(
     f: &mut fmt::Formatter<'_>,
     what: &str,

@@ -1,6 +1,6 @@
 use dashu_int::IBig;
 
-/// A finite double as mantissa · 2^exponent, the mantissa odd (or zero): no information is lost.
+/// A finite double as mantissa · 2^exponent with an odd mantissa (or zero), without loss of information.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Binary {
     mantissa: i64,
@@ -60,12 +60,12 @@ impl Range {
         Self { low: self.low.min(number.exponent), high: self.high.max(number.exponent + length) }
     }
 
-    /// The exponent of the common unit; none when all numbers are zero.
+    /// The exponent of the common unit; `None` if all numbers are zero.
     pub(super) fn unit(self) -> Option<i32> {
         (self.low < self.high).then_some(self.low)
     }
 
-    /// How many digits the numbers need in units of 2^`unit`, a sign aside.
+    /// The number of binary digits that the numbers need in units of 2^`unit`, without the sign.
     pub(super) fn bits(self, unit: i32) -> u32 {
         if self.low < self.high { (self.high - unit) as u32 } else { 0 }
     }

@@ -3,12 +3,12 @@ use super::formulas::{center3, center4};
 use super::frame::{approx, dot};
 use super::number::{Approx, Number};
 
-/// The smallest orthogonal sphere of a simplex in doubles, with a bound on the error: good for
-/// deciding quickly that a point is outside.
+/// The smallest orthogonal sphere of a simplex in doubles, with a bound on the error, for deciding
+/// quickly that a point is outside.
 pub(crate) struct RoundedSphere {
-    /// Near the centre.
+    /// An approximation of the centre.
     pub center: [f64; 3],
-    /// The centre is at most so far away.
+    /// The largest possible distance from the true centre.
     pub error: f64,
     /// A vertex of the simplex: its squared distance from `center`, and its weight.
     vertex: (f64, f64),
@@ -35,7 +35,7 @@ impl RoundedSphere {
         let (near, weight) = self.vertex;
         let power = (far - q.weight) - (near - weight);
         let added = far + near + q.weight.abs() + weight.abs();
-        // |q − v| ≤ √far + √near ≤ √2 · √(far + near); the factor leaves room for roundings.
+        // |q − v| ≤ √far + √near ≤ √2 · √(far + near); the factor covers roundings.
         let moved = 2.0 * (2.0 * (far + near)).sqrt() * self.error * (1.0 + 1e-12);
         power > moved + 4e-15 * added + f64::MIN_POSITIVE
     }
@@ -125,15 +125,15 @@ mod tests {
         assert!(sphere.error < 1e-5, "{} at {center:?} {simplex:?}", sphere.error);
         for _ in 0..8 {
             let d = draw(60);
-            let told = |power| sphere.surely_outside(&site(center, d, radius, power));
-            assert!(!told(-1) && !told(0), "{center:?} {d:?} {simplex:?}");
-            assert!(told(1), "{center:?} {d:?} {simplex:?}");
+            let is_outside = |power| sphere.surely_outside(&site(center, d, radius, power));
+            assert!(!is_outside(-1) && !is_outside(0), "{center:?} {d:?} {simplex:?}");
+            assert!(is_outside(1), "{center:?} {d:?} {simplex:?}");
         }
         assert!(simplex.iter().all(|corner| !sphere.surely_outside(corner)));
     }
 
     #[test]
-    fn what_is_surely_outside_is_outside_and_centers_are_within_their_error() {
+    fn points_surely_outside_are_outside_and_centers_are_within_their_error() {
         let mut draw = draws(5);
         let mut judged = 0;
         for far in [0, 1000, 1_000_000] {

@@ -6,16 +6,16 @@ use super::WeightedPoint;
 use super::binary::{Binary, Range};
 use super::number::{Approx, Bits, Number, sign};
 
-/// Weighted points seen from one of them, the origin p₀: the place where every formula starts.
+/// Weighted points relative to one of them, the origin p₀: the arguments of every formula.
 ///
 /// Coordinates are integers in units of 2^c, heights in units of 2^h with h ≤ 2c. The two scales
-/// are apart because the formulas are homogeneous in each, so that a lattice with arbitrary
+/// are separate because the formulas are homogeneous in each, so that a lattice with arbitrary
 /// doubles as weights needs few digits for its coordinates.
 pub(super) struct Frame<T, const N: usize> {
     /// pᵢ − p₀.
     pub offsets: [[T; 3]; N],
     /// Lifted heights relative to the origin's: |pᵢ − p₀|² − wᵢ + w₀. Lifting about p₀ instead of
-    /// zero adds an affine function to all heights, which no convex hull notices.
+    /// zero adds an affine function to all heights, which does not change the convex hull.
     pub heights: [T; N],
     /// α + w₀, a height; 0 if no α was given.
     pub level: T,
@@ -23,7 +23,7 @@ pub(super) struct Frame<T, const N: usize> {
     pub unit: T,
 }
 
-/// A polynomial in a frame, of which only the sign is wanted.
+/// A polynomial in a frame, of which only the sign matters.
 pub(super) trait Formula<const N: usize> {
     fn value<T: Number>(&self, frame: &Frame<T, N>) -> T;
 }
@@ -173,7 +173,7 @@ mod tests {
         }
     }
 
-    /// Which ways gave the same answer as big integers: doubles, `i128`.
+    /// Checks that doubles and `i128`, where they decide, agree with big integers; counts zeros, and how often each decides.
     fn agree<const N: usize>(
         formula: &impl Formula<N>,
         random: &mut Random,

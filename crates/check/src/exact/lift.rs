@@ -26,8 +26,8 @@ impl Lift {
         Self { coordinate, height }
     }
 
-    /// The hyperplane through four lifted points that span a volume, the same for whichever four of
-    /// it: cells with one orthogonal sphere have one hyperplane.
+    /// The hyperplane through four lifted points that span a volume, the same for any four of its
+    /// points: cells with one orthogonal sphere have one hyperplane.
     ///
     /// For D = det(b−a, c−a, d−a) and n the normal with n·(b−a) = D·(h(b) − h(a)) and so on, the
     /// height at x is (n·x + o)/D. These five integers are without common factor, and D > 0.
@@ -49,10 +49,10 @@ impl Lift {
     }
 
     fn lifted(self, point: &WeightedPoint) -> ([IBig; 3], IBig) {
-        let place = point.position.map(|x| Binary::new(x).big(self.coordinate));
+        let position = point.position.map(|x| Binary::new(x).big(self.coordinate));
         let finer = (2 * self.coordinate - self.height) as usize;
-        let square = dot(&place, &place) << finer;
-        (place, square.minus(&Binary::new(point.weight).big(self.height)))
+        let square = dot(&position, &position) << finer;
+        (position, square.minus(&Binary::new(point.weight).big(self.height)))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Exact geometric predicates over doubles, of the checker's own making.
+//! Exact geometric predicates over doubles, independent of those that the checker judges.
 //!
 //! Every finite double is an integer times a power of two. A predicate brings its arguments to
 //! common powers of two (one for coordinates, one for squared lengths) and evaluates a polynomial

@@ -2,7 +2,7 @@ use std::cmp::Ordering;
 
 use dashu_int::{IBig, Sign};
 
-/// What a predicate computes with. One formula serves four kinds of number: [`Approx`] decides
+/// A number type of predicates. One formula serves four of them: [`Approx`] decides
 /// the easy cases, [`Bits`] proves that `i128` holds the rest, and [`IBig`] holds anything.
 pub(super) trait Number: Clone {
     fn plus(&self, other: &Self) -> Self;
@@ -127,12 +127,12 @@ pub(super) fn sign(value: &IBig) -> Ordering {
 mod tests {
     use super::*;
 
-    /// The ends of what a number may be, where they are doubles.
+    /// The ends of the interval of a number, where they are doubles.
     fn ends(number: Approx) -> [f64; 2] {
         [number.value - number.error, number.value + number.error]
     }
 
-    /// Every number that the operands may be gives one that the result may be, and hardly more than those.
+    /// The interval of a result contains all results for numbers in the intervals of the operands, and hardly more.
     #[test]
     fn errors_bound_the_worst_case() {
         let all =
@@ -158,7 +158,7 @@ mod tests {
         }
     }
 
-    /// What is lost in rounding is part of the error, and so is what the bound itself loses.
+    /// The error includes roundings of the value and of the bound itself.
     #[test]
     fn roundings_are_errors() {
         let tiny = Approx::U / 2.0;
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sign_is_told_where_it_is_sure() {
+    fn a_sign_is_returned_where_it_is_certain() {
         let sign = |value, error| Approx { value, error }.sign();
         assert_eq!(
             [sign(3.0, 2.0), sign(-3.0, 2.0)],

@@ -26,7 +26,7 @@ impl Side {
     }
 }
 
-/// The sign of det(b−a, c−a, d−a), as its comparison with zero: `Greater` when a, b, c turn
+/// The sign of det(b−a, c−a, d−a), as its comparison with zero: `Greater` if a, b, c turn
 /// counter-clockwise seen from d.
 pub(crate) fn orientation(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> Ordering {
     let [a, b, c, d] = [a, b, c, d].map(WeightedPoint::bare);

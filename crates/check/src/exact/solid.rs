@@ -89,7 +89,7 @@ fn minus<T: Number>(u: &[T; 3], v: &[T; 3]) -> [T; 3] {
     std::array::from_fn(|k| u[k].minus(&v[k]))
 }
 
-/// The centroid of a tetrahedron, from which a closed surface is looked at.
+/// The centroid of a tetrahedron, as the centre of a closed surface around it.
 pub(crate) struct Star {
     lattice: Lattice,
     /// Twelve times the centroid: an integer, and so is twelve times a triangle's.
@@ -97,7 +97,7 @@ pub(crate) struct Star {
 }
 
 impl Star {
-    /// Looks from the centroid of a positively oriented cell.
+    /// The centroid of a positively oriented cell.
     pub(crate) fn new(lattice: Lattice, cell: [[f64; 3]; 4]) -> Self {
         let [a, b, c, d] = cell.map(|p| lattice.big(p));
         let center = std::array::from_fn(|k| (&a[k] + &b[k] + &c[k] + &d[k]) * 3);
@@ -135,7 +135,7 @@ fn det3(u: &[IBig; 3], v: &[IBig; 3], w: &[IBig; 3]) -> Ordering {
 mod tests {
     use super::*;
 
-    /// The largest tetrahedra of a lattice, so many that an `i128` does not hold the sum.
+    /// The largest tetrahedra of a lattice, so many that their sum exceeds an `i128`.
     #[test]
     fn volumes_do_not_overflow() {
         for bits in 34..42 {
@@ -154,14 +154,14 @@ mod tests {
     #[test]
     fn triangles_of_a_plane_have_one_plane() {
         let at = |x: i32, y: i32| [x, y, 3 - 2 * x + y].map(|k| 0.5 * f64::from(k));
-        let places = [at(0, 0), at(1, 0), at(0, 1), at(4, -6), at(-3, 8), at(2, 2)];
-        let lattice = Lattice::through(&places);
+        let positions = [at(0, 0), at(1, 0), at(0, 1), at(4, -6), at(-3, 8), at(2, 2)];
+        let lattice = Lattice::through(&positions);
         assert_eq!(lattice.exponent(), -1);
-        let one = lattice.plane([places[0], places[1], places[2]]);
-        assert_eq!(one, lattice.plane([places[2], places[1], places[0]]));
-        assert_eq!(one, lattice.plane([places[3], places[4], places[5]]));
-        assert_eq!(one, lattice.plane([places[5], places[0], places[3]]));
-        let above = places.map(|[x, y, z]| [x, y, z + 0.5]);
+        let one = lattice.plane([positions[0], positions[1], positions[2]]);
+        assert_eq!(one, lattice.plane([positions[2], positions[1], positions[0]]));
+        assert_eq!(one, lattice.plane([positions[3], positions[4], positions[5]]));
+        assert_eq!(one, lattice.plane([positions[5], positions[0], positions[3]]));
+        let above = positions.map(|[x, y, z]| [x, y, z + 0.5]);
         assert_ne!(one, lattice.plane([above[3], above[4], above[5]]));
     }
 }

@@ -10,11 +10,11 @@ use crate::{Class, Complex, Simplices};
 impl TryFrom<ComplexFile> for PlacedComplex {
     type Error = SchemaError;
 
-    /// Fills in what is missing, turns cells and regular facets the canonical way, and sorts.
-    /// Flat cells and repeated rows stay, for the checker to find.
+    /// Derives what is missing, orients cells and regular facets canonically, and sorts.
+    /// Flat cells and repeated rows are kept for the checker to find.
     ///
     /// # Errors
-    /// Fields that do not pair up, point numbers out of range, no points or simplices at all.
+    /// Fields of different lengths, point numbers out of range, no points or no simplices.
     fn try_from(file: ComplexFile) -> Result<Self, SchemaError> {
         let n = file.points.len();
         if n == 0 {
@@ -45,21 +45,36 @@ impl TryFrom<ComplexFile> for PlacedComplex {
         SchemaError::in_range("duplicates", file.duplicates.iter().flatten().flatten(), n)?;
 
         let vertices = file.vertices.map(|list| list.into_iter().map(|v| [v]).collect());
-        let given = file.classes;
-        let cells =
-            rows(Names("cells", "classes.cells"), file.cells.or(Some(Vec::new())), given.cells, n)?;
-        let facets = rows(Names("facets", "classes.facets"), file.facets, given.facets, n)?;
-        let edges = rows(Names("edges", "classes.edges"), file.edges, given.edges, n)?;
-        let vertices = rows(Names("vertices", "classes.vertices"), vertices, given.vertices, n)?;
+        let classes = file.classes;
+        let cells = given_simplices(
+            FieldNames("cells", "classes.cells"),
+            file.cells.or(Some(Vec::new())),
+            classes.cells,
+            n,
+        )?;
+        let facets = given_simplices(
+            FieldNames("facets", "classes.facets"),
+            file.facets,
+            classes.facets,
+            n,
+        )?;
+        let edges =
+            given_simplices(FieldNames("edges", "classes.edges"), file.edges, classes.edges, n)?;
+        let vertices = given_simplices(
+            FieldNames("vertices", "classes.vertices"),
+            vertices,
+            classes.vertices,
+            n,
+        )?;
 
-        let cells = settle(cells, |_| Vec::new(), &Simplices::<4>::default());
+        let cells = complete(cells, |_| Vec::new(), &Simplices::<4>::default());
         let of_cell = |cell: &[u32; 4]| outward_facets(*cell).to_vec();
-        let facets = settle(facets, of_cell, &cells);
+        let facets = complete(facets, of_cell, &cells);
         let of_facet = |&[a, b, c]: &[u32; 3]| vec![[a, b], [b, c], [a, c]];
-        let edges = settle(edges, of_facet, &facets);
-        let vertices = settle(vertices, |&[a, b]: &[u32; 2]| vec![[a], [b]], &edges);
+        let edges = complete(edges, of_facet, &facets);
+        let vertices = complete(vertices, |&[a, b]: &[u32; 2]| vec![[a], [b]], &edges);
         let mut complex = Complex { cells, facets, edges, vertices };
-        turn(&mut complex, &file.points, file.periodic);
+        orient(&mut complex, &file.points, file.periodic);
         sort(&mut complex);
         Ok(Self {
             positions: file.points,
@@ -73,80 +88,82 @@ impl TryFrom<ComplexFile> for PlacedComplex {
     }
 }
 
-/// The names of a dimension's fields.
-struct Names(&'static str, &'static str);
+/// The names of the fields of a dimension: its simplices and their classes.
+struct FieldNames(&'static str, &'static str);
 
-/// Listed rows with their classes, as far as the file has them.
-struct Listed<const N: usize> {
+/// The rows and classes of a dimension, as far as the file has them.
+struct Given<const N: usize> {
     rows: Option<Vec<[u32; N]>>,
     classes: Option<Vec<Class>>,
 }
 
-fn rows<const N: usize>(
-    Names(name, of_classes): Names,
+/// The simplices of a dimension in the file, checked.
+fn given_simplices<const N: usize>(
+    FieldNames(name, of_classes): FieldNames,
     rows: Option<Vec<[u32; N]>>,
     classes: Option<Vec<Class>>,
     points: usize,
-) -> Result<Listed<N>, SchemaError> {
+) -> Result<Given<N>, SchemaError> {
     SchemaError::in_range(name, rows.iter().flatten().flatten(), points)?;
     if let Some(classes) = &classes {
         SchemaError::paired(of_classes, classes.len(), name, rows.as_ref().map_or(0, Vec::len))?;
     }
-    Ok(Listed { rows, classes })
+    Ok(Given { rows, classes })
 }
 
-/// What the simplices above say of a face: whether any is in the shape, whether all are interior.
+/// The cofaces of a simplex, one dimension up.
 #[derive(Clone, Copy)]
-struct Above {
+struct Cofaces {
     count: usize,
     in_shape: bool,
     all_interior: bool,
 }
 
-/// Rows and classes of a dimension, from the file where it has them, from the one above where not.
-fn settle<const N: usize, const M: usize>(
-    listed: Listed<M>,
+/// Rows and classes of a dimension: those of the file where it has them, else derived from the dimension above.
+fn complete<const N: usize, const M: usize>(
+    given: Given<M>,
     faces: impl Fn(&[u32; N]) -> Vec<[u32; M]>,
     higher: &Simplices<N>,
 ) -> Simplices<M> {
-    let mut above = BTreeMap::<[u32; M], Above>::new();
+    let mut cofaces = BTreeMap::<[u32; M], Cofaces>::new();
     for (row, class) in higher.iter() {
         for face in faces(row) {
-            let nothing = Above { count: 0, in_shape: false, all_interior: true };
-            let above = above.entry(sorted(face)).or_insert(nothing);
-            above.count += 1;
-            above.in_shape |= class != Class::Exterior;
-            above.all_interior &= class == Class::Interior;
+            let none = Cofaces { count: 0, in_shape: false, all_interior: true };
+            let cofaces = cofaces.entry(sorted(face)).or_insert(none);
+            cofaces.count += 1;
+            cofaces.in_shape |= class != Class::Exterior;
+            cofaces.all_interior &= class == Class::Interior;
         }
     }
-    let derived = listed.rows.is_none();
-    let rows = listed
+    let derived = given.rows.is_none();
+    let rows = given
         .rows
-        .unwrap_or_else(|| above.keys().copied().collect::<BTreeSet<_>>().into_iter().collect());
-    let implied = |row: &[u32; M]| match above.get(&sorted(*row)) {
-        // Nothing is above a cell.
+        .unwrap_or_else(|| cofaces.keys().copied().collect::<BTreeSet<_>>().into_iter().collect());
+    let implied = |row: &[u32; M]| match cofaces.get(&sorted(*row)) {
+        // A cell has no cofaces.
         _ if M == 4 => Class::Interior,
-        // A facet has two sides; around an edge or vertex all facets or edges must be interior.
-        Some(above) if above.in_shape => {
-            let closed = above.all_interior && (M < 3 || above.count == 2);
+        // A facet has two sides; of an edge or vertex all cofaces must be interior.
+        Some(cofaces) if cofaces.in_shape => {
+            let closed = cofaces.all_interior && (M < 3 || cofaces.count == 2);
             if closed { Class::Interior } else { Class::Regular }
         }
         _ if derived => Class::Exterior,
         _ => Class::Singular,
     };
-    let classes = listed.classes.unwrap_or_else(|| rows.iter().map(implied).collect());
+    let classes = given.classes.unwrap_or_else(|| rows.iter().map(implied).collect());
     rows.into_iter().zip(classes).collect()
 }
 
-/// Turns cells positive and regular facets outward, and sorts the vertices of other rows.
-pub(crate) fn turn(complex: &mut Complex, points: &[[f64; 3]], periodic: Option<[f64; 3]>) {
+/// Orients cells positively and regular facets outward, and sorts the vertices of other rows.
+pub(crate) fn orient(complex: &mut Complex, points: &[[f64; 3]], periodic: Option<[f64; 3]>) {
     for cell in complex.cells.rows_mut() {
-        let mut places = cell.map(|v| points[v as usize]);
+        let mut corners = cell.map(|v| points[v as usize]);
         if let Some(sides) = periodic {
-            let first = places[0];
-            places = places.map(|place| moved(sides, place, nearest_copy(sides, first, place)));
+            let first = corners[0];
+            corners =
+                corners.map(|corner| moved(sides, corner, nearest_copy(sides, first, corner)));
         }
-        let [a, b, c, d] = places;
+        let [a, b, c, d] = corners;
         if finite(&[a, b, c, d]) && orientation(a, b, c, d).is_lt() {
             cell.swap(2, 3);
         }
@@ -157,16 +174,16 @@ pub(crate) fn turn(complex: &mut Complex, points: &[[f64; 3]], periodic: Option<
         outward.extend(outward_facets(*cell).map(|facet| (sorted(facet), smallest_even(facet))));
     }
     let facets = std::mem::take(&mut complex.facets).into_iter();
-    let turned = facets.map(|(facet, class)| {
+    let oriented = facets.map(|(facet, class)| {
         let key = sorted(facet);
         let regular = class == Class::Regular;
         (outward.get(&key).copied().filter(|_| regular).unwrap_or(key), class)
     });
-    complex.facets = turned.collect();
+    complex.facets = oriented.collect();
     complex.edges.rows_mut().iter_mut().for_each(|edge| *edge = sorted(*edge));
 }
 
-/// Coordinates that are not finite are the checker's to find.
-fn finite(places: &[[f64; 3]]) -> bool {
-    places.as_flattened().iter().all(|x| x.is_finite())
+/// Whether coordinates are finite. The checker reports those that are not.
+fn finite(positions: &[[f64; 3]]) -> bool {
+    positions.as_flattened().iter().all(|x| x.is_finite())
 }

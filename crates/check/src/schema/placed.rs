@@ -15,17 +15,17 @@ pub struct PlacedComplex {
     pub hidden: Option<Vec<u32>>,
     /// Duplicates, if they are listed.
     pub duplicates: Option<Vec<[u32; 2]>>,
-    /// The sides of the box that repeats, if one does.
+    /// The sides of the periodic box, if there is one.
     pub periodic: Option<[f64; 3]>,
 }
 
 impl PlacedComplex {
-    /// Borrowed, to be compared.
+    /// The complex, borrowed for comparison.
     pub fn placed(&self) -> Placed<'_> {
         Placed::new(&self.positions, &self.weights, self.alpha, &self.complex)
     }
 
-    /// In a box that repeats with these sides, or in space.
+    /// The same complex in a periodic box with these sides, or in space.
     #[must_use]
     pub fn with_periodic(self, periodic: Option<[f64; 3]>) -> Self {
         Self { periodic, ..self }

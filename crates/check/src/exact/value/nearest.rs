@@ -13,7 +13,7 @@ const NORMAL: i64 = -1022;
 const LARGEST: i64 = 1024;
 
 impl Exact {
-    /// The nearest double, of two the one whose last digit is even; ±∞ beyond them.
+    /// The nearest double, of two equally near ones the even one; ±∞ beyond all doubles.
     ///
     /// # Panics
     /// Never: no more than 53 digits are kept.
@@ -23,7 +23,7 @@ impl Exact {
         if size.is_zero() {
             return 0.0;
         }
-        // Enough digits of the quotient that the rest decides ties only.
+        // Enough digits of the quotient for the remainder to decide ties only.
         let more = (DIGITS + 13 + length(&self.denominator) - length(&size)).max(0);
         let (quotient, rest) = (size << more as usize).div_rem(&self.denominator);
         let exponent = self.exponent - more;
@@ -47,7 +47,7 @@ impl Exact {
         if negative && value != 0.0 { -value } else { value }
     }
 
-    /// Which of two is larger.
+    /// The order of two numbers.
     pub fn compare(&self, other: &Self) -> Ordering {
         let mut here = &self.numerator * &other.denominator;
         let mut there = &other.numerator * &self.denominator;
@@ -94,7 +94,7 @@ mod tests {
         assert_eq!(exact(-1, 1, 2000).nearest(), f64::NEG_INFINITY);
         assert_eq!(exact(1, 3, -1080).nearest(), 0.0);
         assert_eq!(exact(2, 3, -1074).nearest(), 5e-324);
-        // A little less than halfway, which 53 digits do not tell from it.
+        // A little less than halfway, which 53 digits cannot distinguish from halfway.
         assert_eq!(exact(3 * (1 << 60) - 1, 1, -1074 - 61).nearest(), 5e-324);
     }
 
