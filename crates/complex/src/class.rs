@@ -3,7 +3,7 @@ use std::ops::{Index, IndexMut};
 
 use serde::{Deserialize, Serialize, Serializer};
 
-/// What a simplex of the regular triangulation is to the shape, as in CGAL's
+/// The class of a simplex of the regular triangulation relative to the shape, as in CGAL's
 /// `Fixed_alpha_shape_3::Classification_type`. Cells are only [`Class::Interior`] or
 /// [`Class::Exterior`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -42,7 +42,7 @@ impl fmt::Display for Class {
     }
 }
 
-/// Something for each class: how many simplices there are, say.
+/// A value for each class, such as the number of simplices.
 ///
 /// ```
 /// use walpha_complex::{ByClass, Class};
@@ -65,7 +65,7 @@ pub struct ByClass<T> {
 }
 
 impl<T> ByClass<T> {
-    /// Each class with what belongs to it: interior, regular, singular, exterior.
+    /// Each class with its value: interior, regular, singular, exterior.
     pub fn iter(&self) -> impl Iterator<Item = (Class, &T)> {
         use Class::{Exterior, Interior, Regular, Singular};
         [Interior, Regular, Singular, Exterior].into_iter().map(|class| (class, &self[class]))
@@ -73,12 +73,12 @@ impl<T> ByClass<T> {
 }
 
 impl ByClass<usize> {
-    /// How many are in the shape: all but the exterior ones.
+    /// The number of simplices in the shape: all but the exterior ones.
     pub fn in_shape(&self) -> usize {
         self.interior + self.regular + self.singular
     }
 
-    /// Writes the counts of the shape alone, without the exterior ones, which are known only where
+    /// Serializes the counts of the shape alone, without the exterior ones, which are known only where
     /// the whole triangulation is. For `#[serde(serialize_with)]`.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Complexes: the plain result type, which engines return, writers write and the checker judges.
+//! Complexes: the plain data type that engines return, writers write and the checker judges.
 
 use crate::{Class, Simplices};
 

@@ -1,4 +1,4 @@
-//! Simplicial complexes with the classes of alpha shapes: what engines return, writers write and checkers judge.
+//! Simplicial complexes with the classes of alpha shapes, which engines return, writers write and checkers judge.
 //!
 //! ```
 //! use walpha_complex::{Class, Complex, Simplices};

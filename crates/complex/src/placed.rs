@@ -1,6 +1,6 @@
 use crate::{Alpha, Complex};
 
-/// A complex with its weighted points and α: what is judged, and what is compared.
+/// A complex with its weighted points and α, to be judged or compared.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed<'a> {
     /// x, y, z of each input point.
@@ -14,8 +14,8 @@ pub struct Placed<'a> {
 }
 
 impl<'a> Placed<'a> {
-    /// A complex over points with these weights, at α. Whether the parts fit together is for those to check who
-    /// judge or compare it.
+    /// A complex over points with these weights, at α. Consistency is not checked here, but by what judges or
+    /// compares it.
     pub fn new(
         positions: &'a [[f64; 3]],
         weights: &'a [f64],

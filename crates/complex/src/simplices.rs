@@ -3,8 +3,8 @@ use super::{ByClass, Class};
 /// Simplices of one dimension: rows of `N` vertices each, by input index, and their classes, as
 /// many as rows.
 ///
-/// A facet over the input points 7, 2 and 5 is the row `[2, 5, 7]` when its winding means
-/// nothing; a regular facet that must be seen as 7 → 5 → 2 from outside is `[2, 7, 5]`.
+/// A facet over the input points 7, 2 and 5 is the row `[2, 5, 7]` if its winding has no
+/// meaning; a regular facet that must be seen as 7 → 5 → 2 from outside is `[2, 7, 5]`.
 ///
 /// ```
 /// use walpha_complex::{Class, Simplices};
@@ -21,14 +21,14 @@ pub struct Simplices<const N: usize> {
     classes: Vec<Class>,
 }
 
-/// Rows and classes do not pair up.
+/// The numbers of rows and classes differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{rows} simplices but {classes} classes: each needs one")]
 #[non_exhaustive]
 pub struct SimplicesError {
-    /// How many rows there are.
+    /// Number of rows.
     pub rows: usize,
-    /// How many classes.
+    /// Number of classes.
     pub classes: usize,
 }
 
@@ -85,14 +85,14 @@ impl<const N: usize> Simplices<N> {
         self.iter().filter(move |&(_, c)| c == class).map(|(row, _)| row)
     }
 
-    /// How many simplices there are of each class. O(n).
+    /// The number of simplices of each class. O(n).
     pub fn counts(&self) -> ByClass<usize> {
         let mut counts = ByClass::default();
         self.classes.iter().for_each(|&class| counts[class] += 1);
         counts
     }
 
-    /// Adds a simplex at the end.
+    /// Appends a simplex.
     pub fn push(&mut self, row: [u32; N], class: Class) {
         self.rows.push(row);
         self.classes.push(class);

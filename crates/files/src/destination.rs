@@ -1,4 +1,4 @@
-//! Where a file will be, and that no other target goes there.
+//! The destination of a file, and the claim that no other target has the same one.
 
 use std::fs::{self, Metadata, OpenOptions};
 use std::io::{self, ErrorKind};
@@ -10,7 +10,7 @@ use crate::identity::{Key, behind_links, folder};
 use crate::inputs;
 use crate::unfinished::gate;
 
-/// A place for a file, with all links followed, and what is there now.
+/// The destination of a file, with all links followed, and the metadata of an existing file.
 #[derive(Debug)]
 pub(super) struct Destination {
     pub path: PathBuf,
@@ -18,7 +18,7 @@ pub(super) struct Destination {
 }
 
 impl Destination {
-    /// Refuses at once what can be known to fail later: a missing folder, a name that is too long, a
+    /// Refuses at once what would fail later: a missing folder, a name that is too long, a
     /// folder or a write-protected file of this name.
     pub(super) fn of(path: &Path) -> io::Result<Self> {
         let existing = match fs::metadata(path) {
@@ -37,9 +37,9 @@ impl Destination {
             }
             Some(existing) if existing.is_dir() => return Err(ErrorKind::IsADirectory.into()),
             Some(existing) if existing.is_file() => {
-                // The system lets root write to files that nobody may write to.
+                // The system lets root write to files that are write-protected.
                 if existing.permissions().readonly() {
-                    let what = "it is there and write-protected";
+                    let what = "it exists and is write-protected";
                     return Err(io::Error::new(ErrorKind::PermissionDenied, what));
                 }
                 OpenOptions::new().write(true).open(&path)?;
@@ -49,7 +49,7 @@ impl Destination {
         Ok(Self { path, existing })
     }
 
-    /// Whether it is a pipe, a device or the like, which is written to directly.
+    /// Whether it is a pipe, a device or the like, which is written directly.
     pub(super) fn is_stream(&self) -> bool {
         self.existing.as_ref().is_some_and(|existing| !existing.is_file())
     }
@@ -59,14 +59,14 @@ impl Destination {
     }
 }
 
-/// A place that is one target's alone, until this is dropped.
+/// A destination that belongs to one target until this is dropped.
 #[derive(Debug)]
 pub(super) struct Claim(Key);
 
 impl Claim {
-    /// Refuses a place that another target is open for: one of the two files would be lost.
-    pub(super) fn of(place: &Destination) -> io::Result<Self> {
-        let key = Key::of(&place.path)?;
+    /// Refuses a destination that another target is open for: one of the two files would be lost.
+    pub(super) fn of(destination: &Destination) -> io::Result<Self> {
+        let key = Key::of(&destination.path)?;
         inputs::check(&key)?;
         Self::new(key)
     }
@@ -79,7 +79,10 @@ impl Claim {
     fn new(key: Key) -> io::Result<Self> {
         let mut gate = gate();
         if gate.claimed.iter().any(|other| key.is(other)) {
-            return Err(io::Error::new(ErrorKind::AlreadyExists, "another output goes there, too"));
+            return Err(io::Error::new(
+                ErrorKind::AlreadyExists,
+                "it is the destination of another output, too",
+            ));
         }
         gate.claimed.push(key.clone());
         Ok(Self(key))

@@ -12,12 +12,12 @@ use crate::inputs::Refused;
 pub struct TargetError {
     path: PathBuf,
     source: io::Error,
-    /// What became of the outputs; empty where that is plain.
+    /// The state that the outputs are left in; empty where that is obvious.
     left: String,
 }
 
 impl TargetError {
-    /// What became of the outputs, and what to do.
+    /// The state that the outputs are left in, and how to resolve the error.
     pub fn advice(&self) -> Advice {
         let refused = self.source.get_ref().and_then(|error| error.downcast_ref::<Refused>());
         if refused.is_some() {
@@ -33,23 +33,23 @@ impl TargetError {
     }
 }
 
-/// What to do about an error of the system.
+/// How to resolve an error of the system.
 fn next_step(error: &io::Error) -> &'static str {
     #[cfg(unix)]
     if error.raw_os_error() == Some(rustix::io::Errno::MFILE.raw_os_error()) {
         return "allow more with `ulimit -n`";
     }
     match error.kind() {
-        ErrorKind::NotFound => "make it first, or choose a place that is there",
+        ErrorKind::NotFound => "create it first, or choose an existing folder",
         ErrorKind::AlreadyExists => "give each output a name of its own",
         ErrorKind::InvalidFilename => "choose a shorter name",
         ErrorKind::IsADirectory => "name a file in it",
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            "make it writable, or choose a place that you may write to"
+            "make it writable, or choose a folder that you may write to"
         }
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
-            "choose a place with room"
+            "choose a disk with enough space"
         }
-        _ => "choose a place with room that you may write to",
+        _ => "choose a folder that you may write to, on a disk with enough space",
     }
 }

@@ -2,10 +2,10 @@ use std::path::{Path, PathBuf};
 
 use crate::destination::Claim;
 use crate::error::TargetError;
-use crate::partial::{PartialFolder, Whole};
+use crate::partial::{CompleteFile, PartialFolder};
 use crate::unfinished::gate;
 
-/// A complete file or folder to be put in its place; dropped before that, it is removed.
+/// A complete file or folder that has not been moved to its destination yet; dropped before that, it is removed.
 #[derive(Debug)]
 pub struct Filled {
     path: PathBuf,
@@ -17,14 +17,19 @@ pub struct Filled {
 #[derive(Debug)]
 #[expect(clippy::large_enum_variant, reason = "nearly all are files")]
 enum Output {
-    File(Whole),
+    File(CompleteFile),
     Folder(PartialFolder),
-    /// It has taken all there is.
+    /// Written already.
     Stream,
 }
 
 impl Filled {
-    pub(super) fn file(path: PathBuf, whole: Whole, bytes: u64, claim: Option<Claim>) -> Self {
+    pub(super) fn file(
+        path: PathBuf,
+        whole: CompleteFile,
+        bytes: u64,
+        claim: Option<Claim>,
+    ) -> Self {
         Self { path, output: Output::File(whole), bytes, _claim: claim }
     }
 
@@ -36,18 +41,18 @@ impl Filled {
         Self { path: path.to_owned(), output: Output::Folder(part), bytes: 0, _claim: None }
     }
 
-    /// Bytes of the file; 0 of a stream.
+    /// The number of bytes of the file; 0 for a stream.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 }
 
-/// Puts complete files in their places. An interrupt waits until all are in place.
+/// Moves complete files to their destinations. An interrupt waits until all are there.
 ///
 /// # Errors
-/// What the system said of the first that cannot be put there; the others after it go.
+/// Those of the system for the first that cannot be moved; the others after it are removed.
 pub fn put_all(mut files: Vec<Filled>) -> Result<(), TargetError> {
-    // Files that are dropped take the gate themselves.
+    // Files that are dropped lock the gate themselves.
     let gate = gate();
     for (done, Filled { path, output, .. }) in files.iter_mut().enumerate() {
         let left = match done {

@@ -1,4 +1,4 @@
-//! Whether two names are one file.
+//! Whether two paths name one file.
 
 use std::fs::{self, Metadata};
 use std::io::{self, ErrorKind};
@@ -15,9 +15,9 @@ pub(super) fn folder(path: &Path) -> &Path {
     }
 }
 
-/// The path that links of this name lead to, whether it exists or not.
+/// The path that symbolic links lead to, whether it exists or not.
 pub(super) fn behind_links(path: &Path) -> PathBuf {
-    /// As many as Linux follows.
+    /// The limit of Linux.
     const MOST_LINKS: usize = 40;
     let mut path = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -27,7 +27,7 @@ pub(super) fn behind_links(path: &Path) -> PathBuf {
     path
 }
 
-/// The identity of a place.
+/// The identity of a file or destination.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Key {
     pub path: PathBuf,
@@ -36,7 +36,7 @@ pub(super) struct Key {
 }
 
 impl Key {
-    /// That of a place, whose folder is there.
+    /// The key of a destination whose folder exists.
     pub(super) fn of(path: &Path) -> io::Result<Self> {
         let path = behind_links(path);
         let name = path.file_name().ok_or(ErrorKind::InvalidFilename)?;
@@ -44,18 +44,18 @@ impl Key {
         Ok(Self { path: fs::canonicalize(folder(&path))?.join(name), file })
     }
 
-    /// That of a file that is there.
+    /// The key of an existing file.
     pub(super) fn of_existing(path: &Path) -> Option<Self> {
         let file = fs::metadata(path).ok().as_ref().and_then(number);
         fs::canonicalize(path).ok().map(|path| Self { path, file })
     }
 
-    /// That of standard output.
+    /// The key of standard output.
     pub(super) fn of_stdout() -> Self {
         Self { path: STDOUT.into(), file: None }
     }
 
-    /// Whether two places are one.
+    /// Whether both are the same file.
     pub(super) fn is(&self, other: &Self) -> bool {
         self.path == other.path || self.file.is_some() && self.file == other.file
     }

@@ -1,4 +1,4 @@
-//! What outputs must not replace: what is read, and what is in a working folder.
+//! What outputs must not replace: inputs, and the files in a working folder.
 
 use std::fs;
 use std::io;
@@ -9,23 +9,23 @@ use walpha_base::advice::{Advice, Setting};
 
 use crate::identity::Key;
 
-/// What lists the files that belong to an input: those that a header names, or those of a folder that are read.
+/// Lists the files that belong to an input: those that a header names, or those of a folder that are read.
 pub type FilesOf = fn(&Path) -> Vec<PathBuf>;
 
-/// What is not to be replaced.
-enum Kept {
+/// A file or folder that is not to be replaced.
+enum Protected {
     /// A file that is read.
     Input(Key),
-    /// A folder that is read, and what lists the files in it that are.
+    /// A folder that is read, and the function that lists the files read from it.
     Folder(PathBuf, FilesOf),
-    /// A folder that nothing else is to be written to.
+    /// A folder that nothing else may be written to.
     Working(PathBuf),
 }
 
-static KEPT: Mutex<Vec<Kept>> = Mutex::new(Vec::new());
+static PROTECTED: Mutex<Vec<Protected>> = Mutex::new(Vec::new());
 
-fn kept() -> MutexGuard<'static, Vec<Kept>> {
-    KEPT.lock().unwrap_or_else(PoisonError::into_inner)
+fn protected() -> MutexGuard<'static, Vec<Protected>> {
+    PROTECTED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Why an output is refused.
@@ -38,67 +38,70 @@ pub(super) enum Refused {
 }
 
 impl Refused {
-    /// What to do.
+    /// How to resolve the error.
     pub(super) fn advice() -> Advice {
-        Advice::new(["name another place, or say ".into(), Setting::InPlace.into()])
+        Advice::new(["name another destination, or give ".into(), Setting::InPlace.into()])
     }
 }
 
-/// Keeps an input from being replaced by any [`Target`](crate::Target) from now on: a file, those that
-/// its header names, or the files of a volume in a folder; under all their names. `files_of` lists the files that belong to it. What is not there is left out.
+/// Protects an input from being replaced by any [`Target`](crate::Target) from now on: a file, those that
+/// its header names, or the files of a volume in a folder; under all their names. `files_of` lists the files that
+/// belong to it. Files that do not exist are ignored.
 pub fn keep_input(path: &Path, files_of: FilesOf) {
     let mut found = Vec::new();
     match fs::canonicalize(path) {
-        Ok(folder) if folder.is_dir() => found.push(Kept::Folder(folder, files_of)),
+        Ok(folder) if folder.is_dir() => found.push(Protected::Folder(folder, files_of)),
         Ok(_) => {
             let files = std::iter::once(path.to_owned()).chain(files_of(path));
-            found.extend(files.filter_map(|file| Key::of_existing(&file)).map(Kept::Input));
+            found.extend(files.filter_map(|file| Key::of_existing(&file)).map(Protected::Input));
         }
         Err(_) => {}
     }
-    kept().extend(found);
+    protected().extend(found);
 }
 
-/// A folder that no target is opened in, until this is dropped.
+/// A folder in which no target can be opened until this is dropped.
 #[derive(Debug)]
 pub struct Working(PathBuf);
 
 impl Working {
-    /// Of a folder, whether it is there or not.
+    /// Reserves a folder, whether it exists or not.
     pub fn folder(folder: &Path) -> Self {
         let folder = Key::of(folder).map_or_else(|_| folder.to_owned(), |key| key.path);
         let folder = fs::canonicalize(&folder).unwrap_or(folder);
-        kept().push(Kept::Working(folder.clone()));
+        protected().push(Protected::Working(folder.clone()));
         Self(folder)
     }
 }
 
 impl Drop for Working {
     fn drop(&mut self) {
-        let mut kept = kept();
-        if let Some(at) =
-            kept.iter().position(|kept| matches!(kept, Kept::Working(folder) if *folder == self.0))
-        {
-            kept.swap_remove(at);
+        let mut protected = protected();
+        if let Some(at) = protected.iter().position(
+            |protected| matches!(protected, Protected::Working(folder) if *folder == self.0),
+        ) {
+            protected.swap_remove(at);
         }
     }
 }
 
-/// Refuses a place that is kept.
-pub(super) fn check(place: &Key) -> io::Result<()> {
-    // Lists of folders are read when something in one of them would be replaced.
+/// Refuses a destination that is protected.
+pub(super) fn check(destination: &Key) -> io::Result<()> {
+    // A folder is listed only if a file in it would be replaced.
     let is_of = |folder: &Path, files_of: FilesOf| {
-        place.path.starts_with(folder)
-            && place.path.exists()
+        destination.path.starts_with(folder)
+            && destination.path.exists()
             && files_of(folder)
                 .iter()
                 .filter_map(|file| Key::of_existing(file))
-                .any(|file| file.is(place))
+                .any(|file| file.is(destination))
     };
-    let refused = kept().iter().find_map(|kept| match kept {
-        Kept::Input(file) => file.is(place).then_some(Refused::Input),
-        Kept::Folder(folder, files_of) => is_of(folder, *files_of).then_some(Refused::Input),
-        Kept::Working(folder) => place.path.starts_with(folder).then_some(Refused::Working),
+    let refused = protected().iter().find_map(|protected| match protected {
+        Protected::Input(file) => file.is(destination).then_some(Refused::Input),
+        Protected::Folder(folder, files_of) => is_of(folder, *files_of).then_some(Refused::Input),
+        Protected::Working(folder) => {
+            destination.path.starts_with(folder).then_some(Refused::Working)
+        }
     });
     refused.map_or(Ok(()), |why| Err(io::Error::other(why)))
 }

@@ -1,8 +1,8 @@
 //! Files that appear under their names when they are complete, or not at all.
 //!
-//! What is written goes into a file beside its place first, or into one without a name, and gets its name when the last byte is
+//! Content is first written to a temporary file in the same folder, which is renamed when the last byte has been
 //! written. Several outputs appear together. A file keeps the mode, owner and names of the one it replaces;
-//! inputs are not replaced. For the commands of walpha, and whoever writes shapes with it.
+//! inputs are not replaced. For the commands of walpha, and for programs that write shapes with it.
 //!
 //! ```
 //! use std::io::Write;

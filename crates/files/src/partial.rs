@@ -1,4 +1,4 @@
-//! Files and folders that are not complete yet, next to those that they are to become.
+//! Files and folders that are not complete yet, in the folder of their destination.
 
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
@@ -11,47 +11,47 @@ use crate::unfinished::{Gate, Temporary};
 #[derive(Debug)]
 pub(super) struct PartialFile {
     file: File,
-    whole: Whole,
+    whole: CompleteFile,
 }
 
-/// A complete file that waits to be put in its place.
+/// A complete file that has not been moved to its destination yet.
 #[derive(Debug)]
-pub(super) struct Whole {
+pub(super) struct CompleteFile {
     temporary: Temporary,
-    place: Destination,
-    way: Way,
+    destination: Destination,
+    method: Method,
 }
 
-/// How a file gets into its place.
+/// How a file gets to its destination.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
-    /// At once, for all who look.
+enum Method {
+    /// Atomically.
     Renamed,
-    /// Byte by byte into the existing file, which has other names, an owner we cannot give
-    /// away to, or a list of who may read it: a new file under this name would be another file.
+    /// Byte by byte into the existing file, which has other names, an owner to whom we cannot give
+    /// a file, or an access control list: a new file under this name would be another file.
     #[cfg_attr(not(unix), expect(dead_code, reason = "only Unix has these"))]
     Copied,
 }
 
 impl PartialFile {
-    pub(super) fn beside(place: Destination) -> io::Result<Self> {
+    pub(super) fn for_destination(destination: Destination) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(".walpha-").suffix(".part");
-        let private = place.existing.is_some();
+        let private = destination.existing.is_some();
         let create = |path: &Path| create(path, private);
-        let (file, temporary) = Temporary::make(&builder, place.folder(), create)?;
-        let way = match &place.existing {
-            Some(existing) => way(&file, existing, &place)?,
-            None => Way::Renamed,
+        let (file, temporary) = Temporary::make(&builder, destination.folder(), create)?;
+        let method = match &destination.existing {
+            Some(existing) => method(&file, existing, &destination)?,
+            None => Method::Renamed,
         };
-        Ok(Self { file, whole: Whole { temporary, place, way } })
+        Ok(Self { file, whole: CompleteFile { temporary, destination, method } })
     }
 
-    /// Fills the file and closes it; says how many bytes it has.
+    /// Fills the file and closes it. Returns its number of bytes, too.
     pub(super) fn fill(
         self,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> io::Result<(Whole, u64)> {
+    ) -> io::Result<(CompleteFile, u64)> {
         let Self { file, whole } = self;
         // The file itself: its errors do not name it.
         let mut buffered = BufWriter::new(file);
@@ -62,23 +62,25 @@ impl PartialFile {
     }
 }
 
-impl Whole {
-    /// Gives the file its name. The gate is held, so that an interrupt waits.
+impl CompleteFile {
+    /// Moves the file to its destination. The gate is locked, so that an interrupt waits.
     pub(super) fn put(&mut self, gate: &Gate) -> io::Result<()> {
         let Some(temporary) = self.temporary.take() else { return Ok(()) };
-        match self.way {
-            Way::Renamed => temporary.persist(&self.place.path).map_err(|refused| refused.error)?,
-            Way::Copied => overwrite(
-                &mut OpenOptions::new().write(true).open(&self.place.path)?,
+        match self.method {
+            Method::Renamed => {
+                temporary.persist(&self.destination.path).map_err(|refused| refused.error)?
+            }
+            Method::Copied => overwrite(
+                &mut OpenOptions::new().write(true).open(&self.destination.path)?,
                 &mut File::open(&temporary)?,
             )?,
         }
-        self.temporary.settle(gate);
+        self.temporary.finish(gate);
         Ok(())
     }
 }
 
-/// A folder beside the one it is to become. Dropped before it is put there, it goes with all that is in it.
+/// A temporary folder. Dropped before it is renamed, it is removed with its contents.
 #[derive(Debug)]
 pub(super) struct PartialFolder(Option<PathBuf>);
 
@@ -87,7 +89,7 @@ impl PartialFolder {
         Self(Some(path))
     }
 
-    /// Gives the folder its name.
+    /// Renames the folder.
     pub(super) fn put(&mut self, path: &Path) -> io::Result<()> {
         let Some(part) = &self.0 else { return Ok(()) };
         fs::rename(part, path)?;
@@ -99,13 +101,13 @@ impl PartialFolder {
 impl Drop for PartialFolder {
     fn drop(&mut self) {
         if let Some(part) = &self.0 {
-            // The error reported is an earlier one.
+            // An earlier error is reported.
             let _ = fs::remove_dir_all(part);
         }
     }
 }
 
-/// Puts new content into a file. What could fail for want of room comes first and is undone then.
+/// Replaces the content of a file. The part that could fail for lack of space comes first, and is undone then.
 fn overwrite(file: &mut File, content: &mut File) -> io::Result<()> {
     let (old, new) = (file.metadata()?.len(), content.metadata()?.len());
     if new > old {
@@ -122,7 +124,7 @@ fn overwrite(file: &mut File, content: &mut File) -> io::Result<()> {
     file.set_len(new)
 }
 
-/// A new file. One that replaces another is private until it has the permissions of that one.
+/// Creates a file. One that replaces another is private until it gets its permissions.
 #[cfg(unix)]
 fn create(path: &Path, private: bool) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;
@@ -135,34 +137,34 @@ fn create(path: &Path, _: bool) -> io::Result<File> {
     OpenOptions::new().write(true).create_new(true).open(path)
 }
 
-/// Makes a file like the one it is to replace, or says that it cannot be.
+/// Gives a file the owner and permissions of the one it replaces, if that is possible, and chooses the method.
 #[cfg(unix)]
-fn way(file: &File, existing: &Metadata, place: &Destination) -> io::Result<Way> {
+fn method(file: &File, existing: &Metadata, destination: &Destination) -> io::Result<Method> {
     use std::fs::Permissions;
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
     let ours = file.metadata()?;
     let (user, group) = (existing.uid(), existing.gid());
     let same_owner = (ours.uid(), ours.gid()) == (user, group);
     if existing.nlink() > 1
-        || has_access_list(&place.path)
+        || has_access_list(&destination.path)
         || !same_owner && fchown(file, Some(user), Some(group)).is_err()
     {
-        return Ok(Way::Copied);
+        return Ok(Method::Copied);
     }
     file.set_permissions(Permissions::from_mode(existing.mode() & 0o777))?;
-    Ok(Way::Renamed)
+    Ok(Method::Renamed)
 }
 
 #[cfg(not(unix))]
-fn way(_: &File, _: &Metadata, _: &Destination) -> io::Result<Way> {
-    Ok(Way::Renamed)
+fn method(_: &File, _: &Metadata, _: &Destination) -> io::Result<Method> {
+    Ok(Method::Renamed)
 }
 
-/// Whether more is said of who may read a file than by its mode.
+/// Whether a file has an access control list besides its mode.
 #[cfg(target_os = "linux")]
 fn has_access_list(path: &Path) -> bool {
-    let mut no_room: [u8; 0] = [];
-    rustix::fs::getxattr(path, "system.posix_acl_access", &mut no_room).is_ok()
+    let mut empty: [u8; 0] = [];
+    rustix::fs::getxattr(path, "system.posix_acl_access", &mut empty).is_ok()
 }
 
 #[cfg(all(unix, not(target_os = "linux")))]

@@ -12,11 +12,11 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Everything that a reader has, in a file whose name ends with `ending`, in the system's folder for
-    /// such files.
+    /// Copies everything from a reader to a file whose name ends with `ending`, in the system's folder for
+    /// temporary files.
     ///
     /// # Errors
-    /// What the system said.
+    /// Those of the system.
     pub fn of(reader: &mut dyn Read, ending: &str) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
         builder.prefix("walpha-").suffix(ending);
@@ -27,7 +27,7 @@ impl Scratch {
         Ok(Self { temporary })
     }
 
-    /// Where it is.
+    /// The path of the file.
     #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn path(&self) -> &Path {
         self.temporary.path().expect("it is never taken")

@@ -7,23 +7,23 @@ use crate::error::TargetError;
 use crate::filled::{Filled, put_all};
 use crate::identity::{Key, STDOUT};
 use crate::inputs;
-use crate::partial::{PartialFile, Whole};
+use crate::partial::{CompleteFile, PartialFile};
 
-/// A file to be: opened before the long work, so that a bad place is known at once, and put under
+/// A future file: opened before the long work, so that a bad destination is reported at once, and moved to
 /// its name only when it is complete. Dropped before that, it leaves nothing behind.
 ///
 /// A file of this name is replaced, and the new file has its mode and owner; links are
 /// followed. A file that has other names, too, or whose owner cannot be kept, is not replaced but
-/// overwritten, when all of the new content is on the disk: that alone is not done at one blow. There
+/// overwritten once all of the new content is on the disk, which is the only case that is not atomic. There
 /// are never two targets for one file at a time.
 ///
-/// `-` is standard output. That, and whatever is not an ordinary file (a pipe, a device), is written to as it
-/// comes.
+/// `-` is standard output. It and everything else that is not an ordinary file (a pipe, a device) are written
+/// directly.
 #[derive(Debug)]
 pub struct Target {
     path: PathBuf,
     sink: Sink,
-    /// None of a device.
+    /// `None` for a device.
     claim: Option<Claim>,
 }
 
@@ -34,11 +34,11 @@ enum Sink {
     Stdout,
 }
 
-/// What writes a file.
+/// Writes the content of a file.
 pub type Content<'a> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>;
 
 impl Target {
-    /// The path that is standard output.
+    /// The path that means standard output.
     pub const STDOUT: &str = STDOUT;
 
     /// Opens a temporary file in the folder of `path`.
@@ -57,20 +57,20 @@ impl Target {
             walpha_base::standard_output::check()?;
             return Ok((Sink::Stdout, Some(Claim::of_stdout()?)));
         }
-        let place = Destination::of(path)?;
-        if place.is_stream() {
+        let destination = Destination::of(path)?;
+        if destination.is_stream() {
             return Ok((Sink::Device, None));
         }
-        let claim = Claim::of(&place)?;
-        Ok((Sink::PartialFile(PartialFile::beside(place)?.into()), Some(claim)))
+        let claim = Claim::of(&destination)?;
+        Ok((Sink::PartialFile(PartialFile::for_destination(destination)?.into()), Some(claim)))
     }
 
-    /// Refuses what [`open`](Self::open) would because it is read, or in a working folder; of folders, too.
+    /// Checks, also for folders, that a destination is no input and not in a working folder, as [`open`](Self::open) does.
     ///
     /// # Errors
     /// It is.
     pub fn check(path: &Path) -> Result<(), TargetError> {
-        // Where there is no folder around it, nothing is read there.
+        // Nothing is read from a folder that does not exist.
         let checked = Key::of(path).map_or(Ok(()), |key| inputs::check(&key));
         checked.map_err(TargetError::of(path, ""))
     }
@@ -80,10 +80,10 @@ impl Target {
         &self.path
     }
 
-    /// Writes the content and puts the file in its place, replacing what was there.
+    /// Writes the content and moves the file to its destination, replacing what was there.
     ///
     /// # Errors
-    /// What the system said, with the path; the place is then as it was, unless it is a stream.
+    /// Those of the system, with the path; the destination is then unchanged, unless it is a stream.
     pub fn write(
         self,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -91,10 +91,10 @@ impl Target {
         put_all(vec![self.fill(content)?])
     }
 
-    /// Writes the content, but leaves the place as it is until [`put_all`]. A stream takes it now.
+    /// Writes the content, but leaves the destination unchanged until [`put_all`]. A stream is written now.
     ///
     /// # Errors
-    /// What the system said, with the path.
+    /// Those of the system, with the path.
     pub fn fill(
         self,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -105,10 +105,10 @@ impl Target {
                 part.fill(content).map(|(whole, bytes)| (Some(whole), bytes)),
                 TargetError::NOTHING_LEFT,
             ),
-            Sink::Stdout => (through(io::stdout().lock(), content), ""),
+            Sink::Stdout => (write_stream(io::stdout().lock(), content), ""),
             Sink::Device => {
                 let device = OpenOptions::new().write(true).open(&path);
-                (device.and_then(|device| through(device, content)), "")
+                (device.and_then(|device| write_stream(device, content)), "")
             }
         };
         let (whole, bytes) = filled.map_err(TargetError::of(&path, left))?;
@@ -119,24 +119,23 @@ impl Target {
     }
 }
 
-/// Writes all of several files, or none of them; then what goes to streams, whose readers may have
-/// enough and leave.
+/// Writes all of several files, or none of them; then the streams, whose readers may close them early.
 ///
 /// # Errors
-/// What the system said of the first file that cannot be written.
+/// Those of the system for the first file that cannot be written.
 pub fn write_all<'a>(
     files: impl IntoIterator<Item = (Target, Content<'a>)>,
 ) -> Result<(), TargetError> {
     fill_all(files)?.put(Vec::new())
 }
 
-/// Outputs of which the files are complete, and wait to be put in their places.
+/// Outputs whose files are complete, but not at their destinations yet.
 pub struct FilledAll<'a> {
     files: Vec<Filled>,
     streams: Vec<(Target, Content<'a>)>,
 }
 
-/// Fills all files; streams wait until these are in place.
+/// Fills all files; streams are written once these are at their destinations.
 ///
 /// # Errors
 /// [`TargetError`].
@@ -150,7 +149,7 @@ pub fn fill_all<'a>(
 }
 
 impl FilledAll<'_> {
-    /// Puts all in their places, behind others that are complete, and writes the streams.
+    /// Moves all files to their destinations, after others that are complete, and writes the streams.
     ///
     /// # Errors
     /// [`TargetError`].
@@ -161,10 +160,10 @@ impl FilledAll<'_> {
     }
 }
 
-fn through(
+fn write_stream(
     stream: impl Write,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> io::Result<(Option<Whole>, u64)> {
+) -> io::Result<(Option<CompleteFile>, u64)> {
     let mut buffered = BufWriter::new(stream);
     content(&mut buffered)?;
     buffered.flush()?;
@@ -185,7 +184,7 @@ mod tests {
         let error = target.write(|_| Err(ErrorKind::StorageFull.into())).unwrap_err();
         let text = format!("{error}; {}", error.advice());
         assert!(text.contains("shape.ply") && !text.contains(".part"), "{text}");
-        assert!(text.contains("nothing was left behind, choose a place with room"), "{text}");
+        assert!(text.contains("nothing was left behind, choose a disk with enough space"), "{text}");
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
     }
 
@@ -212,7 +211,7 @@ mod tests {
         };
         let text = said("no/a.ply");
         assert!(
-            text.contains("no/a.ply: there is no folder") && text.contains("make it"),
+            text.contains("no/a.ply: there is no folder") && text.contains("create it"),
             "{text}"
         );
         assert!(said(".").contains("directory"));

@@ -11,16 +11,16 @@ use tempfile::TempPath;
 use crate::identity::Key;
 
 /// A file or folder that is removed unless it is finished. Entries are never freed, and their list
-/// is read without a lock: the handler of a signal may do so at any moment.
+/// is read without a lock: a signal handler may do so at any moment.
 #[derive(Debug)]
 pub(super) struct Entry {
     name: Name,
     folder: bool,
-    there: AtomicBool,
+    unfinished: AtomicBool,
     next: OnceLock<&'static Entry>,
 }
 
-/// A path as the system takes it, so that removing it needs no memory.
+/// A path in the form of the system, so that removing it needs no memory.
 #[cfg(unix)]
 type Name = std::ffi::CString;
 #[cfg(not(unix))]
@@ -42,10 +42,11 @@ pub(super) fn gate() -> MutexGuard<'static, Gate> {
 }
 
 impl Gate {
-    /// Enters a path before something is made there.
+    /// Enters a path before a file or folder is created there.
     pub(super) fn enter(&mut self, path: &Path, folder: bool) -> io::Result<&'static Entry> {
-        let (there, next) = (AtomicBool::new(true), OnceLock::new());
-        let entry: &Entry = Box::leak(Box::new(Entry { name: name(path)?, folder, there, next }));
+        let (unfinished, next) = (AtomicBool::new(true), OnceLock::new());
+        let entry: &Entry =
+            Box::leak(Box::new(Entry { name: name(path)?, folder, unfinished, next }));
         let place = self.last.map_or(&FIRST, |last| &last.next);
         place.set(entry).expect("the last entry has no next");
         self.last = Some(entry);
@@ -54,13 +55,13 @@ impl Gate {
 }
 
 impl Entry {
-    /// It is complete, or gone.
-    pub(super) fn strike(&self) {
-        self.there.store(false, Ordering::Release);
+    /// Marks it as complete or removed.
+    pub(super) fn finish(&self) {
+        self.unfinished.store(false, Ordering::Release);
     }
 
     fn remove(&self) {
-        // It may be gone already; a failure cannot be reported here.
+        // It may have been removed already; a failure cannot be reported here.
         #[cfg(unix)]
         let _ = if self.folder {
             rustix::fs::rmdir(&*self.name)
@@ -86,15 +87,15 @@ fn name(path: &Path) -> io::Result<Name> {
     Ok(path.to_owned())
 }
 
-/// Removes every file that is not complete, and every folder made for such files that holds no
-/// other. On Unix this takes no lock and no memory, and calls nothing but `unlink` and `rmdir`: the
-/// handler of any signal may call it, if the process ends then.
+/// Removes every file that is not complete, and every folder created for such files that contains no
+/// other. On Unix this takes no lock and no memory, and calls only `unlink` and `rmdir`: any signal
+/// handler may call it, if the process ends then.
 pub fn sweep() {
-    // Folders when they are empty.
+    // Files first, so that their folders are empty.
     for folders in [false, true] {
         let mut next = FIRST.get();
         while let Some(entry) = next {
-            if entry.folder == folders && entry.there.load(Ordering::Acquire) {
+            if entry.folder == folders && entry.unfinished.load(Ordering::Acquire) {
                 entry.remove();
             }
             next = entry.next.get();
@@ -103,9 +104,9 @@ pub fn sweep() {
 }
 
 /// Removes what is not complete, and ends the process before another file can appear. For the handler
-/// of an interrupt, in a thread of its own: files under their final names are complete.
+/// of an interrupt, in a separate thread: files under their final names are complete.
 pub fn abandon(code: i32) -> ! {
-    let _for_good = gate();
+    let _never_unlocked = gate();
     sweep();
     std::process::exit(code)
 }
@@ -118,7 +119,7 @@ pub(super) struct Temporary {
 }
 
 impl Temporary {
-    /// Makes one in a folder, as `create` does. Errors do not name it: its name means nothing to anybody.
+    /// Creates one in a folder by `create`. Errors do not contain its name, which means nothing to users.
     pub(super) fn make(
         names: &tempfile::Builder<'_, '_>,
         folder: &Path,
@@ -126,31 +127,31 @@ impl Temporary {
     ) -> io::Result<(fs::File, Self)> {
         let mut gate = gate();
         let mut entry = None;
-        // Entered before it is there, so that no signal finds it unknown.
+        // Entered before it exists, so that a signal handler never misses it.
         let made = names.make_in(folder, |path| {
             let entered = gate.enter(path, false)?;
-            let file = create(path).inspect_err(|_| entered.strike())?;
+            let file = create(path).inspect_err(|_| entered.finish())?;
             entry = Some(entered);
             Ok(file)
         });
         let (file, path) = made?.into_parts();
-        let entry = entry.expect("entered before it was made");
+        let entry = entry.expect("entered before it was created");
         Ok((file, Self { path: Some(path), entry }))
     }
 
-    /// Where it is, until it is taken.
+    /// Its path, until that is taken.
     pub(super) fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
 
-    /// The path, to be renamed or dropped under the gate.
+    /// Takes the path, to be renamed or dropped while the gate is locked.
     pub(super) fn take(&mut self) -> Option<TempPath> {
         self.path.take()
     }
 
-    /// The file is under its final name, or removed.
-    pub(super) fn settle(&self, _: &Gate) {
-        self.entry.strike();
+    /// Marks the file as renamed or removed.
+    pub(super) fn finish(&self, _: &Gate) {
+        self.entry.finish();
     }
 }
 
@@ -158,11 +159,11 @@ impl Drop for Temporary {
     fn drop(&mut self) {
         let _gate = gate();
         self.path = None;
-        self.entry.strike();
+        self.entry.finish();
     }
 }
 
-/// A folder made for outputs. Dropped before it is kept, it is removed if empty.
+/// A folder created for outputs. Dropped before it is kept, it is removed if empty.
 #[derive(Debug)]
 pub struct NewFolder {
     path: PathBuf,
@@ -170,10 +171,10 @@ pub struct NewFolder {
 }
 
 impl NewFolder {
-    /// Makes a folder; `None` if there is one already.
+    /// Creates a folder; `None` if it exists.
     ///
     /// # Errors
-    /// What the system returns: a file of that name exists, the parent folder is missing, and so on.
+    /// Those of the system: a file of that name exists, the parent folder is missing, and so on.
     pub fn make(path: &Path) -> io::Result<Option<Self>> {
         let path = std::path::absolute(path)?;
         let mut gate = gate();
@@ -188,16 +189,16 @@ impl NewFolder {
         Ok(Some(Self { path, entry }))
     }
 
-    /// Leaves the folder where it is.
+    /// Keeps the folder.
     pub fn keep(self) {
-        self.entry.strike();
+        self.entry.finish();
     }
 }
 
 impl Drop for NewFolder {
     fn drop(&mut self) {
         let _gate = gate();
-        if self.entry.there.swap(false, Ordering::AcqRel) {
+        if self.entry.unfinished.swap(false, Ordering::AcqRel) {
             // Only if it is empty.
             let _ = fs::remove_dir(&self.path);
         }

@@ -2,7 +2,7 @@
 
 use super::*;
 
-const IS_INPUT: [&str; 3] = ["it is an input, which would be lost", "another place", "--in-place"];
+const IS_INPUT: [&str; 3] = ["it is an input, which would be lost", "another destination", "--in-place"];
 
 fn points(folder: &Path, name: &str) -> std::path::PathBuf {
     let path = folder.join(name);
@@ -76,7 +76,7 @@ fn the_folder_of_a_plan_is_for_its_files_alone() {
     ok(f, &["blocks", "run", "work"]);
     symlink("work", f.join("link")).unwrap();
     let plan = fs::read(f.join("work/plan.json")).unwrap();
-    let word = ["it is in the working folder of a plan", "another place", "--in-place"];
+    let word = ["it is in the working folder of a plan", "another destination", "--in-place"];
     for output in
         ["work/plan.json", "work/new.json", "link/plan.json", "work/new.pvtu", "work.pvtu"]
     {

@@ -127,7 +127,7 @@ fn places_that_cannot_be_are_refused_at_the_start() {
     // The input would be an error, too, if one came so far.
     refused(f, "haar no.nrrd -o a.npy", &["a.npy", "write-protected", "make it writable"]);
     assert_eq!(fs::read_to_string(f.join("a.npy")).unwrap(), "precious");
-    refused(f, "haar no.nrrd -o no/b.npy", &["there is no folder no", "make it first"]);
+    refused(f, "haar no.nrrd -o no/b.npy", &["there is no folder no", "create it first"]);
     let name = format!("{}.npy", "b".repeat(400));
     refused(f, &format!("haar no.nrrd -o {name}"), &["too long", "choose a shorter name"]);
     refused(f, "ladder no.nrrd -o no/ladder", &["no/ladder", "--output"]);
@@ -149,7 +149,7 @@ fn places_that_cannot_be_are_refused_at_the_start() {
 fn no_output_is_lost_to_another() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
-    let word = ["another output goes there", "a name of its own"];
+    let word = ["the destination of another output", "a name of its own"];
     refused(f, "shape no.nrrd -o s.ply ./s.ply", &word);
     refused(f, "interpolate no.nrrd -o s.npy --mask s.npy", &word);
     refused(f, "shape no.nrrd -o - - --output-format ply", &word);

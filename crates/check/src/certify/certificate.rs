@@ -119,10 +119,10 @@ impl std::fmt::Display for NotJudged {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::MissingSimplices => {
-                "whether whole parts of the shape are missing (that takes the exterior simplices)"
+                "whether whole parts of the shape are missing (requires the exterior simplices)"
             }
             Self::HiddenAndHull => {
-                "hidden points and the convex hull (that takes the exterior simplices)"
+                "hidden points and the convex hull (requires the exterior simplices)"
             }
             Self::Duplicates => "the list of duplicates (none is given)",
             Self::AfterFindings => "rules that depend on the broken ones",

@@ -253,7 +253,7 @@ fn numbers_are_finite() {
     ] {
         let error = compare(right, wrong).unwrap_err();
         assert!(matches!(error, CompareError::NotFinite { which: 'B', point } if point == number));
-        assert_eq!(error.advice(), Some("clean the input"));
+        assert_eq!(error.advice(), Some("remove such points from the input"));
     }
     let short = compare(right, weighted(&case.positions, &weights[1..], &shape)).unwrap_err();
     assert!(matches!(short, CompareError::Lengths { which: 'B', positions: 8, weights: 7 }));

@@ -9,7 +9,7 @@ pub enum SchemaError {
     /// The file cannot be read or written.
     #[error("the complex cannot be read or written: {0}")]
     Io(#[source] io::Error),
-    /// The extension is neither `.json` nor `.npz`, or that of a format left out by its feature.
+    /// The extension is neither `.json` nor `.npz`, or the feature of its format is off.
     #[error("a complex is read from .json or .npz")]
     Extension,
     /// Not JSON, or not of this form; with line and column.
@@ -26,16 +26,16 @@ pub enum SchemaError {
         /// What is wrong with its header.
         source: NpyError,
     },
-    /// Memory for an array cannot be had.
-    #[error("array `{name}` needs {bytes} bytes of memory, which cannot be had")]
+    /// There is not enough memory for an array.
+    #[error("array `{name}` needs {bytes} bytes of memory, which are not available")]
     Memory {
         /// Its name.
         name: &'static str,
-        /// What its numbers take.
+        /// Bytes that its numbers need.
         bytes: u128,
     },
-    /// A needed array is missing.
-    #[error("the NPZ file has no array `{0}`, which is needed")]
+    /// A required array is missing.
+    #[error("the NPZ file has no array `{0}`, which is required")]
     Missing(&'static str),
     /// An array has the wrong shape or type.
     #[error("array `{name}` has {got}, expected {expected}")]
@@ -57,8 +57,8 @@ pub enum SchemaError {
         /// What it should be.
         expected: &'static str,
     },
-    /// Two fields do not pair up.
-    #[error("`{name}` has {got} entries, but {expected} are needed, one each of `{of}`")]
+    /// Two fields have different lengths.
+    #[error("`{name}` has {got} entries, but needs {expected}: one for each of `{of}`")]
     Lengths {
         /// The field.
         name: &'static str,
@@ -76,19 +76,22 @@ pub enum SchemaError {
         name: &'static str,
         /// The number.
         index: u32,
-        /// How many points there are.
+        /// Number of points.
         points: usize,
     },
-    /// No points at all.
+    /// No points.
     #[error("the file lists no points")]
     NoPoints,
-    /// No simplices at all.
+    /// No simplices.
     #[error("the file lists no simplices")]
     NoSimplices,
 }
 
 impl SchemaError {
-    /// Refuses two fields that do not pair up.
+    /// Checks that two fields have equal lengths.
+    ///
+    /// # Errors
+    /// [`SchemaError::Lengths`].
     #[doc(hidden)]
     pub fn paired(
         name: &'static str,
@@ -99,7 +102,10 @@ impl SchemaError {
         if got == expected { Ok(()) } else { Err(Self::Lengths { name, got, expected, of }) }
     }
 
-    /// Refuses numbers of points that are not there.
+    /// Checks that points exist.
+    ///
+    /// # Errors
+    /// [`SchemaError::Index`].
     #[doc(hidden)]
     pub fn in_range<'a>(
         name: &'static str,
@@ -112,11 +118,11 @@ impl SchemaError {
         }
     }
 
-    /// What to do about it, where there is something.
+    /// How to resolve the error, if there is a way.
     pub fn advice(&self) -> Option<&'static str> {
         Some(match self {
             Self::Zip(_) => "write it with numpy.savez",
-            Self::Memory { .. } => "make it smaller",
+            Self::Memory { .. } => "reduce its size",
             Self::NoPoints => "add `points`",
             Self::NoSimplices => "give at least one of cells, facets, edges, vertices",
             _ => return None,

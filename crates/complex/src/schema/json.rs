@@ -11,7 +11,7 @@ impl ComplexFile {
         Ok(serde_json::from_reader(BufReader::new(reader))?)
     }
 
-    /// Writes JSON, in one line.
+    /// Writes JSON on one line.
     ///
     /// # Errors
     /// [`SchemaError::Io`] if `writer` fails.
@@ -22,7 +22,7 @@ impl ComplexFile {
 
 impl From<serde_json::Error> for SchemaError {
     fn from(error: serde_json::Error) -> Self {
-        // What the system said stays what it is: a pipe may be broken.
+        // Errors of the system keep their kind, such as a broken pipe.
         if error.is_io() { Self::Io(error.into()) } else { Self::Json(Box::new(error)) }
     }
 }

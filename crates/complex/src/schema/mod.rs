@@ -1,4 +1,4 @@
-//! A small file format for complexes, so that those of any program can be judged and compared.
+//! A small file format for complexes, so that the complexes of any program can be judged and compared.
 //!
 //! In JSON:
 //!
@@ -19,15 +19,15 @@
 //!   `"-inf"`. A program that works with radii r has α = r².
 //! - `weights` are power weights, squared lengths; without them all are 0.
 //! - Simplices are rows of point numbers from 0, in any order and winding. If a dimension is
-//!   missing, it consists of the faces of the dimension above.
+//!   missing, it consists of the faces of the next dimension.
 //! - `classes` (`exterior`, `interior`, `regular`, `singular`) give the class of each row of a
 //!   dimension. Without them, all listed simplices count as in the shape, and their classes follow:
 //!   a facet with two cells is interior, with one regular, with none singular, and so on down.
-//! - `hidden` lists the points that are not vertices, `duplicates` pairs (went, stayed) of points
-//!   at one place. Both are optional.
+//! - `hidden` lists the points that are not vertices, `duplicates` pairs (removed, kept) of points
+//!   at one position. Both are optional.
 //! - `periodic` are the sides of a box that repeats along x, y and z: the complex is then one of a
-//!   torus. All points are in the box, from 0 to less than its sides, and the vertices of a simplex
-//!   that are meant are the copies nearest to its first one, which is nearer than half a side along each axis.
+//!   torus. All points are in the box, from 0 to less than its sides. A row means the copies of its vertices
+//!   nearest to the first one, which must be nearer than half a side along each axis.
 //! - `info` is for whatever the writer wants to add.
 //!
 //! In NPZ (`numpy.savez`, `numpy.savez_compressed`) the same names are arrays of any integer or
@@ -56,7 +56,7 @@ pub use error::SchemaError;
 pub use filtration::{Below, FiltrationFile, PairsFile, Values};
 pub use open::AnyFile;
 
-/// A complex as a file holds it; see the [module](self) for the meaning of the fields.
+/// The contents of a file with a complex; see the [module](self) for the meaning of the fields.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -87,10 +87,10 @@ pub struct ComplexFile {
     /// Points that are not vertices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hidden: Option<Vec<u32>>,
-    /// Pairs (went, stayed) of points at one place.
+    /// Pairs (removed, kept) of points at one position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duplicates: Option<Vec<[u32; 2]>>,
-    /// The sides of the box that repeats, if one does.
+    /// The sides of the periodic box, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<[f64; 3]>,
     /// Whatever the writer wants to add.
@@ -99,7 +99,7 @@ pub struct ComplexFile {
     pub info: Option<serde_json::Value>,
 }
 
-/// Classes by dimension, as many as simplices where present.
+/// Classes by dimension; where present, one for each simplex.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -144,7 +144,7 @@ impl ComplexFile {
         }
     }
 
-    /// A file of points and α, to which simplices are yet to be added.
+    /// A file of points and α, without simplices.
     pub fn of_points(points: Vec<[f64; 3]>, alpha: Alpha) -> Self {
         Self {
             points,

@@ -7,13 +7,12 @@ use zip::read::ZipFile;
 use super::{Classes, ComplexFile, SchemaError, numbers};
 use crate::{Alpha, Class};
 
-/// Deflate expands by no more than this (zlib's technical details): a claim beyond is a lie.
-const MOST_EXPANSION: u64 = 1032;
-/// Points and simplices differ from row to row, and a deflate stream repeats no row that differs
-/// from all before it without a code of two bits at least: rows of up to 32 bytes expand 128-fold
-/// at most, and here twice that is allowed.
-const MOST_REPETITION: u64 = 256;
-/// Arrays of up to so many bytes are read, whatever they expand from.
+/// Deflate expands by no more than this factor (zlib's technical details), so a larger claim is false.
+const MAX_EXPANSION: u64 = 1032;
+/// Points and simplices differ from row to row, and deflate encodes a row that differs from all before
+/// it with at least two bits: rows of up to 32 bytes expand at most 128-fold, and twice that is allowed.
+const MAX_EXPANSION_OF_ROWS: u64 = 256;
+/// Larger arrays of rows are held to [`MAX_EXPANSION_OF_ROWS`].
 const SMALL: u64 = 16 << 20;
 
 impl ComplexFile {
@@ -48,13 +47,13 @@ impl ComplexFile {
     }
 }
 
-/// What an array of a name is.
+/// The shape that an array must have.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
     Scalar,
     /// One number for each row of another array.
     Column(&'static str),
-    /// Rows of so many distinct numbers.
+    /// Rows with this number of columns.
     Rows(u64),
 }
 
@@ -75,7 +74,7 @@ const ARRAYS: [(&str, Kind); 14] = [
     ("vertex_classes", Kind::Column("vertices")),
 ];
 
-/// The arrays of a file, read as doubles: they hold every index and class exactly.
+/// The arrays of a file, read as doubles, which represent every index and class exactly.
 pub(super) struct Npz<R> {
     archive: ZipArchive<R>,
     /// Size of the file in bytes.
@@ -90,7 +89,7 @@ impl<R: Read + Seek> Npz<R> {
         Ok(Self { archive, length })
     }
 
-    /// Checks all headers: shapes, lengths that must be equal, sizes that the file cannot hold.
+    /// Checks all headers: shapes, lengths that must be equal, and sizes beyond what the file can contain.
     pub(super) fn check(&mut self, arrays: &[(&'static str, Kind)]) -> Result<(), SchemaError> {
         let mut counts = Vec::new();
         for &(name, kind) in arrays {
@@ -108,21 +107,21 @@ impl<R: Read + Seek> Npz<R> {
         Ok(())
     }
 
-    /// How many rows an array claims.
+    /// The number of rows that an array claims.
     fn check_one(&mut self, name: &'static str, kind: Kind) -> Result<Option<u64>, SchemaError> {
         let length = self.length;
         let Some(member) = self.member(name)? else { return Ok(None) };
         let (size, packed) = (member.size(), member.compressed_size().min(length));
         let most = match kind {
-            Kind::Rows(_) if size > SMALL => MOST_REPETITION,
-            _ => MOST_EXPANSION,
+            Kind::Rows(_) if size > SMALL => MAX_EXPANSION_OF_ROWS,
+            _ => MAX_EXPANSION,
         };
         if size > packed.saturating_mul(most).saturating_add(most) {
             return Err(SchemaError::Array {
                 name,
                 got: format!("{size} bytes in {packed} of the file"),
                 expected: format!(
-                    "no more than {most} times as many, as one that does not repeat itself"
+                    "no more than {most} times as many, as of an array that does not repeat itself"
                 ),
             });
         }
@@ -137,14 +136,14 @@ impl<R: Read + Seek> Npz<R> {
             (Kind::Column(_) | Kind::Rows(1), &[rows]) => rows,
             (Kind::Column(_) | Kind::Rows(1), _) => return wrong("one dimension".into()),
             (Kind::Rows(columns), &[rows, given]) if given == columns => rows,
-            // NumPy makes a flat array of an empty list of rows.
+            // NumPy turns an empty list of rows into a flat array.
             (Kind::Rows(_), _) if shape.contains(&0) => 0,
             (Kind::Rows(columns), _) => return wrong(format!("shape [m, {columns}]")),
         };
         Ok(Some(rows))
     }
 
-    /// The array of a name.
+    /// The array of this name.
     pub(super) fn member(&mut self, name: &str) -> Result<Option<ZipFile<'_, R>>, SchemaError> {
         let is_it = |entry: &str| entry.strip_suffix(".npy").unwrap_or(entry) == name;
         let at = self.archive.file_names().position(is_it);
@@ -173,7 +172,7 @@ impl<R: Read + Seek> Npz<R> {
         }))
     }
 
-    /// The sides of the box that repeats, if one does.
+    /// The sides of the periodic box, if there is one.
     pub(super) fn sides(&mut self) -> Result<Option<[f64; 3]>, SchemaError> {
         let Some(sides) = self.numbers("periodic")? else { return Ok(None) };
         let count = sides.len();
@@ -211,7 +210,7 @@ impl<R: Read + Seek> Npz<R> {
     }
 }
 
-/// An array of the archive, at its first element.
+/// An array of the archive, positioned at its first element.
 struct Array<'a, R: Read> {
     header: Header,
     member: ZipFile<'a, R>,

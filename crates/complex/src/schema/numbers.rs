@@ -6,11 +6,11 @@ use walpha_base::npy::Header;
 
 use super::SchemaError;
 
-/// Bytes decoded at a time, so that an array and its numbers are not in memory together.
+/// Bytes decoded at a time, so that the array and its numbers are never both completely in memory.
 const CHUNK_BYTES: usize = 8 << 20;
 
-/// All elements of an array in the order of the file. The reader is positioned after the header, and
-/// holds `bytes` more, which must be exactly what the header claims.
+/// All elements of an array in the order of the file. The reader is positioned after the header;
+/// `bytes` more follow, which must be exactly as many as the header claims.
 pub(super) fn read(
     name: &'static str,
     header: &Header,
@@ -43,18 +43,18 @@ pub(super) fn read(
         numbers.extend(chunk.chunks_exact(size).map(decode));
         left -= chunk.len() as u64;
     }
-    // The archive compares its checksum when a member is read to its end.
+    // The archive verifies its checksum when a member is read to its end.
     match reader.read(&mut [0]).map_err(damaged)? {
         0 => Ok(numbers),
-        _ => Err(wrong("more bytes than its archive says".into(), claim())),
+        _ => Err(wrong("more bytes than its archive claims".into(), claim())),
     }
 }
 
-/// Makes a double of the bytes of one element.
+/// Converts the bytes of one element to a double.
 type Decode = fn(&[u8]) -> f64;
 
-/// The bytes of an element and what makes a double of them, for a `NumPy` type such as `<f4`.
-/// Integers beyond 2⁵³ are rounded: no point number is that large.
+/// The size of an element in bytes and its conversion to a double, for a `NumPy` type such as `<f4`.
+/// Integers beyond 2⁵³ are rounded; no point number is that large.
 #[expect(clippy::cast_lossless, reason = "one rule for all types, of which two are lossy")]
 fn element(descr: &str) -> Option<(usize, Decode)> {
     macro_rules! number {

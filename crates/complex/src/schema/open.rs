@@ -14,7 +14,7 @@ impl ComplexFile {
     /// [`read_npz`](Self::read_npz) return.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SchemaError> {
         let path = path.as_ref();
-        match Format::named(path)? {
+        match Format::by_extension(path)? {
             #[cfg(feature = "json")]
             Format::Json => Self::read_json(open(path)?),
             #[cfg(feature = "npz")]
@@ -35,7 +35,7 @@ impl FiltrationFile {
     /// As [`ComplexFile::open`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SchemaError> {
         let path = path.as_ref();
-        match Format::named(path)? {
+        match Format::by_extension(path)? {
             #[cfg(feature = "json")]
             Format::Json => Self::read_json(open(path)?),
             #[cfg(feature = "npz")]
@@ -43,7 +43,7 @@ impl FiltrationFile {
         }
     }
 
-    /// Whether a file has a field `order`, as a filtration has and a complex has not.
+    /// Whether a file has a field `order`, which only filtrations have.
     fn is_in(path: &Path) -> bool {
         match Format::of(path) {
             None => false,
@@ -87,7 +87,7 @@ fn open(path: &Path) -> Result<BufReader<File>, SchemaError> {
     Ok(BufReader::new(File::open(path).map_err(SchemaError::Io)?))
 }
 
-/// The formats that are read.
+/// The formats that can be read.
 enum Format {
     #[cfg(feature = "json")]
     Json,
@@ -96,7 +96,7 @@ enum Format {
 }
 
 impl Format {
-    fn named(path: &Path) -> Result<Self, SchemaError> {
+    fn by_extension(path: &Path) -> Result<Self, SchemaError> {
         Self::of(path).ok_or(SchemaError::Extension)
     }
 

@@ -25,7 +25,7 @@ impl FiltrationFile {
         Ok(serde_json::from_reader(BufReader::new(reader))?)
     }
 
-    /// Writes JSON, in one line.
+    /// Writes JSON on one line.
     ///
     /// # Errors
     /// [`SchemaError::Io`] if `writer` fails.

@@ -1,4 +1,4 @@
-//! The file of a filtration.
+//! Files with filtrations.
 
 #[cfg(feature = "json")]
 mod json;
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::SchemaError;
 use crate::Alpha;
 
-/// A filtration as a file holds it: every simplex of a regular triangulation, and when it comes.
+/// The contents of a file with a filtration: every simplex of a regular triangulation, and the α at which it enters.
 ///
 /// In JSON:
 ///
@@ -28,21 +28,21 @@ use crate::Alpha;
 ///
 /// - `points` and `weights` are as in a [complex](super), values squared lengths as α is.
 /// - Simplices are numbered: vertices first, then edges, facets and cells, each as they are listed.
-///   `order` has these numbers in the order in which simplices come: by value, equal values by
+///   `order` lists these numbers in the order in which simplices enter: by value, equal values by
 ///   dimension, then by vertices (ascending in each simplex, compared one by one).
-/// - `values` are the doubles nearest to the exact values; the order is by these, not by doubles.
-/// - `gabriel` says of vertices, edges and facets whether their smallest orthogonal sphere is empty.
-/// - `regular` and `interior` say of these from which α on they are a face of another simplex of the
-///   shape, and off its boundary; `"inf"` where they never are. All three may be missing.
-/// - `pairs` are persistence pairs by these numbers whose simplices have different values:
-///   `components` (a vertex and the edge that ends it), `lasting` (vertices whose components never
-///   end), `voids` (a facet that closes a void, and the cell that fills it). Of a torus also
-///   `lasting_voids`, the facets that close surfaces which nothing fills, and `last`, the cell that
-///   makes it whole.
-/// - `periodic` are the sides of a box that repeats, as in a complex.
+/// - `values` are the doubles nearest to the exact values; the order is by the exact values.
+/// - `gabriel` says for vertices, edges and facets whether their smallest orthogonal sphere is empty.
+/// - `regular` and `interior` say for these from which α on they are a face of another simplex of the
+///   shape, and off its boundary; `"inf"` if they never are. All three may be missing.
+/// - `pairs` are the persistence pairs, by these numbers, whose simplices have different values:
+///   `components` (a vertex, and the edge that ends its component), `lasting` (vertices whose components never
+///   end), `voids` (a facet that closes a void, and the cell that fills it). For a torus also
+///   `lasting_voids`, the facets that close surfaces which are never filled, and `last`, the cell that
+///   completes the torus.
+/// - `periodic` are the sides of a periodic box, as in a complex.
 /// - `hidden`, `duplicates` and `info` are as in a complex.
 ///
-/// In NPZ the same names are arrays, and of those with dimensions `vertex_values`, `edge_values`,
+/// In NPZ the same names are arrays; those with dimensions are `vertex_values`, `edge_values`,
 /// `facet_values`, `cell_values`, `vertex_gabriel` and so on, `component_pairs`, `lasting_components`,
 /// `void_pairs`, `lasting_voids` and `last_cell`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -62,18 +62,18 @@ pub struct FiltrationFile {
     pub facets: Vec<[u32; 3]>,
     /// Its tetrahedra.
     pub cells: Vec<[u32; 4]>,
-    /// From which α on each is in the shape.
+    /// The α from which on each is in the shape.
     pub values: Values,
     /// Whether the sphere of each is empty.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gabriel: Option<Below<bool>>,
-    /// From which α on each is a face of another simplex of the shape.
+    /// The α from which on each is a face of another simplex of the shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub regular: Option<Below<Alpha>>,
-    /// From which α on each is off the boundary.
+    /// The α from which on each is off the boundary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interior: Option<Below<Alpha>>,
-    /// All numbers of simplices, in order.
+    /// The numbers of all simplices, in order.
     pub order: Vec<u32>,
     /// Persistence pairs of dimensions 0 and 2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -81,10 +81,10 @@ pub struct FiltrationFile {
     /// Points that are not vertices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hidden: Option<Vec<u32>>,
-    /// Pairs (went, stayed) of points at one place.
+    /// Pairs (removed, kept) of points at one position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duplicates: Option<Vec<[u32; 2]>>,
-    /// The sides of the box that repeats, if one does.
+    /// The sides of the periodic box, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<[f64; 3]>,
     /// Whatever the writer wants to add.
@@ -93,7 +93,7 @@ pub struct FiltrationFile {
     pub info: Option<serde_json::Value>,
 }
 
-/// A value for each simplex, by dimension.
+/// The value of each simplex, by dimension.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Values {
@@ -125,23 +125,23 @@ pub struct Below<T> {
 pub struct PairsFile {
     /// A vertex, and the edge that unites its component with an older one.
     pub components: Vec<[u32; 2]>,
-    /// Vertices whose components last for ever.
+    /// Vertices whose components never end.
     pub lasting: Vec<u32>,
     /// A facet that closes a void, and the cell that fills it.
     pub voids: Vec<[u32; 2]>,
-    /// Of a torus: facets with which surfaces come that nothing fills.
+    /// Of a torus: facets that close surfaces which are never filled.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lasting_voids: Vec<u32>,
-    /// Of a torus: the cell that makes it whole.
+    /// Of a torus: the cell that completes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last: Option<u32>,
 }
 
 impl FiltrationFile {
-    /// Whether fields fit together: as many values as simplices, and points that exist.
+    /// Checks that fields are consistent: as many values as simplices, and only points that exist.
     ///
     /// # Errors
-    /// Fields that do not pair up, point numbers out of range, no points at all.
+    /// Fields of different lengths, point numbers out of range, no points.
     pub fn check(&self) -> Result<(), SchemaError> {
         let n = self.points.len();
         if n == 0 {
@@ -169,7 +169,7 @@ impl FiltrationFile {
         Ok(())
     }
 
-    /// Whether there are as many of something as simplices below cells.
+    /// Checks that there are as many entries as vertices, edges and facets.
     fn paired(&self, names: [&'static str; 3], counts: [usize; 3]) -> Result<(), SchemaError> {
         SchemaError::paired(names[0], counts[0], "vertices", self.vertices.len())?;
         SchemaError::paired(names[1], counts[1], "edges", self.edges.len())?;

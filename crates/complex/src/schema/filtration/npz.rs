@@ -35,8 +35,8 @@ const ARRAYS: [(&str, Kind); 28] = [
     ("duplicates", Kind::Rows(2)),
 ];
 
-/// The arrays of the three dimensions below cells.
-struct Names([&'static str; 3]);
+/// The names of the arrays of vertices, edges and facets.
+struct ArrayNames([&'static str; 3]);
 
 impl FiltrationFile {
     /// Whether NPZ holds a filtration: it has an array `order`.
@@ -65,35 +65,35 @@ impl FiltrationFile {
             lasting_voids,
             last,
         });
-        let values = Names(["vertex_values", "edge_values", "facet_values"]);
+        let values = ArrayNames(["vertex_values", "edge_values", "facet_values"]);
         let values =
             below(&mut file, values, alpha)?.ok_or(SchemaError::Missing("vertex_values"))?;
         let Below { vertices, edges, facets } = values;
-        let cells = needed(&mut file, "cell_values", alpha)?;
+        let cells = required(&mut file, "cell_values", alpha)?;
         Ok(Self {
             points: file.rows("points", |_, x| Ok(x))?.unwrap_or_default(),
             weights: file.numbers("weights")?,
-            vertices: needed(&mut file, "vertices", index)?,
+            vertices: required(&mut file, "vertices", index)?,
             edges: file.rows("edges", index)?.ok_or(SchemaError::Missing("edges"))?,
             facets: file.rows("facets", index)?.ok_or(SchemaError::Missing("facets"))?,
             cells: file.rows("cells", index)?.ok_or(SchemaError::Missing("cells"))?,
             values: Values { vertices, edges, facets, cells },
             gabriel: below(
                 &mut file,
-                Names(["vertex_gabriel", "edge_gabriel", "facet_gabriel"]),
+                ArrayNames(["vertex_gabriel", "edge_gabriel", "facet_gabriel"]),
                 truth,
             )?,
             regular: below(
                 &mut file,
-                Names(["vertex_regular", "edge_regular", "facet_regular"]),
+                ArrayNames(["vertex_regular", "edge_regular", "facet_regular"]),
                 alpha,
             )?,
             interior: below(
                 &mut file,
-                Names(["vertex_interior", "edge_interior", "facet_interior"]),
+                ArrayNames(["vertex_interior", "edge_interior", "facet_interior"]),
                 alpha,
             )?,
-            order: needed(&mut file, "order", index)?,
+            order: required(&mut file, "order", index)?,
             pairs,
             hidden: file.list("hidden", index)?,
             duplicates: file.rows("duplicates", index)?,
@@ -106,18 +106,18 @@ impl FiltrationFile {
 
 type Convert<T> = fn(&'static str, f64) -> Result<T, SchemaError>;
 
-/// Three arrays, all there or the first one not.
+/// Three arrays; `None` if the first is missing, and an error if only others are.
 fn below<R: Read + Seek, T>(
     file: &mut Npz<R>,
-    Names([vertices, edges, facets]): Names,
+    ArrayNames([vertices, edges, facets]): ArrayNames,
     convert: Convert<T>,
 ) -> Result<Option<Below<T>>, SchemaError> {
     let Some(of_vertices) = file.list(vertices, convert)? else { return Ok(None) };
-    let (edges, facets) = (needed(file, edges, convert)?, needed(file, facets, convert)?);
+    let (edges, facets) = (required(file, edges, convert)?, required(file, facets, convert)?);
     Ok(Some(Below { vertices: of_vertices, edges, facets }))
 }
 
-fn needed<R: Read + Seek, T>(
+fn required<R: Read + Seek, T>(
     file: &mut Npz<R>,
     name: &'static str,
     convert: Convert<T>,
