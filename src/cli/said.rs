@@ -142,7 +142,7 @@ pub(super) fn advice(error: &(dyn Error + 'static)) -> Option<String> {
         Some(said) => said.next.clone(),
         None => of_checker(error)
             .map(Into::into)
-            .or_else(|| of_library(error).map(|advice| advice.told(option))),
+            .or_else(|| of_library(error).map(|advice| advice.with_names(option))),
     }
 }
 

@@ -1,22 +1,22 @@
-//! What to do about an error: words, and the settings of the library they speak of.
+//! Advice on how to resolve errors: text, and the settings of the library that it mentions.
 
 use std::borrow::Cow;
 use std::fmt;
 
-/// What to do about an error. Settings are named as the library has them; a program with other names
-/// for them, such as options of a command, words it with these ([`told`](Self::told)).
+/// How to resolve an error. Settings have their names in the library; a program with other names
+/// for them, such as options of a command, substitutes these ([`with_names`](Self::with_names)).
 ///
 /// ```
 /// use walpha_base::advice::{Setting, advice};
 ///
 /// let advice = advice!["lower ", Setting::Alpha];
 /// assert_eq!(advice.to_string(), "lower `alpha`");
-/// assert_eq!(advice.told(|setting| format!("--{}", setting.name())), "lower --alpha");
+/// assert_eq!(advice.with_names(|setting| format!("--{}", setting.name())), "lower --alpha");
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Advice(Vec<Part>);
 
-/// A piece of advice, made of texts and settings side by side.
+/// A part of an advice: text, or a setting.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[doc(hidden)]
 pub enum Part {
@@ -24,10 +24,10 @@ pub enum Part {
     Setting(Setting),
 }
 
-/// A setting that errors speak of.
+/// A setting that advice mentions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-#[allow(missing_docs, reason = "the fields of options say what they are")]
+#[allow(missing_docs, reason = "documented at the fields of the options")]
 pub enum Setting {
     Alpha,
     AlphaRef,
@@ -101,8 +101,8 @@ impl Advice {
         Self(parts.into_iter().collect())
     }
 
-    /// The text, with each setting called as `name` calls it.
-    pub fn told(&self, name: impl Fn(Setting) -> String) -> String {
+    /// The text, with each setting under the name that `name` returns.
+    pub fn with_names(&self, name: impl Fn(Setting) -> String) -> String {
         let part = |part: &Part| match part {
             Part::Text(text) => text.to_string(),
             Part::Setting(setting) => name(*setting),
@@ -113,7 +113,7 @@ impl Advice {
 
 impl fmt::Display for Advice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.told(|setting| format!("`{}`", setting.name())))
+        f.write_str(&self.with_names(|setting| format!("`{}`", setting.name())))
     }
 }
 
@@ -147,7 +147,7 @@ impl From<Setting> for Part {
     }
 }
 
-/// An [`Advice`] of texts and settings: `advice!["omit ", Setting::Frame]`.
+/// An [`Advice`] made of texts and settings: `advice!["omit ", Setting::Frame]`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! __advice {
@@ -163,10 +163,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn settings_are_called_as_the_reader_calls_them() {
+    fn settings_have_the_names_of_the_program() {
         let advice = advice!["omit ", Setting::GrayMin, format!(", or give {}", 3)];
         assert_eq!(advice.to_string(), "omit `gray_min`, or give 3");
         let flag = |setting: Setting| format!("--{}", setting.name().replace('_', "-"));
-        assert_eq!(advice.told(flag), "omit --gray-min, or give 3");
+        assert_eq!(advice.with_names(flag), "omit --gray-min, or give 3");
     }
 }

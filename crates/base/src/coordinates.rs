@@ -2,7 +2,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Which way the axes of world coordinates run in a patient.
+/// The directions of the axes of world coordinates in a patient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Space {
@@ -16,20 +16,20 @@ pub enum Space {
     #[serde(rename = "LAS")]
     #[cfg_attr(feature = "clap", value(skip))]
     Las,
-    /// Nobody says.
+    /// Not stated.
     #[default]
     #[serde(rename = "unknown")]
     #[cfg_attr(feature = "clap", value(skip))]
     Unknown,
 }
 
-/// What a length of 1 is.
+/// The unit of length.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum LengthUnit {
-    /// A step from sample to sample: coordinates are indices.
+    /// The distance between neighbouring samples: coordinates are indices.
     #[serde(rename = "voxel")]
     Voxel,
-    /// A length that nobody named.
+    /// A unit that is not stated.
     #[default]
     #[serde(rename = "unit")]
     Unstated,
@@ -53,17 +53,17 @@ pub enum LengthUnit {
     Angstrom,
 }
 
-/// What coordinates mean: which way their axes run, and in what they are measured.
+/// The meaning of coordinates: the directions of their axes, and their unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Coordinates {
-    /// Which way the axes run.
+    /// The directions of the axes.
     pub space: Space,
-    /// What a length of 1 is.
+    /// The unit of length.
     pub unit: LengthUnit,
 }
 
 impl Space {
-    /// The sign of each axis beside that of LPS; `None` where it is not known.
+    /// The sign of each axis relative to LPS; `None` if it is not known.
     fn signs(self) -> Option<[f64; 3]> {
         match self {
             Self::Lps => Some([1.0, 1.0, 1.0]),
@@ -73,7 +73,7 @@ impl Space {
         }
     }
 
-    /// Whether it is known which way the axes run.
+    /// Whether the directions of the axes are known.
     pub fn is_known(self) -> bool {
         self != Self::Unknown
     }
@@ -114,7 +114,7 @@ impl LengthUnit {
         }
     }
 
-    /// Whether it is a known length, which others can be converted to.
+    /// Whether it is a known length, so that others can be converted to it.
     pub fn is_known(self) -> bool {
         self.exponent().is_some()
     }
@@ -133,7 +133,7 @@ impl LengthUnit {
         }
     }
 
-    /// The same in letters that every file can hold: `um`.
+    /// The same in ASCII: `um`.
     pub fn ascii(self) -> &'static str {
         match self {
             Self::Micrometre => "um",
@@ -165,11 +165,11 @@ impl LengthUnit {
 impl Coordinates {
     /// Indices of samples.
     pub const VOXEL: Self = Self { space: Space::Unknown, unit: LengthUnit::Voxel };
-    /// A patient in DICOM's and ITK's way: LPS, in millimetres.
+    /// A patient as in DICOM and ITK: LPS, in millimetres.
     pub const PATIENT: Self = Self { space: Space::Lps, unit: LengthUnit::Millimetre };
 
-    /// The way from these coordinates to others, as far as both are known; what is not known stays as
-    /// it is.
+    /// The conversion of these coordinates to others, as far as both are known; unknown properties do not
+    /// change.
     pub fn to(self, other: Self) -> Conversion {
         let mut to = self;
         let mut signs = [1.0; 3];
@@ -193,31 +193,31 @@ impl fmt::Display for Coordinates {
     }
 }
 
-/// How coordinates become others.
+/// A conversion of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conversion {
-    /// What they become.
+    /// The resulting coordinates.
     pub to: Coordinates,
     signs: [f64; 3],
-    /// Of ten.
+    /// The exponent of ten.
     power: i32,
 }
 
 impl Conversion {
-    /// A length. Rounded once: a power of ten is a double, a part of ten is none.
+    /// Converts a length. Rounded once: powers of ten are exact doubles, their inverses are not.
     pub fn length(&self, length: f64) -> f64 {
         let factor = 10f64.powi(self.power.abs());
         if self.power < 0 { length / factor } else { length * factor }
     }
 
-    /// A position, or a vector from one to another.
+    /// Converts a position, or a vector from one to another.
     pub fn position(&self, position: [f64; 3]) -> [f64; 3] {
         self.direction(position).map(|component| self.length(component))
     }
 
-    /// A vector without a length.
+    /// Converts a direction, whose length does not matter.
     pub fn direction(&self, direction: [f64; 3]) -> [f64; 3] {
-        // Without a zero that is negative.
+        // Adding 0.0 turns −0 into 0.
         [0, 1, 2].map(|k| self.signs[k] * direction[k] + 0.0)
     }
 }

@@ -1,7 +1,7 @@
 use serde::Serializer;
 
-/// Writes a number that may be infinite or missing where the format has no ∞ (JSON): as the string
-/// "inf" or "-inf". For `#[serde(serialize_with)]`; an α writes itself so.
+/// Serializes a number that may be infinite or missing in formats without ∞ (JSON): as the string
+/// "inf" or "-inf". For `#[serde(serialize_with)]`; an `Alpha` is serialized in the same way.
 ///
 /// # Errors
 /// Those of the serializer.

@@ -1,7 +1,7 @@
-//! What several crates of walpha need and none owns: what errors advise, memory and threads that may be refused, sums of
-//! doubles that are rounded once, vectors, headers of NPY, names and numbers as messages show them, progress.
+//! The common base of walpha's crates: advice of errors, allocations and threads that may be refused, sums of
+//! doubles that are rounded once, vectors, NPY headers, names and numbers in messages, progress.
 //!
-//! For walpha's own crates; other programs have no need of it.
+//! For walpha's own crates only.
 //!
 //! ```
 //! use walpha_base::Sum;

@@ -1,29 +1,29 @@
-//! What the system says of this process's memory, and large pieces of it that may not be had.
+//! The memory of this process as the system reports it, and large allocations that may fail.
 
 use std::cell::Cell;
 use std::collections::TryReserveError;
 
 use crate::advice::Advice;
 
-/// The most memory this process ever held, in bytes; `None` where the system does not say (only
+/// The peak memory of this process in bytes; `None` where the system does not report it (only
 /// Linux does).
 pub fn peak_bytes() -> Option<u64> {
     status("VmHWM:")
 }
 
-/// The memory this process holds now, in bytes; `None` where the system does not say.
+/// The current memory of this process in bytes; `None` where the system does not report it.
 pub fn resident_bytes() -> Option<u64> {
     status("VmRSS:")
 }
 
-/// Bytes as people read them: a whole number of the largest unit that leaves at least one.
+/// Bytes in readable form: a whole number of the largest unit of which there is at least one.
 pub fn readable(bytes: u64) -> String {
     let units = [(1 << 20, "MiB"), (1 << 10, "KiB"), (1, "bytes")];
     let (unit, name) = units.into_iter().find(|(unit, _)| bytes >= *unit).unwrap_or(units[2]);
     format!("{} {name}", bytes / unit)
 }
 
-/// Gives freed memory back to the system, where the allocator would keep it for itself (glibc).
+/// Returns freed memory to the system where the allocator would keep it (glibc).
 pub fn give_back() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {
@@ -42,21 +42,21 @@ fn status(field: &str) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-/// Memory for something large cannot be had.
+/// There is not enough memory for something large.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what} needs {bytes} bytes of memory, which cannot be had")]
+#[error("{what} needs {bytes} bytes of memory, which are not available")]
 pub struct NoMemory {
     what: String,
     bytes: u128,
 }
 
 impl NoMemory {
-    /// What to do about it.
+    /// How to resolve the error.
     pub fn advice(&self) -> Advice {
-        "make it smaller".into()
+        "reduce its size".into()
     }
 
-    /// What was to be made.
+    /// What the memory was for.
     pub fn what(&self) -> &str {
         &self.what
     }
@@ -71,16 +71,16 @@ thread_local! {
     static ASKING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether this thread asks for memory that it may be refused: a failure is an error then, and the end of
-/// the process otherwise. For allocators of programs that must not end.
+/// Whether this thread makes an allocation that may fail: a failure is then an error, and otherwise ends the
+/// process. For allocators of programs that must not end.
 pub fn is_asking() -> bool {
     ASKING.get()
 }
 
-/// Asks for memory that may be refused, as [`is_asking`] then says.
+/// Makes an allocation that may fail, during which [`is_asking`] is true.
 ///
 /// # Errors
-/// Those of the asking.
+/// Those of the allocation.
 pub fn asking<T>(ask: impl FnOnce() -> Result<T, TryReserveError>) -> Result<T, TryReserveError> {
     let outer = ASKING.replace(true);
     let answer = ask();
@@ -88,11 +88,11 @@ pub fn asking<T>(ask: impl FnOnce() -> Result<T, TryReserveError>) -> Result<T, 
     answer
 }
 
-/// Room for so many items, or an error that names what they are for. What is large, and grows with
-/// what a user asks for, begins here.
+/// An empty vector with capacity for `count` items, or an error that names `what` they are for. For all
+/// allocations that grow with the request of a user.
 ///
 /// # Errors
-/// [`NoMemory`] where it cannot be had.
+/// [`NoMemory`].
 pub fn room<T>(count: usize, what: impl FnOnce() -> String) -> Result<Vec<T>, NoMemory> {
     let mut items = Vec::new();
     let bytes = count as u128 * size_of::<T>() as u128;
@@ -100,12 +100,12 @@ pub fn room<T>(count: usize, what: impl FnOnce() -> String) -> Result<Vec<T>, No
     Ok(items)
 }
 
-/// Whether so many bytes can be had at once, or an error that names what they are for: a plan for
-/// work that takes them piece by piece. They are asked for and given back, and other threads may
-/// take them; so this finds what cannot be, and does not promise what can.
+/// Checks that `bytes` bytes are available at once, or returns an error that names `what` they are for, before
+/// work that takes them piece by piece. They are allocated and freed, and other threads may take them; so this
+/// detects what is impossible, but does not guarantee what is possible.
 ///
 /// # Errors
-/// [`NoMemory`] where they cannot be had.
+/// [`NoMemory`].
 pub fn afford(bytes: usize, what: impl FnOnce() -> String) -> Result<(), NoMemory> {
     room::<u8>(bytes, what).map(drop)
 }

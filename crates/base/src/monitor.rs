@@ -1,13 +1,13 @@
-//! Progress and cancelling of long work.
+//! Progress and cancellation of long work.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Where long work says how far it is, and learns that it is no longer wanted.
+/// Receives the progress of long work, and can cancel it.
 ///
-/// A clone, and a [part](Self::part), belong to the same work: who cancels one cancels all. Long functions take a
-/// `&Monitor`; with a [silent](Self::silent) one nobody hears them, and nothing stops them.
+/// A clone, and a [part](Self::part), belong to the same work: cancelling one cancels all. Long functions take a
+/// `&Monitor`; a [silent](Self::silent) one discards their reports, and never cancels them.
 ///
 /// ```
 /// use walpha_base::{Cancelled, Monitor};
@@ -30,14 +30,14 @@ struct Shared {
     listener: Box<dyn Listener>,
 }
 
-/// Hears of the progress of work, from any of its threads.
+/// Receives the progress of work, from any of its threads.
 pub trait Listener: Send + Sync + 'static {
-    /// A stage begins: a word for it.
+    /// A stage with this name begins.
     fn stage(&self, name: &'static str) {
         let _ = name;
     }
 
-    /// So many of so many equal parts of the stage are done. Threads may report out of order.
+    /// `done` of `total` equal parts of the stage are done. Threads may report out of order.
     fn progress(&self, done: u64, total: u64);
 }
 
@@ -52,8 +52,8 @@ impl<F: Fn(u64, u64) + Send + Sync + 'static> Listener for F {
 #[error("cancelled")]
 pub struct Cancelled;
 
-/// `From` for the errors that another one wraps: each becomes its variant, but [`Cancelled`] stays what it is, however deep the
-/// work was that ended. Every type named has a variant `Cancelled`.
+/// `From` for the errors that another one wraps: each becomes its variant, except that [`Cancelled`] stays
+/// [`Cancelled`] at every depth. Every type named must have a variant `Cancelled`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! __wraps {
@@ -72,42 +72,42 @@ macro_rules! __wraps {
 #[doc(inline)]
 pub use __wraps as wraps;
 
-/// What the reports of a monitor are parts of.
+/// The scale of the reports of a monitor.
 #[derive(Clone, Copy, Default)]
 enum Scale {
-    /// Of the stage.
+    /// Parts of the stage.
     #[default]
     Stage,
-    /// Of a part of the stage: from one place to another, in [`STEPS`].
+    /// Parts of a section of the stage: from one step to another, of [`STEPS`].
     Part { from: u64, to: u64 },
-    /// Of something whose progress is not reported.
-    Unheard,
+    /// Progress is not reported.
+    Unreported,
 }
 
-/// A stage that is reported by its parts has so many steps.
+/// The number of steps of a stage that is reported in sections.
 const STEPS: u64 = 1_000_000;
 
 impl Monitor {
-    /// A monitor whose listener hears of the progress: a function of how many of how many equal parts of a stage are
-    /// done, or a [`Listener`].
+    /// A monitor that passes progress to a listener: a function of the number of equal parts of a stage that are done and
+    /// of all parts, or a [`Listener`].
     pub fn new(listener: impl Listener) -> Self {
         let shared = Shared { cancelled: AtomicBool::new(false), listener: Box::new(listener) };
         Self { shared: Some(Arc::new(shared)), scale: Scale::Stage }
     }
 
-    /// A monitor that nobody listens to and nobody cancels. It costs nothing.
+    /// A monitor without listener that is never cancelled. It costs nothing.
     pub const fn silent() -> Self {
         Self { shared: None, scale: Scale::Stage }
     }
 
-    /// Ends the work with [`Cancelled`] the next time it asks. Without effect on a silent monitor.
+    /// Ends the work with [`Cancelled`] at its next check. Without effect on a silent monitor.
     pub fn cancel(&self) {
         if let Some(shared) = &self.shared {
             shared.cancelled.store(true, Ordering::Relaxed);
         }
     }
 
-    /// Whether the work goes on.
+    /// Checks whether the work was cancelled.
     ///
     /// # Errors
     /// It was cancelled.
@@ -129,7 +129,7 @@ impl Monitor {
         self.check()
     }
 
-    /// Reports that `done` of `total` equal parts are done. Of work in one part nothing is reported.
+    /// Reports that `done` of `total` equal parts are done. Work in one part reports nothing.
     ///
     /// # Errors
     /// It was cancelled.
@@ -138,21 +138,21 @@ impl Monitor {
         match self.scale {
             Scale::Stage if total > 1 => shared.listener.progress(done, total),
             Scale::Part { from, to } => {
-                let way = u128::from(to - from) * u128::from(done) / u128::from(total.max(1));
-                shared.listener.progress(from + way as u64, STEPS);
+                let steps = u128::from(to - from) * u128::from(done) / u128::from(total.max(1));
+                shared.listener.progress(from + steps as u64, STEPS);
             }
-            Scale::Stage | Scale::Unheard => {}
+            Scale::Stage | Scale::Unreported => {}
         }
         self.check()
     }
 
-    /// A monitor for a part of this one's work: from one place to another on a scale of so many equal parts.
+    /// A monitor for a section of this one's work: from part `from` to part `to` of `of` equal parts.
     #[must_use]
     pub fn part(&self, from: u64, to: u64, of: u64) -> Self {
         let (low, high) = match self.scale {
             Scale::Stage => (0, STEPS),
             Scale::Part { from, to } => (from, to),
-            Scale::Unheard => return self.clone(),
+            Scale::Unreported => return self.clone(),
         };
         let at = |place: u64| {
             low + (u128::from(high - low) * u128::from(place.min(of)) / u128::from(of.max(1)))
@@ -161,13 +161,13 @@ impl Monitor {
         Self { shared: self.shared.clone(), scale: Scale::Part { from: at(from), to: at(to) } }
     }
 
-    /// A monitor for work whose progress is not reported, and which is cancelled with this one's.
+    /// A monitor for work whose progress is not reported, but which is cancelled with this one's.
     #[must_use]
     pub fn unheard(&self) -> Self {
-        Self { shared: self.shared.clone(), scale: Scale::Unheard }
+        Self { shared: self.shared.clone(), scale: Scale::Unreported }
     }
 
-    /// A count of the units of work that several threads do together.
+    /// A counter for units of work that several threads do together.
     pub fn units(&self, total: u64) -> Units<'_> {
         Units { monitor: self, total, done: Mutex::default() }
     }
@@ -185,12 +185,12 @@ impl fmt::Debug for Monitor {
 pub struct Units<'a> {
     monitor: &'a Monitor,
     total: u64,
-    /// Units that are done, and thousandths that were reported.
+    /// Units that are done, and thousandths that have been reported.
     done: Mutex<[u64; 2]>,
 }
 
 impl Units<'_> {
-    /// Counts units that are done. Progress is reported a thousand times at most.
+    /// Counts units that are done. Progress is reported at most a thousand times.
     ///
     /// # Errors
     /// The work was cancelled.

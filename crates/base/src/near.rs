@@ -1,17 +1,17 @@
-//! Near misses: which of a few names a mistyped one was meant to be.
+//! The known name that a mistyped one was meant to be.
 
-/// The known name most like `given`, if a slip or two of the fingers explains the difference: a letter
-/// left out, put in, wrong, or exchanged with its neighbour, one for every three letters. Letter case is
-/// passed over; the first of equals is taken. One comparison for each name.
+/// The known name most similar to `given`, if typing errors explain the difference: letters that are missing, extra,
+/// wrong, or exchanged with their neighbour, at most one for every three letters. Letter case is
+/// ignored; the first of equally similar names is returned. One comparison for each name.
 pub fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let given = given.to_lowercase();
-    let slips = |name: &str| strsim::osa_distance(&given, &name.to_lowercase());
+    let errors = |name: &str| strsim::osa_distance(&given, &name.to_lowercase());
     let most = (given.chars().count() / 3).max(1);
     known
         .into_iter()
-        .map(|name| (slips(name), name))
-        .filter(|&(slips, _)| slips <= most)
-        .min_by_key(|&(slips, _)| slips)
+        .map(|name| (errors(name), name))
+        .filter(|&(errors, _)| errors <= most)
+        .min_by_key(|&(errors, _)| errors)
         .map(|(_, name)| name)
 }
 

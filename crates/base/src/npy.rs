@@ -15,21 +15,21 @@ use std::io::{self, ErrorKind, Read};
 
 /// The first bytes of every NPY file.
 pub const MAGIC: &[u8] = b"\x93NUMPY";
-/// `NumPy` itself refuses longer headers than this as unsafe.
+/// `NumPy` itself refuses longer headers as unsafe.
 const MAX_HEADER: u64 = 10_000;
 
-/// What an NPY file says of its array.
+/// The header of an NPY file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Header {
-    /// The element type as `NumPy` writes it, such as `<f4` or `|u1`; text without meaning for a
+    /// The element type as `NumPy` writes it, such as `<f4` or `|u1`; meaningless text for a
     /// structured type.
     pub descr: String,
-    /// The first axis is the fastest in the file.
+    /// Whether the first axis varies fastest in the file.
     pub fortran: bool,
     /// Lengths of the axes; empty for a scalar.
     pub shape: Vec<u64>,
-    /// Bytes of the header; the elements follow.
+    /// Length of the header in bytes; the elements follow.
     pub length: u64,
 }
 
@@ -43,7 +43,7 @@ pub enum NpyError {
     /// The file ends inside the header.
     #[error("ends inside its NPY header: it is truncated; save it again")]
     Truncated,
-    /// The first bytes are others.
+    /// The first bytes are not [`MAGIC`].
     #[error("is not an NPY file: it does not begin with \\x93NUMPY")]
     Magic,
     /// A version of the format that `NumPy` does not write.
@@ -58,7 +58,7 @@ pub enum NpyError {
 }
 
 impl Header {
-    /// Reads a header, and leaves the reader at the first element.
+    /// Reads a header; the reader is then at the first element.
     ///
     /// # Errors
     /// [`NpyError`].
@@ -108,7 +108,7 @@ fn dictionary(text: &str) -> Option<(String, bool, Vec<u64>)> {
     let descr = after("descr")?;
     let descr = match descr.strip_prefix('\'') {
         Some(quoted) => quoted.split_once('\'')?.0,
-        // A structured type is a list: shown as it is, and refused by whoever wants numbers.
+        // A structured type is a list: kept as it is, for readers to refuse.
         None => descr.split_once(']').map_or(descr, |(list, _)| list),
     };
     let order = after("fortran_order")?;

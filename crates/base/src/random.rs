@@ -1,11 +1,11 @@
-//! Numbers for tests that look random and are the same everywhere.
+//! Pseudorandom numbers for tests, the same on every machine.
 
 /// `SplitMix64`: Steele, Lea and Flood 2014, doi:10.1145/2714064.2660195.
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
 impl Random {
-    /// Any seed will do.
+    /// Starts from any seed.
     pub const fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -39,7 +39,7 @@ impl Random {
         items[self.below(items.len())]
     }
 
-    /// Puts them in another order.
+    /// Shuffles them.
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for i in (1..items.len()).rev() {
             items.swap(i, self.below(i + 1));

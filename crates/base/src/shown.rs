@@ -1,14 +1,14 @@
-//! Names of files and numbers as messages show them.
+//! Names of files, and numbers, in messages.
 
 use std::path::Path;
 
-/// A path for people to read: control characters, which could move a terminal's cursor or change its
+/// A path for messages: control characters, which could move a terminal's cursor or change its
 /// colours, are escaped.
 pub fn shown(path: &Path) -> String {
     escaped(&path.to_string_lossy(), |_| false)
 }
 
-/// A number for people to read: as it is, or with an exponent where it would begin or end in many
+/// A number for messages: as it is, or with an exponent where it would begin or end in many
 /// zeros.
 pub fn number(value: f64) -> String {
     let size = value.abs();
@@ -24,7 +24,7 @@ pub fn six_digits(number: f64) -> f64 {
     format!("{number:.5e}").parse().unwrap_or(number)
 }
 
-/// A text with its control characters escaped, but for those `kept`.
+/// A text with its control characters escaped, except those for which `kept` holds.
 pub fn escaped(text: &str, kept: impl Fn(char) -> bool) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
@@ -43,9 +43,9 @@ mod tests {
 
     #[test]
     fn numbers_are_not_made_of_zeros() {
-        let told =
+        let texts =
             [0.0, -2.5, 0.000_000_000_000_217_145_52, 1e-4, 3e300, f64::INFINITY].map(number);
-        assert_eq!(told, ["0", "-2.5", "2.1714552e-13", "0.0001", "3e300", "inf"]);
+        assert_eq!(texts, ["0", "-2.5", "2.1714552e-13", "0.0001", "3e300", "inf"]);
     }
 
     #[test]

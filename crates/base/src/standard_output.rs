@@ -1,14 +1,14 @@
 //! Whether the process was given a standard output.
 //!
-//! A file opened first could become standard output where there is none. So Rust puts the null device there before
-//! `main`, and what a command prints is lost without an error. Commands ask here before they print.
+//! Without a standard output, the first file opened would become it. So Rust opens the null device in its place before
+//! `main`, and the output of a command is lost without an error. Commands call [`check`] before they print.
 
 use std::io;
 
-/// An error if there was no standard output when the process began. Only Linux says so.
+/// Checks that there was a standard output when the process began, which can be known only on Linux.
 ///
 /// # Errors
-/// That it is closed.
+/// It is closed.
 pub fn check() -> io::Result<()> {
     if began_without() { Err(io::Error::other("standard output is closed")) } else { Ok(()) }
 }
@@ -30,12 +30,12 @@ mod linux {
     pub(super) static CLOSED: AtomicBool = AtomicBool::new(false);
 
     #[used]
-    #[expect(unsafe_code, reason = "nothing else runs before the null device is put there")]
+    #[expect(unsafe_code, reason = "nothing else runs before the null device is opened")]
     // SAFETY: the linker's list of functions to call before `main`; this one needs nothing of Rust's runtime.
     #[unsafe(link_section = ".init_array")]
-    static LOOK: extern "C" fn() = look;
+    static AT_START: extern "C" fn() = at_start;
 
-    extern "C" fn look() {
+    extern "C" fn at_start() {
         let flags = rustix::io::fcntl_getfd(rustix::stdio::stdout());
         CLOSED.store(flags.is_err(), Ordering::Relaxed);
     }

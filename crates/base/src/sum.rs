@@ -1,14 +1,13 @@
-/// A sum of doubles that is rounded once, when it is asked for: whatever the order of the terms, and however they
-/// were grouped, the result is the same double.
+/// A sum of doubles that is rounded once, when it is read: the result is the same double for any order and
+/// grouping of the terms.
 ///
-/// The sum so far is kept as doubles that do not overlap, the smallest first, two or three of them as a
-/// rule (Shewchuk, "Adaptive Precision Floating-Point Arithmetic", 1997,
+/// The sum is kept as doubles that do not overlap, the smallest first, usually two or three of them (Shewchuk, "Adaptive Precision Floating-Point Arithmetic", 1997,
 /// doi:10.1007/PL00009321, section 2.4).
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sum {
     parts: Vec<f64>,
-    /// What no double can hold: infinite and undefined terms.
+    /// The sum of infinite and undefined terms.
     #[cfg_attr(feature = "serde", serde(skip))]
     beyond: f64,
 }
@@ -44,13 +43,13 @@ impl Sum {
         }
     }
 
-    /// Adds all that another sum has.
+    /// Adds another sum.
     pub fn join(&mut self, other: &Self) {
         other.parts.iter().for_each(|&part| self.add(part));
         self.beyond += other.beyond;
     }
 
-    /// The double nearest to the sum, of two the even one.
+    /// The double nearest to the sum, of two equally near ones the even one.
     pub fn value(&self) -> f64 {
         if self.beyond != 0.0 {
             return self.beyond;
@@ -66,7 +65,7 @@ impl Sum {
                 break;
             }
         }
-        // What is left off lies half-way between two doubles, and what follows it decides.
+        // If the remainder is half of the last digit, the parts after it decide.
         if left > 0 && low != 0.0 && (low < 0.0) == (rest[left - 1] < 0.0) {
             let doubled = 2.0 * low;
             let next = high + doubled;
@@ -120,7 +119,7 @@ mod tests {
     fn sums_are_rounded_once() {
         let half = 2f64.powi(-53);
         let of = |terms: &[f64]| terms.iter().copied().collect::<Sum>().value();
-        // Half-way: to the even one, unless something is left beyond.
+        // Half-way: to the even one, unless a smaller term decides.
         assert_eq!(of(&[1.0, half]), 1.0);
         assert_eq!(of(&[1.0, half, 1e-300]), 1.0 + 2.0 * half);
         assert_eq!(of(&[1.0, half, -1e-300]), 1.0);

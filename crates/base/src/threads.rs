@@ -1,9 +1,9 @@
-//! How many threads work, and that they can be had.
+//! The number of threads, and whether the system starts them.
 
 use std::sync::mpsc;
 use std::thread;
 
-/// More threads than this for a processor only wait for each other.
+/// The most threads for each processor; more would only wait for each other.
 pub const MOST_EACH: usize = 4;
 
 /// The most threads that are started.
@@ -11,7 +11,7 @@ pub fn most() -> usize {
     MOST_EACH * processors()
 }
 
-/// The processors of this process.
+/// The number of processors available to this process.
 pub fn processors() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
@@ -20,15 +20,15 @@ pub fn processors() -> usize {
 /// processor; no more than [`most`].
 pub fn wanted(asked: Option<usize>) -> usize {
     let stated = || std::env::var("RAYON_NUM_THREADS").ok()?.parse().ok();
-    // As rayon has it, 0 is as good as nothing.
+    // As in rayon, 0 means no preference.
     let stated = asked.or_else(stated).filter(|&count| count > 0);
     stated.unwrap_or_else(processors).min(most())
 }
 
-/// How many of so many threads, with stacks of so many bytes, the system starts at once: where processes or
-/// memory are limited, fewer. They end before this returns.
+/// How many of `wanted` threads, with stacks of `stack` bytes, the system starts at once: fewer where processes or
+/// memory are limited. They end before this returns.
 ///
-/// rayon gives up, or waits for ever, where one of its threads does not come to life.
+/// rayon fails, or waits forever, if one of its threads does not start.
 pub fn available(wanted: usize, stack: usize) -> usize {
     let (ready, started) = mpsc::channel();
     thread::scope(|scope| {
@@ -37,7 +37,7 @@ pub fn available(wanted: usize, stack: usize) -> usize {
             let (gate, wait) = mpsc::channel::<()>();
             let ready = ready.clone();
             let work = move || {
-                // Somebody waits until the last has begun, and then drops the gate.
+                // The caller waits until the last thread has started, and then drops the gates.
                 let _ = ready.send(());
                 let _ = wait.recv();
             };

@@ -10,7 +10,7 @@ impl UnionFind {
         Self { parent: (0..n as u32).collect() }
     }
 
-    /// Number of members of all sets.
+    /// The number of members of all sets.
     pub fn members(&self) -> usize {
         self.parent.len()
     }
@@ -25,7 +25,7 @@ impl UnionFind {
         member
     }
 
-    /// Makes one set of two; says whether they were two.
+    /// Unites two sets. Returns whether they were different.
     pub fn unite(&mut self, a: u32, b: u32) -> bool {
         let (a, b) = (self.find(a), self.find(b));
         self.parent[a.max(b) as usize] = a.min(b);

@@ -184,7 +184,10 @@ mod tests {
         let error = target.write(|_| Err(ErrorKind::StorageFull.into())).unwrap_err();
         let text = format!("{error}; {}", error.advice());
         assert!(text.contains("shape.ply") && !text.contains(".part"), "{text}");
-        assert!(text.contains("nothing was left behind, choose a disk with enough space"), "{text}");
+        assert!(
+            text.contains("nothing was left behind, choose a disk with enough space"),
+            "{text}"
+        );
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
     }
 

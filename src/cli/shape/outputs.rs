@@ -59,7 +59,7 @@ impl Outputs {
     /// What there is to say of the shape in the formats chosen.
     pub(super) fn remarks(&self, shape: &AlphaShape) -> Vec<String> {
         let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
-            let remark = exporter.remark(shape)?.told(option);
+            let remark = exporter.remark(shape)?.with_names(option);
             Some(format!("{}: {remark}", shown(target.path())))
         };
         self.whole.iter().filter_map(remark).collect()

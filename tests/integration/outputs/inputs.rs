@@ -2,7 +2,8 @@
 
 use super::*;
 
-const IS_INPUT: [&str; 3] = ["it is an input, which would be lost", "another destination", "--in-place"];
+const IS_INPUT: [&str; 3] =
+    ["it is an input, which would be lost", "another destination", "--in-place"];
 
 fn points(folder: &Path, name: &str) -> std::path::PathBuf {
     let path = folder.join(name);

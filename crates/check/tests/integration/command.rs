@@ -68,7 +68,7 @@ fn what_cannot_be_judged_comes_with_advice() {
         ),
         (
             format!(r#"{filtration},"periodic":[4,4,4]"#),
-            "next: judge the complexes at some α instead",
+            "next: judge its complexes at single values of α instead",
         ),
         (format!(r#"{POINTS},"cells":[[0,1,2,9]]"#), ""),
     ] {
