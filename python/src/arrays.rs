@@ -69,7 +69,7 @@ fn room<T>(count: usize) -> PyResult<Vec<T>> {
     let refused = |_| {
         let bytes = count as u128 * size_of::<T>() as u128;
         PyMemoryError::new_err(format!(
-            "a copy of an array needs {bytes} bytes of memory, which cannot be had"
+            "a copy of an array needs {bytes} bytes of memory, which are not available"
         ))
     };
     items.try_reserve_exact(count).map_err(refused)?;

@@ -68,7 +68,7 @@ impl CompleteFile {
         let Some(temporary) = self.temporary.take() else { return Ok(()) };
         match self.method {
             Method::Renamed => {
-                temporary.persist(&self.destination.path).map_err(|refused| refused.error)?
+                temporary.persist(&self.destination.path).map_err(|refused| refused.error)?;
             }
             Method::Copied => overwrite(
                 &mut OpenOptions::new().write(true).open(&self.destination.path)?,

@@ -3,11 +3,11 @@ use walpha_base::memory::NoMemory;
 /// Pixels along each side of a picture, at most.
 pub(super) const MOST_PIXELS: u32 = 1 << 14;
 
-/// What can be wrong with the description of a picture.
+/// Why a picture, figure or page cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// A camera that sees nothing definite.
+    /// A camera without a definite view.
     #[error("the camera cannot see: {0}")]
     Camera(&'static str),
     /// Bounds that no camera can be fitted to.
@@ -31,7 +31,7 @@ pub enum RenderError {
         /// Pixels asked for along the columns.
         height: u32,
     },
-    /// A triangle that names a vertex the mesh does not have.
+    /// A triangle names a vertex that the mesh does not have.
     #[error("mesh {mesh}: triangle {triangle} names vertex {vertex}, but there are {vertices}")]
     Index {
         /// Which mesh of the scene.
@@ -40,19 +40,19 @@ pub enum RenderError {
         triangle: usize,
         /// The vertex named.
         vertex: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
-    /// Normals or colours that are not one for each vertex.
+    /// The number of normals or colours is not that of the vertices.
     #[error("mesh {mesh} has {got} {what} for {vertices} vertices: give one each, or none")]
     Attribute {
         /// Which mesh of the scene.
         mesh: usize,
         /// `normals` or `colours`.
         what: &'static str,
-        /// How many were given.
+        /// Number of entries given.
         got: usize,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
     /// A coordinate that is NaN, or a radius or an opacity out of its range.
@@ -69,7 +69,7 @@ pub enum RenderError {
     /// A field that has no isosurface.
     #[error("no isosurface: {0}")]
     Isosurface(&'static str),
-    /// A value of F for each vertex was expected.
+    /// The number of values is not that of the points.
     #[error("{got} values were given to colour {points} points: give one each")]
     Values {
         /// Values given.
@@ -77,7 +77,7 @@ pub enum RenderError {
         /// Points to colour.
         points: usize,
     },
-    /// A shape over other points than those given.
+    /// A shape has a vertex that is not among the given points.
     #[error("the shape has vertex {vertex}, but {points} points were given: give all input points")]
     Point {
         /// The vertex, an input index.
@@ -85,7 +85,7 @@ pub enum RenderError {
         /// Points given.
         points: usize,
     },
-    /// Memory for the pixels cannot be had.
+    /// There is not enough memory for the pixels.
     #[error(transparent)]
     Memory(#[from] NoMemory),
     /// PNG encoding failed.

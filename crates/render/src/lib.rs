@@ -46,7 +46,7 @@ pub use scene::{Background, Ball, Camera, Colours, Mesh, Projection, Scene, Shad
 pub use shape::{Colouring, ShapeStyle, class_colours, plain_colours};
 pub use view::{Detail, Differences, Original, Page, Subject};
 
-// What walpha puts pictures into its report with: no promise to others.
+// For the report of walpha: not covered by semantic versioning.
 #[doc(hidden)]
 pub use base64::base64;
 

@@ -1,7 +1,7 @@
 use walpha_base::vector::{V3, add, along, cross, dot, length, scale, sub, unit};
 
 /// Normals of the vertices of a triangle mesh: the unit normals of the triangles around each,
-/// weighed by their angle there, so that it does not matter how a flat part is cut into triangles
+/// weighted by their angle there, so that it does not matter how a flat part is cut into triangles
 /// (Thürmer and Wüthrich 1998, doi:10.1080/10867651.1998.10487487). Of length 1, or 0 where
 /// nothing gives a direction.
 pub(crate) fn vertex_normals(positions: &[V3], triangles: &[[u32; 3]]) -> Vec<V3> {
@@ -38,7 +38,7 @@ pub(crate) fn smoothed(mut normals: Vec<V3>, triangles: &[[u32; 3]], rounds: usi
     normals
 }
 
-/// The angle between two vectors in radians, to 10⁻⁴, of + − × ÷ √ alone.
+/// The angle between two vectors in radians, to 10⁻⁴, by + − × ÷ √ only.
 fn angle(a: V3, b: V3) -> f64 {
     let lengths = length(a) * length(b);
     if lengths <= 0.0 {

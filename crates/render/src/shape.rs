@@ -1,11 +1,11 @@
 use walpha_shape::{Class, Complex, Simplices};
 
-use super::error::RenderError;
-use super::normals::{smoothed, vertex_normals};
-use super::pixels::{ColourMap, PALETTE, Rgb};
-use super::scene::{Ball, Colours, Mesh, Scene, Shading, Tube};
+use crate::error::RenderError;
+use crate::normals::{smoothed, vertex_normals};
+use crate::pixels::{ColourMap, PALETTE, Rgb};
+use crate::scene::{Ball, Colours, Mesh, Scene, Shading, Tube};
 
-/// What the colours of a drawn shape mean.
+/// The meaning of the colours of a drawn shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Colouring<'a> {
     /// Nothing: the boundary in the colour of bone, singular simplices in a tint of their own.
@@ -20,7 +20,7 @@ pub enum Colouring<'a> {
 /// How a shape becomes a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeStyle<'a> {
-    /// What the colours mean.
+    /// The meaning of the colours.
     pub colouring: Colouring<'a>,
     /// Smooth shading suits shapes with steps at the scale of the point spacing; flat shading
     /// shows each facet.
@@ -72,10 +72,10 @@ impl Scene {
     /// sides, singular edges as tubes and singular vertices as balls. Interior and exterior
     /// simplices are not drawn.
     ///
-    /// `positions` are the input points by index, (x, y, z), in the units the picture shall have.
+    /// `positions` are the input points by index, (x, y, z), in the units of the picture.
     ///
     /// # Errors
-    /// [`RenderError::Values`] when the values to colour by are not one for each point,
+    /// [`RenderError::Values`] when the number of values to colour by is not that of the points,
     /// [`RenderError::Point`] when the complex has a vertex that is not a point.
     pub fn of_shape(
         positions: &[[f64; 3]],

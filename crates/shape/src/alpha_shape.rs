@@ -17,7 +17,7 @@ pub struct AlphaShape {
     /// Weights (α + ω)², with [`Balls::Radius`](super::Balls::Radius).
     pub(super) squared: Option<Vec<f64>>,
     pub(super) complex: Complex,
-    /// The points that the last points are copies of, where a torus is laid out in space.
+    /// The points that the last points are copies of, if the shape is that of a torus unwrapped into space.
     pub(super) copies: Vec<u32>,
     pub(super) duplicates: Vec<[u32; 2]>,
     pub(super) hidden: Option<Vec<u32>>,
@@ -27,7 +27,7 @@ pub struct AlphaShape {
     pub(super) solid: Solid,
 }
 
-/// The parts of a shape that has been computed elsewhere, in canonical order.
+/// The data of a shape that has been computed elsewhere, in canonical order.
 #[doc(hidden)]
 pub struct Assembled {
     pub points: WeightedPoints,
@@ -41,7 +41,7 @@ pub struct Assembled {
 }
 
 impl AlphaShape {
-    /// A shape from its parts. No two points may have equal positions.
+    /// A shape from its data. No two points may have equal positions.
     ///
     /// # Errors
     /// A negative radius.
@@ -107,7 +107,7 @@ impl AlphaShape {
         together(self.options.periodic, row.map(|v| self.points.positions[v as usize]))
     }
 
-    /// In a shape that is [laid out](Self::unwrapped): the points that the last points are copies of, in their
+    /// In an [unwrapped](Self::unwrapped) shape: the points that the last points are copies of, in their
     /// order.
     pub fn copies(&self) -> &[u32] {
         &self.copies

@@ -27,7 +27,7 @@ pub(super) fn sides(whole: &Complex, of: impl Fn(Class) -> bool + Sync) -> Vec<(
 }
 
 /// The complement of a shape within the *whole* triangulation of a torus: exterior cells joined through
-/// exterior facets. Each cell is where its first vertex is in the box. O(n log n).
+/// exterior facets. Each cell stands for the copy whose first vertex is in the box. O(n log n).
 pub(super) fn complement_on(torus: Torus, whole: &Complex, positions: &[[f64; 3]]) -> WindingSets {
     let cells = whole.cells.rows();
     let mut sets = WindingSets::new(cells.len());
@@ -35,12 +35,12 @@ pub(super) fn complement_on(torus: Torus, whole: &Complex, positions: &[[f64; 3]
     let mut pairs = sides.chunk_by(|a, b| a.0 == b.0);
     // Exterior facets are sorted rows in ascending order, so both lists run side by side.
     for facet in whole.facets.of(Class::Exterior) {
-        let pair = pairs.find(|pair| pair[0].0 == *facet);
-        let Some(&[(_, a), (_, b)]) = pair else {
+        let sides = pairs.find(|sides| sides[0].0 == *facet);
+        let Some(&[(_, a), (_, b)]) = sides else {
             unreachable!("an exterior facet of a torus has exterior cells on both sides")
         };
-        let beside = [cells[a as usize], cells[b as usize]];
-        sets.unite(a, b, between(torus, beside, facet[0], positions));
+        let pair = [cells[a as usize], cells[b as usize]];
+        sets.unite(a, b, between(torus, pair, facet[0], positions));
     }
     sets
 }

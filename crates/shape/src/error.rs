@@ -44,7 +44,7 @@ pub enum ShapeError {
         by: Whole,
     },
     /// Two points at one position, in a set of points that is distributed over blocks.
-    #[error("two points are at one place, {at:?}, which is not sorted out in separate blocks")]
+    #[error("two points are at one position, {at:?}, which separate blocks cannot resolve")]
     Coincident {
         /// The position.
         at: [f64; 3],
@@ -65,7 +65,7 @@ pub enum ShapeError {
     /// An edge is so long that its ends do not determine which of their copies it joins.
     #[error(
         "the edge between points {} and {} spans {span} along {axis}, half of the periodic box ({side}) or \
-         more: its ends would not say which of their copies it joins",
+         more: its ends would not determine which of their copies it joins",
         edge[0], edge[1]
     )]
     Wraps {

@@ -41,7 +41,7 @@ pub fn alpha_shape(
     alpha_shape_monitored(points, options, &Monitor::silent())
 }
 
-/// The same, which says how far it is and can be cancelled.
+/// The same, which reports its progress and can be cancelled.
 ///
 /// # Errors
 /// Those of [`alpha_shape`], and [`ShapeError::Cancelled`].

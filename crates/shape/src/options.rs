@@ -5,7 +5,7 @@ use walpha_base::setters;
 
 use super::{Alpha, ShapeError, Torus, Whole};
 
-/// Which program computes the shape; the result is the same.
+/// The implementation that computes the shape; the result is the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
@@ -18,7 +18,7 @@ pub enum Engine {
     /// CGAL's `Regular_triangulation_3` and `Fixed_alpha_shape_3`, as in the paper, on one thread, in the crate
     /// `walpha`.
     Cgal,
-    /// Our own triangulation and classes: no C++, on all cores, in bounded memory, and the fastest.
+    /// Triangulation and classes in Rust: without C++, on all cores, in bounded memory, and the fastest.
     Native,
 }
 
@@ -36,7 +36,7 @@ pub enum Balls {
 }
 
 impl Balls {
-    /// The α that the power weights are judged by.
+    /// The α that belongs to the power weights.
     pub fn power_alpha(self, alpha: Alpha) -> Alpha {
         match self {
             Self::Power => alpha,
@@ -92,7 +92,7 @@ pub struct ShapeOptions {
     pub alpha: Alpha,
     /// What α + ω means.
     pub balls: Balls,
-    /// Which program computes it.
+    /// The implementation that computes the shape.
     pub engine: Engine,
     /// Whether the simplices outside the shape are listed, too: the whole triangulation, which takes one
     /// block.
@@ -169,7 +169,7 @@ impl ShapeOptions {
         }
     }
 
-    /// The α that the power weights are judged by: 0 for [`Balls::Radius`].
+    /// The α that belongs to the power weights: 0 for [`Balls::Radius`].
     pub fn power_alpha(&self) -> Alpha {
         self.balls.power_alpha(self.alpha)
     }

@@ -5,7 +5,7 @@ use super::{Class, Complex};
 /// The visible part of a shape: regular facets and all singular simplices, with a compact numbering of their
 /// vertices.
 ///
-/// If the points 4, 7, 8 and 9 are those on the boundary, `vertices` is `[4, 7, 8, 9]` and a facet
+/// If the boundary has the points 4, 7, 8 and 9, `vertices` is `[4, 7, 8, 9]` and a facet
 /// over the points 4, 9 and 8 is the row `[0, 3, 2]`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Surface {

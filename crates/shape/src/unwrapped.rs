@@ -1,4 +1,4 @@
-//! A shape of a torus laid out in space.
+//! Shapes of a torus unwrapped into space.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ impl<'a> Layout<'a> {
         Self { torus, positions, numbers: BTreeMap::new(), copied: Vec::new() }
     }
 
-    /// Lays rows out: each simplex in the copy whose lowest coordinates are in the box, so that simplices extend beyond
+    /// Places each simplex in the copy whose lowest coordinates are in the box, so that simplices extend beyond
     /// the upper faces of the box only.
     pub(super) fn lay_out<const N: usize>(&mut self, simplices: &Simplices<N>) -> Simplices<N> {
         simplices.iter().map(|(&row, class)| (self.row(row), class)).collect()
@@ -50,9 +50,9 @@ impl<'a> Layout<'a> {
 }
 
 impl AlphaShape {
-    /// A shape of a torus laid out in space, for programs that know no torus: a row for each simplex, as in
+    /// A shape of a torus unwrapped into space, for programs without periodic boxes: a row for each simplex, as in
     /// [`AlphaShape::complex`], but where it crosses an upper side of the box with copies of points in place
-    /// of these. Copies come after all points. Along the sides the layout is cut open, so it is not the α-complex
+    /// of these. Copies come after all points. Along the sides the result is cut open, so it is not the α-complex
     /// of its points; classes, sizes, components and sheets are those of the torus. A shape in space is
     /// returned unchanged. O(n log n).
     #[must_use]

@@ -20,7 +20,7 @@ pub struct Void {
     /// The largest coordinates of its box, (x, y, z).
     pub high: [f64; 3],
     /// The α that fills it, a squared length: the first double that is not below the squared radius
-    /// of the largest orthogonal sphere of its cells, exactly. It may fall into several voids before. With
+    /// of the largest orthogonal sphere of its cells, exactly. Before, it may split into several voids. With
     /// [`Balls::Radius`](super::Balls::Radius), where weights follow α, it is the parameter of the
     /// power weights instead, as [`AlphaShape::power_alpha`].
     pub filling_alpha: Alpha,
@@ -104,7 +104,7 @@ impl Hollow {
 impl AlphaShape {
     /// The voids of the shape, as many as its second Betti number: largest first, ties by box. Of a torus those
     /// components of the complement that do not go round it, so that they are bounded in space, too; each lies
-    /// where one of its copies does. What goes round is not a void, and the second Betti number is another.
+    /// where one of its copies does. Components that go round it are no voids, so there the second Betti number differs.
     /// `None` unless the shape was made with its exterior simplices
     /// ([`ShapeOptions::exterior`](super::ShapeOptions::exterior)): voids are made of them.
     ///
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn a_filled_shape_has_no_void_and_a_partial_one_does_not_know() {
+    fn a_filled_shape_has_no_void_and_a_partial_one_none_known() {
         assert_eq!(hollow(100.0, true).voids(), Some(Vec::new()));
         assert_eq!(hollow(0.75, false).voids(), None);
     }

@@ -37,7 +37,7 @@ impl Evidence {
         Self {
             samples: study.subject.volume.dims().samples(),
             read: surface.samples_read,
-            beside: surface.samples_beside,
+            beside: surface.samples_at_surface,
             vertices: surface.positions.len(),
             triangles: surface.triangles.len(),
             area: surface.area(),

@@ -19,7 +19,7 @@ const SIZES: [(&str, Rgb); 4] = [
 /// Dashed lines mark the α suggested.
 ///
 /// # Errors
-/// [`RenderError::Size`], never met.
+/// [`RenderError::Size`], which does not occur.
 pub fn ladder_figure(
     title: &str,
     ladder: &Ladder,
@@ -78,18 +78,18 @@ impl<'a> Chart<'a> {
         let weight = curve.largest_weight();
         let shown = ladder.levels.iter().map(|level| level.alpha.squared()).chain(marks);
         let ends = shown
-            .map(|alpha| place(alpha, weight))
+            .map(|alpha| abscissa(alpha, weight))
             .filter(|x| x.is_finite())
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x), h.max(x)]);
-        // A point alone comes with a ball of no size, which has no place on a logarithmic axis.
+        // An isolated point enters with a ball of radius 0, which is not on a logarithmic axis.
         let ends = if ends[0] <= ends[1] { ends } else { [0.0; 2] };
-        let room = 0.03 * (ends[1] - ends[0]) + 0.02;
-        Self { ladder, curve, marks, ends: [ends[0] - room, ends[1] + room] }
+        let margin = 0.03 * (ends[1] - ends[0]) + 0.02;
+        Self { ladder, curve, marks, ends: [ends[0] - margin, ends[1] + margin] }
     }
 
     fn x(&self, alpha: f64) -> f64 {
-        // What has no place of its own goes to an end.
-        place(alpha, self.curve.largest_weight()).clamp(self.ends[0], self.ends[1])
+        // Values beyond the axis are drawn at its ends.
+        abscissa(alpha, self.curve.largest_weight()).clamp(self.ends[0], self.ends[1])
     }
 
     fn drawing(&self, top: f64, label: &str) -> Drawing {
@@ -143,7 +143,7 @@ impl<'a> Chart<'a> {
     }
 }
 
-fn place(alpha: f64, largest_weight: f64) -> f64 {
+fn abscissa(alpha: f64, largest_weight: f64) -> f64 {
     (alpha + largest_weight).log10()
 }
 
@@ -151,8 +151,8 @@ fn height(count: u64) -> f64 {
     (1.0 + count as f64).log10()
 }
 
-/// A step function over its points, thinned to what a figure can show: of each strip of the axis the
-/// last point stays.
+/// A step function over its points, thinned to what a figure can show: the last point of each strip of
+/// the axis is kept.
 fn stairs(points: impl Iterator<Item = [f64; 2]>, ends: [f64; 2]) -> Vec<[f64; 2]> {
     const STRIPS: f64 = 1200.0;
     let strip = |x: f64| ((x - ends[0]) / (ends[1] - ends[0]) * STRIPS) as i64;

@@ -1,9 +1,9 @@
 use crate::pixels::Rgb;
 
-/// A plane drawing: points, lines, discs and words at places of the plane, y up. It knows no
+/// A plane drawing of points, lines, discs and text, y up. It does not depend on
 /// pixels; a [`Figure`](super::Figure) gives it a panel.
 ///
-/// What is drawn first lies below. Thicknesses and sizes of dots and letters are shares of the
+/// Later shapes cover earlier ones. Thicknesses and sizes of dots and letters are shares of the
 /// panel's height in thousandths, so they look alike in panels of any scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
@@ -15,15 +15,15 @@ pub struct Drawing {
 /// How a line or an area is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pen {
-    /// The colour of the line; none for an area without outline.
+    /// The colour of the line; `None` for an area without outline.
     pub stroke: Option<Rgb>,
     /// Thickness of the line, in thousandths of the panel's height.
     pub width: f64,
-    /// Whether the line is broken.
+    /// Whether the line is dashed.
     pub dashed: bool,
-    /// The colour of the area, or of letters; none for a line alone.
+    /// The colour of the area, or of text; `None` for a line.
     pub fill: Option<Rgb>,
-    /// 0 to 1, of the area.
+    /// The opacity of the area, 0 to 1.
     pub fill_opacity: f64,
 }
 
@@ -39,7 +39,7 @@ impl Pen {
         Self { stroke: None, width: 0.0, dashed: false, fill, fill_opacity: opacity }
     }
 
-    /// The same pen, with a broken line.
+    /// The same pen, with a dashed line.
     #[must_use]
     pub fn dashed(self) -> Self {
         Self { dashed: true, ..self }
@@ -55,7 +55,7 @@ pub enum Step {
     Arc {
         /// Where the arc ends.
         to: [f64; 2],
-        /// Of the circle.
+        /// The radius of the circle.
         radius: f64,
         /// Whether the way there turns counter-clockwise.
         counter_clockwise: bool,
@@ -78,7 +78,7 @@ impl Drawing {
         Self { bounds, axes: None, shapes: Vec::new() }
     }
 
-    /// A chart: x and y are stretched to fill the panel, inside a frame with ticks and these words
+    /// A chart: x and y are stretched to fill the panel, inside a frame with ticks and these labels
     /// along the axes.
     pub fn chart(bounds: [[f64; 2]; 2], x_label: &str, y_label: &str) -> Self {
         Self { bounds, axes: Some([x_label.into(), y_label.into()]), shapes: Vec::new() }
@@ -124,7 +124,7 @@ impl Drawing {
         self.shapes.push((Shape::Dot { at, size }, Pen::area(colour, 1.0)));
     }
 
-    /// Words centred on a point, their size in thousandths of the panel's height.
+    /// Text centred on a point, their size in thousandths of the panel's height.
     pub fn text(&mut self, at: [f64; 2], size: f64, text: &str, colour: Rgb) {
         self.shapes.push((Shape::Text { at, size, text: text.into() }, Pen::area(colour, 1.0)));
     }

@@ -1,4 +1,4 @@
-//! Figures of panels, as a paper has them.
+//! Figures of panels, as in a paper.
 
 mod drawing;
 mod ink;
@@ -10,19 +10,19 @@ mod words;
 
 use std::fmt::Write;
 
-use super::base64::base64;
-use super::error::RenderError;
-use super::pixels::{Picture, Rgb, Size};
+use crate::base64::base64;
+use crate::error::RenderError;
+use crate::pixels::{Picture, Rgb, Size};
 pub use drawing::{Drawing, Pen, Step};
 use page::{INK, Page, SOFT_INK};
 pub use panel::{ColourBar, Content, Panel};
 use svg::{num, rasterise};
 use words::{LEADING, wrap, write_lines};
 
-/// A figure as a paper has it: panels in rows, each with its letter, title and caption, under a
-/// common title, with what the colours mean below. One description gives the SVG and the PNG.
+/// A figure as in a paper: panels in rows, each with its letter, title and caption, under a
+/// common title, with the meaning of the colours below. One description gives the SVG and the PNG.
 ///
-/// Words in a PNG are set in Ubuntu Light, which has Greek and √ ² ₁ × − ≤ ≥ ∞; a line with a sign
+/// Text in a PNG is set in Ubuntu Light, which has Greek and √ ² ₁ × − ≤ ≥ ∞; a line with a character
 /// that it lacks (arrows, ∈, ⊆, ‖, ₊) is set in Hack as a whole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
@@ -46,7 +46,7 @@ impl Figure {
     /// PNG files are at least this wide; a narrower figure is enlarged.
     pub const MIN_WIDTH: u32 = 1600;
 
-    /// The figure as a self-contained SVG file: pictures inside as PNG, words as text.
+    /// The figure as a self-contained SVG file: pictures inside as PNG, text as text.
     ///
     /// # Errors
     /// [`RenderError::Png`] when a picture cannot be encoded.
@@ -57,7 +57,7 @@ impl Figure {
     /// The figure as a PNG file, set in fonts that come with the library: the same everywhere.
     ///
     /// # Errors
-    /// [`RenderError::Size`] when the panels make more pixels than a picture may have.
+    /// [`RenderError::Size`] when the figure has more pixels than a picture may have.
     pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
         self.to_picture()?.to_png()
     }

@@ -17,13 +17,13 @@ pub(super) struct Page {
     pub gap: f64,
     /// The size of letters.
     pub letters: f64,
-    /// Where free space begins.
+    /// The top of the free space.
     pub y: f64,
 }
 
 impl Page {
     pub(super) fn new(panels: f64, columns: usize) -> Self {
-        // Readable still at half size: 1600 pixels give letters of 27.
+        // Still readable at half size: 1600 pixels give letters of 27.
         let letters = panels / 58.0;
         let (margin, gap) = (letters, letters * 1.2);
         let width = panels + 2.0 * margin + (columns - 1) as f64 * gap;
@@ -56,7 +56,7 @@ impl Page {
             num(size),
             escape(&bar.label)
         );
-        // Each strip reaches under the next, so that no seam shows between them.
+        // Each strip extends under the next, so that no seam is visible.
         const STRIPS: usize = 128;
         let strip = width / STRIPS as f64;
         for k in 0..STRIPS {

@@ -1,4 +1,4 @@
-//! What SVG text is made of, and its way to pixels.
+//! Building blocks of SVG text, and its rasterisation.
 
 use std::sync::{Arc, LazyLock};
 
@@ -7,7 +7,7 @@ use resvg::{tiny_skia, usvg};
 use crate::error::RenderError;
 use crate::pixels::{Picture, Size};
 
-/// The families a viewer may set the text in: first the one that PNG files use.
+/// The font families for viewers: first the one that PNG files use.
 pub(super) const FAMILIES: &str =
     "Ubuntu, 'Noto Sans', 'DejaVu Sans', 'Helvetica Neue', Arial, sans-serif";
 
@@ -21,7 +21,7 @@ pub(super) fn num(value: f64) -> String {
     if text == "-0" { "0".into() } else { text.into() }
 }
 
-/// Text with the characters that mean something in XML replaced.
+/// Text with the special characters of XML replaced.
 pub(super) fn escape(text: &str) -> String {
     text.chars()
         .map(|c| match c {
@@ -29,14 +29,14 @@ pub(super) fn escape(text: &str) -> String {
             '<' => "&lt;".into(),
             '>' => "&gt;".into(),
             '"' => "&quot;".into(),
-            // XML 1.0 has no place for control characters, not even escaped.
+            // XML 1.0 has no control characters, not even escaped.
             c if c.is_control() => " ".into(),
             c => c.to_string(),
         })
         .collect()
 }
 
-/// The fonts that come with the library, and no others: Ubuntu Light, and Hack for signs that it
+/// The fonts that come with the library, and no others: Ubuntu Light, and Hack for characters that it
 /// lacks.
 static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
     let mut fonts = usvg::fontdb::Database::new();
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn letters_signs_and_greek_leave_ink() {
+    fn letters_symbols_and_greek_leave_ink() {
         let ink = |text: &str| {
             let svg = format!(
                 r#"<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><text x="4" y="30" font-size="30" font-family="{FAMILIES}">{text}</text></svg>"#
@@ -89,7 +89,7 @@ mod tests {
             picture.pixels().iter().map(|p| u32::from(p[3])).sum::<u32>()
         };
         assert_eq!(ink(" "), 0);
-        // A sign that is in no font would be left out, or be the same box as any other.
+        // A character that is in no font would be left out, or be the same box as any other.
         let signs = ["a", "α", "ω", "√", "²", "³", "×", "−", "≥", "ρ", "→", "·", "…", "∞", "β"];
         for sign in signs {
             assert!(ink(sign) > 500, "{sign} is missing");

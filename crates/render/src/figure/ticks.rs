@@ -1,11 +1,11 @@
 /// Round numbers within a range, about `count` of them: multiples of 1, 2 or 5 times a power of
-/// ten, written as short as they can be. None for a range that is empty or no numbers.
+/// ten, written as short as they can be. None for a range that is empty or not finite.
 pub(super) fn ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
     let rough = (high - low) / count.max(1) as f64;
     if !(rough > 0.0 && rough.is_finite() && rough > low.abs().max(high.abs()) * 1e-12) {
         return Vec::new();
     }
-    // The power of ten, by its own text: parsing is exact where a logarithm may be off by one.
+    // The power of ten by formatting and parsing, which are exact where a logarithm may be off by one.
     let scientific = format!("{rough:e}");
     let exponent: i32 = scientific.split('e').nth(1).and_then(|e| e.parse().ok()).unwrap_or(0);
     let power: f64 = format!("1e{exponent}").parse().unwrap_or(1.0);

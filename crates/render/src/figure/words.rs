@@ -1,13 +1,13 @@
-//! Text in lines.
+//! Text broken into lines.
 
 use std::fmt::Write;
 
 use super::svg::{escape, num};
 
-/// From line to line, in letter sizes.
+/// The distance of lines, in letter sizes.
 pub(super) const LEADING: f64 = 1.35;
 
-/// Lines of text below a place; the colour as SVG has it.
+/// Writes lines of text below a point; the colour is in SVG notation.
 pub(super) fn write_lines(
     svg: &mut String,
     lines: &[String],
@@ -42,7 +42,7 @@ pub(super) fn wrap(text: &str, width: f64, size: f64) -> Vec<String> {
     lines
 }
 
-/// The width of a text, estimated a little generously, as a viewer may have another font.
+/// The estimated width of a text, a little too large, as a viewer may have another font.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
     let of = |c: char| match c {
         'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' | ' ' | '(' | ')' | '·' => 0.3,

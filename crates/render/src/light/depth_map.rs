@@ -3,22 +3,22 @@ use walpha_base::vector::{V3, add, along, dot, length, scale, sub};
 use super::directions::across;
 use crate::scene::Scene;
 
-/// A place that asks for its light: raised a little along `normal` so that its own
-/// surface does not hide it, nor what is within `radius` of it.
+/// A position whose light is measured: raised a little along `normal` so that neither its own
+/// surface hides it, nor anything within `radius` of it.
 pub(super) struct Receiver {
     pub place: V3,
     pub normal: V3,
     pub radius: f64,
 }
 
-/// The ball that holds the scene.
+/// A ball that contains the scene.
 pub(super) struct Space {
     centre: V3,
     radius: f64,
 }
 
 impl Space {
-    /// `None` when there is nothing that could hide anything.
+    /// `None` when the scene has no extent, so that nothing hides anything.
     pub(super) fn around(scene: &Scene) -> Option<Self> {
         let [low, high] = scene.bounds()?;
         let radius = length(sub(high, low)) / 2.0;

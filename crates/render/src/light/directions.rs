@@ -1,4 +1,4 @@
-//! Directions to look at a scene from, evenly spread without a sine at run time.
+//! Evenly spread view directions, without a sine at run time.
 
 use walpha_base::vector::{V3, along, cross, unit};
 
@@ -39,7 +39,7 @@ fn spiral(count: usize) -> impl Iterator<Item = (f64, [f64; 2])> {
     })
 }
 
-/// Two unit vectors that make a right-angled frame with this one.
+/// Two unit vectors that are orthogonal to this one and to each other.
 pub(super) fn across(axis: V3) -> (V3, V3) {
     let smallest = (0..3).fold(0, |s, k| if axis[k].abs() < axis[s].abs() { k } else { s });
     let mut other = [0.0; 3];

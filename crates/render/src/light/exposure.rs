@@ -1,7 +1,6 @@
-//! How much of the sky and of the main lamp each vertex, ball and tube sees: the scene is looked
-//! at from 64 directions of the sky and 16 around the lamp, each giving a small depth map, and
-//! whatever a map shows to be behind something is dark from there. This darkens hollows by what
-//! surrounds them, seen or not, and is free of noise.
+//! The share of the sky and of the main lamp that reaches each vertex, ball and tube: small depth maps are made from
+//! 64 directions of the sky and 16 around the lamp, and whatever is hidden in a map gets no light from its direction.
+//! This darkens hollows by what surrounds them, visible or not, and is free of noise.
 
 use rayon::prelude::*;
 use walpha_base::vector::{V3, along, dot, scale, unit};
@@ -12,7 +11,7 @@ use super::studio::Studio;
 use crate::normals::vertex_normals;
 use crate::scene::{Mesh, Scene, Shading};
 
-/// The light that reaches one place.
+/// The light that reaches one position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Light {
     /// The mean of the sky over all directions.

@@ -1,4 +1,4 @@
-//! The light in a scene: lamps, and how much of them and of the sky reaches each place.
+//! The light in a scene: lamps, and how much of them and of the sky reaches each position.
 
 mod depth_map;
 mod directions;

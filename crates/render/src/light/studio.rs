@@ -17,13 +17,13 @@ pub(crate) struct Studio {
     projection: Projection,
 }
 
-/// Shares of light. White in full light, key and sky, comes close to 1.
+/// Shares of light. White in full light, key and sky, is close to 1.
 const SKY: f64 = 0.42;
 const KEY: f64 = 0.66;
 const FILL: f64 = 0.09;
 const RIM: f64 = 0.10;
 const GLOSS: f64 = 0.035;
-/// What the key still gives in its own shadow, by reflection in the room.
+/// The share of the key that reaches its own shadow, by reflections.
 const SHADOW: f64 = 0.05;
 
 impl Studio {

@@ -6,7 +6,7 @@
 //! leaves. The neighbour walks the other way round and gets the same segments reversed: no cracks.
 //! In one cell every crossed edge is entered on one of its two faces and left on the other, so the
 //! segments close up to loops. Each loop is cut into triangles by diagonals through the inside of
-//! the cell; one that lay in a face could meet its like in the neighbour, and four triangles would
+//! the cell; a diagonal in a face could coincide with one of the neighbour, and four triangles would
 //! share an edge.
 
 use std::sync::LazyLock;
@@ -17,12 +17,12 @@ pub(super) const CORNERS: usize = 8;
 /// Edges 4·axis .. 4·axis + 4 run along `axis`.
 pub(super) const EDGES: usize = 12;
 
-/// A corner's place in the cell, (x, y, z).
+/// A corner's position in the cell, (x, y, z).
 pub(super) fn offset(corner: usize) -> [usize; 3] {
     [corner & 1, corner >> 1 & 1, corner >> 2 & 1]
 }
 
-/// The axis of an edge, and the place of its lower end in the cell.
+/// The axis of an edge, and the position of its lower end in the cell.
 pub(super) fn edge(edge: usize) -> (usize, [usize; 3]) {
     let axis = edge / 4;
     let mut place = [0; 3];

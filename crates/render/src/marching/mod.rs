@@ -6,15 +6,15 @@ use ndarray::{ArrayView2, ArrayView3, s};
 use walpha_base::vector::{cross, length, sub};
 
 use self::cases::{CASES, CORNERS, EDGES};
-use super::error::RenderError;
-use super::scene::Mesh;
+use crate::error::RenderError;
+use crate::scene::Mesh;
 
-/// The surface that parts the samples at or above a value from those below it.
+/// The surface that separates the samples at or above a value from those below it.
 ///
 /// Each sign change between neighbouring samples is one vertex, linearly interpolated and shared
 /// by all triangles that meet there. On a face with two high and two low corners across, the low
 /// ones are taken to be connected, on both sides of the face; so the surface has no cracks and is
-/// a manifold, closed but for the border of the grid. A sample equal to the isovalue is high; its
+/// a manifold, closed except at the border of the grid. A sample equal to the isovalue is high; its
 /// vertices coincide, and triangles between them have no area.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Isosurface {
@@ -22,11 +22,11 @@ pub struct Isosurface {
     pub positions: Vec<[f64; 3]>,
     /// Triangles, counter-clockwise seen from the side of the lower values.
     pub triangles: Vec<[u32; 3]>,
-    /// How many samples must be read to find it: all of them.
+    /// Number of samples that must be read to find it: all of them.
     pub samples_read: usize,
-    /// How many samples are corners of a cell that the surface crosses: the fewest that would do
-    /// if one knew where it is.
-    pub samples_beside: usize,
+    /// Number of samples that are corners of a cell that the surface crosses: the fewest that would suffice
+    /// if its location were known.
+    pub samples_at_surface: usize,
 }
 
 impl Isosurface {
@@ -47,7 +47,7 @@ impl Isosurface {
             positions: Vec::new(),
             triangles: Vec::new(),
             samples_read: field.len(),
-            samples_beside: 0,
+            samples_at_surface: 0,
         };
         let mut below = Layer::new(rows, columns);
         let mut above = Layer::new(rows, columns);
@@ -57,10 +57,10 @@ impl Isosurface {
             if z > 0 {
                 let slabs = [field.slice(s![z - 1, .., ..]), field.slice(s![z, .., ..])];
                 surface.march(&mut below, &mut above, &slabs, isovalue);
-                surface.samples_beside += below.count_beside();
+                surface.samples_at_surface += below.count_at_surface();
             }
         }
-        surface.samples_beside += above.count_beside();
+        surface.samples_at_surface += above.count_at_surface();
         Ok(surface)
     }
 
@@ -73,13 +73,13 @@ impl Isosurface {
         double.sum::<f64>() / 2.0
     }
 
-    /// The surface as something to draw, seen from both sides, as it may be cut open by the
+    /// The surface as a mesh that is visible from both sides, as it may be cut open by the
     /// border of the grid.
     pub fn into_mesh(self) -> Mesh {
         Mesh { two_sided: true, ..Mesh::new(self.positions, self.triangles) }
     }
 
-    /// Makes the vertices on the edges in slice z, and on those from it to the next.
+    /// Creates the vertices on the edges in slice z, and on those from it to the next.
     fn cut(
         &mut self,
         layer: &mut Layer,
@@ -144,7 +144,7 @@ impl Isosurface {
                 self.triangles.extend(triangles.map(|t| t.map(|e| vertices[e as usize])));
                 for layer in [&mut *below, &mut *above] {
                     for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                        layer.beside[(y + dy) * layer.columns + x + dx] = true;
+                        layer.at_surface[(y + dy) * layer.columns + x + dx] = true;
                     }
                 }
             }
@@ -158,22 +158,22 @@ struct Layer {
     rows: usize,
     columns: usize,
     vertices: Vec<[u32; 3]>,
-    beside: Vec<bool>,
+    at_surface: Vec<bool>,
 }
 
 impl Layer {
     fn new(rows: usize, columns: usize) -> Self {
         let count = rows * columns;
-        Self { rows, columns, vertices: vec![[u32::MAX; 3]; count], beside: vec![false; count] }
+        Self { rows, columns, vertices: vec![[u32::MAX; 3]; count], at_surface: vec![false; count] }
     }
 
     fn clear(&mut self) {
         self.vertices.fill([u32::MAX; 3]);
-        self.beside.fill(false);
+        self.at_surface.fill(false);
     }
 
-    fn count_beside(&self) -> usize {
-        self.beside.iter().filter(|&&b| b).count()
+    fn count_at_surface(&self) -> usize {
+        self.at_surface.iter().filter(|&&b| b).count()
     }
 }
 

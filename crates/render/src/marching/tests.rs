@@ -61,8 +61,8 @@ fn a_ball_has_its_area_volume_and_genus() {
     let expected = 4.0 / 3.0 * pi * 15.3_f64.powi(3);
     assert!((volume / expected - 1.0).abs() < 0.01, "{volume} for {expected}");
     assert_eq!(surface.samples_read, 64000);
-    assert!(surface.samples_beside > surface.positions.len() / 3);
-    assert!(surface.samples_beside < 16000);
+    assert!(surface.samples_at_surface > surface.positions.len() / 3);
+    assert!(surface.samples_at_surface < 16000);
 }
 
 #[test]
@@ -71,14 +71,14 @@ fn a_plane_lies_where_it_should() {
     let surface = Isosurface::new(field.view(), 2.25).unwrap();
     assert!(surface.positions.iter().all(|p| p[0] == 2.25));
     assert_eq!(surface.area(), 12.0);
-    assert_eq!(surface.samples_beside, 2 * 4 * 5);
+    assert_eq!(surface.samples_at_surface, 2 * 4 * 5);
     let [a, b, c] = surface.triangles[0].map(|k| surface.positions[k as usize]);
     assert!(cross(sub(b, a), sub(c, a))[0] < 0.0, "outside is where values are lower");
 }
 
 #[test]
 fn every_case_meets_every_neighbour_without_a_crack() {
-    // Each of the 256 patterns beside each that shares its face, along every axis.
+    // Each of the 256 patterns next to each that shares its face, along every axis.
     for case in 0..256_usize {
         for other in 0..16_usize {
             for axis in 0..3 {
@@ -126,7 +126,7 @@ fn samples_equal_to_the_isovalue_and_thin_grids_are_harmless() {
         let field = Array3::from_shape_fn(shape, |(z, y, x)| (x + y + z) as f32);
         let surface = Isosurface::new(field.view(), 1.5).unwrap();
         assert!(surface.triangles.is_empty());
-        assert_eq!(surface.samples_beside, 0);
+        assert_eq!(surface.samples_at_surface, 0);
     }
 }
 

@@ -1,13 +1,13 @@
 use walpha_base::vector::saturate;
 
-/// A colour as files and screens have it: red, green, blue, 0 to 255 each (sRGB).
+/// A colour in sRGB: red, green, blue, 0 to 255 each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rgb(pub [u8; 3]);
 
 impl Rgb {
     /// White.
     pub const WHITE: Self = Self([255; 3]);
-    /// The light warm gray of bare bone, which leaves room for light and shadow.
+    /// The light warm gray of bare bone, which can become lighter and darker.
     pub const BONE: Self = Self([222, 212, 194]);
 
     /// Amounts of light, 0 to 1. The square replaces the sRGB curve (exponent 2.2 or so):
@@ -53,7 +53,7 @@ pub struct ColourMap {
 
 impl ColourMap {
     /// The map with dark violet at `low` and below and yellow at `high` and above. When the two
-    /// are equal (or no numbers), every value has the middle colour.
+    /// are equal (or not finite), every value has the middle colour.
     pub fn new(low: f64, high: f64) -> Self {
         Self { low, high }
     }

@@ -1,4 +1,4 @@
-//! The samples of a picture: where they are, and what covers them.
+//! The samples of a picture: their positions, and what covers them.
 
 use super::Size;
 

@@ -1,4 +1,4 @@
-//! What a picture is made of: colours, pixels, and the samples within a pixel.
+//! The elements of a picture: colours, pixels, and the samples within a pixel.
 
 mod colour;
 mod grid;

@@ -3,7 +3,7 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 
 use crate::error::{MOST_PIXELS, RenderError};
 
-/// The pixels of a picture, checked once: both sides are 1 to [`Size::MAX_SIDE`].
+/// The size of a picture in pixels, checked once: both sides are 1 to [`Size::MAX_SIDE`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
     width: u32,
@@ -74,7 +74,7 @@ impl Picture {
     /// The picture as a PNG file.
     ///
     /// # Errors
-    /// [`RenderError::Png`], when memory for the file cannot be had.
+    /// [`RenderError::Png`], when there is not enough memory for the file.
     pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
         let mut bytes = Vec::new();
         PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive)

@@ -7,14 +7,14 @@ mod triangle;
 
 use rayon::prelude::*;
 
-use super::pixels::{Patch, PixelBox, Size};
-use super::scene::{Lens, Scene};
+use crate::pixels::{Patch, PixelBox, Size};
+use crate::scene::{Lens, Scene};
 use capsule::Capsule;
 use sphere::Sphere;
 pub(crate) use stage::Stage;
 use triangle::Triangle;
 
-/// One thing that can be nearest in a sample.
+/// A triangle, ball or tube that can be nearest in a sample.
 pub(crate) enum Primitive {
     Triangle(Triangle),
     Sphere(Sphere),

@@ -1,7 +1,7 @@
 use crate::light::{Exposure, Studio};
 use crate::scene::{Lens, Scene};
 
-/// All that shading needs to know.
+/// The inputs of shading.
 pub(crate) struct Stage<'a> {
     pub scene: &'a Scene,
     pub lens: Lens,

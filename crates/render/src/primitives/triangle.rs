@@ -5,7 +5,7 @@ use crate::light::Side;
 use crate::pixels::{Patch, PixelBox, SAMPLE, SAMPLES, STEPS, Size, sample_position};
 use crate::scene::{Colours, Lens, Mesh, Projection, Shading};
 
-/// A triangle, or a piece of one that reaches out of the picture, on the pixel grid.
+/// A triangle on the pixel grid, or a part of one that extends beyond the picture.
 ///
 /// Corners are snapped to 1/256 pixel and edges decided in integers, so triangles that share an
 /// edge neither leave a gap nor cover a sample twice.
@@ -15,7 +15,7 @@ pub(crate) struct Triangle {
     triangle: u32,
     /// In 1/256 pixel, turning so that the area is positive.
     corners: [[i64; 2]; 3],
-    /// Nearness is a·x + b·y + c at pixel position (x, y), and stays within `range`.
+    /// Nearness is a·x + b·y + c at pixel position (x, y), and is kept within `range`.
     plane: [f64; 3],
     range: [f64; 2],
     front: bool,
@@ -98,7 +98,7 @@ impl Triangle {
                     let [a, b, c] = self.plane;
                     for (k, nearness) in patch.nearness.iter_mut().enumerate() {
                         let [x, y] = sample_position(x, y, k);
-                        // In this order a plane seen edge-on (NaN) takes a place too.
+                        // In this order, the NaN of a plane seen edge-on becomes a number.
                         let n = (a * x + b * y + c).max(self.range[0]).min(self.range[1]);
                         *nearness = n as f32;
                     }
@@ -159,7 +159,7 @@ fn weights(stage: &Stage, places: &[V3; 3], flat: V3, x: f64, y: f64) -> [f64; 3
     if sum > 0.0 && sum.is_finite() { w.map(|w| w / sum) } else { [1.0 / 3.0; 3] }
 }
 
-/// One side of a triangle: a function of the place that is not negative inside.
+/// One side of a triangle: a function of the position that is not negative inside.
 struct Edge {
     from: [i64; 2],
     delta: [i64; 2],

@@ -9,11 +9,11 @@ mod tiles;
 use rayon::prelude::*;
 use walpha_base::memory::room;
 
-use super::error::RenderError;
-use super::light::{Exposure, Studio};
-use super::pixels::{Picture, Size};
-use super::primitives::{Primitive, Stage};
-use super::scene::{Background, Camera, Lens, Scene};
+use crate::error::RenderError;
+use crate::light::{Exposure, Studio};
+use crate::pixels::{Picture, Size};
+use crate::primitives::{Primitive, Stage};
+use crate::scene::{Background, Camera, Lens, Scene};
 use tile::draw;
 use tiles::Tiles;
 
@@ -35,7 +35,7 @@ impl Scene {
     ) -> Result<Picture, RenderError> {
         self.check()?;
         let lens = Lens::new(camera, size)?;
-        // Before the work.
+        // Allocated before the work, so that a failure is reported at once.
         let (width, height) = (size.width() as usize, size.height() as usize);
         let mut pixels = room(width * height, || format!("a picture of {width}×{height} pixels"))?;
         pixels.resize(width * height, [0; 4]);

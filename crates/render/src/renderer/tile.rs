@@ -21,7 +21,7 @@ pub(super) fn draw(
         primitives[name as usize].cover(&stage.lens, area, |patch| {
             let (depths, names) = &mut nearest[index(patch)];
             for k in 0..SAMPLES {
-                // Strictly: among equals the first in the scene stays.
+                // Strictly greater: of equally near ones the first in the scene is kept.
                 if patch.mask >> k & 1 == 1 && patch.nearness[k] > depths[k] {
                     depths[k] = patch.nearness[k];
                     names[k] = name;
@@ -62,7 +62,7 @@ pub(super) fn draw(
     pixels
 }
 
-/// No primitive.
+/// Stands for the absence of a primitive.
 const NOTHING: u32 = u32::MAX;
 
 /// A see-through primitive in one pixel.

@@ -12,7 +12,7 @@ pub enum Projection {
     Orthographic,
 }
 
-/// From where one looks at a subject whose face is turned to −y and whose crown to +z, as in the
+/// A view of a subject whose face is turned to −y and whose crown to +z, as in the
 /// CT convention of the sample head.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum View {
@@ -48,16 +48,16 @@ impl View {
     }
 }
 
-/// Where the eye is, and how much it sees.
+/// The position of the eye, and its field of view.
 ///
 /// The opening is given by the height of the visible part at the target, not by an angle, so that
 /// both projections show the target at the same size, and no tangent has to be rounded. A vertical
 /// field of view φ at distance d is a height of 2·d·tan(φ/2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where the eye is, (x, y, z).
+    /// The position of the eye, (x, y, z).
     pub eye: [f64; 3],
-    /// What is seen in the middle of the picture.
+    /// The point in the middle of the picture.
     pub target: [f64; 3],
     /// A direction that points up in the picture; any length, not along the line of sight.
     pub up: [f64; 3],
@@ -77,7 +77,7 @@ impl Camera {
     /// 2·tan(15°): height over distance of a field of view of 30°.
     const PORTRAIT_OPENING: f64 = 0.535_898_384_862_245_4;
 
-    /// The perspective camera at a place that looks at a target, with a vertical field of view of
+    /// The perspective camera at a position that looks at a target, with a vertical field of view of
     /// 30° and +z up (+y, where it looks along z).
     pub fn portrait(eye: [f64; 3], target: [f64; 3]) -> Self {
         let sight = sub(target, eye);

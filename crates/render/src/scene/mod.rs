@@ -1,14 +1,14 @@
-//! What is drawn, and from where.
+//! Scenes and cameras.
 
 mod camera;
 
 pub(crate) use camera::Lens;
 pub use camera::{Camera, Projection, View};
 
-use super::error::RenderError;
-use super::pixels::Rgb;
+use crate::error::RenderError;
+use crate::pixels::Rgb;
 
-/// The scene before the camera. Built once, seen from anywhere.
+/// A scene, which can be seen by any camera.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// Surfaces.
@@ -19,7 +19,7 @@ pub struct Scene {
     pub tubes: Vec<Tube>,
 }
 
-/// Triangles with one look.
+/// Triangles with a common appearance.
 ///
 /// # Example
 /// One triangle that turns counter-clockwise for an eye at z > 0, seen from both sides:
@@ -77,10 +77,10 @@ pub enum Colours {
     Vertex(Vec<Rgb>),
 }
 
-/// How light falls on a mesh.
+/// How a mesh is shaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shading {
-    /// Each triangle is a plane one can see.
+    /// Each triangle is visible as a plane.
     Flat,
     /// Normals are blended over the triangles: right for curved surfaces in small steps.
     Smooth,
@@ -89,7 +89,7 @@ pub enum Shading {
 /// A point drawn as a shaded ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// Where, (x, y, z).
+    /// The centre, (x, y, z).
     pub centre: [f64; 3],
     /// In the units of the scene.
     pub radius: f64,
@@ -150,7 +150,7 @@ impl Scene {
         }
     }
 
-    /// Whether it contradicts itself.
+    /// Checks that the scene is consistent.
     pub(crate) fn check(&self) -> Result<(), RenderError> {
         let place = |p: &[f64; 3]| p.iter().all(|c| c.abs() < 1e100);
         let radius = |r: f64| (0.0..1e100).contains(&r);

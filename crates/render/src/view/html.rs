@@ -52,7 +52,7 @@ pub(super) fn page(subject: &Subject<'_>, packed: &[Packed], surface: Option<&Ar
     for (name, value) in subject.facts {
         let _ = writeln!(html, "<tr><th>{}</th><td>{}</td></tr>", escape(name), escape(value));
     }
-    // Of what is interior, regular, singular.
+    // For interior, regular and singular.
     let colours = [2, 1, 0].map(|k| PALETTE[k].hex());
     let details = subject.details.iter().zip(packed);
     let data = json!({
@@ -72,7 +72,7 @@ pub(super) fn page(subject: &Subject<'_>, packed: &[Packed], surface: Option<&Ar
     html
 }
 
-/// What one chooses a level of detail by, where there are several.
+/// The control that chooses a level of detail, where there are several.
 fn choice_of_detail(subject: &Subject<'_>) -> String {
     let last = subject.details.len() - 1;
     if last == 0 {
@@ -92,8 +92,8 @@ fn detail(subject: &Subject<'_>, detail: &Detail<'_>, packed: &Packed) -> serde_
     let mut rows = vec![["points".to_owned(), detail.levels.points().len().to_string()]];
     if let Some(differences) = detail.differences {
         let rmse = significant(differences.rmse);
-        let told = format!("{rmse} {} (root mean square, on all samples)", subject.difference);
-        rows.push(["error of F".to_owned(), told]);
+        let text = format!("{rmse} {} (root mean square, on all samples)", subject.difference);
+        rows.push(["error of F".to_owned(), text]);
     }
     json!({
         "arrays": packed.arrays,
@@ -104,7 +104,7 @@ fn detail(subject: &Subject<'_>, detail: &Detail<'_>, packed: &Packed) -> serde_
     })
 }
 
-/// The titles of colour scales.
+/// The titles of the colour scales.
 fn bars(subject: &Subject<'_>) -> serde_json::Value {
     let difference = subject
         .is_compared()
@@ -112,7 +112,7 @@ fn bars(subject: &Subject<'_>) -> serde_json::Value {
     json!({ "value": format!("F: {}", subject.value), "difference": difference })
 }
 
-/// What the numbers of a point are.
+/// The explanation of the numbers of a point.
 fn explained(subject: &Subject<'_>) -> String {
     let mut text = String::new();
     if subject.is_valued() {
@@ -128,14 +128,14 @@ fn explained(subject: &Subject<'_>) -> String {
     text
 }
 
-/// plotly.js, without the typesetter of formulas that comes with it.
+/// plotly.js, without the bundled typesetter of formulas.
 fn library() -> String {
     let scripts = Plot::offline_js_sources();
     let end = scripts.find("</script>").expect("a script of plotly.js");
     scripts[..end].to_owned() + "</script>"
 }
 
-/// What the page shows of a level, as pairs.
+/// The rows of a level on the page.
 fn level(level: &Level) -> serde_json::Value {
     let [b0, b1, b2] = level.betti.into();
     let by_class = |c: walpha_shape::ByClass<usize>| {
@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn four_digits_are_enough() {
-        let told = [9.5, 0.016_074_782_699_769_346, 12_345.678, 2e-13, 0.0, f64::INFINITY];
-        assert_eq!(told.map(significant), ["9.5", "0.01607", "12350", "2e-13", "0", "∞"]);
+        let numbers = [9.5, 0.016_074_782_699_769_346, 12_345.678, 2e-13, 0.0, f64::INFINITY];
+        assert_eq!(numbers.map(significant), ["9.5", "0.01607", "12350", "2e-13", "0", "∞"]);
     }
 }

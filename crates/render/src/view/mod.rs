@@ -1,11 +1,11 @@
-//! A page to look at: a ladder of shapes in three dimensions, in any browser, without a network.
+//! An interactive page: a ladder of shapes in three dimensions, in any browser, without a network.
 
 mod html;
 mod pack;
 mod plot;
 mod subject;
 
-use super::error::RenderError;
+use crate::error::RenderError;
 pub use subject::{Detail, Differences, Original, Subject};
 
 /// A self-contained HTML page.
@@ -18,17 +18,17 @@ pub struct Page {
 }
 
 impl Page {
-    /// More facets than this are drawn simplified: what a phone turns without stutter, and a few
+    /// More facets than this are drawn simplified: this many a phone rotates smoothly, and they take a few
     /// megabytes.
     pub const MOST_FACETS: usize = 300_000;
-    /// More levels than this make no page: levels are counted in bytes.
+    /// The most levels of a page, as levels are stored in bytes.
     pub const MOST_LEVELS: usize = 250;
 
     /// Makes the page. The same subject gives the same bytes.
     ///
     /// The boundary and what is singular are traces of their own, points are sized by weight, a
     /// slider goes over α, a list over levels of detail, and a click or touch shows index, F, ω and
-    /// class of a point. The library plotly.js, which draws it, is inside.
+    /// class of a point. The library plotly.js, which draws it, is included.
     ///
     /// # Errors
     /// [`RenderError::Isosurface`] for an isovalue that is not a finite
@@ -56,6 +56,6 @@ fn simplified(subject: &Subject<'_>, packed: &[pack::Packed]) -> Option<String> 
         let points = detail.levels.points().len();
         Some(format!("{points} points are {}", packed.simplified.as_ref()?))
     };
-    let told: Vec<String> = subject.details.iter().zip(packed).filter_map(of).collect();
-    (!told.is_empty()).then(|| told.join("; "))
+    let texts: Vec<String> = subject.details.iter().zip(packed).filter_map(of).collect();
+    (!texts.is_empty()).then(|| texts.join("; "))
 }

@@ -42,7 +42,7 @@ impl Array {
     }
 }
 
-/// Samples along an axis that the surface to compare is made of, at most.
+/// The most samples along an axis for the surface to compare.
 const ISOSURFACE_SAMPLES: usize = 64;
 
 impl Packed {
@@ -60,7 +60,7 @@ impl Packed {
         if let Some(differences) = detail.differences {
             arrays.insert("differences", Array::f32(differences.local.iter().copied()));
         }
-        // Hidden points never come.
+        // Hidden points never enter.
         let never = detail.levels.len() as u32;
         let mut spans = vec![Span { first: never, regular: never, interior: never }; points.len()];
         for (v, span) in detail.levels.vertices() {
@@ -85,7 +85,7 @@ pub(super) fn surface(original: &Original<'_>) -> Result<Arrays, RenderError> {
     Ok(Arrays::from([("x", axis(0)), ("y", axis(1)), ("z", axis(2)), ("facets", facets)]))
 }
 
-/// The surface to compare, where the points are.
+/// The surface to compare, in the coordinates of the points.
 fn isosurface(original: &Original<'_>) -> Result<Isosurface, RenderError> {
     let volume = original.volume;
     let longest = volume.dims().xyz().into_iter().max().unwrap_or(1);
@@ -98,13 +98,13 @@ fn isosurface(original: &Original<'_>) -> Result<Isosurface, RenderError> {
     Ok(surface)
 }
 
-/// Three levels each; a page has fewer levels than bytes have values.
+/// Three levels each, which fit bytes.
 fn bytes<'a>(spans: impl Iterator<Item = &'a Span>) -> Vec<u8> {
     spans.flat_map(|span| [span.first, span.regular, span.interior].map(|k| k as u8)).collect()
 }
 
-/// Draws the points of each box of a grid as its first one, with boxes as small as they may be for
-/// so many facets; returns what was done.
+/// Merges the points in each box of a grid into the first one, with boxes as small as the number of facets
+/// allows; returns a description.
 fn simplify(
     positions: &[[f64; 3]],
     facets: &mut Vec<([u32; 3], Span)>,
@@ -177,9 +177,9 @@ mod tests {
         let all = facets.clone();
         assert_eq!(simplify(&positions, &mut facets, &mut Vec::new(), all.len()), None);
         assert_eq!(facets, all);
-        let told = simplify(&positions, &mut facets, &mut Vec::new(), 500).unwrap();
+        let text = simplify(&positions, &mut facets, &mut Vec::new(), 500).unwrap();
         assert!(facets.len() <= 500 && facets.len() > 100, "{}", facets.len());
-        assert!(told.contains(&format!("{} of {} facets", facets.len(), all.len())), "{told}");
+        assert!(text.contains(&format!("{} of {} facets", facets.len(), all.len())), "{text}");
         assert!(facets.iter().all(|([a, b, c], _)| a != b && b != c && a != c));
     }
 }

@@ -64,7 +64,7 @@ pub(super) fn plot(subject: &Subject<'_>) -> Plot {
     plot
 }
 
-/// The script writes what it is a scale of.
+/// Its title is set by the script.
 fn colour_bar() -> ColorBar {
     ColorBar::new()
         .title(Title::new().side(Side::Top).font(Font::new().size(12)))
@@ -81,7 +81,7 @@ fn rgb(index: usize) -> Rgb {
 }
 
 fn layout(unit: &str) -> Layout {
-    // There is no room for a sentence beside an axis.
+    // A sentence is too long for the label of an axis.
     let label =
         |name: &str| if unit.contains(' ') { name.to_owned() } else { format!("{name} ({unit})") };
     let axis = |name: &str| Axis::new().title(Title::with_text(label(name))).n_ticks(6);

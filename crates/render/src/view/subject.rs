@@ -1,22 +1,22 @@
 use walpha_shape::ladder::{Ladder, Levels};
 use walpha_volume::{Frame, Volume};
 
-/// What a page shows.
+/// The content of a page.
 #[derive(Clone, Copy)]
 pub struct Subject<'a> {
     /// Its heading.
     pub title: &'a str,
     /// Further facts, as pairs of a name and a value.
     pub facts: &'a [(String, String)],
-    /// What coordinates are measured in, as "voxels".
+    /// The unit of coordinates, such as "voxels".
     pub unit: &'a str,
-    /// What F is, with its unit, as "value of the original volume, in gray levels".
+    /// The meaning of F with its unit, such as "value of the original volume, in gray levels".
     pub value: &'a str,
-    /// The unit of differences to the original, as "gray levels".
+    /// The unit of differences to the original, such as "gray levels".
     pub difference: &'a str,
     /// Levels of detail, the coarsest first. The page opens with the last.
     pub details: &'a [Detail<'a>],
-    /// What the points come from, to compare.
+    /// The volume that the points are from, for comparison.
     pub original: Option<Original<'a>>,
 }
 
@@ -29,7 +29,7 @@ pub struct Detail<'a> {
     pub ladder: &'a Ladder,
     /// The level shown first.
     pub first: usize,
-    /// How far F is from the original, where that is known.
+    /// The differences of F from the original, where they are known.
     pub differences: Option<&'a Differences>,
 }
 
@@ -43,7 +43,7 @@ pub struct Differences {
 }
 
 impl Subject<'_> {
-    /// Whether points have values. All levels of detail are alike in this.
+    /// Whether points have values, at all levels of detail or none.
     pub(super) fn is_valued(&self) -> bool {
         self.details.iter().all(|detail| detail.levels.points().values.is_some())
     }
@@ -54,13 +54,13 @@ impl Subject<'_> {
     }
 }
 
-/// A volume that is shown by its isosurface, from every so many samples if it is large.
+/// A volume that is shown by its isosurface, downsampled if it is large.
 #[derive(Clone, Copy)]
 pub struct Original<'a> {
     /// The samples.
     pub volume: &'a Volume,
-    /// Where the surface is.
+    /// The value of the isosurface.
     pub isovalue: f64,
-    /// Where samples lie in the coordinates of the points: that of the volume, or [`Frame::VOXEL`].
+    /// The frame of the samples in the coordinates of the points: that of the volume, or [`Frame::VOXEL`].
     pub frame: &'a Frame,
 }

@@ -116,7 +116,7 @@ impl Partition {
         }
     }
 
-    /// Visits the points of the halo of a block in no particular order: the rank of each on the curve, and the
+    /// Visits the points of the halo of a block in unspecified order: the rank of each on the curve, and the
     /// multiples of the sides by which it is moved.
     ///
     /// Points with α + ω < 0 have no ball and can refute nothing: they are left out.
@@ -221,7 +221,7 @@ impl Reach {
     }
 }
 
-/// The own points of a block, for which it can be told whether another point is in their halo.
+/// The own points of a block, which decide whether another point is in their halo.
 pub(super) struct Neighbourhood {
     own: Node,
     reach: Reach,

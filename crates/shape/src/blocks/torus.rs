@@ -117,7 +117,7 @@ mod tests {
         }
     }
 
-    /// The largest sphere beside the corner has a squared radius of about 12.
+    /// The largest empty sphere next to the corner has a squared radius of about 12.
     #[test]
     fn a_block_looks_as_far_as_empty_spheres_are_large() {
         let torus = Torus::new([8.0; 3]).unwrap();

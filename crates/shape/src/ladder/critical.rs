@@ -73,7 +73,7 @@ impl Filtration {
 
     /// The smallest α at which all points are in at most so many solid components; as
     /// [`Filtration::one_region`], of CGAL's `Alpha_shape_3::find_optimal_alpha`. O(n log n).
-    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
+    #[expect(clippy::missing_panics_doc, reason = "an invariant")]
     pub fn optimal_alpha(&self, components: NonZeroU64) -> Alpha {
         let values = self.values();
         let levels = self.levels_of(&values);
@@ -112,7 +112,7 @@ impl Filtration {
     }
 
     /// Suggests values of α. O(n).
-    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
+    #[expect(clippy::missing_panics_doc, reason = "an invariant")]
     pub fn suggest(&self, curve: &Curve) -> Suggestions {
         let last = curve.values.len() - 1;
         let from = |start: usize, holds: &dyn Fn(usize) -> bool| {
@@ -244,14 +244,14 @@ impl Levels<'_> {
     /// is kept if it is one of them, else the first. O(n).
     pub fn distinct(&self, wanted: Alpha) -> Vec<Alpha> {
         let mut kept: Vec<Alpha> = Vec::new();
-        let mut stands = false;
+        let mut has_visible = false;
         for (&alpha, visible) in self.alphas().iter().zip(self.visible()) {
-            let same = stands && visible.changed == 0;
-            stands = visible.count > 0;
+            let same = has_visible && visible.changed == 0;
+            has_visible = visible.count > 0;
             if same && alpha == wanted {
                 kept.pop();
             }
-            if stands && (!same || alpha == wanted) {
+            if has_visible && (!same || alpha == wanted) {
                 kept.push(alpha);
             }
         }

@@ -65,7 +65,7 @@ impl Filtration {
         Self::monitored(torus, points, &Monitor::silent())
     }
 
-    /// The same, which says how far it is and can be cancelled.
+    /// The same, which reports its progress and can be cancelled.
     ///
     /// # Errors
     /// Those of [`on`](Self::on), and [`ShapeError::Cancelled`].

@@ -118,7 +118,7 @@ fn starts(groups: impl Iterator<Item = u32>, count: usize) -> Vec<u32> {
 /// The index of the row with this last vertex, among rows whose last vertices ascend. There are nearly always few: then
 /// counting is faster than bisection, whose branches are mispredicted.
 fn index_of<const N: usize>(rows: &[[u32; N]], last: u32) -> u32 {
-    // Up to so many rows are counted.
+    // Up to this many rows are counted.
     const FEW: usize = 32;
     let at = if rows.len() <= FEW {
         rows.iter().map(|row| usize::from(row[N - 1] < last)).sum()

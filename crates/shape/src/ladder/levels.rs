@@ -230,7 +230,7 @@ impl Levels<'_> {
         let incidence = &self.filtration.incidence;
         let shown = self.facets.par_iter().enumerate();
         let shown = shown.filter(|(_, span)| span.first < span.interior);
-        shown.map(|(row, span)| (self.turned(row, incidence.facet_cells[row]), *span)).collect()
+        shown.map(|(row, span)| (self.oriented(row, incidence.facet_cells[row]), *span)).collect()
     }
 
     /// The edges that are singular at some level. O(n).
@@ -262,7 +262,7 @@ impl Levels<'_> {
         let mut at = outward.iter();
         for (row, class) in &mut oriented {
             if *class == Class::Regular {
-                *row = *at.next().expect("each regular facet is turned");
+                *row = *at.next().expect("each regular facet is oriented");
             }
         }
         oriented.par_sort_unstable_by_key(|pair| pair.0);
@@ -280,18 +280,18 @@ impl Levels<'_> {
         let incidence = &self.filtration.incidence;
         let regular = self.facets.par_iter().enumerate();
         let regular = regular.filter(|(_, span)| span.class(level) == Class::Regular);
-        regular.map(|(row, _)| self.turned(row, incidence.facet_cells[row])).collect()
+        regular.map(|(row, _)| self.oriented(row, incidence.facet_cells[row])).collect()
     }
 
     /// A facet, counter-clockwise seen from the side whose cell enters later, or never.
-    fn turned(&self, row: usize, sides: [u32; 2]) -> [u32; 3] {
+    fn oriented(&self, row: usize, sides: [u32; 2]) -> [u32; 3] {
         let incidence = &self.filtration.incidence;
-        let comes = |cell: u32| match cell {
+        let entry = |cell: u32| match cell {
             Incidence::OUTSIDE => u32::MAX,
             cell => self.cells[cell as usize],
         };
-        let inside = if comes(sides[0]) < comes(sides[1]) { sides[0] } else { sides[1] };
-        // Points in a plane: there are no cells, and no side is the outer one.
+        let inside = if entry(sides[0]) < entry(sides[1]) { sides[0] } else { sides[1] };
+        // Points in a plane: there are no cells, so neither side is outside.
         if inside == Incidence::OUTSIDE {
             return incidence.facets[row];
         }

@@ -115,7 +115,7 @@ pub(super) struct UpperBetti {
 enum Sets {
     /// With the outside, which is one past the last cell.
     InSpace(UnionFind),
-    /// And the directions in which all of them together go round.
+    /// With the directions in which all of them together wind round.
     OnTorus(Torus, WindingSets, Directions),
 }
 

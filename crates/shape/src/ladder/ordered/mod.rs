@@ -22,8 +22,8 @@ use rank::{NONE, Ranks};
 ///
 /// A *value* is a squared radius, given as the double nearest to the exact number (of two equally near ones, the
 /// even one). The order is by the exact number, then by dimension, then by vertices;
-/// so faces precede their cofaces, and simplices whose values differ by less than
-/// doubles can resolve are in the right order all the same.
+/// so faces precede their cofaces, and even simplices whose values differ by less than
+/// doubles can resolve are in the right order.
 ///
 /// A double nearest to a value may be below it: the shape at this very α, [`Filtration::shape`], may
 /// have the simplex or not. [`Filtration::curve`] has doubles that are not below.
@@ -89,7 +89,7 @@ impl Filtration {
         self.simplices_monitored(&Monitor::silent())
     }
 
-    /// The same, which says how far it is and can be cancelled.
+    /// The same, which reports its progress and can be cancelled.
     ///
     /// # Errors
     /// Those of [`simplices`](Self::simplices), and [`ShapeError::Cancelled`].
@@ -340,7 +340,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn as_a_stable_sort_has_it() {
+    fn ranks_are_sorted_stably() {
         for (all, ranks) in
             [(0, 0), (1, 1), (1000, 3), (1000, 256), (5000, 1000), (CHUNK + 9, 70_000)]
         {
