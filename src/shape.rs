@@ -20,7 +20,7 @@ pub fn alpha_shape(
     points: WeightedPoints,
     options: &ShapeOptions,
 ) -> Result<AlphaShape, ShapeError> {
-    alpha_shape_monitored(points, options, &Monitor::silent())
+    alpha_shape_monitored(points, options, &Monitor::noop())
 }
 
 /// The same, which says how far it is and can be cancelled. CGAL works to its end.

@@ -62,7 +62,7 @@ impl HaarOptions {
 /// A tolerance that is none (see [`Coefficients::truncate`]), samples so large that f̂ passes
 /// the range of `f32`, or no memory.
 pub fn smooth(volume: &Volume, options: &HaarOptions) -> Result<(Volume, Truncation), HaarError> {
-    smooth_monitored(volume, options, &Monitor::silent())
+    smooth_monitored(volume, options, &Monitor::noop())
 }
 
 /// The same, which says how far it is and can be cancelled.

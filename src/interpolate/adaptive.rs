@@ -72,7 +72,7 @@ pub fn adaptive_voxels(
     goal: &Adaptive,
     units: Units,
 ) -> Result<Vec<u32>, InterpolateError> {
-    adaptive_voxels_monitored(volume, goal, units, &Monitor::silent())
+    adaptive_voxels_monitored(volume, goal, units, &Monitor::noop())
 }
 
 /// The same, which says how far it is and can be cancelled.

@@ -98,7 +98,7 @@ pub fn error_curve(
     monitor: &Monitor,
 ) -> Result<Vec<CurvePoint>, InterpolateError> {
     let differences = difference(smoothed);
-    let bench = Bench { volume, smoothed, differences, options, monitor: monitor.unheard() };
+    let bench = Bench { volume, smoothed, differences, options, monitor: monitor.unreported() };
     let mut curve = Vec::new();
     for (done, method) in Method::ALL.into_iter().enumerate() {
         monitor.report(done as u64, Method::ALL.len() as u64)?;

@@ -47,7 +47,7 @@ pub fn exchange(
     voxels: &[u32],
     units: Units,
 ) -> Result<Vec<u32>, InterpolateError> {
-    exchange_monitored(volume, voxels, units, &Monitor::silent())
+    exchange_monitored(volume, voxels, units, &Monitor::noop())
 }
 
 /// The same, which says how far it is and can be cancelled.
@@ -65,7 +65,7 @@ pub fn exchange_monitored(
     }
     let fitted = |voxels: &[u32]| -> Result<Sampled<'_>, InterpolateError> {
         let mut sampled = Sampled::new(volume, units, voxels)?;
-        sampled.refit(&monitor.unheard())?;
+        sampled.refit(&monitor.unreported())?;
         Ok(sampled)
     };
     let mut sampled = fitted(voxels)?;
@@ -80,7 +80,7 @@ pub fn exchange_monitored(
             break;
         }
         sampled.change(&swap.leave, &swap.join)?;
-        sampled.refit(&monitor.unheard())?;
+        sampled.refit(&monitor.unreported())?;
         let now = sampled.deviation().rmse.unwrap_or(0.0);
         tracing::debug!(round, exchanged = swap.leave.len(), rmse = now, "exchange");
         if now < rmse {

@@ -21,7 +21,7 @@ pub fn fill(
     volume: Option<&Volume>,
     units: Units,
 ) -> Result<AlphaShape, InterpolateError> {
-    fill_monitored(shape, volume, units, &Monitor::silent())
+    fill_monitored(shape, volume, units, &Monitor::noop())
 }
 
 /// The same, which says how far it is and can be cancelled.

@@ -1,6 +1,6 @@
 //! Lists of numbers side by side.
 
-use walpha_base::memory::{NoMemory, room};
+use walpha_base::memory::{NoMemory, try_with_capacity};
 
 use super::raster::NOTHING;
 use crate::volume::Volume;
@@ -33,14 +33,14 @@ impl Lists {
         keys: usize,
         visit: impl Fn(&mut dyn FnMut(u32, u32)),
     ) -> Result<Self, NoMemory> {
-        let mut starts = room(keys + 2, || "lists of samples".into())?;
+        let mut starts = try_with_capacity(keys + 2, || "lists of samples".into())?;
         starts.resize(keys + 2, 0u32);
         visit(&mut |key, _| starts[key as usize + 2] += 1);
         for key in 2..starts.len() {
             starts[key] += starts[key - 1];
         }
         let count = starts[keys + 1] as usize;
-        let mut items = room(count, || "lists of samples".into())?;
+        let mut items = try_with_capacity(count, || "lists of samples".into())?;
         items.resize(count, 0);
         visit(&mut |key, item| {
             let place = &mut starts[key as usize + 1];

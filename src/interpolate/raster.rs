@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
-use walpha_base::memory::{NoMemory, room};
+use walpha_base::memory::{NoMemory, try_with_capacity};
 
 use super::barycentric::Planes;
 use super::{Grid, Interpolant};
@@ -24,7 +24,7 @@ pub(super) const CHUNK: usize = 32;
 pub(super) fn owners(interpolant: &Interpolant<'_>, grid: &Grid) -> Result<Vec<u32>, NoMemory> {
     let [nx, ny, _] = grid.dims().xyz();
     let samples = grid.dims().samples();
-    let mut owners = room(samples, || format!("sampling at {} places", grid.dims()))?;
+    let mut owners = try_with_capacity(samples, || format!("sampling at {} places", grid.dims()))?;
     owners.par_extend((0..samples).into_par_iter().map(|_| AtomicU32::new(NOTHING)));
     let exact = interpolant.bit_range().with_all(grid.bit_range()).is_exact();
     (0..interpolant.len() as u32).into_par_iter().with_min_len(CHUNK).for_each(|part| {

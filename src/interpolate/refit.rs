@@ -61,7 +61,7 @@ pub fn refit(
     units: Units,
     to: Refit,
 ) -> Result<Refitted, InterpolateError> {
-    refit_monitored(shape, volume, units, to, &Monitor::silent())
+    refit_monitored(shape, volume, units, to, &Monitor::noop())
 }
 
 /// The same, which says how far it is and can be cancelled.
@@ -76,7 +76,7 @@ pub fn refit_monitored(
     monitor: &Monitor,
 ) -> Result<Refitted, InterpolateError> {
     let filled = match to {
-        Refit::Whole => Some(fill_monitored(shape, Some(volume), units, &monitor.unheard())?),
+        Refit::Whole => Some(fill_monitored(shape, Some(volume), units, &monitor.unreported())?),
         Refit::Shape => None,
     };
     let interpolant = Interpolant::new(filled.as_ref().unwrap_or(shape))?;

@@ -1,6 +1,6 @@
 use ndarray::Array3;
 use rayon::prelude::*;
-use walpha_base::memory::room;
+use walpha_base::memory::try_with_capacity;
 
 use super::raster::{NOTHING, owners};
 use super::{Grid, Interpolant, InterpolateError};
@@ -25,7 +25,8 @@ impl Interpolant<'_> {
         let owners = owners(self, grid)?;
         let [nx, ny, _] = grid.dims().xyz();
         let dims = grid.dims();
-        let mut samples = room(dims.samples(), || format!("a volume of {dims} samples"))?;
+        let mut samples =
+            try_with_capacity(dims.samples(), || format!("a volume of {dims} samples"))?;
         samples.resize(dims.samples(), 0f32);
         samples.par_chunks_mut(nx).zip(owners.par_chunks(nx)).enumerate().for_each(
             |(row, (samples, owners))| {
@@ -73,7 +74,7 @@ impl Resampled {
     #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn mask(&self) -> Result<Volume, InterpolateError> {
         let dims = self.volume.dims();
-        let mut inside = room(dims.samples(), || format!("a mask of {dims} samples"))?;
+        let mut inside = try_with_capacity(dims.samples(), || format!("a mask of {dims} samples"))?;
         let value = |&part: &u32| f32::from(u8::from(part != NOTHING));
         inside.par_extend(self.owners.par_iter().map(value));
         let samples = Array3::from_shape_vec(dims.shape(), inside).expect("one for each sample");

@@ -133,8 +133,8 @@ impl Plan {
         let mut field = Field::open(&self.job, None)?;
         (field.range, field.least) = (self.survey.range, self.survey.least);
         let tiles = SampleBox::whole(field.dims).tiles(field.tile());
-        let silent = Monitor::silent();
-        let mut passes = Passes::new(&Alone, &tiles, &silent);
+        let monitor = Monitor::noop();
+        let mut passes = Passes::new(&Alone, &tiles, &monitor);
         let (_, truncated, mut made) = truncated(&self.job, &field, &self.folder, &mut passes)?;
         if let Truncated::Bricks { sums, .. } = &truncated {
             made.push(DigestedFile::write_sums(sums, &self.folder)?);

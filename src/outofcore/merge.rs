@@ -57,7 +57,7 @@ pub(super) struct Numbers {
 /// # Errors
 /// Blocks are missing, belong to another plan, or what is read of them does not verify.
 pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
-    merge_monitored(plan, &Monitor::silent())
+    merge_monitored(plan, &Monitor::noop())
 }
 
 /// The same, which says how far it is and can be cancelled.

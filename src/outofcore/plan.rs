@@ -94,7 +94,7 @@ impl Plan {
     /// # Errors
     /// What a stage refuses; what is not local ([`Job::check`]); a folder that cannot be written to.
     pub fn make(job: Job, cutting: Cutting, folder: &Path) -> Result<Self, BlocksError> {
-        Self::make_with(job, cutting, folder, &Alone, &Monitor::silent())
+        Self::make_with(job, cutting, folder, &Alone, &Monitor::noop())
     }
 
     /// The same as one of a team: each process surveys its share of the volume, the first writes the plan, and

@@ -191,7 +191,7 @@ mod tests {
         let cutting = Cutting { blocks: Some(3), ..Cutting::default() };
         let folder = tempfile::tempdir().unwrap();
         let expected = Plan::make(job.clone(), cutting, folder.path()).unwrap();
-        run_all(&expected, &[0, 1, 2], &Monitor::silent()).unwrap();
+        run_all(&expected, &[0, 1, 2], &Monitor::noop()).unwrap();
         let merged = merge(&expected).unwrap();
         let bytes = |at: &Path, file: &str| std::fs::read(at.join(file)).unwrap();
         for size in [2, 3, 5] {
@@ -202,14 +202,14 @@ mod tests {
                     scope.spawn(move || {
                         let team: &dyn Team = &member;
                         let plan =
-                            Plan::resume_with(job.clone(), cutting, at, team, &Monitor::silent())
+                            Plan::resume_with(job.clone(), cutting, at, team, &Monitor::noop())
                                 .unwrap();
                         assert_eq!(plan.digest(), expected.digest());
                         assert_eq!(
-                            Plan::resume_with(job, cutting, at, team, &Monitor::silent()).unwrap(),
+                            Plan::resume_with(job, cutting, at, team, &Monitor::noop()).unwrap(),
                             plan
                         );
-                        run_missing(&plan, team, &Monitor::silent()).unwrap();
+                        run_missing(&plan, team, &Monitor::noop()).unwrap();
                         let merged = team.is_first().then(|| merge(&plan).unwrap());
                         let (kind, path) = (Pieces::Surface, at.join("out.pvtp"));
                         kind.write_with(&plan, merged.as_ref(), &path, team).unwrap();

@@ -18,7 +18,7 @@ impl Plan {
     /// # Errors
     /// As [`Plan::make`].
     pub fn resume(job: Job, cutting: Cutting, folder: &Path) -> Result<Self, BlocksError> {
-        Self::resume_with(job, cutting, folder, &Alone, &Monitor::silent())
+        Self::resume_with(job, cutting, folder, &Alone, &Monitor::noop())
     }
 
     /// The same as one of a team, which may be of another size than the one that was interrupted.

@@ -44,7 +44,7 @@ impl Recipe {
     /// # Errors
     /// Whatever a stage refuses.
     pub fn run(&self, volume: Volume) -> Result<Model, PipelineError> {
-        self.run_monitored(volume, &Monitor::silent())
+        self.run_monitored(volume, &Monitor::noop())
     }
 
     /// The same. The monitor hears of each stage, and can cancel it.
@@ -61,7 +61,7 @@ impl Recipe {
     /// # Errors
     /// Whatever a stage refuses.
     pub fn run_points(&self, points: Points) -> Result<Model, PipelineError> {
-        self.run_points_monitored(points, &Monitor::silent())
+        self.run_points_monitored(points, &Monitor::noop())
     }
 
     /// The same. The monitor hears of each stage, and can cancel it.
@@ -202,7 +202,7 @@ impl Recipe {
         let parameter = weighed.find_parameter(monitor)?;
         Stage::Refit.begin(monitor)?;
         let options = self.shape_of(parameter)?;
-        let shape = alpha_shape_monitored(weighed.points.clone(), &options, &monitor.unheard())?;
+        let shape = alpha_shape_monitored(weighed.points.clone(), &options, &monitor.unreported())?;
         let fitted = refit_monitored(&shape, &source.volume, source.units, to, monitor)?;
         weighed.points.values = Some(fitted.values);
         weighed.origin.fit = Some(fitted.fit);

@@ -93,7 +93,10 @@ pub fn asking<T>(ask: impl FnOnce() -> Result<T, TryReserveError>) -> Result<T, 
 ///
 /// # Errors
 /// [`NoMemory`].
-pub fn room<T>(count: usize, what: impl FnOnce() -> String) -> Result<Vec<T>, NoMemory> {
+pub fn try_with_capacity<T>(
+    count: usize,
+    what: impl FnOnce() -> String,
+) -> Result<Vec<T>, NoMemory> {
     let mut items = Vec::new();
     let bytes = count as u128 * size_of::<T>() as u128;
     asking(|| items.try_reserve_exact(count)).map_err(|_| NoMemory { what: what(), bytes })?;
@@ -107,7 +110,7 @@ pub fn room<T>(count: usize, what: impl FnOnce() -> String) -> Result<Vec<T>, No
 /// # Errors
 /// [`NoMemory`].
 pub fn afford(bytes: usize, what: impl FnOnce() -> String) -> Result<(), NoMemory> {
-    room::<u8>(bytes, what).map(drop)
+    try_with_capacity::<u8>(bytes, what).map(drop)
 }
 
 #[cfg(test)]
@@ -116,10 +119,10 @@ mod tests {
 
     #[test]
     fn what_is_too_large_is_an_error() {
-        let asked = room::<u64>(usize::MAX / 8, || "a volume".into());
+        let asked = try_with_capacity::<u64>(usize::MAX / 8, || "a volume".into());
         let text = asked.unwrap_err().to_string();
         assert!(text.starts_with("a volume needs 18446744073709551608 bytes"), "{text}");
-        assert!(room::<u64>(1000, String::new).unwrap().capacity() >= 1000);
+        assert!(try_with_capacity::<u64>(1000, String::new).unwrap().capacity() >= 1000);
         let planned = afford(usize::MAX / 2, || "transforming it".into());
         let text = planned.unwrap_err().to_string();
         assert!(text.starts_with("transforming it needs 9223372036854775807 bytes"), "{text}");

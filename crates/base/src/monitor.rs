@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Receives the progress of long work, and can cancel it.
 ///
 /// A clone, and a [part](Self::part), belong to the same work: cancelling one cancels all. Long functions take a
-/// `&Monitor`; a [silent](Self::silent) one discards their reports, and never cancels them.
+/// `&Monitor`; [`noop`](Self::noop) discards their reports, and never cancels them.
 ///
 /// ```
 /// use walpha_base::{Cancelled, Monitor};
@@ -96,11 +96,11 @@ impl Monitor {
     }
 
     /// A monitor without listener that is never cancelled. It costs nothing.
-    pub const fn silent() -> Self {
+    pub const fn noop() -> Self {
         Self { shared: None, scale: Scale::Stage }
     }
 
-    /// Ends the work with [`Cancelled`] at its next check. Without effect on a silent monitor.
+    /// Ends the work with [`Cancelled`] at its next check. Without effect on a no-op monitor.
     pub fn cancel(&self) {
         if let Some(shared) = &self.shared {
             shared.cancelled.store(true, Ordering::Relaxed);
@@ -163,7 +163,7 @@ impl Monitor {
 
     /// A monitor for work whose progress is not reported, but which is cancelled with this one's.
     #[must_use]
-    pub fn unheard(&self) -> Self {
+    pub fn unreported(&self) -> Self {
         Self { shared: self.shared.clone(), scale: Scale::Unreported }
     }
 
@@ -228,7 +228,7 @@ mod tests {
         let second = monitor.part(1, 2, 2);
         second.report(0, 7).unwrap();
         second.part(1, 2, 4).report(1, 2).unwrap();
-        second.unheard().part(0, 1, 2).report(1, 2).unwrap();
+        second.unreported().part(0, 1, 2).report(1, 2).unwrap();
         second.report(7, 7).unwrap();
         assert_eq!(
             *heard.lock().unwrap(),
@@ -248,13 +248,13 @@ mod tests {
     #[test]
     fn whoever_cancels_cancels_all() {
         let (monitor, _) = heard();
-        let part = monitor.part(0, 1, 2).unheard();
+        let part = monitor.part(0, 1, 2).unreported();
         part.units(3).add(1).unwrap();
         monitor.clone().cancel();
         assert_eq!(part.units(3).add(1), Err(Cancelled));
         assert_eq!((monitor.check(), monitor.stage("shape")), (Err(Cancelled), Err(Cancelled)));
-        let silent = Monitor::silent();
-        silent.cancel();
-        assert_eq!((silent.check(), silent.report(1, 2)), (Ok(()), Ok(())));
+        let noop = Monitor::noop();
+        noop.cancel();
+        assert_eq!((noop.check(), noop.report(1, 2)), (Ok(()), Ok(())));
     }
 }

@@ -38,7 +38,7 @@ pub fn alpha_shape(
     points: WeightedPoints,
     options: &ShapeOptions,
 ) -> Result<AlphaShape, ShapeError> {
-    alpha_shape_monitored(points, options, &Monitor::silent())
+    alpha_shape_monitored(points, options, &Monitor::noop())
 }
 
 /// The same, which reports its progress and can be cancelled.

@@ -158,7 +158,7 @@ impl BoxReader for Volume {
 /// `folder` is there already or cannot be made; the volume cannot be read. Nothing is left behind then.
 #[cfg(feature = "zarr")]
 pub fn convert(source: &Source, folder: &Path) -> Result<(), VolumeError> {
-    convert_monitored(source, folder, &walpha_base::Monitor::silent())
+    convert_monitored(source, folder, &walpha_base::Monitor::noop())
 }
 
 /// The same, which says how far it is and can be cancelled.

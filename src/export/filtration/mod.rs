@@ -63,7 +63,7 @@ impl FiltrationFormat {
     /// # Errors
     /// Whatever `out` returns; no memory.
     pub fn write(&self, ordered: &Ordered<'_>, out: &mut dyn Write) -> io::Result<()> {
-        self.write_monitored(ordered, out, &Monitor::silent())
+        self.write_monitored(ordered, out, &Monitor::noop())
     }
 
     /// The same, which says how far it is and can be cancelled.

@@ -92,7 +92,7 @@ impl Pieces {
         path: &Path,
         team: &dyn Team,
     ) -> Result<(), BlocksError> {
-        let Written { new, files } = self.fill(plan, merged, path, team, &Monitor::silent())?;
+        let Written { new, files } = self.fill(plan, merged, path, team, &Monitor::noop())?;
         // The first process has the file that names the others.
         team.barrier();
         let put = || -> Result<(), BlocksError> {

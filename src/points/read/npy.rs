@@ -17,7 +17,7 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
         }
     };
     let (fortran, rows) = (file.fortran, file.shape[0] as usize);
-    let numbers: Vec<f64> = file.values(path, &Monitor::silent())?;
+    let numbers: Vec<f64> = file.values(path, &Monitor::noop())?;
     let at = |row: usize, column: usize| {
         numbers[if fortran { column * rows + row } else { row * columns + column }]
     };

@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use walpha_base::advice::{Setting, advice};
-use walpha_base::memory::room;
+use walpha_base::memory::try_with_capacity;
 
 use super::coder::Decoder;
 use super::column;
@@ -25,7 +25,7 @@ pub(in crate::points) fn read(
     let said = |reason: Reason| format(path, reason);
     let mut file = File::open(path).map_err(io_error(path))?;
     let length = file.metadata().map_err(io_error(path))?.len();
-    let mut bytes = room(length as usize, || format!("{length} bytes of a file"))?;
+    let mut bytes = try_with_capacity(length as usize, || format!("{length} bytes of a file"))?;
     file.read_to_end(&mut bytes).map_err(io_error(path))?;
     let (header, head) = Header::of_bytes(&bytes).map_err(said)?;
     let layers = header.layers.len();
@@ -113,7 +113,8 @@ impl<'a> Model<'a> {
         /// Of a point, as it is read and as it is sorted.
         const BYTES: usize = 128;
         let all = self.points.len().saturating_add(count);
-        Ok(room::<[u8; BYTES]>(all, || format!("a model of {all} points")).map(drop)?)
+        Ok(try_with_capacity::<[u8; BYTES]>(all, || format!("a model of {all} points"))
+            .map(drop)?)
     }
 
     /// Adds a layer; `None` where its bytes do not hold it.

@@ -57,7 +57,7 @@ pub(super) struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     pub(super) fn new(study: &'a Study<'a>, shapes: &'a Shapes, monitor: &Monitor) -> Self {
-        let monitor = monitor.unheard();
+        let monitor = monitor.unreported();
         Self { study, shapes, monitor, files: Vec::new(), views: BTreeMap::new() }
     }
 

@@ -7,7 +7,7 @@ mod tile;
 mod tiles;
 
 use rayon::prelude::*;
-use walpha_base::memory::room;
+use walpha_base::memory::try_with_capacity;
 
 use crate::error::RenderError;
 use crate::light::{Exposure, Studio};
@@ -37,7 +37,8 @@ impl Scene {
         let lens = Lens::new(camera, size)?;
         // Allocated before the work, so that a failure is reported at once.
         let (width, height) = (size.width() as usize, size.height() as usize);
-        let mut pixels = room(width * height, || format!("a picture of {width}×{height} pixels"))?;
+        let mut pixels =
+            try_with_capacity(width * height, || format!("a picture of {width}×{height} pixels"))?;
         pixels.resize(width * height, [0; 4]);
         let studio = Studio::new(&lens);
         let exposure = Exposure::new(self, &studio);

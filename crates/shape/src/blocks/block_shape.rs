@@ -63,7 +63,7 @@ pub fn block_shape(points: Own<'_>, alpha: f64) -> Result<BlockShape, ShapeError
     let largest = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // Below −max ω the shape is empty: this is a finite α below that.
     let alpha = alpha.max(-2.0 * largest.abs() - 1.0);
-    let made = spanning(&mut block, alpha, positions.len() as u32, &Monitor::silent().units(1))?;
+    let made = spanning(&mut block, alpha, positions.len() as u32, &Monitor::noop().units(1))?;
     let lattice = Lattice::of(&block.positions, &block.weights);
     let question = Question { alpha, lattice, exterior: false };
     let owned = classify(&block, made, &question, Buckets::new(&[], 1));

@@ -48,8 +48,8 @@ mod tests {
         let question = Question { alpha: 1024.0 * 1024.0, lattice, exterior: false };
         let mut flat = 0;
         for block in 0..partition.len() {
-            let silent = Monitor::silent();
-            let work = silent.units(1);
+            let monitor = Monitor::noop();
+            let work = monitor.units(1);
             let (points, made, lattice_of_block) =
                 in_space(&sites, &partition, block, &question, &work).unwrap();
             assert!(points.positions.len() < 110, "{}", points.positions.len());

@@ -126,7 +126,7 @@ mod tests {
             let partition = Partition::new(&sites, 8);
             let one = Reach::Balls(4.0);
             let points = partition.block(&sites, one, 3);
-            let made = triangulate(&points, &Monitor::silent().units(1)).unwrap();
+            let made = triangulate(&points, &Monitor::noop().units(1)).unwrap();
             for (alpha, exterior, expected) in [
                 (4.0, false, true),
                 (16.0, false, decided),
@@ -139,8 +139,7 @@ mod tests {
             }
             let asked = question(4.0, true, &sites);
             let (looked, ..) =
-                on_torus(&sites, torus, &partition, 3, &asked, &Monitor::silent().units(1))
-                    .unwrap();
+                on_torus(&sites, torus, &partition, 3, &asked, &Monitor::noop().units(1)).unwrap();
             let reach = if decided { one } else { Reach::Balls(16.0) };
             assert_eq!(looked.positions.len(), partition.block(&sites, reach, 3).positions.len());
         }

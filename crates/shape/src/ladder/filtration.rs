@@ -62,7 +62,7 @@ impl Filtration {
     /// # Errors
     /// As [`alpha_shape`](crate::alpha_shape()) at α = ∞; so no edge of the whole triangulation may span half of the box.
     pub fn on(torus: Option<Torus>, points: WeightedPoints) -> Result<Self, ShapeError> {
-        Self::monitored(torus, points, &Monitor::silent())
+        Self::monitored(torus, points, &Monitor::noop())
     }
 
     /// The same, which reports its progress and can be cancelled.

@@ -49,7 +49,7 @@ const REFUSED: [(&[u8], &str, &str); 8] = [
 /// otherwise not what it says, has an empty axis or too many samples, or holds a NaN or infinity.
 /// Every message names the file.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Volume, VolumeError> {
-    read_monitored(path, options, &Monitor::silent())
+    read_monitored(path, options, &Monitor::noop())
 }
 
 /// The same, which says how far it is and can be cancelled.
@@ -206,7 +206,7 @@ impl Found {
             Some(parts) if !gzip => parts(path, options),
             // It says what is missing where the format was left out.
             _ if !format.is_built_in() => Err(self
-                .read(path, options, &Monitor::silent())
+                .read(path, options, &Monitor::noop())
                 .err()
                 .unwrap_or_else(|| whole_only(path, format.name))),
             _ => Err(whole_only(path, format.name)),

@@ -24,7 +24,7 @@ const PHANTOM_SIZE: u64 = 64;
 /// # Errors
 /// Those of [`sample`] and [`read()`](super::read()).
 pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Volume, VolumeError> {
-    open_monitored(input, options, &Monitor::silent())
+    open_monitored(input, options, &Monitor::noop())
 }
 
 /// The same, which says how far it is and can be cancelled.

@@ -1,6 +1,6 @@
 use ndarray::Array3;
 use rayon::prelude::*;
-use walpha_base::memory::room;
+use walpha_base::memory::try_with_capacity;
 
 use crate::source::{BoxReader, Source};
 use crate::{Dims, Dtype, Frame, Volume, VolumeError};
@@ -29,7 +29,7 @@ const TEETH: f64 = 245.0;
 pub fn phantom(size: u64) -> Result<Volume, VolumeError> {
     let dims = Dims::new(size, size, size)?;
     let n = dims.x();
-    let mut samples = room(dims.samples(), || format!("a phantom of {dims} samples"))?;
+    let mut samples = try_with_capacity(dims.samples(), || format!("a phantom of {dims} samples"))?;
     samples.resize(dims.samples(), 0f32);
     samples.par_chunks_mut(n).enumerate().for_each(|(row, samples)| {
         fill(n, [0, row % n, row / n], samples);

@@ -43,7 +43,7 @@ fn from_archive(path: &Path) -> Result<Volume, VolumeError> {
         let entry = entry.map_err(io_error(path))?;
         if entry.path().is_ok_and(|p| p.ends_with(MEMBER)) {
             let length = Length::Exactly(entry.size());
-            return read_inr(&path.join(MEMBER), entry, length, &Monitor::silent());
+            return read_inr(&path.join(MEMBER), entry, length, &Monitor::noop());
         }
     }
     Err(VolumeError::Format {

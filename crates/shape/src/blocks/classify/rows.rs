@@ -259,8 +259,8 @@ mod tests {
             let limits = Limits { blocks: Some(blocks), memory: None };
             let plan = Plan::new(&sites, Reach::Balls(0.75), limits).unwrap();
             let buckets = Buckets::new(sites.input(), 1);
-            let silent = Monitor::silent();
-            let work = silent.units(1);
+            let monitor = Monitor::noop();
+            let work = monitor.units(1);
             let owned: Vec<_> = (0..plan.partition.len())
                 .map(|block| decide(&sites, &plan.partition, block, &question, buckets, &work))
                 .collect::<Result<_, _>>()

@@ -20,7 +20,7 @@ fn a_run_that_will_not_keep_its_bound_is_stopped() {
             at_work: positions.len(),
             bound: Some(Bound { asked, resident: 0 }),
         };
-        run_blocks(&sites, &plan, &question, &walpha_base::Monitor::silent())
+        run_blocks(&sites, &plan, &question, &walpha_base::Monitor::noop())
             .map(|answer| answer.complex.cells.len())
     };
     assert_eq!(run(POINTS * 350), Ok(6 * 19 * 19 * 19));

@@ -86,7 +86,7 @@ impl Filtration {
     /// # Errors
     /// Out of memory; more simplices than 32-bit numbers.
     pub fn simplices(&self) -> Result<Ordered<'_>, ShapeError> {
-        self.simplices_monitored(&Monitor::silent())
+        self.simplices_monitored(&Monitor::noop())
     }
 
     /// The same, which reports its progress and can be cancelled.

@@ -36,8 +36,9 @@ impl Ranks {
 
     pub(super) fn of(filtration: &Filtration, numbers: Numbers) -> Result<Self, NoMemory> {
         let spheres = filtration.spheres();
-        let mut radii =
-            memory::room(numbers.all(), || format!("the order of {} simplices", numbers.all()))?;
+        let mut radii = memory::try_with_capacity(numbers.all(), || {
+            format!("the order of {} simplices", numbers.all())
+        })?;
         collect(filtration, numbers, &mut radii);
         radii.par_sort_unstable();
         let lattice = is_small_lattice(filtration.points(), filtration.torus());
@@ -48,7 +49,7 @@ impl Ranks {
         let mut steps: Vec<u32> =
             several.into_par_iter().flat_map_iter(|run| exact.split_ties(run)).collect();
         steps.par_sort_unstable();
-        let mut of = memory::room(numbers.all(), || "ranks".into())?;
+        let mut of = memory::try_with_capacity(numbers.all(), || "ranks".into())?;
         of.resize(numbers.all(), NONE);
         let mut values: Vec<f64> = Vec::new();
         let mut last = None;

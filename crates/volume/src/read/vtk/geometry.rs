@@ -118,7 +118,7 @@ impl<'a> VtkPoints<'a> {
         let payload = Payload { reader: BufReader::new(file).take(bytes), length };
         let claim = format!("{count} numbers {} of type {dtype}", array.name);
         payload
-            .samples(dtype, Endian::Big, count, &Monitor::silent())
+            .samples(dtype, Endian::Big, count, &Monitor::noop())
             .map_err(|error| payload_error_of(path, &claim, error))
     }
 }

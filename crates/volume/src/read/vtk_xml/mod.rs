@@ -77,7 +77,7 @@ impl VtkXml {
             compressor: None,
             elements: Vec::new(),
             appended: None,
-            monitor: Monitor::silent(),
+            monitor: Monitor::noop(),
         };
         let mut file = BufReader::new(file);
         // Before a search for the first element, which may go through all of a huge file.
