@@ -24,7 +24,7 @@ pub struct Component {
     /// The largest coordinates of its box, (x, y, z).
     pub high: [f64; 3],
     /// The voids that its boundary encloses, largest first; `None` where sheets are not known, and on a torus,
-    /// where a sheet need not enclose anything ([`AlphaShape::voids`]).
+    /// where a sheet need not enclose anything ([`AlphaShape::voids`](crate::AlphaShape::voids)).
     pub voids: Option<Vec<Enclosed>>,
     /// On a torus: the number of independent directions in which it winds round. Its box is that of one of its copies,
     /// and the whole side along axes that it winds along.

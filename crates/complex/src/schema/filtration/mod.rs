@@ -1,7 +1,5 @@
 //! Files with filtrations.
 
-#[cfg(feature = "json")]
-mod json;
 #[cfg(feature = "npz")]
 mod npz;
 
