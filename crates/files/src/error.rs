@@ -40,7 +40,7 @@ fn next_step(error: &io::Error) -> &'static str {
         return "allow more with `ulimit -n`";
     }
     match error.kind() {
-        ErrorKind::NotFound => "create it first, or choose an existing folder",
+        ErrorKind::NotFound => "create the folder, or choose an existing one",
         ErrorKind::AlreadyExists => "give each output a name of its own",
         ErrorKind::InvalidFilename => "choose a shorter name",
         ErrorKind::IsADirectory => "name a file in it",

@@ -127,7 +127,7 @@ fn places_that_cannot_be_are_refused_at_the_start() {
     // The input would be an error, too, if one came so far.
     refused(f, "haar no.nrrd -o a.npy", &["a.npy", "write-protected", "make it writable"]);
     assert_eq!(fs::read_to_string(f.join("a.npy")).unwrap(), "precious");
-    refused(f, "haar no.nrrd -o no/b.npy", &["there is no folder no", "create it first"]);
+    refused(f, "haar no.nrrd -o no/b.npy", &["there is no folder no", "create the folder"]);
     let name = format!("{}.npy", "b".repeat(400));
     refused(f, &format!("haar no.nrrd -o {name}"), &["too long", "choose a shorter name"]);
     refused(f, "ladder no.nrrd -o no/ladder", &["no/ladder", "--output"]);
