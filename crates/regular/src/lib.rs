@@ -25,6 +25,7 @@ mod error;
 mod flat;
 mod incremental;
 mod lattice;
+mod merging;
 #[doc(hidden)]
 pub mod number;
 mod order;
@@ -45,6 +46,8 @@ pub use flat::{Flat, auxiliary_positions, check_span, is_flat, triangulate_flat}
 pub use incremental::{Growing, Workspace, insert_all};
 #[doc(hidden)]
 pub use lattice::{BitRange, Lattice};
+#[doc(hidden)]
+pub use merging::triangulate_along;
 #[doc(hidden)]
 pub use predicates::{Interval, Predicates, Ratio, Screen, SmallRadius, lattice};
 #[doc(hidden)]
@@ -77,44 +80,6 @@ pub struct Triangulation {
 impl Triangulation {
     /// Maximum number of cells: 4·cell + corner fits 32 bits.
     pub const MAX_CELLS: usize = 1 << 30;
-
-    /// Drops [`DELETED`] cells and sorts the others by their smallest corners (a counting sort), so that
-    /// cells of consecutive points are close in memory. O(cells).
-    fn sorted_by_corner(old: Vec<Cell>, ghost: u32) -> Result<Self, TriangulationError> {
-        let alive = || old.iter().filter(|cell| cell.corners[0] != DELETED);
-        let smallest = |cell: &Cell| {
-            let [a, b, c, d] = cell.corners;
-            a.min(b).min(c).min(d) as usize
-        };
-        let mut next: Vec<u32> = filled(ghost as usize + 2, 0)?;
-        for cell in alive() {
-            next[smallest(cell) + 1] += 1;
-        }
-        for v in 1..next.len() {
-            next[v] += next[v - 1];
-        }
-        let count = next[ghost as usize + 1] as usize;
-        let mut numbers = filled(old.len(), DELETED)?;
-        let mut cells = filled(count, [0; 4])?;
-        for (number, cell) in numbers.iter_mut().zip(&old) {
-            if cell.corners[0] == DELETED {
-                continue;
-            }
-            let next = &mut next[smallest(cell)];
-            *number = *next;
-            cells[*next as usize] = cell.corners;
-            *next += 1;
-        }
-        // Collected in place; shrinking then frees half the memory of the old cells.
-        let mut across: Vec<_> = old.into_iter().map(|cell| cell.neighbors).collect();
-        across.shrink_to_fit();
-        let mut neighbors = filled(count, [0; 4])?;
-        for (&number, [a, b, c, d]) in numbers.iter().zip(across).filter(|(n, _)| **n != DELETED) {
-            let to = |side: u32| 4 * numbers[side as usize / 4] + side % 4;
-            neighbors[number as usize] = [to(a), to(b), to(c), to(d)];
-        }
-        Ok(Self { cells, neighbors, ghost })
-    }
 
     /// The corners of each cell, infinite cells included, in no particular order.
     pub fn cells(&self) -> &[[u32; 4]] {
@@ -175,6 +140,19 @@ pub struct Cell {
     pub neighbors: [u32; 4],
 }
 
+/// The facets opposite the corners of a cell, oriented so that facet and corner are the positively oriented cell. Two
+/// cells on the same side of a facet therefore have it in the same orientation.
+pub(crate) fn facets([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
+    [[b, d, c], [a, c, d], [b, a, d], [a, b, c]]
+}
+
+/// The cyclic rotation that starts with the smallest vertex.
+pub(crate) fn smallest_first(mut facet: [u32; 3]) -> [u32; 3] {
+    let first = (0..3).min_by_key(|&k| facet[k]).unwrap_or(0);
+    facet.rotate_left(first);
+    facet
+}
+
 /// The first corner of a deleted cell, whose slot is free.
 const DELETED: u32 = u32::MAX;
 
@@ -186,7 +164,7 @@ pub fn triangulate(sites: &Sites<'_>) -> Result<Triangulation, TriangulationErro
     let along = sites.curve();
     let positions: Vec<_> = along.iter().map(|&i| sites.positions()[i as usize]).collect();
     let weights: Vec<_> = along.iter().map(|&i| sites.weights()[i as usize]).collect();
-    let mut triangulation = insert_all(&positions, &weights, |_| Ok(()))?;
+    let mut triangulation = triangulate_along(&positions, &weights, |_| Ok(()))?;
     for v in triangulation.cells.as_flattened_mut() {
         *v = along.get(*v as usize).copied().unwrap_or(*v);
     }

@@ -12,27 +12,46 @@ pub(super) type Keyed = (u64, u32);
 /// The points along a Hilbert curve through the cube around them; a point of the plane lies at z = 0.
 /// Points in one cell of the grid, such as equal points, are in ascending order. O(n log n).
 pub(super) fn along_curve<const D: usize>(positions: &[[f64; D]]) -> Vec<Keyed> {
-    let ends = |k: usize| {
-        let at = positions.par_iter().map(|p| p[k]);
-        at.map(|x| (x, x)).reduce(
-            || (f64::INFINITY, f64::NEG_INFINITY),
-            |(low, high), (a, b)| (low.min(a), high.max(b)),
-        )
-    };
-    let ends: [(f64, f64); D] = std::array::from_fn(ends);
-    let widest = ends.iter().map(|(low, high)| high - low).fold(0.0, f64::max);
-    let scale = f64::from((1u32 << BITS) - 1) / widest;
-    let mut keyed: Vec<Keyed> = (positions.par_iter().enumerate())
-        .map(|(i, p)| {
-            let mut step = [0; 3];
-            for k in 0..D {
-                step[k] = (((p[k] - ends[k].0) * scale) as u32).min((1 << BITS) - 1);
-            }
-            (hilbert_index(step), i as u32)
-        })
-        .collect();
+    let curve = Curve::through(positions);
+    let mut keyed: Vec<Keyed> =
+        positions.par_iter().enumerate().map(|(i, p)| (curve.index(p), i as u32)).collect();
     keyed.par_sort_unstable();
     keyed
+}
+
+/// A Hilbert curve through a grid in the cube around points.
+pub(super) struct Curve<const D: usize> {
+    low: [f64; D],
+    /// Grid steps per unit of length.
+    scale: f64,
+}
+
+impl<const D: usize> Curve<D> {
+    /// The curve through the cube around points. O(n).
+    pub(super) fn through(positions: &[[f64; D]]) -> Self {
+        let ends = |k: usize| {
+            let at = positions.par_iter().map(|p| p[k]);
+            at.map(|x| (x, x)).reduce(
+                || (f64::INFINITY, f64::NEG_INFINITY),
+                |(low, high), (a, b)| (low.min(a), high.max(b)),
+            )
+        };
+        let ends: [(f64, f64); D] = std::array::from_fn(ends);
+        let widest = ends.iter().map(|(low, high)| high - low).fold(0.0, f64::max);
+        let scale = f64::from((1u32 << BITS) - 1) / widest;
+        Self { low: ends.map(|(low, _)| low), scale }
+    }
+
+    /// The index of the grid cell that a point is in. The points whose indices begin with the same bits are those in
+    /// a box; the next bit halves it, by a plane across one axis.
+    pub(super) fn index(&self, position: &[f64; D]) -> u64 {
+        let mut step = [0; 3];
+        for k in 0..D {
+            let steps = (position[k] - self.low[k]) * self.scale;
+            step[k] = (steps as u32).min((1 << BITS) - 1);
+        }
+        hilbert_index(step)
+    }
 }
 
 /// The index of a grid cell on the curve: Skilling's transform ("Programming the Hilbert

@@ -36,8 +36,18 @@ const REPORT_EVERY: usize = 4096;
 pub fn insert_all(
     positions: &[[f64; 3]],
     weights: &[f64],
-    mut inserted: impl FnMut(usize) -> Result<(), Cancelled>,
+    inserted: impl FnMut(usize) -> Result<(), Cancelled>,
 ) -> Result<Triangulation, TriangulationError> {
+    let Built { cells, ghost, .. } = insert_cells(positions, weights, inserted)?;
+    Triangulation::of_cells(cells, ghost)
+}
+
+/// The same, with cells in the order in which they were made. The corner 0 of free slots is [`DELETED`].
+pub(crate) fn insert_cells(
+    positions: &[[f64; 3]],
+    weights: &[f64],
+    mut inserted: impl FnMut(usize) -> Result<(), Cancelled>,
+) -> Result<Built, TriangulationError> {
     let predicates = Predicates::new(positions, weights);
     let screen = Screen::new(&predicates)?;
     let count = screen.count() as u32;
@@ -51,7 +61,15 @@ pub fn insert_all(
             builder.insert(&screen, v)?;
         }
     }
-    builder.finish()
+    Ok(builder.finish())
+}
+
+/// A triangulation whose cells are in the slots that they were made in.
+pub(crate) struct Built {
+    pub cells: Vec<Cell>,
+    /// Slots of deleted cells.
+    pub free_slots: Vec<u32>,
+    pub ghost: u32,
 }
 
 /// Memory is reserved for this many cells per point, and 1/16 more. A Poisson–Delaunay triangulation has
@@ -178,12 +196,10 @@ impl Builder {
         }
     }
 
-    fn finish(mut self) -> Result<Triangulation, TriangulationError> {
-        for slot in self.free_slots {
-            self.mesh.cells[slot as usize].corners[0] = DELETED;
-        }
-        drop(self.stamps);
-        Triangulation::sorted_by_corner(self.mesh.cells, self.mesh.ghost)
+    fn finish(self) -> Built {
+        let Self { mesh: Mesh { mut cells, ghost }, free_slots, .. } = self;
+        free_slots.iter().for_each(|&slot| cells[slot as usize].corners[0] = DELETED);
+        Built { cells, free_slots, ghost }
     }
 }
 

@@ -3,7 +3,7 @@
 use super::Builder;
 use super::growing::{GHOST, NO_CELL, State};
 use crate::predicates::Screen;
-use crate::{Cell, DELETED, Triangulation, TriangulationError};
+use crate::{Cell, DELETED, Triangulation, TriangulationError, facets, smallest_first};
 
 /// The star of a vertex, and the cells that would replace it.
 pub struct Hole {
@@ -196,17 +196,4 @@ impl Builder {
         self.stamps.push(0);
         Ok(count as u32)
     }
-}
-
-/// The facets opposite the corners of a cell, oriented so that facet and corner are the positively oriented cell. Two
-/// cells on the same side of a facet therefore have it in the same orientation.
-fn facets([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
-    [[b, d, c], [a, c, d], [b, a, d], [a, b, c]]
-}
-
-/// The cyclic rotation that starts with the smallest vertex.
-fn smallest_first(mut facet: [u32; 3]) -> [u32; 3] {
-    let first = (0..3).min_by_key(|&k| facet[k]).unwrap_or(0);
-    facet.rotate_left(first);
-    facet
 }

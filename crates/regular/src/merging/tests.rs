@@ -1,0 +1,90 @@
+use walpha_base::random::Random;
+
+use super::divide_and_merge;
+use super::numbering::number;
+use crate::incremental::{Built, insert_cells};
+use crate::{Sites, Triangulation, TriangulationError};
+
+/// The triangulation with leaves of at most `leaf` points, and that of one leaf, whichever can be made.
+fn both(points: &[([f64; 3], f64)], leaf: usize) -> [Result<Triangulation, TriangulationError>; 2] {
+    let (positions, weights): (Vec<_>, Vec<_>) = points.iter().copied().unzip();
+    let sites = Sites::any(&positions, &weights).unwrap();
+    let along = |v: &u32| *v as usize;
+    let positions: Vec<_> = sites.curve().iter().map(|v| sites.positions()[along(v)]).collect();
+    let weights: Vec<_> = sites.curve().iter().map(|v| sites.weights()[along(v)]).collect();
+    let merged = divide_and_merge(&positions, &weights, leaf, 1.0, &|_| Ok(()));
+    let one = insert_cells(&positions, &weights, |_| Ok(()));
+    [
+        merged.and_then(|mesh| {
+            let ghost = positions.len() as u32;
+            mesh.map_or_else(
+                || one_leaf(insert_cells(&positions, &weights, |_| Ok(()))),
+                |mesh| number(mesh.slots, ghost),
+            )
+        }),
+        one_leaf(one),
+    ]
+}
+
+fn one_leaf(built: Result<Built, TriangulationError>) -> Result<Triangulation, TriangulationError> {
+    built.and_then(|Built { cells, ghost, .. }| Triangulation::of_cells(cells, ghost))
+}
+
+/// Sets of points, most of them degenerate; each case has a number.
+fn set(random: &mut Random, case: usize) -> Vec<([f64; 3], f64)> {
+    let count = 5 + random.below(120);
+    let mut unit = || random.unit();
+    let place = |unit: &mut dyn FnMut() -> f64| [unit(), unit(), unit()];
+    (0..count)
+        .map(|i| {
+            let p = place(&mut unit);
+            let t = i as f64;
+            let w = unit();
+            match case % 10 {
+                0 => (p, 0.0),
+                1 => (p, w * 0.05),
+                // A lattice, without and with weights that hide points.
+                2 => (p.map(|x| (x * 5.0).floor()), 0.0),
+                3 => (p.map(|x| (x * 6.0).floor()), (w * 4.0).floor()),
+                // On a sphere of lattice points, and in few planes.
+                4 => {
+                    let [a, b, c] = [[3.0, 4.0, 0.0], [5.0, 0.0, 0.0], [0.0, 3.0, -4.0]][i % 3];
+                    let sign = |x: f64, u: f64| if u < 0.5 { -x } else { x };
+                    let q = [sign(a, p[0]), sign(b, p[1]), sign(c, p[2])];
+                    ([q[i / 3 % 3], q[(i / 3 + 1) % 3], q[(i / 3 + 2) % 3]], 0.0)
+                }
+                5 => ([(p[0] * 9.0).floor(), (p[1] * 9.0).floor(), (p[2] * 2.0).floor()], 0.0),
+                // A few points of large weight hide many.
+                6 => (p, if i % 17 == 0 { 0.3 } else { 0.0 }),
+                // The moment curve: all points are neighbours of all.
+                7 => ([t, t * t, t * t * t], 0.0),
+                // Two lines, which no leaf need span a volume with.
+                8 if i % 2 == 0 => ([t, 0.0, 0.0], 0.0),
+                8 => ([20.0, t - 30.0, 1.0], 0.0),
+                // Neighbours that differ in the last bit.
+                _ => (p.map(|x| 1.0 + (x * 4.0).floor() * f64::EPSILON), w.floor()),
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn merged_leaves_are_the_whole() {
+    let mut random = Random::new(31);
+    let mut merged = 0;
+    for case in 0..2000 {
+        let points = set(&mut random, case);
+        for leaf in [1, 4, 30] {
+            match both(&points, leaf) {
+                [Ok(a), Ok(b)] => {
+                    assert_eq!(a.cells(), b.cells(), "case {case}, leaves of {leaf}");
+                    assert_eq!(a.neighbors(), b.neighbors(), "case {case}, leaves of {leaf}");
+                    merged += 1;
+                }
+                [Err(a), Err(b)] => assert_eq!(a.to_string(), b.to_string()),
+                [a, b] => panic!("case {case}: {a:?} and {b:?}"),
+            }
+        }
+    }
+    assert!(merged > 5000, "{merged}");
+}
