@@ -39,8 +39,11 @@ fn main() {
 /// A weighted point.
 type Point = ([f64; 3], f64);
 
+/// Draws a point.
+type Draw = fn(&mut Random) -> Point;
+
 /// Sets of points, by a random one of each.
-const SETS: [(&str, fn(&mut Random) -> Point); 7] = [
+const SETS: [(&str, Draw); 7] = [
     ("random", |r| (unit(r), 0.0)),
     ("weighted", |r| (unit(r), 1e-4 * r.unit())),
     ("lattice", |r| (unit(r).map(|x| (x * 160.0).floor()), 0.0)),

@@ -21,6 +21,7 @@ mod slots;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use rayon::prelude::*;
 use walpha_base::Cancelled;
 
 use crate::incremental::{Built, insert_cells};
@@ -39,8 +40,8 @@ const MIN_LEAF: usize = 1 << 12;
 /// than threads gain.
 const MAX_OPEN: f64 = 0.35;
 
-/// The regular triangulation of points, which satisfy the conditions of [`Sites`](crate::Sites) and follow a Hilbert
-/// curve, on all threads. `inserted` is called now and then with the number of points inserted since. The result does
+/// The regular triangulation of points, which satisfy the conditions of [`Sites`](crate::Sites), on all threads where
+/// they follow the Hilbert curve through them, else on one. `inserted` is called now and then with the number of points inserted since. The result does
 /// not depend on the number of threads. Expected O(n log n) for evenly distributed points.
 ///
 /// # Errors
@@ -72,6 +73,9 @@ fn divide_and_merge(
 ) -> Result<Option<Mesh>, TriangulationError> {
     let curve = Curve::through(positions);
     let index = |v: usize| curve.index(&positions[v]);
+    if !(1..positions.len()).into_par_iter().all(|v| index(v - 1) <= index(v)) {
+        return Ok(None);
+    }
     let mut leaves = 0;
     let tree = Tree::of(0..positions.len(), leaf, &index, &mut leaves);
     let points = Points { positions, weights, ghost: positions.len() as u32 };

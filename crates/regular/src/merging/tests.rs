@@ -88,3 +88,45 @@ fn merged_leaves_are_the_whole() {
     }
     assert!(merged > 5000, "{merged}");
 }
+
+#[test]
+fn threads_do_not_change_the_triangulation() {
+    let mut random = Random::new(7);
+    let mut unit = move || random.unit();
+    let count = super::MIN_POINTS + 5000;
+    let sets: [Vec<([f64; 3], f64)>; 2] = [
+        (0..count).map(|_| ([unit(), unit(), unit()], 1e-4 * unit())).collect(),
+        (0..count as u32)
+            .map(|i| [i % 42, i / 42 % 42, i / 1764].map(f64::from))
+            .map(|p| (p, (3.0 * unit()).floor()))
+            .collect(),
+    ];
+    for set in sets {
+        let (positions, weights): (Vec<_>, Vec<_>) = set.into_iter().unzip();
+        let sites = Sites::new(&positions, &weights).unwrap();
+        let made = [1, 2, 3, 8].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| crate::triangulate(&sites)).unwrap()
+        });
+        for other in &made[1..] {
+            assert_eq!(other.cells(), made[0].cells());
+            assert_eq!(other.neighbors(), made[0].neighbors());
+        }
+    }
+}
+
+/// On a sphere all cells are open: merging would be more work than it saves.
+#[test]
+fn a_sphere_is_not_divided() {
+    let on_sphere = |i: u32| {
+        let (turn, z) = (f64::from(i) * 2.4, f64::from(2 * i) / 4000.0 - 1.0);
+        let radius = (1.0 - z * z).sqrt();
+        ([radius * turn.cos(), radius * turn.sin(), z], 0.0)
+    };
+    let points: Vec<_> = (0..4000).map(on_sphere).collect();
+    let (positions, weights): (Vec<_>, Vec<_>) = points.iter().copied().unzip();
+    let sites = Sites::new(&positions, &weights).unwrap();
+    let along: Vec<_> = sites.curve().iter().map(|&v| positions[v as usize]).collect();
+    let mesh = divide_and_merge(&along, &weights, 500, super::MAX_OPEN, &|_| Ok(())).unwrap();
+    assert!(mesh.is_none());
+}

@@ -1,7 +1,11 @@
 //! A block, what is asked of it, and the merged result of all blocks.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use walpha_base::monitor::Units;
-use walpha_regular::{Lattice, Torus, Triangulation, TriangulationError, insert_all};
+use walpha_regular::{
+    Lattice, Torus, Triangulation, TriangulationError, insert_all, triangulate_along,
+};
 
 use crate::Complex;
 
@@ -70,6 +74,17 @@ pub(super) fn triangulate(
     work: &Units<'_>,
 ) -> Result<Triangulation, TriangulationError> {
     let (own, all) = (TRIANGULATION * u64::from(points.own), points.input.len() as u64);
+    if u64::from(points.own) == all {
+        // The only block: all threads are free for it.
+        let counted = AtomicU64::new(0);
+        let made = triangulate_along(&points.positions, &points.weights, |more| {
+            let fresh = TRIANGULATION * more as u64;
+            counted.fetch_add(fresh, Ordering::Relaxed);
+            work.add(fresh)
+        })?;
+        work.add(own.saturating_sub(counted.into_inner()))?;
+        return Ok(made);
+    }
     let (mut inside, mut counted) = (0, 0);
     let made = insert_all(&points.positions, &points.weights, |more| {
         inside += more as u64;
