@@ -214,7 +214,7 @@ mod tests {
         };
         let text = said("no/a.ply");
         assert!(
-            text.contains("no/a.ply: there is no folder") && text.contains("create it"),
+            text.contains("no/a.ply: there is no folder") && text.contains("create the folder"),
             "{text}"
         );
         assert!(said(".").contains("directory"));

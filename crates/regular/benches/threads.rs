@@ -14,6 +14,8 @@ fn main() {
     println!("{count} points; seconds on 1 thread and on {threads}, and their ratio");
     for (name, set) in SETS {
         let mut random = Random::new(1);
+        // Nearly cospherical points take exact arithmetic.
+        let count = if name == "sphere" { count / 10 } else { count };
         let (positions, weights): (Vec<_>, Vec<_>) = (0..count).map(|_| set(&mut random)).unzip();
         let sites = Sites::new(&positions, &weights).expect("points of space");
         let pools = [1, threads].map(|threads| {

@@ -81,7 +81,7 @@ impl Triangulation {
     /// Maximum number of cells: 4·cell + corner fits 32 bits.
     pub const MAX_CELLS: usize = 1 << 30;
 
-    /// The corners of each cell, infinite cells included, in no particular order.
+    /// The corners of each cell, infinite cells included. Cells of sites that are close on a Hilbert curve are close.
     pub fn cells(&self) -> &[[u32; 4]] {
         &self.cells
     }
@@ -156,7 +156,8 @@ pub(crate) fn smallest_first(mut facet: [u32; 3]) -> [u32; 3] {
 /// The first corner of a deleted cell, whose slot is free.
 const DELETED: u32 = u32::MAX;
 
-/// The regular triangulation of sites, by site index. Expected O(n log n) for evenly distributed points.
+/// The regular triangulation of sites, by site index, on all threads of the current rayon pool. The order of cells and
+/// of their corners does not depend on the number of threads. Expected O(n log n) for evenly distributed points.
 ///
 /// # Errors
 /// Sites that span no volume; out of memory; more than [`Triangulation::MAX_CELLS`] cells.
