@@ -82,7 +82,7 @@ impl Complement {
     pub(super) fn of(whole: &Complex) -> Self {
         let sides = sides(whole, |class| class == Class::Exterior);
         let outside = whole.cells.len() as u32;
-        let mut sets = UnionFind::new(whole.cells.len() + 1);
+        let sets = UnionFind::new(whole.cells.len() + 1);
         let exterior_cells = whole.cells.counts().exterior;
         let mut united = 0;
         let mut at = 0;

@@ -14,7 +14,7 @@ impl AlphaShape {
     /// For each input point the number of its component, [`NO_COMPONENT`] if it is not in the shape.
     /// Components are numbered in the order of their smallest vertices. O(n).
     pub fn component_numbers(&self) -> Vec<u32> {
-        let mut sets = connected(self.complex());
+        let sets = connected(self.complex());
         // Copies of a point are in its component.
         let first_copy = (self.points().len() - self.copies.len()) as u32;
         for (copy, &of) in (first_copy..).zip(&self.copies) {

@@ -25,7 +25,7 @@ impl Surface {
     /// O(n log n).
     pub fn manifold_defects(&self) -> ManifoldDefects {
         let sides = self.sides();
-        let mut fans = UnionFind::new(3 * self.regular.len());
+        let fans = UnionFind::new(3 * self.regular.len());
         let mut on_defect = vec![false; self.vertex_count()];
         let mut edges = 0;
         for around in sides.chunk_by(|a, b| a.0 == b.0) {

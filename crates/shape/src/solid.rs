@@ -44,7 +44,7 @@ impl Surface {
     fn solid(complex: &Complex) -> (Self, Cuts) {
         let whole = Self::of_complex(complex);
         let pairs = Pairs::of(complex, &whole);
-        let mut fans = UnionFind::new(3 * whole.regular.len());
+        let fans = UnionFind::new(3 * whole.regular.len());
         for [a, b] in &pairs.corners {
             fans.unite(a[0], b[0]);
             fans.unite(a[1], b[1]);

@@ -61,7 +61,7 @@ pub(super) fn flat_betti(complex: &Complex) -> Betti {
 
 /// The number of components of the shape, counted by its edges.
 pub(super) fn components(complex: &Complex) -> u64 {
-    let mut sets = connected(complex);
+    let sets = connected(complex);
     let of_shape = complex.vertices.iter().filter(|&(_, class)| class != Class::Exterior);
     of_shape.filter(|&(&[v], _)| sets.find(v) == v).count() as u64
 }
@@ -86,7 +86,7 @@ pub(super) fn connected_on_torus(
 /// The vertices of a shape, united along its edges.
 pub(super) fn connected(complex: &Complex) -> UnionFind {
     let points = complex.vertices.rows().last().map_or(0, |&[v]| v as usize + 1);
-    let mut sets = UnionFind::new(points);
+    let sets = UnionFind::new(points);
     for (&[a, b], class) in complex.edges.iter() {
         if class != Class::Exterior {
             sets.unite(a, b);

@@ -1,15 +1,15 @@
 //! A single block: the simplices that it owns of a shape whose other blocks are computed elsewhere.
 
-use walpha_base::Monitor;
-use walpha_base::UnionFind;
-use walpha_regular::Lattice;
-use walpha_regular::Sites;
+use rayon::prelude::*;
+use walpha_base::{Monitor, UnionFind};
+use walpha_regular::{Lattice, Sites};
 
 use super::block::{Block, Question};
-use super::classify::{Buckets, Dimension, Owned, classify};
+use super::classify::{Buckets, Owned, RANGE, classify};
+use super::gather::{Counts, Gathered, Location};
 use super::partition::Neighbourhood;
 use super::spanning::spanning;
-use crate::{Class, Complex, ShapeError, Simplices};
+use crate::{Complex, ShapeError};
 
 /// The points of a block and those around it, in the order of their indices in the whole set.
 #[derive(Clone, Copy)]
@@ -63,10 +63,12 @@ pub fn block_shape(points: Own<'_>, alpha: f64) -> Result<BlockShape, ShapeError
     let largest = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // Below −max ω the shape is empty: this is a finite α below that.
     let alpha = alpha.max(-2.0 * largest.abs() - 1.0);
-    let made = spanning(&mut block, alpha, positions.len() as u32, &Monitor::noop().units(1))?;
+    let (monitor, next) = (Monitor::noop(), positions.len() as u32);
+    let work = monitor.units(1);
+    let made = spanning(&mut block, alpha, next, &work)?;
     let lattice = Lattice::of(&block.positions, &block.weights);
     let question = Question { alpha, lattice, exterior: false };
-    let owned = classify(&block, made, &question, Buckets::new(&[], 1));
+    let owned = classify(&block, made, &question, Buckets::new(&[], 1), &work)?;
     Ok(BlockShape { halo, ..ordered(owned, &block, positions.len()) })
 }
 
@@ -100,50 +102,30 @@ fn block(points: Own<'_>, alpha: f64) -> Result<Block, ShapeError> {
 
 /// The rows in canonical order; `points` is the number of points given.
 fn ordered(owned: Owned, block: &Block, points: usize) -> BlockShape {
-    let Owned { mut buckets, sheets, shared, components, mut border, .. } = owned;
-    let bucket = buckets.pop().expect("there is one");
     let mut order: Vec<u32> = (0..block.own).collect();
-    order.sort_unstable_by_key(|&v| block.input[v as usize]);
-    let mut piece = BlockShape { sheets, shared, ..BlockShape::default() };
-    let (mut cells, mut facets, mut edges, mut vertices) = (
-        Simplices::<4>::default(),
-        Simplices::<3>::default(),
-        Simplices::<2>::default(),
-        Simplices::<1>::default(),
-    );
-    for v in order {
-        let a = block.input[v as usize];
-        let rows = |dimension: Dimension| {
-            let start = |v: usize| bucket.starts[v][dimension as usize] as usize;
-            start(v as usize)..start(v as usize + 1)
-        };
-        for i in rows(Dimension::Cells) {
-            let [b, c, d] = bucket.cells.vertices[i];
-            cells.push([a, b, c, d], bucket.cells.classes[i]);
-        }
-        for i in rows(Dimension::Facets) {
-            let [b, c] = bucket.facets.vertices[i];
-            facets.push([a, b, c], bucket.facets.classes[i]);
-        }
-        for i in rows(Dimension::Edges) {
-            edges.push([a, bucket.edges.vertices[i][0]], bucket.edges.classes[i]);
-        }
-        piece.facet_sheets.extend(&bucket.facet_sheets[rows(Dimension::FacetSheets)]);
-        piece.edge_sheets.extend(&bucket.edge_sheets[rows(Dimension::EdgeSheets)]);
-        match bucket.vertices[v as usize] {
-            None | Some(Class::Exterior) => {}
-            Some(class) => vertices.push([a], class),
-        }
-    }
-    piece.complex = Complex { cells, facets, edges, vertices };
+    order.par_sort_unstable_by_key(|&v| block.input[v as usize]);
+    let input: Vec<u32> = order.iter().map(|&v| block.input[v as usize]).collect();
+    let at = |&v: &u32| Location { records: v / RANGE as u32, point: v % RANGE as u32 };
+    let locations: Vec<_> = order.iter().map(at).collect();
+    let mut gathered = Gathered::new(Counts::of_all(owned.records(), false));
+    gathered.rest().write(&owned.buckets[0], &locations, &input, false);
     // Auxiliary points are numbered after those given.
-    let mut sets = UnionFind::new(points + MAX_AUXILIARY);
-    components.into_iter().for_each(|[a, b]| _ = sets.unite(a, b));
-    piece.components = (0..points as u32).map(|i| sets.find(i)).collect();
+    let sets = UnionFind::new(points + MAX_AUXILIARY);
+    owned.components.into_iter().for_each(|[a, b]| _ = sets.unite(a, b));
+    let mut border = owned.border;
     border.sort_unstable();
     border.dedup();
-    piece.border = border;
-    piece
+    let (complex, facet_sheets, edge_sheets) = gathered.into_parts();
+    BlockShape {
+        complex,
+        facet_sheets,
+        edge_sheets,
+        sheets: owned.sheets,
+        shared: owned.shared,
+        components: (0..points as u32).map(|i| sets.find(i)).collect(),
+        border,
+        halo: 0,
+    }
 }
 
 #[cfg(test)]

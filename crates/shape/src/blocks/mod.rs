@@ -17,6 +17,7 @@
 mod block;
 mod block_shape;
 mod classify;
+mod gather;
 mod merge;
 mod partition;
 mod plan;

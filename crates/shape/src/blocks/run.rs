@@ -3,7 +3,7 @@ use walpha_base::Monitor;
 use walpha_base::monitor::Units;
 use walpha_regular::{Lattice, Sites, Triangulation, TriangulationError, check_span};
 
-use super::block::{Answer, Block, Question, TRIANGULATION, WORK};
+use super::block::{Answer, Block, Question, WORK};
 use super::classify::{Buckets, Owned, classify};
 use super::merge::merge;
 use super::partition::{Partition, Reach};
@@ -36,7 +36,7 @@ pub(crate) fn run(
             .map(|&block| decide(sites, partition, block, question, buckets, &work))
             .collect();
         for done in done? {
-            bytes += done.merged_bytes();
+            bytes += done.merged_bytes(question.exterior);
             points += done.points();
             owned.push(done);
         }
@@ -59,8 +59,8 @@ pub(super) fn decide(
         None => in_space(sites, partition, block, question, work)?,
         Some(torus) => on_torus(sites, torus, partition, block, question, work)?,
     };
-    let owned = classify(&points, made, &Question { lattice, ..*question }, buckets);
-    work.add((WORK - TRIANGULATION) * u64::from(points.own))?;
+    let question = Question { lattice, ..*question };
+    let owned = classify(&points, made, &question, buckets, work)?;
     match (owned.long, sites.torus()) {
         (Some(edge), Some(torus)) => Err(too_long(torus, edge)),
         _ => Ok(owned),

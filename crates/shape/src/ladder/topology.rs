@@ -20,7 +20,7 @@ impl Levels<'_> {
         let complex = self.filtration.whole.complex();
         let vertices = ByLevel::new(self.len(), self.vertices.iter().map(|span| span.first));
         let edges = ByLevel::new(self.len(), self.edges.iter().map(|span| span.first));
-        let mut sets = UnionFind::new(self.filtration.points().len());
+        let sets = UnionFind::new(self.filtration.points().len());
         let mut count = 0;
         let grow = |level| {
             count += vertices.at(level).len() as u64;
@@ -43,7 +43,7 @@ impl Levels<'_> {
         let adjacent_pairs = self.filtration.adjacent_pairs();
         let later = adjacent_pairs.iter().map(|&[a, b]| firsts[a as usize].max(firsts[b as usize]));
         let by_level = ByLevel::new(self.len(), later);
-        let mut sets = UnionFind::new(firsts.len());
+        let sets = UnionFind::new(firsts.len());
         let mut count = 0;
         let grow = |level| {
             // All of them first: one may be united with others that enter at the same level.

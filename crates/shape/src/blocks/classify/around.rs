@@ -5,62 +5,36 @@ use walpha_base::UnionFind;
 
 use super::cells::Boundary;
 use super::local::{Local, even};
-use super::rows::{Long, Owned, Side};
+use super::records::{Buckets, Draft, Long, Records, Side};
 use super::sheets::Sheets;
+use super::stars::{RangeStars, Stars};
 use super::state::State;
 use crate::Class;
 
-/// The star of each owned vertex: its cells, as 4·cell + the corner that is the vertex.
-pub(super) struct Stars {
-    starts: Vec<u32>,
-    corners: Vec<u32>,
-}
-
-impl Stars {
-    /// The stars of the vertices below `own`. O(cells).
-    pub(super) fn new(cells: &[[u32; 4]], own: u32, states: &[State]) -> Self {
-        let near = || {
-            let all = (0u32..).step_by(4).zip(cells).zip(states);
-            all.filter(|(_, state)| !state.is_foreign()).map(|(cell, _)| cell)
-        };
-        // `starts[v + 1]` is where the next corner of v is written; once all are, it is where the star of v ends.
-        let mut starts = vec![0; own as usize + 2];
-        for v in near().flat_map(|(_, cell)| cell).filter(|&&v| v < own) {
-            starts[*v as usize + 2] += 1;
-        }
-        for v in 2..starts.len() {
-            starts[v] += starts[v - 1];
-        }
-        let mut corners = vec![0; starts[own as usize + 1] as usize];
-        for (first, cell) in near() {
-            for (corner, &v) in (first..).zip(cell) {
-                if v < own {
-                    let at = &mut starts[v as usize + 1];
-                    corners[*at as usize] = corner;
-                    *at += 1;
-                }
-            }
-        }
-        Self { starts, corners }
-    }
-
-    /// The star of a vertex, ascending; empty if the point is hidden.
-    pub(super) fn of(&self, v: u32) -> &[u32] {
-        let v = v as usize;
-        &self.corners[self.starts[v] as usize..self.starts[v + 1] as usize]
-    }
-}
-
-/// Visits one own point after the other.
+/// Walks around one own point after the other.
 pub(super) struct Walker<'a> {
-    local: &'a Local<'a>,
-    states: &'a [State],
-    stars: &'a Stars,
-    boundary: &'a Boundary,
-    sheets: &'a mut Sheets,
-    owned: &'a mut Owned,
+    pub local: &'a Local<'a>,
+    pub states: &'a [State],
+    pub boundary: &'a Boundary,
+    pub sheets: &'a Sheets,
     /// The points, united along edges of the shape.
-    components: UnionFind,
+    pub components: &'a UnionFind,
+    pub buckets: Buckets,
+}
+
+/// What walks around the points of a range find.
+#[derive(Default)]
+pub(super) struct Walked {
+    /// By bucket.
+    pub records: Vec<Records>,
+    pub shared: Vec<Side>,
+    pub border: Vec<u32>,
+    pub long: Option<Long>,
+}
+
+/// The memory of a thread, used again for the next range.
+pub(super) struct Worker {
+    stars: RangeStars,
     /// By vertex u: 4·v + flags of the facets at the edge uv ([`COVERED`], [`OPEN`]), where v is the last point visited
     /// that has u as a neighbour.
     edge_flags: Vec<u32>,
@@ -72,31 +46,15 @@ pub(super) struct Walker<'a> {
     cells: Vec<CellRow>,
     facets: Vec<FacetRow>,
     edges: Vec<EdgeRow>,
+    draft: Draft,
+    /// By bucket.
+    records: Vec<Records>,
 }
 
-/// Flag of an edge: one of its facets is in the shape.
-const COVERED: u32 = 1;
-/// Flag of an edge: one of its facets is not interior.
-const OPEN: u32 = 2;
-
-impl<'a> Walker<'a> {
-    pub(super) fn new(
-        local: &'a Local<'a>,
-        states: &'a [State],
-        stars: &'a Stars,
-        boundary: &'a Boundary,
-        sheets: &'a mut Sheets,
-        owned: &'a mut Owned,
-    ) -> Self {
-        let points = local.block.input.len();
+impl Worker {
+    pub(super) fn new(points: usize, buckets: Buckets) -> Self {
         Self {
-            local,
-            states,
-            stars,
-            boundary,
-            sheets,
-            owned,
-            components: UnionFind::new(points),
+            stars: RangeStars::default(),
             // u32::MAX / 4 is no vertex.
             edge_flags: vec![u32::MAX; points],
             neighbours: Vec::new(),
@@ -104,33 +62,60 @@ impl<'a> Walker<'a> {
             cells: Vec::new(),
             facets: Vec::new(),
             edges: Vec::new(),
+            draft: Draft::default(),
+            records: vec![Records::default(); buckets.count],
         }
     }
+}
 
-    /// Emits the point's class, and the simplices whose smallest vertex it is.
-    pub(super) fn visit(&mut self, v: u32) {
-        self.owned.rows.begin();
-        let star = self.stars.of(v);
-        if star.is_empty() {
-            self.owned.rows.vertices.push(None);
-            return;
+impl Walked {
+    pub(super) fn points(&self) -> usize {
+        self.records.iter().map(|records| records.points.len()).sum()
+    }
+}
+
+/// Flag of an edge: one of its facets is in the shape.
+const COVERED: u32 = 1;
+/// Flag of an edge: one of its facets is not interior.
+const OPEN: u32 = 2;
+
+impl Walker<'_> {
+    /// The classes of the points of a range, and the simplices whose smallest vertices they are.
+    pub(super) fn walk(&self, stars: &Stars, range: usize, worker: &mut Worker) -> Walked {
+        let mut walked = Walked::default();
+        let mut around = std::mem::take(&mut worker.stars);
+        for v in stars.sort(range, &mut around) {
+            let class = self.visit(v, around.of(v), worker, &mut walked);
+            let bucket = self.buckets.at(self.local.input(v));
+            worker.records[bucket].push(class, &mut worker.draft);
         }
-        let covered = self.walk_star(v, star);
-        self.emit_edges(v, star);
-        let class = if star.iter().all(|&at| self.states[at as usize / 4].is_inside()) {
+        worker.stars = around;
+        // Copied, as lists that grew have memory to spare.
+        walked.records = worker.records.clone();
+        worker.records.iter_mut().for_each(Records::clear);
+        walked
+    }
+
+    /// Finds the point's class, and the simplices whose smallest vertex it is.
+    fn visit(
+        &self,
+        v: u32,
+        star: &[u32],
+        worker: &mut Worker,
+        walked: &mut Walked,
+    ) -> Option<Class> {
+        if star.is_empty() {
+            return None;
+        }
+        let covered = self.walk_star(v, star, worker);
+        self.emit_edges(v, star, worker, walked);
+        Some(if star.iter().all(|&at| self.states[at as usize / 4].is_inside()) {
             Class::Interior
         } else if covered {
             Class::Regular
         } else {
-            self.dangling_vertex(v, star)
-        };
-        self.owned.rows.vertices.push(Some(class));
-    }
-
-    /// Ends the rows of the last point, and returns the components.
-    pub(super) fn finish(self) -> UnionFind {
-        self.owned.rows.begin();
-        self.components
+            self.dangling_vertex(v, star, &worker.neighbours[..worker.degree])
+        })
     }
 
     /// One pass over the star of a point: its neighbours with the flags of the edges to them, and the cells and
@@ -156,8 +141,9 @@ impl<'a> Walker<'a> {
     /// An edge at v is met once in each cell around it, so its flags accumulate over the star: after the pass they
     /// cover all of its facets. A facet at v is met from its two cells, and emitted from the one that
     /// [`State::emits`] names. A cell at v is met once. Facets and cells are emitted at their smallest vertex only.
-    fn walk_star(&mut self, v: u32, star: &[u32]) -> bool {
-        let Self { local, states, edge_flags, neighbours, cells, facets, .. } = self;
+    fn walk_star(&self, v: u32, star: &[u32], worker: &mut Worker) -> bool {
+        let Self { local, states, .. } = self;
+        let Worker { edge_flags, neighbours, cells, facets, draft, .. } = &mut *worker;
         let input = &local.block.input[..];
         let smallest = input[v as usize];
         let size = star.len();
@@ -204,9 +190,9 @@ impl<'a> Walker<'a> {
             let wanted = state.is_inside() | local.exterior;
             cell_count += usize::from(wanted & (smallest < x.min(y).min(z)));
         }
-        self.emit_cells(cell_count);
-        self.emit_facets(facet_count);
-        self.degree = degree;
+        emit_cells(&mut cells[..cell_count], draft);
+        self.emit_facets(&mut facets[..facet_count], draft);
+        worker.degree = degree;
         covered != 0
     }
 
@@ -234,9 +220,9 @@ impl<'a> Walker<'a> {
     }
 
     /// The class of a point without a facet in the shape.
-    fn dangling_vertex(&self, v: u32, star: &[u32]) -> Class {
+    fn dangling_vertex(&self, v: u32, star: &[u32], neighbours: &[u32]) -> Class {
         let mut refuted = false;
-        for &neighbour in &self.neighbours[..self.degree] {
+        for &neighbour in neighbours {
             if self.dangling_edge(v, neighbour, star).is_some() {
                 return Class::Regular;
             }
@@ -271,12 +257,9 @@ struct FacetRow {
 struct EdgeRow {
     to: u32,
     class: Class,
-    /// Of a singular edge: 4·cell + corner at the point visited; else [`NO_CORNER`].
-    corner: u32,
+    /// Of a singular edge: 4·cell + corner at the point visited.
+    corner: Option<u32>,
 }
-
-/// Stands for the absence of a corner.
-const NO_CORNER: u32 = u32::MAX;
 
 impl CellRow {
     /// A cell whose smallest vertex is corner `k`; the others are those that follow it cyclically.
@@ -296,22 +279,19 @@ impl CellRow {
     }
 }
 
-impl Walker<'_> {
-    /// Emits the cells, sorted.
-    fn emit_cells(&mut self, count: usize) {
-        let rows = &mut self.owned.rows;
-        let cells = &mut self.cells[..count];
-        cells.sort_unstable();
-        for cell in cells {
-            let class = if cell.inside { Class::Interior } else { Class::Exterior };
-            let [first, second] = pair(cell.first_two);
-            rows.cells.push([first, second, cell.third], class);
-        }
+/// Emits cells, sorted.
+fn emit_cells(cells: &mut [CellRow], draft: &mut Draft) {
+    cells.sort_unstable();
+    for cell in cells {
+        let class = if cell.inside { Class::Interior } else { Class::Exterior };
+        let [first, second] = pair(cell.first_two);
+        draft.cell([first, second, cell.third], class);
     }
+}
 
-    /// Emits the facets, sorted, with corners on their sheets.
-    fn emit_facets(&mut self, count: usize) {
-        let facets = &mut self.facets[..count];
+impl Walker<'_> {
+    /// Emits facets, sorted, with corners on their sheets.
+    fn emit_facets(&self, facets: &mut [FacetRow], draft: &mut Draft) {
         for facet in &mut *facets {
             let state = self.states[facet.side as usize / 4];
             let class = state.facet(facet.side as usize % 4);
@@ -321,74 +301,88 @@ impl Walker<'_> {
             }
         }
         facets.sort_unstable_by_key(|facet| facet.row);
-        let rows = &mut self.owned.rows;
         for facet in facets {
             let state = self.states[facet.side as usize / 4];
             let class = state.facet(facet.side as usize % 4);
-            rows.facets.push(pair(facet.row), class);
+            let row = pair(facet.row);
             if matches!(class, Class::Exterior | Class::Interior) {
+                draft.facet(row, class, &[]);
                 continue;
             }
             let beyond = self.boundary.beyond(facet.side);
             if class == Class::Regular {
                 let outside = if state.is_inside() { beyond } else { facet.side };
-                rows.facet_sheets.push(self.local.owned_corner(outside));
+                draft.facet(row, class, &[self.local.owned_corner(outside)]);
             } else {
-                let sides = [self.local.owned_corner(facet.side), self.local.owned_corner(beyond)];
-                let [front, back] = if facet.clockwise { sides } else { [sides[1], sides[0]] };
-                rows.facet_sheets.extend([front, back]);
+                let mut sides = [facet.side, beyond].map(|side| self.local.owned_corner(side));
+                if !facet.clockwise {
+                    sides.reverse();
+                }
+                draft.facet(row, class, &sides);
             }
         }
     }
 
     /// Classifies the edges at a point, and emits those whose smallest vertex it is, sorted.
-    fn emit_edges(&mut self, v: u32, star: &[u32]) {
+    fn emit_edges(&self, v: u32, star: &[u32], worker: &mut Worker, walked: &mut Walked) {
         let smallest = self.local.input(v);
-        for &neighbour in &self.neighbours[..self.degree] {
+        for &neighbour in &worker.neighbours[..worker.degree] {
             let to = self.local.input(neighbour);
             // Edges between two blocks are visited from both ends, as each block unites its own corners only.
             if to < smallest && self.local.owned(neighbour) {
                 continue;
             }
-            let flags = self.edge_flags[neighbour as usize];
-            let mut corner = NO_CORNER;
-            let class = if flags & OPEN == 0 {
-                Class::Interior
+            let flags = worker.edge_flags[neighbour as usize];
+            let (class, corner) = if flags & OPEN == 0 {
+                (Class::Interior, None)
             } else if flags & COVERED != 0 {
-                Class::Regular
-            } else if let Some(at) = self.dangling_edge(v, neighbour, star) {
-                corner = at;
-                Class::Singular
+                (Class::Regular, None)
             } else {
-                Class::Exterior
+                match self.dangling_edge(v, neighbour, star) {
+                    None => (Class::Exterior, None),
+                    corner => (Class::Singular, corner),
+                }
             };
             if (class != Class::Exterior || self.local.exterior)
                 && self.local.is_long([v, neighbour])
             {
                 let ends = [v, neighbour].map(|v| self.local.block.positions[v as usize]);
-                self.owned.long = Some(Long { edge: [smallest, to], ends });
+                let long = Long { edge: [smallest, to], ends };
+                walked.long = walked.long.into_iter().chain([long]).min_by_key(|long| long.edge);
             }
-            if class == Class::Singular {
-                unite_ends(self.local, self.sheets, self.owned, [v, neighbour], corner);
+            if let Some(corner) = corner {
+                walked.shared.extend(self.unite_ends([v, neighbour], corner));
             }
             if to > smallest && (class != Class::Exterior || self.local.exterior) {
-                self.edges.push(EdgeRow { to, class, corner });
+                worker.edges.push(EdgeRow { to, class, corner });
             }
             if class != Class::Exterior {
                 self.components.unite(v, neighbour);
                 if !self.local.owned(neighbour) {
-                    self.owned.border.extend([to, smallest]);
+                    walked.border.extend([to, smallest]);
                 }
             }
         }
-        self.edges.sort_unstable_by_key(|edge| edge.to);
-        let rows = &mut self.owned.rows;
-        for EdgeRow { to, class, corner } in self.edges.drain(..) {
-            rows.edges.push([to], class);
-            if class == Class::Singular {
-                rows.edge_sheets.push(corner);
-            }
+        worker.edges.sort_unstable_by_key(|edge| edge.to);
+        for EdgeRow { to, class, corner } in worker.edges.drain(..) {
+            worker.draft.edge(to, class, corner);
         }
+    }
+
+    /// Unites the corners at both ends of a singular edge, as the space around it is connected. Where the other end is
+    /// another block's, returns the edge for the merge.
+    fn unite_ends(&self, [v, u]: [u32; 2], corner: u32) -> Option<Side> {
+        let local = self.local;
+        if local.owned(u) {
+            let cell = local.cells[corner as usize / 4];
+            let other = cell.iter().position(|&w| w == u).expect("a cell at the edge");
+            self.sheets.unite(corner, corner / 4 * 4 + other as u32);
+            return None;
+        }
+        let ends = if local.input(v) < local.input(u) { [v, u] } else { [u, v] };
+        let [low, high] = ends.map(|end| local.input(end));
+        let windings = local.block.windings(ends[0]);
+        Some(Side { simplex: [low, high, high], side: 0, sheet: corner, windings })
     }
 }
 
@@ -396,25 +390,4 @@ impl Walker<'_> {
 #[inline(always)]
 fn pair(row: u64) -> [u32; 2] {
     [(row >> 32) as u32, row as u32]
-}
-
-/// Unites the corners at both ends of a singular edge, as the space around it is connected. Where the other end is
-/// another block's, the edge is noted for the merge.
-fn unite_ends(
-    local: &Local<'_>,
-    sheets: &mut Sheets,
-    owned: &mut Owned,
-    [v, u]: [u32; 2],
-    corner: u32,
-) {
-    if local.owned(u) {
-        let cell = local.cells[corner as usize / 4];
-        let other = cell.iter().position(|&w| w == u).expect("a cell at the edge");
-        sheets.unite(corner, corner / 4 * 4 + other as u32);
-    } else {
-        let ends = if local.input(v) < local.input(u) { [v, u] } else { [u, v] };
-        let [low, high] = ends.map(|end| local.input(end));
-        let windings = local.block.windings(ends[0]);
-        owned.shared.push(Side { simplex: [low, high, high], side: 0, sheet: corner, windings });
-    }
 }

@@ -1,109 +1,165 @@
+use rayon::prelude::*;
+
+use super::CELLS;
 use super::local::Local;
-use super::rows::Owned;
+use super::records::Side;
 use super::sheets::Sheets;
-use super::state::State;
+use super::state::{Kind, State};
 use crate::Class;
 
 /// The regular and singular facets, each as 4·cell + corner from both sides: first that of the cell that it is
-/// emitted from. Ascending. Replaces the adjacency of cells once facets are classified.
-#[derive(Default)]
-pub(super) struct Boundary(Vec<(u32, u32)>);
+/// emitted from. Ascending, by [`CELLS`] cells. Replaces the adjacency of cells once facets are classified.
+pub(super) struct Boundary(Vec<Vec<[u32; 2]>>);
 
 impl Boundary {
     /// 4·cell + corner on the other side of a facet, by that of the cell that it is emitted from.
     pub(super) fn beyond(&self, side: u32) -> u32 {
-        let found = self.0.binary_search_by_key(&side, |facet| facet.0);
-        self.0[found.expect("a facet on the boundary")].1
+        let facets = &self.0[side as usize / (4 * CELLS)];
+        let found = facets.binary_search_by_key(&side, |facet| facet[0]);
+        facets[found.expect("a facet on the boundary")][1]
     }
 }
 
 impl Local<'_> {
-    pub(super) fn classify_cells(&self) -> Vec<State> {
+    pub(super) fn classify_cells(&self) -> Vec<Kind> {
         let ghost = self.ghost;
-        let state = |&cell: &[u32; 4]| {
+        let kind = |&cell: &[u32; 4]| {
             if !cell.iter().any(|&v| self.owned(v)) {
-                State(State::FOREIGN)
+                Kind::Foreign
             } else if cell.contains(&ghost) {
-                State(State::INFINITE)
+                Kind::Infinite
             } else if self.fits(cell) {
-                State(State::INSIDE)
+                Kind::Inside
             } else {
-                State(0)
+                Kind::Outside
             }
         };
-        self.cells.iter().map(state).collect()
+        self.cells.par_iter().with_min_len(CELLS).map(kind).collect()
     }
 
     /// Classifies each facet with an owned vertex, and unites the corners of exterior cells that it shows to be on
-    /// one sheet.
+    /// one sheet. Also returns the sides of facets that other blocks know, too.
     pub(super) fn classify_facets(
         &self,
         neighbors: &[[u32; 4]],
-        states: &mut [State],
-        sheets: &mut Sheets,
-        owned: &mut Owned,
-    ) -> Boundary {
-        let mut boundary = Boundary::default();
-        for cell in 0..states.len() as u32 {
-            let state = states[cell as usize];
-            if state.is_foreign() {
+        kinds: Vec<Kind>,
+        sheets: &Sheets,
+    ) -> (Vec<State>, Boundary, Vec<Side>) {
+        // First each facet from its lower side, as neighbours may be another thread's.
+        let mut singular = vec![0; kinds.len()];
+        let chunks = singular.par_chunks_mut(CELLS).enumerate().map(|(chunk, singular)| {
+            let mut shared = Vec::new();
+            for (cell, singular) in (chunk * CELLS..).zip(singular) {
+                if kinds[cell] != Kind::Foreign {
+                    let facets = (4 * cell as u32..).zip(neighbors[cell]);
+                    *singular = self.unite_and_find_singular(facets, &kinds, sheets, &mut shared);
+                }
+            }
+            shared
+        });
+        let shared = chunks.collect::<Vec<_>>().into_iter().flatten().collect();
+        let mut states = vec![State::new(Kind::Foreign); kinds.len()];
+        let chunks = states.par_chunks_mut(CELLS).enumerate().map(|(chunk, states)| {
+            let mut boundary = Vec::new();
+            for (cell, state) in (chunk * CELLS..).zip(states) {
+                let facets = (4 * cell as u32..).zip(neighbors[cell]);
+                *state = self.state(facets, &kinds, &singular, &mut boundary);
+            }
+            boundary
+        });
+        let boundary = Boundary(chunks.collect());
+        (states, boundary, shared)
+    }
+
+    /// Of the facets of a cell, given by 4·cell + corner on both sides, those for which it is the lower side: the bits
+    /// of the singular ones. Unites the corners of exterior cells that they show to be on one sheet.
+    fn unite_and_find_singular(
+        &self,
+        facets: impl Iterator<Item = (u32, u32)>,
+        kinds: &[Kind],
+        sheets: &Sheets,
+        shared: &mut Vec<Side>,
+    ) -> u8 {
+        let mut singular = 0;
+        for (here, there) in facets {
+            let [kind, next] = [here, there].map(|side| kinds[side as usize / 4]);
+            // No facet of a foreign cell has an owned vertex.
+            if there < here || next == Kind::Foreign {
                 continue;
             }
-            let across = neighbors[cell as usize];
-            for (here, there) in (4 * cell..).zip(across) {
-                let next = states[there as usize / 4];
-                // Each pair once. No facet of a foreign cell has an owned vertex.
-                if there < here || next.is_foreign() {
-                    continue;
-                }
-                let class = match (state.is_inside(), next.is_inside()) {
-                    (true, true) => Class::Interior,
-                    (false, false) => self.classify_dangling_facet(here, there),
-                    _ => Class::Regular,
-                };
-                states[cell as usize].set_facet(here as usize % 4, class);
-                states[there as usize / 4].set_facet(there as usize % 4, class);
-                if class != Class::Exterior || self.exterior {
-                    // One of the two cells at a finite facet is finite.
-                    let (emitter, other) =
-                        if state.is_infinite() { (there, here) } else { (here, there) };
-                    states[emitter as usize / 4].set_emits(emitter as usize % 4);
-                    if matches!(class, Class::Regular | Class::Singular) {
-                        boundary.0.push((emitter, other));
-                    }
-                }
-                match class {
-                    Class::Interior => {}
-                    Class::Exterior => self.unite_across(here, there, sheets),
-                    Class::Regular | Class::Singular => {
-                        for (side, state) in [(here, state), (there, next)] {
-                            if !state.is_inside() {
-                                self.unite_side(side, sheets, owned);
-                            }
-                        }
+            let mut unite_side = |side| shared.extend(self.unite_side(side, sheets));
+            match (kind == Kind::Inside, next == Kind::Inside) {
+                (true, true) => {}
+                (true, false) => unite_side(there),
+                (false, true) => unite_side(here),
+                (false, false) => {
+                    if self.is_singular(here, there) {
+                        singular |= 1 << (here % 4);
+                        unite_side(here);
+                        unite_side(there);
+                    } else {
+                        self.unite_across(here, there, sheets);
                     }
                 }
             }
         }
-        boundary.0.sort_unstable();
-        boundary
+        singular
     }
 
-    /// A facet between two cells that are not in the shape: 4·cell + corner on both sides.
-    fn classify_dangling_facet(&self, here: u32, there: u32) -> Class {
+    /// The state of a cell, from the bits of singular facets from their lower sides. Notes the regular and singular
+    /// facets that it emits.
+    fn state(
+        &self,
+        facets: impl Iterator<Item = (u32, u32)>,
+        kinds: &[Kind],
+        singular: &[u8],
+        boundary: &mut Vec<[u32; 2]>,
+    ) -> State {
+        let mut state = State::new(Kind::Foreign);
+        for (at, (here, there)) in facets.enumerate() {
+            let [kind, next] = [here, there].map(|side| kinds[side as usize / 4]);
+            if at == 0 {
+                state = State::new(kind);
+            }
+            if kind == Kind::Foreign || next == Kind::Foreign {
+                continue;
+            }
+            let lower = here.min(there);
+            let class = match (kind == Kind::Inside, next == Kind::Inside) {
+                (true, true) => Class::Interior,
+                (false, false) if singular[lower as usize / 4] >> (lower % 4) & 1 == 0 => {
+                    Class::Exterior
+                }
+                (false, false) => Class::Singular,
+                _ => Class::Regular,
+            };
+            state.set_facet(at, class);
+            // One of the two cells at a finite facet is finite.
+            let emits = match (kind == Kind::Infinite, next == Kind::Infinite) {
+                (false, false) => here < there,
+                (infinite, _) => !infinite,
+            };
+            if emits && (class != Class::Exterior || self.exterior) {
+                state.set_emits(at);
+                if matches!(class, Class::Regular | Class::Singular) {
+                    boundary.push([here, there]);
+                }
+            }
+        }
+        state
+    }
+
+    /// Whether a facet between two cells that are not in the shape, 4·cell + corner on both sides, is in the shape.
+    fn is_singular(&self, here: u32, there: u32) -> bool {
         let ghost = self.ghost;
         let facet = self.facet(here);
         if facet.contains(&ghost) || !self.fits(facet) {
-            return Class::Exterior;
+            return false;
         }
         // In a regular triangulation, a smallest orthogonal sphere of a facet that contains any point contains one
         // of the two vertices opposite the facet.
         let apex = |side: u32| self.cells[side as usize / 4][side as usize % 4];
-        let contains_apex = [here, there]
-            .into_iter()
-            .map(apex)
-            .any(|v| v != ghost && self.predicates.inside(facet, v));
-        if contains_apex { Class::Exterior } else { Class::Singular }
+        ![here, there].into_iter().map(apex).any(|v| v != ghost && self.predicates.inside(facet, v))
     }
 
     /// The vertices of a facet, by 4·cell + corner opposite.

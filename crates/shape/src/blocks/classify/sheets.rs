@@ -1,8 +1,12 @@
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+use rayon::prelude::*;
 use walpha_base::UnionFind;
 
+use super::CELLS;
 use super::local::{Local, even};
-use super::rows::{Bucket, Owned, Side};
-use super::state::State;
+use super::records::{Owned, Side};
+use super::state::Kind;
 
 /// Sheets of the boundary: a union-find over the corners of exterior cells.
 ///
@@ -18,14 +22,9 @@ pub(super) struct Sheets {
 }
 
 impl Sheets {
-    pub(super) fn new(states: &[State]) -> Self {
-        let mut count = 0;
-        let number = |state: &State| {
-            let number = count;
-            count += u32::from(!state.is_inside() && !state.is_foreign());
-            number
-        };
-        let number = states.iter().map(number).collect();
+    pub(super) fn new(kinds: &[Kind]) -> Self {
+        let is_exterior = |kind: &Kind| matches!(kind, Kind::Infinite | Kind::Outside);
+        let (number, count) = ranks(kinds, is_exterior);
         Self { number, sets: UnionFind::new(4 * count as usize) }
     }
 
@@ -33,33 +32,45 @@ impl Sheets {
         4 * self.number[corner as usize / 4] + corner % 4
     }
 
-    pub(super) fn unite(&mut self, a: u32, b: u32) {
+    pub(super) fn unite(&self, a: u32, b: u32) {
         self.sets.unite(self.at(a), self.at(b));
     }
 
-    /// Replaces corners by the numbers of their sheets, which count from 0 in the order of appearance.
-    pub(super) fn number(mut self, owned: &mut Owned) {
-        const UNNUMBERED: u32 = u32::MAX;
-        let mut names = vec![UNNUMBERED; self.sets.members()];
-        let mut count = 0;
-        let shared = owned.shared.iter_mut().map(|side| &mut side.sheet);
-        let Bucket { facet_sheets, edge_sheets, .. } = &mut owned.rows;
-        for corner in facet_sheets.iter_mut().chain(edge_sheets).chain(shared) {
-            let at = self.at(*corner);
-            let name = &mut names[self.sets.find(at) as usize];
-            if *name == UNNUMBERED {
-                *name = count;
-                count += 1;
-            }
-            *corner = *name;
-        }
+    /// Replaces corners by the numbers of their sheets, which count from 0.
+    pub(super) fn number(self, owned: &mut Owned) {
+        let is_sheet: Vec<_> = (0..self.sets.members()).map(|_| AtomicBool::new(false)).collect();
+        owned.sheets_mut().for_each(|corner| {
+            *corner = self.sets.find(self.at(*corner));
+            is_sheet[*corner as usize].store(true, Relaxed);
+        });
+        let (number, count) = ranks(&is_sheet, |is_sheet| is_sheet.load(Relaxed));
+        owned.sheets_mut().for_each(|root| *root = number[*root as usize]);
         owned.sheets = count;
     }
 }
 
+/// For each item the number of items before it that are counted; and the number of all that are.
+fn ranks<T: Sync>(items: &[T], is_counted: impl Fn(&T) -> bool + Sync) -> (Vec<u32>, u32) {
+    let count = |items: &[T]| items.iter().filter(|item| is_counted(item)).count() as u32;
+    let mut starts: Vec<u32> = items.par_chunks(CELLS).map(count).collect();
+    let mut total = 0;
+    for start in &mut starts {
+        total += std::mem::replace(start, total);
+    }
+    let mut ranks = vec![0; items.len()];
+    let chunks = ranks.par_chunks_mut(CELLS).zip(items.par_chunks(CELLS)).zip(starts);
+    chunks.for_each(|((ranks, items), mut next)| {
+        for (rank, item) in ranks.iter_mut().zip(items) {
+            *rank = next;
+            next += u32::from(is_counted(item));
+        }
+    });
+    (ranks, total)
+}
+
 impl Local<'_> {
     /// Unites the corners of the cells on both sides of an exterior facet, at each owned vertex of it.
-    pub(super) fn unite_across(&self, here: u32, there: u32, sheets: &mut Sheets) {
+    pub(super) fn unite_across(&self, here: u32, there: u32, sheets: &Sheets) {
         let cells = self.cells;
         let (cell, next) = (cells[here as usize / 4], cells[there as usize / 4]);
         for (k, &v) in cell.iter().enumerate() {
@@ -78,27 +89,27 @@ impl Local<'_> {
         side / 4 * 4 + owned.expect("an owned point on each facet that is asked about")
     }
 
-    /// Unites the corners on one side of a boundary facet, and notes the side where other blocks know it, too.
-    pub(super) fn unite_side(&self, side: u32, sheets: &mut Sheets, owned: &mut Owned) {
+    /// Unites the corners on one side of a boundary facet; returns the side if other blocks know it, too.
+    pub(super) fn unite_side(&self, side: u32, sheets: &Sheets) -> Option<Side> {
         let cell = self.cells[side as usize / 4];
         let mut corners = [1, 2, 3].map(|step| (side as usize + step) % 4);
         let own = corners.iter().filter(|&&k| self.owned(cell[k])).count();
         // The cell has no owned vertex but the one opposite this facet, so the facet is other blocks' alone.
         if own == 0 {
-            return;
+            return None;
         }
         let first = self.owned_corner(side);
         for &k in corners.iter().filter(|&&k| self.owned(cell[k])) {
             sheets.unite(first, side / 4 * 4 + k as u32);
         }
         if own == 3 {
-            return;
+            return None;
         }
         corners.sort_unstable_by_key(|&k| self.input(cell[k]));
         let [a, b, c] = corners;
         let simplex = corners.map(|k| self.input(cell[k]));
         let windings = self.block.windings(cell[a]);
         let side = u32::from(even(a, b, c));
-        owned.shared.push(Side { simplex, side, sheet: first, windings });
+        Some(Side { simplex, side, sheet: first, windings })
     }
 }

@@ -1,17 +1,38 @@
 use crate::Class;
 
+/// Where a cell is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// None of its corners is the block's own, so that the block needs nothing of it.
+    Foreign,
+    /// One of its corners is the ghost.
+    Infinite,
+    Outside,
+    Inside,
+}
+
 /// The state of a cell in 16 bits: the class of the facet opposite each corner (bits 2·corner and 2·corner + 1),
 /// three flags, and whether each facet is emitted from this cell (bits 12 + corner).
-#[derive(Clone, Copy, Default)]
-pub(super) struct State(pub(super) u16);
+#[derive(Clone, Copy)]
+pub(super) struct State(u16);
 
 impl State {
     /// The lower bits of the classes of all facets.
-    pub(super) const LOW_BITS: u16 = 0b0101_0101;
-    pub(super) const INSIDE: u16 = 0x100;
-    pub(super) const INFINITE: u16 = 0x200;
-    pub(super) const FOREIGN: u16 = 0x400;
-    pub(super) const EMITS: usize = 12;
+    const LOW_BITS: u16 = 0b0101_0101;
+    const INSIDE: u16 = 0x100;
+    const INFINITE: u16 = 0x200;
+    const FOREIGN: u16 = 0x400;
+    const EMITS: usize = 12;
+
+    /// The state of a cell all of whose facets are exterior.
+    pub(super) fn new(kind: Kind) -> Self {
+        Self(match kind {
+            Kind::Foreign => Self::FOREIGN,
+            Kind::Infinite => Self::INFINITE,
+            Kind::Outside => 0,
+            Kind::Inside => Self::INSIDE,
+        })
+    }
 
     #[inline(always)]
     pub(super) fn is_inside(self) -> bool {
@@ -23,7 +44,6 @@ impl State {
         self.0 & Self::INFINITE != 0
     }
 
-    /// Whether none of its corners is the block's own, so that the block needs nothing of it.
     #[inline(always)]
     pub(super) fn is_foreign(self) -> bool {
         self.0 & Self::FOREIGN != 0
@@ -51,11 +71,6 @@ impl State {
     #[inline(always)]
     pub(super) fn emits(self, opposite: usize) -> bool {
         self.0 >> (Self::EMITS + opposite) & 1 != 0
-    }
-
-    /// Number of facets emitted from this cell.
-    pub(super) fn emitted(self) -> usize {
-        (self.0 >> Self::EMITS).count_ones() as usize
     }
 
     pub(super) fn set_facet(&mut self, opposite: usize, class: Class) {

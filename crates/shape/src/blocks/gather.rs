@@ -1,0 +1,244 @@
+//! The simplices of points recorded in any order, in canonical order.
+
+use rayon::prelude::*;
+
+use super::classify::{PointRows, Records};
+use crate::{Class, Complex, Simplices};
+
+/// Points whose records one thread gathers at a time.
+const CHUNK: usize = 1 << 12;
+
+/// Where the record of a point is.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Location {
+    pub records: u32,
+    /// Number of the point among these.
+    pub point: u32,
+}
+
+/// Numbers of rows and of sheets.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Counts {
+    cells: usize,
+    facets: usize,
+    edges: usize,
+    vertices: usize,
+    facet_sheets: usize,
+    edge_sheets: usize,
+}
+
+impl Counts {
+    /// Those of some points. Vertices that are exterior count only if exterior simplices are wanted.
+    fn of<'a>(points: impl Iterator<Item = &'a PointRows>, exterior: bool) -> Self {
+        points.fold(Self::default(), |sum, point| {
+            sum.plus(Self {
+                cells: point.cells as usize,
+                facets: point.facets as usize,
+                edges: point.edges as usize,
+                vertices: usize::from(point.is_listed(exterior)),
+                facet_sheets: point.facet_sheets as usize,
+                edge_sheets: point.edge_sheets as usize,
+            })
+        })
+    }
+
+    /// Those of all points in some records.
+    pub(super) fn of_all<'a>(
+        records: impl ParallelIterator<Item = &'a Records>,
+        exterior: bool,
+    ) -> Self {
+        let count = |records: &Records| Self::of(records.points.iter(), exterior);
+        records.map(count).reduce(Self::default, Self::plus)
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            cells: self.cells + other.cells,
+            facets: self.facets + other.facets,
+            edges: self.edges + other.edges,
+            vertices: self.vertices + other.vertices,
+            facet_sheets: self.facet_sheets + other.facet_sheets,
+            edge_sheets: self.edge_sheets + other.edge_sheets,
+        }
+    }
+
+    /// Bytes of so many rows, classes and sheets once gathered.
+    pub(super) fn bytes(self) -> u64 {
+        let row = |vertices: usize| vertices * size_of::<u32>() + size_of::<Class>();
+        let rows = row(4) * self.cells
+            + row(3) * self.facets
+            + row(2) * self.edges
+            + row(1) * self.vertices;
+        (rows + size_of::<u32>() * (self.facet_sheets + self.edge_sheets)) as u64
+    }
+}
+
+/// Gathered simplices and sheets.
+pub(super) struct Gathered {
+    cells: List<4>,
+    facets: List<3>,
+    edges: List<2>,
+    vertices: List<1>,
+    facet_sheets: Vec<u32>,
+    edge_sheets: Vec<u32>,
+}
+
+struct List<const N: usize> {
+    rows: Vec<[u32; N]>,
+    classes: Vec<Class>,
+}
+
+impl<const N: usize> List<N> {
+    fn new(rows: usize) -> Self {
+        Self { rows: vec![[0; N]; rows], classes: vec![Class::Exterior; rows] }
+    }
+
+    fn rest(&mut self) -> Part<'_, N> {
+        Part { rows: &mut self.rows, classes: &mut self.classes }
+    }
+
+    fn simplices(self) -> Simplices<N> {
+        Simplices::new(self.rows, self.classes).expect("as many classes as rows")
+    }
+}
+
+impl Gathered {
+    /// Lists of so many elements, which are to be written.
+    pub(super) fn new(counts: Counts) -> Self {
+        Self {
+            cells: List::new(counts.cells),
+            facets: List::new(counts.facets),
+            edges: List::new(counts.edges),
+            vertices: List::new(counts.vertices),
+            facet_sheets: vec![0; counts.facet_sheets],
+            edge_sheets: vec![0; counts.edge_sheets],
+        }
+    }
+
+    /// All that is to be written.
+    pub(super) fn rest(&mut self) -> Rest<'_> {
+        Rest {
+            cells: self.cells.rest(),
+            facets: self.facets.rest(),
+            edges: self.edges.rest(),
+            vertices: self.vertices.rest(),
+            facet_sheets: &mut self.facet_sheets,
+            edge_sheets: &mut self.edge_sheets,
+        }
+    }
+
+    /// The complex; the sheets of each regular facet, one, and of each singular one, two, in the order of the facets;
+    /// and the sheet of each singular edge, in their order.
+    pub(super) fn into_parts(self) -> (Complex, Vec<u32>, Vec<u32>) {
+        let complex = Complex {
+            cells: self.cells.simplices(),
+            facets: self.facets.simplices(),
+            edges: self.edges.simplices(),
+            vertices: self.vertices.simplices(),
+        };
+        (complex, self.facet_sheets, self.edge_sheets)
+    }
+}
+
+/// What is not written yet of gathered lists.
+pub(super) struct Rest<'a> {
+    cells: Part<'a, 4>,
+    facets: Part<'a, 3>,
+    edges: Part<'a, 2>,
+    vertices: Part<'a, 1>,
+    facet_sheets: &'a mut [u32],
+    edge_sheets: &'a mut [u32],
+}
+
+struct Part<'a, const N: usize> {
+    rows: &'a mut [[u32; N]],
+    classes: &'a mut [Class],
+}
+
+impl<'a, const N: usize> Part<'a, N> {
+    fn take(&mut self, count: usize) -> Self {
+        Self { rows: take(&mut self.rows, count), classes: take(&mut self.classes, count) }
+    }
+
+    /// Writes the next row.
+    fn write(&mut self, row: [u32; N], class: Class) {
+        take(&mut self.rows, 1)[0] = row;
+        take(&mut self.classes, 1)[0] = class;
+    }
+}
+
+#[expect(clippy::mut_mut, reason = "the slice itself becomes shorter")]
+fn take<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    rest.split_off_mut(..count).expect("as many as were counted")
+}
+
+impl<'a> Rest<'a> {
+    fn take(&mut self, counts: Counts) -> Self {
+        Self {
+            cells: self.cells.take(counts.cells),
+            facets: self.facets.take(counts.facets),
+            edges: self.edges.take(counts.edges),
+            vertices: self.vertices.take(counts.vertices),
+            facet_sheets: take(&mut self.facet_sheets, counts.facet_sheets),
+            edge_sheets: take(&mut self.edge_sheets, counts.edge_sheets),
+        }
+    }
+
+    /// Writes the simplices of the next points, on all threads: where each is recorded, and its input index, in the
+    /// order of these. Returns those that are no vertices of the triangulation.
+    pub(super) fn write(
+        &mut self,
+        records: &[Records],
+        locations: &[Location],
+        input: &[u32],
+        exterior: bool,
+    ) -> Vec<u32> {
+        let point = |at: &Location| &records[at.records as usize].points[at.point as usize];
+        let chunks = locations.par_chunks(CHUNK);
+        let counts: Vec<_> =
+            chunks.map(|chunk| Counts::of(chunk.iter().map(point), exterior)).collect();
+        let parts: Vec<_> = counts.into_iter().map(|counts| self.take(counts)).collect();
+        let chunks = parts.into_par_iter().zip(locations.par_chunks(CHUNK)).zip(input.par_chunks(CHUNK));
+        let hidden = chunks.flat_map_iter(|((mut part, locations), input)| {
+            let mut hidden = Vec::new();
+            for (location, &smallest) in locations.iter().zip(input) {
+                let point = point(location);
+                part.write_point(&records[location.records as usize], point, smallest, exterior);
+                if point.class.is_none() {
+                    hidden.push(smallest);
+                }
+            }
+            hidden
+        });
+        hidden.collect()
+    }
+
+    /// Writes the simplices of the next point.
+    fn write_point(
+        &mut self,
+        records: &Records,
+        point: &PointRows,
+        smallest: u32,
+        exterior: bool,
+    ) {
+        let record = records.of(point);
+        let mut classes = record.classes();
+        let mut next = || classes.next().expect("a class for each row");
+        for &[b, c, d] in record.cells {
+            self.cells.write([smallest, b, c, d], next());
+        }
+        for &[b, c] in record.facets {
+            self.facets.write([smallest, b, c], next());
+        }
+        for &b in record.edges {
+            self.edges.write([smallest, b], next());
+        }
+        if let Some(class) = point.class.filter(|_| point.is_listed(exterior)) {
+            self.vertices.write([smallest], class);
+        }
+        let sheets = record.facet_sheets;
+        take(&mut self.facet_sheets, sheets.len()).copy_from_slice(sheets);
+        let sheets = record.edge_sheets;
+        take(&mut self.edge_sheets, sheets.len()).copy_from_slice(sheets);
+    }
+}
