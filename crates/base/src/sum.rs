@@ -15,6 +15,9 @@ pub struct Sum {
 impl Sum {
     /// Adds a term. O(parts).
     pub fn add(&mut self, term: f64) {
+        if term == 0.0 {
+            return;
+        }
         if !term.is_finite() {
             self.beyond += term;
             return;

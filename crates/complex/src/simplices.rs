@@ -100,6 +100,9 @@ impl<const N: usize> Simplices<N> {
 
     /// Drops exterior simplices.
     pub fn retain_shape(&mut self) {
+        if !self.classes.contains(&Class::Exterior) {
+            return;
+        }
         let mut classes = self.classes.iter();
         self.rows.retain(|_| classes.next() != Some(&Class::Exterior));
         self.classes.retain(|&class| class != Class::Exterior);

@@ -4,7 +4,7 @@ use walpha_base::Sum;
 use walpha_base::vector::{cross, dot, length, sub};
 use walpha_regular::Torus;
 
-use super::{Class, Complex};
+use super::{Class, Complex, Simplices};
 
 /// Volume and areas of a shape in the units of its points, summed exactly and rounded once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -22,22 +22,20 @@ impl Measures {
     /// number of threads or blocks. O(n).
     pub fn of(complex: &Complex, positions: &[[f64; 3]], torus: Option<Torus>) -> Self {
         let at = |v: u32| positions[v as usize];
-        let area = |class| {
-            sum(complex.facets.rows(), |i, facet| {
-                if complex.facets.classes()[i] != class {
-                    return 0.0;
-                }
-                facet_area(together(torus, facet.map(at)))
-            })
-        };
-        // Divided last: on a lattice, determinants and their sums are integers.
-        let volume = sum(complex.cells.rows(), |i, cell| {
-            if complex.cells.classes()[i] != Class::Interior {
-                return 0.0;
+        let measured = |class, facet: [u32; 3]| {
+            let area = || facet_area(together(torus, facet.map(at)));
+            match class {
+                Class::Regular => [area(), 0.0],
+                Class::Singular => [0.0, area()],
+                Class::Exterior | Class::Interior => [0.0; 2],
             }
-            six_volumes(together(torus, cell.map(at)))
-        }) / 6.0;
-        Self { volume, area: area(Class::Regular), singular_area: area(Class::Singular) }
+        };
+        let [area, singular_area] = sums(&complex.facets, measured);
+        // Divided last: on a lattice, determinants and their sums are integers.
+        let [six_volumes] = sums(&complex.cells, |class, cell| {
+            [if class == Class::Interior { six_volumes(together(torus, cell.map(at))) } else { 0.0 }]
+        });
+        Self { volume: six_volumes / 6.0, area, singular_area }
     }
 }
 
@@ -60,16 +58,25 @@ pub fn six_volumes([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
     dot(cross(sub(b, a), sub(c, a)), sub(d, a))
 }
 
-/// Σ `term(i, row)`, exact and rounded once.
-fn sum<const N: usize>(rows: &[[u32; N]], term: impl Fn(usize, [u32; N]) -> f64 + Sync) -> f64 {
+/// Sums of terms of each simplex, exact and rounded once.
+fn sums<const N: usize, const K: usize>(
+    simplices: &Simplices<N>,
+    terms: impl Fn(Class, [u32; N]) -> [f64; K] + Sync,
+) -> [f64; K] {
     // Rows summed by one thread at a time.
     const CHUNK: usize = 1 << 14;
-    let of_chunk = |(chunk, rows): (usize, &[[u32; N]])| {
-        (chunk * CHUNK..).zip(rows).map(|(i, &row)| term(i, row)).collect::<Sum>()
+    let of_chunk = |(rows, classes): (&[[u32; N]], &[Class])| {
+        let mut sums: [Sum; K] = std::array::from_fn(|_| Sum::default());
+        for (&row, &class) in rows.iter().zip(classes) {
+            sums.iter_mut().zip(terms(class, row)).for_each(|(sum, term)| sum.add(term));
+        }
+        sums
     };
-    let join = |mut a: Sum, b: Sum| {
-        a.join(&b);
-        a
+    let join = |mut sums: [Sum; K], others: [Sum; K]| {
+        sums.iter_mut().zip(&others).for_each(|(sum, other)| sum.join(other));
+        sums
     };
-    rows.par_chunks(CHUNK).enumerate().map(of_chunk).reduce(Sum::default, join).value()
+    let chunks = simplices.rows().par_chunks(CHUNK).zip(simplices.classes().par_chunks(CHUNK));
+    let sums = chunks.map(of_chunk).reduce(|| std::array::from_fn(|_| Sum::default()), join);
+    sums.map(|sum| sum.value())
 }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::classify::{PointRows, Records};
+use super::classify::{Classes, PointRows, Records};
 use crate::{Class, Complex, Simplices};
 
 /// Points whose records one thread gathers at a time.
@@ -160,10 +160,15 @@ impl<'a, const N: usize> Part<'a, N> {
         Self { rows: take(&mut self.rows, count), classes: take(&mut self.classes, count) }
     }
 
-    /// Writes the next row.
-    fn write(&mut self, row: [u32; N], class: Class) {
-        take(&mut self.rows, 1)[0] = row;
-        take(&mut self.classes, 1)[0] = class;
+    /// Writes the next rows: their smallest vertex, the others, and classes.
+    #[inline(always)]
+    fn write<const M: usize>(&mut self, smallest: u32, rows: &[[u32; M]], classes: &mut Classes<'_>) {
+        let Part { rows: own, classes: to } = self.take(rows.len());
+        for ((row, to), others) in own.iter_mut().zip(to).zip(rows) {
+            row[0] = smallest;
+            row[1..].copy_from_slice(others);
+            *to = classes.next();
+        }
     }
 }
 
@@ -221,20 +226,13 @@ impl<'a> Rest<'a> {
         smallest: u32,
         exterior: bool,
     ) {
-        let record = records.of(point);
-        let mut classes = record.classes();
-        let mut next = || classes.next().expect("a class for each row");
-        for &[b, c, d] in record.cells {
-            self.cells.write([smallest, b, c, d], next());
-        }
-        for &[b, c] in record.facets {
-            self.facets.write([smallest, b, c], next());
-        }
-        for &b in record.edges {
-            self.edges.write([smallest, b], next());
-        }
+        let mut record = records.of(point);
+        self.cells.write(smallest, record.cells, &mut record.classes);
+        self.facets.write(smallest, record.facets, &mut record.classes);
+        self.edges.write(smallest, record.edges, &mut record.classes);
         if let Some(class) = point.class.filter(|_| point.is_listed(exterior)) {
-            self.vertices.write([smallest], class);
+            let vertex = self.vertices.take(1);
+            (vertex.rows[0], vertex.classes[0]) = ([smallest], class);
         }
         let sheets = record.facet_sheets;
         take(&mut self.facet_sheets, sheets.len()).copy_from_slice(sheets);

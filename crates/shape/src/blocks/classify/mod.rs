@@ -27,7 +27,7 @@ use super::block::{Block, Question, TRIANGULATION, WORK};
 use around::{Walker, Worker};
 use local::Local;
 pub use records::Side;
-pub(super) use records::{Buckets, Long, Owned, PointRows, Records};
+pub(super) use records::{Buckets, Classes, Long, Owned, PointRows, Records};
 use sheets::Sheets;
 use stars::Stars;
 pub(super) use stars::RANGE;

@@ -90,14 +90,36 @@ pub(in crate::blocks) struct PointRows {
 pub(in crate::blocks) struct Record<'a> {
     pub cells: &'a [[u32; 3]],
     pub facets: &'a [[u32; 2]],
-    pub edges: &'a [u32],
-    classes: &'a [u32],
+    pub edges: &'a [[u32; 1]],
+    /// Those of the cells, then of the facets, then of the edges.
+    pub classes: Classes<'a>,
     pub facet_sheets: &'a [u32],
     pub edge_sheets: &'a [u32],
 }
 
+/// Classes, 16 to a word.
+pub(in crate::blocks) struct Classes<'a> {
+    words: std::slice::Iter<'a, u32>,
+    /// What is left of a word; the bit above it marks its end.
+    rest: u64,
+}
+
 /// Classes in a word.
 const CLASSES: usize = 16;
+
+impl Classes<'_> {
+    /// The next class; exterior after the last.
+    #[inline(always)]
+    pub(in crate::blocks) fn next(&mut self) -> Class {
+        const END: u64 = 1;
+        if self.rest == END {
+            self.rest = u64::from(self.words.next().copied().unwrap_or(0)) | END << (2 * CLASSES);
+        }
+        let class = Class::ALL[(self.rest & 3) as usize];
+        self.rest >>= 2;
+        class
+    }
+}
 
 impl Records {
     /// What is recorded of a point.
@@ -110,11 +132,12 @@ impl Records {
         };
         let cells = rest(3 * point.cells).as_chunks().0;
         let facets = rest(2 * point.facets).as_chunks().0;
-        let edges = rest(point.edges);
+        let edges = rest(point.edges).as_chunks().0;
+        let classes = Classes { words: words.iter(), rest: 1 };
         let sheets = &self.sheets[point.sheets as usize..];
         let (facet_sheets, sheets) = sheets.split_at(point.facet_sheets as usize);
         let edge_sheets = &sheets[..point.edge_sheets as usize];
-        Record { cells, facets, edges, classes: words, facet_sheets, edge_sheets }
+        Record { cells, facets, edges, classes, facet_sheets, edge_sheets }
     }
 
     /// Records the next point, and empties the draft.
@@ -188,16 +211,6 @@ impl PointRows {
     /// Whether the point is to be listed among the vertices.
     pub(in crate::blocks) fn is_listed(&self, exterior: bool) -> bool {
         self.class.is_some_and(|class| exterior || class != Class::Exterior)
-    }
-}
-
-impl Record<'_> {
-    /// The classes of the cells, then of the facets, then of the edges.
-    pub(in crate::blocks) fn classes(&self) -> impl Iterator<Item = Class> {
-        let unpacked = |&word: &u32| {
-            (0..CLASSES).map(move |at| Class::ALL[(word >> (2 * at) & 3) as usize])
-        };
-        self.classes.iter().flat_map(unpacked)
     }
 }
 
