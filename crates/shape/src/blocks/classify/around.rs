@@ -43,7 +43,7 @@ pub(super) struct Worker {
     /// The number of its neighbours.
     degree: usize,
     /// Rows of the point visited, followed by unused elements.
-    cells: Vec<CellRow>,
+    cells: Vec<u128>,
     facets: Vec<FacetRow>,
     edges: Vec<EdgeRow>,
     draft: Draft,
@@ -145,10 +145,9 @@ impl Walker<'_> {
         let Self { local, states, .. } = self;
         let Worker { edge_flags, neighbours, cells, facets, draft, .. } = &mut *worker;
         let input = &local.block.input[..];
-        let smallest = input[v as usize];
         let size = star.len();
         if facets.len() < 3 * size {
-            cells.resize(size, CellRow::default());
+            cells.resize(size, 0);
             facets.resize(3 * size, FacetRow::default());
             neighbours.resize(3 * size, 0);
         }
@@ -177,18 +176,26 @@ impl Walker<'_> {
                 neighbours[degree] = u;
                 degree += usize::from(is_new);
             }
-            for (opposite, (m, x), (n, y)) in
-                [(p, (q, y), (r, z)), (q, (p, x), (r, z)), (r, (p, x), (q, y))]
-            {
+            let mut emitted = state.emitted(k);
+            while emitted != 0 {
+                let at = emitted.trailing_zeros() as usize;
+                emitted &= emitted - 1;
+                if at == k {
+                    cells[cell_count] = cell_row(k, [x, y, z], state.is_inside());
+                    cell_count += 1;
+                    continue;
+                }
+                let (m, x, n, y) = match at {
+                    at if at == p => (q, y, r, z),
+                    at if at == q => (p, x, r, z),
+                    _ => (p, x, q, y),
+                };
                 let (m, low, n, high) = if x < y { (m, x, n, y) } else { (n, y, m, x) };
                 let row = u64::from(low) << 32 | u64::from(high);
-                let side = 4 * cell + opposite as u32;
+                let side = 4 * cell + at as u32;
                 facets[facet_count] = FacetRow { row, side, clockwise: !even(k, m, n) };
-                facet_count += usize::from(state.emits(opposite) && (smallest < low));
+                facet_count += 1;
             }
-            cells[cell_count] = CellRow::new(k, [x, y, z], state.is_inside());
-            let wanted = state.is_inside() | local.exterior;
-            cell_count += usize::from(wanted & (smallest < x.min(y).min(z)));
         }
         emit_cells(&mut cells[..cell_count], draft);
         self.emit_facets(&mut facets[..facet_count], draft);
@@ -232,16 +239,6 @@ impl Walker<'_> {
     }
 }
 
-/// A cell whose smallest vertex is the point visited. Rows sort by their vertices.
-#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-struct CellRow {
-    /// The three other vertices, by input index, in the order that makes the cell positively oriented; the first
-    /// two in one number, the first in its upper half.
-    first_two: u64,
-    third: u32,
-    inside: bool,
-}
-
 /// A facet whose smallest vertex is the point visited.
 #[derive(Clone, Copy, Default)]
 struct FacetRow {
@@ -261,31 +258,30 @@ struct EdgeRow {
     corner: Option<u32>,
 }
 
-impl CellRow {
-    /// A cell whose smallest vertex is corner `k`; the others are those that follow it cyclically.
-    #[inline(always)]
-    fn new(k: usize, [mut a, mut b, mut c]: [u32; 3], inside: bool) -> Self {
-        // Rotating a row of four by one is an odd permutation, and so is each exchange.
-        let mut odd = k % 2 == 1;
-        let mut order = |x: &mut u32, y: &mut u32| {
-            odd ^= *x > *y;
-            (*x, *y) = ((*x).min(*y), (*x).max(*y));
-        };
-        order(&mut a, &mut b);
-        order(&mut b, &mut c);
-        order(&mut a, &mut b);
-        let (second, third) = if odd { (c, b) } else { (b, c) };
-        Self { first_two: u64::from(a) << 32 | u64::from(second), third, inside }
-    }
+/// A cell whose smallest vertex, corner `k`, is the point visited, in one number: the three other vertices, which
+/// follow it cyclically, by input index, in the order that makes the cell positively oriented, from the upper bits
+/// down; then whether it is in the shape.
+#[inline(always)]
+fn cell_row(k: usize, [mut a, mut b, mut c]: [u32; 3], inside: bool) -> u128 {
+    // Rotating a row of four by one is an odd permutation, and so is each exchange.
+    let mut odd = k % 2 == 1;
+    let mut order = |x: &mut u32, y: &mut u32| {
+        odd ^= *x > *y;
+        (*x, *y) = ((*x).min(*y), (*x).max(*y));
+    };
+    order(&mut a, &mut b);
+    order(&mut b, &mut c);
+    order(&mut a, &mut b);
+    let (second, third) = if odd { (c, b) } else { (b, c) };
+    u128::from(a) << 96 | u128::from(second) << 64 | u128::from(third) << 32 | u128::from(inside)
 }
 
 /// Emits cells, sorted.
-fn emit_cells(cells: &mut [CellRow], draft: &mut Draft) {
+fn emit_cells(cells: &mut [u128], draft: &mut Draft) {
     cells.sort_unstable();
-    for cell in cells {
-        let class = if cell.inside { Class::Interior } else { Class::Exterior };
-        let [first, second] = pair(cell.first_two);
-        draft.cell([first, second, cell.third], class);
+    for &mut row in cells {
+        let class = if row & 1 == 1 { Class::Interior } else { Class::Exterior };
+        draft.cell([96, 64, 32].map(|shift| (row >> shift) as u32), class);
     }
 }
 

@@ -62,8 +62,7 @@ impl Local<'_> {
         let chunks = states.par_chunks_mut(CELLS).enumerate().map(|(chunk, states)| {
             let mut boundary = Vec::new();
             for (cell, state) in (chunk * CELLS..).zip(states) {
-                let facets = (4 * cell as u32..).zip(neighbors[cell]);
-                *state = self.state(facets, &kinds, &singular, &mut boundary);
+                *state = self.state(cell, neighbors[cell], &kinds, &singular, &mut boundary);
             }
             boundary
         });
@@ -106,22 +105,25 @@ impl Local<'_> {
         singular
     }
 
-    /// The state of a cell, from the bits of singular facets from their lower sides. Notes the regular and singular
-    /// facets that it emits.
+    /// The state of a cell with these sides across its facets, from the bits of singular facets at their lower sides.
+    /// Notes the regular and singular facets that it emits.
     fn state(
         &self,
-        facets: impl Iterator<Item = (u32, u32)>,
+        cell: usize,
+        across: [u32; 4],
         kinds: &[Kind],
         singular: &[u8],
         boundary: &mut Vec<[u32; 2]>,
     ) -> State {
-        let mut state = State::new(Kind::Foreign);
-        for (at, (here, there)) in facets.enumerate() {
-            let [kind, next] = [here, there].map(|side| kinds[side as usize / 4]);
-            if at == 0 {
-                state = State::new(kind);
-            }
-            if kind == Kind::Foreign || next == Kind::Foreign {
+        let kind = kinds[cell];
+        let mut state = State::new(kind);
+        if kind == Kind::Foreign {
+            return state;
+        }
+        let mut emitted = 0;
+        for (at, (here, there)) in (4 * cell as u32..).zip(across).enumerate() {
+            let next = kinds[there as usize / 4];
+            if next == Kind::Foreign {
                 continue;
             }
             let lower = here.min(there);
@@ -140,13 +142,28 @@ impl Local<'_> {
                 (infinite, _) => !infinite,
             };
             if emits && (class != Class::Exterior || self.exterior) {
-                state.set_emits(at);
+                emitted |= 1 << at;
                 if matches!(class, Class::Regular | Class::Singular) {
                     boundary.push([here, there]);
                 }
             }
         }
+        if kind != Kind::Infinite {
+            let wanted = kind == Kind::Inside || self.exterior;
+            state.emit(emitted, wanted, self.first_two(self.cells[cell]));
+        }
         state
+    }
+
+    /// The corners of a cell at the two of its vertices that have the smallest input indices.
+    #[inline(always)]
+    fn first_two(&self, cell: [u32; 4]) -> [usize; 2] {
+        let input = cell.map(|v| self.input(v));
+        let by_input = |a: usize, b: usize| if input[b] < input[a] { [b, a] } else { [a, b] };
+        let ([a, b], [c, d]) = (by_input(0, 1), by_input(2, 3));
+        let [first, other] = by_input(a, c);
+        let next = if first == a { b } else { d };
+        [first, by_input(other, next)[0]]
     }
 
     /// Whether a facet between two cells that are not in the shape, 4·cell + corner on both sides, is in the shape.

@@ -11,18 +11,19 @@ pub(super) enum Kind {
     Inside,
 }
 
-/// The state of a cell in 16 bits: the class of the facet opposite each corner (bits 2·corner and 2·corner + 1),
-/// three flags, and whether each facet is emitted from this cell (bits 12 + corner).
+/// The state of a cell in 32 bits: the class of the facet opposite each corner (bits 2·corner and 2·corner + 1),
+/// three flags, and what is emitted from this cell at each corner (bits 16 + 4·corner on): the facet opposite each
+/// other corner, and, in place of that opposite itself, the cell.
 #[derive(Clone, Copy)]
-pub(super) struct State(u16);
+pub(super) struct State(u32);
 
 impl State {
     /// The lower bits of the classes of all facets.
-    const LOW_BITS: u16 = 0b0101_0101;
-    const INSIDE: u16 = 0x100;
-    const INFINITE: u16 = 0x200;
-    const FOREIGN: u16 = 0x400;
-    const EMITS: usize = 12;
+    const LOW_BITS: u32 = 0b0101_0101;
+    const INSIDE: u32 = 0x100;
+    const INFINITE: u32 = 0x200;
+    const FOREIGN: u32 = 0x400;
+    const EMITTED: usize = 16;
 
     /// The state of a cell all of whose facets are exterior.
     pub(super) fn new(kind: Kind) -> Self {
@@ -52,32 +53,37 @@ impl State {
     /// The class of the facet opposite a corner.
     #[inline(always)]
     pub(super) fn facet(self, opposite: usize) -> Class {
-        Class::ALL[usize::from(self.0 >> (2 * opposite) & 3)]
+        Class::ALL[(self.0 >> (2 * opposite) & 3) as usize]
     }
 
     /// Bits 2·opposite for the facets that are in the shape.
     #[inline(always)]
-    pub(super) fn covered(self) -> u16 {
+    pub(super) fn covered(self) -> u32 {
         (self.0 | self.0 >> 1) & Self::LOW_BITS
     }
 
     /// Bits 2·opposite for the facets that are not interior.
     #[inline(always)]
-    pub(super) fn open(self) -> u16 {
+    pub(super) fn open(self) -> u32 {
         (self.0 >> 1 | !self.0) & Self::LOW_BITS
     }
 
-    /// Whether a facet is emitted from this one of its two cells.
+    /// What is emitted at a corner: bits for the facets opposite the others, and for the cell the bit of the corner.
     #[inline(always)]
-    pub(super) fn emits(self, opposite: usize) -> bool {
-        self.0 >> (Self::EMITS + opposite) & 1 != 0
+    pub(super) fn emitted(self, corner: usize) -> u32 {
+        self.0 >> (Self::EMITTED + 4 * corner) & 0xf
     }
 
     pub(super) fn set_facet(&mut self, opposite: usize, class: Class) {
-        self.0 |= (class as u16) << (2 * opposite);
+        self.0 |= (class as u32) << (2 * opposite);
     }
 
-    pub(super) fn set_emits(&mut self, opposite: usize) {
-        self.0 |= 1 << (Self::EMITS + opposite);
+    /// Emits facets (bits by the opposite corners) and perhaps the cell, each at its first vertex: `first` is the
+    /// corner of the cell's first vertex, `second` that of its next one.
+    pub(super) fn emit(&mut self, facets: u32, cell: bool, [first, second]: [usize; 2]) {
+        let opposite_first = facets & 1 << first;
+        let at_first = facets ^ opposite_first | u32::from(cell) << first;
+        self.0 |= at_first << (Self::EMITTED + 4 * first);
+        self.0 |= opposite_first << (Self::EMITTED + 4 * second);
     }
 }
