@@ -33,7 +33,11 @@ impl Measures {
         let [area, singular_area] = sums(&complex.facets, measured);
         // Divided last: on a lattice, determinants and their sums are integers.
         let [six_volumes] = sums(&complex.cells, |class, cell| {
-            [if class == Class::Interior { six_volumes(together(torus, cell.map(at))) } else { 0.0 }]
+            [if class == Class::Interior {
+                six_volumes(together(torus, cell.map(at)))
+            } else {
+                0.0
+            }]
         });
         Self { volume: six_volumes / 6.0, area, singular_area }
     }

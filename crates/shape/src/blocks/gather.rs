@@ -162,7 +162,12 @@ impl<'a, const N: usize> Part<'a, N> {
 
     /// Writes the next rows: their smallest vertex, the others, and classes.
     #[inline(always)]
-    fn write<const M: usize>(&mut self, smallest: u32, rows: &[[u32; M]], classes: &mut Classes<'_>) {
+    fn write<const M: usize>(
+        &mut self,
+        smallest: u32,
+        rows: &[[u32; M]],
+        classes: &mut Classes<'_>,
+    ) {
         let Part { rows: own, classes: to } = self.take(rows.len());
         for ((row, to), others) in own.iter_mut().zip(to).zip(rows) {
             row[0] = smallest;
@@ -203,7 +208,8 @@ impl<'a> Rest<'a> {
         let counts: Vec<_> =
             chunks.map(|chunk| Counts::of(chunk.iter().map(point), exterior)).collect();
         let parts: Vec<_> = counts.into_iter().map(|counts| self.take(counts)).collect();
-        let chunks = parts.into_par_iter().zip(locations.par_chunks(CHUNK)).zip(input.par_chunks(CHUNK));
+        let chunks =
+            parts.into_par_iter().zip(locations.par_chunks(CHUNK)).zip(input.par_chunks(CHUNK));
         let hidden = chunks.flat_map_iter(|((mut part, locations), input)| {
             let mut hidden = Vec::new();
             for (location, &smallest) in locations.iter().zip(input) {
@@ -219,13 +225,7 @@ impl<'a> Rest<'a> {
     }
 
     /// Writes the simplices of the next point.
-    fn write_point(
-        &mut self,
-        records: &Records,
-        point: &PointRows,
-        smallest: u32,
-        exterior: bool,
-    ) {
+    fn write_point(&mut self, records: &Records, point: &PointRows, smallest: u32, exterior: bool) {
         let mut record = records.of(point);
         self.cells.write(smallest, record.cells, &mut record.classes);
         self.facets.write(smallest, record.facets, &mut record.classes);

@@ -29,8 +29,8 @@ use local::Local;
 pub use records::Side;
 pub(super) use records::{Buckets, Classes, Long, Owned, PointRows, Records};
 use sheets::Sheets;
-use stars::Stars;
 pub(super) use stars::RANGE;
+use stars::Stars;
 
 /// Cells that one thread classifies at a time.
 const CELLS: usize = 1 << 10;

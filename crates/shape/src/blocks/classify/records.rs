@@ -144,10 +144,13 @@ impl Records {
     pub(super) fn push(&mut self, class: Option<Class>, draft: &mut Draft) {
         let [words, sheets] = [&self.words, &self.sheets].map(|list| list.len() as u32);
         let Draft { cells, facets, edges, facet_sheets, edge_sheets, .. } = *draft;
-        let counts = PointRows { class, cells, facets, edges, facet_sheets, edge_sheets, words, sheets };
+        let counts =
+            PointRows { class, cells, facets, edges, facet_sheets, edge_sheets, words, sheets };
         self.points.push(counts);
         self.words.extend_from_slice(&draft.words);
-        let packed = |classes: &[Class]| classes.iter().rev().fold(0, |word, &class| word << 2 | class as u32);
+        let packed = |classes: &[Class]| {
+            classes.iter().rev().fold(0, |word, &class| word << 2 | class as u32)
+        };
         self.words.extend(draft.classes.chunks(CLASSES).map(packed));
         self.sheets.extend_from_slice(&draft.sheets);
         draft.clear();
