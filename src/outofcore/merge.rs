@@ -187,7 +187,7 @@ fn same<K>(entry: Entry<'_, K, u32>, now: u32, pairs: &mut Vec<[u32; 2]>) {
 }
 
 fn united(count: u32, pairs: &[[u32; 2]]) -> UnionFind {
-    let mut sets = UnionFind::new(count as usize);
+    let sets = UnionFind::new(count as usize);
     pairs.iter().for_each(|&[a, b]| _ = sets.unite(a, b));
     sets
 }
@@ -196,7 +196,7 @@ fn united(count: u32, pairs: &[[u32; 2]]) -> UnionFind {
 /// components. A part without vertices has none of its own.
 fn number_components<'a>(
     parts: impl Iterator<Item = &'a BlockComponent>,
-    mut sets: UnionFind,
+    sets: UnionFind,
 ) -> (Vec<u32>, Vec<ComponentSums>) {
     let mut whole: Vec<Option<BlockComponent>> = vec![None; sets.members()];
     for (part, i) in parts.zip(0..) {
@@ -223,7 +223,7 @@ fn number_components<'a>(
 /// components. A part comes with the number of the first component of its block.
 fn number_sheets(
     parts: &[(&BlockSheet, usize)],
-    mut sets: UnionFind,
+    sets: UnionFind,
     components: &[u32],
 ) -> (Vec<u32>, Vec<(u32, usize, SheetSums)>) {
     let mut whole: Vec<Option<(Met, usize, SheetSums)>> = vec![None; sets.members()];

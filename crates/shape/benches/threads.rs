@@ -42,8 +42,11 @@ fn main() {
 /// Weighted points.
 type Set = Vec<([f64; 3], f64)>;
 
+/// Makes a set of so many points.
+type Make = fn(&mut Random, usize) -> Set;
+
 /// Sets of so many points, each with a squared α.
-const SETS: [(&str, f64, fn(&mut Random, usize) -> Set); 2] = [
+const SETS: [(&str, f64, Make); 2] = [
     // A point in each unit of volume.
     ("random", 1.0, |random, count| {
         let side = (count as f64).cbrt();

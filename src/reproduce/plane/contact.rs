@@ -44,7 +44,7 @@ pub(super) fn of_discs(mesh: &Mesh, exact: &Exact, curve: &Curve, diagram: Diagr
         mesh.triangles.iter().map(|&t| exact.circumradius(t).against(curve)).collect();
     let mut edges = BTreeSet::new();
     let mut arcs = BTreeSet::new();
-    let mut circles = UnionFind::new(mesh.triangles.len());
+    let circles = UnionFind::new(mesh.triangles.len());
     for edge in &mesh.edges {
         let [p, q] = edge.ends;
         let half = exact.half_distance(p, q).against(curve);
@@ -98,7 +98,7 @@ pub(super) fn of_discs(mesh: &Mesh, exact: &Exact, curve: &Curve, diagram: Diagr
 }
 
 /// The points of each circle of the curve's radius; `circles` holds the triangles of one together.
-fn on_circles(mesh: &Mesh, radii: &[Ordering], mut circles: UnionFind) -> Vec<BTreeSet<u32>> {
+fn on_circles(mesh: &Mesh, radii: &[Ordering], circles: UnionFind) -> Vec<BTreeSet<u32>> {
     let mut points: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
     for (triangle, row) in mesh.triangles.iter().enumerate() {
         if radii[triangle].is_eq() {
@@ -126,7 +126,7 @@ pub(super) fn of_half_planes(mesh: &Mesh, exact: &Exact) -> Contacts {
     for (number, edge) in outer.iter().enumerate() {
         edge.ends.iter().for_each(|&end| at.entry(end).or_default().push(number));
     }
-    let mut lines = UnionFind::new(outer.len());
+    let lines = UnionFind::new(outer.len());
     for (&middle, numbers) in &at {
         if let [a, b] = numbers[..] {
             let far = |number: usize| outer[number].ends.into_iter().find(|&end| end != middle);

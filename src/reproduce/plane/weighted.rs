@@ -147,7 +147,7 @@ impl PlaneComplex {
         let number = |v: u32| {
             self.vertices.rows().binary_search(&[v]).expect("ends of edges are vertices") as u32
         };
-        let mut sets = UnionFind::new(self.vertices.len());
+        let sets = UnionFind::new(self.vertices.len());
         let edges = self.edges.rows().iter();
         let united = edges.filter(|row| sets.unite(number(row[0]), number(row[1]))).count();
         // b1 = b0 − χ = (V − united) − (V − E + T)

@@ -155,7 +155,7 @@ struct Part<'a, const N: usize> {
     classes: &'a mut [Class],
 }
 
-impl<'a, const N: usize> Part<'a, N> {
+impl<const N: usize> Part<'_, N> {
     fn take(&mut self, count: usize) -> Self {
         Self { rows: take(&mut self.rows, count), classes: take(&mut self.classes, count) }
     }
@@ -182,7 +182,7 @@ fn take<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     rest.split_off_mut(..count).expect("as many as were counted")
 }
 
-impl<'a> Rest<'a> {
+impl Rest<'_> {
     fn take(&mut self, counts: Counts) -> Self {
         Self {
             cells: self.cells.take(counts.cells),

@@ -45,8 +45,9 @@ const MERGED: u64 = 320;
 const LOCATIONS: u64 = 16;
 /// Buckets in which rows are merged where memory is bounded: only one bucket is in memory twice.
 const BUCKETS: usize = 32;
-/// A block that lacks less than this fraction of the points, one in 8, is nearly the whole.
-const NEARLY_WHOLE: usize = 8;
+/// The speed-up of one mesh on 2ᵏ threads, as a fraction of 2ᵏ, is 2⁻ᵏ to this power. Measured on two threads
+/// (`benches/threads.rs`): 0.72 to 0.88.
+const LOSS: f64 = 0.32;
 /// The least number of points of a block that is cut for the sake of threads: with smaller blocks, halos cost more
 /// than another thread gains.
 const WORTHWHILE: usize = 2000;
@@ -96,14 +97,13 @@ impl Plan {
         }
     }
 
-    /// As many blocks as there are threads, if that pays.
+    /// As many blocks as there are threads, or the whole on all threads where halos would cost more than that loses.
     fn fast(sites: &Sites<'_>, reach: Reach, threads: usize) -> Self {
         let points = sites.input().len();
         let at_once = fewest(points, threads);
         let partition = Partition::new(sites, at_once);
-        // Several blocks pay only if none of them, with its halo, is nearly the whole.
         let largest = partition.largest(sites, reach);
-        if largest > points - points / NEARLY_WHOLE {
+        if (at_once * largest) as f64 > points as f64 * (at_once as f64).powf(LOSS) {
             return Self::whole(sites);
         }
         Self { partition, at_once, at_work: at_once * largest, bound: None }

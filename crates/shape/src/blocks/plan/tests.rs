@@ -37,12 +37,15 @@ fn grid() -> (Vec<[f64; 3]>, Vec<f64>) {
 }
 
 #[test]
-fn threads_have_a_block_each_unless_it_is_nearly_the_whole() {
+fn threads_have_a_block_each_unless_halos_are_large() {
     let (positions, weights) = grid();
     let sites = Sites::new(&positions, &weights).unwrap();
     for (reach, threads, expected) in [
         (Reach::Balls(0.75), 3, 3),
         (Reach::Balls(0.75), 16, 4),
+        // Halos of three layers: the middle one of three blocks has 13 of 20, which still is not the whole.
+        (Reach::Balls(3.0), 2, 1),
+        (Reach::Balls(3.0), 3, 1),
         (Reach::Distance(f64::INFINITY), 4, 1),
     ] {
         let plan = Plan::fast(&sites, reach, threads);
