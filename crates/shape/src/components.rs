@@ -2,7 +2,7 @@
 
 use walpha_regular::Torus;
 
-use super::sums::{ComponentSums, SheetSums, components_of_sums};
+use super::sums::{ByNumber, ComponentSums, SheetSums, by_number, components_of_sums};
 use super::topology::{connected, connected_on_torus};
 use super::winding::WindingSets;
 use super::{AlphaShape, Class, Component, Sheets};
@@ -57,14 +57,23 @@ impl AlphaShape {
                 n => components[n].add_vertex(point),
             }
         }
-        for cell in self.complex().cells.of(Class::Interior) {
-            components[number(cell[0])].add_cell(self.corners(*cell));
-        }
-        for (facet, class) in self.complex().facets.iter() {
-            // The vertices of exterior facets may be in no component.
-            if let Class::Regular | Class::Singular = class {
-                components[number(facet[0])].add_facet(self.corners(*facet), class);
+        let complex = self.complex();
+        let of_cells = by_number(complex.cells.len(), |row, sums: &mut ByNumber<ComponentSums>| {
+            if complex.cells.classes()[row] == Class::Interior {
+                let cell = complex.cells.rows()[row];
+                sums.of(numbers[cell[0] as usize]).add_cell(self.corners(cell));
             }
+        });
+        let of_facets =
+            by_number(complex.facets.len(), |row, sums: &mut ByNumber<ComponentSums>| {
+                // The vertices of exterior facets may be in no component.
+                if let class @ (Class::Regular | Class::Singular) = complex.facets.classes()[row] {
+                    let facet = complex.facets.rows()[row];
+                    sums.of(numbers[facet[0] as usize]).add_facet(self.corners(facet), class);
+                }
+            });
+        for (number, sums) in of_cells.iter().chain(&of_facets).flatten() {
+            components[*number as usize].join(sums);
         }
         // On a torus, a sheet need not enclose anything.
         let sheets = self.sheets().filter(|_| torus.is_none());
@@ -100,21 +109,33 @@ impl AlphaShape {
     fn sheet_sums(&self, sheets: &Sheets, numbers: &[u32]) -> Vec<(u32, usize, SheetSums)> {
         let positions = &self.points().positions;
         let complex = self.complex();
-        let mut found: Vec<Option<(usize, SheetSums)>> = vec![None; sheets.count as usize];
-        let mut add = |sheet: u32, side: [u32; 3]| {
-            let corners = side.map(|v| positions[v as usize]);
-            let (_, sums) = found[sheet as usize]
-                .get_or_insert_with(|| (numbers[side[0] as usize] as usize, SheetSums::default()));
-            sums.add(positions[0], corners);
+        // Sides of regular facets, then both of singular ones.
+        let regular: Vec<[u32; 3]> = complex.facets.of(Class::Regular).copied().collect();
+        let singular: Vec<[u32; 3]> = complex.facets.of(Class::Singular).copied().collect();
+        let add = |sums: &mut ByNumber<SheetSums>, sheet: u32, side: [u32; 3]| {
+            sums.of(sheet).add(positions[0], side.map(|v| positions[v as usize]));
         };
-        for (&sheet, &side) in sheets.regular.iter().zip(complex.facets.of(Class::Regular)) {
-            add(sheet, side);
+        let of_regular = by_number(regular.len(), |row, sums| {
+            add(sums, sheets.regular[row], regular[row]);
+        });
+        let of_singular = by_number(singular.len(), |row, sums| {
+            let ([clockwise, counter], [a, b, c]) = (sheets.singular[row], singular[row]);
+            add(sums, clockwise, [a, c, b]);
+            add(sums, counter, [a, b, c]);
+        });
+        let mut found: Vec<Option<(usize, SheetSums)>> = vec![None; sheets.count as usize];
+        let of_row = |row: [u32; 3]| numbers[row[0] as usize] as usize;
+        let component = |sheet: u32, row: [u32; 3]| (sheet as usize, of_row(row));
+        let rows = sheets.regular.iter().zip(&regular).map(|(&sheet, &row)| component(sheet, row));
+        let others = sheets.singular.iter().zip(&singular);
+        let others = others.flat_map(|(sheets, &row)| sheets.map(|sheet| component(sheet, row)));
+        for (sheet, component) in rows.chain(others) {
+            found[sheet].get_or_insert_with(|| (component, SheetSums::default()));
         }
-        for (&[clockwise, counter], &[a, b, c]) in
-            sheets.singular.iter().zip(complex.facets.of(Class::Singular))
-        {
-            add(clockwise, [a, c, b]);
-            add(counter, [a, b, c]);
+        for (sheet, sums) in of_regular.iter().chain(&of_singular).flatten() {
+            if let Some((_, all)) = &mut found[*sheet as usize] {
+                all.join(sums);
+            }
         }
         let numbered = (0..).zip(found);
         numbered.filter_map(|(sheet, found)| found.map(|(c, sums)| (sheet, c, sums))).collect()

@@ -1,5 +1,8 @@
 //! Components and the voids in them, from sums over components and sheets that are accumulated part by part.
 
+use std::collections::HashMap;
+
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::Sum;
 
@@ -133,6 +136,51 @@ impl ComponentSums {
             voids: None,
             rounds: None,
         }
+    }
+}
+
+/// No vertex yet.
+impl Default for ComponentSums {
+    fn default() -> Self {
+        Self { vertices: 0, low: [f64::MAX; 3], high: [f64::MIN; 3], ..Self::at([0.0; 3]) }
+    }
+}
+
+/// Sums of rows by number (of a component, or a sheet), of ranges of rows side by side, each only of the numbers that it meets:
+/// joined by the caller they are the same whatever the ranges. `add` gets a row and adds it to the sums of numbers.
+pub(crate) fn by_number<S: Default + Send>(
+    rows: usize,
+    add: impl Fn(usize, &mut ByNumber<S>) + Sync,
+) -> Vec<HashMap<u32, S>> {
+    /// Rows that are worth a task.
+    const RANGE: usize = 1 << 15;
+    let range = |first: usize| {
+        let mut sums = ByNumber { last: None, others: HashMap::new() };
+        (first..rows.min(first + RANGE)).for_each(|row| add(row, &mut sums));
+        sums.finish()
+    };
+    (0..rows).into_par_iter().step_by(RANGE).map(range).collect()
+}
+
+/// Sums by number. Most rows have the number of the row before, whose sums are at hand.
+pub(crate) struct ByNumber<S> {
+    last: Option<(u32, S)>,
+    others: HashMap<u32, S>,
+}
+
+impl<S: Default + Send> ByNumber<S> {
+    /// The sums of a number.
+    pub(crate) fn of(&mut self, number: u32) -> &mut S {
+        if self.last.as_ref().is_none_or(|(last, _)| *last != number) {
+            let next = self.others.remove(&number).unwrap_or_default();
+            self.others.extend(self.last.replace((number, next)));
+        }
+        &mut self.last.as_mut().expect("it was just set").1
+    }
+
+    fn finish(mut self) -> HashMap<u32, S> {
+        self.others.extend(self.last);
+        self.others
     }
 }
 
