@@ -18,6 +18,8 @@ pub enum Stage {
     Refit,
     /// Computes the shape.
     Shape,
+    /// Finds the components and voids of the shape, and measures them.
+    Measure,
     /// Computes all shapes at once.
     Filtration,
     /// Counts what each critical α changes.
@@ -60,6 +62,7 @@ impl Stage {
             Self::Alpha => "alpha",
             Self::Refit => "refit",
             Self::Shape => "shape",
+            Self::Measure => "measure",
             Self::Filtration => "filtration",
             Self::Curve => "curve",
             Self::Order => "order",

@@ -141,3 +141,69 @@ impl AlphaShape {
         numbered.filter_map(|(sheet, found)| found.map(|(c, sums)| (sheet, c, sums))).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use walpha_base::Sum;
+    use walpha_base::random::Random;
+
+    use super::*;
+    use crate::measure::{facet_area, six_volumes};
+    use crate::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
+
+    /// Sums over ranges of rows, joined, against one sum over all rows, for components within a range and across them.
+    #[test]
+    fn sums_of_ranges_are_those_of_all_rows() {
+        let mut random = Random::new(7);
+        let positions: Vec<[f64; 3]> =
+            (0..12_000).map(|_| [random.unit(), random.unit(), random.unit()]).collect();
+        let points = WeightedPoints::unweighted(positions);
+        let mut across = 0;
+        for alpha in [4e-4, 1e-2] {
+            let shape =
+                alpha_shape(points.clone(), &ShapeOptions::new(Alpha::Finite(alpha))).unwrap();
+            let (numbers, positions) = (shape.component_numbers(), &shape.points().positions);
+            let complex = shape.complex();
+            let components = shape.components();
+            assert!(!components.is_empty());
+            let mut expected: Vec<_> = components
+                .iter()
+                .map(|_| {
+                    (Sum::default(), [Sum::default(), Sum::default()], [f64::MAX; 3], [f64::MIN; 3])
+                })
+                .collect();
+            for cell in complex.cells.of(Class::Interior) {
+                let corners = cell.map(|v| positions[v as usize]);
+                expected[numbers[cell[0] as usize] as usize].0.add(six_volumes(corners));
+            }
+            for (facet, class) in complex.facets.iter() {
+                let corners = facet.map(|v| positions[v as usize]);
+                let areas = &mut expected[numbers[facet[0] as usize] as usize].1;
+                match class {
+                    Class::Regular => areas[0].add(facet_area(corners)),
+                    Class::Singular => areas[1].add(facet_area(corners)),
+                    _ => {}
+                }
+            }
+            for &[v] in complex.vertices.rows() {
+                let (.., low, high) = &mut expected[numbers[v as usize] as usize];
+                for k in 0..3 {
+                    low[k] = low[k].min(positions[v as usize][k]);
+                    high[k] = high[k].max(positions[v as usize][k]);
+                }
+            }
+            across += usize::from(complex.facets.len() > 1 << 16);
+            for (component, (volumes, [area, singular], low, high)) in
+                components.iter().zip(expected)
+            {
+                assert_eq!(component.volume, volumes.value() / 6.0);
+                assert_eq!(
+                    [component.area, component.singular_area],
+                    [area.value(), singular.value()]
+                );
+                assert_eq!((component.low, component.high), (low, high));
+            }
+        }
+        assert_eq!(across, 1, "one shape has rows in several ranges");
+    }
+}

@@ -104,8 +104,7 @@ impl ComponentSums {
         self.six_volumes.join(&other.six_volumes);
         self.area.join(&other.area);
         self.singular_area.join(&other.singular_area);
-        widen(&mut self.low, &mut self.high, other.low);
-        widen(&mut self.low, &mut self.high, other.high);
+        enclose(&mut self.low, &mut self.high, other.low, other.high);
     }
 
     /// The measures of all components together, which are those of the shape.
@@ -146,8 +145,8 @@ impl Default for ComponentSums {
     }
 }
 
-/// Sums of rows by number (of a component, or a sheet), of ranges of rows side by side, each only of the numbers that it meets:
-/// joined by the caller they are the same whatever the ranges. `add` gets a row and adds it to the sums of numbers.
+/// Sums over rows by number (of a component, or of a sheet), on all threads: for each range of rows, those of the numbers
+/// that it meets. The caller joins them; the result does not depend on the ranges. `add` adds a row, given by its index.
 pub(crate) fn by_number<S: Default + Send>(
     rows: usize,
     add: impl Fn(usize, &mut ByNumber<S>) + Sync,
@@ -211,8 +210,7 @@ impl SheetSums {
     /// Adds other sides of the same sheet.
     pub fn join(&mut self, other: &Self) {
         self.six_volumes.join(&other.six_volumes);
-        widen(&mut self.low, &mut self.high, other.low);
-        widen(&mut self.low, &mut self.high, other.high);
+        enclose(&mut self.low, &mut self.high, other.low, other.high);
     }
 
     fn enclosed(self, sheet: u32) -> Enclosed {
@@ -243,9 +241,15 @@ pub fn components_of_sums(
     components
 }
 
+/// Widens a box so that it contains a point.
 fn widen(low: &mut [f64; 3], high: &mut [f64; 3], point: [f64; 3]) {
+    enclose(low, high, point, point);
+}
+
+/// Widens a box so that it contains another one, which may be empty: the low corner is then above the high one.
+fn enclose(low: &mut [f64; 3], high: &mut [f64; 3], other_low: [f64; 3], other_high: [f64; 3]) {
     for k in 0..3 {
-        low[k] = low[k].min(point[k]);
-        high[k] = high[k].max(point[k]);
+        low[k] = low[k].min(other_low[k]);
+        high[k] = high[k].max(other_high[k]);
     }
 }

@@ -26,8 +26,19 @@ use shape::ShapeReport;
 pub(super) const SCHEMA_VERSION: u32 = 1;
 
 /// The stages whose times are printed, in the order of the work.
-const STAGES: [&str; 10] =
-    ["read", "haar", "points", "alpha", "refit", "shape", "fill", "interpolate", "write", "total"];
+const STAGES: [&str; 10] = [
+    "read",
+    "haar",
+    "points",
+    "alpha",
+    "refit",
+    "shape",
+    "measure",
+    "fill",
+    "interpolate",
+    "write",
+    "total",
+];
 
 /// What `walpha shape` and `walpha points` did. A fact that is not known is null.
 #[derive(Serialize)]

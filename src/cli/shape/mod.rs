@@ -177,10 +177,12 @@ impl Shape {
         let mut facts = pipeline::model_facts(&weighed, volume.as_ref());
         let model = pipeline::shape(weighed, recipe, progress)?;
         facts.alpha = Some(model.parameter.alpha);
-        report.add_model(&model);
-        if self.solid {
-            report.add_solid(model.shape.solid().1);
-        }
+        progress.stage(Stage::Measure, || {
+            report.add_model(&model);
+            if self.solid {
+                report.add_solid(model.shape.solid().1);
+            }
+        });
         let remarks = outputs.remarks(&model.shape);
         progress.stage(Stage::Write, || outputs.write(&model.shape, &facts))?;
         if !global.quiet {
