@@ -26,7 +26,7 @@ use shape::ShapeReport;
 pub(super) const SCHEMA_VERSION: u32 = 1;
 
 /// The stages whose times are printed, in the order of the work.
-const STAGES: [&str; 10] = [
+const STAGES: [&str; 11] = [
     "read",
     "haar",
     "points",
