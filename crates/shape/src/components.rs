@@ -160,8 +160,11 @@ mod tests {
         let points = WeightedPoints::unweighted(positions);
         let mut across = 0;
         for alpha in [4e-4, 1e-2] {
-            let shape = alpha_shape(points.clone(), &ShapeOptions::new(Alpha::new(alpha).unwrap()))
-                .unwrap();
+            let shape = alpha_shape(
+                points.clone(),
+                &ShapeOptions::new(Alpha::from_squared(alpha).unwrap()),
+            )
+            .unwrap();
             let (numbers, positions) = (shape.component_numbers(), &shape.points().positions);
             let complex = shape.complex();
             let components = shape.components();
