@@ -1,9 +1,9 @@
 // What a CGAL user writes: one triangulation, one Fixed_alpha_shape_3, and one pass over each kind of
-// simplex that copies input indices and classes. The baseline of examples/race.rs, which compiles it
-// with -O3 -DNDEBUG.
+// simplex that copies input indices and classes. The baseline of examples/race, which compiles it
+// with -O3 -DNDEBUG, and once more with CGAL_LINKED_WITH_TBB: then the triangulation is CGAL's parallel one.
 //
-//   plain_cgal POINTS ALPHA         POINTS: x, y, z, ω of each point as little-endian doubles
-//   plain_cgal POINTS triangulation the triangulation alone
+//   plain_cgal POINTS ALPHA THREADS           POINTS: x, y, z, ω of each point as little-endian doubles
+//   plain_cgal POINTS triangulation THREADS   the triangulation alone
 //
 // Prints seconds, peak KiB of the process, and the simplices of the shape by dimension and class:
 // cells, then interior, regular, singular facets, edges, vertices.
@@ -23,6 +23,13 @@
 #include <CGAL/Fixed_alpha_shape_vertex_base_3.h>
 #include <CGAL/Regular_triangulation_3.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
+#include <CGAL/Bbox_3.h>
+#ifdef CGAL_LINKED_WITH_TBB
+#include <tbb/global_control.h>
+using Concurrency = CGAL::Parallel_tag;
+#else
+using Concurrency = CGAL::Sequential_tag;
+#endif
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Regular_vertex = CGAL::Regular_triangulation_vertex_base_3<Kernel>;
@@ -30,7 +37,7 @@ using Numbered = CGAL::Triangulation_vertex_base_with_info_3<unsigned, Kernel, R
 using Vertex = CGAL::Fixed_alpha_shape_vertex_base_3<Kernel, Numbered>;
 using Cell = CGAL::Fixed_alpha_shape_cell_base_3<Kernel, CGAL::Regular_triangulation_cell_base_3<Kernel>>;
 using Triangulation =
-    CGAL::Regular_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<Vertex, Cell>>;
+    CGAL::Regular_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<Vertex, Cell, Concurrency>>;
 using Shape = CGAL::Fixed_alpha_shape_3<Triangulation>;
 
 template <std::size_t N>
@@ -61,8 +68,20 @@ int main(int, char **arguments) {
   Simplices<3> facets;
   Simplices<2> edges;
   Simplices<1> vertices;
+#ifdef CGAL_LINKED_WITH_TBB
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    std::atoi(arguments[3]));
+#endif
   const auto start = std::chrono::steady_clock::now();
+#ifdef CGAL_LINKED_WITH_TBB
+  // A grid of locks over the points, as CGAL's manual has it.
+  CGAL::Bbox_3 box;
+  for (const auto &point : points) box += point.first.bbox();
+  Triangulation::Lock_data_structure locks(box, 50);
+  Triangulation triangulation(points.begin(), points.end(), &locks);
+#else
   Triangulation triangulation(points.begin(), points.end());
+#endif
   if (std::strcmp(arguments[2], "triangulation") != 0) {
     const Shape shape(triangulation, std::atof(arguments[2]));
     for (auto c = shape.finite_cells_begin(); c != shape.finite_cells_end(); ++c) {

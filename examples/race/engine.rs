@@ -1,4 +1,4 @@
-//! What a process of its own does.
+//! One of our engines in a process of its own.
 
 use std::time::Instant;
 
@@ -9,15 +9,12 @@ use walpha::{Alpha, AlphaShape, Simplices, WeightedPoints, alpha_shape};
 
 use super::Result;
 
-/// One engine on points from a file: prints what plain CGAL prints.
-pub(super) fn run(
-    what: &str,
-    points: &str,
-    alpha: &str,
-    threads: usize,
-    memory: Option<u64>,
-) -> Result<()> {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+/// Runs `[what, points, alpha, threads]`, and prints seconds, peak KiB and counts as plain CGAL does.
+pub(super) fn run(arguments: &[String]) -> Result<()> {
+    let [what, points, alpha, threads] = arguments else {
+        return Err("run WHAT POINTS ALPHA THREADS".into());
+    };
+    rayon::ThreadPoolBuilder::new().num_threads(threads.parse()?).build_global()?;
     let bytes = std::fs::read(points)?;
     let number = |bytes: &[u8; 8]| f64::from_le_bytes(*bytes);
     let rows = bytes.as_chunks::<8>().0.as_chunks::<4>().0;
@@ -26,15 +23,12 @@ pub(super) fn run(
     let points = WeightedPoints::new(positions, weights)?;
     drop(bytes);
     let alpha = Alpha::from_squared(alpha.parse()?)?;
-    let shape = |engine| ShapeOptions::new(alpha).engine(engine).memory(memory);
+    let shape = |engine| ShapeOptions::new(alpha).engine(engine);
     let started = Instant::now();
-    let counts = match what {
+    let counts = match what.as_str() {
         "cgal" => counts(&alpha_shape(points, &shape(Engine::Cgal))?),
         "native" => counts(&alpha_shape(points, &shape(Engine::Native))?),
-        "whole" => {
-            let options = shape(Engine::Native).exterior(true);
-            counts(&alpha_shape(points, &options)?)
-        }
+        "whole" => counts(&alpha_shape(points, &shape(Engine::Native).exterior(true))?),
         "filtration" => counts(Filtration::new(points)?.whole()),
         "order" => {
             let filtration = Filtration::new(points)?;
@@ -42,11 +36,12 @@ pub(super) fn run(
             assert!(!ordered.is_empty());
             counts(filtration.whole())
         }
-        _ => {
+        "triangulation" => {
             let sites = Sites::new(&points.positions, &points.weights)?;
             assert!(!triangulate(&sites)?.cells().is_empty());
-            "0 0 0 0 0 0 0 0 0 0".to_owned()
+            String::new()
         }
+        other => return Err(format!("{other} cannot be run").into()),
     };
     println!("{} {} {counts}", started.elapsed().as_secs_f64(), peak());
     Ok(())
@@ -57,7 +52,8 @@ fn counts(shape: &AlphaShape) -> String {
     let complex = shape.complex();
     let [facets, edges, vertices] =
         [by_class(&complex.facets), by_class(&complex.edges), by_class(&complex.vertices)];
-    format!("{} {facets} {edges} {vertices}", complex.cells.len())
+    let cells = complex.cells.counts().interior;
+    format!("{cells} {facets} {edges} {vertices}")
 }
 
 fn by_class<const N: usize>(simplices: &Simplices<N>) -> String {

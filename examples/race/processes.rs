@@ -1,45 +1,69 @@
-//! Processes of their own, and medians of them.
+//! Runs of processes, and their medians.
 
 use std::process::Command;
+use std::time::Instant;
 
-use super::{RUNS, Result};
+use super::Result;
+use super::peers::Contestant;
 
-/// What one process says.
+const RUNS: usize = 5;
+
+/// What a process took and found.
+#[derive(Clone)]
 pub(super) struct Run {
-    pub seconds: f64,
-    /// The most memory it ever held, in bytes.
+    /// Seconds from its start to its end.
+    pub process: f64,
+    /// Seconds of the work alone.
+    pub work: f64,
+    /// The most memory it held, in bytes.
     pub peak: u64,
-    /// What must agree.
+    /// Cells of the shape, and facets, edges and vertices by class; empty where it gives none.
     pub counts: String,
 }
 
-/// Runs everything in turn, several times; gives the medians of times and peaks.
-pub(super) fn medians(runs: &[&dyn Fn() -> Result<Run>]) -> Result<Vec<Run>> {
-    let mut done: Vec<Vec<Run>> = runs.iter().map(|_| Vec::new()).collect();
+/// Runs everything in turn, several times. Gives the medians of times, and the largest peaks.
+pub(super) fn medians(contestants: &[Contestant]) -> Result<Vec<Run>> {
+    let mut done: Vec<Vec<Run>> = contestants.iter().map(|_| Vec::new()).collect();
     for _ in 0..RUNS {
-        for (run, done) in runs.iter().zip(&mut done) {
-            done.push(run()?);
+        for (contestant, done) in contestants.iter().zip(&mut done) {
+            done.push((contestant.run)().map_err(|error| format!("{}: {error}", contestant.name))?);
         }
     }
-    let counts = done[0][0].counts.clone();
-    let median = |mut of: Vec<Run>| {
-        assert!(of.iter().all(|run| run.counts == counts), "counts differ");
-        of.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
-        let peak = of.iter().map(|run| run.peak).max().unwrap_or(0);
-        Run { peak, ..of.swap_remove(RUNS / 2) }
+    let counts = done.iter().flatten().map(|run| &run.counts).find(|counts| !counts.is_empty());
+    let agree = |run: &Run| run.counts.is_empty() || Some(&run.counts) == counts;
+    if let Some(wrong) = done.iter().flatten().find(|run| !agree(run)) {
+        return Err(format!("counts differ: {counts:?} and {}", wrong.counts).into());
+    }
+    let median = |of: &[Run], seconds: fn(&Run) -> f64| {
+        let mut all: Vec<f64> = of.iter().map(seconds).collect();
+        all.sort_by(f64::total_cmp);
+        all[all.len() / 2]
     };
-    Ok(done.into_iter().map(median).collect())
+    let of = |of: &Vec<Run>| Run {
+        process: median(of, |run| run.process),
+        work: median(of, |run| run.work),
+        peak: of.iter().map(|run| run.peak).max().unwrap_or(0),
+        counts: String::new(),
+    };
+    Ok(done.iter().map(of).collect())
 }
 
-/// Seconds, peak KiB, counts.
-pub(super) fn output(command: &mut Command) -> Result<Run> {
+/// A process that prints seconds of the work, its peak in KiB, and counts if it has them.
+pub(super) fn run(command: &mut Command) -> Result<Run> {
+    let (text, process) = output(command)?;
+    let mut words = text.split_whitespace();
+    let mut word = || words.next().ok_or("it printed no seconds and peak");
+    let (work, peak) = (word()?.parse()?, word()?.parse::<u64>()? << 10);
+    Ok(Run { process, work, peak, counts: words.collect::<Vec<_>>().join(" ") })
+}
+
+/// What a process prints, and its seconds.
+pub(super) fn output(command: &mut Command) -> Result<(String, f64)> {
+    let started = Instant::now();
     let output = command.output()?;
+    let seconds = started.elapsed().as_secs_f64();
     if !output.status.success() {
         return Err(String::from_utf8_lossy(&output.stderr).into());
     }
-    let text = String::from_utf8(output.stdout)?;
-    let mut words = text.split_whitespace();
-    let mut word = || words.next().ok_or("seconds and a peak");
-    let (seconds, peak) = (word()?.parse()?, word()?.parse::<u64>()? << 10);
-    Ok(Run { seconds, peak, counts: words.collect::<Vec<_>>().join(" ") })
+    Ok((String::from_utf8(output.stdout)?, seconds))
 }

@@ -1,19 +1,111 @@
 //! The sets of points.
 
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
+
+use ndarray_npy::write_npy;
+use walpha::ndarray::Array2;
 use walpha::points::{Points, Selection, Units, difference, select, weigh};
-use walpha::{Alpha, Gray, Volume, WeightedPoints, Weighting, volume};
+use walpha::{Alpha, Gray, Volume, Weighting, volume};
+use walpha_base::random::Random;
 
 use super::Result;
 
-/// A set by name: `skull@N` (the skull upsampled to N³ samples) or `random@N` (N random points).
-pub(super) fn weighted(set: &str, weighting: &str, alpha: f64) -> Result<WeightedPoints> {
-    let weighting: Weighting = weighting.parse()?;
-    let points = match set.split_once('@') {
-        Some(("skull", size)) => skull(size.parse()?)?,
-        Some((_, count)) => random(count.parse()?),
-        None => return Err("no such set".into()),
-    };
-    Ok(weigh(points, weighting, Alpha::from_squared(alpha)?)?)
+/// A set of points with weights.
+pub(super) struct Set {
+    kind: Kind,
+    size: usize,
+    weighting: Weighting,
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    /// The points of the skull, upsampled to so many samples along each axis.
+    Skull,
+    /// So many random points in a cube, one in each unit of volume.
+    Random,
+    /// So many points of a hilly ground, as a laser scanner sees it from above.
+    Terrain,
+    /// So many random points on a sphere: all spheres through four of them are nearly the same.
+    Sphere,
+}
+
+const KINDS: [(&str, Kind); 4] = [
+    ("skull", Kind::Skull),
+    ("random", Kind::Random),
+    ("terrain", Kind::Terrain),
+    ("sphere", Kind::Sphere),
+];
+
+impl FromStr for Set {
+    type Err = Box<dyn std::error::Error + Send + Sync>;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let (set, weighting) = text.split_once(':').unwrap_or((text, "common=0"));
+        let (name, size) = set.split_once('@').ok_or(super::USAGE)?;
+        let (_, kind) = KINDS.iter().find(|(known, _)| *known == name).ok_or(super::USAGE)?;
+        Ok(Self { kind: *kind, size: size.parse()?, weighting: weighting.parse()? })
+    }
+}
+
+impl fmt::Display for Set {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (name, _) = KINDS[self.kind as usize];
+        write!(f, "{name}@{}, weights {}", self.size, self.weighting)
+    }
+}
+
+impl Set {
+    /// α of its shapes: the paper's for the skull, and a few times the squared spacing of others.
+    pub(super) fn alpha(&self) -> f64 {
+        match self.kind {
+            Kind::Skull => 10.0,
+            Kind::Random | Kind::Terrain => 1.0,
+            Kind::Sphere => 40.0 / self.size as f64,
+        }
+    }
+
+    pub(super) fn has_weights(&self) -> bool {
+        self.weighting != Weighting::Common(0.0)
+    }
+
+    fn points(&self) -> Result<Points> {
+        let mut random = Random::new(1);
+        let side = match self.kind {
+            Kind::Skull => return skull(self.size),
+            Kind::Random => (self.size as f64).cbrt(),
+            Kind::Terrain => (self.size as f64).sqrt(),
+            Kind::Sphere => 0.0,
+        };
+        let point = |_| {
+            let [x, y, z] = [(); 3].map(|()| random.unit());
+            match self.kind {
+                Kind::Skull | Kind::Random => [x, y, z].map(|x| x * side),
+                Kind::Terrain => {
+                    let [x, y] = [x * side, y * side];
+                    [x, y, 40.0 * ((x / 90.0).sin() + (y / 70.0).cos()) + z]
+                }
+                Kind::Sphere => {
+                    let (height, turn) = (2.0 * x - 1.0, std::f64::consts::TAU * y);
+                    let radius = (1.0 - height * height).sqrt();
+                    [radius * turn.cos(), radius * turn.sin(), height]
+                }
+            }
+        };
+        Ok(Points::new((0..self.size).map(point).collect()))
+    }
+}
+
+/// Writes a set as plain CGAL reads it, and as NPY for the command; returns the number of points.
+pub(super) fn write(set: &Set, path: &Path) -> Result<usize> {
+    let points = weigh(set.points()?, set.weighting, Alpha::from_squared(set.alpha())?)?;
+    let rows = points.positions.iter().zip(&points.weights);
+    let numbers: Vec<f64> = rows.flat_map(|(p, w)| [p[0], p[1], p[2], *w]).collect();
+    std::fs::write(path, numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>())?;
+    let count = points.positions.len();
+    write_npy(path.with_extension("npy"), &Array2::from_shape_vec((count, 4), numbers)?)?;
+    Ok(count)
 }
 
 fn skull(size: usize) -> Result<Points> {
@@ -45,16 +137,4 @@ fn upsampled(volume: &Volume, size: usize) -> Result<Volume> {
         sum as f32
     });
     Ok(Volume::new(upsampled, *volume.frame())?.with_gray_levels())
-}
-
-/// Points in a cube, one in each unit of volume on average, from a fixed linear congruence.
-fn random(count: usize) -> Points {
-    let side = (count as f64).cbrt();
-    let mut state = 1u64;
-    let mut next = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64 * side
-    };
-    let positions = (0..count).map(|_| [next(), next(), next()]).collect();
-    Points::new(positions)
 }
