@@ -48,10 +48,10 @@ pub(super) fn medians(contestants: &[Contestant]) -> Result<Vec<Run>> {
     Ok(done.iter().map(of).collect())
 }
 
-/// A process that prints seconds of the work, its peak in KiB, and counts if it has them.
+/// A process whose last line has seconds of the work, its peak in KiB, and counts if it gives them.
 pub(super) fn run(command: &mut Command) -> Result<Run> {
     let (text, process) = output(command)?;
-    let mut words = text.split_whitespace();
+    let mut words = text.lines().last().unwrap_or_default().split_whitespace();
     let mut word = || words.next().ok_or("it printed no seconds and peak");
     let (work, peak) = (word()?.parse()?, word()?.parse::<u64>()? << 10);
     Ok(Run { process, work, peak, counts: words.collect::<Vec<_>>().join(" ") })

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 use serde::Serialize;
+use serde_json::Value;
 use walpha_base::Monitor;
 use walpha_base::shown::number;
 
@@ -101,6 +102,9 @@ enum Content {
         alpha: Option<Alpha>,
         /// The values that were gray 0 and 255.
         gray_range: Option<[f64; 2]>,
+        /// The options that made them, where they differ from the default.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        recipe: Option<Value>,
     },
 }
 
@@ -163,6 +167,7 @@ impl Info {
                 coordinates: facts.coordinates,
                 alpha: facts.alpha,
                 gray_range: facts.range.map(|range| [range.low, range.high]),
+                recipe: facts.recipe.map(|text| serde_json::from_str(&text).unwrap_or(text.into())),
             });
         }
         let options = self.input.options();
@@ -259,7 +264,12 @@ impl std::fmt::Display for InfoSummary {
 impl Content {
     /// What the points are meant for.
     fn fmt_meant(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self::Points { alpha, gray_range, coordinates, .. } = self else { return Ok(()) };
+        let Self::Points { alpha, gray_range, coordinates, recipe, .. } = self else {
+            return Ok(());
+        };
+        if let Some(recipe) = recipe {
+            writeln!(f, "recipe    {recipe}")?;
+        }
         if let Some(alpha) = alpha {
             writeln!(f, "α         {} {}²", number(alpha.squared()), coordinates.unit.symbol())?;
         }

@@ -129,6 +129,7 @@ impl Recipe {
             fit: None,
         };
         let mut weighed = Weighed::new(points, origin, parameter, monitor)?.ordered(importance);
+        weighed.recipe = Some(self.to_json());
         if let Some(to) = self.refit {
             self.fit(&mut weighed, source, to, monitor)?;
         }
@@ -173,7 +174,9 @@ impl Recipe {
         let stored = facts.alpha.filter(|_| self.alpha == AlphaRule::Default);
         let stored = stored.map(|alpha| Parameter { alpha, unit, origin: ParameterOrigin::Stored });
         let parameter = stored.or_else(|| self.alpha.given(unit));
-        Weighed::new(points, origin, parameter, monitor)
+        let mut weighed = Weighed::new(points, origin, parameter, monitor)?;
+        weighed.recipe = Some(facts.recipe.clone().unwrap_or_else(|| self.to_json()));
+        Ok(weighed)
     }
 
     /// The shape of weighted points. The monitor hears of each stage.

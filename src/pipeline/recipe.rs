@@ -1,6 +1,7 @@
 use std::num::NonZeroUsize;
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use walpha_base::setters;
 
 use super::{AlphaRule, Choice, Parameter, PipelineError};
@@ -94,6 +95,22 @@ impl Recipe {
         memory: Option<u64>,
         refuse_flat: bool,
         periodic: Option<Torus>,
+    }
+
+    /// What differs from the default, as a JSON object, from which it can be deserialised: what a `.wvm` keeps.
+    ///
+    /// # Panics
+    /// Never: all options can be serialised.
+    pub fn to_json(&self) -> String {
+        let object = |recipe: &Self| match serde_json::to_value(recipe) {
+            Ok(Value::Object(object)) => object,
+            other => unreachable!("options have names: {other:?}"),
+        };
+        let (mut options, default) = (object(self), object(&Self::default()));
+        options.retain(|name, value| default.get(name) != Some(value));
+        let mut options = Value::Object(options);
+        drop_nulls(&mut options);
+        options.to_string()
     }
 
     /// Sets `gray`: a range, or `None`.
@@ -213,6 +230,14 @@ impl Recipe {
     }
 }
 
+/// Drops fields that are null: those are options that are absent by default.
+fn drop_nulls(value: &mut Value) {
+    if let Value::Object(fields) = value {
+        fields.retain(|_, value| !value.is_null());
+        fields.values_mut().for_each(drop_nulls);
+    }
+}
+
 /// A periodic box as its sides.
 mod sides {
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
@@ -265,11 +290,14 @@ mod tests {
                 [Choice::Difference(selection), Choice::Adaptive(goal), Choice::Exchanged(goal)]
             {
                 let recipe = base.clone().alpha(alpha).choice(choice);
-                let text = serde_json::to_string(&recipe).unwrap();
-                assert_eq!(serde_json::from_str::<Recipe>(&text).unwrap(), recipe, "{text}");
+                for text in [serde_json::to_string(&recipe).unwrap(), recipe.to_json()] {
+                    assert_eq!(serde_json::from_str::<Recipe>(&text).unwrap(), recipe, "{text}");
+                }
             }
         }
         assert_eq!(serde_json::from_str::<Recipe>("{}").unwrap(), Recipe::new());
+        assert_eq!(Recipe::new().to_json(), "{}");
+        assert_eq!(Recipe::new().hidden(true).to_json(), r#"{"hidden":true}"#);
         let wrong = [r#"{"alfa": "1"}"#, r#"{"alpha": "nan"}"#, r#"{"periodic": [1, 0, 1]}"#];
         for text in wrong {
             assert!(serde_json::from_str::<Recipe>(text).is_err(), "{text}");

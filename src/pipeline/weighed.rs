@@ -21,6 +21,8 @@ pub struct Weighed {
     pub origin: Origin,
     /// α; `None` where it is still to be found ([`Weighed::find_parameter`]), because weights do not need it.
     pub parameter: Option<Parameter>,
+    /// The recipe that made them ([`Recipe::to_json`](super::Recipe::to_json)), or else that of the file they were read from.
+    pub recipe: Option<String>,
     /// By what the points are ordered, where they were selected from a volume.
     importance: Option<Importance>,
 }
@@ -83,7 +85,7 @@ impl Weighed {
         // Weights that do not depend on α are the same at ∞.
         let alpha = parameter.map_or(Alpha::INFINITE, |parameter| parameter.alpha);
         let points = weigh(points, weighting, alpha)?;
-        Ok(Self { points, origin, parameter, importance: None })
+        Ok(Self { points, origin, parameter, recipe: None, importance: None })
     }
 
     /// The same points with what they are ordered by.

@@ -70,6 +70,8 @@ pub struct ModelFacts {
     pub alpha: Option<Alpha>,
     /// The values that were gray 0 and 255.
     pub range: Option<GrayRange>,
+    /// The [`Recipe`](crate::Recipe) that made them, as JSON ([`Recipe::to_json`](crate::Recipe::to_json)).
+    pub recipe: Option<String>,
     /// All points by their indices, the most important first.
     pub order: Option<Vec<u32>>,
     /// The cell in which they repeat.
@@ -94,6 +96,7 @@ impl ModelFacts {
         coordinates: Coordinates,
         alpha: Option<Alpha>,
         range: Option<GrayRange>,
+        recipe: Option<String>,
         order: Option<Vec<u32>>,
         cell: Option<Cell>,
     }

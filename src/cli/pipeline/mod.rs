@@ -67,6 +67,7 @@ pub(super) fn model_facts(weighed: &Weighed, volume: Option<&VolumeSummary>) -> 
         coordinates: origin.coordinates,
         alpha: weighed.parameter.map(|parameter| parameter.alpha),
         range: volume.map(|volume| volume.written).or(origin.range),
+        recipe: weighed.recipe.clone(),
         order: None,
         cell: None,
     }

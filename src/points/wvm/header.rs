@@ -7,8 +7,12 @@ use crate::points::model::MODEL;
 use crate::points::{ModelFacts, SampleGrid, Units};
 use crate::volume::{Coordinates, Dims, Frame, GrayRange, Reason};
 
-/// The version that is written, and the only one that is read.
-const VERSION: u8 = 1;
+/// The version without a recipe, which is written where there is none.
+const WITHOUT_RECIPE: u8 = 1;
+/// The version whose header ends with a recipe.
+const WITH_RECIPE: u8 = 2;
+/// Longest recipe that is kept, in bytes: the length of a header has 16 bits.
+const MAX_RECIPE: usize = 1 << 15;
 
 /// Points per byte of a layer, at most: what is believed of a header is in proportion to the file.
 pub(super) const POINTS_PER_BYTE: u64 = 64;
@@ -26,6 +30,7 @@ pub(super) struct Header {
     pub coordinates: Coordinates,
     pub alpha: Option<Alpha>,
     pub range: Option<GrayRange>,
+    pub recipe: Option<String>,
     pub values: Values,
     pub weights: Weights,
     pub layers: Vec<Layer>,
@@ -81,7 +86,8 @@ impl Header {
     /// What is stored besides the points.
     pub(super) fn facts(&self) -> ModelFacts {
         let Self { grid, coordinates, alpha, range, .. } = *self;
-        ModelFacts { grid, coordinates, alpha, range, order: None, cell: None }
+        let recipe = self.recipe.clone();
+        ModelFacts { grid, coordinates, alpha, range, recipe, order: None, cell: None }
     }
 
     /// The frame of the grid, where it has to be stored.
@@ -105,8 +111,9 @@ impl Header {
             (RANGE, self.range.is_some()),
         ];
         let flags = flags.iter().filter(|(_, set)| *set).map(|(flag, _)| flag).sum();
+        let recipe = self.recipe.as_ref().filter(|recipe| recipe.len() <= MAX_RECIPE);
         let mut out = Out(MODEL.to_vec());
-        out.0.push(VERSION);
+        out.0.push(if recipe.is_some() { WITH_RECIPE } else { WITHOUT_RECIPE });
         let length = out.0.len();
         out.0.extend([0; LENGTH]);
         out.0.push(flags);
@@ -134,7 +141,11 @@ impl Header {
         if let Some(range) = self.range {
             out.doubles(&[range.low, range.high]);
         }
-        let whole = u16::try_from(out.0.len() + CHECKSUM).expect("a few hundred bytes");
+        if let Some(recipe) = recipe {
+            out.0.extend(recipe.as_bytes());
+        }
+        let whole =
+            u16::try_from(out.0.len() + CHECKSUM).expect("a few hundred bytes and a recipe");
         out.0[length..][..LENGTH].copy_from_slice(&whole.to_le_bytes());
         let checksum = crc32fast::hash(&out.0);
         out.0.extend(checksum.to_le_bytes());
@@ -149,8 +160,10 @@ impl Header {
         };
         let mut fields = In { rest };
         let version = fields.byte()?;
-        if version != VERSION {
-            let what = format!("is of version {version} of the format: version {VERSION} is read");
+        if ![WITHOUT_RECIPE, WITH_RECIPE].contains(&version) {
+            let what = format!(
+                "is of version {version} of the format: versions {WITHOUT_RECIPE} and {WITH_RECIPE} are read"
+            );
             return Err(Reason::unsupported(what, "update walpha"));
         }
         let length = usize::from(u16::from_le_bytes(fields.bytes()?));
@@ -163,8 +176,11 @@ impl Header {
         }
         let mut fields =
             In { rest: head.get(file.len() - fields.rest.len()..).unwrap_or_default() };
-        let header = Self::of_fields(&mut fields)?;
-        if !fields.rest.is_empty() {
+        let mut header = Self::of_fields(&mut fields)?;
+        if version == WITH_RECIPE {
+            let recipe = String::from_utf8(fields.rest.to_vec());
+            header.recipe = Some(recipe.map_err(|_| Reason::header("its recipe is not UTF-8"))?);
+        } else if !fields.rest.is_empty() {
             return Err(Reason::header("its header is longer than its fields"));
         }
         Ok((header, length))
@@ -201,7 +217,8 @@ impl Header {
         } else {
             None
         };
-        let header = Self { grid, coordinates, alpha, range, values, weights, layers };
+        let header =
+            Self { grid, coordinates, alpha, range, recipe: None, values, weights, layers };
         header.check()?;
         Ok(header)
     }

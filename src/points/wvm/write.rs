@@ -42,6 +42,7 @@ pub(in crate::points) fn write(
         coordinates: facts.coordinates,
         alpha: facts.alpha,
         range: facts.range,
+        recipe: facts.recipe.clone(),
         values: match (&points.values, &file.steps) {
             (None, _) => Values::None,
             (_, Some(Steps { base, step, .. })) => Values::Steps { base: *base, step: *step },

@@ -54,6 +54,12 @@ fn the_command_makes_the_same_of_a_file() {
     assert_eq!(told["grid"], serde_json::json!([20, 20, 20]));
     assert_eq!(told["coordinates"], serde_json::json!({"space": "LPS", "unit": "mm"}));
     assert_eq!(told["alpha"], 3.0);
+    // The recipe that made it is kept through the second file, too.
+    let recipe: walpha::Recipe = serde_json::from_value(told["recipe"].clone()).unwrap();
+    assert_eq!(recipe.alpha, walpha::Alpha::from_squared(3.0).unwrap().into());
+    assert!(
+        matches!(recipe.choice, walpha::pipeline::Choice::Adaptive(goal) if goal.count == Some(700))
+    );
     let told = json(folder.path(), &["shape", "m.wvm"]);
     assert_eq!(told["alpha"]["origin"], "stored");
 }
