@@ -48,14 +48,14 @@ pub use walpha_base::{Conversion, Coordinates, LengthUnit, Space};
 
 // What walpha reads points with: no promise to others.
 #[doc(hidden)]
-pub use formats::{begins_as_volume, built, is_vtk, is_vtk_xml, start_of};
+pub use formats::{begins_as_volume, built, is_npy, is_vtk, is_vtk_xml, read_file};
 #[doc(hidden)]
 pub use grid::{any_size, inverse};
 #[cfg(feature = "formats")]
 #[doc(hidden)]
 pub use read::{Element, Lines, VtkPoints, VtkXml};
 #[doc(hidden)]
-pub use read::{NpyFile, io_error};
+pub use read::{NpyFile, OpenFile, io_error};
 
 /// The example in the README runs.
 #[cfg(doctest)]

@@ -1,14 +1,15 @@
-use std::io::{BufRead, BufReader};
+use std::io::BufRead;
 use std::path::Path;
 
 use super::{COLUMNS, CellCount, Points, PointsError, format};
-use crate::volume::{Lines, Reason, io_error};
+use crate::volume::{Lines, OpenFile, Reason, io_error};
 
 /// Reads the vertices of an OFF file in text, with normals, colours or texture coordinates (NOFF, COFF,
 /// STOFF) or without: the first three numbers of each line. Its faces must be there as it claims.
-pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
+pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+    let path = file.path();
     let said = |reason: Reason| format(path, reason);
-    let (mut rows, vertices, faces) = head(path)?;
+    let (mut rows, vertices, faces) = head(file)?;
     let cut = || {
         said(Reason::truncated(format!(
             "ends before its {vertices} vertices and {faces} faces: it is truncated"
@@ -26,16 +27,16 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
 }
 
 /// How many faces there are.
-pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
-    let faces = head(path)?.2;
+pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
+    let faces = head(file)?.2;
     Ok(vec![CellCount::new("faces", usize::try_from(faces).unwrap_or(usize::MAX))])
 }
 
 /// What follows the head of a file, and how many vertices and faces it claims.
-fn head(path: &Path) -> Result<(Tokens<BufReader<std::fs::File>>, u64, u64), PointsError> {
+fn head(file: &OpenFile) -> Result<(Tokens<impl BufRead>, u64, u64), PointsError> {
+    let path = file.path();
     let said = |reason: Reason| format(path, reason);
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let mut rows = Tokens { lines: Lines::new(BufReader::new(file)), number: 0 };
+    let mut rows = Tokens { lines: Lines::new(file.reader()?), number: 0 };
     let head = rows.next(path)?.unwrap_or_default();
     let mut words = head.split_whitespace().peekable();
     if let Some(kind) = words.next_if(|word| word.ends_with("OFF")) {

@@ -1,18 +1,17 @@
-use std::io::{BufReader, Read};
+use std::io::{BufRead, Read};
 use std::path::Path;
 
 use super::{COLUMNS, CellCount, Points, PointsError, RADIUS, format, take_radii};
-use crate::volume::{Dtype, Element as _, Endian, Lines, Reason, io_error};
+use crate::volume::{Dtype, Element as _, Endian, Lines, OpenFile, Reason, io_error};
 
 /// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z,
 /// optionally weight or radius, and value. All other elements must be there as the header claims.
-pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
+pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+    let path = file.path();
     let said = |reason: Reason| format(path, reason);
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    let mut lines = Lines::new(BufReader::new(file));
+    let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
-    let left = length - lines.bytes();
+    let left = file.length() - lines.bytes();
     let mut reader = lines.into_inner();
     let mut numbers = if let Some(endian) = header.endian {
         Numbers::Binary(reader, endian)
@@ -44,9 +43,8 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
 }
 
 /// How many faces, edges and so on the header claims.
-pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let header = Header::read(path, &mut Lines::new(BufReader::new(file)))?;
+pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
+    let header = Header::read(file.path(), &mut Lines::new(file.reader()?))?;
     let count = |element: &Element| {
         let kind = match element.name.as_str() {
             "face" => "faces",
@@ -60,7 +58,11 @@ pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
     Ok(header.elements.iter().filter_map(count).collect())
 }
 
-fn vertices(path: &Path, element: &Element, numbers: &mut Numbers) -> Result<Points, PointsError> {
+fn vertices(
+    path: &Path,
+    element: &Element,
+    numbers: &mut Numbers<impl Read>,
+) -> Result<Points, PointsError> {
     let said = |reason: Reason| format(path, reason);
     let column = |property: &Property| match property {
         Property::Scalar(name, _) => {
@@ -119,7 +121,7 @@ enum Property {
 }
 
 impl Header {
-    fn read(path: &Path, lines: &mut Lines<BufReader<std::fs::File>>) -> Result<Self, PointsError> {
+    fn read(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Self, PointsError> {
         let said = |reason: Reason| format(path, reason);
         let mut line = || lines.read_line().map_err(io_error(path));
         if line()?.as_deref() != Some("ply") {
@@ -185,7 +187,7 @@ impl Element {
         Ok(())
     }
 
-    fn skip(&self, numbers: &mut Numbers) -> Result<(), Reason> {
+    fn skip(&self, numbers: &mut Numbers<impl Read>) -> Result<(), Reason> {
         // Without properties there is nothing to pass over, however many there are.
         let rows = if self.properties.is_empty() { 0 } else { self.count };
         for _ in 0..rows {
@@ -199,7 +201,7 @@ impl Element {
 
 impl Property {
     /// Reads a number, or passes over a list.
-    fn read(&self, numbers: &mut Numbers) -> Result<f64, Reason> {
+    fn read(&self, numbers: &mut Numbers<impl Read>) -> Result<f64, Reason> {
         match *self {
             Self::Scalar(_, dtype) => numbers.next(dtype),
             Self::List(count, item) => {
@@ -217,12 +219,12 @@ impl Property {
 }
 
 /// The numbers after a header.
-enum Numbers {
+enum Numbers<R> {
     Text { text: String, at: usize },
-    Binary(BufReader<std::fs::File>, Endian),
+    Binary(R, Endian),
 }
 
-impl Numbers {
+impl<R: Read> Numbers<R> {
     fn next(&mut self, dtype: Dtype) -> Result<f64, Reason> {
         let cut = || Reason::truncated("ends before all its elements: it is truncated");
         match self {

@@ -1,23 +1,20 @@
-use std::io::BufReader;
-use std::path::Path;
-
 use super::rows::TextRows;
 use super::{Columns, Points, PointsError, format};
-use crate::volume::{Lines, Reason, io_error};
+use crate::volume::{Lines, OpenFile, Reason, io_error};
 
 /// Reads CSV, or tables whose fields are separated by tabs or semicolons; then 0,5 is a half. The first
 /// line may name the columns.
-pub(crate) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
+pub(crate) fn read(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsError> {
+    let path = file.path();
     let said = |error: csv::Error| {
         format(path, Reason::header(format!("is not a table of points: {error}")))
     };
-    let delimiter = delimiter(path)?;
+    let delimiter = delimiter(file)?;
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(delimiter)
         .has_headers(false)
         .trim(csv::Trim::All)
-        .from_path(path)
-        .map_err(said)?;
+        .from_reader(file.reader()?);
     let mut rows = TextRows::new(path, columns.cloned());
     rows.decimal_comma = delimiter == b';';
     let mut record = csv::StringRecord::new();
@@ -63,9 +60,8 @@ fn is_numbers(words: &[&str]) -> bool {
 }
 
 /// What the first line has: a semicolon, a comma or a tab, in this order.
-fn delimiter(path: &Path) -> Result<u8, PointsError> {
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let line = Lines::new(BufReader::new(file)).read_line().map_err(io_error(path))?;
+fn delimiter(file: &OpenFile) -> Result<u8, PointsError> {
+    let line = Lines::new(file.reader()?).read_line().map_err(io_error(file.path()))?;
     let line = line.unwrap_or_default();
     Ok(*b";,\t".iter().find(|&&byte| line.contains(char::from(byte))).unwrap_or(&b','))
 }

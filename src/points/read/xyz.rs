@@ -1,11 +1,11 @@
-use std::io::{BufRead, BufReader};
+use std::io::BufRead;
 use std::path::Path;
 
 use super::extended::Comment;
 use super::rows::TextRows;
 use super::{COLUMNS, Columns, Points, PointsError, format};
 use crate::points::ModelFacts;
-use crate::volume::{Lines, Reason, io_error};
+use crate::volume::{Lines, OpenFile, Reason, io_error};
 
 /// What lines of numbers are, where nothing else says it.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -36,12 +36,12 @@ impl Lay {
 /// Reads lines of numbers between white space (or commas). A first line of names, optionally after `#` or
 /// `//`, says what they are; other lines that begin so are remarks.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     columns: Option<&Columns>,
     lay: Lay,
 ) -> Result<(Points, ModelFacts), PointsError> {
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let mut lines = Lines::new(BufReader::new(file));
+    let path = file.path();
+    let mut lines = Lines::new(file.reader()?);
     let mut rows = TextRows::new(path, columns.cloned());
     rows.usual = lay.usual();
     let (mut number, mut first, mut claimed) = (0, true, None);

@@ -1,8 +1,6 @@
 //! From bytes to points.
 
-use std::fs::File;
 use std::io::Read;
-use std::path::Path;
 
 use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::try_with_capacity;
@@ -13,20 +11,19 @@ use super::header::{CHECKSUM, Header, Layer, Values, Weights, damaged, fits};
 use super::write::{Coders, in_order};
 use crate::points::read::format;
 use crate::points::{ModelFacts, Points, PointsError, SampleGrid, WeightedPoints};
-use crate::volume::{Reason, io_error};
+use crate::volume::{OpenFile, Reason, io_error};
 
 /// Reads points without the last `level` layers, and what is known of them.
 ///
 /// Memory is in proportion to the file, whatever its header claims: a byte holds 64 points at most.
 pub(in crate::points) fn read(
-    path: &Path,
+    file: &OpenFile,
     level: u32,
 ) -> Result<(Points, ModelFacts), PointsError> {
+    let (path, length) = (file.path(), file.length());
     let said = |reason: Reason| format(path, reason);
-    let mut file = File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
     let mut bytes = try_with_capacity(length as usize, || format!("{length} bytes of a file"))?;
-    file.read_to_end(&mut bytes).map_err(io_error(path))?;
+    file.reader()?.read_to_end(&mut bytes).map_err(io_error(path))?;
     let (header, head) = Header::of_bytes(&bytes).map_err(said)?;
     let layers = header.layers.len();
     let wanted = layers.saturating_sub(level as usize);

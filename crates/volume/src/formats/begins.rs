@@ -1,5 +1,7 @@
 //! How files of each format begin.
 
+use walpha_base::npy::MAGIC;
+
 use crate::Endian;
 
 /// Lengths of the headers of `NIfTI`'s versions 1 and 2, which their first numbers repeat.
@@ -50,6 +52,16 @@ pub(super) fn is_mgh(start: &[u8]) -> bool {
 /// Whether a file begins as legacy VTK files do.
 pub fn is_vtk(start: &[u8]) -> bool {
     start.starts_with(b"# vtk DataFile")
+}
+
+/// Whether a file begins as NPY does.
+pub fn is_npy(start: &[u8]) -> bool {
+    start.starts_with(MAGIC)
+}
+
+/// Whether a file begins as a gzip stream does.
+pub(crate) fn is_gzip(start: &[u8]) -> bool {
+    start.starts_with(&[0x1f, 0x8b])
 }
 
 /// Whether a file begins as a DICOM file does. The bytes before the mark are anybody's: some scanners

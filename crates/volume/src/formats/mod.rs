@@ -4,7 +4,6 @@
 mod begins;
 mod built;
 mod detect;
-mod files;
 mod table;
 mod unknown;
 
@@ -12,29 +11,33 @@ use std::fmt;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-pub use detect::{data_files, format_name, read, read_monitored, series};
+pub use detect::{data_files, files_of, format_name, read, read_file, read_monitored, series};
 pub use table::FORMATS;
 pub use unknown::UnknownFormat;
 
+pub(crate) use begins::is_gzip;
 #[cfg(feature = "formats")]
 pub(crate) use begins::{NIFTI_HEADERS, nifti_version};
-pub use begins::{is_vtk, is_vtk_xml};
+pub use begins::{is_npy, is_vtk, is_vtk_xml};
 pub use built::built;
+pub use detect::begins_as_volume;
 pub(crate) use detect::source;
-pub use detect::{begins_as_volume, start_of};
-pub use files::files_of;
 
 use walpha_base::Monitor;
 use walpha_base::advice::Setting;
 
-use super::{ReadOptions, Source, Volume, VolumeError};
+use super::{OpenFile, ReadOptions, Source, Volume, VolumeError};
 
-/// Reads a file or folder.
-type Read = fn(&Path, &ReadOptions, &Monitor) -> Result<Volume, VolumeError>;
-/// Opens a file or folder to be read part by part.
-type PartsOf = fn(&Path, &ReadOptions) -> Result<Source, VolumeError>;
+/// Reads a file.
+type Read = fn(&OpenFile, &ReadOptions, &Monitor) -> Result<Volume, VolumeError>;
+/// Reads a folder.
+type ReadFolder = fn(&Path, &ReadOptions, &Monitor) -> Result<Volume, VolumeError>;
+/// Opens a file to be read part by part.
+type PartsOf = fn(&OpenFile, &ReadOptions) -> Result<Source, VolumeError>;
+/// Opens a folder to be read part by part.
+type PartsOfFolder = fn(&Path, &ReadOptions) -> Result<Source, VolumeError>;
 /// Names the files that hold the samples.
-type DataFiles = fn(&Path) -> Result<Vec<PathBuf>, VolumeError>;
+type DataFiles = fn(&OpenFile) -> Result<Vec<PathBuf>, VolumeError>;
 
 /// A format of volumes.
 pub struct VolumeFormat {
@@ -60,10 +63,14 @@ pub struct VolumeFormat {
     folder_name: &'static str,
     /// How its folders look.
     is_folder: fn(&Path) -> Result<bool, VolumeError>,
-    /// Reads a file or folder; `None` where it was left out of the build.
+    /// Reads a file, where the format has files and was not left out of the build.
     read: Option<Read>,
-    /// Opens a file or folder to be read part by part, where its format lends itself to that.
+    /// Reads a folder, where the format has folders and was not left out of the build.
+    read_folder: Option<ReadFolder>,
+    /// Opens a file to be read part by part, where its format lends itself to that.
     parts: Option<PartsOf>,
+    /// The same for a folder.
+    parts_of_folder: Option<PartsOfFolder>,
     /// The files that hold the samples, where a header does not.
     data_files: Option<DataFiles>,
 }
@@ -96,7 +103,7 @@ pub struct VolumeWriter {
 impl VolumeFormat {
     /// Whether it was built in.
     pub fn is_built_in(&self) -> bool {
-        self.read.is_some()
+        self.feature.is_none() || self.read.is_some() || self.read_folder.is_some()
     }
 }
 

@@ -1,9 +1,9 @@
 use walpha_base::advice::Setting;
 
-use super::begins::{is_dicom, is_metaimage, is_mgh, is_nifti, is_vtk, is_vtk_xml};
+use super::begins::{is_dicom, is_metaimage, is_mgh, is_nifti, is_npy, is_vtk, is_vtk_xml};
 use super::built;
-use super::{Keeps, VolumeFormat, VolumeWriter, detect};
-use crate::read::{NpyFile, inr, npy, raw, series};
+use super::{Keeps, VolumeFormat, VolumeWriter};
+use crate::read::{inr, npy, series};
 
 #[cfg(feature = "formats")]
 use crate::read::{metaimage, mgh, nifti, npz, nrrd, slices, tiff, vti, vtk};
@@ -43,7 +43,9 @@ const PLAIN: VolumeFormat = VolumeFormat {
     folder_name: "",
     is_folder: |_| Ok(false),
     read: None,
+    read_folder: None,
     parts: None,
+    parts_of_folder: None,
     data_files: None,
 };
 
@@ -59,7 +61,10 @@ pub static FORMATS: [VolumeFormat; 14] = [
         begins: is_dicom,
         folder_name: "DICOM series",
         is_folder: |folder| Ok(series::first(folder)?.is_some()),
-        read: built!("dicom", crate::read::dicom::read),
+        read: built!("dicom", |file, options, monitor| {
+            crate::read::dicom::read_series_of(file.path(), options, monitor)
+        }),
+        read_folder: built!("dicom", crate::read::dicom::read_folder),
         ..PLAIN
     },
     VolumeFormat {
@@ -70,10 +75,10 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["zarr"],
         folder_name: "Zarr",
         is_folder: |folder| Ok(series::is_zarr(folder)),
-        read: built!("zarr", |path, options, monitor| {
+        read_folder: built!("zarr", |path, options, monitor| {
             crate::read::zarr::read(path, options.level, options.frame, monitor)
         }),
-        parts: built!("zarr", |path, options| {
+        parts_of_folder: built!("zarr", |path, options| {
             crate::read::zarr::source(path, options.level, options.frame)
         }),
         ..PLAIN
@@ -87,8 +92,8 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["nrrd"],
         writers: writers!["nrrd": write::nrrd],
         begins: |start| start.starts_with(b"NRRD000"),
-        read: built!("formats", |path, options, monitor| nrrd::read(path, options.frame, monitor)),
-        parts: built!("formats", |path, options| Ok(nrrd::rows(path, options.frame)?.source())),
+        read: built!("formats", |file, options, monitor| nrrd::read(file, options.frame, monitor)),
+        parts: built!("formats", |file, options| Ok(nrrd::rows(file, options.frame)?.source())),
         data_files: built!("formats", nrrd::data_files),
         ..PLAIN
     },
@@ -102,8 +107,8 @@ pub static FORMATS: [VolumeFormat; 14] = [
         writers: writers!["nii": write::nifti, "nii.gz": write::nifti_gzip],
         gzip: true,
         begins: is_nifti,
-        read: built!("formats", |path, options, monitor| nifti::read(path, options.frame, monitor)),
-        parts: built!("formats", |path, options| Ok(nifti::rows(path, options.frame)?.source())),
+        read: built!("formats", |file, options, monitor| nifti::read(file, options.frame, monitor)),
+        parts: built!("formats", |file, options| Ok(nifti::rows(file, options.frame)?.source())),
         data_files: built!("formats", nifti::data_files),
         ..PLAIN
     },
@@ -116,8 +121,8 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["mgh"],
         gzip: true,
         begins: is_mgh,
-        read: built!("formats", |path, options, monitor| mgh::read(path, options.frame, monitor)),
-        parts: built!("formats", |path, options| Ok(mgh::rows(path, options.frame)?.source())),
+        read: built!("formats", |file, options, monitor| mgh::read(file, options.frame, monitor)),
+        parts: built!("formats", |file, options| Ok(mgh::rows(file, options.frame)?.source())),
         ..PLAIN
     },
     VolumeFormat {
@@ -129,14 +134,14 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["metaimage"],
         writers: writers!["mha": write::metaimage],
         begins: is_metaimage,
-        read: built!("formats", |path, options, monitor| metaimage::read(
-            path,
+        read: built!("formats", |file, options, monitor| metaimage::read(
+            file,
             options.frame,
             monitor
         )),
         parts: built!(
             "formats",
-            |path, options| Ok(metaimage::rows(path, options.frame)?.source())
+            |file, options| Ok(metaimage::rows(file, options.frame)?.source())
         ),
         data_files: built!("formats", metaimage::data_files),
         ..PLAIN
@@ -150,8 +155,8 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["vti"],
         writers: writers!["vti": write::vti],
         begins: is_vtk_xml,
-        read: built!("formats", |path, options, monitor| vti::read(
-            path,
+        read: built!("formats", |file, options, monitor| vti::read(
+            file,
             options.array.as_deref(),
             monitor
         )),
@@ -165,8 +170,8 @@ pub static FORMATS: [VolumeFormat; 14] = [
         feature: Some("formats"),
         fuzzed_by: &["vtk_legacy"],
         begins: is_vtk,
-        read: built!("formats", |path, options, monitor| vtk::read(
-            path,
+        read: built!("formats", |file, options, monitor| vtk::read(
+            file,
             options.array.as_deref(),
             monitor
         )),
@@ -181,7 +186,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["tiff"],
         writers: writers!["tif": write::tiff, "tiff": write::tiff],
         begins: |start| TIFF.iter().any(|magic| start.starts_with(magic)),
-        read: built!("formats", |path, options, monitor| tiff::read(path, options.frame, monitor)),
+        read: built!("formats", |file, options, monitor| tiff::read(file, options.frame, monitor)),
         ..PLAIN
     },
     VolumeFormat {
@@ -191,7 +196,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["inrimage"],
         gzip: true,
         begins: |start| start.starts_with(b"#INRIMAGE-4#{"),
-        read: Some(|path, _, monitor| inr::open(path, monitor)),
+        read: Some(|file, _, monitor| inr::open(file, monitor)),
         ..PLAIN
     },
     VolumeFormat {
@@ -200,9 +205,9 @@ pub static FORMATS: [VolumeFormat; 14] = [
         chooses: &[Setting::Frame],
         fuzzed_by: &["npy"],
         writers: &[VolumeWriter { extension: "npy", write: write::npy }],
-        begins: NpyFile::begins,
-        read: Some(|path, options, monitor| npy::read(path, options.frame, monitor)),
-        parts: Some(|path, options| Ok(npy::rows(path, options.frame)?.source())),
+        begins: is_npy,
+        read: Some(|file, options, monitor| npy::read(file, options.frame, monitor)),
+        parts: Some(|file, options| Ok(npy::rows(file, options.frame)?.source())),
         ..PLAIN
     },
     VolumeFormat {
@@ -212,8 +217,8 @@ pub static FORMATS: [VolumeFormat; 14] = [
         feature: Some("formats"),
         fuzzed_by: &["npz"],
         begins: |start| start.starts_with(b"PK\x03\x04") || start.starts_with(b"PK\x05\x06"),
-        read: built!("formats", |path, options, monitor| npz::read(
-            path,
+        read: built!("formats", |file, options, monitor| npz::read(
+            file,
             options.array.as_deref(),
             monitor
         )),
@@ -225,7 +230,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["slices"],
         folder_name: "folder of slices",
         is_folder: |_| Ok(true),
-        read: built!("formats", |path, _, _| slices::read(path)),
+        read_folder: built!("formats", |path, _, _| slices::read(path)),
         ..PLAIN
     },
     // Bare samples cannot be recognised: the user describes them.
@@ -233,10 +238,6 @@ pub static FORMATS: [VolumeFormat; 14] = [
         name: "raw samples",
         keeps: Keeps { dtype: false, ..SAMPLES },
         writers: &[VolumeWriter { extension: "raw", write: write::raw }],
-        read: Some(|path, options, monitor| match &options.raw {
-            Some(layout) => raw::read(path, layout, monitor),
-            None => Err(detect::unknown(path)),
-        }),
         ..PLAIN
     },
 ];

@@ -5,7 +5,7 @@ use ndarray::Array3;
 use walpha_base::Monitor;
 
 use super::payload::{Length, Payload};
-use super::{io_error, payload_error, unpacked};
+use super::{OpenFile, io_error, payload_error};
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// The first bytes of each INRIMAGE-4 file.
@@ -16,9 +16,9 @@ const END: &[u8] = b"\n##}\n";
 const MAX_HEADER: usize = 1 << 14;
 
 /// Reads a file, gzipped or not.
-pub(crate) fn open(path: &Path, monitor: &Monitor) -> Result<Volume, VolumeError> {
-    let (reader, length) = unpacked(path)?;
-    read(path, reader, length, monitor)
+pub(crate) fn open(file: &OpenFile, monitor: &Monitor) -> Result<Volume, VolumeError> {
+    let (reader, length) = file.unpacked()?;
+    read(file.path(), reader, length, monitor)
 }
 
 /// Reads an INRIMAGE-4 image, INRIA's format in which CGAL ships its sample volumes: lines

@@ -1,5 +1,4 @@
-use std::fs::File;
-use std::io::BufReader;
+use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
 use super::described::{self, Described, Encoding, diagonal};
@@ -8,7 +7,7 @@ use super::frames::Frames;
 use super::lines::Lines;
 use super::nrrd::numbered;
 use super::uncompressed::Uncompressed;
-use super::{format_error, io_error};
+use super::{OpenFile, format_error, io_error};
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume, VolumeError};
 use walpha_base::Monitor;
 
@@ -23,17 +22,16 @@ const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
 /// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame.
 /// A fourth axis counts volumes, of which `frame` is read; several channels are refused.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     frame: Option<u64>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let file = File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    let mut lines = Lines::new(BufReader::new(file));
+    let path = file.path();
+    let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
     let described = header.described(path, frame)?;
     let Some(names) = header.names(path, &mut lines)? else {
-        let bytes = length - lines.bytes();
+        let bytes = file.length() - lines.bytes();
         return described.read(path, lines.into_inner(), bytes, monitor);
     };
     let each = described.bytes() / names.len() as u64;
@@ -43,12 +41,13 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume lie, to be read part by part.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
-    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+pub(crate) fn rows(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
+    let path = file.path();
+    let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
     let described = header.described(path, frame)?;
     match header.names(path, &mut lines)? {
-        None => Uncompressed::behind(path, described, lines.bytes(), Some(0)),
+        None => Uncompressed::behind(file, described, lines.bytes(), Some(0)),
         Some(names) => {
             Uncompressed::beside(path, described, &beside(path, &names), header.skip(path)?)
         }
@@ -56,8 +55,9 @@ pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, Volu
 }
 
 /// The files that hold the samples, where the header does not.
-pub(crate) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
-    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
+    let path = file.path();
+    let mut lines = Lines::new(file.reader()?);
     let names = Header::read(path, &mut lines)?.names(path, &mut lines)?;
     Ok(names.map_or_else(Vec::new, |names| beside(path, &names)))
 }
@@ -69,7 +69,7 @@ struct Header {
 }
 
 impl Header {
-    fn read(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Self, VolumeError> {
+    fn read(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Self, VolumeError> {
         let mut fields = Vec::new();
         while let Some(line) = lines.read_line().map_err(io_error(path))? {
             if line.trim().is_empty() {
@@ -96,7 +96,7 @@ impl Header {
     fn names(
         &self,
         path: &Path,
-        lines: &mut Lines<BufReader<File>>,
+        lines: &mut Lines<impl BufRead>,
     ) -> Result<Option<Vec<String>>, VolumeError> {
         let words: Vec<&str> = self.data.split_whitespace().collect();
         if words.first().is_some_and(|word| word.eq_ignore_ascii_case("local")) {

@@ -7,7 +7,7 @@ use super::described::{Described, Encoding, frame};
 use super::frames::Frames;
 use super::payload::{Length, Payload};
 use super::uncompressed::Uncompressed;
-use super::{format_error, io_error, payload_error, unpacked};
+use super::{OpenFile, format_error, io_error, payload_error};
 use crate::{
     Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Space, Volume, VolumeError,
 };
@@ -22,11 +22,12 @@ pub(crate) const HEADER: usize = 284;
 /// The frame is RAS, in mm; the header places the centre of the grid. A header that says that its places are not
 /// good (`goodRASFlag`) has none.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     frame: Option<u64>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let (mut reader, length) = unpacked(path)?;
+    let path = file.path();
+    let (mut reader, length) = file.unpacked()?;
     let described = described(path, &mut reader, frame)?;
     described.dims.bounded()?;
     let all = described.bytes();
@@ -44,11 +45,10 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume that is not compressed lie, to be read part by part.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
-    let mut file = std::fs::File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    let described = described(path, &mut file, frame)?;
-    let (needed, found) = (described.bytes(), length.saturating_sub(HEADER as u64));
+pub(crate) fn rows(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
+    let path = file.path();
+    let described = described(path, &mut file.reader()?, frame)?;
+    let (needed, found) = (described.bytes(), file.length().saturating_sub(HEADER as u64));
     let Described { dims, dtype, endian, frames, frame, .. } = described;
     if found < needed {
         let claim = format!("a volume of {dims} samples of type {dtype}");

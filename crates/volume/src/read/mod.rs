@@ -23,6 +23,7 @@ pub(super) mod npy;
 pub(super) mod npz;
 #[cfg(feature = "formats")]
 pub(super) mod nrrd;
+mod open_file;
 mod payload;
 pub(super) mod raw;
 pub(super) mod series;
@@ -42,20 +43,18 @@ mod vtk_xml;
 #[cfg(feature = "zarr")]
 pub(super) mod zarr;
 
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use flate2::read::MultiGzDecoder;
 use serde::{Deserialize, Serialize};
 
 #[cfg(feature = "formats")]
 pub(crate) use detached::naming;
-pub(crate) use inr::read as read_inr;
 #[cfg(feature = "formats")]
 pub use lines::Lines;
 pub use npy::NpyFile;
+pub use open_file::OpenFile;
 #[cfg(feature = "formats")]
 pub use payload::Element;
 pub(crate) use payload::Length;
@@ -138,19 +137,6 @@ pub(crate) fn format_error(path: &Path, reason: Reason) -> VolumeError {
 /// An [`VolumeError::Io`] for this file.
 pub fn io_error(path: &Path) -> impl Fn(io::Error) -> VolumeError {
     move |source| VolumeError::Io { path: path.into(), source }
-}
-
-/// Opens a file, unpacked where it is compressed with gzip, with what is known of its length.
-fn unpacked(path: &Path) -> Result<(Box<dyn Read>, Length), VolumeError> {
-    let file = File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    let mut reader = BufReader::new(file);
-    let start = reader.fill_buf().map_err(io_error(path))?;
-    Ok(if start.starts_with(&[0x1f, 0x8b]) {
-        (Box::new(MultiGzDecoder::new(reader)), Length::of_gzip(length))
-    } else {
-        (Box::new(reader), Length::Exactly(length))
-    })
 }
 
 /// The error for a file whose header claims a volume that is not there.

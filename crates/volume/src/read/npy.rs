@@ -4,16 +4,16 @@ use std::path::Path;
 
 use ndarray::{Array3, ShapeBuilder};
 use walpha_base::Monitor;
-use walpha_base::npy::{Header, MAGIC, NpyError};
+use walpha_base::npy::{Header, NpyError};
 
 use super::frames::Frames;
 use super::payload::{Element, Length, Payload};
 use super::uncompressed::Uncompressed;
-use super::{io_error, payload_error_of};
+use super::{OpenFile, io_error, payload_error_of};
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// An array as NPY describes it (format versions 1 to 3, numpy.lib.format).
-pub struct NpyFile<R = BufReader<File>> {
+pub struct NpyFile<R> {
     /// Lengths of the axes.
     pub shape: Vec<u64>,
     /// The first axis is the fastest in the file.
@@ -28,11 +28,12 @@ pub struct NpyFile<R = BufReader<File>> {
 /// Reads an array of three axes `[z, y, x]`, in C or Fortran order, or the one numbered `frame` of an
 /// array of four, in C order.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     frame: Option<u64>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let file = NpyFile::open(path)?;
+    let path = file.path();
+    let file = NpyFile::open(file)?;
     if let (&[count, z, y, x], false) = (file.shape.as_slice(), file.fortran) {
         let each =
             [z, y, x, file.dtype.size() as u64].iter().fold(1, |n: u64, m| n.saturating_mul(*m));
@@ -52,10 +53,10 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume lie, to be read part by part: in C order.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
+pub(crate) fn rows(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
+    let (path, length) = (file.path(), file.length());
     let said = |reason: Reason| VolumeError::Format { path: path.into(), reason };
-    let length = std::fs::metadata(path).map_err(io_error(path))?.len();
-    let file = NpyFile::open(path)?;
+    let file = NpyFile::open(file)?;
     let (beyond, axes) = file.shape.split_at(file.shape.len().saturating_sub(3));
     let (&[z, y, x], false) = (axes, file.fortran || beyond.len() > 1) else {
         return Err(said(Reason::unsupported(
@@ -107,20 +108,13 @@ pub(super) fn volume<R: Read>(
     Ok(volume.with_dtype(if gray_levels || dtype != Dtype::U8 { dtype } else { Dtype::I8 }))
 }
 
-impl NpyFile {
-    /// Whether a file begins as NPY does.
-    pub fn begins(start: &[u8]) -> bool {
-        start.starts_with(MAGIC)
-    }
-
+impl<'a> NpyFile<BufReader<&'a File>> {
     /// Reads and checks the header.
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn open(path: &Path) -> Result<Self, VolumeError> {
-        let file = File::open(path).map_err(io_error(path))?;
-        let length = file.metadata().map_err(io_error(path))?.len();
-        Self::of(path, BufReader::new(file), length)
+    pub fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
+        Self::of(file.path(), file.reader()?, file.length())
     }
 }
 

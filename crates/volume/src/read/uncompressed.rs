@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 #[cfg(feature = "formats")]
 use super::described::{Described, Encoding};
-#[cfg(feature = "formats")]
-use super::format_error;
 use super::io_error;
 use super::payload::Element;
+#[cfg(feature = "formats")]
+use super::{OpenFile, format_error};
 #[cfg(feature = "formats")]
 use crate::Reason;
 use crate::source::{BoxReader, Source};
@@ -49,12 +49,12 @@ impl Uncompressed {
     /// are at the end of the file.
     #[cfg(feature = "formats")]
     pub(super) fn behind(
-        header: &Path,
+        file: &OpenFile,
         described: Described,
         after: u64,
         skip: Option<u64>,
     ) -> Result<Self, VolumeError> {
-        Self::within(header, header, described, after, skip)
+        Self::within(file.path(), file.path(), file.length(), described, after, skip)
     }
 
     /// Samples in a file of their own.
@@ -66,7 +66,10 @@ impl Uncompressed {
         skip: Option<u64>,
     ) -> Result<Self, VolumeError> {
         match files {
-            [file] => Self::within(header, file, described, 0, skip),
+            [file] => {
+                let length = std::fs::metadata(file).map_err(io_error(file))?.len();
+                Self::within(header, file, length, described, 0, skip)
+            }
             _ => Err(format_error(
                 header,
                 Reason::unsupported(
@@ -84,6 +87,7 @@ impl Uncompressed {
     fn within(
         header: &Path,
         file: &Path,
+        length: u64,
         described: Described,
         after: u64,
         skip: Option<u64>,
@@ -92,7 +96,6 @@ impl Uncompressed {
             let what = "is compressed, or text: it cannot be read in parts";
             return Err(format_error(header, Reason::unsupported(what, CONVERT)));
         }
-        let length = std::fs::metadata(file).map_err(io_error(file))?.len();
         let (needed, behind) = (described.bytes(), length.saturating_sub(after));
         let skip = skip.unwrap_or(behind.saturating_sub(needed));
         let found = behind.saturating_sub(skip);

@@ -1,22 +1,21 @@
-use std::path::Path;
-
 use super::described::{Described, Encoding, frame};
-use super::format_error;
 use super::frames::Frames;
 use super::vtk::{choice, to_centres};
 use super::vtk_xml::VtkXml;
+use super::{OpenFile, format_error};
 use crate::{Coordinates, Dims, Endian, LengthUnit, Reason, Space, Volume, VolumeError};
 use walpha_base::Monitor;
 
 /// Reads VTI, VTK's image data in XML, in one piece: the array of this name; or else the active scalars of
 /// its points, its first array of points, or of cells, whose samples are at the cells' centres.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     wanted: Option<&str>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
+    let path = file.path();
     let said = |reason: Reason| format_error(path, reason);
-    let file = VtkXml::open(path)?.monitored(monitor);
+    let file = VtkXml::open(file)?.monitored(monitor);
     if file.kind() != "ImageData" {
         let kind = file.kind();
         return Err(said(Reason::header(format!(

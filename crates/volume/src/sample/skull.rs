@@ -6,8 +6,8 @@ use flate2::read::GzDecoder;
 use walpha_base::Monitor;
 use walpha_base::shown::shown;
 
-use crate::read::{Length, io_error, read_inr};
-use crate::{ReadOptions, Reason, Volume, VolumeError, read};
+use crate::read::{Length, OpenFile, inr, io_error};
+use crate::{Reason, Volume, VolumeError};
 
 /// Where Debian and Ubuntu put CGAL's data, in the package `libcgal-demo`.
 const ARCHIVE: &str = "/usr/share/doc/libcgal-dev/data.tar.gz";
@@ -23,7 +23,7 @@ pub(super) fn skull() -> Result<Volume, VolumeError> {
 
 fn find(directory: Option<&Path>, archive: &Path) -> Result<Volume, VolumeError> {
     if let Some(file) = directory.map(|d| d.join(FILE)).filter(|f| f.exists()) {
-        read(&file, &ReadOptions::default())
+        inr::open(&OpenFile::open(&file)?, &Monitor::noop())
     } else if archive.exists() {
         from_archive(archive)
     } else {
@@ -43,7 +43,7 @@ fn from_archive(path: &Path) -> Result<Volume, VolumeError> {
         let entry = entry.map_err(io_error(path))?;
         if entry.path().is_ok_and(|p| p.ends_with(MEMBER)) {
             let length = Length::Exactly(entry.size());
-            return read_inr(&path.join(MEMBER), entry, length, &Monitor::noop());
+            return inr::read(&path.join(MEMBER), entry, length, &Monitor::noop());
         }
     }
     Err(VolumeError::Format {

@@ -24,21 +24,8 @@ use gather::{Gathered, pattern, reason, skippable};
 use slice::{Found, Slice, pixels};
 use stack::stacked;
 
-/// Reads the series that a file belongs to, or one in a folder.
-pub(crate) fn read(
-    path: &Path,
-    options: &ReadOptions,
-    monitor: &Monitor,
-) -> Result<Volume, VolumeError> {
-    if path.is_dir() {
-        read_folder(path, options, monitor)
-    } else {
-        read_series_of(path, options, monitor)
-    }
-}
-
 /// Reads the series that a file belongs to: all slices of it in the same folder.
-fn read_series_of(
+pub(crate) fn read_series_of(
     path: &Path,
     options: &ReadOptions,
     monitor: &Monitor,
@@ -67,7 +54,7 @@ fn read_series_of(
 }
 
 /// Reads the one series in a folder, or the one wanted.
-fn read_folder(
+pub(crate) fn read_folder(
     folder: &Path,
     options: &ReadOptions,
     monitor: &Monitor,

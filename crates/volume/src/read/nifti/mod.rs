@@ -3,16 +3,15 @@
 mod frame;
 mod header;
 
-use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::described::Described;
 use super::detached::naming;
 use super::payload::{Length, Payload};
 use super::uncompressed::Uncompressed;
-use super::{format_error, io_error, payload_error, unpacked};
-use crate::formats::{nifti_version, start_of};
+use super::{OpenFile, format_error, io_error, payload_error};
+use crate::formats::nifti_version;
 use crate::{Dtype, Reason, Volume, VolumeError};
 use walpha_base::Monitor;
 
@@ -24,22 +23,21 @@ use header::Header;
 /// `pixdim` alone, which says nothing of the space; the other two are RAS. Axes beyond
 /// the third count volumes, of which `frame` is read; colours and complex numbers are refused.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     frame: Option<u64>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let (mut reader, length) = unpacked(path)?;
+    let path = file.path();
+    let (mut reader, length) = file.unpacked()?;
     let header = Header::read(path, &mut reader)?;
     let described = header.described(path, frame)?;
     let (slope, inter) = header.scaling();
     if header.is_pair(path)? {
         let image = path.with_extension("img");
-        let mut file = File::open(&image).map_err(io_error(&image))?;
-        let length = file.metadata().map_err(io_error(&image))?.len();
-        let offset = header.vox_offset().clamp(0.0, length as f64) as u64;
-        file.seek(SeekFrom::Start(offset)).map_err(io_error(&image))?;
-        let left = Length::Exactly(length - offset);
-        return samples(path, described, slope, inter, BufReader::new(file), left, monitor)
+        let data = OpenFile::open(&image)?;
+        let offset = header.vox_offset().clamp(0.0, data.length() as f64) as u64;
+        let left = Length::Exactly(data.length() - offset);
+        return samples(path, described, slope, inter, data.reader_at(offset)?, left, monitor)
             .map_err(naming(path, &[image]));
     }
     let offset = header.offset(path)?;
@@ -55,24 +53,25 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume lie, to be read part by part.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
-    let header = Header::read(path, &mut File::open(path).map_err(io_error(path))?)?;
+pub(crate) fn rows(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
+    let path = file.path();
+    let header = Header::read(path, &mut file.reader()?)?;
     let described = header.described(path, frame)?;
     let scaling = header.scaling();
     let rows = if header.is_pair(path)? {
         let offset = header.vox_offset().max(0.0) as u64;
         Uncompressed::beside(path, described, &[path.with_extension("img")], Some(offset))?
     } else {
-        Uncompressed::behind(path, described, header.offset(path)?, Some(0))?
+        Uncompressed::behind(file, described, header.offset(path)?, Some(0))?
     };
     Ok(rows.scaled(scaling))
 }
 
 /// The file that holds the samples, where the header has one of its own.
-pub(crate) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
-    let start = start_of(path)?;
-    let Some((version, endian)) = nifti_version(&start) else { return Ok(Vec::new()) };
-    let header = Header { bytes: start, version, endian };
+pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
+    let path = file.path();
+    let Some((version, endian)) = nifti_version(file.start()) else { return Ok(Vec::new()) };
+    let header = Header { bytes: file.start().to_vec(), version, endian };
     Ok(if header.is_pair(path)? { vec![path.with_extension("img")] } else { Vec::new() })
 }
 

@@ -1,5 +1,4 @@
-use std::fs::File;
-use std::io::BufReader;
+use std::io::BufRead;
 use std::path::Path;
 
 use super::super::lines::Lines;
@@ -11,7 +10,7 @@ use crate::{Reason, VolumeError};
 pub(super) fn named(
     path: &Path,
     value: &str,
-    lines: &mut Lines<BufReader<File>>,
+    lines: &mut Lines<impl BufRead>,
 ) -> Result<Vec<String>, VolumeError> {
     if value.starts_with("LIST") {
         let mut names = Vec::new();

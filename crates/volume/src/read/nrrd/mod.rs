@@ -2,8 +2,7 @@ mod files;
 mod space;
 
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::BufReader;
+use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
 use super::described::{Described, Encoding};
@@ -11,7 +10,7 @@ use super::detached::{self, beside};
 use super::frames::Frames;
 use super::lines::Lines;
 use super::uncompressed::Uncompressed;
-use super::{format_error, io_error};
+use super::{OpenFile, format_error, io_error};
 use crate::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
 use files::named;
 pub(super) use files::numbered;
@@ -27,20 +26,19 @@ pub(super) const MAGIC: &[u8] = b"NRRD000";
 /// `spacings` and `axis mins`, give the frame, in the space the file names. Axes beyond the third count
 /// volumes, of which `frame` is read; axes of colours or vectors, `hex` and `line skip` are refused.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     frame: Option<u64>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
+    let path = file.path();
     let said = |reason: Reason| format_error(path, reason);
-    let file = File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    let mut lines = Lines::new(BufReader::new(file));
+    let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
     let described = header.described(path, frame)?;
     let skip = header.skip(path, &described)?;
     match &header.files {
         None => {
-            let behind = length - lines.bytes();
+            let behind = file.length() - lines.bytes();
             let skip = skip.unwrap_or(behind.saturating_sub(described.bytes()));
             let mut reader = lines.into_inner();
             let skipped =
@@ -60,21 +58,22 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume lie, to be read part by part.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
-    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+pub(crate) fn rows(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
+    let path = file.path();
+    let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
     let described = header.described(path, frame)?;
     let skip = header.skip(path, &described)?;
     match &header.files {
-        None => Uncompressed::behind(path, described, lines.bytes(), skip),
+        None => Uncompressed::behind(file, described, lines.bytes(), skip),
         Some(names) => Uncompressed::beside(path, described, &beside(path, names), skip),
     }
 }
 
 /// The files that hold the samples, where the header does not.
-pub(crate) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
-    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
-    let header = Header::read(path, &mut lines)?;
+pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
+    let path = file.path();
+    let header = Header::read(path, &mut Lines::new(file.reader()?))?;
     Ok(header.files.map_or_else(Vec::new, |names| beside(path, &names)))
 }
 
@@ -86,7 +85,7 @@ struct Header {
 }
 
 impl Header {
-    fn read(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Self, VolumeError> {
+    fn read(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Self, VolumeError> {
         let said = |reason: Reason| format_error(path, reason);
         let first = lines.read_line().map_err(io_error(path))?.unwrap_or_default();
         if !first.as_bytes().starts_with(MAGIC) {

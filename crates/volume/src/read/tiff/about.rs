@@ -1,5 +1,4 @@
-use std::fs::File;
-use std::io::BufReader;
+use std::io::{Read, Seek};
 use std::path::Path;
 
 use quick_xml::events::Event;
@@ -44,7 +43,7 @@ impl About {
     /// Looks at the description of the first page.
     pub(super) fn of(
         path: &Path,
-        decoder: &mut Decoder<BufReader<File>>,
+        decoder: &mut Decoder<impl Read + Seek>,
     ) -> Result<Self, VolumeError> {
         let text = match decoder.find_tag(Tag::ImageDescription) {
             Ok(Some(Value::Ascii(text))) => text,
@@ -59,7 +58,7 @@ impl About {
         Ok(Self { spacing: [1.0; 3], unit: LengthUnit::Voxel, images: None, axes: SLICES })
     }
 
-    fn of_imagej(decoder: &mut Decoder<BufReader<File>>, text: &str) -> Self {
+    fn of_imagej(decoder: &mut Decoder<impl Read + Seek>, text: &str) -> Self {
         let value =
             |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
         let count = |key: &str| value(key).and_then(|text| text.trim().parse::<u64>().ok());

@@ -1,7 +1,7 @@
 mod about;
 
 use std::fs::File;
-use std::io::{BufReader, Seek, SeekFrom};
+use std::io::{BufReader, Read};
 use std::path::Path;
 
 use tiff::decoder::{Decoder, DecodingResult, Limits};
@@ -10,7 +10,7 @@ use tiff::{ColorType, TiffError};
 use walpha_base::Monitor;
 
 use super::frames::Frames;
-use super::{format_error, io_error};
+use super::{OpenFile, format_error, io_error};
 use crate::{Dims, Dtype, Endian, Reason, Volume, VolumeError};
 use about::{About, Wanted};
 
@@ -27,18 +27,19 @@ const IMAGE_DEPTH: Tag = Tag::Unknown(32997);
 /// times, `frame` chooses one volume, channels counted first. Colours, palettes and samples of fewer
 /// than 8 bits are refused.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     frame: Option<u64>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let mut pages = Pages::open(path)?;
+    let path = file.path();
+    let mut pages = Pages::open(file)?;
     let about = About::of(path, &mut pages.decoder)?;
     let wanted = about.wanted(path, frame)?;
     let alone = !pages.decoder.more_images();
     if alone && about.images.is_some_and(|images| images > 1) {
         let first = pages.page()?;
         let (size, dtype) = (first.size, first.dtype);
-        return behind_one_page(path, pages, &about, wanted, size, dtype, monitor);
+        return behind_one_page(file, pages, &about, wanted, size, dtype, monitor);
     }
     pages.skip(wanted.first)?;
     let first = pages.page()?;
@@ -78,7 +79,8 @@ pub(crate) fn read(
 
 /// Reads one page alone, as a slice.
 pub(super) fn read_page(path: &Path) -> Result<Page, VolumeError> {
-    let mut pages = Pages::open(path)?;
+    let file = OpenFile::open(path)?;
+    let mut pages = Pages::open(&file)?;
     let page = pages.page()?;
     if pages.decoder.more_images() {
         let reason = Reason::content(
@@ -100,22 +102,21 @@ pub(super) struct Page {
 
 struct Pages<'a> {
     path: &'a Path,
-    decoder: Decoder<BufReader<File>>,
+    decoder: Decoder<BufReader<&'a File>>,
     /// The most bytes all samples can have.
     most: u64,
 }
 
 impl<'a> Pages<'a> {
-    fn open(path: &'a Path) -> Result<Self, VolumeError> {
-        let file = File::open(path).map_err(io_error(path))?;
-        let length = file.metadata().map_err(io_error(path))?.len();
+    fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
+        let (path, length) = (file.path(), file.length());
         let most = length.saturating_mul(MOST_EXPANSION);
         // The decoder's own limits are those of photographs; the length of the file is a better one.
         let mut limits = Limits::default();
         limits.decoding_buffer_size = usize::try_from(most).unwrap_or(usize::MAX);
         limits.intermediate_buffer_size = limits.decoding_buffer_size;
         limits.ifd_value_size = usize::try_from(length).unwrap_or(usize::MAX);
-        let decoder = Decoder::new(BufReader::new(file)).map_err(damaged(path))?;
+        let decoder = Decoder::new(file.reader()?).map_err(damaged(path))?;
         Ok(Self { path, decoder: decoder.with_limits(limits), most })
     }
 
@@ -202,7 +203,7 @@ impl<'a> Pages<'a> {
 
 /// Reads a stack that `ImageJ` wrote uncompressed after its only page.
 fn behind_one_page(
-    path: &Path,
+    file: &OpenFile,
     mut pages: Pages,
     about: &About,
     wanted: Wanted,
@@ -210,6 +211,7 @@ fn behind_one_page(
     dtype: Dtype,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
+    let path = file.path();
     let slices = wanted.count.or(about.images).unwrap_or(1);
     if wanted.step > 1 {
         let reason = Reason::unsupported(
@@ -235,12 +237,9 @@ fn behind_one_page(
     };
     let dims = Dims::new(size[0], size[1], slices)?;
     let described = about.described(path, dims, dtype, endian, wanted.frames)?;
-    let mut file = File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    file.seek(SeekFrom::Start(offset)).map_err(io_error(path))?;
     // Tags may follow the samples.
-    let bytes = described.bytes().min(length.saturating_sub(offset));
-    described.read(path, std::io::Read::take(file, bytes), bytes, monitor)
+    let bytes = described.bytes().min(file.length().saturating_sub(offset));
+    described.read(path, file.reader_at(offset)?.take(bytes), bytes, monitor)
 }
 
 fn damaged(path: &Path) -> impl Fn(TiffError) -> VolumeError {

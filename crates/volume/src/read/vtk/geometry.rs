@@ -1,12 +1,11 @@
 //! Points of legacy VTK files: those of polygons, unstructured and curved grids.
 
-use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::{BufRead, Read};
 use std::path::Path;
 
 use super::super::lines::Lines;
 use super::super::payload::{Length, Payload};
-use super::super::{format_error, io_error, payload_error_of, text};
+use super::super::{OpenFile, format_error, io_error, payload_error_of, text};
 use super::MAGIC;
 use super::arrays::{self, Array, CellList, POINTS};
 use crate::{Endian, Reason, VolumeError};
@@ -17,7 +16,7 @@ const LISTED: [&str; 3] = ["POLYDATA", "UNSTRUCTURED_GRID", "STRUCTURED_GRID"];
 
 /// A legacy VTK file that lists points.
 pub struct VtkPoints<'a> {
-    path: &'a Path,
+    file: &'a OpenFile,
     text: bool,
     arrays: Vec<Array>,
     /// How many cells it lists, single points aside.
@@ -37,8 +36,8 @@ impl<'a> VtkPoints<'a> {
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn are_in(path: &Path) -> Result<bool, VolumeError> {
-        let head = head(path, &mut lines(path)?)?;
+    pub fn are_in(file: &OpenFile) -> Result<bool, VolumeError> {
+        let head = head(file.path(), &mut Lines::new(file.reader()?))?;
         Ok(LISTED.contains(&head.dataset.as_str()))
     }
 
@@ -46,8 +45,9 @@ impl<'a> VtkPoints<'a> {
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn open(path: &'a Path) -> Result<Self, VolumeError> {
-        let mut lines = lines(path)?;
+    pub fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
+        let path = file.path();
+        let mut lines = Lines::new(file.reader()?);
         let Head { offsets, text, dataset } = head(path, &mut lines)?;
         if !LISTED.contains(&dataset.as_str()) {
             let what = format!("holds {dataset}: points are read from {}", LISTED.join(", "));
@@ -56,7 +56,7 @@ impl<'a> VtkPoints<'a> {
         let (arrays, cells) = arrays::find_all(path, &mut lines, text, offsets)?;
         match arrays.first() {
             Some(Array { name, components: 3, .. }) if name == POINTS => {
-                Ok(Self { path, text, arrays, cells })
+                Ok(Self { file, text, arrays, cells })
             }
             _ => Err(format_error(path, Reason::damaged("has no POINTS: it is damaged"))),
         }
@@ -98,24 +98,22 @@ impl<'a> VtkPoints<'a> {
     }
 
     fn values(&self, array: &Array) -> Result<Vec<f64>, VolumeError> {
-        let (path, count) = (self.path, array.values);
+        let (path, count) = (self.file.path(), array.values);
         if count != self.count().saturating_mul(array.components) {
             let (name, points) = (&array.name, self.count());
             let what = format!("has {count} values {name} for {points} points");
             return Err(format_error(path, Reason::header(what)));
         }
         let dtype = arrays::scalar(path, &array.kind, 1)?;
-        let mut file = File::open(path).map_err(io_error(path))?;
-        let length = file.metadata().map_err(io_error(path))?.len();
-        file.seek(SeekFrom::Start(array.start)).map_err(io_error(path))?;
-        let left = array.end.unwrap_or(length).saturating_sub(array.start);
+        let reader = self.file.reader_at(array.start)?;
+        let left = array.end.unwrap_or(self.file.length()).saturating_sub(array.start);
         if self.text {
-            return text::numbers(file.take(left), left, dtype, count)
+            return text::numbers(reader.take(left), left, dtype, count)
                 .map_err(|reason| format_error(path, reason));
         }
         let bytes = count.saturating_mul(dtype.size() as u64).min(left);
         let length = Length::Exactly(bytes);
-        let payload = Payload { reader: BufReader::new(file).take(bytes), length };
+        let payload = Payload { reader: reader.take(bytes), length };
         let claim = format!("{count} numbers {} of type {dtype}", array.name);
         payload
             .samples(dtype, Endian::Big, count, &Monitor::noop())
@@ -123,12 +121,8 @@ impl<'a> VtkPoints<'a> {
     }
 }
 
-fn lines(path: &Path) -> Result<Lines<BufReader<File>>, VolumeError> {
-    Ok(Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?)))
-}
-
 /// Reads up to the line that names the dataset.
-fn head(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Head, VolumeError> {
+fn head(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Head, VolumeError> {
     let mut next = || lines.read_line().map_err(io_error(path));
     let first = next()?.unwrap_or_default();
     if !first.as_bytes().starts_with(MAGIC) {

@@ -3,8 +3,7 @@
 mod arrays;
 mod geometry;
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::io::{BufRead, Read};
 use std::path::Path;
 
 use walpha_base::Monitor;
@@ -13,7 +12,7 @@ use walpha_base::advice::{Setting, advice};
 use super::described::{Described, Encoding, frame};
 use super::frames::Frames;
 use super::lines::Lines;
-use super::{format_error, io_error, text};
+use super::{OpenFile, format_error, io_error, text};
 use crate::{Coordinates, Dims, Dtype, Endian, Reason, Volume, VolumeError};
 
 use arrays::Array;
@@ -26,14 +25,13 @@ pub(super) const MAGIC: &[u8] = b"# vtk DataFile";
 /// the scalars of this name of a `STRUCTURED_POINTS` dataset; or else the first ones of its points, or of
 /// its cells, located at the cells' centres.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     wanted: Option<&str>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
+    let (path, length) = (file.path(), file.length());
     let said = |reason: Reason| format_error(path, reason);
-    let file = File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    let mut lines = Lines::new(BufReader::new(file));
+    let mut lines = Lines::new(file.reader()?);
     let (grid, mut arrays) = header(path, &mut lines)?;
     // Without a name only scalars come in question, where there are any, and those of points first.
     if wanted.is_none() && arrays.iter().any(|array| array.components == 1) {
@@ -50,8 +48,7 @@ pub(crate) fn read(
             "has {values} values for {dims} samples: it is truncated or mislabelled"
         ))));
     }
-    let mut reader = lines.into_inner();
-    reader.seek(SeekFrom::Start(array.start)).map_err(io_error(path))?;
+    let reader = file.reader_at(array.start)?;
     let left = array.end.unwrap_or(length).saturating_sub(array.start);
     match described.encoding {
         Encoding::Text => read_text(path, described, &array, reader.take(left), monitor),
@@ -132,10 +129,7 @@ pub(super) fn choice(arrays: &[(&str, bool)], wanted: Option<&str>) -> Result<us
 }
 
 /// Reads the grid, and finds the arrays.
-fn header(
-    path: &Path,
-    lines: &mut Lines<BufReader<File>>,
-) -> Result<(Grid, Vec<Array>), VolumeError> {
+fn header(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<(Grid, Vec<Array>), VolumeError> {
     let said = |reason: Reason| format_error(path, reason);
     let first = lines.read_line().map_err(io_error(path))?.unwrap_or_default();
     if !first.as_bytes().starts_with(MAGIC) {

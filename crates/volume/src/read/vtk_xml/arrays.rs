@@ -11,7 +11,7 @@ use crate::read::payload::{Element, Length, MOST_EXPANSION, Payload};
 use crate::read::{payload_error_of, text};
 use crate::{Endian, Reason, VolumeError};
 
-impl VtkXml {
+impl VtkXml<'_> {
     /// Reads an array, which must have exactly `count` numbers.
     ///
     /// # Errors
@@ -46,8 +46,8 @@ impl VtkXml {
                 let Some(from) = offset.and_then(|offset: u64| start.checked_add(offset)) else {
                     return Err(of_array(Reason::header("has no offset in the appended data")));
                 };
-                let left = self.length.saturating_sub(from);
-                let data = self.part(from, self.length)?;
+                let left = self.file.length().saturating_sub(from);
+                let data = self.part(from, self.file.length())?;
                 if base64 {
                     self.decoded(array, Base64::new(data), left / 4 * 3, count)
                 } else {
@@ -100,7 +100,7 @@ impl VtkXml {
     ) -> Result<Vec<T>, VolumeError> {
         let dtype = self.dtype(array)?;
         let claim = format!("an array {} of {count} numbers of type {dtype}", self.name(array));
-        let located = |error| payload_error_of(&self.path, &claim, error);
+        let located = |error| payload_error_of(self.file.path(), &claim, error);
         let cut = |error: io::Error| match error.kind() {
             io::ErrorKind::UnexpectedEof => self.said(Reason::truncated(format!(
                 "ends before its array {}: it is truncated",

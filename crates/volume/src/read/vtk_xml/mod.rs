@@ -2,23 +2,20 @@ mod arrays;
 mod query;
 
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
+use std::io::{self, BufRead, Read};
 
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 use walpha_base::Monitor;
 
-use super::{format_error, io_error};
+use super::{OpenFile, format_error, io_error};
 use crate::{Endian, Reason, VolumeError};
 
 /// A file of VTK's XML formats (VTK User's Guide, "VTK File Formats"): its elements, and the arrays
 /// they hold, which are read on demand. Arrays may be text, base64, or appended raw or in base64, and
 /// compressed with zlib or LZ4.
-pub struct VtkXml {
-    path: PathBuf,
-    length: u64,
+pub struct VtkXml<'a> {
+    file: &'a OpenFile,
     endian: Endian,
     /// Bytes of a length in front of an array.
     word: usize,
@@ -53,25 +50,22 @@ struct Appended {
     base64: bool,
 }
 
-impl VtkXml {
+impl<'a> VtkXml<'a> {
     /// Reads all but the arrays. The root must be `VTKFile`.
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn open(path: &Path) -> Result<Self, VolumeError> {
-        let file = File::open(path).map_err(io_error(path))?;
-        let metadata = file.metadata().map_err(io_error(path))?;
-        if !metadata.is_file() {
+    pub fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
+        let path = file.path();
+        if !file.is_ordinary() {
             let reason = Reason::unsupported(
                 "is not an ordinary file, and VTK's XML is read in several passes",
                 "copy it into one",
             );
             return Err(format_error(path, reason));
         }
-        let length = metadata.len();
         let mut this = Self {
-            path: path.into(),
-            length,
+            file,
             endian: Endian::Little,
             word: 4,
             compressor: None,
@@ -79,14 +73,14 @@ impl VtkXml {
             appended: None,
             monitor: Monitor::noop(),
         };
-        let mut file = BufReader::new(file);
+        let mut reader = file.reader()?;
         // Before a search for the first element, which may go through all of a huge file.
-        if !begins_as_xml(file.fill_buf().map_err(io_error(path))?) {
+        if !begins_as_xml(reader.fill_buf().map_err(io_error(path))?) {
             return Err(
                 this.said(Reason::other("is no VTK file: it does not begin with an element"))
             );
         }
-        this.scan(file)?;
+        this.scan(reader)?;
         this.root()?;
         Ok(this)
     }
@@ -98,10 +92,10 @@ impl VtkXml {
     }
 
     fn said(&self, reason: Reason) -> VolumeError {
-        format_error(&self.path, reason)
+        format_error(self.file.path(), reason)
     }
 
-    fn scan(&mut self, file: BufReader<File>) -> Result<(), VolumeError> {
+    fn scan(&mut self, file: impl BufRead) -> Result<(), VolumeError> {
         let mut reader = Reader::from_reader(file);
         let mut buffer = Vec::new();
         let mut open: Vec<usize> = Vec::new();
@@ -110,7 +104,7 @@ impl VtkXml {
             let before = reader.buffer_position();
             let event = reader.read_event_into(&mut buffer).map_err(|error| match error {
                 quick_xml::Error::Io(error) => {
-                    io_error(&self.path)(io::Error::new(error.kind(), error.to_string()))
+                    io_error(self.file.path())(io::Error::new(error.kind(), error.to_string()))
                 }
                 other => self.said(Reason::header(format!(
                     "is not well-formed XML at byte {before}: {other}"
@@ -197,8 +191,11 @@ impl VtkXml {
             }
         };
         let mut before = Vec::new();
-        let mut reader = self.part(element.text, self.length)?;
-        (&mut reader).take(4096).read_until(b'_', &mut before).map_err(io_error(&self.path))?;
+        let mut reader = self.part(element.text, self.file.length())?;
+        (&mut reader)
+            .take(4096)
+            .read_until(b'_', &mut before)
+            .map_err(io_error(self.file.path()))?;
         if before.pop() != Some(b'_') || !before.trim_ascii().is_empty() {
             return Err(self.said(Reason::damaged(
                 "has no underscore before its appended data: it is damaged",
@@ -248,10 +245,8 @@ impl VtkXml {
     }
 
     /// A part of the file.
-    fn part(&self, start: u64, end: u64) -> Result<impl BufRead + use<>, VolumeError> {
-        let mut file = File::open(&self.path).map_err(io_error(&self.path))?;
-        file.seek(SeekFrom::Start(start)).map_err(io_error(&self.path))?;
-        Ok(BufReader::new(file.take(end.saturating_sub(start))))
+    fn part(&self, start: u64, end: u64) -> Result<impl BufRead + use<'a>, VolumeError> {
+        Ok(self.file.reader_at(start)?.take(end.saturating_sub(start)))
     }
 }
 

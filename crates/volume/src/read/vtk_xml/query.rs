@@ -3,7 +3,7 @@
 use super::VtkXml;
 use crate::{Dtype, Reason, VolumeError};
 
-impl VtkXml {
+impl VtkXml<'_> {
     /// What the file holds, such as `ImageData`.
     pub fn kind(&self) -> &str {
         self.attribute(0, "type").unwrap_or("(nothing)")
