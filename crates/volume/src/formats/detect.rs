@@ -7,13 +7,14 @@ use walpha_base::Monitor;
 use walpha_base::advice::Setting;
 use walpha_base::near::nearest;
 
-use super::begins::{is_dicom, is_gzip};
-use super::{FORMATS, VolumeFormat};
+use super::magic::{is_dicom, is_gzip};
+use super::table::{FORMATS, VolumeFormat};
 
+use crate::error::{format_error, io_error};
 #[cfg(feature = "formats")]
 use crate::read::naming;
 use crate::read::series::is_zarr;
-use crate::read::{OpenFile, format_error, io_error, raw};
+use crate::read::{OpenFile, raw};
 use crate::source::whole_only;
 use crate::{ReadOptions, Reason, Series, Source, Volume, VolumeError};
 

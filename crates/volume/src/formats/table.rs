@@ -1,13 +1,132 @@
+//! The formats of volumes, and what is known of each.
+
+use std::fmt;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use walpha_base::Monitor;
 use walpha_base::advice::Setting;
 
-use super::begins::{is_dicom, is_metaimage, is_mgh, is_nifti, is_npy, is_vtk, is_vtk_xml};
-use super::built;
-use super::{Keeps, VolumeFormat, VolumeWriter};
-use crate::read::{inr, npy, series};
-
+use super::magic::{is_dicom, is_metaimage, is_mgh, is_nifti, is_npy, is_tiff, is_vtk, is_vtk_xml};
+use super::{UnknownFormat, built};
+use crate::read::{OpenFile, inr, npy, series};
 #[cfg(feature = "formats")]
-use crate::read::{metaimage, mgh, nifti, npz, nrrd, slices, tiff, vti, vtk};
-use crate::write;
+use crate::read::{metaimage, mgh, nifti, npz, nrrd, slices, tiff, vtk};
+use crate::{ReadOptions, Source, Volume, VolumeError, write};
+
+/// Reads a file.
+type Read = fn(&OpenFile, &ReadOptions, &Monitor) -> Result<Volume, VolumeError>;
+/// Reads a folder.
+type ReadFolder = fn(&Path, &ReadOptions, &Monitor) -> Result<Volume, VolumeError>;
+/// Opens a file to be read part by part.
+type PartsOf = fn(&OpenFile, &ReadOptions) -> Result<Source, VolumeError>;
+/// Opens a folder to be read part by part.
+type PartsOfFolder = fn(&Path, &ReadOptions) -> Result<Source, VolumeError>;
+/// Names the files that hold the samples.
+type DataFiles = fn(&OpenFile) -> Result<Vec<PathBuf>, VolumeError>;
+
+/// A format of volumes.
+pub struct VolumeFormat {
+    /// For people.
+    pub name: &'static str,
+    /// The extensions of files read, without their first dots.
+    pub extensions: &'static [&'static str],
+    /// What it keeps of where samples lie and what they are.
+    pub keeps: Keeps,
+    /// Which settings choose one volume of a file or folder of several.
+    pub chooses: &'static [Setting],
+    /// The feature that reads and writes it; `None` where it needs none.
+    pub feature: Option<&'static str>,
+    /// Its targets for fuzzing.
+    pub fuzzed_by: &'static [&'static str],
+    /// Its writers.
+    pub writers: &'static [VolumeWriter],
+    /// Whether a whole file of it is read when compressed with gzip.
+    pub(super) gzip: bool,
+    /// How its files begin.
+    pub(super) begins: fn(&[u8]) -> bool,
+    /// For people, a folder of it.
+    pub(super) folder_name: &'static str,
+    /// How its folders look.
+    pub(super) is_folder: fn(&Path) -> Result<bool, VolumeError>,
+    /// Reads a file, where the format has files and was not left out of the build.
+    pub(super) read: Option<Read>,
+    /// Reads a folder, where the format has folders and was not left out of the build.
+    pub(super) read_folder: Option<ReadFolder>,
+    /// Opens a file to be read part by part, where its format lends itself to that.
+    pub(super) parts: Option<PartsOf>,
+    /// The same for a folder.
+    pub(super) parts_of_folder: Option<PartsOfFolder>,
+    /// The files that hold the samples, where a header does not.
+    pub(super) data_files: Option<DataFiles>,
+}
+
+/// What a format keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
+pub struct Keeps {
+    /// Distances of samples.
+    pub spacing: bool,
+    /// Where the grid begins and which way its axes run.
+    pub directions: bool,
+    /// The space these are in.
+    pub space: bool,
+    /// The unit of lengths.
+    pub unit: bool,
+    /// The type of samples; without it the user says it.
+    pub dtype: bool,
+}
+
+/// How volumes are written under an extension: samples as `f32`, little-endian, and the frame where the
+/// format has one, in the space and unit that are its convention.
+#[derive(Clone, Copy)]
+pub struct VolumeWriter {
+    /// The extension without its first dot.
+    pub extension: &'static str,
+    write: fn(&Volume, &mut dyn Write) -> io::Result<()>,
+}
+
+impl VolumeFormat {
+    /// Whether it was built in.
+    pub fn is_built_in(&self) -> bool {
+        self.feature.is_none() || self.read.is_some() || self.read_folder.is_some()
+    }
+}
+
+impl fmt::Debug for VolumeFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("VolumeFormat").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+impl VolumeWriter {
+    /// Those that were built in.
+    pub fn all() -> impl Iterator<Item = &'static Self> + Clone {
+        FORMATS.iter().filter(|format| format.is_built_in()).flat_map(|format| format.writers)
+    }
+
+    /// The writer a path asks for by its extension.
+    ///
+    /// # Errors
+    /// [`UnknownFormat`] names the ones there are.
+    pub fn of(path: &Path) -> Result<&'static Self, UnknownFormat> {
+        UnknownFormat::find(path, "a volume", Self::all().map(|writer| (writer.extension, writer)))
+    }
+
+    /// Writes the whole file. The same volume gives the same bytes.
+    ///
+    /// # Errors
+    /// Whatever `out` returns.
+    pub fn write(&self, volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+        (self.write)(volume, out)
+    }
+}
+
+impl fmt::Debug for VolumeWriter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("VolumeWriter").field("extension", &self.extension).finish_non_exhaustive()
+    }
+}
 
 /// All of a grid's place.
 const ALL: Keeps = Keeps { spacing: true, directions: true, space: true, unit: true, dtype: true };
@@ -155,7 +274,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["vti"],
         writers: writers!["vti": write::vti],
         begins: is_vtk_xml,
-        read: built!("formats", |file, options, monitor| vti::read(
+        read: built!("formats", |file, options, monitor| vtk::read_image(
             file,
             options.array.as_deref(),
             monitor
@@ -170,7 +289,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         feature: Some("formats"),
         fuzzed_by: &["vtk_legacy"],
         begins: is_vtk,
-        read: built!("formats", |file, options, monitor| vtk::read(
+        read: built!("formats", |file, options, monitor| vtk::read_legacy(
             file,
             options.array.as_deref(),
             monitor
@@ -185,7 +304,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         feature: Some("formats"),
         fuzzed_by: &["tiff"],
         writers: writers!["tif": write::tiff, "tiff": write::tiff],
-        begins: |start| TIFF.iter().any(|magic| start.starts_with(magic)),
+        begins: is_tiff,
         read: built!("formats", |file, options, monitor| tiff::read(file, options.frame, monitor)),
         ..PLAIN
     },
@@ -241,6 +360,3 @@ pub static FORMATS: [VolumeFormat; 14] = [
         ..PLAIN
     },
 ];
-
-/// How TIFF and `BigTIFF` begin, of either byte order.
-const TIFF: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];

@@ -1,3 +1,5 @@
+//! What the header of a file says of its samples, and reading them as it says.
+
 use std::io::{BufReader, Read};
 use std::path::Path;
 
@@ -7,8 +9,9 @@ use ndarray::Array3;
 use walpha_base::Monitor;
 
 use super::frames::Frames;
-use super::payload::{Length, Payload};
-use super::{format_error, payload_error, text};
+use super::payload::{Length, Payload, payload_error};
+use super::text;
+use crate::error::format_error;
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// A volume as the header of a file describes it, x fastest.

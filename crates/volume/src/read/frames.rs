@@ -2,7 +2,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use super::payload::Length;
-use super::{format_error, io_error};
+use crate::error::{format_error, io_error};
 use crate::{Reason, VolumeError};
 
 /// Which of the volumes of a file is read: those along a fourth axis (and further axes), one after the

@@ -4,8 +4,10 @@ use std::path::Path;
 use ndarray::Array3;
 use walpha_base::Monitor;
 
+use super::OpenFile;
+use super::payload::payload_error;
 use super::payload::{Length, Payload};
-use super::{OpenFile, io_error, payload_error};
+use crate::error::io_error;
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// The first bytes of each INRIMAGE-4 file.

@@ -1,13 +1,13 @@
 use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
+use super::OpenFile;
 use super::described::{self, Described, Encoding, diagonal};
-use super::detached::{self, beside};
+use super::detached::{self, beside, numbered};
 use super::frames::Frames;
-use super::lines::Lines;
-use super::nrrd::numbered;
+use super::text::Lines;
 use super::uncompressed::Uncompressed;
-use super::{OpenFile, format_error, io_error};
+use crate::error::{format_error, io_error};
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume, VolumeError};
 use walpha_base::Monitor;
 

@@ -3,11 +3,13 @@
 use std::io::Read;
 use std::path::Path;
 
+use super::OpenFile;
 use super::described::{Described, Encoding, frame};
 use super::frames::Frames;
+use super::payload::payload_error;
 use super::payload::{Length, Payload};
 use super::uncompressed::Uncompressed;
-use super::{OpenFile, format_error, io_error, payload_error};
+use crate::error::{format_error, io_error};
 use crate::{
     Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Space, Volume, VolumeError,
 };

@@ -6,10 +6,12 @@ use ndarray::{Array3, ShapeBuilder};
 use walpha_base::Monitor;
 use walpha_base::npy::{Header, NpyError};
 
+use super::OpenFile;
 use super::frames::Frames;
+use super::payload::payload_error_of;
 use super::payload::{Element, Length, Payload};
 use super::uncompressed::Uncompressed;
-use super::{OpenFile, io_error, payload_error_of};
+use crate::error::io_error;
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// An array as NPY describes it (format versions 1 to 3, numpy.lib.format).

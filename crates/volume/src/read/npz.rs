@@ -6,9 +6,10 @@ use walpha_base::advice::{Setting, advice};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
+use super::OpenFile;
 use super::npy::{self, NpyFile};
 use super::payload::MOST_EXPANSION;
-use super::{OpenFile, format_error, io_error};
+use crate::error::{format_error, io_error};
 use crate::{Reason, Volume, VolumeError};
 
 /// Reads NPZ, `NumPy`'s archive of arrays (`savez`, `savez_compressed`): its only array of three axes, or

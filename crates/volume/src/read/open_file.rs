@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
-use super::io_error;
 use super::payload::Length;
 use crate::VolumeError;
+use crate::error::io_error;
 use crate::formats::is_gzip;
 
 /// Bytes from which a format is recognised.

@@ -4,9 +4,10 @@ use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::setters;
 
+use super::OpenFile;
+use super::payload::payload_error;
 use super::payload::{Length, Payload, PayloadError};
 use super::uncompressed::Uncompressed;
-use super::{OpenFile, payload_error};
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError, any_size};
 
 /// What a file of bare samples does not say of itself.

@@ -9,11 +9,11 @@ use serde::Serialize;
 use walpha_base::shown::shown;
 
 #[cfg(feature = "dicom")]
-use super::format_error;
-use super::io_error;
-#[cfg(feature = "dicom")]
 use crate::Reason;
 use crate::VolumeError;
+#[cfg(feature = "dicom")]
+use crate::error::format_error;
+use crate::error::io_error;
 
 /// A series of slices in a folder (DICOM).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

@@ -7,7 +7,7 @@ use super::described::{Described, Encoding};
 use super::frames::Frames;
 use super::payload::MOST_EXPANSION;
 use super::tiff::{self, Page};
-use super::{format_error, io_error};
+use crate::error::{format_error, io_error};
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// What slices are called.

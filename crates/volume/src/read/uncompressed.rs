@@ -3,13 +3,16 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 #[cfg(feature = "formats")]
+use super::OpenFile;
+#[cfg(feature = "formats")]
 use super::described::{Described, Encoding};
-use super::io_error;
 use super::payload::Element;
 #[cfg(feature = "formats")]
-use super::{OpenFile, format_error};
-#[cfg(feature = "formats")]
 use crate::Reason;
+use crate::error::format_error;
+use crate::error::io_error;
+#[cfg(feature = "formats")]
+use crate::source::CONVERT;
 use crate::source::{BoxReader, Source};
 use crate::{Dims, Dtype, Endian, Frame, VolumeError};
 
@@ -117,10 +120,6 @@ impl Uncompressed {
         Source::new(self.dims, self.frame, dtype, grain, Box::new(self))
     }
 }
-
-/// What to do about volumes that cannot be read in parts.
-pub(crate) const CONVERT: &str =
-    "convert it to uncompressed NRRD, MetaImage, NIfTI or NPY, or to Zarr";
 
 impl BoxReader for Uncompressed {
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {

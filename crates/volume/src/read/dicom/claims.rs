@@ -14,8 +14,8 @@ use dicom_parser::DataSetReader;
 use dicom_parser::dataset::DataToken;
 use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
 
+use crate::error::{format_error, io_error};
 use crate::read::payload::MOST_EXPANSION;
-use crate::read::{format_error, io_error};
 use crate::{Reason, VolumeError};
 
 pub(super) const PIXEL_DATA: Tag = Tag(0x7FE0, 0x0010);

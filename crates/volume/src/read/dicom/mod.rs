@@ -2,8 +2,7 @@
 //! frames of one.
 
 mod claims;
-mod gather;
-mod header;
+mod files;
 mod slice;
 mod stack;
 
@@ -15,12 +14,13 @@ use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::asking;
 use walpha_base::shown::shown;
 
+use super::ReadOptions;
 use super::described::{Described, Encoding};
 use super::frames::Frames;
 use super::series::Series;
-use super::{ReadOptions, format_error};
+use crate::error::format_error;
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
-use gather::{Gathered, pattern, reason, skippable};
+use files::{Gathered, pattern, reason, skippable};
 use slice::{Found, Slice, pixels};
 use stack::stacked;
 

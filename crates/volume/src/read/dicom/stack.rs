@@ -3,7 +3,8 @@ use std::path::Path;
 use walpha_base::vector::{cross, dot};
 
 use super::slice::Slice;
-use crate::read::format_error;
+use crate::error::format_error;
+use crate::read::described;
 use crate::{Coordinates, Frame, Reason, VolumeError};
 
 /// Unit vectors this alike are one; headers have six digits or more.
@@ -66,8 +67,7 @@ pub(super) fn stacked(
         None => normal.map(|n| n * first.thickness),
     };
     let axes = [column.map(|v| v * first.spacing[0]), row.map(|v| v * first.spacing[1]), step];
-    let frame =
-        super::super::described::frame(path, slices[0].position, axes, Coordinates::PATIENT)?;
+    let frame = described::frame(path, slices[0].position, axes, Coordinates::PATIENT)?;
     Ok((slices, frame))
 }
 

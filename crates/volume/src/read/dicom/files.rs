@@ -7,8 +7,8 @@ use walpha_base::advice::{Setting, advice};
 use walpha_base::shown::shown;
 
 use super::slice::{Found, Slice};
-use crate::read::format_error;
-use crate::read::series::{Files, files};
+use crate::error::format_error;
+use crate::read::series::{self, Files};
 use crate::{Reason, VolumeError};
 
 /// What the files of a folder are.
@@ -22,7 +22,7 @@ impl Gathered {
     /// Looks at the headers in a folder; indices of media (DICOMDIR) are passed over.
     pub(super) fn of(folder: &Path, nested: bool) -> Result<Self, VolumeError> {
         let is_index = |path: &PathBuf| path.file_name().is_some_and(|name| name == "DICOMDIR");
-        let Files { dicom, ruins } = files(folder, nested)?;
+        let Files { dicom, ruins } = series::files(folder, nested)?;
         let open = |path: &PathBuf| (path.clone(), Found::open(path));
         let opened: Vec<_> = dicom.par_iter().filter(|path| !is_index(path)).map(open).collect();
         let mut gathered = Self { found: Vec::new(), damaged: Vec::new() };

@@ -3,8 +3,8 @@
 use std::io::BufRead;
 use std::path::Path;
 
-use super::super::lines::Lines;
-use super::super::{format_error, io_error};
+use crate::error::{format_error, io_error};
+use crate::read::text::Lines;
 use crate::{Dtype, Reason, VolumeError};
 
 /// Keywords that begin a section after the grid.

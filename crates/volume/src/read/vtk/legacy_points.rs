@@ -3,13 +3,15 @@
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use super::super::lines::Lines;
-use super::super::payload::{Length, Payload};
-use super::super::{OpenFile, format_error, io_error, payload_error_of, text};
-use super::MAGIC;
-use super::arrays::{self, Array, CellList, POINTS};
-use crate::{Endian, Reason, VolumeError};
 use walpha_base::Monitor;
+
+use super::legacy_arrays::{self as arrays, Array, CellList, POINTS};
+use crate::error::{format_error, io_error};
+use crate::formats::is_vtk;
+use crate::read::OpenFile;
+use crate::read::payload::{Length, Payload, payload_error_of};
+use crate::read::text::{self, Lines};
+use crate::{Endian, Reason, VolumeError};
 
 /// The datasets whose points are listed.
 const LISTED: [&str; 3] = ["POLYDATA", "UNSTRUCTURED_GRID", "STRUCTURED_GRID"];
@@ -125,7 +127,7 @@ impl<'a> VtkPoints<'a> {
 fn head(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Head, VolumeError> {
     let mut next = || lines.read_line().map_err(io_error(path));
     let first = next()?.unwrap_or_default();
-    if !first.as_bytes().starts_with(MAGIC) {
+    if !is_vtk(first.as_bytes()) {
         let what = "is not a legacy VTK file: it does not begin with # vtk DataFile";
         return Err(format_error(path, Reason::other(what)));
     }

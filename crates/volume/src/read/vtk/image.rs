@@ -1,8 +1,11 @@
-use super::described::{Described, Encoding, frame};
-use super::frames::Frames;
-use super::vtk::{choice, to_centres};
-use super::vtk_xml::VtkXml;
-use super::{OpenFile, format_error};
+//! VTI, VTK's image data in XML.
+
+use super::legacy::{choice, to_centres};
+use super::xml::VtkXml;
+use crate::error::format_error;
+use crate::read::OpenFile;
+use crate::read::described::{Described, Encoding, frame};
+use crate::read::frames::Frames;
 use crate::{Coordinates, Dims, Endian, LengthUnit, Reason, Space, Volume, VolumeError};
 use walpha_base::Monitor;
 

@@ -1,6 +1,6 @@
 //! How files of each format begin.
 
-use walpha_base::npy::MAGIC;
+use walpha_base::npy;
 
 use crate::Endian;
 
@@ -41,6 +41,12 @@ pub fn is_vtk_xml(start: &[u8]) -> bool {
     text.starts_with(b"<") && start.windows(name.len()).any(|window| window == name)
 }
 
+/// Whether a file begins as TIFF or `BigTIFF` does, of either byte order.
+pub(super) fn is_tiff(start: &[u8]) -> bool {
+    const MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
+    MAGIC.iter().any(|magic| start.starts_with(magic))
+}
+
 /// Whether a file begins as an MGH header does: with version 1, four sizes from 1 up, and a type that there is.
 pub(super) fn is_mgh(start: &[u8]) -> bool {
     let (numbers, _) = start.as_chunks();
@@ -56,7 +62,7 @@ pub fn is_vtk(start: &[u8]) -> bool {
 
 /// Whether a file begins as NPY does.
 pub fn is_npy(start: &[u8]) -> bool {
-    start.starts_with(MAGIC)
+    start.starts_with(npy::MAGIC)
 }
 
 /// Whether a file begins as a gzip stream does.

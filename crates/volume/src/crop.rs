@@ -32,7 +32,7 @@ impl Region {
         let sizes = volume.dims().xyz();
         let end = [0, 1, 2].map(|k| self.end[k].unwrap_or(sizes[k]));
         if (0..3).any(|k| self.first[k] >= end[k] || end[k] > sizes[k]) {
-            return Err(VolumeError::Region { first: self.first, end, dims: volume.dims() });
+            return Err(VolumeError::Region { first: self.first, end, dims: volume.dims().xyz() });
         }
         let [x, y, z]: [Range<usize>; 3] = [0, 1, 2].map(|k| self.first[k]..end[k]);
         let part = s![z, y, x];

@@ -1,5 +1,4 @@
-mod arrays;
-mod query;
+//! VTK's XML formats: elements, and what they say.
 
 use std::collections::HashMap;
 use std::io::{self, BufRead, Read};
@@ -8,46 +7,47 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 use walpha_base::Monitor;
 
-use super::{OpenFile, format_error, io_error};
-use crate::{Endian, Reason, VolumeError};
+use crate::error::{format_error, io_error};
+use crate::read::OpenFile;
+use crate::{Dtype, Endian, Reason, VolumeError};
 
 /// A file of VTK's XML formats (VTK User's Guide, "VTK File Formats"): its elements, and the arrays
 /// they hold, which are read on demand. Arrays may be text, base64, or appended raw or in base64, and
 /// compressed with zlib or LZ4.
 pub struct VtkXml<'a> {
-    file: &'a OpenFile,
-    endian: Endian,
+    pub(super) file: &'a OpenFile,
+    pub(super) endian: Endian,
     /// Bytes of a length in front of an array.
-    word: usize,
-    compressor: Option<Compressor>,
-    elements: Vec<XmlElement>,
-    appended: Option<Appended>,
-    monitor: Monitor,
+    pub(super) word: usize,
+    pub(super) compressor: Option<Compressor>,
+    pub(super) elements: Vec<XmlElement>,
+    pub(super) appended: Option<Appended>,
+    pub(super) monitor: Monitor,
 }
 
 /// An element with what it says of itself.
 #[derive(Debug)]
-struct XmlElement {
-    name: String,
-    parent: Option<usize>,
-    attributes: HashMap<String, String>,
+pub(super) struct XmlElement {
+    pub(super) name: String,
+    pub(super) parent: Option<usize>,
+    pub(super) attributes: HashMap<String, String>,
     /// Where its text begins in the file, and where it ends: at its end or its first child.
-    text: u64,
-    text_end: Option<u64>,
+    pub(super) text: u64,
+    pub(super) text_end: Option<u64>,
 }
 
 /// How the blocks of arrays are compressed.
 #[derive(Clone, Copy, Debug)]
-enum Compressor {
+pub(super) enum Compressor {
     Zlib,
     Lz4,
 }
 
 /// Where appended arrays begin, and whether they are in base64.
 #[derive(Clone, Copy, Debug)]
-struct Appended {
-    start: u64,
-    base64: bool,
+pub(super) struct Appended {
+    pub(super) start: u64,
+    pub(super) base64: bool,
 }
 
 impl<'a> VtkXml<'a> {
@@ -91,7 +91,7 @@ impl<'a> VtkXml<'a> {
         Self { monitor: monitor.clone(), ..self }
     }
 
-    fn said(&self, reason: Reason) -> VolumeError {
+    pub(super) fn said(&self, reason: Reason) -> VolumeError {
         format_error(self.file.path(), reason)
     }
 
@@ -245,7 +245,7 @@ impl<'a> VtkXml<'a> {
     }
 
     /// A part of the file.
-    fn part(&self, start: u64, end: u64) -> Result<impl BufRead + use<'a>, VolumeError> {
+    pub(super) fn part(&self, start: u64, end: u64) -> Result<impl BufRead + use<'a>, VolumeError> {
         Ok(self.file.reader_at(start)?.take(end.saturating_sub(start)))
     }
 }
@@ -253,4 +253,104 @@ impl<'a> VtkXml<'a> {
 fn begins_as_xml(start: &[u8]) -> bool {
     let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
     start.trim_ascii_start().starts_with(b"<")
+}
+
+/// What a file says of its elements.
+impl VtkXml<'_> {
+    /// What the file holds, such as `ImageData`.
+    pub fn kind(&self) -> &str {
+        self.attribute(0, "type").unwrap_or("(nothing)")
+    }
+
+    /// An attribute of an element.
+    pub fn attribute(&self, element: usize, name: &str) -> Option<&str> {
+        self.elements[element].attributes.get(name).map(String::as_str)
+    }
+
+    /// As many numbers as an attribute should have, or the default where it is missing.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn numbers<const N: usize>(
+        &self,
+        element: usize,
+        name: &str,
+        default: Option<[f64; N]>,
+    ) -> Result<[f64; N], VolumeError> {
+        let place = &self.elements[element].name;
+        let Some(text) = self.attribute(element, name) else {
+            return default.ok_or_else(|| {
+                self.said(Reason::header(format!("its element {place} has no {name}")))
+            });
+        };
+        let numbers: Option<Vec<f64>> =
+            text.split_whitespace().map(|number| number.parse().ok()).collect();
+        numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| {
+            self.said(Reason::header(format!(
+                "its element {place} has {name}={text:?}, which is not {N} numbers"
+            )))
+        })
+    }
+
+    /// The elements of this name right inside another.
+    pub fn children(&self, parent: usize, name: &str) -> impl Iterator<Item = usize> {
+        let is_child = move |i: &usize| {
+            self.elements[*i].parent == Some(parent) && self.elements[*i].name == name
+        };
+        (0..self.elements.len()).filter(is_child)
+    }
+
+    /// The element `Piece` of the dataset, of which there must be one.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn piece(&self) -> Result<(usize, usize), VolumeError> {
+        let kind = self.kind();
+        let dataset = self.children(0, kind).next().ok_or_else(|| {
+            self.said(Reason::damaged(format!("has no element {kind}: it is damaged")))
+        })?;
+        let pieces: Vec<usize> = self.children(dataset, "Piece").collect();
+        match pieces[..] {
+            [piece] => Ok((dataset, piece)),
+            _ => Err(self.said(Reason::unsupported(
+                format!("holds {} pieces: only one is read", pieces.len()),
+                "write it in one piece",
+            ))),
+        }
+    }
+
+    /// The type of an array's numbers.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn dtype(&self, array: usize) -> Result<Dtype, VolumeError> {
+        Ok(match self.attribute(array, "type") {
+            Some("Int8") => Dtype::I8,
+            Some("UInt8") => Dtype::U8,
+            Some("Int16") => Dtype::I16,
+            Some("UInt16") => Dtype::U16,
+            Some("Int32") => Dtype::I32,
+            Some("UInt32") => Dtype::U32,
+            Some("Int64") => Dtype::I64,
+            Some("UInt64") => Dtype::U64,
+            Some("Float32") => Dtype::F32,
+            Some("Float64") => Dtype::F64,
+            other => {
+                let name = other.unwrap_or("(missing)");
+                return Err(self.said(Reason::unsupported(
+                    format!("has an array of type {name}, which is not read"),
+                    "convert it first",
+                )));
+            }
+        })
+    }
+
+    /// How many numbers an array has for each point or cell.
+    pub fn components(&self, array: usize) -> &str {
+        self.attribute(array, "NumberOfComponents").unwrap_or("1")
+    }
+
+    pub(super) fn name(&self, array: usize) -> &str {
+        self.attribute(array, "Name").unwrap_or("without a name")
+    }
 }
