@@ -5,7 +5,7 @@ use std::{process::Command, sync::mpsc, thread, time::Duration};
 
 use walpha::points::{Columns, read_points};
 #[cfg(unix)]
-use walpha::{Monitor, Recipe, pipeline::Input};
+use walpha::{Recipe, pipeline::Input, progress::Monitor};
 
 use super::files::*;
 use crate::common::told::Told;

@@ -2,7 +2,7 @@ use std::fs;
 use std::path::Path;
 
 use ndarray::Array3;
-use walpha::Monitor;
+use walpha::progress::Monitor;
 use walpha::volume::{
     Coordinates, Dtype, Endian, FORMATS, Frame, OpenFile, RawLayout, ReadOptions, Volume,
     VolumeWriter, read, read_file,
