@@ -265,7 +265,7 @@ fn is_geometry(file: &OpenFile) -> Result<bool, PointsError> {
 #[expect(clippy::unnecessary_wraps, reason = "what is damaged is for the reader to say")]
 fn are_listed(file: &OpenFile) -> Result<bool, PointsError> {
     #[cfg(feature = "formats")]
-    return Ok(VtkPoints::are_in(file).unwrap_or(false));
+    return Ok(VtkPoints::lists_points(file).unwrap_or(false));
     #[cfg(not(feature = "formats"))]
     {
         let _ = file;

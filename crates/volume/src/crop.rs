@@ -116,7 +116,7 @@ mod tests {
         samples[[0, 0, 0]] = f32::NAN;
         samples.slice_mut(s![0..2, 0..2, 2..4]).fill(f32::NAN);
         let volume = Volume::of_file(samples, Frame::VOXEL).unwrap();
-        let volume = volume.settled(Some(Nan::Mask)).unwrap();
+        let volume = volume.resolve_nan(Some(Nan::Mask)).unwrap();
         assert!(volume.is_missing(0) && !volume.is_missing(1) && volume.as_slice()[0] == 1.0);
         let coarse = downsample(volume.clone(), NonZeroUsize::new(2).unwrap());
         assert_eq!(coarse.as_slice()[0], (8.0 * 55.5 - 0.0) / 7.0);

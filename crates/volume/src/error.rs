@@ -160,7 +160,7 @@ impl VolumeError {
                 Setting::Region,
                 " 20:40,20:40,10:30"
             ],
-            Self::Io { path, source } => return next_step(path, source.kind()),
+            Self::Io { path, source } => return advice_for_io(path, source.kind()),
             Self::Written { source, .. } if source.kind() == ErrorKind::AlreadyExists => {
                 "remove it, or choose another name".into()
             }
@@ -192,7 +192,7 @@ pub fn io_error(path: &Path) -> impl Fn(io::Error) -> VolumeError {
 }
 
 /// What to do about an error of the system.
-fn next_step(path: &Path, kind: ErrorKind) -> Option<Advice> {
+fn advice_for_io(path: &Path, kind: ErrorKind) -> Option<Advice> {
     Some(match kind {
         ErrorKind::NotFound => match path.to_str() {
             Some(name @ ("skull" | "phantom")) => format!("did you mean sample:{name}?").into(),

@@ -47,10 +47,10 @@ impl Volume {
     /// An axis of length zero, more than [`Dims::MAX_SAMPLES`] samples, or a NaN or infinity
     /// ([`VolumeError::NotFinite`] names the first).
     pub fn new(samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
-        Self::of_file(samples, frame)?.settled(None)
+        Self::of_file(samples, frame)?.resolve_nan(None)
     }
 
-    /// The same for readers: NaN and infinities may be among the samples until [`Volume::settled`] has seen
+    /// The same for readers: NaN and infinities may be among the samples until [`Volume::resolve_nan`] has seen
     /// them.
     ///
     /// # Errors
@@ -71,7 +71,7 @@ impl Volume {
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn settled(mut self, nan: Option<Nan>) -> Result<Self, VolumeError> {
+    pub fn resolve_nan(mut self, nan: Option<Nan>) -> Result<Self, VolumeError> {
         let value = match nan {
             Some(Nan::Value(value)) => value,
             Some(Nan::Mask) if self.as_slice().par_iter().any(|v| !v.is_finite()) => {
@@ -199,7 +199,7 @@ impl Volume {
         let ends = |a: (f32, f32), b: (f32, f32)| (a.0.min(b.0), a.1.max(b.1));
         self.as_slice()
             .par_iter()
-            // Readers have others until they are settled.
+            // Readers have others until NaN is resolved.
             .filter(|v| v.is_finite())
             .map(|&v| (v, v))
             .reduce(|| (f32::INFINITY, f32::NEG_INFINITY), ends)

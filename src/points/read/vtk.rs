@@ -77,7 +77,7 @@ pub(crate) fn read_legacy(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     let file = VtkPoints::open(file)?;
     let mut points = Points {
-        positions: file.places()?.as_chunks().0.to_vec(),
+        positions: file.coordinates()?.as_chunks().0.to_vec(),
         weights: file.named("weight")?,
         values: match file.named("value")? {
             Some(values) => Some(values),

@@ -83,7 +83,7 @@ pub fn read_file(
 ) -> Result<Volume, VolumeError> {
     let volume = match &options.raw {
         Some(layout) => raw::read(file, layout, monitor),
-        None => found(file, options).and_then(|Found { format, .. }| {
+        None => detect(file, options).and_then(|Detected { format, .. }| {
             accept(format, file.path(), options)?;
             let read = format.read.ok_or_else(|| left_out(format, file.path()))?;
             read(file, options, monitor)
@@ -100,7 +100,7 @@ fn finish(
     name: impl Fn(VolumeError) -> VolumeError,
 ) -> Result<Volume, VolumeError> {
     let volume = volume.and_then(|volume| {
-        let finite = volume.settled(options.nan).map_err(name)?;
+        let finite = volume.resolve_nan(options.nan).map_err(name)?;
         options.part(finite)
     });
     volume.map_err(|error| match error {
@@ -136,9 +136,9 @@ pub(crate) fn source(path: &Path, options: &ReadOptions) -> Result<Source, Volum
     }
     let file = OpenFile::open(path)?;
     if let Some(layout) = &options.raw {
-        return Ok(raw::rows(&file, layout)?.source());
+        return Ok(raw::box_reader(&file, layout)?.source());
     }
-    let Found { format, gzip } = found(&file, options)?;
+    let Detected { format, gzip } = detect(&file, options)?;
     accept(format, path, options)?;
     match format.parts {
         Some(parts) if !gzip => parts(&file, options),
@@ -173,7 +173,7 @@ pub fn format_name(path: &Path, options: &ReadOptions) -> Result<String, VolumeE
     if path.is_dir() {
         return Ok(format_of_folder(path)?.folder_name.into());
     }
-    let Found { format, gzip } = found(&OpenFile::open(path)?, options)?;
+    let Detected { format, gzip } = detect(&OpenFile::open(path)?, options)?;
     Ok(if gzip { format!("{}, gzip", format.name) } else { format.name.into() })
 }
 
@@ -193,8 +193,8 @@ fn data_files_of(file: &OpenFile, options: &ReadOptions) -> Result<Vec<PathBuf>,
     if options.raw.is_some() {
         return Ok(Vec::new());
     }
-    match found(file, options)? {
-        Found { format: VolumeFormat { data_files: Some(data_files), .. }, gzip: false } => {
+    match detect(file, options)? {
+        Detected { format: VolumeFormat { data_files: Some(data_files), .. }, gzip: false } => {
             data_files(file)
         }
         _ => Ok(Vec::new()),
@@ -276,7 +276,7 @@ fn unknown(path: &Path) -> VolumeError {
 }
 
 /// A format, and whether a file of it is compressed as a whole.
-struct Found {
+struct Detected {
     format: &'static VolumeFormat,
     gzip: bool,
 }
@@ -314,20 +314,20 @@ fn format_of_folder(path: &Path) -> Result<&'static VolumeFormat, VolumeError> {
 }
 
 /// The format of a file, which must be the one that the user says, if one is said.
-fn found(file: &OpenFile, options: &ReadOptions) -> Result<Found, VolumeError> {
+fn detect(file: &OpenFile, options: &ReadOptions) -> Result<Detected, VolumeError> {
     let asked = options.format.as_deref();
-    let found = found_as(file, asked)?;
-    let Found { format, .. } = found;
+    let detected = detect_as(file, asked)?;
+    let Detected { format, .. } = detected;
     let is_it = |asked: &str| format.extensions.iter().any(|own| own.eq_ignore_ascii_case(asked));
     // DICOM has no extension of its own.
     if asked.is_some_and(|asked| !is_it(asked) && !format.extensions.is_empty()) {
         let what = format!("is of the format {} by its content", format.name);
         return Err(format_error(file.path(), Reason::needless(Setting::Format, what)));
     }
-    Ok(found)
+    Ok(detected)
 }
 
-fn found_as(file: &OpenFile, asked: Option<&str>) -> Result<Found, VolumeError> {
+fn detect_as(file: &OpenFile, asked: Option<&str>) -> Result<Detected, VolumeError> {
     let (path, start) = (file.path(), file.start());
     if start.is_empty() {
         let reason = if file.is_ordinary() {
@@ -341,7 +341,7 @@ fn found_as(file: &OpenFile, asked: Option<&str>) -> Result<Found, VolumeError> 
         return Err(format_error(path, reason));
     }
     if let Some(format) = by_content(start) {
-        return Ok(Found { format, gzip: false });
+        return Ok(Detected { format, gzip: false });
     }
     if let Some((_, what, advice)) = REFUSED.iter().find(|(magic, ..)| start.starts_with(magic)) {
         return Err(format_error(path, Reason::unsupported(format!("is {what}"), *advice)));
@@ -355,7 +355,7 @@ fn found_as(file: &OpenFile, asked: Option<&str>) -> Result<Found, VolumeError> 
         return Err(format_error(path, Reason::content(what, "rename it")));
     }
     let format = by_extension(path, asked).ok_or_else(|| unknown(path))?;
-    Ok(Found { format, gzip: false })
+    Ok(Detected { format, gzip: false })
 }
 
 fn by_content(start: &[u8]) -> Option<&'static VolumeFormat> {
@@ -376,7 +376,7 @@ fn name(path: &Path, asked: Option<&str>) -> String {
 }
 
 /// What a gzip stream holds.
-fn unpacked(file: &OpenFile, asked: Option<&str>) -> Result<Found, VolumeError> {
+fn unpacked(file: &OpenFile, asked: Option<&str>) -> Result<Detected, VolumeError> {
     let path = file.path();
     let mut start = Vec::new();
     // What cannot be unpacked is left to the reader, which says why.
@@ -386,13 +386,13 @@ fn unpacked(file: &OpenFile, asked: Option<&str>) -> Result<Found, VolumeError> 
     let names = names.join(", ");
     let of_name = by_extension(path, asked).filter(|format| format.gzip);
     match (by_content(&start), of_name) {
-        (Some(format), _) if format.gzip => Ok(Found { format, gzip: true }),
+        (Some(format), _) if format.gzip => Ok(Detected { format, gzip: true }),
         (Some(_), _) => {
             let what =
                 format!("is a whole file compressed with gzip, which is read for {names} only");
             Err(format_error(path, Reason::unsupported(what, "unpack it first")))
         }
-        (None, Some(format)) => Ok(Found { format, gzip: true }),
+        (None, Some(format)) => Ok(Detected { format, gzip: true }),
         (None, None) => {
             let what = match unpacked {
                 Ok(_) => format!(

@@ -212,7 +212,9 @@ pub static FORMATS: [VolumeFormat; 14] = [
         writers: writers!["nrrd": write::nrrd],
         begins: |start| start.starts_with(b"NRRD000"),
         read: built!("formats", |file, options, monitor| nrrd::read(file, options.frame, monitor)),
-        parts: built!("formats", |file, options| Ok(nrrd::rows(file, options.frame)?.source())),
+        parts: built!("formats", |file, options| Ok(
+            nrrd::box_reader(file, options.frame)?.source()
+        )),
         data_files: built!("formats", nrrd::data_files),
         ..PLAIN
     },
@@ -227,7 +229,9 @@ pub static FORMATS: [VolumeFormat; 14] = [
         gzip: true,
         begins: is_nifti,
         read: built!("formats", |file, options, monitor| nifti::read(file, options.frame, monitor)),
-        parts: built!("formats", |file, options| Ok(nifti::rows(file, options.frame)?.source())),
+        parts: built!("formats", |file, options| Ok(
+            nifti::box_reader(file, options.frame)?.source()
+        )),
         data_files: built!("formats", nifti::data_files),
         ..PLAIN
     },
@@ -241,7 +245,10 @@ pub static FORMATS: [VolumeFormat; 14] = [
         gzip: true,
         begins: is_mgh,
         read: built!("formats", |file, options, monitor| mgh::read(file, options.frame, monitor)),
-        parts: built!("formats", |file, options| Ok(mgh::rows(file, options.frame)?.source())),
+        parts: built!(
+            "formats",
+            |file, options| Ok(mgh::box_reader(file, options.frame)?.source())
+        ),
         ..PLAIN
     },
     VolumeFormat {
@@ -258,10 +265,9 @@ pub static FORMATS: [VolumeFormat; 14] = [
             options.frame,
             monitor
         )),
-        parts: built!(
-            "formats",
-            |file, options| Ok(metaimage::rows(file, options.frame)?.source())
-        ),
+        parts: built!("formats", |file, options| Ok(
+            metaimage::box_reader(file, options.frame)?.source()
+        )),
         data_files: built!("formats", metaimage::data_files),
         ..PLAIN
     },
@@ -326,7 +332,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         writers: &[VolumeWriter { extension: "npy", write: write::npy }],
         begins: is_npy,
         read: Some(|file, options, monitor| npy::read(file, options.frame, monitor)),
-        parts: Some(|file, options| Ok(npy::rows(file, options.frame)?.source())),
+        parts: Some(|file, options| Ok(npy::box_reader(file, options.frame)?.source())),
         ..PLAIN
     },
     VolumeFormat {

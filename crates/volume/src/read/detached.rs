@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use walpha_base::Monitor;
 use walpha_base::shown::shown;
 
-use super::described::Described;
+use super::layout::Layout;
 use crate::error::{format_error, io_error};
 use crate::{Reason, Volume, VolumeError};
 
 /// The files that a header names, relative to its folder; they may be anywhere.
-pub(super) fn beside(header: &Path, names: &[String]) -> Vec<PathBuf> {
+pub(super) fn data_paths(header: &Path, names: &[String]) -> Vec<PathBuf> {
     let folder = header.parent().unwrap_or(Path::new(""));
     names.iter().map(|name| folder.join(name)).collect()
 }
@@ -45,14 +45,14 @@ pub(super) fn numbered(words: &[&str]) -> Option<Result<Vec<String>, Reason>> {
 /// this length is passed over.
 pub(super) fn read(
     header: &Path,
-    described: Described,
+    layout: Layout,
     files: &[PathBuf],
     skip: impl Fn(u64) -> u64,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let source = Detached::new(files, skip)?;
     let bytes = source.bytes;
-    described.read(header, source, bytes, monitor).map_err(naming(header, files))
+    layout.read(header, source, bytes, monitor).map_err(naming(header, files))
 }
 
 /// Errors about samples in files separate from their header, with the names of both.

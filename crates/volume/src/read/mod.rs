@@ -1,13 +1,13 @@
 //! The readers of each format.
 
 #[cfg(feature = "formats")]
-mod described;
-#[cfg(feature = "formats")]
 mod detached;
 #[cfg(feature = "dicom")]
 pub(super) mod dicom;
 mod frames;
 pub(super) mod inr;
+#[cfg(feature = "formats")]
+mod layout;
 #[cfg(feature = "formats")]
 pub(super) mod metaimage;
 #[cfg(feature = "formats")]

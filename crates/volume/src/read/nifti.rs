@@ -7,9 +7,9 @@ use walpha_base::Monitor;
 use walpha_base::shown::{number, shown, six_digits};
 
 use super::OpenFile;
-use super::described::{Described, Encoding, diagonal, frame};
 use super::detached::naming;
-use super::frames::Frames;
+use super::frames::FrameChoice;
+use super::layout::{Encoding, Layout, diagonal, frame};
 use super::payload::{Length, Payload, payload_error};
 use super::uncompressed::Uncompressed;
 use crate::error::{format_error, io_error};
@@ -31,14 +31,14 @@ pub(crate) fn read(
     let path = file.path();
     let (mut reader, length) = file.unpacked()?;
     let header = Header::read(path, &mut reader)?;
-    let described = header.described(path, frame)?;
+    let layout = header.layout(path, frame)?;
     let (slope, inter) = header.scaling();
     if header.is_pair(path)? {
         let image = path.with_extension("img");
         let data = OpenFile::open(&image)?;
         let offset = header.vox_offset().clamp(0.0, data.length() as f64) as u64;
         let left = Length::Exactly(data.length() - offset);
-        return samples(path, described, slope, inter, data.reader_at(offset)?, left, monitor)
+        return samples(path, layout, slope, inter, data.reader_at(offset)?, left, monitor)
             .map_err(naming(path, &[image]));
     }
     let offset = header.offset(path)?;
@@ -50,22 +50,22 @@ pub(crate) fn read(
             Reason::truncated(format!("ends before its samples at byte {offset}")),
         ));
     }
-    samples(path, described, slope, inter, reader, length.minus(offset), monitor)
+    samples(path, layout, slope, inter, reader, length.minus(offset), monitor)
 }
 
 /// Where the samples of a volume lie, to be read part by part.
-pub(crate) fn rows(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
+pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let path = file.path();
     let header = Header::read(path, &mut file.reader()?)?;
-    let described = header.described(path, frame)?;
+    let layout = header.layout(path, frame)?;
     let scaling = header.scaling();
-    let rows = if header.is_pair(path)? {
+    let samples = if header.is_pair(path)? {
         let offset = header.vox_offset().max(0.0) as u64;
-        Uncompressed::beside(path, described, &[path.with_extension("img")], Some(offset))?
+        Uncompressed::in_data_file(path, layout, &[path.with_extension("img")], Some(offset))?
     } else {
-        Uncompressed::behind(file, described, header.offset(path)?, Some(0))?
+        Uncompressed::after_header(file, layout, header.offset(path)?, Some(0))?
     };
-    Ok(rows.scaled(scaling))
+    Ok(samples.scaled(scaling))
 }
 
 /// The file that holds the samples, where the header has one of its own.
@@ -79,23 +79,23 @@ pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
 /// Reads samples and scales them, in doubles where `f32` does not hold the numbers of the file.
 fn samples(
     path: &Path,
-    described: Described,
+    layout: Layout,
     slope: f64,
     inter: f64,
     reader: impl Read,
     length: Length,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let Described { dims, dtype, endian, frames, .. } = described;
+    let Layout { dims, dtype, endian, frames, .. } = layout;
     dims.bounded()?;
     let each = (dims.samples() * dtype.size()) as u64;
-    let (reader, length) = frames.one(path, reader, length, each)?;
+    let (reader, length) = frames.select(path, reader, length, each)?;
     let payload = Payload { reader, length };
     let fail = payload_error(path, &dims, dtype);
     let count = dims.samples() as u64;
     if (slope, inter) == (1.0, 0.0) {
         let samples = payload.samples(dtype, endian, count, monitor).map_err(fail)?;
-        return described.volume(samples);
+        return layout.volume(samples);
     }
     let scaled: Vec<f32> = if dtype.size() < 4 || dtype == Dtype::F32 {
         let mut samples: Vec<f32> = payload.samples(dtype, endian, count, monitor).map_err(fail)?;
@@ -106,7 +106,7 @@ fn samples(
         samples.iter().map(|v| (v * slope + inter) as f32).collect()
     };
     // Scaled bytes are not gray levels.
-    Ok(described.volume(scaled)?.with_dtype(Dtype::F32))
+    Ok(layout.volume(scaled)?.with_dtype(Dtype::F32))
 }
 
 /// The bytes of a header; places are those of version 1 and version 2.
@@ -227,23 +227,23 @@ impl Header {
         ))
     }
 
-    fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
-        let said = |reason: Reason| format_error(path, reason);
+    fn layout(&self, path: &Path, frame: Option<u64>) -> Result<Layout, VolumeError> {
+        let fail = |reason: Reason| format_error(path, reason);
         let axes = self.dim(0);
         if !(1..=7).contains(&axes) {
-            return Err(said(Reason::header(format!(
+            return Err(fail(Reason::header(format!(
                 "has dim[0] = {axes}: 1 to 7 axes are possible"
             ))));
         }
         let size = |axis: usize| if axis as i64 <= axes { self.dim(axis) } else { 1 };
         let sizes = [1, 2, 3, 4, 5, 6, 7].map(size);
         if sizes.iter().any(|&size| size < 0) {
-            return Err(said(Reason::damaged(format!(
+            return Err(fail(Reason::damaged(format!(
                 "has axes of {sizes:?} samples: its header is damaged"
             ))));
         }
         let sizes = sizes.map(|size| size as u64);
-        let frames = Frames::choose(path, &sizes[3..], frame)?;
+        let frames = FrameChoice::choose(path, &sizes[3..], frame)?;
         let [x, y, z, ..] = sizes;
         let dims = Dims::unbounded(x, y, z)?;
         let dtype = match self.short(70, 12) {
@@ -262,13 +262,13 @@ impl Header {
                     1 => "single bits",
                     128 | 2304 => {
                         let dims = Some([x, y, z]);
-                        return Err(said(Reason::not_scalar("colours", dims)));
+                        return Err(fail(Reason::not_scalar("colours", dims)));
                     }
                     32 | 1792 | 2048 => "complex numbers",
                     1536 => "128-bit floats",
                     _ => "an unknown type",
                 };
-                return Err(said(Reason::unsupported(
+                return Err(fail(Reason::unsupported(
                     format!(
                         "holds {name} (datatype {code}): integers of 8 to 64 bits, float32 \
                              and float64 are read"
@@ -279,7 +279,7 @@ impl Header {
         };
         let frame = self.frame(path, dims)?;
         let (endian, encoding) = (self.endian, Encoding::Raw);
-        Ok(Described { dims, dtype, endian, frame, encoding, frames })
+        Ok(Layout { dims, dtype, endian, frame, encoding, frames })
     }
 
     /// Slope and intercept; a slope of 0 means none.
@@ -342,8 +342,8 @@ impl Header {
         let spacing = [1, 2, 3].map(length);
         if self.code(252, 344) <= 0 {
             let coordinates = self.coordinates(Space::Unknown);
-            let said = spacing != [1.0; 3] || coordinates.unit.is_known();
-            let coordinates = if said { coordinates } else { Coordinates::VOXEL };
+            let is_placed = spacing != [1.0; 3] || coordinates.unit.is_known();
+            let coordinates = if is_placed { coordinates } else { Coordinates::VOXEL };
             return frame(path, [0.0; 3], diagonal(spacing), coordinates);
         }
         let mut imaginary = [0, 1, 2].map(|i| self.real(256, 352, i));

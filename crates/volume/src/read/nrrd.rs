@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use walpha_base::Monitor;
 
 use super::OpenFile;
-use super::described::{Described, Encoding, diagonal, frame};
-use super::detached::{self, beside, numbered};
-use super::frames::Frames;
+use super::detached::{self, data_paths, numbered};
+use super::frames::FrameChoice;
+use super::layout::{Encoding, Layout, diagonal, frame};
 use super::text::Lines;
 use super::uncompressed::Uncompressed;
 use crate::error::{format_error, io_error};
@@ -32,42 +32,42 @@ pub(crate) fn read(
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let path = file.path();
-    let said = |reason: Reason| format_error(path, reason);
+    let fail = |reason: Reason| format_error(path, reason);
     let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
-    let described = header.described(path, frame)?;
-    let skip = header.skip(path, &described)?;
+    let layout = header.layout(path, frame)?;
+    let skip = header.skip(path, &layout)?;
     match &header.files {
         None => {
             let behind = file.length() - lines.bytes();
-            let skip = skip.unwrap_or(behind.saturating_sub(described.bytes()));
+            let skip = skip.unwrap_or(behind.saturating_sub(layout.bytes()));
             let mut reader = lines.into_inner();
             let skipped =
                 std::io::copy(&mut std::io::Read::take(&mut reader, skip), &mut std::io::sink());
             let bytes = behind - skipped.map_err(io_error(path))?;
-            described.read(path, reader, bytes, monitor)
+            layout.read(path, reader, bytes, monitor)
         }
         Some(names) => {
             if names.is_empty() {
-                return Err(said(Reason::damaged("names no data file: its header is damaged")));
+                return Err(fail(Reason::damaged("names no data file: its header is damaged")));
             }
-            let each = described.bytes() / names.len() as u64;
+            let each = layout.bytes() / names.len() as u64;
             let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
-            detached::read(path, described, &beside(path, names), skip, monitor)
+            detached::read(path, layout, &data_paths(path, names), skip, monitor)
         }
     }
 }
 
 /// Where the samples of a volume lie, to be read part by part.
-pub(crate) fn rows(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
+pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
     let path = file.path();
     let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
-    let described = header.described(path, frame)?;
-    let skip = header.skip(path, &described)?;
+    let layout = header.layout(path, frame)?;
+    let skip = header.skip(path, &layout)?;
     match &header.files {
-        None => Uncompressed::behind(file, described, lines.bytes(), skip),
-        Some(names) => Uncompressed::beside(path, described, &beside(path, names), skip),
+        None => Uncompressed::after_header(file, layout, lines.bytes(), skip),
+        Some(names) => Uncompressed::in_data_file(path, layout, &data_paths(path, names), skip),
     }
 }
 
@@ -75,7 +75,7 @@ pub(crate) fn rows(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, 
 pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
     let path = file.path();
     let header = Header::read(path, &mut Lines::new(file.reader()?))?;
-    Ok(header.files.map_or_else(Vec::new, |names| beside(path, &names)))
+    Ok(header.files.map_or_else(Vec::new, |names| data_paths(path, &names)))
 }
 
 struct Header {
@@ -87,10 +87,10 @@ struct Header {
 
 impl Header {
     fn read(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Self, VolumeError> {
-        let said = |reason: Reason| format_error(path, reason);
+        let fail = |reason: Reason| format_error(path, reason);
         let first = lines.read_line().map_err(io_error(path))?.unwrap_or_default();
         if !first.as_bytes().starts_with(MAGIC) {
-            return Err(said(Reason::other("is no NRRD file: it does not begin with NRRD000")));
+            return Err(fail(Reason::other("is no NRRD file: it does not begin with NRRD000")));
         }
         let mut header = Self { fields: HashMap::new(), files: None };
         // A header alone may end with its file; samples need the blank line.
@@ -102,7 +102,7 @@ impl Header {
                 continue;
             }
             let Some((name, value)) = line.split_once(':') else {
-                return Err(said(Reason::header(format!(
+                return Err(fail(Reason::header(format!(
                     "has a header line {line:?}, which is not a field"
                 ))));
             };
@@ -113,13 +113,13 @@ impl Header {
                     return Ok(header);
                 }
             } else if header.fields.insert(name.clone(), value.into()).is_some() {
-                return Err(said(Reason::header(format!("gives {name:?} twice in its header"))));
+                return Err(fail(Reason::header(format!("gives {name:?} twice in its header"))));
             }
         }
         if header.files.is_some() {
             return Ok(header);
         }
-        Err(said(Reason::truncated("ends inside its NRRD header: it is truncated")))
+        Err(fail(Reason::truncated("ends inside its NRRD header: it is truncated")))
     }
 
     fn field(&self, name: &str) -> Option<&str> {
@@ -136,7 +136,7 @@ impl Header {
         self.field(name).ok_or_else(missing)
     }
 
-    fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
+    fn layout(&self, path: &Path, frame: Option<u64>) -> Result<Layout, VolumeError> {
         let sizes = self.sizes(path)?;
         self.check_scalar(path, &sizes)?;
         let mut axes: Vec<(usize, u64)> = sizes.iter().copied().enumerate().collect();
@@ -151,21 +151,21 @@ impl Header {
         let kept: Vec<usize> = axes.iter().map(|&(axis, _)| axis).collect();
         let (dtype, encoding) = (self.dtype(path)?, self.encoding(path)?);
         let endian = self.endian(path, dtype, encoding)?;
-        let frames = Frames::choose(path, &beyond, frame)?;
+        let frames = FrameChoice::choose(path, &beyond, frame)?;
         let frame = self.frame(path, sizes.len(), &kept, dims.xyz())?;
-        Ok(Described { dims, dtype, endian, frame, encoding, frames })
+        Ok(Layout { dims, dtype, endian, frame, encoding, frames })
     }
 
     /// Samples along each axis, the fastest first.
     fn sizes(&self, path: &Path) -> Result<Vec<u64>, VolumeError> {
-        let said = |what: String| format_error(path, Reason::header(what));
+        let fail = |what: String| format_error(path, Reason::header(what));
         let text = self.needed(path, "sizes")?;
         let sizes: Result<Vec<u64>, _> = text.split_whitespace().map(str::parse).collect();
-        let sizes = sizes.map_err(|_| said(format!("sizes: {text} are not numbers")))?;
+        let sizes = sizes.map_err(|_| fail(format!("sizes: {text} are not numbers")))?;
         let dimension = self.needed(path, "dimension")?;
         if dimension.parse() != Ok(sizes.len()) {
             let count = sizes.len();
-            return Err(said(format!("has dimension: {dimension}, but {count} sizes")));
+            return Err(fail(format!("has dimension: {dimension}, but {count} sizes")));
         }
         Ok(sizes)
     }
@@ -226,11 +226,11 @@ impl Header {
     }
 
     /// Bytes before the samples; `None` where they are at the end of the file.
-    fn skip(&self, path: &Path, described: &Described) -> Result<Option<u64>, VolumeError> {
-        let said = |reason: Reason| format_error(path, reason);
+    fn skip(&self, path: &Path, layout: &Layout) -> Result<Option<u64>, VolumeError> {
+        let fail = |reason: Reason| format_error(path, reason);
         let lines = self.field("line skip").or(self.field("lineskip")).unwrap_or("0");
         if lines != "0" {
-            return Err(said(Reason::unsupported(
+            return Err(fail(Reason::unsupported(
                 format!("line skip: {lines} is not read"),
                 "give byte skip instead",
             )));
@@ -238,14 +238,14 @@ impl Header {
         let bytes = self.field("byte skip").or(self.field("byteskip")).unwrap_or("0");
         match bytes.parse::<u64>() {
             Ok(0) => Ok(Some(0)),
-            _ if described.encoding != Encoding::Raw => Err(said(Reason::unsupported(
+            _ if layout.encoding != Encoding::Raw => Err(fail(Reason::unsupported(
                 format!("byte skip: {bytes} is read only where the encoding is raw"),
                 "convert it first",
             ))),
             Ok(skip) => Ok(Some(skip)),
             Err(_) if bytes == "-1" => Ok(None),
             Err(_) => {
-                Err(said(Reason::header(format!("byte skip: {bytes} is not a number of bytes"))))
+                Err(fail(Reason::header(format!("byte skip: {bytes} is not a number of bytes"))))
             }
         }
     }
@@ -313,12 +313,12 @@ impl Header {
         kept: &[usize],
         dims: [usize; 3],
     ) -> Result<Frame, VolumeError> {
-        let said = |reason: Reason| format_error(path, reason);
+        let fail = |reason: Reason| format_error(path, reason);
         let mut steps = diagonal([1.0; 3]);
         let mut origin = [0.0; 3];
         if let Some(text) = self.field("space directions") {
             let directions = vectors(text).filter(|rows| rows.len() == all).ok_or_else(|| {
-                said(Reason::header(format!(
+                fail(Reason::header(format!(
                     "space directions: {text} are not {all} vectors of numbers"
                 )))
             })?;
@@ -352,7 +352,7 @@ impl Header {
             origin = match vectors(text).as_deref() {
                 Some([Some(origin)]) => *origin,
                 _ => {
-                    return Err(said(Reason::header(format!(
+                    return Err(fail(Reason::header(format!(
                         "space origin: {text} is not a vector of numbers"
                     ))));
                 }

@@ -59,7 +59,7 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume lie, to be read part by part.
-pub(crate) fn rows(file: &OpenFile, layout: &RawLayout) -> Result<Uncompressed, VolumeError> {
+pub(crate) fn box_reader(file: &OpenFile, layout: &RawLayout) -> Result<Uncompressed, VolumeError> {
     let (path, length) = (file.path(), file.length());
     let RawLayout { dims, dtype, endian, offset } = *layout;
     let needed = (dims.samples() * dtype.size()) as u64;

@@ -12,8 +12,8 @@ use tiff::{ColorType, TiffError};
 use walpha_base::Monitor;
 
 use super::OpenFile;
-use super::described::{Described, Encoding, diagonal, frame};
-use super::frames::Frames;
+use super::frames::FrameChoice;
+use super::layout::{Encoding, Layout, diagonal, frame};
 use crate::error::{format_error, io_error};
 use crate::{Coordinates, Dims, Dtype, Endian, LengthUnit, Reason, Volume, VolumeError};
 
@@ -36,13 +36,13 @@ pub(crate) fn read(
 ) -> Result<Volume, VolumeError> {
     let path = file.path();
     let mut pages = Pages::open(file)?;
-    let about = About::of(path, &mut pages.decoder)?;
-    let wanted = about.wanted(path, frame)?;
+    let info = StackInfo::of(path, &mut pages.decoder)?;
+    let wanted = info.wanted(path, frame)?;
     let alone = !pages.decoder.more_images();
-    if alone && about.images.is_some_and(|images| images > 1) {
+    if alone && info.images.is_some_and(|images| images > 1) {
         let first = pages.page()?;
         let (size, dtype) = (first.size, first.dtype);
-        return behind_one_page(file, pages, &about, wanted, size, dtype, monitor);
+        return behind_one_page(file, pages, &info, wanted, size, dtype, monitor);
     }
     pages.skip(wanted.first)?;
     let first = pages.page()?;
@@ -77,7 +77,7 @@ pub(crate) fn read(
         }
     }
     let dims = Dims::new(first.size[0], first.size[1], slices)?;
-    about.described(path, dims, first.dtype, Endian::Little, Frames::ONE)?.volume(stack)
+    info.layout(path, dims, first.dtype, Endian::Little, FrameChoice::ONE)?.volume(stack)
 }
 
 /// Reads one page alone, as a slice.
@@ -151,24 +151,24 @@ impl<'a> Pages<'a> {
 
     fn page(&mut self) -> Result<Page, VolumeError> {
         let path = self.path;
-        let said = |reason: Reason| format_error(path, reason);
+        let fail = |reason: Reason| format_error(path, reason);
         let (x, y) = self.decoder.dimensions().map_err(damaged(path))?;
         match self.decoder.colortype().map_err(damaged(path))? {
             ColorType::Gray(8 | 16 | 32 | 64) => {}
             ColorType::Gray(bits) => {
-                return Err(said(Reason::unsupported(
+                return Err(fail(Reason::unsupported(
                     format!("has samples of {bits} bits"),
                     "convert it to 8 or 16",
                 )));
             }
             other => {
                 let what = format!("colours ({other:?}): only gray is read");
-                return Err(said(Reason::NotScalar { what, dims: None }));
+                return Err(fail(Reason::NotScalar { what, dims: None }));
             }
         }
         let depth = self.decoder.find_tag_unsigned::<u64>(IMAGE_DEPTH).map_err(damaged(path))?;
         if depth.is_some_and(|depth| depth > 1) {
-            return Err(said(Reason::content(
+            return Err(fail(Reason::content(
                 "is a volume in one page (ImageDepth)",
                 "save its slices as pages",
             )));
@@ -186,7 +186,7 @@ impl<'a> Pages<'a> {
             DecodingResult::F32(v) => (v, Dtype::F32),
             DecodingResult::F64(v) => (v.into_iter().map(|v| v as f32).collect(), Dtype::F64),
             DecodingResult::F16(_) => {
-                return Err(said(Reason::unsupported(
+                return Err(fail(Reason::unsupported(
                     "has floats of 16 bits, which are not read",
                     "save 32",
                 )));
@@ -196,7 +196,7 @@ impl<'a> Pages<'a> {
         let size = [x.into(), y.into()];
         if samples.len() as u64 != size[0] * size[1] {
             let found = samples.len();
-            return Err(said(Reason::damaged(format!(
+            return Err(fail(Reason::damaged(format!(
                 "has {found} samples in a page of {size:?}: it is damaged"
             ))));
         }
@@ -208,14 +208,14 @@ impl<'a> Pages<'a> {
 fn behind_one_page(
     file: &OpenFile,
     mut pages: Pages,
-    about: &About,
-    wanted: Wanted,
+    info: &StackInfo,
+    wanted: PageRange,
     size: [u64; 2],
     dtype: Dtype,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let path = file.path();
-    let slices = wanted.count.or(about.images).unwrap_or(1);
+    let slices = wanted.count.or(info.images).unwrap_or(1);
     if wanted.step > 1 {
         let reason = Reason::unsupported(
             "interleaves its channels behind one page",
@@ -239,10 +239,10 @@ fn behind_one_page(
         ByteOrder::BigEndian => Endian::Big,
     };
     let dims = Dims::new(size[0], size[1], slices)?;
-    let described = about.described(path, dims, dtype, endian, wanted.frames)?;
+    let layout = info.layout(path, dims, dtype, endian, wanted.frames)?;
     // Tags may follow the samples.
-    let bytes = described.bytes().min(file.length().saturating_sub(offset));
-    described.read(path, file.reader_at(offset)?.take(bytes), bytes, monitor)
+    let bytes = layout.bytes().min(file.length().saturating_sub(offset));
+    layout.read(path, file.reader_at(offset)?.take(bytes), bytes, monitor)
 }
 
 fn damaged(path: &Path) -> impl Fn(TiffError) -> VolumeError {
@@ -260,7 +260,7 @@ fn damaged(path: &Path) -> impl Fn(TiffError) -> VolumeError {
 
 /// What the first page says of the stack.
 #[derive(Debug)]
-struct About {
+struct StackInfo {
     spacing: [f64; 3],
     unit: LengthUnit,
     /// Pages, as `ImageJ` counts them.
@@ -279,15 +279,15 @@ enum Axis {
 /// The pages of one volume: so many from `first` on, each `step` after the one before; without a
 /// count all there are.
 #[derive(Clone, Copy, Debug)]
-struct Wanted {
+struct PageRange {
     first: u64,
     step: u64,
     count: Option<u64>,
     /// Which of the file's volumes it is.
-    frames: Frames,
+    frames: FrameChoice,
 }
 
-impl About {
+impl StackInfo {
     /// Looks at the description of the first page.
     fn of(path: &Path, decoder: &mut Decoder<impl Read + Seek>) -> Result<Self, VolumeError> {
         let text = match decoder.find_tag(Tag::ImageDescription) {
@@ -317,8 +317,9 @@ impl About {
         let slices = value("spacing").and_then(|text| text.trim().parse().ok());
         let spacing = [along(Tag::XResolution), along(Tag::YResolution), slices.unwrap_or(1.0)];
         let unit = value("unit").map(LengthUnit::named);
-        let silent = if spacing == [1.0; 3] { LengthUnit::Voxel } else { LengthUnit::Unstated };
-        Self { spacing, unit: unit.unwrap_or(silent), images: count("images"), axes }
+        let default_unit =
+            if spacing == [1.0; 3] { LengthUnit::Voxel } else { LengthUnit::Unstated };
+        Self { spacing, unit: unit.unwrap_or(default_unit), images: count("images"), axes }
     }
 
     fn of_ome(path: &Path, text: &str) -> Result<Self, VolumeError> {
@@ -352,26 +353,26 @@ impl About {
             };
             let order = text("DimensionOrder")?.unwrap_or_else(|| "XYZCT".into());
             let axes = ordered(&order, sizes).ok_or_else(|| damaged(&format!("order {order}")))?;
-            let mut about = Self { spacing: [1.0; 3], unit: LengthUnit::Voxel, images: None, axes };
+            let mut info = Self { spacing: [1.0; 3], unit: LengthUnit::Voxel, images: None, axes };
             for (k, axis) in ["X", "Y", "Z"].into_iter().enumerate() {
                 let Some(length) = number(&format!("PhysicalSize{axis}"))? else { continue };
                 // The schema's default.
                 let unit = text(&format!("PhysicalSize{axis}Unit"))?;
                 let unit = unit.map_or(LengthUnit::Micrometre, |name| LengthUnit::named(&name));
-                if about.unit == LengthUnit::Voxel {
-                    about.unit = unit;
+                if info.unit == LengthUnit::Voxel {
+                    info.unit = unit;
                 }
                 let [from, unit] =
-                    [unit, about.unit].map(|unit| Coordinates { unit, ..Coordinates::default() });
-                about.spacing[k] = from.to(unit).length(length);
+                    [unit, info.unit].map(|unit| Coordinates { unit, ..Coordinates::default() });
+                info.spacing[k] = from.to(unit).length(length);
             }
-            return Ok(about);
+            return Ok(info);
         }
     }
 
     /// The pages of the volume asked for. Where pages run along one axis only, they are slices,
     /// whatever the program called them: a stack of many channels and one slice is common.
-    fn wanted(&self, path: &Path, asked: Option<u64>) -> Result<Wanted, VolumeError> {
+    fn wanted(&self, path: &Path, asked: Option<u64>) -> Result<PageRange, VolumeError> {
         let of = |axis: Axis| {
             let faster = self.axes.iter().take_while(|(other, _)| *other != axis);
             let step = faster.fold(1, |step: u64, (_, size)| step.saturating_mul(*size));
@@ -381,29 +382,29 @@ impl About {
         let ((along, slices), (by_channel, channels), (by_time, times)) =
             (of(Axis::Slice), of(Axis::Channel), of(Axis::Time));
         if self.axes.iter().filter(|(_, size)| *size > 1).count() <= 1 {
-            let frames = Frames::choose(path, &[], asked)?;
-            return Ok(Wanted { first: 0, step: 1, count: None, frames });
+            let frames = FrameChoice::choose(path, &[], asked)?;
+            return Ok(PageRange { first: 0, step: 1, count: None, frames });
         }
-        let frames = Frames::choose(path, &[channels, times], asked)?;
+        let frames = FrameChoice::choose(path, &[channels, times], asked)?;
         let (channel, time) = (frames.index % channels.max(1), frames.index / channels.max(1));
         let first =
             (channel.saturating_mul(by_channel)).saturating_add(time.saturating_mul(by_time));
-        Ok(Wanted { first, step: along.max(1), count: Some(slices), frames })
+        Ok(PageRange { first, step: along.max(1), count: Some(slices), frames })
     }
 
     /// The grid of a volume.
-    fn described(
+    fn layout(
         &self,
         path: &Path,
         dims: Dims,
         dtype: Dtype,
         endian: Endian,
-        frames: Frames,
-    ) -> Result<Described, VolumeError> {
+        frames: FrameChoice,
+    ) -> Result<Layout, VolumeError> {
         let coordinates = Coordinates { unit: self.unit, ..Coordinates::default() };
         let frame = frame(path, [0.0; 3], diagonal(self.spacing), coordinates)?;
         let encoding = Encoding::Raw;
-        Ok(Described { dims, dtype, endian, frame, encoding, frames })
+        Ok(Layout { dims, dtype, endian, frame, encoding, frames })
     }
 }
 

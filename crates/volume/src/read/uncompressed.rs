@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 #[cfg(feature = "formats")]
 use super::OpenFile;
 #[cfg(feature = "formats")]
-use super::described::{Described, Encoding};
+use super::layout::{Encoding, Layout};
 use super::payload::Element;
 #[cfg(feature = "formats")]
 use crate::Reason;
@@ -51,27 +51,27 @@ impl Uncompressed {
     /// Samples behind a header of so many bytes, of which further ones are skipped: `None` where the samples
     /// are at the end of the file.
     #[cfg(feature = "formats")]
-    pub(super) fn behind(
+    pub(super) fn after_header(
         file: &OpenFile,
-        described: Described,
+        layout: Layout,
         after: u64,
         skip: Option<u64>,
     ) -> Result<Self, VolumeError> {
-        Self::within(file.path(), file.path(), file.length(), described, after, skip)
+        Self::within(file.path(), file.path(), file.length(), layout, after, skip)
     }
 
     /// Samples in a file of their own.
     #[cfg(feature = "formats")]
-    pub(super) fn beside(
+    pub(super) fn in_data_file(
         header: &Path,
-        described: Described,
+        layout: Layout,
         files: &[PathBuf],
         skip: Option<u64>,
     ) -> Result<Self, VolumeError> {
         match files {
             [file] => {
                 let length = std::fs::metadata(file).map_err(io_error(file))?.len();
-                Self::within(header, file, length, described, 0, skip)
+                Self::within(header, file, length, layout, 0, skip)
             }
             _ => Err(format_error(
                 header,
@@ -91,24 +91,24 @@ impl Uncompressed {
         header: &Path,
         file: &Path,
         length: u64,
-        described: Described,
+        layout: Layout,
         after: u64,
         skip: Option<u64>,
     ) -> Result<Self, VolumeError> {
-        if described.encoding != Encoding::Raw {
+        if layout.encoding != Encoding::Raw {
             let what = "is compressed, or text: it cannot be read in parts";
             return Err(format_error(header, Reason::unsupported(what, CONVERT)));
         }
-        let (needed, behind) = (described.bytes(), length.saturating_sub(after));
+        let (needed, behind) = (layout.bytes(), length.saturating_sub(after));
         let skip = skip.unwrap_or(behind.saturating_sub(needed));
         let found = behind.saturating_sub(skip);
-        let Described { dims, dtype, endian, frame, frames, .. } = described;
+        let Layout { dims, dtype, endian, frame, frames, .. } = layout;
         if found != needed {
             let claim = format!("a volume of {dims} samples of type {dtype}");
             let reason = Reason::Length { claim, needed, found, bound: "" };
             return Err(format_error(header, reason));
         }
-        let offset = after + skip + frames.index * described.each();
+        let offset = after + skip + frames.index * layout.each();
         Ok(Self::new(file, dims, frame, dtype, endian, offset))
     }
 

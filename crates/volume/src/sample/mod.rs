@@ -34,7 +34,7 @@ const PHANTOM_SIZE: u64 = 64;
 pub fn sample(name: &str) -> Result<Volume, VolumeError> {
     match name.strip_prefix("sample:") {
         // Its header has numbers, but the paper's lengths are voxels.
-        Some("skull") => Ok(skull()?.settled(None)?.with_frame(Frame::VOXEL)),
+        Some("skull") => Ok(skull()?.resolve_nan(None)?.with_frame(Frame::VOXEL)),
         Some("phantom") => phantom(PHANTOM_SIZE),
         Some(other) if other.starts_with("phantom@") => {
             if let Ok(size) = other["phantom@".len()..].parse() {

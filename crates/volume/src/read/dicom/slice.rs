@@ -76,7 +76,7 @@ pub(super) struct Wide {
 
 /// A file of a series, whether it is a slice or not.
 #[derive(Debug)]
-pub(super) struct Found {
+pub(super) struct DicomFile {
     pub path: PathBuf,
     /// The unique name of its series.
     pub series: String,
@@ -89,7 +89,7 @@ pub(super) struct Found {
     pub slices: Result<Vec<Slice>, VolumeError>,
 }
 
-impl Found {
+impl DicomFile {
     /// Reads the header.
     pub(super) fn open(path: &Path) -> Result<Self, VolumeError> {
         let unpacked = claims::check(path)?;
@@ -122,14 +122,14 @@ impl Slice {
         object: &InMemDicomObject,
         unpacked: Option<u64>,
     ) -> Result<Vec<Self>, VolumeError> {
-        let said = |reason: Reason| format_error(path, reason);
+        let fail = |reason: Reason| format_error(path, reason);
         let header = Header::new(path, object);
         if header.number(None, SAMPLES_PER_PIXEL)?.unwrap_or(1.0) != 1.0 {
-            return Err(said(Reason::not_scalar("pixels of colours", None)));
+            return Err(fail(Reason::not_scalar("pixels of colours", None)));
         }
         let [column, row] = [COLUMNS, ROWS].map(|tag| header.number(None, tag));
         let (Some(columns), Some(rows)) = (column?, row?) else {
-            return Err(said(Reason::content(
+            return Err(fail(Reason::content(
                 "holds no image",
                 "move what is not a slice out of the folder",
             )));
@@ -141,7 +141,7 @@ impl Slice {
             size[0].saturating_mul(size[1]).saturating_mul((bits as u64).div_ceil(8)).max(1);
         let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
         if frame.saturating_mul(frames as u64) > length.saturating_mul(MOST_EXPANSION) {
-            return Err(said(Reason::truncated(format!(
+            return Err(fail(Reason::truncated(format!(
                 "claims {frames} × {columns}×{rows} pixels, which {length} bytes cannot hold: it is \
                  truncated or damaged"
             ))));
@@ -149,7 +149,7 @@ impl Slice {
         // One byte may be there to make their number even.
         let expected = frame.saturating_mul(frames as u64);
         if let Some(bytes) = unpacked.filter(|&bytes| bytes > expected.saturating_add(1)) {
-            return Err(said(Reason::header(format!(
+            return Err(fail(Reason::header(format!(
                 "claims {frames} × {columns}×{rows} pixels, which are {expected} bytes, and {bytes} bytes of them"
             ))));
         }
@@ -167,14 +167,14 @@ impl Slice {
         object: &InMemDicomObject,
         slices: &mut [Self],
     ) -> Result<(), VolumeError> {
-        let said = |reason: Reason| format_error(path, reason);
+        let fail = |reason: Reason| format_error(path, reason);
         let places =
             |slices: &[Self]| slices.windows(2).any(|two| two[0].position != two[1].position);
         if slices.len() < 2 || places(slices) {
             return Ok(());
         }
         let Some(element) = object.get(GRID_FRAME_OFFSETS) else {
-            return Err(said(Reason::unsupported(
+            return Err(fail(Reason::unsupported(
                 format!(
                     "has {} frames and one place for all of them: times, views or a cine, and no volume",
                     slices.len()
@@ -184,7 +184,7 @@ impl Slice {
         };
         let offsets = element.to_multi_float64().unwrap_or_default();
         if offsets.len() != slices.len() || offsets.iter().any(|offset| !offset.is_finite()) {
-            return Err(said(Reason::header(format!(
+            return Err(fail(Reason::header(format!(
                 "has {} frames, and Grid Frame Offset Vector {GRID_FRAME_OFFSETS} of {} numbers",
                 slices.len(),
                 offsets.len()
@@ -249,17 +249,17 @@ impl Slice {
     /// Pixels of 32 bits that are not compressed.
     fn wide_pixels(&self, wide: Wide, object: &InMemDicomObject) -> Result<Vec<f32>, VolumeError> {
         let path = &self.path;
-        let said = |reason: Reason| format_error(path, reason);
+        let fail = |reason: Reason| format_error(path, reason);
         let element = object.get(PIXEL_DATA).and_then(|element| element.value().primitive());
         let Some(value) = element else {
             let what = "has compressed pixels of 32 bits, which are not read";
-            return Err(said(Reason::unsupported(what, "unpack it first")));
+            return Err(fail(Reason::unsupported(what, "unpack it first")));
         };
         let bytes = value.to_bytes();
         let each = (self.columns * self.rows) as usize;
         let (all, _) = bytes.as_chunks::<4>();
         let pixels = all.chunks_exact(each.max(1)).nth(self.frame as usize).ok_or_else(|| {
-            said(Reason::truncated(format!(
+            fail(Reason::truncated(format!(
                 "claims {} frames of {}×{} pixels and holds {} pixels: it is truncated or damaged",
                 self.frames,
                 self.columns,

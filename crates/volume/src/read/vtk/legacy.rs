@@ -10,8 +10,8 @@ use super::legacy_arrays::{self as arrays, Array};
 use crate::error::{format_error, io_error};
 use crate::formats::is_vtk;
 use crate::read::OpenFile;
-use crate::read::described::{Described, Encoding, frame};
-use crate::read::frames::Frames;
+use crate::read::frames::FrameChoice;
+use crate::read::layout::{Encoding, Layout, frame};
 use crate::read::text::{self, Lines};
 use crate::{Coordinates, Dims, Dtype, Endian, Reason, Volume, VolumeError};
 
@@ -24,7 +24,7 @@ pub(crate) fn read(
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let (path, length) = (file.path(), file.length());
-    let said = |reason: Reason| format_error(path, reason);
+    let fail = |reason: Reason| format_error(path, reason);
     let mut lines = Lines::new(file.reader()?);
     let (grid, mut arrays) = header(path, &mut lines)?;
     // Without a name only scalars come in question, where there are any, and those of points first.
@@ -34,25 +34,25 @@ pub(crate) fn read(
     arrays.sort_by_key(|array| array.cells);
     let names: Vec<(&str, bool)> =
         arrays.iter().map(|array| (array.name.as_str(), array.cells)).collect();
-    let array = arrays.swap_remove(choice(&names, wanted).map_err(said)?);
-    let described = grid.described(path, &array)?;
-    if array.values != described.dims.samples() as u64 {
-        let (values, dims) = (array.values, described.dims);
-        return Err(said(Reason::truncated(format!(
+    let array = arrays.swap_remove(choice(&names, wanted).map_err(fail)?);
+    let layout = grid.layout(path, &array)?;
+    if array.values != layout.dims.samples() as u64 {
+        let (values, dims) = (array.values, layout.dims);
+        return Err(fail(Reason::truncated(format!(
             "has {values} values for {dims} samples: it is truncated or mislabelled"
         ))));
     }
     let reader = file.reader_at(array.start)?;
     let left = array.end.unwrap_or(length).saturating_sub(array.start);
-    match described.encoding {
-        Encoding::Text => read_text(path, described, &array, reader.take(left), monitor),
-        _ => read_binary(path, described, &array, reader, length - array.start, monitor),
+    match layout.encoding {
+        Encoding::Text => read_text(path, layout, &array, reader.take(left), monitor),
+        _ => read_binary(path, layout, &array, reader, length - array.start, monitor),
     }
 }
 
 fn read_text(
     path: &Path,
-    described: Described,
+    layout: Layout,
     array: &Array,
     mut reader: impl Read,
     monitor: &Monitor,
@@ -61,28 +61,28 @@ fn read_text(
     reader.read_to_end(&mut text).map_err(io_error(path))?;
     let end = end_of_numbers(&text);
     if !array.colours {
-        return described.read(path, &text[..end], end as u64, monitor);
+        return layout.read(path, &text[..end], end as u64, monitor);
     }
-    let count = described.dims.samples() as u64;
+    let count = layout.dims.samples() as u64;
     let mut shares: Vec<f32> = text::numbers(&text[..end], end as u64, Dtype::F32, count)
         .map_err(|reason| format_error(path, reason))?;
     shares.iter_mut().for_each(|share| *share = (*share * 255.0).round());
-    described.volume(shares)
+    layout.volume(shares)
 }
 
 fn read_binary(
     path: &Path,
-    described: Described,
+    layout: Layout,
     array: &Array,
     mut reader: impl BufRead,
     left: u64,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let bytes = described.bytes();
+    let bytes = layout.bytes();
     if left < bytes {
-        return described.read(path, reader, left, monitor);
+        return layout.read(path, reader, left, monitor);
     }
-    let volume = described.read(path, (&mut reader).take(bytes), bytes, monitor)?;
+    let volume = layout.read(path, (&mut reader).take(bytes), bytes, monitor)?;
     if array.last && !at_keyword(&mut reader).map_err(io_error(path))? {
         let reason = Reason::header(format!(
             "has {} bytes behind the {bytes} of its samples: it is too long or mislabelled",
@@ -96,10 +96,10 @@ fn read_binary(
 /// Which of some arrays, each with its name and whether it is one of cells: that of the name wanted, or
 /// else the first, which is said where there are others.
 pub(super) fn choice(arrays: &[(&str, bool)], wanted: Option<&str>) -> Result<usize, Reason> {
-    let told = |&(name, cells): &(&str, bool)| {
+    let shown = |&(name, cells): &(&str, bool)| {
         if cells { format!("{name} (of cells)") } else { name.to_owned() }
     };
-    let all = || arrays.iter().map(told).collect::<Vec<_>>().join(", ");
+    let all = || arrays.iter().map(shown).collect::<Vec<_>>().join(", ");
     if let Some(wanted) = wanted {
         return arrays.iter().position(|(name, _)| *name == wanted).ok_or_else(|| {
             Reason::choice(
@@ -124,10 +124,10 @@ pub(super) fn choice(arrays: &[(&str, bool)], wanted: Option<&str>) -> Result<us
 
 /// Reads the grid, and finds the arrays.
 fn header(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<(Grid, Vec<Array>), VolumeError> {
-    let said = |reason: Reason| format_error(path, reason);
+    let fail = |reason: Reason| format_error(path, reason);
     let first = lines.read_line().map_err(io_error(path))?.unwrap_or_default();
     if !is_vtk(first.as_bytes()) {
-        return Err(said(Reason::other(
+        return Err(fail(Reason::other(
             "is not a legacy VTK file: it does not begin with # vtk DataFile",
         )));
     }
@@ -141,7 +141,7 @@ fn header(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<(Grid, Vec<Arr
             "BINARY" => grid.text = Some(false),
             "DATASET" if words.get(1) == Some(&"STRUCTURED_POINTS") => grid.named = true,
             "DATASET" => {
-                return Err(said(Reason::unsupported(
+                return Err(fail(Reason::unsupported(
                     format!(
                         "holds a dataset {}: of legacy VTK files only STRUCTURED_POINTS are read as volumes",
                         words.get(1).unwrap_or(&"without a name")
@@ -166,18 +166,18 @@ fn header(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<(Grid, Vec<Arr
             }
             "POINT_DATA" | "CELL_DATA" => {
                 let text = grid.text.ok_or_else(|| {
-                    said(Reason::header("has no ASCII or BINARY line before its samples"))
+                    fail(Reason::header("has no ASCII or BINARY line before its samples"))
                 })?;
                 return Ok((grid, arrays::find(path, lines, &line, text)?));
             }
             other => {
-                return Err(said(Reason::damaged(format!(
+                return Err(fail(Reason::damaged(format!(
                     "has {other:?} where POINT_DATA or CELL_DATA are expected: it is damaged"
                 ))));
             }
         }
     }
-    Err(said(Reason::truncated("ends before any SCALARS: it is truncated, or holds no samples")))
+    Err(fail(Reason::truncated("ends before any SCALARS: it is truncated, or holds no samples")))
 }
 
 struct Grid {
@@ -203,7 +203,7 @@ impl Default for Grid {
 }
 
 impl Grid {
-    fn described(&self, path: &Path, array: &Array) -> Result<Described, VolumeError> {
+    fn layout(&self, path: &Path, array: &Array) -> Result<Layout, VolumeError> {
         let damaged = |what: &str| {
             format_error(path, Reason::header(format!("has no {what} line before its samples")))
         };
@@ -228,8 +228,8 @@ impl Grid {
         let frame = frame(path, origin, axes, Coordinates::default())?;
         let dims = Dims::new(dims[0], dims[1], dims[2])?;
         let dtype = arrays::scalar(path, &array.kind, array.components)?;
-        let (endian, frames) = (Endian::Big, Frames::ONE);
-        Ok(Described { dims, dtype, endian, frame, encoding, frames })
+        let (endian, frames) = (Endian::Big, FrameChoice::ONE);
+        Ok(Layout { dims, dtype, endian, frame, encoding, frames })
     }
 }
 

@@ -26,7 +26,7 @@ pub struct VtkPoints<'a> {
 }
 
 /// What a legacy VTK file begins with.
-struct Head {
+struct Preamble {
     /// Whether cells are two arrays, as from version 5 on.
     offsets: bool,
     text: bool,
@@ -38,9 +38,9 @@ impl<'a> VtkPoints<'a> {
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn are_in(file: &OpenFile) -> Result<bool, VolumeError> {
-        let head = head(file.path(), &mut Lines::new(file.reader()?))?;
-        Ok(LISTED.contains(&head.dataset.as_str()))
+    pub fn lists_points(file: &OpenFile) -> Result<bool, VolumeError> {
+        let preamble = preamble(file.path(), &mut Lines::new(file.reader()?))?;
+        Ok(LISTED.contains(&preamble.dataset.as_str()))
     }
 
     /// Finds the points and their data.
@@ -50,7 +50,7 @@ impl<'a> VtkPoints<'a> {
     pub fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
         let path = file.path();
         let mut lines = Lines::new(file.reader()?);
-        let Head { offsets, text, dataset } = head(path, &mut lines)?;
+        let Preamble { offsets, text, dataset } = preamble(path, &mut lines)?;
         if !LISTED.contains(&dataset.as_str()) {
             let what = format!("holds {dataset}: points are read from {}", LISTED.join(", "));
             return Err(format_error(path, Reason::unsupported(what, "convert it first")));
@@ -73,7 +73,7 @@ impl<'a> VtkPoints<'a> {
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn places(&self) -> Result<Vec<f64>, VolumeError> {
+    pub fn coordinates(&self) -> Result<Vec<f64>, VolumeError> {
         self.values(&self.arrays[0])
     }
 
@@ -124,7 +124,7 @@ impl<'a> VtkPoints<'a> {
 }
 
 /// Reads up to the line that names the dataset.
-fn head(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Head, VolumeError> {
+fn preamble(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Preamble, VolumeError> {
     let mut next = || lines.read_line().map_err(io_error(path));
     let first = next()?.unwrap_or_default();
     if !is_vtk(first.as_bytes()) {
@@ -142,7 +142,7 @@ fn head(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Head, VolumeErro
             (Some("ASCII"), ..) => text = Some(true),
             (Some("BINARY"), ..) => text = Some(false),
             (Some("DATASET"), Some(dataset), Some(text)) => {
-                return Ok(Head { offsets, text, dataset: dataset.clone() });
+                return Ok(Preamble { offsets, text, dataset: dataset.clone() });
             }
             (None, ..) => {}
             _ => break,

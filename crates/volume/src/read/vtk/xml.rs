@@ -77,7 +77,7 @@ impl<'a> VtkXml<'a> {
         // Before a search for the first element, which may go through all of a huge file.
         if !begins_as_xml(reader.fill_buf().map_err(io_error(path))?) {
             return Err(
-                this.said(Reason::other("is no VTK file: it does not begin with an element"))
+                this.fail(Reason::other("is no VTK file: it does not begin with an element"))
             );
         }
         this.scan(reader)?;
@@ -91,7 +91,7 @@ impl<'a> VtkXml<'a> {
         Self { monitor: monitor.clone(), ..self }
     }
 
-    pub(super) fn said(&self, reason: Reason) -> VolumeError {
+    pub(super) fn fail(&self, reason: Reason) -> VolumeError {
         format_error(self.file.path(), reason)
     }
 
@@ -106,7 +106,7 @@ impl<'a> VtkXml<'a> {
                 quick_xml::Error::Io(error) => {
                     io_error(self.file.path())(io::Error::new(error.kind(), error.to_string()))
                 }
-                other => self.said(Reason::header(format!(
+                other => self.fail(Reason::header(format!(
                     "is not well-formed XML at byte {before}: {other}"
                 ))),
             })?;
@@ -131,7 +131,7 @@ impl<'a> VtkXml<'a> {
                 Event::End(_) => {
                     let closed = open
                         .pop()
-                        .ok_or_else(|| self.said(Reason::header("closes an element twice")))?;
+                        .ok_or_else(|| self.fail(Reason::header("closes an element twice")))?;
                     self.end_text(Some(&closed), before);
                 }
                 Event::Eof => break,
@@ -142,7 +142,7 @@ impl<'a> VtkXml<'a> {
             None => Ok(()),
             Some(&inner) => {
                 let name = &self.elements[inner].name;
-                Err(self.said(Reason::truncated(format!(
+                Err(self.fail(Reason::truncated(format!(
                     "ends inside its element {name}: it is truncated"
                 ))))
             }
@@ -165,7 +165,7 @@ impl<'a> VtkXml<'a> {
         let mut attributes = HashMap::new();
         for attribute in start.attributes() {
             let damaged = |error: &dyn std::fmt::Display| {
-                self.said(Reason::damaged(format!(
+                self.fail(Reason::damaged(format!(
                     "has a damaged attribute before byte {position}: {error}"
                 )))
             };
@@ -185,7 +185,7 @@ impl<'a> VtkXml<'a> {
             Some("base64") => true,
             other => {
                 let given = other.unwrap_or("(missing)");
-                return Err(self.said(Reason::header(format!(
+                return Err(self.fail(Reason::header(format!(
                     "has appended data in encoding {given}, not raw or base64"
                 ))));
             }
@@ -197,7 +197,7 @@ impl<'a> VtkXml<'a> {
             .read_until(b'_', &mut before)
             .map_err(io_error(self.file.path()))?;
         if before.pop() != Some(b'_') || !before.trim_ascii().is_empty() {
-            return Err(self.said(Reason::damaged(
+            return Err(self.fail(Reason::damaged(
                 "has no underscore before its appended data: it is damaged",
             )));
         }
@@ -208,7 +208,7 @@ impl<'a> VtkXml<'a> {
     fn root(&mut self) -> Result<(), VolumeError> {
         let Some(root) = self.elements.first().filter(|root| root.name == "VTKFile") else {
             return Err(
-                self.said(Reason::other("is no VTK file: its first element is not VTKFile"))
+                self.fail(Reason::other("is no VTK file: its first element is not VTKFile"))
             );
         };
         let attribute = |name: &str| root.attributes.get(name).map(String::as_str);
@@ -217,7 +217,7 @@ impl<'a> VtkXml<'a> {
             Some("BigEndian") => Endian::Big,
             Some(other) => {
                 return Err(
-                    self.said(Reason::header(format!("has byte_order {other:?}, which is none")))
+                    self.fail(Reason::header(format!("has byte_order {other:?}, which is none")))
                 );
             }
         };
@@ -225,7 +225,7 @@ impl<'a> VtkXml<'a> {
             Some("UInt32") | None => 4,
             Some("UInt64") => 8,
             Some(other) => {
-                return Err(self.said(Reason::header(format!(
+                return Err(self.fail(Reason::header(format!(
                     "has header_type {other:?}, not UInt32 or UInt64"
                 ))));
             }
@@ -235,7 +235,7 @@ impl<'a> VtkXml<'a> {
             Some("vtkZLibDataCompressor") => Some(Compressor::Zlib),
             Some("vtkLZ4DataCompressor") => Some(Compressor::Lz4),
             Some(other) => {
-                return Err(self.said(Reason::unsupported(
+                return Err(self.fail(Reason::unsupported(
                     format!("is compressed by {other}, which is not read"),
                     "choose LZ4, ZLib or none where it is written",
                 )));
@@ -280,13 +280,13 @@ impl VtkXml<'_> {
         let place = &self.elements[element].name;
         let Some(text) = self.attribute(element, name) else {
             return default.ok_or_else(|| {
-                self.said(Reason::header(format!("its element {place} has no {name}")))
+                self.fail(Reason::header(format!("its element {place} has no {name}")))
             });
         };
         let numbers: Option<Vec<f64>> =
             text.split_whitespace().map(|number| number.parse().ok()).collect();
         numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| {
-            self.said(Reason::header(format!(
+            self.fail(Reason::header(format!(
                 "its element {place} has {name}={text:?}, which is not {N} numbers"
             )))
         })
@@ -307,12 +307,12 @@ impl VtkXml<'_> {
     pub fn piece(&self) -> Result<(usize, usize), VolumeError> {
         let kind = self.kind();
         let dataset = self.children(0, kind).next().ok_or_else(|| {
-            self.said(Reason::damaged(format!("has no element {kind}: it is damaged")))
+            self.fail(Reason::damaged(format!("has no element {kind}: it is damaged")))
         })?;
         let pieces: Vec<usize> = self.children(dataset, "Piece").collect();
         match pieces[..] {
             [piece] => Ok((dataset, piece)),
-            _ => Err(self.said(Reason::unsupported(
+            _ => Err(self.fail(Reason::unsupported(
                 format!("holds {} pieces: only one is read", pieces.len()),
                 "write it in one piece",
             ))),
@@ -337,7 +337,7 @@ impl VtkXml<'_> {
             Some("Float64") => Dtype::F64,
             other => {
                 let name = other.unwrap_or("(missing)");
-                return Err(self.said(Reason::unsupported(
+                return Err(self.fail(Reason::unsupported(
                     format!("has an array of type {name}, which is not read"),
                     "convert it first",
                 )));

@@ -25,7 +25,7 @@ impl VtkXml<'_> {
         let end = text_end.unwrap_or(start);
         let of_array = |reason: Reason| {
             let part = format!("its array {}", self.name(array));
-            self.said(Reason::Within { part, reason: Box::new(reason) })
+            self.fail(Reason::Within { part, reason: Box::new(reason) })
         };
         match self.attribute(array, "format") {
             Some("ascii") => {
@@ -81,7 +81,7 @@ impl VtkXml<'_> {
         let mut text = String::new();
         let read = self.part(start, end)?.read_to_string(&mut text);
         read.map_err(|error| {
-            self.said(Reason::damaged(format!("has damaged field data {name}: {error}")))
+            self.fail(Reason::damaged(format!("has damaged field data {name}: {error}")))
         })?;
         let bytes: Vec<u8> = text.split_whitespace().map_while(|byte| byte.parse().ok()).collect();
         let first = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
@@ -101,11 +101,11 @@ impl VtkXml<'_> {
         let claim = format!("an array {} of {count} numbers of type {dtype}", self.name(array));
         let located = |error| payload_error_of(self.file.path(), &claim, error);
         let cut = |error: io::Error| match error.kind() {
-            io::ErrorKind::UnexpectedEof => self.said(Reason::truncated(format!(
+            io::ErrorKind::UnexpectedEof => self.fail(Reason::truncated(format!(
                 "ends before its array {}: it is truncated",
                 self.name(array)
             ))),
-            _ => self.said(Reason::damaged(format!(
+            _ => self.fail(Reason::damaged(format!(
                 "has a damaged array {}: {error}",
                 self.name(array)
             ))),
@@ -113,7 +113,7 @@ impl VtkXml<'_> {
         let first = self.word(&mut data).map_err(cut)?;
         let Some(compressor) = self.compressor else {
             if first > most {
-                return Err(self.said(Reason::truncated(format!(
+                return Err(self.fail(Reason::truncated(format!(
                     "claims {first} bytes for its array {}, but at most {most} follow: it is \
                      truncated",
                     self.name(array)
@@ -125,7 +125,7 @@ impl VtkXml<'_> {
         let [block, last] =
             [self.word(&mut data).map_err(cut)?, self.word(&mut data).map_err(cut)?];
         if first > most / self.word as u64 {
-            return Err(self.said(Reason::header(format!(
+            return Err(self.fail(Reason::header(format!(
                 "claims {first} compressed blocks for its array {}, which it cannot hold",
                 self.name(array)
             ))));
@@ -134,7 +134,7 @@ impl VtkXml<'_> {
         let bytes = whole.checked_mul(block).and_then(|bytes| bytes.checked_add(last));
         let bytes = bytes.filter(|&bytes| bytes <= most.saturating_mul(MOST_EXPANSION));
         let Some(bytes) = bytes else {
-            return Err(self.said(Reason::header(format!(
+            return Err(self.fail(Reason::header(format!(
                 "claims {first} compressed blocks of {block} bytes for its array {}, more than \
                  it can hold",
                 self.name(array)
@@ -144,14 +144,14 @@ impl VtkXml<'_> {
         let sizes = sizes.map_err(cut)?;
         let packed = sizes.iter().fold(0u64, |sum, &size| sum.saturating_add(size));
         if packed > most {
-            return Err(self.said(Reason::truncated(format!(
+            return Err(self.fail(Reason::truncated(format!(
                 "claims {packed} compressed bytes for its array {}, but at most {most} follow: it is \
                  truncated",
                 self.name(array)
             ))));
         }
         if bytes > packed.saturating_mul(MOST_EXPANSION) {
-            return Err(self.said(Reason::header(format!(
+            return Err(self.fail(Reason::header(format!(
                 "claims that {packed} compressed bytes of its array {} hold {bytes}, which they cannot",
                 self.name(array)
             ))));

@@ -13,8 +13,8 @@ use zarrs::array::Array;
 use zarrs::filesystem::FilesystemStore;
 use zarrs::group::Group;
 
-use super::described::{Described, Encoding, diagonal, frame};
-use super::frames::Frames;
+use super::frames::FrameChoice;
+use super::layout::{Encoding, Layout, diagonal, frame};
 use super::series::is_zarr;
 use crate::error::format_error;
 use crate::source::Source;
@@ -33,10 +33,10 @@ pub(crate) fn read(
     frame_index: Option<u64>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let Stored { array, leading, dims, frame } = open(path, level, frame_index)?;
+    let PlacedArray { array, leading, dims, frame } = open(path, level, frame_index)?;
     let (dtype, samples) = samples(path, &array, dims.bounded()?, &leading, monitor)?;
     let (endian, encoding) = (Endian::Little, Encoding::Raw);
-    Described { dims, dtype, endian, frame, encoding, frames: Frames::ONE }.volume(samples)
+    Layout { dims, dtype, endian, frame, encoding, frames: FrameChoice::ONE }.volume(samples)
 }
 
 /// The same, to be read part by part.
@@ -45,7 +45,7 @@ pub(crate) fn source(
     level: Option<u32>,
     frame_index: Option<u64>,
 ) -> Result<Source, VolumeError> {
-    let Stored { array, leading, dims, frame } = open(path, level, frame_index)?;
+    let PlacedArray { array, leading, dims, frame } = open(path, level, frame_index)?;
     let dtype = dtype(path, array.data_type())?;
     let axes = array.dimensionality();
     let chunk = array.chunk_shape(&vec![0; axes]).map_err(|error| damaged(path, &error))?;
@@ -56,7 +56,7 @@ pub(crate) fn source(
 }
 
 /// An array of a store, and where the volume in it is.
-struct Stored {
+struct PlacedArray {
     array: Array<FilesystemStore>,
     /// Indices along the axes before the last three.
     leading: Vec<u64>,
@@ -64,38 +64,42 @@ struct Stored {
     frame: Frame,
 }
 
-fn open(path: &Path, level: Option<u32>, frame_index: Option<u64>) -> Result<Stored, VolumeError> {
-    let said = |reason: Reason| format_error(path, reason);
+fn open(
+    path: &Path,
+    level: Option<u32>,
+    frame_index: Option<u64>,
+) -> Result<PlacedArray, VolumeError> {
+    let fail = |reason: Reason| format_error(path, reason);
     let damaged = |error: &dyn std::fmt::Display| damaged(path, error);
     let store = Arc::new(FilesystemStore::new(path).map_err(|error| damaged(&error))?);
     if is_array(path) {
         if let Some(level) = level {
-            return Err(said(Reason::needless(
+            return Err(fail(Reason::needless(
                 Setting::Level,
                 format!("is one array and has no level {level}"),
             )));
         }
         let array = Array::open(store, "/").map_err(|error| damaged(&error))?;
-        return stored(path, array, &[], Coordinates::VOXEL, frame_index);
+        return placed(path, array, &[], Coordinates::VOXEL, frame_index);
     }
     let group = Group::open(Arc::clone(&store), "/").map_err(|error| damaged(&error))?;
     let attributes = Value::Object(group.attributes().clone());
     let pyramid = ["/ome/multiscales/0", "/multiscales/0"];
     let Some(pyramid) = pyramid.iter().find_map(|at| attributes.pointer(at)) else {
-        return Err(said(Reason::unsupported(
+        return Err(fail(Reason::unsupported(
             format!("is a Zarr group without the levels of OME-Zarr, of {}", children(path)),
             "name one of these",
         )));
     };
-    let (dataset, name) = dataset(pyramid, level).map_err(said)?;
+    let (dataset, name) = dataset(pyramid, level).map_err(fail)?;
     let array = Array::open(store, &format!("/{}", name.trim_matches('/')))
         .map_err(|error| damaged(&error))?;
     let transforms = [&dataset["coordinateTransformations"], &pyramid["coordinateTransformations"]];
     let transforms: Vec<&Value> =
         transforms.into_iter().filter_map(Value::as_array).flatten().collect();
-    let unit = unit(&pyramid["axes"]).map_err(said)?;
+    let unit = unit(&pyramid["axes"]).map_err(fail)?;
     let coordinates = Coordinates { unit, ..Coordinates::default() };
-    stored(path, array, &transforms, coordinates, frame_index)
+    placed(path, array, &transforms, coordinates, frame_index)
 }
 
 /// A level of a pyramid, and the path of its array.
@@ -163,21 +167,21 @@ fn children(folder: &Path) -> String {
 }
 
 /// A volume of an array, placed by the transformations of OME-Zarr, the first first.
-fn stored(
+fn placed(
     path: &Path,
     array: Array<FilesystemStore>,
     transforms: &[&Value],
     coordinates: Coordinates,
     frame_index: Option<u64>,
-) -> Result<Stored, VolumeError> {
-    let said = |reason: Reason| format_error(path, reason);
+) -> Result<PlacedArray, VolumeError> {
+    let fail = |reason: Reason| format_error(path, reason);
     let shape = array.shape().to_vec();
     let [before @ .., z, y, x] = &shape[..] else {
-        return Err(said(Reason::header(format!(
+        return Err(fail(Reason::header(format!(
             "has the shape {shape:?}: a volume has three axes, z, y and x"
         ))));
     };
-    let mut left = Frames::choose(path, before, frame_index)?.index;
+    let mut left = FrameChoice::choose(path, before, frame_index)?.index;
     let mut leading = vec![0; before.len()];
     for (index, &size) in leading.iter_mut().zip(before).rev() {
         (*index, left) = (left % size, left / size);
@@ -199,7 +203,7 @@ fn stored(
             ("translation", _, Some(by)) => (0..3).for_each(|k| origin[k] += by[k]),
             ("identity", ..) => {}
             _ => {
-                return Err(said(Reason::unsupported(
+                return Err(fail(Reason::unsupported(
                     format!(
                         "is placed by {transform}, which is not read: only scale and \
                              translation of as many numbers as axes are"
@@ -210,5 +214,5 @@ fn stored(
         }
     }
     let frame = frame(path, origin, diagonal(scale), coordinates)?;
-    Ok(Stored { array, leading, dims, frame })
+    Ok(PlacedArray { array, leading, dims, frame })
 }

@@ -186,10 +186,10 @@ impl ArrayReader<'_> {
         convert: impl Fn(T) -> f32 + Send + Sync,
     ) -> Result<Vec<f32>, VolumeError> {
         let Self { path, array, dims, leading, monitor } = self;
-        let said = |reason: Reason| format_error(path, reason);
+        let fail = |reason: Reason| format_error(path, reason);
         let axes = array.dimensionality();
         let damaged = |error: &dyn std::fmt::Display| {
-            said(Reason::damaged(format!("is a Zarr array that cannot be read ({error})")))
+            fail(Reason::damaged(format!("is a Zarr array that cannot be read ({error})")))
         };
         let chunk = array.chunk_shape(&vec![0; axes]).map_err(|error| damaged(&error))?;
         check_chunk(path, &chunk, *dims)?;
@@ -198,7 +198,7 @@ impl ArrayReader<'_> {
         let mut samples = Vec::new();
         asking(|| samples.try_reserve_exact(dims.samples())).map_err(|_| {
             let bytes = dims.samples() * size_of::<f32>();
-            said(Reason::choice(
+            fail(Reason::choice(
                 Setting::Level,
                 format!("needs {bytes} bytes of memory, which cannot be had"),
                 advice!["choose a coarser ", Setting::Level],
