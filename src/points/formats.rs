@@ -9,7 +9,7 @@ use walpha_check::schema::ComplexFile;
 
 use super::model::MODEL;
 #[cfg(feature = "formats")]
-use super::read::xyz::{self, Lay};
+use super::read::xyz::{self, TextLayout};
 use super::read::{format, npy};
 #[cfg(feature = "formats")]
 use super::read::{obj, off, pcd, ply, stl, table, vtk};
@@ -113,7 +113,11 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["xyz", "txt", "asc"],
         takes_columns: true,
         fuzzed_by: "xyz",
-        read_model: built!("formats", |file, columns, _| xyz::read(file, columns, Lay::Atoms)),
+        read_model: built!("formats", |file, columns, _| xyz::read(
+            file,
+            columns,
+            TextLayout::Atoms
+        )),
         ..PLAIN
     },
     PointFormat {
@@ -121,7 +125,11 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["xyzn", "xyzrgb"],
         takes_columns: true,
         fuzzed_by: "xyz",
-        read_model: built!("formats", |file, columns, _| xyz::read(file, columns, Lay::Vectors)),
+        read_model: built!("formats", |file, columns, _| xyz::read(
+            file,
+            columns,
+            TextLayout::Vectors
+        )),
         ..PLAIN
     },
     PointFormat {
@@ -129,7 +137,11 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["pts"],
         takes_columns: true,
         fuzzed_by: "xyz",
-        read_model: built!("formats", |file, columns, _| xyz::read(file, columns, Lay::Scan)),
+        read_model: built!("formats", |file, columns, _| xyz::read(
+            file,
+            columns,
+            TextLayout::Scan
+        )),
         ..PLAIN
     },
     PointFormat {
@@ -138,7 +150,7 @@ pub static FORMATS: [PointFormat; 15] = [
         takes_columns: true,
         fuzzed_by: "pwn",
         read_model: built!("formats", |file, columns, _| {
-            xyz::read(file, columns, Lay::PointsThenNormals)
+            xyz::read(file, columns, TextLayout::PointsThenNormals)
         }),
         ..PLAIN
     },

@@ -1,4 +1,4 @@
-//! What a file says of its α and its coordinates, where the programs that read it look.
+//! Notes in exported files: α and coordinates, in the form that other programs look for.
 
 use walpha_base::shown::{number, six_digits};
 

@@ -1,4 +1,4 @@
-//! Parts of a volume, and coarser ones.
+//! Cropping and downsampling.
 
 use std::num::NonZeroUsize;
 use std::ops::Range;
@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{Volume, VolumeError};
 
-/// Samples from one index up to, and without, another along each axis (x, y, z); an end that is left
-/// away is that of the volume.
+/// Samples from one index up to, and without, another along each axis (x, y, z); a missing
+/// end is that of the volume.
 #[expect(
     clippy::unsafe_derive_deserialize,
     reason = "the unsafe code is that of a macro of ndarray"
@@ -44,7 +44,7 @@ impl Region {
 }
 
 /// A coarser volume: the mean of each `n`×`n`×`n` samples is placed at their centre. What is left at the
-/// end of an axis is dropped; an axis of fewer samples becomes one. Missing samples have no part in the
+/// end of an axis is dropped; an axis of fewer samples becomes one. Missing samples are left out of the
 /// mean.
 #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn downsample(volume: Volume, n: NonZeroUsize) -> Volume {

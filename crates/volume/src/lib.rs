@@ -46,7 +46,7 @@ pub use source::{SampleStats, Source};
 pub use volume::{Nan, Volume};
 pub use walpha_base::{Conversion, Coordinates, LengthUnit, Space};
 
-// What walpha reads points with: no promise to others.
+// For walpha's readers of points; not part of the stable API.
 #[doc(hidden)]
 pub use error::io_error;
 #[doc(hidden)]

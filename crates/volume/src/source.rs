@@ -1,4 +1,4 @@
-//! Volumes that are read part by part.
+//! Volumes that are read part by part, and the range of their samples.
 
 use std::path::Path;
 
@@ -59,7 +59,7 @@ impl Source {
         Self { dims, frame, dtype, grain, parts, gray_levels, first: [0; 3] }
     }
 
-    /// Says whether samples are gray levels, whatever their type.
+    /// Sets whether samples are gray levels, whatever their type.
     #[must_use]
     pub fn with_gray_levels(self, gray_levels: bool) -> Self {
         Self { gray_levels, ..self }
@@ -137,10 +137,10 @@ pub(super) fn whole_only(path: &Path, name: &str) -> VolumeError {
     VolumeError::Format { path: path.into(), reason: Reason::unsupported(what, CONVERT) }
 }
 
-/// Samples looked at together, at most, where the format lets them be read so: 64 MiB.
+/// Samples read at a time at most, where the format allows it: 64 MiB.
 const AT_ONCE: usize = 1 << 24;
 
-/// What values a volume has.
+/// Range of a volume's samples, and the number of missing ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleStats {
     /// The smallest and the largest finite value; `None` where there is none.

@@ -14,13 +14,13 @@ const BATCH: u64 = 1 << 22;
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
     check(file)?;
-    let said = |error| unreadable(path, &error);
-    let mut reader = las::Reader::new(file.owned_reader()?).map_err(said)?;
+    let fail = |error| unreadable(path, &error);
+    let mut reader = las::Reader::new(file.owned_reader()?).map_err(fail)?;
     let mut points = Points { values: Some(Vec::new()), ..Points::default() };
     let record = u64::from(reader.header().point_format().len()).max(1);
     let at_once = (BATCH / record).max(1);
     let mut batch = las::PointDataBuilder::new().for_header(reader.header()).build();
-    while reader.fill_points(at_once, &mut batch).map_err(said)? > 0 {
+    while reader.fill_points(at_once, &mut batch).map_err(fail)? > 0 {
         let places = batch.x().zip(batch.y()).zip(batch.z());
         points.positions.extend(places.map(|((x, y), z)| [x, y, z]));
         points.values.get_or_insert_default().extend(batch.intensity().map(f64::from));

@@ -8,10 +8,10 @@ use crate::volume::{Lines, OpenFile, Reason, io_error};
 /// STOFF) or without: the first three numbers of each line. Its faces must be there as it claims.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
-    let said = |reason: Reason| format(path, reason);
-    let (mut rows, vertices, faces) = head(file)?;
+    let fail = |reason: Reason| format(path, reason);
+    let (mut rows, vertices, faces) = read_counts(file)?;
     let cut = || {
-        said(Reason::truncated(format!(
+        fail(Reason::truncated(format!(
             "ends before its {vertices} vertices and {faces} faces: it is truncated"
         )))
     };
@@ -28,28 +28,28 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
 
 /// How many faces there are.
 pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
-    let faces = head(file)?.2;
+    let faces = read_counts(file)?.2;
     Ok(vec![CellCount::new("faces", usize::try_from(faces).unwrap_or(usize::MAX))])
 }
 
 /// What follows the head of a file, and how many vertices and faces it claims.
-fn head(file: &OpenFile) -> Result<(Tokens<impl BufRead>, u64, u64), PointsError> {
+fn read_counts(file: &OpenFile) -> Result<(ContentLines<impl BufRead>, u64, u64), PointsError> {
     let path = file.path();
-    let said = |reason: Reason| format(path, reason);
-    let mut rows = Tokens { lines: Lines::new(file.reader()?), number: 0 };
+    let fail = |reason: Reason| format(path, reason);
+    let mut rows = ContentLines { lines: Lines::new(file.reader()?), number: 0 };
     let head = rows.next(path)?.unwrap_or_default();
     let mut words = head.split_whitespace().peekable();
     if let Some(kind) = words.next_if(|word| word.ends_with("OFF")) {
         let prefix = kind.trim_end_matches("OFF").replace("ST", "").replace(['C', 'N'], "");
         if !prefix.is_empty() {
-            return Err(said(Reason::unsupported(
+            return Err(fail(Reason::unsupported(
                 format!("is {kind}: only points of three coordinates are read"),
                 "convert it first",
             )));
         }
     }
     if words.peek() == Some(&"BINARY") {
-        return Err(said(Reason::unsupported("is binary: OFF is read as text", "convert it")));
+        return Err(fail(Reason::unsupported("is binary: OFF is read as text", "convert it")));
     }
     let mut counts: Vec<u64> = words.map_while(|word| word.parse().ok()).collect();
     if counts.is_empty() {
@@ -57,7 +57,7 @@ fn head(file: &OpenFile) -> Result<(Tokens<impl BufRead>, u64, u64), PointsError
         counts = line.split_whitespace().map_while(|word| word.parse().ok()).collect();
     }
     let [vertices, faces, ..] = counts[..] else {
-        return Err(said(Reason::damaged(
+        return Err(fail(Reason::damaged(
             "does not say how many vertices and faces it has: it is damaged",
         )));
     };
@@ -85,12 +85,12 @@ pub(super) fn position<'a>(
 }
 
 /// Lines without remarks and empty ones.
-struct Tokens<R> {
+struct ContentLines<R> {
     lines: Lines<R>,
     number: u64,
 }
 
-impl<R: BufRead> Tokens<R> {
+impl<R: BufRead> ContentLines<R> {
     fn next(&mut self, path: &Path) -> Result<Option<String>, PointsError> {
         while let Some(line) = self.lines.read_line().map_err(io_error(path))? {
             self.number += 1;

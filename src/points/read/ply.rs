@@ -8,7 +8,7 @@ use crate::volume::{Dtype, Element as _, Endian, Lines, OpenFile, Reason, io_err
 /// optionally weight or radius, and value. All other elements must be there as the header claims.
 pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     let path = file.path();
-    let said = |reason: Reason| format(path, reason);
+    let fail = |reason: Reason| format(path, reason);
     let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
     let left = file.length() - lines.bytes();
@@ -22,20 +22,20 @@ pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
     };
     let mut points = None;
     for element in &header.elements {
-        element.fits(header.endian.is_some(), left).map_err(said)?;
+        element.fits(header.endian.is_some(), left).map_err(fail)?;
         if element.name == "vertex" && points.is_none() {
             points = Some(vertices(path, element, &mut numbers)?);
         } else {
-            element.skip(&mut numbers).map_err(said)?;
+            element.skip(&mut numbers).map_err(fail)?;
         }
     }
     if !numbers.at_end() {
-        return Err(said(Reason::header(
+        return Err(fail(Reason::header(
             "goes on behind its last element: it is too long or mislabelled",
         )));
     }
     points.ok_or_else(|| {
-        said(Reason::content(
+        fail(Reason::content(
             "has no element vertex: there are no points in it",
             "name another file",
         ))
@@ -63,7 +63,7 @@ fn vertices(
     element: &Element,
     numbers: &mut Numbers<impl Read>,
 ) -> Result<Points, PointsError> {
-    let said = |reason: Reason| format(path, reason);
+    let fail = |reason: Reason| format(path, reason);
     let column = |property: &Property| match property {
         Property::Scalar(name, _) => {
             COLUMNS.iter().position(|column| column.eq_ignore_ascii_case(name))
@@ -74,7 +74,7 @@ fn vertices(
     for (place, name) in COLUMNS.iter().enumerate() {
         let count = columns.iter().filter(|&&column| column == Some(place)).count();
         if count > 1 || (count == 0 && place < 3) {
-            return Err(said(Reason::header(format!(
+            return Err(fail(Reason::header(format!(
                 "has {count} vertex properties {name}, and needs one"
             ))));
         }
@@ -86,7 +86,7 @@ fn vertices(
     for _ in 0..element.count {
         let mut position = [0.0; 3];
         for (property, column) in element.properties.iter().zip(&columns) {
-            let number = property.read(numbers).map_err(said)?;
+            let number = property.read(numbers).map_err(fail)?;
             match *column {
                 Some(3) => points.weights.get_or_insert_default().push(number),
                 Some(4) => points.values.get_or_insert_default().push(number),
@@ -122,22 +122,22 @@ enum Property {
 
 impl Header {
     fn read(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Self, PointsError> {
-        let said = |reason: Reason| format(path, reason);
+        let fail = |reason: Reason| format(path, reason);
         let mut line = || lines.read_line().map_err(io_error(path));
         if line()?.as_deref() != Some("ply") {
-            return Err(said(Reason::other("is no PLY file: it does not begin with a line ply")));
+            return Err(fail(Reason::other("is no PLY file: it does not begin with a line ply")));
         }
         let mut endian = None;
         let mut elements: Vec<Element> = Vec::new();
         while let Some(line) = line()? {
             let words: Vec<&str> = line.split_whitespace().collect();
             let damaged = || {
-                said(Reason::header(format!("has a header line {line:?}, which is not understood")))
+                fail(Reason::header(format!("has a header line {line:?}, which is not understood")))
             };
             match words[..] {
                 ["end_header"] => {
                     let endian = endian
-                        .ok_or_else(|| said(Reason::header("has no format in its header")))?;
+                        .ok_or_else(|| fail(Reason::header("has no format in its header")))?;
                     return Ok(Self { endian, elements });
                 }
                 ["comment" | "obj_info", ..] | [] => {}
@@ -165,7 +165,7 @@ impl Header {
                 _ => return Err(damaged()),
             }
         }
-        Err(said(Reason::truncated("ends inside its PLY header: it is truncated")))
+        Err(fail(Reason::truncated("ends inside its PLY header: it is truncated")))
     }
 }
 

@@ -80,7 +80,7 @@ fn text(file: &OpenFile) -> Result<Points, PointsError> {
     }
 }
 
-/// Places, each once, in the order in which they come.
+/// Distinct positions, in order of first appearance.
 #[derive(Default)]
 struct Corners {
     points: Points,

@@ -6,7 +6,7 @@ use crate::volume::{Lines, OpenFile, Reason, io_error};
 /// line may name the columns.
 pub(crate) fn read(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsError> {
     let path = file.path();
-    let said = |error: csv::Error| {
+    let fail = |error: csv::Error| {
         format(path, Reason::header(format!("is not a table of points: {error}")))
     };
     let delimiter = delimiter(file)?;
@@ -19,7 +19,7 @@ pub(crate) fn read(file: &OpenFile, columns: Option<&Columns>) -> Result<Points,
     rows.decimal_comma = delimiter == b';';
     let mut record = csv::StringRecord::new();
     let mut first = true;
-    while reader.read_record(&mut record).map_err(said)? {
+    while reader.read_record(&mut record).map_err(fail)? {
         let line = record.position().map_or(0, csv::Position::line);
         let words: Vec<&str> = record.iter().collect();
         if !std::mem::take(&mut first) || is_numbers(&words) {
@@ -30,7 +30,7 @@ pub(crate) fn read(file: &OpenFile, columns: Option<&Columns>) -> Result<Points,
             words.iter().map(|word| word.trim_start_matches(['\u{feff}', '#', ' '])).collect();
         match (Columns::named(&names), columns) {
             (_, Some(_)) => {}
-            (Ok(named), None) => rows.are(named),
+            (Ok(named), None) => rows.set_columns(named),
             (Err(unknown), None) => {
                 let reason = Reason::content(format!("{FIRST_LINE}: {unknown}"), unknown.advice());
                 return Err(format(path, reason));

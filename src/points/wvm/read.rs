@@ -21,29 +21,29 @@ pub(in crate::points) fn read(
     level: u32,
 ) -> Result<(Points, ModelFacts), PointsError> {
     let (path, length) = (file.path(), file.length());
-    let said = |reason: Reason| format(path, reason);
+    let fail = |reason: Reason| format(path, reason);
     let mut bytes = try_with_capacity(length as usize, || format!("{length} bytes of a file"))?;
     file.reader()?.read_to_end(&mut bytes).map_err(io_error(path))?;
-    let (header, head) = Header::of_bytes(&bytes).map_err(said)?;
+    let (header, head) = Header::of_bytes(&bytes).map_err(fail)?;
     let layers = header.layers.len();
     let wanted = layers.saturating_sub(level as usize);
     if wanted == 0 && level > 0 {
         let what = format!("has {layers} levels");
         let most = layers.saturating_sub(1);
         let advice = advice!["give ", Setting::Level, format!(" from 0 to {most}")];
-        return Err(said(Reason::choice(Setting::Level, what, advice)));
+        return Err(fail(Reason::choice(Setting::Level, what, advice)));
     }
-    let body = layers_of(&header, &bytes[head..], wanted).map_err(said)?;
+    let body = layers_of(&header, &bytes[head..], wanted).map_err(fail)?;
     let mut model = Model::new(&header);
     for (k, (layer, bytes)) in header.layers.iter().zip(body).enumerate() {
         let Some((bytes, checksum)) = bytes.split_last_chunk::<CHECKSUM>() else { continue };
         if !fits(bytes, u32::from_le_bytes(*checksum)) {
-            return Err(said(damaged(&format!("layer {k}"))));
+            return Err(fail(damaged(&format!("layer {k}"))));
         }
         model.reserve(layer.count as usize)?;
         if model.layer(layer, bytes).is_none() {
             let what = format!("is damaged: layer {k} does not hold what the header says");
-            return Err(said(Reason::damaged(what)));
+            return Err(fail(Reason::damaged(what)));
         }
     }
     let WeightedPoints { positions, weights, values } = model.points();

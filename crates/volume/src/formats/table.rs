@@ -128,7 +128,7 @@ impl fmt::Debug for VolumeWriter {
     }
 }
 
-/// All of a grid's place.
+/// Everything about where a grid lies.
 const ALL: Keeps = Keeps { spacing: true, directions: true, space: true, unit: true, dtype: true };
 /// The samples alone.
 const SAMPLES: Keeps =

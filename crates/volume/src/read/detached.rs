@@ -110,7 +110,7 @@ impl Detached {
 
 impl Read for Detached {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        // Whoever reads knows the header's name alone.
+        // The caller knows only the name of the header.
         let named = |path: &Path, error: io::Error| {
             io::Error::new(error.kind(), format!("{}: {error}", shown(path)))
         };

@@ -14,7 +14,7 @@ pub(super) struct FrameChoice {
 }
 
 impl FrameChoice {
-    /// The only one.
+    /// The only volume of a file.
     pub(super) const ONE: Self = Self { index: 0, count: 1 };
 
     /// The one asked for, where the axes beyond the third have these sizes.

@@ -11,7 +11,7 @@ use crate::error::{format_error, io_error};
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume, VolumeError};
 use walpha_base::Monitor;
 
-/// Keys of the grid's place, each by its names.
+/// Keys that place the grid, each with its synonyms.
 const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
 const ORIGIN: [&str; 3] = ["Offset", "Origin", "Position"];
 const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];

@@ -21,8 +21,8 @@ pub(crate) const HEADER: usize = 284;
 /// Reads an MGH file, or one of its frames: a header of 284 bytes, big-endian, then samples, x fastest, then
 /// perhaps what a scanner was set to, which is passed over.
 ///
-/// The frame is RAS, in mm; the header places the centre of the grid. A header that says that its places are not
-/// good (`goodRASFlag`) has none.
+/// The frame is RAS, in mm; the header gives the position of the grid's centre. Without `goodRASFlag` no position
+/// is known.
 pub(crate) fn read(
     file: &OpenFile,
     frame: Option<u64>,

@@ -293,7 +293,7 @@ impl Header {
     }
 }
 
-/// Frames that place a sample further apart than this share of the shortest spacing say different things.
+/// `sform` and `qform` disagree if they place a sample further apart than this share of the shortest spacing.
 const APART: f64 = 0.01;
 
 impl Header {

@@ -1,4 +1,4 @@
-//! What a user says about a file.
+//! Options of reading.
 
 use std::num::NonZeroUsize;
 
@@ -8,7 +8,7 @@ use walpha_base::setters;
 use super::raw::RawLayout;
 use crate::{Nan, Region, Volume, VolumeError, downsample};
 
-/// What a user says about a file beyond its name.
+/// How to read a file: what its name and content leave open.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ReadOptions {
@@ -27,9 +27,9 @@ pub struct ReadOptions {
     pub series: Option<String>,
     /// Goes on without damaged slices of a series (DICOM), which a warning names; without it they are refused.
     pub skip_damaged: bool,
-    /// What becomes of samples that are NaN or infinite; without a word they are refused.
+    /// How to treat samples that are NaN or infinite; by default they are an error.
     pub nan: Option<Nan>,
-    /// The part to take.
+    /// The region to crop to.
     pub region: Option<Region>,
     /// How many samples along each axis become one; `None` leaves them as they are.
     pub downsample: Option<NonZeroUsize>,

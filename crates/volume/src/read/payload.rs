@@ -21,8 +21,8 @@ pub(super) struct Payload<R> {
     pub length: Length,
 }
 
-/// Deflate expands by no more than this (zlib's technical details), nor does another code that
-/// loses nothing: a claim beyond is a lie.
+/// Deflate expands by no more than this (zlib's technical details), nor does another lossless
+/// code: a header that claims more is wrong.
 pub(super) const MOST_EXPANSION: u64 = 1032;
 
 /// What is known of the number of bytes left to read.
@@ -62,7 +62,7 @@ pub(super) enum PayloadError {
     Length { needed: u64, found: u64, bound: &'static str },
     /// The samples fit the file, but not the memory.
     Memory { needed: u64 },
-    /// Nobody wants them any more.
+    /// Reading was cancelled.
     Cancelled,
     /// The system refused, or the gzip stream is damaged.
     Io(io::Error),

@@ -55,7 +55,7 @@ pub(crate) fn first(folder: &Path) -> Result<Option<PathBuf>, VolumeError> {
     Walk::new(folder, true).next().transpose()
 }
 
-/// The DICOM files of a folder, and files that may have been some.
+/// The DICOM files of a folder, and possibly damaged ones.
 #[cfg(feature = "dicom")]
 pub(super) struct Files {
     /// By content, in the order of their names.
@@ -100,7 +100,7 @@ struct Walk {
     others: usize,
     /// Whether there were too many.
     is_cut_short: bool,
-    /// Files that may have been DICOM.
+    /// Files that may be damaged DICOM files.
     suspects: Vec<PathBuf>,
 }
 
@@ -164,7 +164,7 @@ impl Iterator for Walk {
 /// What a file is, by how it begins.
 enum Kind {
     Dicom,
-    /// It may have been.
+    /// Possibly a damaged DICOM file.
     Suspect,
     Other,
 }

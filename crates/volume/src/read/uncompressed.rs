@@ -24,9 +24,9 @@ pub(crate) struct Uncompressed {
     frame: Frame,
     dtype: Dtype,
     endian: Endian,
-    /// The place of the first sample.
+    /// Byte offset of the first sample.
     offset: u64,
-    /// What samples are multiplied by, and what is added then.
+    /// Slope and intercept.
     scaling: Option<(f64, f64)>,
 }
 

@@ -1,4 +1,4 @@
-//! Volumes at hand without a file of one's own.
+//! Sample volumes: the skull of CGAL's data, and a phantom.
 
 mod phantom;
 

@@ -43,7 +43,7 @@ impl SeriesFiles {
             }
         }
         files.damaged.extend(suspects.into_iter().map(|path| {
-            let error = format_error(&path, ruined(&path));
+            let error = format_error(&path, not_dicom(&path));
             (path, error)
         }));
         Ok(files)
@@ -100,7 +100,7 @@ pub(super) fn reason(error: &VolumeError) -> String {
 }
 
 /// What is wrong with a file that has no mark of DICOM, and is named as if it had.
-fn ruined(path: &Path) -> Reason {
+fn not_dicom(path: &Path) -> Reason {
     let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
     Reason::damaged(if length == 0 {
         "is empty, beside DICOM files".to_owned()

@@ -178,7 +178,7 @@ fn volume(
     samples.resize(dims.samples(), 0.0);
     let mut places: Vec<(&Slice, &mut [f32])> =
         slices.iter().zip(samples.chunks_exact_mut(dims.samples() / slices.len())).collect();
-    // FrameChoice of one file are decoded together.
+    // Frames of one file are decoded together.
     places.sort_by(|a, b| a.0.path.cmp(&b.0.path));
     let mut files: Vec<_> = places.chunk_by_mut(|a, b| a.0.path == b.0.path).collect();
     let count = files.len();

@@ -21,7 +21,7 @@ pub struct VtkPoints<'a> {
     file: &'a OpenFile,
     text: bool,
     arrays: Vec<Array>,
-    /// How many cells it lists, single points aside.
+    /// Numbers of cells by kind, vertices aside.
     pub cells: Vec<CellList>,
 }
 

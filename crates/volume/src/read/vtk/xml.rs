@@ -255,7 +255,7 @@ fn begins_as_xml(start: &[u8]) -> bool {
     start.trim_ascii_start().starts_with(b"<")
 }
 
-/// What a file says of its elements.
+/// Queries of elements and their attributes.
 impl VtkXml<'_> {
     /// What the file holds, such as `ImageData`.
     pub fn kind(&self) -> &str {
@@ -345,7 +345,7 @@ impl VtkXml<'_> {
         })
     }
 
-    /// How many numbers an array has for each point or cell.
+    /// Number of components of an array.
     pub fn components(&self, array: usize) -> &str {
         self.attribute(array, "NumberOfComponents").unwrap_or("1")
     }
