@@ -11,7 +11,7 @@ use walpha_base::shown::number;
 use crate::points::{Cell, CellCount, cells_of, read_model};
 use crate::progress::Stage;
 use crate::volume::{
-    self, Dtype, Extent, Nan, ReadOptions, Reason, Series, Source, open_monitored,
+    self, Dtype, Nan, ReadOptions, Reason, SampleStats, Series, Source, open_monitored,
 };
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
 
@@ -198,7 +198,7 @@ impl Info {
         } else {
             (volume::format_name(path, &options)?, volume::data_files(path, &options)?)
         };
-        let Seen { dims, frame, dtype, gray_levels, extent, volumes } = seen;
+        let Seen { dims, frame, dtype, gray_levels, stats, volumes } = seen;
         Ok(Content::Volume {
             format,
             samples: dtype.to_string(),
@@ -207,9 +207,9 @@ impl Info {
             origin: frame.origin,
             direction: frame.direction,
             coordinates: frame.coordinates,
-            min: extent.range.map(|(min, _)| min),
-            max: extent.range.map(|(_, max)| max),
-            missing: extent.missing,
+            min: stats.range.map(|(min, _)| min),
+            max: stats.range.map(|(_, max)| max),
+            missing: stats.missing,
             volumes,
             gray_levels,
             data_files: data_files.iter().map(|file| file.display().to_string()).collect(),
@@ -223,35 +223,35 @@ struct Seen {
     frame: Frame,
     dtype: Dtype,
     gray_levels: bool,
-    extent: Extent,
+    stats: SampleStats,
     volumes: Option<u64>,
 }
 
 impl Seen {
     /// Looks at a volume: part by part where its format allows that, and at all of it otherwise.
     fn of(input: &Path, options: &ReadOptions, monitor: &Monitor) -> Result<Self, VolumeError> {
-        let (source, extent) = if let Ok(source) = Source::open(input, options) {
-            let extent = Extent::of(&source, options.nan)?;
-            (source, extent)
+        let (source, stats) = if let Ok(source) = Source::open(input, options) {
+            let stats = SampleStats::of(&source, options.nan)?;
+            (source, stats)
         } else {
             // It says what is wrong where something is.
             let opened = |nan| open_monitored(input, &options.clone().nan(nan), monitor);
             match opened(options.nan.or(Some(Nan::Mask))) {
                 Ok(volume) => {
-                    let extent = Extent::of_volume(&volume);
-                    (Source::of_volume(volume), extent)
+                    let stats = SampleStats::of_volume(&volume);
+                    (Source::of_volume(volume), stats)
                 }
                 Err(error) if error.is_not_finite() => {
                     let volume = opened(Some(Nan::Value(0.0)))?;
                     let missing = volume.dims().samples() as u64;
-                    (Source::of_volume(volume), Extent { range: None, missing })
+                    (Source::of_volume(volume), SampleStats { range: None, missing })
                 }
                 Err(error) => return Err(error),
             }
         };
         let (dims, frame, dtype) = (source.dims(), *source.frame(), source.dtype());
         let gray_levels = source.has_gray_levels();
-        Ok(Self { dims, frame, dtype, gray_levels, extent, volumes: None })
+        Ok(Self { dims, frame, dtype, gray_levels, stats, volumes: None })
     }
 }
 

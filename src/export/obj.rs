@@ -2,7 +2,7 @@ use std::io::{self, Write};
 
 use super::{ExportOptions, Exporter};
 use crate::shape::AlphaShape;
-use crate::volume::stated;
+use crate::volume::annotation;
 
 /// Wavefront OBJ: facets, regular ones first, singular edges and singular vertices; in one group, or
 /// if asked in the groups `regular`, `singular`, `edges` and `points`. Numbering starts at 1.
@@ -12,8 +12,8 @@ pub struct Obj(pub ExportOptions);
 impl Exporter for Obj {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.0.surface(shape);
-        writeln!(out, "# walpha: {}", stated::alpha(shape.options().alpha))?;
-        write!(out, "{}", stated::line("#", shape.coordinates()))?;
+        writeln!(out, "# walpha: {}", annotation::alpha(shape.options().alpha))?;
+        write!(out, "{}", annotation::line("#", shape.coordinates()))?;
         for [x, y, z] in surface.positions(&shape.points().positions) {
             writeln!(out, "v {x} {y} {z}")?;
         }

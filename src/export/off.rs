@@ -2,7 +2,7 @@ use std::io::{self, Write};
 
 use super::{ExportOptions, Exporter};
 use crate::shape::AlphaShape;
-use crate::volume::stated;
+use crate::volume::annotation;
 
 /// OFF, the object file format of Geomview: boundary facets; where groups are asked for with a colour
 /// each, regular ones light, singular ones orange. It knows no edges or lone points, so singular ones are left out.
@@ -13,8 +13,8 @@ impl Exporter for Off {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.0.surface(shape);
         writeln!(out, "OFF")?;
-        writeln!(out, "# walpha: {}", stated::alpha(shape.options().alpha))?;
-        write!(out, "{}", stated::line("#", shape.coordinates()))?;
+        writeln!(out, "# walpha: {}", annotation::alpha(shape.options().alpha))?;
+        write!(out, "{}", annotation::line("#", shape.coordinates()))?;
         let facets = surface.regular.len() + surface.singular.len();
         writeln!(out, "{} {facets} 0", surface.vertex_count())?;
         for [x, y, z] in surface.positions(&shape.points().positions) {

@@ -4,7 +4,7 @@ use walpha_base::advice::Advice;
 
 use super::{ExportOptions, Exporter, colour};
 use crate::shape::{AlphaShape, Class, Surface};
-use crate::volume::stated;
+use crate::volume::annotation;
 
 /// PLY: vertices of the boundary with weight, input index and, where known, value and the colour
 /// (red, green, blue) that it has between the least and the most; facets. Where groups are asked for,
@@ -30,8 +30,8 @@ impl Exporter for Ply {
              property double x\nproperty double y\nproperty double z\nproperty double weight\n{}\
              property uint index\nelement face {}\nproperty list uchar uint vertex_indices\n{}{}end_header\n",
             if options.ascii { "ascii" } else { "binary_little_endian" },
-            stated::alpha(shape.options().alpha),
-            stated::line("comment", shape.coordinates()),
+            annotation::alpha(shape.options().alpha),
+            annotation::line("comment", shape.coordinates()),
             surface.vertex_count(),
             if valued { VALUED } else { "" },
             surface.regular.len() + surface.singular.len(),

@@ -4,7 +4,7 @@ use walpha_base::advice::{Advice, Setting, advice};
 
 use super::{ExportOptions, Exporter};
 use crate::shape::AlphaShape;
-use crate::volume::stated;
+use crate::volume::annotation;
 
 /// Binary STL: the regular facets, counter-clockwise seen from outside, with their normals.
 /// Coordinates are rounded to `f32`. Singular facets, edges and vertices bound no solid and are left
@@ -18,7 +18,7 @@ impl Exporter for Stl {
         let positions: Vec<_> = surface.positions(&shape.points().positions).collect();
         let mut head = [b' '; 80];
         // Some readers take a file for text if its head begins with "solid".
-        let stated = stated::comment(shape.coordinates());
+        let stated = annotation::comment(shape.coordinates());
         let about = format!("walpha, boundary of an alpha shape{stated}");
         head[..about.len()].copy_from_slice(about.as_bytes());
         out.write_all(&head)?;

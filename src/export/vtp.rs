@@ -3,7 +3,7 @@ use std::io::{self, Write};
 use super::vtu::{Appended, Corners, Ids, Made, bytes};
 use super::{ExportOptions, Exporter};
 use crate::shape::{AlphaShape, Class, Sheets, Surface};
-use crate::volume::stated;
+use crate::volume::annotation;
 
 /// VTP, VTK's polygons: the boundary, singular edges and singular vertices. Cell data are their
 /// `class` (2 regular, 3 singular), the `component` of the shape they belong to and, where known, the
@@ -48,7 +48,7 @@ pub(crate) fn write_surface(
         "<?xml version=\"1.0\"?>\n<!-- walpha: {} -->\n\
          <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
          <PolyData>\n",
-        stated::alpha(made.alpha),
+        annotation::alpha(made.alpha),
     )?;
     file.field_data(made, true)?;
     write!(

@@ -2,7 +2,7 @@ use std::io::{self, Write};
 
 use super::{ExportOptions, Exporter};
 use crate::shape::{Alpha, AlphaShape, Complex, Simplices};
-use crate::volume::{Coordinates, stated};
+use crate::volume::{Coordinates, annotation};
 
 /// VTU, VTK's unstructured grid: every simplex of the shape, vertices first, with its class as
 /// cell data (1 interior, 2 regular, 3 singular); `weight`, `value` and `input_index` as point
@@ -217,7 +217,7 @@ impl Appended {
             ("input", made.input),
         ];
         let texts = texts.into_iter().filter_map(|(name, text)| Some((name, text?)));
-        for (name, text) in texts.chain(stated::pairs(made.coordinates)) {
+        for (name, text) in texts.chain(annotation::pairs(made.coordinates)) {
             // A zero ends it, so there is none in it.
             let text = text.replace('\0', " ");
             if texts_as_such {

@@ -3,8 +3,8 @@ use std::path::Path;
 use walpha_base::Monitor;
 
 use super::{PipelineError, Recipe};
-use crate::points::{ModelFacts, Points, PointsError, Units, read_model};
-use crate::volume::{self, GrayRange, Volume};
+use crate::points::{ModelFacts, Points, PointsError, Units, read_model_file};
+use crate::volume::{self, GrayRange, OpenFile, Volume};
 
 /// What an input turned out to be.
 #[derive(Debug)]
@@ -57,8 +57,7 @@ impl Recipe {
     /// # Errors
     /// It cannot be read.
     pub fn is_points(&self, input: &Path) -> Result<bool, PipelineError> {
-        let is_sample = input.to_str().is_some_and(|name| name.starts_with("sample:"));
-        let is_volume = is_sample || self.read.raw.is_some();
+        let is_volume = is_sample(input) || self.read.raw.is_some();
         Ok(!is_volume && self.of_points().is_point_file(input)?)
     }
 
@@ -67,8 +66,14 @@ impl Recipe {
     /// # Errors
     /// [`PipelineError::Points`]: what cannot be read, and why.
     pub fn open(&self, input: &Path, monitor: &Monitor) -> Result<Input, PipelineError> {
-        if self.is_points(input)? {
-            let (mut points, mut facts) = read_model(input, &self.of_points())?;
+        if is_sample(input) || input.is_dir() {
+            let volume = volume::open_monitored(input, &self.read, monitor);
+            return Ok(Input::Volume(self.grays(volume.map_err(PointsError::from)?)?));
+        }
+        // From here on the file is open, and nothing opens it again.
+        let file = OpenFile::open(input).map_err(PointsError::from)?;
+        if self.read.raw.is_none() && self.of_points().is_of_points(&file)? {
+            let (mut points, mut facts) = read_model_file(&file, &self.of_points())?;
             if let Some(range) = &mut facts.range {
                 let written = self.written(*range);
                 if written != *range {
@@ -78,8 +83,7 @@ impl Recipe {
             }
             return Ok(Input::Points(points, facts));
         }
-        let volume =
-            volume::open_monitored(input, &self.read, monitor).map_err(PointsError::from)?;
+        let volume = volume::read_file(&file, &self.read, monitor).map_err(PointsError::from)?;
         Ok(Input::Volume(self.grays(volume)?))
     }
 
@@ -101,6 +105,10 @@ impl Recipe {
         let (frame, units) = self.place(*volume.frame())?;
         Ok(Source { volume: volume.with_frame(frame), units, range, written })
     }
+}
+
+fn is_sample(input: &Path) -> bool {
+    input.to_str().is_some_and(|name| name.starts_with("sample:"))
 }
 
 /// Gives points gray levels for values. As in a volume, they are of single precision.

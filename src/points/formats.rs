@@ -9,7 +9,7 @@ use walpha_check::schema::ComplexFile;
 
 use super::model::MODEL;
 #[cfg(feature = "formats")]
-use super::read::xyz::{self, Lay};
+use super::read::xyz::{self, TextLayout};
 use super::read::{format, npy};
 #[cfg(feature = "formats")]
 use super::read::{obj, off, pcd, ply, stl, table, vtk};
@@ -19,19 +19,19 @@ use super::wvm;
 use super::{CellCount, Columns, ModelFacts, Packing, Points, PointsError, WeightedPoints};
 #[cfg(feature = "formats")]
 use crate::volume::VtkPoints;
-use crate::volume::{NpyFile, Reason, UnknownFormat, built, is_vtk, is_vtk_xml, start_of};
+use crate::volume::{NpyFile, OpenFile, Reason, UnknownFormat, built, is_npy, is_vtk, is_vtk_xml};
 
 /// Reads a file whose columns may be named.
-type Read = fn(&Path, Option<&Columns>) -> Result<Points, PointsError>;
+type Read = fn(&OpenFile, Option<&Columns>) -> Result<Points, PointsError>;
 
 /// Reads a file without so many of its last layers, and what it states of its points besides.
-type ReadModel = fn(&Path, Option<&Columns>, u32) -> Result<(Points, ModelFacts), PointsError>;
+type ReadModel = fn(&OpenFile, Option<&Columns>, u32) -> Result<(Points, ModelFacts), PointsError>;
 
 /// Counts what a file lists besides points.
-type CountCells = fn(&Path) -> Result<Vec<CellCount>, PointsError>;
+type CountCells = fn(&OpenFile) -> Result<Vec<CellCount>, PointsError>;
 
 /// Reads the cells of a file as a complex.
-type ReadComplex = fn(&Path) -> Result<ComplexFile, PointsError>;
+type ReadComplex = fn(&OpenFile) -> Result<ComplexFile, PointsError>;
 
 /// A format of points.
 pub struct PointFormat {
@@ -49,7 +49,7 @@ pub struct PointFormat {
     pub writers: &'static [PointWriter],
     begins: fn(&[u8]) -> bool,
     /// Whether a file of it holds points, where it may hold others.
-    holds_points: fn(&Path) -> Result<bool, PointsError>,
+    holds_points: fn(&OpenFile) -> Result<bool, PointsError>,
     /// Whether its files may hold several levels.
     has_levels: bool,
     /// Reads a file that states nothing of its points besides.
@@ -113,7 +113,11 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["xyz", "txt", "asc"],
         takes_columns: true,
         fuzzed_by: "xyz",
-        read_model: built!("formats", |path, columns, _| xyz::read(path, columns, Lay::Atoms)),
+        read_model: built!("formats", |file, columns, _| xyz::read(
+            file,
+            columns,
+            TextLayout::Atoms
+        )),
         ..PLAIN
     },
     PointFormat {
@@ -121,7 +125,11 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["xyzn", "xyzrgb"],
         takes_columns: true,
         fuzzed_by: "xyz",
-        read_model: built!("formats", |path, columns, _| xyz::read(path, columns, Lay::Vectors)),
+        read_model: built!("formats", |file, columns, _| xyz::read(
+            file,
+            columns,
+            TextLayout::Vectors
+        )),
         ..PLAIN
     },
     PointFormat {
@@ -129,7 +137,11 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["pts"],
         takes_columns: true,
         fuzzed_by: "xyz",
-        read_model: built!("formats", |path, columns, _| xyz::read(path, columns, Lay::Scan)),
+        read_model: built!("formats", |file, columns, _| xyz::read(
+            file,
+            columns,
+            TextLayout::Scan
+        )),
         ..PLAIN
     },
     PointFormat {
@@ -137,8 +149,8 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["pwn"],
         takes_columns: true,
         fuzzed_by: "pwn",
-        read_model: built!("formats", |path, columns, _| {
-            xyz::read(path, columns, Lay::PointsThenNormals)
+        read_model: built!("formats", |file, columns, _| {
+            xyz::read(file, columns, TextLayout::PointsThenNormals)
         }),
         ..PLAIN
     },
@@ -147,7 +159,7 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["ply"],
         fuzzed_by: "ply",
         begins: |start| start.starts_with(b"ply\n") || start.starts_with(b"ply\r"),
-        read: built!("formats", |path, _| ply::read(path)),
+        read: built!("formats", |file, _| ply::read(file)),
         cells: built!("formats", ply::cells),
         ..PLAIN
     },
@@ -155,7 +167,7 @@ pub static FORMATS: [PointFormat; 15] = [
         name: "OFF",
         extensions: &["off"],
         fuzzed_by: "off",
-        read: built!("formats", |path, _| off::read(path)),
+        read: built!("formats", |file, _| off::read(file)),
         cells: built!("formats", off::cells),
         ..PLAIN
     },
@@ -163,7 +175,7 @@ pub static FORMATS: [PointFormat; 15] = [
         name: "OBJ",
         extensions: &["obj"],
         fuzzed_by: "obj",
-        read: built!("formats", |path, _| obj::read(path)),
+        read: built!("formats", |file, _| obj::read(file)),
         cells: built!("formats", obj::cells),
         ..PLAIN
     },
@@ -171,7 +183,7 @@ pub static FORMATS: [PointFormat; 15] = [
         name: "STL",
         extensions: &["stl"],
         fuzzed_by: "stl",
-        read: built!("formats", |path, _| stl::read(path)),
+        read: built!("formats", |file, _| stl::read(file)),
         cells: built!("formats", stl::cells),
         ..PLAIN
     },
@@ -180,7 +192,7 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["pcd"],
         fuzzed_by: "pcd",
         begins: |start| start.starts_with(b"# .PCD"),
-        read: built!("formats", |path, _| pcd::read(path)),
+        read: built!("formats", |file, _| pcd::read(file)),
         ..PLAIN
     },
     PointFormat {
@@ -189,7 +201,7 @@ pub static FORMATS: [PointFormat; 15] = [
         fuzzed_by: "vtk_geometry",
         begins: is_vtk_xml,
         holds_points: is_geometry,
-        read: built!("formats", |path, _| vtk::read(path)),
+        read: built!("formats", |file, _| vtk::read(file)),
         cells: built!("formats", vtk::cells),
         read_complex: built!("formats", vtk::read_complex),
         ..PLAIN
@@ -200,7 +212,7 @@ pub static FORMATS: [PointFormat; 15] = [
         fuzzed_by: "vtk_geometry",
         begins: is_vtk,
         holds_points: are_listed,
-        read: built!("formats", |path, _| vtk::read_legacy(path)),
+        read: built!("formats", |file, _| vtk::read_legacy(file)),
         cells: built!("formats", vtk::cells_of_legacy),
         ..PLAIN
     },
@@ -209,11 +221,9 @@ pub static FORMATS: [PointFormat; 15] = [
         extensions: &["npy"],
         feature: None,
         fuzzed_by: "npy_points",
-        begins: |start| NpyFile::begins(start),
-        holds_points: |path| {
-            Ok(NpyFile::begins(&start_of(path)?) && NpyFile::open(path)?.shape.len() == 2)
-        },
-        read: Some(|path, _| npy::read(path)),
+        begins: is_npy,
+        holds_points: |file| Ok(is_npy(file.start()) && NpyFile::open(file)?.shape.len() == 2),
+        read: Some(|file, _| npy::read(file)),
         writers: &[PointWriter {
             extension: "npy",
             packs: false,
@@ -227,7 +237,7 @@ pub static FORMATS: [PointFormat; 15] = [
         feature: Some("las"),
         fuzzed_by: "las",
         begins: |start| start.starts_with(b"LASF"),
-        read: built!("las", |path, _| super::read::las::read(path)),
+        read: built!("las", |file, _| super::read::las::read(file)),
         ..PLAIN
     },
     PointFormat {
@@ -236,7 +246,7 @@ pub static FORMATS: [PointFormat; 15] = [
         fuzzed_by: "wvm",
         begins: |start| start.starts_with(MODEL),
         has_levels: true,
-        read_model: built!("formats", |path, _, level| wvm::read(path, level)),
+        read_model: built!("formats", |file, _, level| wvm::read(file, level)),
         writers: MODEL_WRITERS,
         ..PLAIN
     },
@@ -253,24 +263,24 @@ const MODEL_WRITERS: &[PointWriter] = &[
     not(feature = "formats"),
     expect(clippy::unnecessary_wraps, reason = "the file is not read")
 )]
-fn is_geometry(path: &Path) -> Result<bool, PointsError> {
+fn is_geometry(file: &OpenFile) -> Result<bool, PointsError> {
     #[cfg(feature = "formats")]
-    return vtk::holds_points(path);
+    return vtk::holds_points(file);
     #[cfg(not(feature = "formats"))]
     {
-        let extension = path.extension().unwrap_or_default();
+        let extension = file.path().extension().unwrap_or_default();
         Ok(extension == "vtu" || extension == "vtp")
     }
 }
 
 /// Whether a legacy file of VTK lists points.
 #[expect(clippy::unnecessary_wraps, reason = "what is damaged is for the reader to say")]
-fn are_listed(path: &Path) -> Result<bool, PointsError> {
+fn are_listed(file: &OpenFile) -> Result<bool, PointsError> {
     #[cfg(feature = "formats")]
-    return Ok(VtkPoints::are_in(path).unwrap_or(false));
+    return Ok(VtkPoints::lists_points(file).unwrap_or(false));
     #[cfg(not(feature = "formats"))]
     {
-        let _ = path;
+        let _ = file;
         Ok(false)
     }
 }
@@ -290,8 +300,8 @@ impl PointFormat {
         (self.begins)(start)
     }
 
-    pub(super) fn holds_points(&self, path: &Path) -> Result<bool, PointsError> {
-        (self.holds_points)(path)
+    pub(super) fn holds_points(&self, file: &OpenFile) -> Result<bool, PointsError> {
+        (self.holds_points)(file)
     }
 
     /// Whether files of it may hold several levels.
@@ -301,16 +311,16 @@ impl PointFormat {
 
     pub(super) fn read(
         &self,
-        path: &Path,
+        file: &OpenFile,
         columns: Option<&Columns>,
         level: u32,
     ) -> Result<(Points, ModelFacts), PointsError> {
         match (self.read_model, self.read) {
-            (Some(read_model), _) => read_model(path, columns, level),
-            (None, Some(read)) => Ok((read(path, columns)?, ModelFacts::default())),
+            (Some(read_model), _) => read_model(file, columns, level),
+            (None, Some(read)) => Ok((read(file, columns)?, ModelFacts::default())),
             (None, None) => {
                 let (what, feature) = (self.name, self.feature.unwrap_or_default());
-                Err(format(path, Reason::Without { what, feature }))
+                Err(format(file.path(), Reason::Without { what, feature }))
             }
         }
     }

@@ -8,7 +8,7 @@ use walpha_check::schema::ComplexFile;
 
 use super::read::format;
 use super::{PointOptions, PointsError};
-use crate::volume::Reason;
+use crate::volume::{OpenFile, Reason};
 
 /// How many cells of a kind a file lists.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -40,8 +40,9 @@ impl CellCount {
 /// # Errors
 /// A file that cannot be read, or whose header is damaged.
 pub fn cells_of(path: &Path, options: &PointOptions) -> Result<Vec<CellCount>, PointsError> {
-    let cells = match options.found(path)?.and_then(|format| format.cells) {
-        Some(cells) => cells(path)?,
+    let file = OpenFile::open(path)?;
+    let cells = match options.format_of(&file).and_then(|format| format.cells) {
+        Some(cells) => cells(&file)?,
         None => Vec::new(),
     };
     Ok(cells.into_iter().filter(|cells| cells.count > 0).collect())
@@ -53,8 +54,9 @@ pub fn cells_of(path: &Path, options: &PointOptions) -> Result<Vec<CellCount>, P
 /// # Errors
 /// A format whose cells are not read, cells that are no simplices, and what [`super::read_points`] refuses.
 pub fn read_complex(path: &Path, options: &PointOptions) -> Result<ComplexFile, PointsError> {
-    if let Some(read) = options.found(path)?.and_then(|format| format.read_complex) {
-        return read(path);
+    let file = OpenFile::open(path)?;
+    if let Some(read) = options.format_of(&file).and_then(|format| format.read_complex) {
+        return read(&file);
     }
     let reason = Reason::unsupported(
         "lists cells that are no tetrahedra of a complex",

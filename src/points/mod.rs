@@ -41,6 +41,7 @@ pub use focus::{Region, focus};
 pub use formats::{FORMATS, PointFormat, PointWriter};
 pub use mesh::{CellCount, cells_of, read_complex};
 pub use model::{Cell, ModelFacts, Packing, SampleGrid};
+pub(crate) use open::read_model_file;
 pub use open::{PointOptions, is_point_file, read_model, read_points};
 pub use read::{Columns, UnknownColumns};
 pub use scattered::scattered_difference;

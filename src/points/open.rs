@@ -8,7 +8,7 @@ use walpha_base::setters;
 use super::formats::{FORMATS, PointFormat};
 use super::read::{COLUMNS, format};
 use super::{Columns, ModelFacts, Points, PointsError};
-use crate::volume::{Reason, begins_as_volume, start_of};
+use crate::volume::{OpenFile, Reason, begins_as_volume};
 
 /// What a user says about a file of points beyond its name.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,23 +31,33 @@ impl PointOptions {
     /// # Errors
     /// As [`is_point_file`].
     pub fn is_point_file(&self, path: &Path) -> Result<bool, PointsError> {
-        self.found(path)?.map_or(Ok(false), |format| format.holds_points(path))
+        // A pipe is known by its name alone: what is read of it is gone.
+        if path.is_file() {
+            self.is_of_points(&OpenFile::open(path)?)
+        } else {
+            Ok(!path.is_dir() && self.format_named(path).is_some())
+        }
+    }
+
+    /// The same of a file that is open.
+    pub(crate) fn is_of_points(&self, file: &OpenFile) -> Result<bool, PointsError> {
+        self.format_of(file).map_or(Ok(false), |format| format.holds_points(file))
     }
 
     /// The format of a file, by its content and then its extension.
-    pub(super) fn found(&self, path: &Path) -> Result<Option<&'static PointFormat>, PointsError> {
-        if path.is_file() {
-            let start = start_of(path)?;
-            if let Some(format) = FORMATS.iter().find(|format| format.begins(&start)) {
-                return Ok(Some(format));
-            }
-            if begins_as_volume(&start) {
-                return Ok(None);
-            }
+    pub(super) fn format_of(&self, file: &OpenFile) -> Option<&'static PointFormat> {
+        let of_content = FORMATS.iter().find(|format| format.begins(file.start()));
+        if of_content.is_some() || begins_as_volume(file.start()) {
+            return of_content;
         }
+        self.format_named(file.path())
+    }
+
+    /// The format of the extension, that of the path or the one given.
+    fn format_named(&self, path: &Path) -> Option<&'static PointFormat> {
         let own = path.extension().unwrap_or_default().to_string_lossy();
         let extension = self.format.as_deref().unwrap_or(&own);
-        Ok(FORMATS.iter().find(|format| format.is_named(extension)))
+        FORMATS.iter().find(|format| format.is_named(extension))
     }
 }
 
@@ -96,7 +106,16 @@ pub fn read_model(
     path: &Path,
     options: &PointOptions,
 ) -> Result<(Points, ModelFacts), PointsError> {
-    let known = options.found(path)?.unwrap_or(&FORMATS[0]);
+    read_model_file(&OpenFile::open(path)?, options)
+}
+
+/// The same from a file that is open.
+pub(crate) fn read_model_file(
+    file: &OpenFile,
+    options: &PointOptions,
+) -> Result<(Points, ModelFacts), PointsError> {
+    let path = file.path();
+    let known = options.format_of(file).unwrap_or(&FORMATS[0]);
     let PointOptions { columns, level, format: named } = options;
     let (columns, level) = (columns.as_ref(), *level);
     if named.as_ref().is_some_and(|named| !known.is_named(named)) {
@@ -111,7 +130,7 @@ pub fn read_model(
         let reason = Reason::needless(Setting::Level, "has no layers of points");
         return Err(format(path, reason));
     }
-    let (points, facts) = known.read(path, columns, level.unwrap_or_default())?;
+    let (points, facts) = known.read(file, columns, level.unwrap_or_default())?;
     if points.is_empty() {
         return Err(format(
             path,

@@ -16,6 +16,8 @@ pub type FilesOf = fn(&Path) -> Vec<PathBuf>;
 enum Protected {
     /// A file that is read.
     Input(Key),
+    /// A file whose header may name others that are read, and the function that lists them.
+    Header(PathBuf, FilesOf),
     /// A folder that is read, and the function that lists the files read from it.
     Folder(PathBuf, FilesOf),
     /// A folder that nothing else may be written to.
@@ -52,8 +54,8 @@ pub fn keep_input(path: &Path, files_of: FilesOf) {
     match fs::canonicalize(path) {
         Ok(folder) if folder.is_dir() => found.push(Protected::Folder(folder, files_of)),
         Ok(_) => {
-            let files = std::iter::once(path.to_owned()).chain(files_of(path));
-            found.extend(files.filter_map(|file| Key::of_existing(&file)).map(Protected::Input));
+            found.extend(Key::of_existing(path).map(Protected::Input));
+            found.push(Protected::Header(path.to_owned(), files_of));
         }
         Err(_) => {}
     }
@@ -87,18 +89,21 @@ impl Drop for Working {
 
 /// Refuses a destination that is protected.
 pub(super) fn check(destination: &Key) -> io::Result<()> {
-    // A folder is listed only if a file in it would be replaced.
-    let is_of = |folder: &Path, files_of: FilesOf| {
-        destination.path.starts_with(folder)
-            && destination.path.exists()
-            && files_of(folder)
+    // A folder or header is looked at only if a file would be replaced.
+    let is_of = |path: &Path, files_of: FilesOf| {
+        destination.path.exists()
+            && files_of(path)
                 .iter()
                 .filter_map(|file| Key::of_existing(file))
                 .any(|file| file.is(destination))
     };
     let refused = protected().iter().find_map(|protected| match protected {
         Protected::Input(file) => file.is(destination).then_some(Refused::Input),
-        Protected::Folder(folder, files_of) => is_of(folder, *files_of).then_some(Refused::Input),
+        Protected::Header(header, files_of) => is_of(header, *files_of).then_some(Refused::Input),
+        Protected::Folder(folder, files_of) => {
+            let is_within = destination.path.starts_with(folder);
+            (is_within && is_of(folder, *files_of)).then_some(Refused::Input)
+        }
         Protected::Working(folder) => {
             destination.path.starts_with(folder).then_some(Refused::Working)
         }

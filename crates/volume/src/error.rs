@@ -1,4 +1,6 @@
-use std::io::ErrorKind;
+//! What can be wrong with a volume.
+
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use walpha_base::Cancelled;
@@ -6,7 +8,7 @@ use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::memory::NoMemory;
 use walpha_base::shown::shown;
 
-use super::{Dims, Reason, SAMPLES};
+use crate::Reason;
 
 /// What can be wrong with a volume or the file it comes from.
 #[derive(Debug, thiserror::Error)]
@@ -23,7 +25,7 @@ pub enum VolumeError {
         z: u64,
     },
     /// More samples than indices.
-    #[error("{x}×{y}×{z} samples are too many: at most {} fit a 32-bit index", Dims::MAX_SAMPLES)]
+    #[error("{x}×{y}×{z} samples are too many: at most {} fit a 32-bit index", u32::MAX)]
     TooManySamples {
         /// Samples along x.
         x: u64,
@@ -50,16 +52,16 @@ pub enum VolumeError {
     },
     /// A region without samples, or beyond the volume.
     #[error(
-        "the region {}:{},{}:{},{}:{} is not part of a volume of {dims} samples",
-        first[0], end[0], first[1], end[1], first[2], end[2]
+        "the region {}:{},{}:{},{}:{} is not part of a volume of {}×{}×{} samples",
+        first[0], end[0], first[1], end[1], first[2], end[2], dims[0], dims[1], dims[2]
     )]
     Region {
         /// The first index of each axis.
         first: [usize; 3],
         /// One past the last along each axis.
         end: [usize; 3],
-        /// The volume.
-        dims: Dims,
+        /// Samples of the volume along each axis.
+        dims: [usize; 3],
     },
     /// Reading was cancelled.
     #[error(transparent)]
@@ -70,7 +72,7 @@ pub enum VolumeError {
         /// The file.
         path: PathBuf,
         /// What the system said.
-        source: std::io::Error,
+        source: io::Error,
     },
     /// A folder of parts cannot be written.
     #[error("cannot write {}: {source}", shown(path))]
@@ -78,7 +80,7 @@ pub enum VolumeError {
         /// The folder.
         path: PathBuf,
         /// What the system said.
-        source: std::io::Error,
+        source: io::Error,
     },
     /// The file is not what its name or header says.
     #[error("{}: {reason}", shown(path))]
@@ -100,10 +102,12 @@ pub enum VolumeError {
     #[error(transparent)]
     Memory(#[from] NoMemory),
     /// No sample has this name.
-    #[error("{name:?} is not a sample; there are {}", SAMPLES.join(", "))]
+    #[error("{name:?} is not a sample; there are {known}")]
     UnknownSample {
         /// What was asked for.
         name: String,
+        /// The samples there are.
+        known: String,
         /// What to do about it.
         advice: Advice,
     },
@@ -156,7 +160,7 @@ impl VolumeError {
                 Setting::Region,
                 " 20:40,20:40,10:30"
             ],
-            Self::Io { path, source } => return next_step(path, source.kind()),
+            Self::Io { path, source } => return advice_for_io(path, source.kind()),
             Self::Written { source, .. } if source.kind() == ErrorKind::AlreadyExists => {
                 "remove it, or choose another name".into()
             }
@@ -177,14 +181,23 @@ impl VolumeError {
     }
 }
 
+/// A [`VolumeError::Format`] for this file.
+pub(crate) fn format_error(path: &Path, reason: Reason) -> VolumeError {
+    VolumeError::Format { path: path.into(), reason }
+}
+
+/// An [`VolumeError::Io`] for this file.
+pub fn io_error(path: &Path) -> impl Fn(io::Error) -> VolumeError {
+    move |source| VolumeError::Io { path: path.into(), source }
+}
+
 /// What to do about an error of the system.
-fn next_step(path: &Path, kind: ErrorKind) -> Option<Advice> {
-    let sample = format!("sample:{}", path.display());
+fn advice_for_io(path: &Path, kind: ErrorKind) -> Option<Advice> {
     Some(match kind {
-        ErrorKind::NotFound if SAMPLES.contains(&sample.as_str()) => {
-            format!("did you mean {sample}?").into()
-        }
-        ErrorKind::NotFound => "check the path, or try sample:phantom".into(),
+        ErrorKind::NotFound => match path.to_str() {
+            Some(name @ ("skull" | "phantom")) => format!("did you mean sample:{name}?").into(),
+            _ => "check the path, or try sample:phantom".into(),
+        },
         ErrorKind::PermissionDenied => "make it readable first".into(),
         ErrorKind::IsADirectory => "name a file in it".into(),
         _ => return None,

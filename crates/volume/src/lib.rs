@@ -11,51 +11,53 @@
 //! # Ok::<(), walpha_volume::VolumeError>(())
 //! ```
 
+#[doc(hidden)]
+pub mod annotation;
+mod crop;
 mod dtype;
 mod error;
-mod extent;
 mod formats;
 mod gray;
 mod grid;
-mod part;
+mod open;
 mod read;
 mod reason;
 mod sample;
 mod source;
-#[doc(hidden)]
-pub mod stated;
 mod volume;
 mod write;
 
+pub use crop::{Region, downsample};
 pub use dtype::{Dtype, Endian, UnknownName};
 pub use error::VolumeError;
-pub use extent::Extent;
 pub use formats::{
     FORMATS, Keeps, UnknownFormat, VolumeFormat, VolumeWriter, data_files, files_of, format_name,
     read, read_monitored, series,
 };
 pub use gray::{Gray, GrayRange};
 pub use grid::{Dims, Frame};
-pub use part::{Region, downsample};
+#[cfg(feature = "zarr")]
+pub use open::{convert, convert_monitored};
+pub use open::{open, open_monitored};
 pub use read::{RawLayout, ReadOptions, Series};
 pub use reason::Reason;
-pub use sample::{SAMPLES, open, open_monitored, phantom, sample};
-pub use source::Source;
-#[cfg(feature = "zarr")]
-pub use source::{convert, convert_monitored};
+pub use sample::{SAMPLES, phantom, sample};
+pub use source::{SampleStats, Source};
 pub use volume::{Nan, Volume};
 pub use walpha_base::{Conversion, Coordinates, LengthUnit, Space};
 
-// What walpha reads points with: no promise to others.
+// For walpha's readers of points; not part of the stable API.
 #[doc(hidden)]
-pub use formats::{begins_as_volume, built, is_vtk, is_vtk_xml, start_of};
+pub use error::io_error;
+#[doc(hidden)]
+pub use formats::{begins_as_volume, built, is_npy, is_vtk, is_vtk_xml, read_file};
 #[doc(hidden)]
 pub use grid::{any_size, inverse};
 #[cfg(feature = "formats")]
 #[doc(hidden)]
 pub use read::{Element, Lines, VtkPoints, VtkXml};
 #[doc(hidden)]
-pub use read::{NpyFile, io_error};
+pub use read::{NpyFile, OpenFile};
 
 /// The example in the README runs.
 #[cfg(doctest)]

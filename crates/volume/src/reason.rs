@@ -51,7 +51,7 @@ pub enum Reason {
         /// What cannot be.
         what: String,
     },
-    /// It is right, but what it holds is not read.
+    /// It is valid, but its content is not supported.
     Unsupported {
         /// What it holds, and what would be read.
         what: String,
@@ -84,7 +84,7 @@ pub enum Reason {
         /// How many.
         count: u64,
     },
-    /// A setting says nothing about it, is missing, or names what it does not have.
+    /// A setting does not apply to it, is missing, or names something that it does not have.
     Setting {
         /// The setting.
         setting: Setting,

@@ -1,12 +1,12 @@
-//! Volumes that are read part by part.
+//! Volumes that are read part by part, and the range of their samples.
 
 use std::path::Path;
 
-use walpha_base::advice::Setting;
+use crate::{Dims, Dtype, Frame, Nan, Reason, Region, Volume, VolumeError};
 
-use super::read::CONVERT;
-use super::sample::PhantomBoxes;
-use super::{Dims, Dtype, Frame, ReadOptions, Reason, Volume, VolumeError, open};
+/// What to do about volumes that cannot be read in parts.
+pub(crate) const CONVERT: &str =
+    "convert it to uncompressed NRRD, MetaImage, NIfTI or NPY, or to Zarr";
 
 /// A volume of which any box can be read without the rest.
 ///
@@ -59,41 +59,22 @@ impl Source {
         Self { dims, frame, dtype, grain, parts, gray_levels, first: [0; 3] }
     }
 
-    /// Says whether samples are gray levels, whatever their type.
+    /// Sets whether samples are gray levels, whatever their type.
     #[must_use]
     pub fn with_gray_levels(self, gray_levels: bool) -> Self {
         Self { gray_levels, ..self }
     }
 
-    /// Opens what a user names, a sample or a file: uncompressed NRRD, `MetaImage`, `NIfTI`, NPY and raw samples,
-    /// and Zarr (feature `zarr`). Of the options, `nan` is left to whoever reads.
-    ///
-    /// # Errors
-    /// As [`read()`](super::read()), and [`VolumeError::Format`] for what cannot be read in parts.
-    pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Self, VolumeError> {
-        let path = input.as_ref();
-        let name = path.to_str().unwrap_or_default();
-        if options.downsample.is_some() {
-            let what = "cannot be made coarser while it is read in parts";
-            let reason = Reason::needless(Setting::Downsample, what);
-            return Err(VolumeError::Format { path: path.into(), reason });
-        }
-        let source = match name.strip_prefix("sample:phantom@").map(str::parse) {
-            Some(Ok(size)) => PhantomBoxes::source(size)?,
-            _ if name.starts_with("sample:") => {
-                Self::of_volume(open(path, &ReadOptions::default())?)
-            }
-            _ => super::formats::source(path, options)?,
-        };
-        let Some(region) = options.region else { return Ok(source) };
-        let sizes = source.dims.xyz();
+    /// A part of it, in its place.
+    pub(crate) fn part(self, region: &Region) -> Result<Self, VolumeError> {
+        let sizes = self.dims.xyz();
         let end = [0, 1, 2].map(|k| region.end[k].unwrap_or(sizes[k]));
         if (0..3).any(|k| region.first[k] >= end[k] || end[k] > sizes[k]) {
-            return Err(VolumeError::Region { first: region.first, end, dims: source.dims });
+            return Err(VolumeError::Region { first: region.first, end, dims: sizes });
         }
         let [x, y, z] = [0, 1, 2].map(|k| (end[k] - region.first[k]) as u64);
-        let frame = source.frame.part(region.first.map(|i| i as f64), [1.0; 3]);
-        Ok(Self { dims: Dims::unbounded(x, y, z)?, frame, first: region.first, ..source })
+        let frame = self.frame.part(region.first.map(|i| i as f64), [1.0; 3]);
+        Ok(Self { dims: Dims::unbounded(x, y, z)?, frame, first: region.first, ..self })
     }
 
     /// A volume in memory.
@@ -150,32 +131,71 @@ impl BoxReader for Volume {
     }
 }
 
-/// Writes a volume as Zarr (feature `zarr`), part by part: OME-Zarr 0.5 with one level, in chunks of 64³
-/// samples, or an array alone where nothing is known of the grid. Bytes and 16-bit integers keep their type,
-/// others become `f32`; spacing, origin and unit are kept, directions are not.
-///
-/// # Errors
-/// `folder` is there already or cannot be made; the volume cannot be read. Nothing is left behind then.
-#[cfg(feature = "zarr")]
-pub fn convert(source: &Source, folder: &Path) -> Result<(), VolumeError> {
-    convert_monitored(source, folder, &walpha_base::Monitor::noop())
-}
-
-/// The same, which says how far it is and can be cancelled.
-///
-/// # Errors
-/// Those of [`convert`], and [`VolumeError::Cancelled`].
-#[cfg(feature = "zarr")]
-pub fn convert_monitored(
-    source: &Source,
-    folder: &Path,
-    monitor: &walpha_base::Monitor,
-) -> Result<(), VolumeError> {
-    super::write::zarr(source, folder, monitor)
-}
-
 /// The error for a format that is not read in parts.
 pub(super) fn whole_only(path: &Path, name: &str) -> VolumeError {
     let what = format!("is {name}, which is not read in parts");
     VolumeError::Format { path: path.into(), reason: Reason::unsupported(what, CONVERT) }
+}
+
+/// Samples read at a time at most, where the format allows it: 64 MiB.
+const AT_ONCE: usize = 1 << 24;
+
+/// Range of a volume's samples, and the number of missing ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleStats {
+    /// The smallest and the largest finite value; `None` where there is none.
+    pub range: Option<(f32, f32)>,
+    /// How many samples are NaN or infinite.
+    pub missing: u64,
+}
+
+impl SampleStats {
+    /// Of a volume that is read for it, a part at a time: its memory does not grow with the volume. `nan` may say
+    /// what replaces samples that are not finite. One pass.
+    ///
+    /// # Errors
+    /// The file cannot be read or is damaged.
+    pub fn of(source: &Source, nan: Option<Nan>) -> Result<Self, VolumeError> {
+        let (dims, step) = (source.dims().xyz(), step(source));
+        let (mut low, mut high, mut missing) = (f32::INFINITY, f32::NEG_INFINITY, 0);
+        for z in (0..dims[2]).step_by(step[2]) {
+            for y in (0..dims[1]).step_by(step[1]) {
+                for x in (0..dims[0]).step_by(step[0]) {
+                    let first = [x, y, z];
+                    let size = [0, 1, 2].map(|k| step[k].min(dims[k] - first[k]));
+                    for value in source.read(first, size)? {
+                        let value = match nan {
+                            Some(Nan::Value(instead)) if !value.is_finite() => instead,
+                            _ => value,
+                        };
+                        if value.is_finite() {
+                            (low, high) = (low.min(value), high.max(value));
+                        } else {
+                            missing += 1;
+                        }
+                    }
+                }
+            }
+        }
+        Ok(Self { range: (low <= high).then_some((low, high)), missing })
+    }
+
+    /// Of a volume in memory, whose [missing](Volume::is_missing) samples are not finite in its file.
+    pub fn of_volume(volume: &Volume) -> Self {
+        let missing = volume.dims().samples() - volume.samples_there();
+        Self { range: Some(volume.value_range()), missing: missing as u64 }
+    }
+}
+
+/// How many samples along each axis are read at once: whole grains, and as many as may be.
+fn step(source: &Source) -> [usize; 3] {
+    let dims = source.dims().xyz();
+    let mut step = [0, 1, 2].map(|k| source.grain()[k].clamp(1, dims[k]));
+    for k in 0..3 {
+        let grain = step[k];
+        let others: usize = step.iter().product::<usize>() / grain;
+        let most = AT_ONCE / others.max(1) / grain * grain;
+        step[k] = most.clamp(grain, dims[k]);
+    }
+    step
 }

@@ -29,7 +29,7 @@ pub struct Volume {
     missing: Option<Vec<bool>>,
 }
 
-/// What becomes of samples that are no finite numbers: NaN and infinities.
+/// How to treat samples that are NaN or infinite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Nan {
@@ -47,11 +47,10 @@ impl Volume {
     /// An axis of length zero, more than [`Dims::MAX_SAMPLES`] samples, or a NaN or infinity
     /// ([`VolumeError::NotFinite`] names the first).
     pub fn new(samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
-        Self::of_file(samples, frame)?.settled(None)
+        Self::of_file(samples, frame)?.resolve_nan(None)
     }
 
-    /// The same for readers: NaN and infinities may be among the samples until [`Volume::settled`] has seen
-    /// them.
+    /// The same for readers: samples may be NaN or infinite until [`Volume::resolve_nan`].
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
@@ -71,7 +70,7 @@ impl Volume {
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn settled(mut self, nan: Option<Nan>) -> Result<Self, VolumeError> {
+    pub fn resolve_nan(mut self, nan: Option<Nan>) -> Result<Self, VolumeError> {
         let value = match nan {
             Some(Nan::Value(value)) => value,
             Some(Nan::Mask) if self.as_slice().par_iter().any(|v| !v.is_finite()) => {
@@ -96,7 +95,7 @@ impl Volume {
         Err(VolumeError::NotFinite { value: self.as_slice()[index], at })
     }
 
-    /// Says how the file stores a sample. Unsigned 8-bit samples are gray levels.
+    /// Sets how the file stores a sample. Unsigned 8-bit samples are gray levels.
     #[must_use]
     pub fn with_dtype(self, dtype: Dtype) -> Self {
         Self { dtype, gray_levels: dtype == Dtype::U8, ..self }
@@ -107,20 +106,20 @@ impl Volume {
         self.dtype
     }
 
-    /// Whether the file has no number for a sample, by its index in memory order; the least of all
-    /// values stands in for it.
+    /// Whether a sample is missing, by its index in memory order: NaN or infinite in the file, and replaced by the
+    /// least value here.
     pub fn is_missing(&self, sample: usize) -> bool {
         self.missing.as_ref().is_some_and(|missing| missing[sample])
     }
 
-    /// How many samples are not missing.
+    /// Number of samples that are not missing.
     pub fn samples_there(&self) -> usize {
         let missing =
             self.missing.as_deref().map_or(0, |missing| missing.par_iter().filter(|&&m| m).count());
         self.dims.samples() - missing
     }
 
-    /// Whether there are such samples.
+    /// Whether samples are missing.
     pub fn has_missing(&self) -> bool {
         self.missing.is_some()
     }
@@ -150,7 +149,7 @@ impl Volume {
         Self { missing, ..self }
     }
 
-    /// Says that the samples are gray levels 0..255 already, as those of unsigned 8-bit files are.
+    /// Marks the samples as gray levels 0..255, as those of unsigned 8-bit files are.
     #[must_use]
     pub fn with_gray_levels(mut self) -> Self {
         self.gray_levels = true;
@@ -199,7 +198,7 @@ impl Volume {
         let ends = |a: (f32, f32), b: (f32, f32)| (a.0.min(b.0), a.1.max(b.1));
         self.as_slice()
             .par_iter()
-            // Readers have others until they are settled.
+            // Others are there until `resolve_nan`.
             .filter(|v| v.is_finite())
             .map(|&v| (v, v))
             .reduce(|| (f32::INFINITY, f32::NEG_INFINITY), ends)

@@ -1,26 +1,26 @@
 //! LAS and LAZ, what laser scanners write.
 
-use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::{Points, PointsError, format};
-use crate::volume::{Reason, io_error};
+use crate::volume::{OpenFile, Reason};
 
 /// Bytes of points read at once. A header may claim records of 64 KiB each, and more than there are.
 const BATCH: u64 = 1 << 22;
 
 /// Reads the places of the points, and their intensity as values. Numbers are those that the file's
 /// scales and offsets make, in doubles.
-pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
-    check(path)?;
-    let said = |error| unreadable(path, &error);
-    let mut reader = las::Reader::from_path(path).map_err(said)?;
+pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+    let path = file.path();
+    check(file)?;
+    let fail = |error| unreadable(path, &error);
+    let mut reader = las::Reader::new(file.owned_reader()?).map_err(fail)?;
     let mut points = Points { values: Some(Vec::new()), ..Points::default() };
     let record = u64::from(reader.header().point_format().len()).max(1);
     let at_once = (BATCH / record).max(1);
     let mut batch = las::PointDataBuilder::new().for_header(reader.header()).build();
-    while reader.fill_points(at_once, &mut batch).map_err(said)? > 0 {
+    while reader.fill_points(at_once, &mut batch).map_err(fail)? > 0 {
         let places = batch.x().zip(batch.y()).zip(batch.z());
         points.positions.extend(places.map(|((x, y), z)| [x, y, z]));
         points.values.get_or_insert_default().extend(batch.intensity().map(f64::from));
@@ -38,11 +38,11 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
 
 /// Refuses what the library that reads points would believe: so many of them that their bytes are no number of
 /// 64 bits, and an extended record that is longer than the file, for which it would take the memory.
-fn check(path: &Path) -> Result<(), PointsError> {
-    let mut file = BufReader::new(File::open(path).map_err(io_error(path))?);
-    let length = file.get_ref().metadata().map_err(io_error(path))?.len();
+fn check(file: &OpenFile) -> Result<(), PointsError> {
+    let (path, length) = (file.path(), file.length());
+    let mut reader = file.reader()?;
     let header =
-        las::raw::Header::read_from(&mut file).map_err(|error| unreadable(path, &error))?;
+        las::raw::Header::read_from(&mut reader).map_err(|error| unreadable(path, &error))?;
     let count = header.large_file.map_or(0, |large| large.number_of_point_records);
     let bytes = count.checked_mul(header.point_data_record_length.into());
     if bytes.and_then(|bytes| bytes.checked_add(header.offset_to_point_data.into())).is_none() {
@@ -53,7 +53,7 @@ fn check(path: &Path) -> Result<(), PointsError> {
     // Its length comes after 2 bytes, a name of 16 and a number of 2. If it is not there, the library says so.
     let mut claimed = [0; 8];
     let place = SeekFrom::Start(records.start_of_first_evlr.saturating_add(20));
-    if file.seek(place).and_then(|_| file.read_exact(&mut claimed)).is_err() {
+    if reader.seek(place).and_then(|_| reader.read_exact(&mut claimed)).is_err() {
         return Ok(());
     }
     let claimed = u64::from_le_bytes(claimed);

@@ -1,12 +1,11 @@
-use std::path::Path;
-
 use super::{Points, PointsError, format};
-use crate::volume::{NpyFile, Reason};
+use crate::volume::{NpyFile, OpenFile, Reason};
 use walpha_base::Monitor;
 
 /// Reads an array n×3 (x, y, z), n×4 (…, weight) or n×5 (…, value).
-pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
-    let file = NpyFile::open(path)?;
+pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+    let path = file.path();
+    let file = NpyFile::open(file)?;
     let columns = match file.shape.as_slice() {
         &[_, columns @ 3..=5] => columns as usize,
         other => {

@@ -1,14 +1,11 @@
-use std::io::BufReader;
-use std::path::Path;
-
 use super::off::position;
 use super::{CellCount, Points, PointsError};
-use crate::volume::{Lines, io_error};
+use crate::volume::{Lines, OpenFile, io_error};
 
 /// Reads the vertices (`v x y z …`) of a Wavefront OBJ file; everything else is passed over.
-pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let mut lines = Lines::new(BufReader::new(file));
+pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+    let path = file.path();
+    let mut lines = Lines::new(file.reader()?);
     let mut points = Points::default();
     let mut number = 0;
     while let Some(line) = lines.read_line().map_err(io_error(path))? {
@@ -22,11 +19,10 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
 }
 
 /// How many faces and lines there are.
-pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let mut lines = Lines::new(BufReader::new(file));
+pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
+    let mut lines = Lines::new(file.reader()?);
     let mut counts = [CellCount::new("faces", 0), CellCount::new("lines", 0)];
-    while let Some(line) = lines.read_line().map_err(io_error(path))? {
+    while let Some(line) = lines.read_line().map_err(io_error(file.path()))? {
         match line.split_whitespace().next() {
             Some("f") => counts[0].count += 1,
             Some("l") => counts[1].count += 1,

@@ -1,16 +1,17 @@
-use std::io::{BufRead, BufReader};
+use std::io::BufRead;
 use std::path::Path;
 
 use super::{COLUMNS, CellCount, Points, PointsError, format};
-use crate::volume::{Lines, Reason, io_error};
+use crate::volume::{Lines, OpenFile, Reason, io_error};
 
 /// Reads the vertices of an OFF file in text, with normals, colours or texture coordinates (NOFF, COFF,
 /// STOFF) or without: the first three numbers of each line. Its faces must be there as it claims.
-pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
-    let said = |reason: Reason| format(path, reason);
-    let (mut rows, vertices, faces) = head(path)?;
+pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+    let path = file.path();
+    let fail = |reason: Reason| format(path, reason);
+    let (mut rows, vertices, faces) = read_counts(file)?;
     let cut = || {
-        said(Reason::truncated(format!(
+        fail(Reason::truncated(format!(
             "ends before its {vertices} vertices and {faces} faces: it is truncated"
         )))
     };
@@ -26,29 +27,29 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
 }
 
 /// How many faces there are.
-pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
-    let faces = head(path)?.2;
+pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
+    let faces = read_counts(file)?.2;
     Ok(vec![CellCount::new("faces", usize::try_from(faces).unwrap_or(usize::MAX))])
 }
 
 /// What follows the head of a file, and how many vertices and faces it claims.
-fn head(path: &Path) -> Result<(Tokens<BufReader<std::fs::File>>, u64, u64), PointsError> {
-    let said = |reason: Reason| format(path, reason);
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let mut rows = Tokens { lines: Lines::new(BufReader::new(file)), number: 0 };
+fn read_counts(file: &OpenFile) -> Result<(ContentLines<impl BufRead>, u64, u64), PointsError> {
+    let path = file.path();
+    let fail = |reason: Reason| format(path, reason);
+    let mut rows = ContentLines { lines: Lines::new(file.reader()?), number: 0 };
     let head = rows.next(path)?.unwrap_or_default();
     let mut words = head.split_whitespace().peekable();
     if let Some(kind) = words.next_if(|word| word.ends_with("OFF")) {
         let prefix = kind.trim_end_matches("OFF").replace("ST", "").replace(['C', 'N'], "");
         if !prefix.is_empty() {
-            return Err(said(Reason::unsupported(
+            return Err(fail(Reason::unsupported(
                 format!("is {kind}: only points of three coordinates are read"),
                 "convert it first",
             )));
         }
     }
     if words.peek() == Some(&"BINARY") {
-        return Err(said(Reason::unsupported("is binary: OFF is read as text", "convert it")));
+        return Err(fail(Reason::unsupported("is binary: OFF is read as text", "convert it")));
     }
     let mut counts: Vec<u64> = words.map_while(|word| word.parse().ok()).collect();
     if counts.is_empty() {
@@ -56,7 +57,7 @@ fn head(path: &Path) -> Result<(Tokens<BufReader<std::fs::File>>, u64, u64), Poi
         counts = line.split_whitespace().map_while(|word| word.parse().ok()).collect();
     }
     let [vertices, faces, ..] = counts[..] else {
-        return Err(said(Reason::damaged(
+        return Err(fail(Reason::damaged(
             "does not say how many vertices and faces it has: it is damaged",
         )));
     };
@@ -84,12 +85,12 @@ pub(super) fn position<'a>(
 }
 
 /// Lines without remarks and empty ones.
-struct Tokens<R> {
+struct ContentLines<R> {
     lines: Lines<R>,
     number: u64,
 }
 
-impl<R: BufRead> Tokens<R> {
+impl<R: BufRead> ContentLines<R> {
     fn next(&mut self, path: &Path) -> Result<Option<String>, PointsError> {
         while let Some(line) = self.lines.read_line().map_err(io_error(path))? {
             self.number += 1;

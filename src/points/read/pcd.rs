@@ -1,29 +1,28 @@
-use std::io::{BufReader, Read};
+use std::io::Read;
 use std::path::Path;
 
 use super::{Points, PointsError, RADIUS, format, take_radii};
-use crate::volume::{Lines, Reason, io_error};
+use crate::volume::{Lines, OpenFile, Reason, io_error};
 
 /// Reads PCD, the Point Cloud Library's format: text, binary or compressed, with the fields x, y and z,
 /// optionally weight or radius, and value or else intensity. Points without a place (NaN, as scanners mark them) are
 /// left out.
-pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
-    let said = |reason: Reason| format(path, reason);
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    let mut lines = Lines::new(BufReader::new(file));
+pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+    let path = file.path();
+    let fail = |reason: Reason| format(path, reason);
+    let mut lines = Lines::new(file.reader()?);
     let mut header = Header::default();
     let data = loop {
         let line = lines.read_line().map_err(io_error(path))?;
         let line = line.ok_or_else(|| {
-            said(Reason::truncated("ends inside its PCD header: it is truncated"))
+            fail(Reason::truncated("ends inside its PCD header: it is truncated"))
         })?;
         if let Some(data) = line.strip_prefix("DATA ") {
             break data.trim().to_owned();
         }
-        header.take(&line).map_err(said)?;
+        header.take(&line).map_err(fail)?;
     };
-    header.check(length).map_err(said)?;
+    header.check(file.length()).map_err(fail)?;
     let mut bytes = Vec::new();
     lines.into_inner().read_to_end(&mut bytes).map_err(io_error(path))?;
     let rows = match data.as_str() {
@@ -35,7 +34,7 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
             "convert it first",
         )),
     };
-    header.points(path, &rows.map_err(said)?)
+    header.points(path, &rows.map_err(fail)?)
 }
 
 #[derive(Default)]

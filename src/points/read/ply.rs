@@ -1,18 +1,17 @@
-use std::io::{BufReader, Read};
+use std::io::{BufRead, Read};
 use std::path::Path;
 
 use super::{COLUMNS, CellCount, Points, PointsError, RADIUS, format, take_radii};
-use crate::volume::{Dtype, Element as _, Endian, Lines, Reason, io_error};
+use crate::volume::{Dtype, Element as _, Endian, Lines, OpenFile, Reason, io_error};
 
 /// Reads the vertices of a PLY file, text or binary of either byte order: properties x, y and z,
 /// optionally weight or radius, and value. All other elements must be there as the header claims.
-pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
-    let said = |reason: Reason| format(path, reason);
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    let mut lines = Lines::new(BufReader::new(file));
+pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+    let path = file.path();
+    let fail = |reason: Reason| format(path, reason);
+    let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
-    let left = length - lines.bytes();
+    let left = file.length() - lines.bytes();
     let mut reader = lines.into_inner();
     let mut numbers = if let Some(endian) = header.endian {
         Numbers::Binary(reader, endian)
@@ -23,20 +22,20 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
     };
     let mut points = None;
     for element in &header.elements {
-        element.fits(header.endian.is_some(), left).map_err(said)?;
+        element.fits(header.endian.is_some(), left).map_err(fail)?;
         if element.name == "vertex" && points.is_none() {
             points = Some(vertices(path, element, &mut numbers)?);
         } else {
-            element.skip(&mut numbers).map_err(said)?;
+            element.skip(&mut numbers).map_err(fail)?;
         }
     }
     if !numbers.at_end() {
-        return Err(said(Reason::header(
+        return Err(fail(Reason::header(
             "goes on behind its last element: it is too long or mislabelled",
         )));
     }
     points.ok_or_else(|| {
-        said(Reason::content(
+        fail(Reason::content(
             "has no element vertex: there are no points in it",
             "name another file",
         ))
@@ -44,9 +43,8 @@ pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
 }
 
 /// How many faces, edges and so on the header claims.
-pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let header = Header::read(path, &mut Lines::new(BufReader::new(file)))?;
+pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
+    let header = Header::read(file.path(), &mut Lines::new(file.reader()?))?;
     let count = |element: &Element| {
         let kind = match element.name.as_str() {
             "face" => "faces",
@@ -60,8 +58,12 @@ pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
     Ok(header.elements.iter().filter_map(count).collect())
 }
 
-fn vertices(path: &Path, element: &Element, numbers: &mut Numbers) -> Result<Points, PointsError> {
-    let said = |reason: Reason| format(path, reason);
+fn vertices(
+    path: &Path,
+    element: &Element,
+    numbers: &mut Numbers<impl Read>,
+) -> Result<Points, PointsError> {
+    let fail = |reason: Reason| format(path, reason);
     let column = |property: &Property| match property {
         Property::Scalar(name, _) => {
             COLUMNS.iter().position(|column| column.eq_ignore_ascii_case(name))
@@ -72,7 +74,7 @@ fn vertices(path: &Path, element: &Element, numbers: &mut Numbers) -> Result<Poi
     for (place, name) in COLUMNS.iter().enumerate() {
         let count = columns.iter().filter(|&&column| column == Some(place)).count();
         if count > 1 || (count == 0 && place < 3) {
-            return Err(said(Reason::header(format!(
+            return Err(fail(Reason::header(format!(
                 "has {count} vertex properties {name}, and needs one"
             ))));
         }
@@ -84,7 +86,7 @@ fn vertices(path: &Path, element: &Element, numbers: &mut Numbers) -> Result<Poi
     for _ in 0..element.count {
         let mut position = [0.0; 3];
         for (property, column) in element.properties.iter().zip(&columns) {
-            let number = property.read(numbers).map_err(said)?;
+            let number = property.read(numbers).map_err(fail)?;
             match *column {
                 Some(3) => points.weights.get_or_insert_default().push(number),
                 Some(4) => points.values.get_or_insert_default().push(number),
@@ -119,23 +121,23 @@ enum Property {
 }
 
 impl Header {
-    fn read(path: &Path, lines: &mut Lines<BufReader<std::fs::File>>) -> Result<Self, PointsError> {
-        let said = |reason: Reason| format(path, reason);
+    fn read(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Self, PointsError> {
+        let fail = |reason: Reason| format(path, reason);
         let mut line = || lines.read_line().map_err(io_error(path));
         if line()?.as_deref() != Some("ply") {
-            return Err(said(Reason::other("is no PLY file: it does not begin with a line ply")));
+            return Err(fail(Reason::other("is no PLY file: it does not begin with a line ply")));
         }
         let mut endian = None;
         let mut elements: Vec<Element> = Vec::new();
         while let Some(line) = line()? {
             let words: Vec<&str> = line.split_whitespace().collect();
             let damaged = || {
-                said(Reason::header(format!("has a header line {line:?}, which is not understood")))
+                fail(Reason::header(format!("has a header line {line:?}, which is not understood")))
             };
             match words[..] {
                 ["end_header"] => {
                     let endian = endian
-                        .ok_or_else(|| said(Reason::header("has no format in its header")))?;
+                        .ok_or_else(|| fail(Reason::header("has no format in its header")))?;
                     return Ok(Self { endian, elements });
                 }
                 ["comment" | "obj_info", ..] | [] => {}
@@ -163,7 +165,7 @@ impl Header {
                 _ => return Err(damaged()),
             }
         }
-        Err(said(Reason::truncated("ends inside its PLY header: it is truncated")))
+        Err(fail(Reason::truncated("ends inside its PLY header: it is truncated")))
     }
 }
 
@@ -185,7 +187,7 @@ impl Element {
         Ok(())
     }
 
-    fn skip(&self, numbers: &mut Numbers) -> Result<(), Reason> {
+    fn skip(&self, numbers: &mut Numbers<impl Read>) -> Result<(), Reason> {
         // Without properties there is nothing to pass over, however many there are.
         let rows = if self.properties.is_empty() { 0 } else { self.count };
         for _ in 0..rows {
@@ -199,7 +201,7 @@ impl Element {
 
 impl Property {
     /// Reads a number, or passes over a list.
-    fn read(&self, numbers: &mut Numbers) -> Result<f64, Reason> {
+    fn read(&self, numbers: &mut Numbers<impl Read>) -> Result<f64, Reason> {
         match *self {
             Self::Scalar(_, dtype) => numbers.next(dtype),
             Self::List(count, item) => {
@@ -217,12 +219,12 @@ impl Property {
 }
 
 /// The numbers after a header.
-enum Numbers {
+enum Numbers<R> {
     Text { text: String, at: usize },
-    Binary(BufReader<std::fs::File>, Endian),
+    Binary(R, Endian),
 }
 
-impl Numbers {
+impl<R: Read> Numbers<R> {
     fn next(&mut self, dtype: Dtype) -> Result<f64, Reason> {
         let cut = || Reason::truncated("ends before all its elements: it is truncated");
         match self {

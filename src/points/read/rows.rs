@@ -8,7 +8,7 @@ use crate::volume::Reason;
 impl Columns {
     /// By the numbers in them: x y z, followed by a value, with a normal (of length 1 or 0) or with a
     /// colour (whole numbers up to 255).
-    fn guessed(rows: &[Vec<f64>]) -> Result<Self, Reason> {
+    fn guess(rows: &[Vec<f64>]) -> Result<Self, Reason> {
         let count = rows.first().map_or(0, Vec::len);
         let vectors = || rows.iter().map(|row| &row[3..]);
         let unit = |v: &[f64]| {
@@ -42,8 +42,8 @@ impl Columns {
     }
 }
 
-/// Rows that are looked at before anything is said about columns without names.
-const LOOKED_AT: usize = 100;
+/// Rows that columns without names are guessed from.
+const MOST_WAITING: usize = 100;
 
 /// Makes points of rows of text.
 pub(super) struct TextRows<'a> {
@@ -51,10 +51,10 @@ pub(super) struct TextRows<'a> {
     columns: Option<Columns>,
     /// The first lines, while their columns are not known.
     waiting: Vec<(u64, Vec<String>)>,
-    /// Whether 0,5 is a half.
+    /// Whether the decimal mark is a comma.
     pub decimal_comma: bool,
-    /// What that many columns without names are.
-    pub usual: Option<Columns>,
+    /// What columns without names hold, where there are as many as these.
+    pub default_columns: Option<Columns>,
     points: Points,
     radii: Option<Vec<f64>>,
 }
@@ -62,11 +62,19 @@ pub(super) struct TextRows<'a> {
 impl<'a> TextRows<'a> {
     pub(super) fn new(path: &'a Path, columns: Option<Columns>) -> Self {
         let (waiting, points) = (Vec::new(), Points::default());
-        Self { path, columns, waiting, decimal_comma: false, usual: None, points, radii: None }
+        Self {
+            path,
+            columns,
+            waiting,
+            decimal_comma: false,
+            default_columns: None,
+            points,
+            radii: None,
+        }
     }
 
-    /// Says what the columns are, unless the user has.
-    pub(super) fn are(&mut self, columns: Columns) {
+    /// Sets the columns, unless the user has named them.
+    pub(super) fn set_columns(&mut self, columns: Columns) {
         self.columns.get_or_insert(columns);
     }
 
@@ -76,20 +84,20 @@ impl<'a> TextRows<'a> {
             return self.add(line, words);
         }
         let first = self.waiting.first().map_or(words.len(), |(_, words)| words.len());
-        self.same(line, words.len(), first)?;
+        self.check_width(line, words.len(), first)?;
         self.waiting.push((line, words.iter().map(|&word| word.into()).collect()));
-        if self.waiting.len() < LOOKED_AT { Ok(()) } else { self.look() }
+        if self.waiting.len() < MOST_WAITING { Ok(()) } else { self.flush() }
     }
 
     /// The points.
     pub(super) fn finish(mut self) -> Result<Points, PointsError> {
-        self.look()?;
+        self.flush()?;
         take_radii(self.path, &mut self.points, self.radii)?;
         Ok(self.points)
     }
 
-    /// Adds the lines that wait.
-    fn look(&mut self) -> Result<(), PointsError> {
+    /// Adds the waiting lines.
+    fn flush(&mut self) -> Result<(), PointsError> {
         let waiting = std::mem::take(&mut self.waiting);
         if waiting.is_empty() {
             return Ok(());
@@ -101,11 +109,11 @@ impl<'a> TextRows<'a> {
             };
             rows.push(words.iter().enumerate().map(number).collect::<Result<Vec<_>, _>>()?);
         }
-        let usual =
-            self.usual.take_if(|usual| rows.first().is_some_and(|row| row.len() == usual.len()));
-        self.columns = Some(match usual {
-            Some(usual) => usual,
-            None => Columns::guessed(&rows).map_err(|reason| format(self.path, reason))?,
+        let width = rows.first().map(Vec::len);
+        let defaults = self.default_columns.take_if(|columns| width == Some(columns.len()));
+        self.columns = Some(match defaults {
+            Some(columns) => columns,
+            None => Columns::guess(&rows).map_err(|reason| format(self.path, reason))?,
         });
         let mut waiting = waiting.into_iter();
         waiting.try_for_each(|(line, words)| {
@@ -115,7 +123,7 @@ impl<'a> TextRows<'a> {
 
     fn add(&mut self, line: u64, words: &[&str]) -> Result<(), PointsError> {
         let Some(Columns(columns)) = self.columns.take() else { return Ok(()) };
-        self.same(line, words.len(), columns.len())?;
+        self.check_width(line, words.len(), columns.len())?;
         let mut position = [0.0; 3];
         for (word, column) in words.iter().zip(&columns) {
             let Some(column) = *column else { continue };
@@ -132,7 +140,7 @@ impl<'a> TextRows<'a> {
         Ok(())
     }
 
-    fn same(&self, line: u64, found: usize, expected: usize) -> Result<(), PointsError> {
+    fn check_width(&self, line: u64, found: usize, expected: usize) -> Result<(), PointsError> {
         if found == expected {
             return Ok(());
         }

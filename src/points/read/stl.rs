@@ -1,10 +1,9 @@
 use std::collections::HashSet;
-use std::io::{BufReader, Read};
-use std::path::Path;
+use std::io::Read;
 
 use super::off::position;
 use super::{CellCount, Points, PointsError, format};
-use crate::volume::{Lines, Reason, io_error};
+use crate::volume::{Lines, OpenFile, Reason, io_error};
 
 /// Bytes before the facets of a binary STL file: a head, and how many there are.
 const HEAD: u64 = 84;
@@ -12,15 +11,14 @@ const HEAD: u64 = 84;
 const FACET: u64 = 50;
 
 /// Reads the vertices of an STL file, binary or text: the corners of its facets, each place once.
-pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    let mut reader = BufReader::new(file);
+pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+    let (path, length) = (file.path(), file.length());
+    let mut reader = file.reader()?;
     let mut head = Vec::new();
     (&mut reader).take(HEAD).read_to_end(&mut head).map_err(io_error(path))?;
     let count = head.last_chunk().map_or(0, |&count| u64::from(u32::from_le_bytes(count)));
     if is_text(&head, length, count) {
-        return text(path);
+        return text(file);
     }
     if (head.len() as u64) < HEAD || length < HEAD + FACET * count {
         let reason = Reason::truncated(format!(
@@ -46,15 +44,13 @@ fn is_text(head: &[u8], length: u64, count: u64) -> bool {
 }
 
 /// How many facets there are.
-pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
+pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
+    let (path, length) = (file.path(), file.length());
     let mut head = Vec::new();
-    (&file).take(HEAD).read_to_end(&mut head).map_err(io_error(path))?;
+    file.reader()?.take(HEAD).read_to_end(&mut head).map_err(io_error(path))?;
     let mut count = head.last_chunk().map_or(0, |&count| u64::from(u32::from_le_bytes(count)));
     if is_text(&head, length, count) {
-        let file = std::fs::File::open(path).map_err(io_error(path))?;
-        let mut lines = Lines::new(BufReader::new(file));
+        let mut lines = Lines::new(file.reader()?);
         count = 0;
         while let Some(line) = lines.read_line().map_err(io_error(path))? {
             count += u64::from(line.split_whitespace().next() == Some("facet"));
@@ -63,9 +59,9 @@ pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
     Ok(vec![CellCount::new("facets", count as usize)])
 }
 
-fn text(path: &Path) -> Result<Points, PointsError> {
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let mut lines = Lines::new(BufReader::new(file));
+fn text(file: &OpenFile) -> Result<Points, PointsError> {
+    let path = file.path();
+    let mut lines = Lines::new(file.reader()?);
     let mut corners = Corners::default();
     let (mut number, mut ended) = (0, false);
     while let Some(line) = lines.read_line().map_err(io_error(path))? {
@@ -84,7 +80,7 @@ fn text(path: &Path) -> Result<Points, PointsError> {
     }
 }
 
-/// Places, each once, in the order in which they come.
+/// Distinct positions, in order of first appearance.
 #[derive(Default)]
 struct Corners {
     points: Points,

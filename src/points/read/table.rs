@@ -1,28 +1,25 @@
-use std::io::BufReader;
-use std::path::Path;
-
 use super::rows::TextRows;
 use super::{Columns, Points, PointsError, format};
-use crate::volume::{Lines, Reason, io_error};
+use crate::volume::{Lines, OpenFile, Reason, io_error};
 
 /// Reads CSV, or tables whose fields are separated by tabs or semicolons; then 0,5 is a half. The first
 /// line may name the columns.
-pub(crate) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, PointsError> {
-    let said = |error: csv::Error| {
+pub(crate) fn read(file: &OpenFile, columns: Option<&Columns>) -> Result<Points, PointsError> {
+    let path = file.path();
+    let fail = |error: csv::Error| {
         format(path, Reason::header(format!("is not a table of points: {error}")))
     };
-    let delimiter = delimiter(path)?;
+    let delimiter = delimiter(file)?;
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(delimiter)
         .has_headers(false)
         .trim(csv::Trim::All)
-        .from_path(path)
-        .map_err(said)?;
+        .from_reader(file.reader()?);
     let mut rows = TextRows::new(path, columns.cloned());
     rows.decimal_comma = delimiter == b';';
     let mut record = csv::StringRecord::new();
     let mut first = true;
-    while reader.read_record(&mut record).map_err(said)? {
+    while reader.read_record(&mut record).map_err(fail)? {
         let line = record.position().map_or(0, csv::Position::line);
         let words: Vec<&str> = record.iter().collect();
         if !std::mem::take(&mut first) || is_numbers(&words) {
@@ -33,7 +30,7 @@ pub(crate) fn read(path: &Path, columns: Option<&Columns>) -> Result<Points, Poi
             words.iter().map(|word| word.trim_start_matches(['\u{feff}', '#', ' '])).collect();
         match (Columns::named(&names), columns) {
             (_, Some(_)) => {}
-            (Ok(named), None) => rows.are(named),
+            (Ok(named), None) => rows.set_columns(named),
             (Err(unknown), None) => {
                 let reason = Reason::content(format!("{FIRST_LINE}: {unknown}"), unknown.advice());
                 return Err(format(path, reason));
@@ -63,9 +60,8 @@ fn is_numbers(words: &[&str]) -> bool {
 }
 
 /// What the first line has: a semicolon, a comma or a tab, in this order.
-fn delimiter(path: &Path) -> Result<u8, PointsError> {
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let line = Lines::new(BufReader::new(file)).read_line().map_err(io_error(path))?;
+fn delimiter(file: &OpenFile) -> Result<u8, PointsError> {
+    let line = Lines::new(file.reader()?).read_line().map_err(io_error(file.path()))?;
     let line = line.unwrap_or_default();
     Ok(*b";,\t".iter().find(|&&byte| line.contains(char::from(byte))).unwrap_or(&b','))
 }

@@ -4,14 +4,14 @@ use walpha_check::schema::ComplexFile;
 use walpha_complex::{Alpha, Class};
 
 use super::{CellCount, Points, PointsError, format, take_radii};
-use crate::volume::{Reason, VtkPoints, VtkXml};
+use crate::volume::{OpenFile, Reason, VtkPoints, VtkXml};
 
 /// Arrays that are no values, though they may be the active scalars.
 const OF_WEIGHTS: [&str; 2] = ["weight", "radius"];
 
 /// Whether a file holds points and not a volume.
-pub(crate) fn holds_points(path: &Path) -> Result<bool, PointsError> {
-    Ok(is_geometry(&VtkXml::open(path)?))
+pub(crate) fn holds_points(file: &OpenFile) -> Result<bool, PointsError> {
+    Ok(is_geometry(&VtkXml::open(file)?))
 }
 
 fn is_geometry(file: &VtkXml) -> bool {
@@ -20,8 +20,8 @@ fn is_geometry(file: &VtkXml) -> bool {
 
 /// Reads the points of VTU or VTP, VTK's unstructured grids and polygons in XML, in one piece, with
 /// the point data `weight` (or `radius`) and `value`, in any case; where none is named value, the active scalars.
-pub(crate) fn read(path: &Path) -> Result<Points, PointsError> {
-    points(path, &VtkXml::open(path)?)
+pub(crate) fn read(file: &OpenFile) -> Result<Points, PointsError> {
+    points(file.path(), &VtkXml::open(file)?)
 }
 
 fn points(path: &Path, file: &VtkXml) -> Result<Points, PointsError> {
@@ -73,10 +73,11 @@ fn points(path: &Path, file: &VtkXml) -> Result<Points, PointsError> {
 }
 
 /// Reads the points of legacy VTK files, with the same data.
-pub(crate) fn read_legacy(path: &Path) -> Result<Points, PointsError> {
-    let file = VtkPoints::open(path)?;
+pub(crate) fn read_legacy(file: &OpenFile) -> Result<Points, PointsError> {
+    let path = file.path();
+    let file = VtkPoints::open(file)?;
     let mut points = Points {
-        positions: file.places()?.as_chunks().0.to_vec(),
+        positions: file.coordinates()?.as_chunks().0.to_vec(),
         weights: file.named("weight")?,
         values: match file.named("value")? {
             Some(values) => Some(values),
@@ -90,8 +91,9 @@ pub(crate) fn read_legacy(path: &Path) -> Result<Points, PointsError> {
 
 /// How many cells of each kind a VTU or VTP file has. Where all are vertices and no α is stated, they are but
 /// points.
-pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
-    let file = VtkXml::open(path)?;
+pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
+    let path = file.path();
+    let file = VtkXml::open(file)?;
     let (dataset, piece) = file.piece()?;
     if file.kind() == "PolyData" {
         let count = |(attribute, kind): (&str, &'static str)| {
@@ -118,15 +120,16 @@ pub(crate) fn cells(path: &Path) -> Result<Vec<CellCount>, PointsError> {
 }
 
 /// How many cells of each kind a legacy file has, single points aside.
-pub(crate) fn cells_of_legacy(path: &Path) -> Result<Vec<CellCount>, PointsError> {
-    let cells = VtkPoints::open(path)?.cells.into_iter();
+pub(crate) fn cells_of_legacy(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
+    let cells = VtkPoints::open(file)?.cells.into_iter();
     Ok(cells.map(|(kind, count)| CellCount::new(kind, count as usize)).collect())
 }
 
 /// Reads the simplices of a VTU file with its points and weights. Where walpha wrote it, the classes and α
 /// too; otherwise α is ∞, and all that is listed is in the shape.
-pub(crate) fn read_complex(path: &Path) -> Result<ComplexFile, PointsError> {
-    let file = VtkXml::open(path)?;
+pub(crate) fn read_complex(file: &OpenFile) -> Result<ComplexFile, PointsError> {
+    let path = file.path();
+    let file = VtkXml::open(file)?;
     let points = points(path, &file)?;
     let (dataset, piece) = file.piece()?;
     if file.kind() != "UnstructuredGrid" {
@@ -238,13 +241,13 @@ fn stated_alpha(file: &VtkXml, dataset: usize) -> Result<Option<Alpha>, PointsEr
 /// The cells of an unstructured grid.
 struct Grid<'a> {
     path: &'a Path,
-    file: &'a VtkXml,
+    file: &'a VtkXml<'a>,
     piece: usize,
     count: u64,
 }
 
 impl<'a> Grid<'a> {
-    fn new(path: &'a Path, file: &'a VtkXml, piece: usize) -> Result<Self, PointsError> {
+    fn new(path: &'a Path, file: &'a VtkXml<'a>, piece: usize) -> Result<Self, PointsError> {
         let count = file.attribute(piece, "NumberOfCells").and_then(|text| text.parse().ok());
         match count {
             Some(count) => Ok(Self { path, file, piece, count }),

@@ -1,15 +1,15 @@
-use std::io::{BufRead, BufReader};
+use std::io::BufRead;
 use std::path::Path;
 
 use super::extended::Comment;
 use super::rows::TextRows;
 use super::{COLUMNS, Columns, Points, PointsError, format};
 use crate::points::ModelFacts;
-use crate::volume::{Lines, Reason, io_error};
+use crate::volume::{Lines, OpenFile, Reason, io_error};
 
 /// What lines of numbers are, where nothing else says it.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Lay {
+pub(crate) enum TextLayout {
     /// A first line with nothing but a count begins chemistry's XYZ: a line of words, which extended XYZ has a
     /// form for, then an element and the coordinates of each atom, and whatever follows these.
     Atoms,
@@ -21,9 +21,9 @@ pub(crate) enum Lay {
     PointsThenNormals,
 }
 
-impl Lay {
+impl TextLayout {
     /// What columns without names are, where it does not depend on their numbers.
-    fn usual(self) -> Option<Columns> {
+    fn default_columns(self) -> Option<Columns> {
         let axes = [Some(0), Some(1), Some(2)];
         match self {
             Self::Atoms | Self::PointsThenNormals => None,
@@ -36,14 +36,14 @@ impl Lay {
 /// Reads lines of numbers between white space (or commas). A first line of names, optionally after `#` or
 /// `//`, says what they are; other lines that begin so are remarks.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     columns: Option<&Columns>,
-    lay: Lay,
+    layout: TextLayout,
 ) -> Result<(Points, ModelFacts), PointsError> {
-    let file = std::fs::File::open(path).map_err(io_error(path))?;
-    let mut lines = Lines::new(BufReader::new(file));
+    let path = file.path();
+    let mut lines = Lines::new(file.reader()?);
     let mut rows = TextRows::new(path, columns.cloned());
-    rows.usual = lay.usual();
+    rows.default_columns = layout.default_columns();
     let (mut number, mut first, mut claimed) = (0, true, None);
     while let Some(line) = lines.read_line().map_err(io_error(path))? {
         number += 1;
@@ -54,20 +54,20 @@ pub(crate) fn read(
         }
         if first {
             if let Ok(named) = Columns::named(&words) {
-                rows.are(named);
+                rows.set_columns(named);
                 first = false;
                 continue;
             }
             if let ([count], false) = (words.as_slice(), remark)
                 && let Ok(count) = count.parse()
             {
-                match lay {
-                    Lay::Atoms | Lay::Vectors => return atoms(path, lines, count),
-                    Lay::PointsThenNormals => {
+                match layout {
+                    TextLayout::Atoms | TextLayout::Vectors => return atoms(path, lines, count),
+                    TextLayout::PointsThenNormals => {
                         let points = points_then_normals(path, lines, count)?;
                         return Ok((points, ModelFacts::default()));
                     }
-                    Lay::Scan => claimed = Some(count),
+                    TextLayout::Scan => claimed = Some(count),
                 }
                 continue;
             }

@@ -1,8 +1,6 @@
 //! From bytes to points.
 
-use std::fs::File;
 use std::io::Read;
-use std::path::Path;
 
 use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::try_with_capacity;
@@ -13,40 +11,39 @@ use super::header::{CHECKSUM, Header, Layer, Values, Weights, damaged, fits};
 use super::write::{Coders, in_order};
 use crate::points::read::format;
 use crate::points::{ModelFacts, Points, PointsError, SampleGrid, WeightedPoints};
-use crate::volume::{Reason, io_error};
+use crate::volume::{OpenFile, Reason, io_error};
 
 /// Reads points without the last `level` layers, and what is known of them.
 ///
 /// Memory is in proportion to the file, whatever its header claims: a byte holds 64 points at most.
 pub(in crate::points) fn read(
-    path: &Path,
+    file: &OpenFile,
     level: u32,
 ) -> Result<(Points, ModelFacts), PointsError> {
-    let said = |reason: Reason| format(path, reason);
-    let mut file = File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
+    let (path, length) = (file.path(), file.length());
+    let fail = |reason: Reason| format(path, reason);
     let mut bytes = try_with_capacity(length as usize, || format!("{length} bytes of a file"))?;
-    file.read_to_end(&mut bytes).map_err(io_error(path))?;
-    let (header, head) = Header::of_bytes(&bytes).map_err(said)?;
+    file.reader()?.read_to_end(&mut bytes).map_err(io_error(path))?;
+    let (header, head) = Header::of_bytes(&bytes).map_err(fail)?;
     let layers = header.layers.len();
     let wanted = layers.saturating_sub(level as usize);
     if wanted == 0 && level > 0 {
         let what = format!("has {layers} levels");
         let most = layers.saturating_sub(1);
         let advice = advice!["give ", Setting::Level, format!(" from 0 to {most}")];
-        return Err(said(Reason::choice(Setting::Level, what, advice)));
+        return Err(fail(Reason::choice(Setting::Level, what, advice)));
     }
-    let body = layers_of(&header, &bytes[head..], wanted).map_err(said)?;
+    let body = layers_of(&header, &bytes[head..], wanted).map_err(fail)?;
     let mut model = Model::new(&header);
     for (k, (layer, bytes)) in header.layers.iter().zip(body).enumerate() {
         let Some((bytes, checksum)) = bytes.split_last_chunk::<CHECKSUM>() else { continue };
         if !fits(bytes, u32::from_le_bytes(*checksum)) {
-            return Err(said(damaged(&format!("layer {k}"))));
+            return Err(fail(damaged(&format!("layer {k}"))));
         }
         model.reserve(layer.count as usize)?;
         if model.layer(layer, bytes).is_none() {
             let what = format!("is damaged: layer {k} does not hold what the header says");
-            return Err(said(Reason::damaged(what)));
+            return Err(fail(Reason::damaged(what)));
         }
     }
     let WeightedPoints { positions, weights, values } = model.points();

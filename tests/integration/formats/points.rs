@@ -1,6 +1,11 @@
 //! Points of every format, damaged ones, and tables.
 
+#[cfg(unix)]
+use std::{process::Command, sync::mpsc, thread, time::Duration};
+
 use walpha::points::{Columns, read_points};
+#[cfg(unix)]
+use walpha::{Recipe, pipeline::Input, progress::Monitor};
 
 use super::files::*;
 use crate::common::told::Told;
@@ -24,6 +29,29 @@ fn points_of_every_format_are_read() {
         assert!(!walpha::points::is_point_file(&path).unwrap(), "{name}");
     }
     assert!(!walpha::points::is_point_file(folder.path()).unwrap());
+}
+
+/// Whoever opens a pipe again waits for ever: another writer does not come.
+#[test]
+#[cfg(unix)]
+fn points_come_through_a_pipe_that_is_opened_once() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in [
+        ("p.xyz", "0 0 0\n1 0 0\n"),
+        ("p.obj", "v 0 0 0\nv 1 0 0\n"),
+        ("p.off", "OFF\n2 0 0\n0 0 0\n1 0 0\n"),
+    ] {
+        let path = folder.path().join(name);
+        assert!(Command::new("mkfifo").arg(&path).status().unwrap().success());
+        let (opened, done) = mpsc::channel();
+        let input = path.clone();
+        thread::spawn(move || {
+            opened.send(Recipe::default().open(&input, &Monitor::noop()).map_err(|e| e.to_string()))
+        });
+        std::fs::write(&path, text).unwrap();
+        let input = done.recv_timeout(Duration::from_secs(60)).expect(name).unwrap();
+        assert!(matches!(input, Input::Points(points, _) if points.len() == 2), "{name}");
+    }
 }
 
 #[test]

@@ -2,8 +2,10 @@ use std::fs;
 use std::path::Path;
 
 use ndarray::Array3;
+use walpha::progress::Monitor;
 use walpha::volume::{
-    Coordinates, Dtype, Endian, FORMATS, Frame, RawLayout, ReadOptions, Volume, VolumeWriter, read,
+    Coordinates, Dtype, Endian, FORMATS, Frame, OpenFile, RawLayout, ReadOptions, Volume,
+    VolumeWriter, read, read_file,
 };
 
 use super::files::*;
@@ -61,6 +63,21 @@ fn small_files_of_every_flavour_are_read() {
             let frame = Frame { origin: [4.0, 5.0, 6.0], spacing: [1.0, 2.0, 3.0], ..Frame::VOXEL };
             assert_eq!(*volume.frame(), frame.with_coordinates(Coordinates::default()), "{name}");
         }
+    }
+}
+
+/// A file that is gone once it is open can be read no second time.
+#[test]
+#[cfg(unix)]
+fn volumes_are_read_from_a_file_that_is_opened_once() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in examples() {
+        let path = save(folder.path(), name, bytes);
+        let file = OpenFile::open(&path).unwrap();
+        fs::remove_file(&path).unwrap();
+        let volume = read_file(&file, &ReadOptions::default(), &Monitor::noop());
+        let volume = volume.unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(volume.as_slice(), numbers(), "{name}");
     }
 }
 

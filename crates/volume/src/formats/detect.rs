@@ -1,24 +1,24 @@
 //! Which format a file or folder is of, and reading it.
 
-use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-
-use flate2::read::MultiGzDecoder;
 
 use walpha_base::Monitor;
 use walpha_base::advice::Setting;
 use walpha_base::near::nearest;
 
-use super::{FORMATS, VolumeFormat};
+use super::magic::{is_dicom, is_gzip};
+use super::table::{FORMATS, VolumeFormat};
 
+use crate::error::{format_error, io_error};
 #[cfg(feature = "formats")]
 use crate::read::naming;
-use crate::read::{format_error, io_error, raw};
+use crate::read::series::is_zarr;
+use crate::read::{OpenFile, raw};
 use crate::source::whole_only;
 use crate::{ReadOptions, Reason, Series, Source, Volume, VolumeError};
 
-/// Bytes looked at.
+/// Bytes of what is unpacked that are looked at.
 const BYTES: u64 = 1024;
 
 /// Formats that are known and not read as volumes: what they begin with, what they are, and what to
@@ -61,13 +61,48 @@ pub fn read_monitored(
     options: &ReadOptions,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
+    if !is_folder(path, options) {
+        return read_file(&OpenFile::open(path)?, options, monitor);
+    }
+    let volume = format_of_folder(path).and_then(|format| {
+        accept(format, path, options)?;
+        let read = format.read_folder.ok_or_else(|| left_out(format, path))?;
+        read(path, options, monitor)
+    });
+    finish(path, options, volume, |error| error)
+}
+
+/// The same for a file that is open.
+///
+/// # Errors
+/// Those of [`read_monitored`].
+pub fn read_file(
+    file: &OpenFile,
+    options: &ReadOptions,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
     let volume = match &options.raw {
-        Some(layout) => raw::read(path, layout, monitor),
-        None => found(path, options).and_then(|found| found.read(path, options, monitor)),
+        Some(layout) => raw::read(file, layout, monitor),
+        None => detect(file, options).and_then(|Detected { format, .. }| {
+            accept(format, file.path(), options)?;
+            let read = format.read.ok_or_else(|| left_out(format, file.path()))?;
+            read(file, options, monitor)
+        }),
     };
-    let settled =
-        |volume: Volume| volume.settled(options.nan).map_err(|error| beside(path, options, error));
-    let volume = volume.and_then(|volume| options.part(settled(volume)?));
+    finish(file.path(), options, volume, |error| naming_data_files(file, options, error))
+}
+
+/// The part of a volume that is asked for, without NaN; `name` adds the names of files to an error about samples.
+fn finish(
+    path: &Path,
+    options: &ReadOptions,
+    volume: Result<Volume, VolumeError>,
+    name: impl Fn(VolumeError) -> VolumeError,
+) -> Result<Volume, VolumeError> {
+    let volume = volume.and_then(|volume| {
+        let finite = volume.resolve_nan(options.nan).map_err(name)?;
+        options.part(finite)
+    });
     volume.map_err(|error| match error {
         VolumeError::Io { .. }
         | VolumeError::Format { .. }
@@ -78,23 +113,53 @@ pub fn read_monitored(
 }
 
 /// An error about samples, with the names of the files that hold them where those are not the header's.
-fn beside(path: &Path, options: &ReadOptions, error: VolumeError) -> VolumeError {
+fn naming_data_files(file: &OpenFile, options: &ReadOptions, error: VolumeError) -> VolumeError {
     #[cfg(feature = "formats")]
-    if let Ok(files) = data_files(path, options)
+    if let Ok(files) = data_files_of(file, options)
         && !files.is_empty()
     {
-        return naming(path, &files)(error);
+        return naming(file.path(), &files)(error);
     }
-    let _ = (path, options);
+    let _ = (file, options);
     error
 }
 
 /// Opens a volume to be read part by part.
 pub(crate) fn source(path: &Path, options: &ReadOptions) -> Result<Source, VolumeError> {
-    match &options.raw {
-        Some(layout) => Ok(raw::rows(path, layout)?.source()),
-        None => found(path, options)?.source(path, options),
+    if is_folder(path, options) {
+        let format = format_of_folder(path)?;
+        accept(format, path, options)?;
+        return match format.parts_of_folder {
+            Some(parts) => parts(path, options),
+            None => Err(whole(format, path)),
+        };
     }
+    let file = OpenFile::open(path)?;
+    if let Some(layout) = &options.raw {
+        return Ok(raw::box_reader(&file, layout)?.source());
+    }
+    let Detected { format, gzip } = detect(&file, options)?;
+    accept(format, path, options)?;
+    match format.parts {
+        Some(parts) if !gzip => parts(&file, options),
+        _ => Err(whole(format, path)),
+    }
+}
+
+/// The error for a format that is not read part by part, or not at all in this build.
+fn whole(format: &VolumeFormat, path: &Path) -> VolumeError {
+    if format.is_built_in() { whole_only(path, format.name) } else { left_out(format, path) }
+}
+
+/// The error for a format that was left out of the build.
+fn left_out(format: &VolumeFormat, path: &Path) -> VolumeError {
+    let (what, feature) = (format.name, format.feature.unwrap_or_default());
+    format_error(path, Reason::Without { what, feature })
+}
+
+/// Whether a path is a folder to be recognised; bare samples are in a file.
+fn is_folder(path: &Path, options: &ReadOptions) -> bool {
+    options.raw.is_none() && path.is_dir()
 }
 
 /// What a file or folder is, as `NRRD` or `NIfTI, gzip`.
@@ -105,12 +170,11 @@ pub fn format_name(path: &Path, options: &ReadOptions) -> Result<String, VolumeE
     if options.raw.is_some() {
         return Ok("raw samples".into());
     }
-    let Found { format, gzip } = found(path, options)?;
-    Ok(match (path.is_dir(), gzip) {
-        (true, _) => format.folder_name.into(),
-        (_, true) => format!("{}, gzip", format.name),
-        _ => format.name.into(),
-    })
+    if path.is_dir() {
+        return Ok(format_of_folder(path)?.folder_name.into());
+    }
+    let Detected { format, gzip } = detect(&OpenFile::open(path)?, options)?;
+    Ok(if gzip { format!("{}, gzip", format.name) } else { format.name.into() })
 }
 
 /// The files that hold the samples of a volume, where its header is a file of its own (NRRD,
@@ -122,12 +186,59 @@ pub fn data_files(path: &Path, options: &ReadOptions) -> Result<Vec<PathBuf>, Vo
     if options.raw.is_some() || !path.is_file() {
         return Ok(Vec::new());
     }
-    match found(path, options)? {
-        Found { format: VolumeFormat { data_files: Some(data_files), .. }, gzip: false } => {
-            data_files(path)
+    data_files_of(&OpenFile::open(path)?, options)
+}
+
+fn data_files_of(file: &OpenFile, options: &ReadOptions) -> Result<Vec<PathBuf>, VolumeError> {
+    if options.raw.is_some() {
+        return Ok(Vec::new());
+    }
+    match detect(file, options)? {
+        Detected { format: VolumeFormat { data_files: Some(data_files), .. }, gzip: false } => {
+            data_files(file)
         }
         _ => Ok(Vec::new()),
     }
+}
+
+/// All files that a volume is read from: a file and those that its header names; of a folder the DICOM files in
+/// it, its slices, or all of a Zarr store. As far as can be told: what cannot be read has none.
+pub fn files_of(path: &Path) -> Vec<PathBuf> {
+    if path.is_dir() {
+        return files_of_folder(path);
+    }
+    let mut files = data_files(path, &ReadOptions::default()).unwrap_or_default();
+    files.push(path.to_owned());
+    files
+}
+
+fn files_of_folder(folder: &Path) -> Vec<PathBuf> {
+    let files = files_below(folder);
+    if is_zarr(folder) {
+        return files;
+    }
+    let is_dicom = |path: &PathBuf| OpenFile::open(path).is_ok_and(|file| is_dicom(file.start()));
+    let series: Vec<PathBuf> = files.into_iter().filter(is_dicom).collect();
+    #[cfg(feature = "formats")]
+    if series.is_empty() {
+        return crate::read::slices::slices(folder).unwrap_or_default();
+    }
+    series
+}
+
+/// The files in a folder and those in it. Links to folders are not followed: they may lead round in circles.
+fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let (mut folders, mut files) = (vec![folder.to_owned()], Vec::new());
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten() {
+            if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+                folders.push(entry.path());
+            } else if entry.path().is_file() {
+                files.push(entry.path());
+            }
+        }
+    }
+    files
 }
 
 /// The series in a folder; none where it holds no DICOM files.
@@ -149,19 +260,8 @@ pub fn begins_as_volume(start: &[u8]) -> bool {
     by_content(start).is_some()
 }
 
-/// The first bytes of a file, from which its format is recognised.
-///
-/// # Errors
-/// [`VolumeError`]: what cannot be read, and why.
-pub fn start_of(path: &Path) -> Result<Vec<u8>, VolumeError> {
-    let mut start = Vec::new();
-    let file = File::open(path).map_err(io_error(path))?;
-    file.take(BYTES).read_to_end(&mut start).map_err(io_error(path))?;
-    Ok(start)
-}
-
 /// The error for a file of no format known.
-pub(super) fn unknown(path: &Path) -> VolumeError {
+fn unknown(path: &Path) -> VolumeError {
     let given = path.extension().unwrap_or_default().to_string_lossy();
     let known = FORMATS.iter().filter(|format| format.is_built_in());
     let named = |format: &VolumeFormat| {
@@ -176,102 +276,78 @@ pub(super) fn unknown(path: &Path) -> VolumeError {
 }
 
 /// A format, and whether a file of it is compressed as a whole.
-struct Found {
+struct Detected {
     format: &'static VolumeFormat,
     gzip: bool,
 }
 
-impl Found {
-    fn read(
-        &self,
-        path: &Path,
-        options: &ReadOptions,
-        monitor: &Monitor,
-    ) -> Result<Volume, VolumeError> {
-        let Self { format, .. } = self;
-        self.accepts(path, options)?;
-        match (format.read, format.feature) {
-            (Some(read), _) => read(path, options, monitor),
-            (None, feature) => {
-                let (what, feature) = (format.name, feature.unwrap_or_default());
-                Err(format_error(path, Reason::Without { what, feature }))
-            }
+/// Refuses settings that the format has no use for.
+fn accept(format: &VolumeFormat, path: &Path, options: &ReadOptions) -> Result<(), VolumeError> {
+    for (setting, given) in [
+        (Setting::Level, options.level.is_some()),
+        (Setting::Array, options.array.is_some()),
+        (Setting::Frame, options.frame.is_some()),
+        (Setting::Series, options.series.is_some()),
+        (Setting::SkipDamaged, options.skip_damaged),
+    ] {
+        if given && !format.chooses.contains(&setting) {
+            let what = match setting {
+                Setting::Level => "is not a pyramid",
+                Setting::Array => "has no arrays with names",
+                Setting::Frame => "is of a format of one volume",
+                _ => "is no DICOM series",
+            };
+            return Err(format_error(path, Reason::needless(setting, what)));
         }
     }
-
-    fn source(&self, path: &Path, options: &ReadOptions) -> Result<Source, VolumeError> {
-        let Self { format, gzip } = self;
-        self.accepts(path, options)?;
-        match format.parts {
-            Some(parts) if !gzip => parts(path, options),
-            // It says what is missing where the format was left out.
-            _ if !format.is_built_in() => Err(self
-                .read(path, options, &Monitor::noop())
-                .err()
-                .unwrap_or_else(|| whole_only(path, format.name))),
-            _ => Err(whole_only(path, format.name)),
-        }
-    }
-
-    /// Refuses settings that the format has no use for.
-    fn accepts(&self, path: &Path, options: &ReadOptions) -> Result<(), VolumeError> {
-        let Self { format, .. } = self;
-        for (setting, given) in [
-            (Setting::Level, options.level.is_some()),
-            (Setting::Array, options.array.is_some()),
-            (Setting::Frame, options.frame.is_some()),
-            (Setting::Series, options.series.is_some()),
-            (Setting::SkipDamaged, options.skip_damaged),
-        ] {
-            if given && !format.chooses.contains(&setting) {
-                let what = match setting {
-                    Setting::Level => "is not a pyramid",
-                    Setting::Array => "has no arrays with names",
-                    Setting::Frame => "is of a format of one volume",
-                    _ => "is no DICOM series",
-                };
-                return Err(format_error(path, Reason::needless(setting, what)));
-            }
-        }
-        Ok(())
-    }
+    Ok(())
 }
 
-/// The format of a file or folder, which must be the one that the user says, if one is said.
-fn found(path: &Path, options: &ReadOptions) -> Result<Found, VolumeError> {
+/// The first format that a folder looks like.
+fn format_of_folder(path: &Path) -> Result<&'static VolumeFormat, VolumeError> {
+    for format in &FORMATS {
+        if (format.is_folder)(path)? {
+            return Ok(format);
+        }
+    }
+    Err(io_error(path)(io::ErrorKind::IsADirectory.into()))
+}
+
+/// The format of a file, which must be the one that the user says, if one is said.
+fn detect(file: &OpenFile, options: &ReadOptions) -> Result<Detected, VolumeError> {
     let asked = options.format.as_deref();
-    let found = found_as(path, asked)?;
-    let Found { format, .. } = found;
+    let detected = detect_as(file, asked)?;
+    let Detected { format, .. } = detected;
     let is_it = |asked: &str| format.extensions.iter().any(|own| own.eq_ignore_ascii_case(asked));
     // DICOM has no extension of its own.
     if asked.is_some_and(|asked| !is_it(asked) && !format.extensions.is_empty()) {
         let what = format!("is of the format {} by its content", format.name);
-        return Err(format_error(path, Reason::needless(Setting::Format, what)));
+        return Err(format_error(file.path(), Reason::needless(Setting::Format, what)));
     }
-    Ok(found)
+    Ok(detected)
 }
 
-fn found_as(path: &Path, asked: Option<&str>) -> Result<Found, VolumeError> {
-    if path.is_dir() {
-        for format in &FORMATS {
-            if (format.is_folder)(path)? {
-                return Ok(Found { format, gzip: false });
-            }
-        }
-    }
-    let start = start_of(path)?;
+fn detect_as(file: &OpenFile, asked: Option<&str>) -> Result<Detected, VolumeError> {
+    let (path, start) = (file.path(), file.start());
     if start.is_empty() {
-        let reason = Reason::content("is empty: there is no volume in it", "write it again");
+        let reason = if file.is_ordinary() {
+            Reason::content("is empty: there is no volume in it", "write it again")
+        } else {
+            Reason::unsupported(
+                "is not an ordinary file, and volumes are read in several passes",
+                "copy it into one",
+            )
+        };
         return Err(format_error(path, reason));
     }
-    if let Some(format) = by_content(&start) {
-        return Ok(Found { format, gzip: false });
+    if let Some(format) = by_content(start) {
+        return Ok(Detected { format, gzip: false });
     }
     if let Some((_, what, advice)) = REFUSED.iter().find(|(magic, ..)| start.starts_with(magic)) {
         return Err(format_error(path, Reason::unsupported(format!("is {what}"), *advice)));
     }
-    if start.starts_with(&[0x1f, 0x8b]) {
-        return unpacked(path, asked);
+    if is_gzip(start) {
+        return unpacked(file, asked);
     }
     #[expect(clippy::case_sensitive_file_extension_comparisons, reason = "names are in lower case")]
     if name(path, asked).ends_with(".gz") {
@@ -279,7 +355,7 @@ fn found_as(path: &Path, asked: Option<&str>) -> Result<Found, VolumeError> {
         return Err(format_error(path, Reason::content(what, "rename it")));
     }
     let format = by_extension(path, asked).ok_or_else(|| unknown(path))?;
-    Ok(Found { format, gzip: false })
+    Ok(Detected { format, gzip: false })
 }
 
 fn by_content(start: &[u8]) -> Option<&'static VolumeFormat> {
@@ -300,23 +376,23 @@ fn name(path: &Path, asked: Option<&str>) -> String {
 }
 
 /// What a gzip stream holds.
-fn unpacked(path: &Path, asked: Option<&str>) -> Result<Found, VolumeError> {
-    let file = File::open(path).map_err(io_error(path))?;
+fn unpacked(file: &OpenFile, asked: Option<&str>) -> Result<Detected, VolumeError> {
+    let path = file.path();
     let mut start = Vec::new();
     // What cannot be unpacked is left to the reader, which says why.
-    let unpacked = MultiGzDecoder::new(BufReader::new(file)).take(BYTES).read_to_end(&mut start);
+    let unpacked = file.unpacked()?.0.take(BYTES).read_to_end(&mut start);
     let packed = FORMATS.iter().filter(|format| format.gzip);
     let names: Vec<&str> = packed.clone().map(|format| format.name).collect();
     let names = names.join(", ");
     let of_name = by_extension(path, asked).filter(|format| format.gzip);
     match (by_content(&start), of_name) {
-        (Some(format), _) if format.gzip => Ok(Found { format, gzip: true }),
+        (Some(format), _) if format.gzip => Ok(Detected { format, gzip: true }),
         (Some(_), _) => {
             let what =
                 format!("is a whole file compressed with gzip, which is read for {names} only");
             Err(format_error(path, Reason::unsupported(what, "unpack it first")))
         }
-        (None, Some(format)) => Ok(Found { format, gzip: true }),
+        (None, Some(format)) => Ok(Detected { format, gzip: true }),
         (None, None) => {
             let what = match unpacked {
                 Ok(_) => format!(

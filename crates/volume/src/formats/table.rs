@@ -1,15 +1,134 @@
+//! The formats of volumes, and what is known of each.
+
+use std::fmt;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use walpha_base::Monitor;
 use walpha_base::advice::Setting;
 
-use super::begins::{is_dicom, is_metaimage, is_mgh, is_nifti, is_vtk, is_vtk_xml};
-use super::built;
-use super::{Keeps, VolumeFormat, VolumeWriter, detect};
-use crate::read::{NpyFile, inr, npy, raw, series};
-
+use super::magic::{is_dicom, is_metaimage, is_mgh, is_nifti, is_npy, is_tiff, is_vtk, is_vtk_xml};
+use super::{UnknownFormat, built};
+use crate::read::{OpenFile, inr, npy, series};
 #[cfg(feature = "formats")]
-use crate::read::{metaimage, mgh, nifti, npz, nrrd, slices, tiff, vti, vtk};
-use crate::write;
+use crate::read::{metaimage, mgh, nifti, npz, nrrd, slices, tiff, vtk};
+use crate::{ReadOptions, Source, Volume, VolumeError, write};
 
-/// All of a grid's place.
+/// Reads a file.
+type Read = fn(&OpenFile, &ReadOptions, &Monitor) -> Result<Volume, VolumeError>;
+/// Reads a folder.
+type ReadFolder = fn(&Path, &ReadOptions, &Monitor) -> Result<Volume, VolumeError>;
+/// Opens a file to be read part by part.
+type PartsOf = fn(&OpenFile, &ReadOptions) -> Result<Source, VolumeError>;
+/// Opens a folder to be read part by part.
+type PartsOfFolder = fn(&Path, &ReadOptions) -> Result<Source, VolumeError>;
+/// Names the files that hold the samples.
+type DataFiles = fn(&OpenFile) -> Result<Vec<PathBuf>, VolumeError>;
+
+/// A format of volumes.
+pub struct VolumeFormat {
+    /// For people.
+    pub name: &'static str,
+    /// The extensions of files read, without their first dots.
+    pub extensions: &'static [&'static str],
+    /// What it keeps of where samples lie and what they are.
+    pub keeps: Keeps,
+    /// Which settings choose one volume of a file or folder of several.
+    pub chooses: &'static [Setting],
+    /// The feature that reads and writes it; `None` where it needs none.
+    pub feature: Option<&'static str>,
+    /// Its targets for fuzzing.
+    pub fuzzed_by: &'static [&'static str],
+    /// Its writers.
+    pub writers: &'static [VolumeWriter],
+    /// Whether a whole file of it is read when compressed with gzip.
+    pub(super) gzip: bool,
+    /// How its files begin.
+    pub(super) begins: fn(&[u8]) -> bool,
+    /// For people, a folder of it.
+    pub(super) folder_name: &'static str,
+    /// How its folders look.
+    pub(super) is_folder: fn(&Path) -> Result<bool, VolumeError>,
+    /// Reads a file, where the format has files and was not left out of the build.
+    pub(super) read: Option<Read>,
+    /// Reads a folder, where the format has folders and was not left out of the build.
+    pub(super) read_folder: Option<ReadFolder>,
+    /// Opens a file to be read part by part, where its format lends itself to that.
+    pub(super) parts: Option<PartsOf>,
+    /// The same for a folder.
+    pub(super) parts_of_folder: Option<PartsOfFolder>,
+    /// The files that hold the samples, where a header does not.
+    pub(super) data_files: Option<DataFiles>,
+}
+
+/// What a format keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
+pub struct Keeps {
+    /// Distances of samples.
+    pub spacing: bool,
+    /// Where the grid begins and which way its axes run.
+    pub directions: bool,
+    /// The space these are in.
+    pub space: bool,
+    /// The unit of lengths.
+    pub unit: bool,
+    /// The type of samples; without it the user says it.
+    pub dtype: bool,
+}
+
+/// How volumes are written under an extension: samples as `f32`, little-endian, and the frame where the
+/// format has one, in the space and unit that are its convention.
+#[derive(Clone, Copy)]
+pub struct VolumeWriter {
+    /// The extension without its first dot.
+    pub extension: &'static str,
+    write: fn(&Volume, &mut dyn Write) -> io::Result<()>,
+}
+
+impl VolumeFormat {
+    /// Whether it was built in.
+    pub fn is_built_in(&self) -> bool {
+        self.feature.is_none() || self.read.is_some() || self.read_folder.is_some()
+    }
+}
+
+impl fmt::Debug for VolumeFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("VolumeFormat").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+impl VolumeWriter {
+    /// Those that were built in.
+    pub fn all() -> impl Iterator<Item = &'static Self> + Clone {
+        FORMATS.iter().filter(|format| format.is_built_in()).flat_map(|format| format.writers)
+    }
+
+    /// The writer a path asks for by its extension.
+    ///
+    /// # Errors
+    /// [`UnknownFormat`] names the ones there are.
+    pub fn of(path: &Path) -> Result<&'static Self, UnknownFormat> {
+        UnknownFormat::find(path, "a volume", Self::all().map(|writer| (writer.extension, writer)))
+    }
+
+    /// Writes the whole file. The same volume gives the same bytes.
+    ///
+    /// # Errors
+    /// Whatever `out` returns.
+    pub fn write(&self, volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+        (self.write)(volume, out)
+    }
+}
+
+impl fmt::Debug for VolumeWriter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("VolumeWriter").field("extension", &self.extension).finish_non_exhaustive()
+    }
+}
+
+/// Everything about where a grid lies.
 const ALL: Keeps = Keeps { spacing: true, directions: true, space: true, unit: true, dtype: true };
 /// The samples alone.
 const SAMPLES: Keeps =
@@ -43,7 +162,9 @@ const PLAIN: VolumeFormat = VolumeFormat {
     folder_name: "",
     is_folder: |_| Ok(false),
     read: None,
+    read_folder: None,
     parts: None,
+    parts_of_folder: None,
     data_files: None,
 };
 
@@ -59,7 +180,10 @@ pub static FORMATS: [VolumeFormat; 14] = [
         begins: is_dicom,
         folder_name: "DICOM series",
         is_folder: |folder| Ok(series::first(folder)?.is_some()),
-        read: built!("dicom", crate::read::dicom::read),
+        read: built!("dicom", |file, options, monitor| {
+            crate::read::dicom::read_series_of(file.path(), options, monitor)
+        }),
+        read_folder: built!("dicom", crate::read::dicom::read_folder),
         ..PLAIN
     },
     VolumeFormat {
@@ -70,10 +194,10 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["zarr"],
         folder_name: "Zarr",
         is_folder: |folder| Ok(series::is_zarr(folder)),
-        read: built!("zarr", |path, options, monitor| {
+        read_folder: built!("zarr", |path, options, monitor| {
             crate::read::zarr::read(path, options.level, options.frame, monitor)
         }),
-        parts: built!("zarr", |path, options| {
+        parts_of_folder: built!("zarr", |path, options| {
             crate::read::zarr::source(path, options.level, options.frame)
         }),
         ..PLAIN
@@ -87,8 +211,10 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["nrrd"],
         writers: writers!["nrrd": write::nrrd],
         begins: |start| start.starts_with(b"NRRD000"),
-        read: built!("formats", |path, options, monitor| nrrd::read(path, options.frame, monitor)),
-        parts: built!("formats", |path, options| Ok(nrrd::rows(path, options.frame)?.source())),
+        read: built!("formats", |file, options, monitor| nrrd::read(file, options.frame, monitor)),
+        parts: built!("formats", |file, options| Ok(
+            nrrd::box_reader(file, options.frame)?.source()
+        )),
         data_files: built!("formats", nrrd::data_files),
         ..PLAIN
     },
@@ -102,8 +228,10 @@ pub static FORMATS: [VolumeFormat; 14] = [
         writers: writers!["nii": write::nifti, "nii.gz": write::nifti_gzip],
         gzip: true,
         begins: is_nifti,
-        read: built!("formats", |path, options, monitor| nifti::read(path, options.frame, monitor)),
-        parts: built!("formats", |path, options| Ok(nifti::rows(path, options.frame)?.source())),
+        read: built!("formats", |file, options, monitor| nifti::read(file, options.frame, monitor)),
+        parts: built!("formats", |file, options| Ok(
+            nifti::box_reader(file, options.frame)?.source()
+        )),
         data_files: built!("formats", nifti::data_files),
         ..PLAIN
     },
@@ -116,8 +244,11 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["mgh"],
         gzip: true,
         begins: is_mgh,
-        read: built!("formats", |path, options, monitor| mgh::read(path, options.frame, monitor)),
-        parts: built!("formats", |path, options| Ok(mgh::rows(path, options.frame)?.source())),
+        read: built!("formats", |file, options, monitor| mgh::read(file, options.frame, monitor)),
+        parts: built!(
+            "formats",
+            |file, options| Ok(mgh::box_reader(file, options.frame)?.source())
+        ),
         ..PLAIN
     },
     VolumeFormat {
@@ -129,15 +260,14 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["metaimage"],
         writers: writers!["mha": write::metaimage],
         begins: is_metaimage,
-        read: built!("formats", |path, options, monitor| metaimage::read(
-            path,
+        read: built!("formats", |file, options, monitor| metaimage::read(
+            file,
             options.frame,
             monitor
         )),
-        parts: built!(
-            "formats",
-            |path, options| Ok(metaimage::rows(path, options.frame)?.source())
-        ),
+        parts: built!("formats", |file, options| Ok(
+            metaimage::box_reader(file, options.frame)?.source()
+        )),
         data_files: built!("formats", metaimage::data_files),
         ..PLAIN
     },
@@ -150,8 +280,8 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["vti"],
         writers: writers!["vti": write::vti],
         begins: is_vtk_xml,
-        read: built!("formats", |path, options, monitor| vti::read(
-            path,
+        read: built!("formats", |file, options, monitor| vtk::read_image(
+            file,
             options.array.as_deref(),
             monitor
         )),
@@ -165,8 +295,8 @@ pub static FORMATS: [VolumeFormat; 14] = [
         feature: Some("formats"),
         fuzzed_by: &["vtk_legacy"],
         begins: is_vtk,
-        read: built!("formats", |path, options, monitor| vtk::read(
-            path,
+        read: built!("formats", |file, options, monitor| vtk::read_legacy(
+            file,
             options.array.as_deref(),
             monitor
         )),
@@ -180,8 +310,8 @@ pub static FORMATS: [VolumeFormat; 14] = [
         feature: Some("formats"),
         fuzzed_by: &["tiff"],
         writers: writers!["tif": write::tiff, "tiff": write::tiff],
-        begins: |start| TIFF.iter().any(|magic| start.starts_with(magic)),
-        read: built!("formats", |path, options, monitor| tiff::read(path, options.frame, monitor)),
+        begins: is_tiff,
+        read: built!("formats", |file, options, monitor| tiff::read(file, options.frame, monitor)),
         ..PLAIN
     },
     VolumeFormat {
@@ -191,7 +321,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["inrimage"],
         gzip: true,
         begins: |start| start.starts_with(b"#INRIMAGE-4#{"),
-        read: Some(|path, _, monitor| inr::open(path, monitor)),
+        read: Some(|file, _, monitor| inr::open(file, monitor)),
         ..PLAIN
     },
     VolumeFormat {
@@ -200,9 +330,9 @@ pub static FORMATS: [VolumeFormat; 14] = [
         chooses: &[Setting::Frame],
         fuzzed_by: &["npy"],
         writers: &[VolumeWriter { extension: "npy", write: write::npy }],
-        begins: NpyFile::begins,
-        read: Some(|path, options, monitor| npy::read(path, options.frame, monitor)),
-        parts: Some(|path, options| Ok(npy::rows(path, options.frame)?.source())),
+        begins: is_npy,
+        read: Some(|file, options, monitor| npy::read(file, options.frame, monitor)),
+        parts: Some(|file, options| Ok(npy::box_reader(file, options.frame)?.source())),
         ..PLAIN
     },
     VolumeFormat {
@@ -212,8 +342,8 @@ pub static FORMATS: [VolumeFormat; 14] = [
         feature: Some("formats"),
         fuzzed_by: &["npz"],
         begins: |start| start.starts_with(b"PK\x03\x04") || start.starts_with(b"PK\x05\x06"),
-        read: built!("formats", |path, options, monitor| npz::read(
-            path,
+        read: built!("formats", |file, options, monitor| npz::read(
+            file,
             options.array.as_deref(),
             monitor
         )),
@@ -225,7 +355,7 @@ pub static FORMATS: [VolumeFormat; 14] = [
         fuzzed_by: &["slices"],
         folder_name: "folder of slices",
         is_folder: |_| Ok(true),
-        read: built!("formats", |path, _, _| slices::read(path)),
+        read_folder: built!("formats", |path, _, _| slices::read(path)),
         ..PLAIN
     },
     // Bare samples cannot be recognised: the user describes them.
@@ -233,13 +363,6 @@ pub static FORMATS: [VolumeFormat; 14] = [
         name: "raw samples",
         keeps: Keeps { dtype: false, ..SAMPLES },
         writers: &[VolumeWriter { extension: "raw", write: write::raw }],
-        read: Some(|path, options, monitor| match &options.raw {
-            Some(layout) => raw::read(path, layout, monitor),
-            None => Err(detect::unknown(path)),
-        }),
         ..PLAIN
     },
 ];
-
-/// How TIFF and `BigTIFF` begin, of either byte order.
-const TIFF: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];

@@ -17,7 +17,7 @@ pub struct UnknownFormat {
 }
 
 impl UnknownFormat {
-    /// Given pairs of an extension and its meaning, the meaning of the extension that ends a path.
+    /// The value that belongs to the extension of a path, among pairs of an extension and a value.
     ///
     /// # Errors
     /// The name has no extension that is known.

@@ -6,28 +6,53 @@ use std::path::{Path, PathBuf};
 use walpha_base::Monitor;
 use walpha_base::shown::shown;
 
-use super::described::Described;
-use super::{format_error, io_error};
+use super::layout::Layout;
+use crate::error::{format_error, io_error};
 use crate::{Reason, Volume, VolumeError};
 
 /// The files that a header names, relative to its folder; they may be anywhere.
-pub(super) fn beside(header: &Path, names: &[String]) -> Vec<PathBuf> {
+pub(super) fn data_paths(header: &Path, names: &[String]) -> Vec<PathBuf> {
     let folder = header.parent().unwrap_or(Path::new(""));
     names.iter().map(|name| folder.join(name)).collect()
+}
+
+/// The files of a numbered sequence; `None` if the words do not describe one.
+pub(super) fn numbered(words: &[&str]) -> Option<Result<Vec<String>, Reason>> {
+    /// A row has a file a slice, at most.
+    const MAX_FILES: i64 = 1 << 20;
+    let &[pattern, first, last, step, ..] = words else { return None };
+    let (before, rest) = pattern.split_once('%')?;
+    let (width, after) = rest.split_once('d')?;
+    let zeros = width.starts_with('0');
+    let width: usize = if width.is_empty() { 0 } else { width.parse().ok()? };
+    let [first, last, step] = [first, last, step].map(|number| number.parse::<i32>().ok());
+    let (first, last, step) = (i64::from(first?), i64::from(last?), i64::from(step?));
+    if step == 0 || (last - first) / step < 0 || (last - first) / step >= MAX_FILES || width > 20 {
+        return Some(Err(Reason::header(format!(
+            "numbers its data files {}, which is not a row",
+            words.join(" ")
+        ))));
+    }
+    let name = |i: i64| {
+        let number = first + i * step;
+        let number = if zeros { format!("{number:0width$}") } else { format!("{number:width$}") };
+        format!("{before}{number}{after}")
+    };
+    Some(Ok((0..=(last - first) / step).map(name).collect()))
 }
 
 /// Reads the volume that a header describes from these files; `skip` gives how much of a file of
 /// this length is passed over.
 pub(super) fn read(
     header: &Path,
-    described: Described,
+    layout: Layout,
     files: &[PathBuf],
     skip: impl Fn(u64) -> u64,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let source = Detached::new(files, skip)?;
     let bytes = source.bytes;
-    described.read(header, source, bytes, monitor).map_err(naming(header, files))
+    layout.read(header, source, bytes, monitor).map_err(naming(header, files))
 }
 
 /// Errors about samples in files separate from their header, with the names of both.
@@ -85,7 +110,7 @@ impl Detached {
 
 impl Read for Detached {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        // Whoever reads knows the header's name alone.
+        // The caller knows only the name of the header.
         let named = |path: &Path, error: io::Error| {
             io::Error::new(error.kind(), format!("{}: {error}", shown(path)))
         };

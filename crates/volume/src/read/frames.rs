@@ -2,19 +2,19 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use super::payload::Length;
-use super::{format_error, io_error};
+use crate::error::{format_error, io_error};
 use crate::{Reason, VolumeError};
 
 /// Which of the volumes of a file is read: those along a fourth axis (and further axes), one after the
 /// other.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frames {
+pub(super) struct FrameChoice {
     pub index: u64,
     pub count: u64,
 }
 
-impl Frames {
-    /// The only one.
+impl FrameChoice {
+    /// The only volume of a file.
     pub(super) const ONE: Self = Self { index: 0, count: 1 };
 
     /// The one asked for, where the axes beyond the third have these sizes.
@@ -36,7 +36,7 @@ impl Frames {
     }
 
     /// From a reader of all volumes, of so many bytes each, to the one.
-    pub(super) fn one<R: Read>(
+    pub(super) fn select<R: Read>(
         self,
         path: &Path,
         mut reader: R,

@@ -4,8 +4,10 @@ use std::path::Path;
 use ndarray::Array3;
 use walpha_base::Monitor;
 
+use super::OpenFile;
+use super::payload::payload_error;
 use super::payload::{Length, Payload};
-use super::{io_error, payload_error, unpacked};
+use crate::error::io_error;
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// The first bytes of each INRIMAGE-4 file.
@@ -16,9 +18,9 @@ const END: &[u8] = b"\n##}\n";
 const MAX_HEADER: usize = 1 << 14;
 
 /// Reads a file, gzipped or not.
-pub(crate) fn open(path: &Path, monitor: &Monitor) -> Result<Volume, VolumeError> {
-    let (reader, length) = unpacked(path)?;
-    read(path, reader, length, monitor)
+pub(crate) fn open(file: &OpenFile, monitor: &Monitor) -> Result<Volume, VolumeError> {
+    let (reader, length) = file.unpacked()?;
+    read(file.path(), reader, length, monitor)
 }
 
 /// Reads an INRIMAGE-4 image, INRIA's format in which CGAL ships its sample volumes: lines
@@ -52,14 +54,14 @@ struct Header {
 }
 
 enum HeaderError {
-    Said(Reason),
+    Format(Reason),
     Volume(VolumeError),
 }
 
 impl HeaderError {
     fn located(self, path: &Path) -> VolumeError {
         match self {
-            Self::Said(reason) => VolumeError::Format { path: path.into(), reason },
+            Self::Format(reason) => VolumeError::Format { path: path.into(), reason },
             Self::Volume(error) => error,
         }
     }
@@ -100,7 +102,7 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
     let dims = Dims::new(x?, y?, z?).map_err(HeaderError::Volume)?;
     let values = size("VDIM", fields.value("VDIM").unwrap_or("1"))?;
     if values != 1 {
-        return Err(HeaderError::Said(Reason::not_scalar(
+        return Err(HeaderError::Format(Reason::not_scalar(
             format!("{values} values a voxel (VDIM)"),
             Some(dims.xyz().map(|n| n as u64)),
         )));
@@ -112,7 +114,7 @@ fn parse(text: &[u8]) -> Result<Header, HeaderError> {
 fn size(key: &str, text: &str) -> Result<u64, HeaderError> {
     text.parse().map_err(|_| {
         let what = format!("{key}={text} in its header is not a number of samples");
-        HeaderError::Said(Reason::header(what))
+        HeaderError::Format(Reason::header(what))
     })
 }
 
@@ -130,7 +132,7 @@ impl<'a> Fields<'a> {
     fn needed(&self, key: &str) -> Result<&'a str, HeaderError> {
         self.value(key).ok_or_else(|| {
             let what = format!("its INRIMAGE header has no {key}: it is damaged");
-            HeaderError::Said(Reason::damaged(what))
+            HeaderError::Format(Reason::damaged(what))
         })
     }
 
@@ -138,7 +140,7 @@ impl<'a> Fields<'a> {
         let Some(text) = self.value(key) else { return Ok(default) };
         text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
             let what = format!("{key}={text} in its header is not a finite number");
-            HeaderError::Said(Reason::value(what))
+            HeaderError::Format(Reason::value(what))
         })
     }
 
@@ -156,7 +158,7 @@ impl<'a> Fields<'a> {
             ("signed fixed", "32") => Dtype::I32,
             ("signed fixed", "64") => Dtype::I64,
             _ => {
-                return Err(HeaderError::Said(Reason::header(format!(
+                return Err(HeaderError::Format(Reason::header(format!(
                     "TYPE={kind} of PIXSIZE={bits} is not an INRIMAGE sample type: float is 32 or 64 \
                      bits, signed fixed and unsigned fixed are 8, 16, 32 or 64"
                 ))));
@@ -170,7 +172,7 @@ impl<'a> Fields<'a> {
             (Some("sun" | "sgi"), _) => Ok(Endian::Big),
             (cpu, _) => {
                 let cpu = cpu.unwrap_or("(missing)");
-                Err(HeaderError::Said(Reason::header(format!(
+                Err(HeaderError::Format(Reason::header(format!(
                     "CPU={cpu} is not a byte order: decm, alpha and pc are little endian, sun and sgi \
                      big"
                 ))))
@@ -181,7 +183,7 @@ impl<'a> Fields<'a> {
     fn frame(&self) -> Result<Frame, HeaderError> {
         for key in ["RX", "RY", "RZ"] {
             if self.number(key, 0.0)? != 0.0 {
-                return Err(HeaderError::Said(Reason::unsupported(
+                return Err(HeaderError::Format(Reason::unsupported(
                     format!("has rotated axes ({key}), which are not read"),
                     "resample it",
                 )));
@@ -194,7 +196,7 @@ impl<'a> Fields<'a> {
             frame.origin[axis] = self.number(origin, 0.0)?;
             if frame.spacing[axis] <= 0.0 {
                 let what = format!("{spacing} in its header must be a positive length");
-                return Err(HeaderError::Said(Reason::header(what)));
+                return Err(HeaderError::Format(Reason::header(what)));
             }
             if self.value(spacing).or(self.value(origin)).is_some() {
                 frame.coordinates = Coordinates::default();

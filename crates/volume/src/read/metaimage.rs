@@ -1,18 +1,17 @@
-use std::fs::File;
-use std::io::BufReader;
+use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
-use super::described::{self, Described, Encoding, diagonal};
-use super::detached::{self, beside};
-use super::frames::Frames;
-use super::lines::Lines;
-use super::nrrd::numbered;
+use super::OpenFile;
+use super::detached::{self, data_paths, numbered};
+use super::frames::FrameChoice;
+use super::layout::{self, Encoding, Layout, diagonal};
+use super::text::Lines;
 use super::uncompressed::Uncompressed;
-use super::{format_error, io_error};
+use crate::error::{format_error, io_error};
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Volume, VolumeError};
 use walpha_base::Monitor;
 
-/// Keys of the grid's place, each by its names.
+/// Keys that place the grid, each with its synonyms.
 const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
 const ORIGIN: [&str; 3] = ["Offset", "Origin", "Position"];
 const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
@@ -23,43 +22,44 @@ const MATRIX: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
 /// `ElementSpacing`, `Offset` and `TransformMatrix`, whose rows are the grid's axes, give the frame.
 /// A fourth axis counts volumes, of which `frame` is read; several channels are refused.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     frame: Option<u64>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let file = File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    let mut lines = Lines::new(BufReader::new(file));
+    let path = file.path();
+    let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
-    let described = header.described(path, frame)?;
+    let layout = header.layout(path, frame)?;
     let Some(names) = header.names(path, &mut lines)? else {
-        let bytes = length - lines.bytes();
-        return described.read(path, lines.into_inner(), bytes, monitor);
+        let bytes = file.length() - lines.bytes();
+        return layout.read(path, lines.into_inner(), bytes, monitor);
     };
-    let each = described.bytes() / names.len() as u64;
+    let each = layout.bytes() / names.len() as u64;
     let skip = header.skip(path)?;
     let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
-    detached::read(path, described, &beside(path, &names), skip, monitor)
+    detached::read(path, layout, &data_paths(path, &names), skip, monitor)
 }
 
 /// Where the samples of a volume lie, to be read part by part.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
-    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
+    let path = file.path();
+    let mut lines = Lines::new(file.reader()?);
     let header = Header::read(path, &mut lines)?;
-    let described = header.described(path, frame)?;
+    let layout = header.layout(path, frame)?;
     match header.names(path, &mut lines)? {
-        None => Uncompressed::behind(path, described, lines.bytes(), Some(0)),
+        None => Uncompressed::after_header(file, layout, lines.bytes(), Some(0)),
         Some(names) => {
-            Uncompressed::beside(path, described, &beside(path, &names), header.skip(path)?)
+            Uncompressed::in_data_file(path, layout, &data_paths(path, &names), header.skip(path)?)
         }
     }
 }
 
 /// The files that hold the samples, where the header does not.
-pub(crate) fn data_files(path: &Path) -> Result<Vec<PathBuf>, VolumeError> {
-    let mut lines = Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?));
+pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
+    let path = file.path();
+    let mut lines = Lines::new(file.reader()?);
     let names = Header::read(path, &mut lines)?.names(path, &mut lines)?;
-    Ok(names.map_or_else(Vec::new, |names| beside(path, &names)))
+    Ok(names.map_or_else(Vec::new, |names| data_paths(path, &names)))
 }
 
 struct Header {
@@ -69,7 +69,7 @@ struct Header {
 }
 
 impl Header {
-    fn read(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Self, VolumeError> {
+    fn read(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Self, VolumeError> {
         let mut fields = Vec::new();
         while let Some(line) = lines.read_line().map_err(io_error(path))? {
             if line.trim().is_empty() {
@@ -96,7 +96,7 @@ impl Header {
     fn names(
         &self,
         path: &Path,
-        lines: &mut Lines<BufReader<File>>,
+        lines: &mut Lines<impl BufRead>,
     ) -> Result<Option<Vec<String>>, VolumeError> {
         let words: Vec<&str> = self.data.split_whitespace().collect();
         if words.first().is_some_and(|word| word.eq_ignore_ascii_case("local")) {
@@ -135,15 +135,15 @@ impl Header {
         self.field(keys).is_some_and(|value| value.eq_ignore_ascii_case("true"))
     }
 
-    /// As many numbers as the key should have; where it is not there, `silent` ones.
+    /// As many numbers as the key should have; where it is missing, `default`.
     fn numbers(
         &self,
         path: &Path,
         keys: &[&str],
         count: usize,
-        silent: f64,
+        default: f64,
     ) -> Result<Vec<f64>, VolumeError> {
-        let Some(text) = self.field(keys) else { return Ok(vec![silent; count]) };
+        let Some(text) = self.field(keys) else { return Ok(vec![default; count]) };
         let numbers: Option<Vec<f64>> =
             text.split_whitespace().map(|number| number.parse().ok()).collect();
         numbers.filter(|numbers| numbers.len() == count).ok_or_else(|| {
@@ -155,10 +155,10 @@ impl Header {
         })
     }
 
-    fn described(&self, path: &Path, frame: Option<u64>) -> Result<Described, VolumeError> {
-        let said = |reason: Reason| format_error(path, reason);
+    fn layout(&self, path: &Path, frame: Option<u64>) -> Result<Layout, VolumeError> {
+        let fail = |reason: Reason| format_error(path, reason);
         if let Some(kind) = self.field(&["ObjectType"]).filter(|kind| *kind != "Image") {
-            return Err(said(Reason::unsupported(
+            return Err(fail(Reason::unsupported(
                 format!("holds an object of type {kind}: only Image is read"),
                 "convert it first",
             )));
@@ -169,7 +169,7 @@ impl Header {
             "4" => 4,
             other => {
                 let what = format!("has NDims = {other}: a volume has 3 axes");
-                return Err(said(Reason::header(what)));
+                return Err(fail(Reason::header(what)));
             }
         };
         let sizes = self.needed(path, "DimSize")?;
@@ -179,12 +179,12 @@ impl Header {
             Some(&[x, y, z]) if count == 3 => (Dims::unbounded(x, y, z)?, 1),
             Some(&[x, y, z, t]) if count == 4 => (Dims::unbounded(x, y, z)?, t),
             _ => {
-                return Err(said(Reason::header(format!(
+                return Err(fail(Reason::header(format!(
                     "DimSize = {sizes} is not {count} sizes"
                 ))));
             }
         };
-        let frames = Frames::choose(path, &[volumes], frame)?;
+        let frames = FrameChoice::choose(path, &[volumes], frame)?;
         let dtype = self.dtype(path)?;
         let big = self.flag(&["BinaryDataByteOrderMSB", "ElementByteOrderMSB"]);
         let endian = if big { Endian::Big } else { Endian::Little };
@@ -196,7 +196,7 @@ impl Header {
             Encoding::Raw
         };
         let frame = self.frame(path, count)?;
-        Ok(Described { dims, dtype, endian, frame, encoding, frames })
+        Ok(Layout { dims, dtype, endian, frame, encoding, frames })
     }
 
     fn needed(&self, path: &Path, key: &str) -> Result<&str, VolumeError> {
@@ -227,8 +227,8 @@ impl Header {
     fn frame(&self, path: &Path, count: usize) -> Result<Frame, VolumeError> {
         let spacing = self.numbers(path, &SPACING, count, 1.0)?;
         let origin = self.numbers(path, &ORIGIN, count, 0.0)?;
-        let [origin, spacing] = [(origin, 0.0), (spacing, 1.0)].map(|(numbers, silent)| {
-            [0, 1, 2].map(|k: usize| numbers.get(k).copied().unwrap_or(silent))
+        let [origin, spacing] = [(origin, 0.0), (spacing, 1.0)].map(|(numbers, default)| {
+            [0, 1, 2].map(|k: usize| numbers.get(k).copied().unwrap_or(default))
         });
         // The rows of the matrix are the grid's axes, in as many dimensions as the image has.
         let mut axes = diagonal([1.0; 3]);
@@ -242,7 +242,7 @@ impl Header {
         for (axis, length) in axes.iter_mut().zip(spacing) {
             *axis = axis.map(|component| component * length);
         }
-        described::frame(path, origin, axes, self.coordinates())
+        layout::frame(path, origin, axes, self.coordinates())
     }
 
     /// `MetaImage` is LPS, and in millimetres unless `DistanceUnits` say otherwise.

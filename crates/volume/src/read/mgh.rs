@@ -3,11 +3,13 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::described::{Described, Encoding, frame};
-use super::frames::Frames;
+use super::OpenFile;
+use super::frames::FrameChoice;
+use super::layout::{Encoding, Layout, frame};
+use super::payload::payload_error;
 use super::payload::{Length, Payload};
 use super::uncompressed::Uncompressed;
-use super::{format_error, io_error, payload_error, unpacked};
+use crate::error::{format_error, io_error};
 use crate::{
     Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Space, Volume, VolumeError,
 };
@@ -19,51 +21,47 @@ pub(crate) const HEADER: usize = 284;
 /// Reads an MGH file, or one of its frames: a header of 284 bytes, big-endian, then samples, x fastest, then
 /// perhaps what a scanner was set to, which is passed over.
 ///
-/// The frame is RAS, in mm; the header places the centre of the grid. A header that says that its places are not
-/// good (`goodRASFlag`) has none.
+/// The frame is RAS, in mm; the header gives the position of the grid's centre. Without `goodRASFlag` no position
+/// is known.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     frame: Option<u64>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let (mut reader, length) = unpacked(path)?;
-    let described = described(path, &mut reader, frame)?;
-    described.dims.bounded()?;
-    let all = described.bytes();
+    let path = file.path();
+    let (mut reader, length) = file.unpacked()?;
+    let layout = layout(path, &mut reader, frame)?;
+    layout.dims.bounded()?;
+    let all = layout.bytes();
     // What follows the samples is none of them.
     let length = match length.minus(HEADER as u64) {
         Length::Exactly(bytes) => Length::Exactly(bytes.min(all)),
         bounded @ Length::AtMost(_) => bounded,
     };
-    let Described { dims, dtype, endian, frames, .. } = described;
-    let (reader, length) = frames.one(path, reader.take(all), length, described.each())?;
+    let Layout { dims, dtype, endian, frames, .. } = layout;
+    let (reader, length) = frames.select(path, reader.take(all), length, layout.each())?;
     let samples = Payload { reader, length }
         .samples(dtype, endian, dims.samples() as u64, monitor)
         .map_err(payload_error(path, &dims, dtype))?;
-    described.volume(samples)
+    layout.volume(samples)
 }
 
 /// Where the samples of a volume that is not compressed lie, to be read part by part.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
-    let mut file = std::fs::File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    let described = described(path, &mut file, frame)?;
-    let (needed, found) = (described.bytes(), length.saturating_sub(HEADER as u64));
-    let Described { dims, dtype, endian, frames, frame, .. } = described;
+pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
+    let path = file.path();
+    let layout = layout(path, &mut file.reader()?, frame)?;
+    let (needed, found) = (layout.bytes(), file.length().saturating_sub(HEADER as u64));
+    let Layout { dims, dtype, endian, frames, frame, .. } = layout;
     if found < needed {
         let claim = format!("a volume of {dims} samples of type {dtype}");
         return Err(format_error(path, Reason::Length { claim, needed, found, bound: "" }));
     }
-    let offset = HEADER as u64 + frames.index * described.each();
+    let offset = HEADER as u64 + frames.index * layout.each();
     Ok(Uncompressed::new(path, dims, frame, dtype, endian, offset))
 }
 
 /// Reads a header.
-fn described(
-    path: &Path,
-    reader: &mut dyn Read,
-    asked: Option<u64>,
-) -> Result<Described, VolumeError> {
+fn layout(path: &Path, reader: &mut dyn Read, asked: Option<u64>) -> Result<Layout, VolumeError> {
     let mut bytes = Vec::new();
     reader.take(HEADER as u64).read_to_end(&mut bytes).map_err(io_error(path))?;
     let Ok(bytes) = <[u8; HEADER]>::try_from(bytes) else {
@@ -100,7 +98,7 @@ fn described(
         }
     };
     let dims = Dims::unbounded(x, y, z)?;
-    let frames = Frames::choose(path, &[count], asked)?;
+    let frames = FrameChoice::choose(path, &[count], asked)?;
     let vector = |place: usize| [0, 4, 8].map(|k| real(place + k));
     let placed = i16::from_be_bytes([bytes[28], bytes[29]]) != 0;
     let frame = if placed {
@@ -115,5 +113,5 @@ fn described(
         Frame::VOXEL
     };
     let (endian, encoding) = (Endian::Big, Encoding::Raw);
-    Ok(Described { dims, dtype, endian, frame, encoding, frames })
+    Ok(Layout { dims, dtype, endian, frame, encoding, frames })
 }

@@ -4,16 +4,18 @@ use std::path::Path;
 
 use ndarray::{Array3, ShapeBuilder};
 use walpha_base::Monitor;
-use walpha_base::npy::{Header, MAGIC, NpyError};
+use walpha_base::npy::{Header, NpyError};
 
-use super::frames::Frames;
+use super::OpenFile;
+use super::frames::FrameChoice;
+use super::payload::payload_error_of;
 use super::payload::{Element, Length, Payload};
 use super::uncompressed::Uncompressed;
-use super::{io_error, payload_error_of};
+use crate::error::io_error;
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// An array as NPY describes it (format versions 1 to 3, numpy.lib.format).
-pub struct NpyFile<R = BufReader<File>> {
+pub struct NpyFile<R> {
     /// Lengths of the axes.
     pub shape: Vec<u64>,
     /// The first axis is the fastest in the file.
@@ -28,17 +30,18 @@ pub struct NpyFile<R = BufReader<File>> {
 /// Reads an array of three axes `[z, y, x]`, in C or Fortran order, or the one numbered `frame` of an
 /// array of four, in C order.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     frame: Option<u64>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let file = NpyFile::open(path)?;
+    let path = file.path();
+    let file = NpyFile::open(file)?;
     if let (&[count, z, y, x], false) = (file.shape.as_slice(), file.fortran) {
         let each =
             [z, y, x, file.dtype.size() as u64].iter().fold(1, |n: u64, m| n.saturating_mul(*m));
-        let frames = Frames::choose(path, &[count], frame)?;
+        let frames = FrameChoice::choose(path, &[count], frame)?;
         let Payload { reader, length } = file.payload;
-        let (reader, length) = frames.one(path, reader, length, each)?;
+        let (reader, length) = frames.select(path, reader, length, each)?;
         let payload = Payload { reader, length };
         let NpyFile { fortran, dtype, endian, boolean, .. } = file;
         return volume(
@@ -47,30 +50,30 @@ pub(crate) fn read(
             monitor,
         );
     }
-    Frames::choose(path, &[], frame)?;
+    FrameChoice::choose(path, &[], frame)?;
     volume(path, file, monitor)
 }
 
 /// Where the samples of a volume lie, to be read part by part: in C order.
-pub(crate) fn rows(path: &Path, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
-    let said = |reason: Reason| VolumeError::Format { path: path.into(), reason };
-    let length = std::fs::metadata(path).map_err(io_error(path))?.len();
-    let file = NpyFile::open(path)?;
+pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
+    let (path, length) = (file.path(), file.length());
+    let fail = |reason: Reason| VolumeError::Format { path: path.into(), reason };
+    let file = NpyFile::open(file)?;
     let (beyond, axes) = file.shape.split_at(file.shape.len().saturating_sub(3));
     let (&[z, y, x], false) = (axes, file.fortran || beyond.len() > 1) else {
-        return Err(said(Reason::unsupported(
+        return Err(fail(Reason::unsupported(
             format!("holds an array of shape {:?} that is not read part by part", file.shape),
             "save numpy.ascontiguousarray(a), of the axes [z, y, x]",
         )));
     };
     let dims = Dims::unbounded(x, y, z)?;
-    let frames = Frames::choose(path, beyond, frame)?;
+    let frames = FrameChoice::choose(path, beyond, frame)?;
     let each = (dims.samples() * file.dtype.size()) as u64;
     let all = each.saturating_mul(frames.count);
     let Length::Exactly(found) = file.payload.length else { unreachable!("of a file") };
     if found != all {
         let claim = format!("an array of shape {:?} and type {}", file.shape, file.dtype);
-        return Err(said(Reason::Length { claim, needed: all, found, bound: "" }));
+        return Err(fail(Reason::Length { claim, needed: all, found, bound: "" }));
     }
     let offset = length - found + frames.index * each;
     // Booleans are bytes, and no gray levels.
@@ -107,20 +110,13 @@ pub(super) fn volume<R: Read>(
     Ok(volume.with_dtype(if gray_levels || dtype != Dtype::U8 { dtype } else { Dtype::I8 }))
 }
 
-impl NpyFile {
-    /// Whether a file begins as NPY does.
-    pub fn begins(start: &[u8]) -> bool {
-        start.starts_with(MAGIC)
-    }
-
+impl<'a> NpyFile<BufReader<&'a File>> {
     /// Reads and checks the header.
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn open(path: &Path) -> Result<Self, VolumeError> {
-        let file = File::open(path).map_err(io_error(path))?;
-        let length = file.metadata().map_err(io_error(path))?.len();
-        Self::of(path, BufReader::new(file), length)
+    pub fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
+        Self::of(file.path(), file.reader()?, file.length())
     }
 }
 
@@ -130,22 +126,22 @@ impl<R: Read> NpyFile<R> {
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
     pub fn of(path: &Path, mut reader: R, length: u64) -> Result<Self, VolumeError> {
-        let said = |reason: Reason| VolumeError::Format { path: path.into(), reason };
+        let fail = |reason: Reason| VolumeError::Format { path: path.into(), reason };
         let header = Header::read(&mut reader).map_err(|error| match error {
             NpyError::Io(error) => io_error(path)(error),
             NpyError::Truncated => {
-                said(Reason::truncated("ends inside its NPY header: it is truncated"))
+                fail(Reason::truncated("ends inside its NPY header: it is truncated"))
             }
             error @ NpyError::Version(_) => {
-                said(Reason::unsupported(error.to_string(), "convert it first"))
+                fail(Reason::unsupported(error.to_string(), "convert it first"))
             }
-            error @ NpyError::Length(_) => said(Reason::damaged(error.to_string())),
-            error @ NpyError::Dictionary(_) => said(Reason::header(error.to_string())),
-            error => said(Reason::other(error.to_string())),
+            error @ NpyError::Length(_) => fail(Reason::damaged(error.to_string())),
+            error @ NpyError::Dictionary(_) => fail(Reason::header(error.to_string())),
+            error => fail(Reason::other(error.to_string())),
         })?;
         let Header { descr, fortran, shape, .. } = header;
         let (dtype, endian, boolean) = element(&descr).ok_or_else(|| {
-            said(Reason::unsupported(format!(
+            fail(Reason::unsupported(format!(
                 "holds elements of type {descr}: only bool, integers of 8 to 64 bits, f4 and f8 \
                  are read"), "save a.astype('f4')"))
         })?;

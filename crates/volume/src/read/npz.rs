@@ -1,5 +1,4 @@
-use std::fs::File;
-use std::io::BufReader;
+use std::io::{Read, Seek};
 use std::path::Path;
 
 use walpha_base::Monitor;
@@ -7,21 +6,21 @@ use walpha_base::advice::{Setting, advice};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
+use super::OpenFile;
 use super::npy::{self, NpyFile};
 use super::payload::MOST_EXPANSION;
-use super::{format_error, io_error};
+use crate::error::{format_error, io_error};
 use crate::{Reason, Volume, VolumeError};
 
 /// Reads NPZ, `NumPy`'s archive of arrays (`savez`, `savez_compressed`): its only array of three axes, or
 /// the one of this name.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     wanted: Option<&str>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let file = File::open(path).map_err(io_error(path))?;
-    let length = file.metadata().map_err(io_error(path))?.len();
-    let mut archive = ZipArchive::new(BufReader::new(file)).map_err(damaged(path))?;
+    let (path, length) = (file.path(), file.length());
+    let mut archive = ZipArchive::new(file.reader()?).map_err(damaged(path))?;
     let mut found: Vec<(usize, String)> = Vec::new();
     for i in 0..archive.len() {
         let (name, array) = member(path, &mut archive, i, length)?;
@@ -63,10 +62,10 @@ pub(crate) fn read(
 /// An array of the archive, at its first element.
 fn member<'a>(
     path: &Path,
-    archive: &'a mut ZipArchive<BufReader<File>>,
+    archive: &'a mut ZipArchive<impl Read + Seek>,
     i: usize,
     length: u64,
-) -> Result<(String, NpyFile<impl std::io::Read + use<'a>>), VolumeError> {
+) -> Result<(String, NpyFile<impl Read + 'a>), VolumeError> {
     let member = archive.by_index(i).map_err(damaged(path))?;
     let name = member.name().to_owned();
     let most = member.compressed_size().min(length).saturating_mul(MOST_EXPANSION);

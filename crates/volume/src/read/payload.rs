@@ -1,10 +1,14 @@
+//! The bytes of samples: reading as many as a header claims, and decoding them.
+
 use std::io::{self, Read};
+use std::path::Path;
 
 use rayon::prelude::*;
-use walpha_base::Monitor;
 use walpha_base::memory::asking;
+use walpha_base::{Cancelled, Monitor};
 
-use crate::{Dtype, Endian};
+use crate::error::format_error;
+use crate::{Dims, Dtype, Endian, Reason, VolumeError};
 
 /// Decoded at a time, so that a file is never held in memory along with its samples.
 const CHUNK_BYTES: usize = 8 << 20;
@@ -17,8 +21,8 @@ pub(super) struct Payload<R> {
     pub length: Length,
 }
 
-/// Deflate expands by no more than this (zlib's technical details), nor does another code that
-/// loses nothing: a claim beyond is a lie.
+/// Deflate expands by no more than this (zlib's technical details), nor does another lossless
+/// code: a header that claims more is wrong.
 pub(super) const MOST_EXPANSION: u64 = 1032;
 
 /// What is known of the number of bytes left to read.
@@ -58,7 +62,7 @@ pub(super) enum PayloadError {
     Length { needed: u64, found: u64, bound: &'static str },
     /// The samples fit the file, but not the memory.
     Memory { needed: u64 },
-    /// Nobody wants them any more.
+    /// Reading was cancelled.
     Cancelled,
     /// The system refused, or the gzip stream is damaged.
     Io(io::Error),
@@ -109,6 +113,45 @@ impl<R: Read> Payload<R> {
         }
         Ok(samples)
     }
+}
+
+/// The error for a file whose header claims a volume that is not there.
+pub(super) fn payload_error(
+    path: &Path,
+    dims: &Dims,
+    dtype: Dtype,
+) -> impl Fn(PayloadError) -> VolumeError {
+    let claim = format!("a volume of {dims} samples of type {dtype}");
+    move |error| payload_error_of(path, &claim, error)
+}
+
+/// The error for a file whose header claims something that is not there.
+pub(super) fn payload_error_of(path: &Path, claim: &str, error: PayloadError) -> VolumeError {
+    let reason = match error {
+        PayloadError::Io(source) if source.kind() == io::ErrorKind::UnexpectedEof => {
+            Reason::truncated(format!(
+                "its compressed data (gzip, zlib or bzip2) end early, inside {claim}: it is \
+                     truncated"
+            ))
+        }
+        PayloadError::Io(source)
+            if matches!(
+                source.kind(),
+                io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData
+            ) =>
+        {
+            Reason::damaged(format!(
+                "its encoded data (gzip, zlib, bzip2, LZ4 or base64) are damaged ({source})"
+            ))
+        }
+        PayloadError::Io(source) => return VolumeError::Io { path: path.into(), source },
+        PayloadError::Cancelled => return Cancelled.into(),
+        PayloadError::Memory { needed } => Reason::Memory { claim: claim.into(), needed },
+        PayloadError::Length { needed, found, bound } => {
+            Reason::Length { claim: claim.into(), needed, found, bound }
+        }
+    };
+    format_error(path, reason)
 }
 
 /// Fills the buffer, or as much of it as there is.

@@ -1,16 +1,13 @@
-use std::fs::File;
-use std::io::{Seek, SeekFrom};
-use std::path::Path;
-
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
 use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::setters;
 
+use super::OpenFile;
+use super::payload::payload_error;
 use super::payload::{Length, Payload, PayloadError};
 use super::uncompressed::Uncompressed;
-use super::{io_error, payload_error};
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError, any_size};
 
 /// What a file of bare samples does not say of itself.
@@ -39,15 +36,14 @@ impl RawLayout {
 
 /// Reads a file that holds `offset` bytes and then exactly the samples of the layout.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     layout: &RawLayout,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
+    let (path, length) = (file.path(), file.length());
     let RawLayout { dims, dtype, endian, offset } = *layout;
     dims.bounded()?;
-    let mut reader = File::open(path).map_err(io_error(path))?;
-    let length = reader.metadata().map_err(io_error(path))?.len();
-    reader.seek(SeekFrom::Start(offset.min(length))).map_err(io_error(path))?;
+    let reader = file.reader_at(offset.min(length))?;
     let payload = Payload { reader, length: Length::Exactly(length.saturating_sub(offset)) };
     let samples = payload.samples(dtype, endian, dims.samples() as u64, monitor).map_err(
         |error| match error {
@@ -63,9 +59,9 @@ pub(crate) fn read(
 }
 
 /// Where the samples of a volume lie, to be read part by part.
-pub(crate) fn rows(path: &Path, layout: &RawLayout) -> Result<Uncompressed, VolumeError> {
+pub(crate) fn box_reader(file: &OpenFile, layout: &RawLayout) -> Result<Uncompressed, VolumeError> {
+    let (path, length) = (file.path(), file.length());
     let RawLayout { dims, dtype, endian, offset } = *layout;
-    let length = std::fs::metadata(path).map_err(io_error(path))?.len();
     let needed = (dims.samples() * dtype.size()) as u64;
     if length != offset.saturating_add(needed) {
         let reason = wrong_length(layout, needed, length);

@@ -9,11 +9,11 @@ use serde::Serialize;
 use walpha_base::shown::shown;
 
 #[cfg(feature = "dicom")]
-use super::format_error;
-use super::io_error;
-#[cfg(feature = "dicom")]
 use crate::Reason;
 use crate::VolumeError;
+#[cfg(feature = "dicom")]
+use crate::error::format_error;
+use crate::error::io_error;
 
 /// A series of slices in a folder (DICOM).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -55,14 +55,14 @@ pub(crate) fn first(folder: &Path) -> Result<Option<PathBuf>, VolumeError> {
     Walk::new(folder, true).next().transpose()
 }
 
-/// The DICOM files of a folder, and files that may have been some.
+/// The DICOM files of a folder, and possibly damaged ones.
 #[cfg(feature = "dicom")]
 pub(super) struct Files {
     /// By content, in the order of their names.
     pub dicom: Vec<PathBuf>,
     /// Empty files, those that begin with nothing but zeros, and those called .dcm, where their names end as
     /// those of the others do.
-    pub ruins: Vec<PathBuf>,
+    pub suspects: Vec<PathBuf>,
 }
 
 /// The DICOM files of a folder and, if wanted, of the folders in it.
@@ -80,10 +80,10 @@ pub(super) fn files(folder: &Path, nested: bool) -> Result<Files, VolumeError> {
         return Err(format_error(folder, reason));
     }
     dicom.sort();
-    let mut ruins = walk.ruins;
-    ruins.retain(|ruin| dicom.iter().any(|other| other.extension() == ruin.extension()));
-    ruins.sort();
-    Ok(Files { dicom, ruins })
+    let mut suspects = walk.suspects;
+    suspects.retain(|suspect| dicom.iter().any(|other| other.extension() == suspect.extension()));
+    suspects.sort();
+    Ok(Files { dicom, suspects })
 }
 
 /// So many entries that are no DICOM files, one after the other, are looked at: a folder may be that of the
@@ -100,14 +100,14 @@ struct Walk {
     others: usize,
     /// Whether there were too many.
     is_cut_short: bool,
-    /// Files that may have been DICOM.
-    ruins: Vec<PathBuf>,
+    /// Files that may be damaged DICOM files.
+    suspects: Vec<PathBuf>,
 }
 
 impl Walk {
     fn new(folder: &Path, nested: bool) -> Self {
-        let (folders, ruins) = (vec![folder.to_owned()], Vec::new());
-        Self { nested, folders, entries: None, others: 0, is_cut_short: false, ruins }
+        let (folders, suspects) = (vec![folder.to_owned()], Vec::new());
+        Self { nested, folders, entries: None, others: 0, is_cut_short: false, suspects }
     }
 
     /// The next entry, and the folder it is in.
@@ -152,7 +152,7 @@ impl Iterator for Walk {
                     self.others = 0;
                     return Some(Ok(path));
                 }
-                Some(Ok(Kind::Ruin)) => self.ruins.push(path),
+                Some(Ok(Kind::Suspect)) => self.suspects.push(path),
                 _ => {}
             }
         }
@@ -164,8 +164,8 @@ impl Iterator for Walk {
 /// What a file is, by how it begins.
 enum Kind {
     Dicom,
-    /// It may have been.
-    Ruin,
+    /// Possibly a damaged DICOM file.
+    Suspect,
     Other,
 }
 
@@ -178,6 +178,6 @@ fn kind(path: &Path) -> io::Result<Kind> {
     let is_hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
     let is_called_so =
         path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("dcm"));
-    let is_ruin = !is_hidden && (is_called_so || start.iter().all(|&byte| byte == 0));
-    Ok(if is_ruin { Kind::Ruin } else { Kind::Other })
+    let is_suspect = !is_hidden && (is_called_so || start.iter().all(|&byte| byte == 0));
+    Ok(if is_suspect { Kind::Suspect } else { Kind::Other })
 }

@@ -3,11 +3,11 @@ use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
 
-use super::described::{Described, Encoding};
-use super::frames::Frames;
+use super::frames::FrameChoice;
+use super::layout::{Encoding, Layout};
 use super::payload::MOST_EXPANSION;
 use super::tiff::{self, Page};
-use super::{format_error, io_error};
+use crate::error::{format_error, io_error};
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// What slices are called.
@@ -45,7 +45,7 @@ pub(crate) fn read(folder: &Path) -> Result<Volume, VolumeError> {
     };
     let dims = Dims::new(size[0], size[1], paths.len() as u64)?;
     let (endian, frame, encoding) = (Endian::Little, Frame::VOXEL, Encoding::Raw);
-    Described { dims, dtype, endian, frame, encoding, frames: Frames::ONE }.volume(stack)
+    Layout { dims, dtype, endian, frame, encoding, frames: FrameChoice::ONE }.volume(stack)
 }
 
 /// The slices of a folder, in order.

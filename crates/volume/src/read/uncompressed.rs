@@ -3,13 +3,16 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 #[cfg(feature = "formats")]
-use super::described::{Described, Encoding};
+use super::OpenFile;
 #[cfg(feature = "formats")]
-use super::format_error;
-use super::io_error;
+use super::layout::{Encoding, Layout};
 use super::payload::Element;
 #[cfg(feature = "formats")]
 use crate::Reason;
+use crate::error::format_error;
+use crate::error::io_error;
+#[cfg(feature = "formats")]
+use crate::source::CONVERT;
 use crate::source::{BoxReader, Source};
 use crate::{Dims, Dtype, Endian, Frame, VolumeError};
 
@@ -21,9 +24,9 @@ pub(crate) struct Uncompressed {
     frame: Frame,
     dtype: Dtype,
     endian: Endian,
-    /// The place of the first sample.
+    /// Byte offset of the first sample.
     offset: u64,
-    /// What samples are multiplied by, and what is added then.
+    /// Slope and intercept.
     scaling: Option<(f64, f64)>,
 }
 
@@ -48,25 +51,28 @@ impl Uncompressed {
     /// Samples behind a header of so many bytes, of which further ones are skipped: `None` where the samples
     /// are at the end of the file.
     #[cfg(feature = "formats")]
-    pub(super) fn behind(
-        header: &Path,
-        described: Described,
+    pub(super) fn after_header(
+        file: &OpenFile,
+        layout: Layout,
         after: u64,
         skip: Option<u64>,
     ) -> Result<Self, VolumeError> {
-        Self::within(header, header, described, after, skip)
+        Self::within(file.path(), file.path(), file.length(), layout, after, skip)
     }
 
     /// Samples in a file of their own.
     #[cfg(feature = "formats")]
-    pub(super) fn beside(
+    pub(super) fn in_data_file(
         header: &Path,
-        described: Described,
+        layout: Layout,
         files: &[PathBuf],
         skip: Option<u64>,
     ) -> Result<Self, VolumeError> {
         match files {
-            [file] => Self::within(header, file, described, 0, skip),
+            [file] => {
+                let length = std::fs::metadata(file).map_err(io_error(file))?.len();
+                Self::within(header, file, length, layout, 0, skip)
+            }
             _ => Err(format_error(
                 header,
                 Reason::unsupported(
@@ -84,25 +90,25 @@ impl Uncompressed {
     fn within(
         header: &Path,
         file: &Path,
-        described: Described,
+        length: u64,
+        layout: Layout,
         after: u64,
         skip: Option<u64>,
     ) -> Result<Self, VolumeError> {
-        if described.encoding != Encoding::Raw {
+        if layout.encoding != Encoding::Raw {
             let what = "is compressed, or text: it cannot be read in parts";
             return Err(format_error(header, Reason::unsupported(what, CONVERT)));
         }
-        let length = std::fs::metadata(file).map_err(io_error(file))?.len();
-        let (needed, behind) = (described.bytes(), length.saturating_sub(after));
+        let (needed, behind) = (layout.bytes(), length.saturating_sub(after));
         let skip = skip.unwrap_or(behind.saturating_sub(needed));
         let found = behind.saturating_sub(skip);
-        let Described { dims, dtype, endian, frame, frames, .. } = described;
+        let Layout { dims, dtype, endian, frame, frames, .. } = layout;
         if found != needed {
             let claim = format!("a volume of {dims} samples of type {dtype}");
             let reason = Reason::Length { claim, needed, found, bound: "" };
             return Err(format_error(header, reason));
         }
-        let offset = after + skip + frames.index * described.each();
+        let offset = after + skip + frames.index * layout.each();
         Ok(Self::new(file, dims, frame, dtype, endian, offset))
     }
 
@@ -114,10 +120,6 @@ impl Uncompressed {
         Source::new(self.dims, self.frame, dtype, grain, Box::new(self))
     }
 }
-
-/// What to do about volumes that cannot be read in parts.
-pub(crate) const CONVERT: &str =
-    "convert it to uncompressed NRRD, MetaImage, NIfTI or NPY, or to Zarr";
 
 impl BoxReader for Uncompressed {
     fn read(&self, first: [usize; 3], size: [usize; 3]) -> Result<Vec<f32>, VolumeError> {

@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::raw;
+use super::plain::raw;
 use crate::{Coordinates, Frame, LengthUnit, Space, Volume};
 
 /// Writes a volume as NIfTI-1, or NIfTI-2 where an axis is longer than version 1 can say. A known space

@@ -1,4 +1,4 @@
-//! What a DICOM file claims, looked at before a reader believes it: a parser takes memory for each
+//! Lengths that a DICOM file claims, checked before the parser trusts them: it allocates memory for each
 //! element by the length in its header.
 
 use std::fs::File;
@@ -14,8 +14,8 @@ use dicom_parser::DataSetReader;
 use dicom_parser::dataset::DataToken;
 use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
 
+use crate::error::{format_error, io_error};
 use crate::read::payload::MOST_EXPANSION;
-use crate::read::{format_error, io_error};
 use crate::{Reason, VolumeError};
 
 pub(super) const PIXEL_DATA: Tag = Tag(0x7FE0, 0x0010);
@@ -87,7 +87,7 @@ fn check_table(path: &Path, mut file: impl Read + Seek, length: u64) -> Result<(
     while read < size {
         let Ok((header, bytes)) = decoder.decode_header(&mut file) else { break };
         let claimed = header.len.get().unwrap_or(0);
-        believe(path, claimed, length)?;
+        check_length(path, claimed, length)?;
         file.seek_relative(claimed.into()).map_err(io_error(path))?;
         read += bytes as u64 + u64::from(claimed);
     }
@@ -117,7 +117,7 @@ fn check_elements(
             _ => None,
         };
         let claimed = claimed.unwrap_or(0);
-        believe(path, claimed, each)?;
+        check_length(path, claimed, each)?;
         if let Some(left) = &mut left {
             if pixels.is_some() {
                 break;
@@ -136,7 +136,7 @@ fn check_elements(
     Ok(pixels)
 }
 
-fn believe(path: &Path, claimed: u32, length: u64) -> Result<(), VolumeError> {
+fn check_length(path: &Path, claimed: u32, length: u64) -> Result<(), VolumeError> {
     if u64::from(claimed) <= length {
         return Ok(());
     }

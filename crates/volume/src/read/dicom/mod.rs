@@ -2,8 +2,7 @@
 //! frames of one.
 
 mod claims;
-mod gather;
-mod header;
+mod files;
 mod slice;
 mod stack;
 
@@ -15,30 +14,18 @@ use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::asking;
 use walpha_base::shown::shown;
 
-use super::described::{Described, Encoding};
-use super::frames::Frames;
+use super::ReadOptions;
+use super::frames::FrameChoice;
+use super::layout::{Encoding, Layout};
 use super::series::Series;
-use super::{ReadOptions, format_error};
+use crate::error::format_error;
 use crate::{Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
-use gather::{Gathered, pattern, reason, skippable};
-use slice::{Found, Slice, pixels};
+use files::{SeriesFiles, pattern, reason, skippable};
+use slice::{DicomFile, Slice, pixels};
 use stack::stacked;
 
-/// Reads the series that a file belongs to, or one in a folder.
-pub(crate) fn read(
-    path: &Path,
-    options: &ReadOptions,
-    monitor: &Monitor,
-) -> Result<Volume, VolumeError> {
-    if path.is_dir() {
-        read_folder(path, options, monitor)
-    } else {
-        read_series_of(path, options, monitor)
-    }
-}
-
 /// Reads the series that a file belongs to: all slices of it in the same folder.
-fn read_series_of(
+pub(crate) fn read_series_of(
     path: &Path,
     options: &ReadOptions,
     monitor: &Monitor,
@@ -51,33 +38,33 @@ fn read_series_of(
         );
         return Err(format_error(path, reason));
     }
-    let one = Found::open(path)?;
+    let one = DicomFile::open(path)?;
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
     one.slices?;
-    let mut gathered = Gathered::of(folder, false)?;
-    gathered.found.retain(|other| other.series == one.series);
+    let mut files = SeriesFiles::of(folder, false)?;
+    files.found.retain(|other| other.series == one.series);
     // Its neighbours may be anything, but those that are called alike.
-    let names: Vec<String> = gathered.found.iter().map(|found| pattern(&found.path)).collect();
+    let names: Vec<String> = files.found.iter().map(|found| pattern(&found.path)).collect();
     let near = |other: &Path| names.contains(&pattern(other));
     let skip = options.skip_damaged;
-    assemble(path, gathered.slices(skip, near)?, skip, monitor)
+    assemble(path, files.slices(skip, near)?, skip, monitor)
 }
 
 /// Reads the one series in a folder, or the one wanted.
-fn read_folder(
+pub(crate) fn read_folder(
     folder: &Path,
     options: &ReadOptions,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
     let (wanted, skip) = (options.series.as_deref(), options.skip_damaged);
-    let mut gathered = Gathered::of(folder, true)?;
-    let listed = listed(&gathered.found);
+    let mut files = SeriesFiles::of(folder, true)?;
+    let listed = listed(&files.found);
     let list = || listed.iter().map(Series::to_string).collect::<Vec<_>>().join("; ");
     let chosen = match (wanted, &listed[..]) {
-        (None, []) => return assemble(folder, gathered.slices(skip, |_| true)?, skip, monitor),
+        (None, []) => return assemble(folder, files.slices(skip, |_| true)?, skip, monitor),
         (None, [one]) => one,
         (None, several) => {
             let count = several.len();
@@ -106,16 +93,16 @@ fn read_folder(
             })?
         }
     };
-    gathered.found.retain(|one| one.series == chosen.uid);
-    assemble(folder, gathered.slices(skip, |_| true)?, skip, monitor)
+    files.found.retain(|one| one.series == chosen.uid);
+    assemble(folder, files.slices(skip, |_| true)?, skip, monitor)
 }
 
 /// The series in a folder that have images, in the order of the names of their files.
 pub(crate) fn series(folder: &Path) -> Result<Vec<Series>, VolumeError> {
-    Ok(listed(&Gathered::of(folder, true)?.found))
+    Ok(listed(&SeriesFiles::of(folder, true)?.found))
 }
 
-fn listed(found: &[Found]) -> Vec<Series> {
+fn listed(found: &[DicomFile]) -> Vec<Series> {
     let mut list: Vec<Series> = Vec::new();
     for one in found.iter().filter(|one| one.size.is_some()) {
         let known = list.iter().position(|series| series.uid == one.series);
@@ -211,5 +198,5 @@ fn volume(
         slices.iter().map(|slice| slice.dtype).reduce(|a, b| if a == b { a } else { Dtype::F32 });
     let dtype = dtype.unwrap_or(Dtype::F32);
     let (endian, encoding) = (Endian::Little, Encoding::Raw);
-    Described { dims, dtype, endian, frame, encoding, frames: Frames::ONE }.volume(samples)
+    Layout { dims, dtype, endian, frame, encoding, frames: FrameChoice::ONE }.volume(samples)
 }

@@ -1,6 +1,9 @@
+//! One file of a series: its header, its slices and their pixels.
+
 use std::path::{Path, PathBuf};
 
 use dicom_encoding::{TransferSyntax, TransferSyntaxIndex};
+use dicom_object::mem::InMemElement;
 use dicom_object::{DefaultDicomObject, InMemDicomObject, OpenFileOptions, Tag};
 use dicom_pixeldata::PixelDecoder;
 use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
@@ -8,8 +11,7 @@ use walpha_base::shown::shown;
 use walpha_base::vector::cross;
 
 use super::claims::{self, PIXEL_DATA, damaged};
-use super::header::Header;
-use crate::read::format_error;
+use crate::error::format_error;
 use crate::read::payload::MOST_EXPANSION;
 use crate::{Dtype, Reason, VolumeError};
 
@@ -74,7 +76,7 @@ pub(super) struct Wide {
 
 /// A file of a series, whether it is a slice or not.
 #[derive(Debug)]
-pub(super) struct Found {
+pub(super) struct DicomFile {
     pub path: PathBuf,
     /// The unique name of its series.
     pub series: String,
@@ -87,7 +89,7 @@ pub(super) struct Found {
     pub slices: Result<Vec<Slice>, VolumeError>,
 }
 
-impl Found {
+impl DicomFile {
     /// Reads the header.
     pub(super) fn open(path: &Path) -> Result<Self, VolumeError> {
         let unpacked = claims::check(path)?;
@@ -120,14 +122,14 @@ impl Slice {
         object: &InMemDicomObject,
         unpacked: Option<u64>,
     ) -> Result<Vec<Self>, VolumeError> {
-        let said = |reason: Reason| format_error(path, reason);
+        let fail = |reason: Reason| format_error(path, reason);
         let header = Header::new(path, object);
         if header.number(None, SAMPLES_PER_PIXEL)?.unwrap_or(1.0) != 1.0 {
-            return Err(said(Reason::not_scalar("pixels of colours", None)));
+            return Err(fail(Reason::not_scalar("pixels of colours", None)));
         }
         let [column, row] = [COLUMNS, ROWS].map(|tag| header.number(None, tag));
         let (Some(columns), Some(rows)) = (column?, row?) else {
-            return Err(said(Reason::content(
+            return Err(fail(Reason::content(
                 "holds no image",
                 "move what is not a slice out of the folder",
             )));
@@ -139,7 +141,7 @@ impl Slice {
             size[0].saturating_mul(size[1]).saturating_mul((bits as u64).div_ceil(8)).max(1);
         let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
         if frame.saturating_mul(frames as u64) > length.saturating_mul(MOST_EXPANSION) {
-            return Err(said(Reason::truncated(format!(
+            return Err(fail(Reason::truncated(format!(
                 "claims {frames} × {columns}×{rows} pixels, which {length} bytes cannot hold: it is \
                  truncated or damaged"
             ))));
@@ -147,7 +149,7 @@ impl Slice {
         // One byte may be there to make their number even.
         let expected = frame.saturating_mul(frames as u64);
         if let Some(bytes) = unpacked.filter(|&bytes| bytes > expected.saturating_add(1)) {
-            return Err(said(Reason::header(format!(
+            return Err(fail(Reason::header(format!(
                 "claims {frames} × {columns}×{rows} pixels, which are {expected} bytes, and {bytes} bytes of them"
             ))));
         }
@@ -165,14 +167,14 @@ impl Slice {
         object: &InMemDicomObject,
         slices: &mut [Self],
     ) -> Result<(), VolumeError> {
-        let said = |reason: Reason| format_error(path, reason);
+        let fail = |reason: Reason| format_error(path, reason);
         let places =
             |slices: &[Self]| slices.windows(2).any(|two| two[0].position != two[1].position);
         if slices.len() < 2 || places(slices) {
             return Ok(());
         }
         let Some(element) = object.get(GRID_FRAME_OFFSETS) else {
-            return Err(said(Reason::unsupported(
+            return Err(fail(Reason::unsupported(
                 format!(
                     "has {} frames and one place for all of them: times, views or a cine, and no volume",
                     slices.len()
@@ -182,7 +184,7 @@ impl Slice {
         };
         let offsets = element.to_multi_float64().unwrap_or_default();
         if offsets.len() != slices.len() || offsets.iter().any(|offset| !offset.is_finite()) {
-            return Err(said(Reason::header(format!(
+            return Err(fail(Reason::header(format!(
                 "has {} frames, and Grid Frame Offset Vector {GRID_FRAME_OFFSETS} of {} numbers",
                 slices.len(),
                 offsets.len()
@@ -247,17 +249,17 @@ impl Slice {
     /// Pixels of 32 bits that are not compressed.
     fn wide_pixels(&self, wide: Wide, object: &InMemDicomObject) -> Result<Vec<f32>, VolumeError> {
         let path = &self.path;
-        let said = |reason: Reason| format_error(path, reason);
+        let fail = |reason: Reason| format_error(path, reason);
         let element = object.get(PIXEL_DATA).and_then(|element| element.value().primitive());
         let Some(value) = element else {
             let what = "has compressed pixels of 32 bits, which are not read";
-            return Err(said(Reason::unsupported(what, "unpack it first")));
+            return Err(fail(Reason::unsupported(what, "unpack it first")));
         };
         let bytes = value.to_bytes();
         let each = (self.columns * self.rows) as usize;
         let (all, _) = bytes.as_chunks::<4>();
         let pixels = all.chunks_exact(each.max(1)).nth(self.frame as usize).ok_or_else(|| {
-            said(Reason::truncated(format!(
+            fail(Reason::truncated(format!(
                 "claims {} frames of {}×{} pixels and holds {} pixels: it is truncated or damaged",
                 self.frames,
                 self.columns,
@@ -352,5 +354,80 @@ fn dtype(bits: f64, unsigned: bool, slope: f64, intercept: f64) -> Dtype {
         (16, true) if intercept >= 0.0 => Dtype::U16,
         (16, _) => Dtype::I16,
         _ => Dtype::F32,
+    }
+}
+
+const SHARED_FUNCTIONAL_GROUPS: Tag = Tag(0x5200, 0x9229);
+const PER_FRAME_FUNCTIONAL_GROUPS: Tag = Tag(0x5200, 0x9230);
+
+/// The header of a file, as it applies to one of its frames: in enhanced images some elements are in
+/// functional groups, of the frame or shared by all frames (PS3.3, C.7.6.16).
+#[derive(Clone, Copy)]
+struct Header<'a> {
+    path: &'a Path,
+    object: &'a InMemDicomObject,
+    frame: Option<u32>,
+}
+
+impl<'a> Header<'a> {
+    /// Of a file.
+    fn new(path: &'a Path, object: &'a InMemDicomObject) -> Self {
+        Self { path, object, frame: None }
+    }
+
+    /// As the frame has it that is counted from 0.
+    fn of_frame(self, frame: u32) -> Self {
+        Self { frame: Some(frame), ..self }
+    }
+
+    /// The functional groups that hold for the frame, its own first.
+    fn groups(&self) -> impl Iterator<Item = &'a InMemDicomObject> {
+        let items = |tag: Tag| self.object.get(tag).and_then(|sequence| sequence.items());
+        let own = self.frame.and_then(|frame| {
+            items(PER_FRAME_FUNCTIONAL_GROUPS).and_then(|items| items.get(frame as usize))
+        });
+        own.into_iter().chain(items(SHARED_FUNCTIONAL_GROUPS).and_then(|items| items.first()))
+    }
+
+    /// An element, from the functional group `group` where there is one.
+    fn element(&self, group: Option<Tag>, tag: Tag) -> Option<&'a InMemElement> {
+        let in_group = |all: &'a InMemDicomObject| {
+            all.get(group?)?.items().and_then(|items| items.first())?.get(tag)
+        };
+        self.groups().find_map(in_group).or_else(|| self.object.get(tag))
+    }
+
+    /// A number, if it is there.
+    fn number(&self, group: impl Into<Option<Tag>>, tag: Tag) -> Result<Option<f64>, VolumeError> {
+        let Some(element) = self.element(group.into(), tag) else { return Ok(None) };
+        if element.value().multiplicity() == 0 {
+            return Ok(None);
+        }
+        let number = element.to_float64().ok().filter(|number| number.is_finite());
+        number.map(Some).ok_or_else(|| {
+            format_error(
+                self.path,
+                Reason::damaged(format!("has no number at {tag}: it is damaged")),
+            )
+        })
+    }
+
+    /// `N` numbers, called `name`, which a volume needs because of `why`.
+    fn vector<const N: usize>(
+        &self,
+        group: Tag,
+        tag: Tag,
+        name: &str,
+        why: &str,
+    ) -> Result<[f64; N], VolumeError> {
+        let element = self.element(group.into(), tag);
+        let numbers = element.and_then(|element| element.to_multi_float64().ok());
+        let numbers = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
+        numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite())).ok_or_else(|| {
+            format_error(
+                self.path,
+                Reason::header(format!("has no {name} {tag} of {N} numbers, {why}")),
+            )
+        })
     }
 }

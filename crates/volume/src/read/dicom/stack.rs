@@ -3,7 +3,8 @@ use std::path::Path;
 use walpha_base::vector::{cross, dot};
 
 use super::slice::Slice;
-use crate::read::format_error;
+use crate::error::format_error;
+use crate::read::layout;
 use crate::{Coordinates, Frame, Reason, VolumeError};
 
 /// Unit vectors this alike are one; headers have six digits or more.
@@ -22,14 +23,14 @@ pub(super) fn stacked(
     path: &Path,
     mut slices: Vec<Slice>,
 ) -> Result<(Vec<Slice>, Frame), VolumeError> {
-    let said = |reason: Reason| format_error(path, reason);
+    let fail = |reason: Reason| format_error(path, reason);
     let Some(first) = slices.first().cloned() else {
-        return Err(said(Reason::content("holds no DICOM slices", "name a folder of them")));
+        return Err(fail(Reason::content("holds no DICOM slices", "name a folder of them")));
     };
     for slice in &slices {
         let (name, other) = (slice.name(), first.name());
         if (slice.columns, slice.rows) != (first.columns, first.rows) {
-            return Err(said(Reason::content(
+            return Err(fail(Reason::content(
                 format!(
                     "has a slice of {}×{} pixels in {name}, and of {}×{} in {other}",
                     slice.columns, slice.rows, first.columns, first.rows
@@ -39,14 +40,14 @@ pub(super) fn stacked(
         }
         let turned = slice.orientation.as_flattened().iter().zip(first.orientation.as_flattened());
         if turned.into_iter().any(|(a, b)| (a - b).abs() > SAME_DIRECTION) {
-            return Err(said(Reason::content(
+            return Err(fail(Reason::content(
                 format!("has slices of different orientations, as {name} and {other}"),
                 "move localisers and other views away",
             )));
         }
         let spaced = slice.spacing.iter().zip(&first.spacing);
         if spaced.into_iter().any(|(a, b)| (a - b).abs() > SAME_DIRECTION * b.abs()) {
-            return Err(said(Reason::content(
+            return Err(fail(Reason::content(
                 format!(
                     "has pixels {:?} mm apart in {name}, and {:?} in {other}",
                     slice.spacing, first.spacing
@@ -61,13 +62,12 @@ pub(super) fn stacked(
         let [a_at, b_at] = [a, b].map(|slice| dot(slice.position, normal));
         a_at.total_cmp(&b_at).then_with(|| (&a.path, a.frame).cmp(&(&b.path, b.frame)))
     });
-    let step = match even(&slices, normal).map_err(said)? {
+    let step = match even(&slices, normal).map_err(fail)? {
         Some(step) => step,
         None => normal.map(|n| n * first.thickness),
     };
     let axes = [column.map(|v| v * first.spacing[0]), row.map(|v| v * first.spacing[1]), step];
-    let frame =
-        super::super::described::frame(path, slices[0].position, axes, Coordinates::PATIENT)?;
+    let frame = layout::frame(path, slices[0].position, axes, Coordinates::PATIENT)?;
     Ok((slices, frame))
 }
 

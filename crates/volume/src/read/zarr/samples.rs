@@ -1,9 +1,12 @@
-//! Samples: all of them, or part by part.
+//! The samples of a Zarr array: all of them, or part by part.
 
+use std::fs::File;
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
+use serde_json::Value;
 use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::asking;
@@ -11,8 +14,7 @@ use zarrs::array::{Array, DataType, ElementOwned};
 use zarrs::array_subset::ArraySubset;
 use zarrs::filesystem::FilesystemStore;
 
-use super::super::format_error;
-use super::{damaged, shards};
+use crate::error::format_error;
 use crate::source::BoxReader;
 use crate::{Dims, Dtype, Reason, VolumeError};
 
@@ -42,7 +44,7 @@ pub(super) fn samples(
     monitor: &Monitor,
 ) -> Result<(Dtype, Vec<f32>), VolumeError> {
     let dtype = dtype(path, array.data_type())?;
-    let read = Read { path, array, dims, leading, monitor };
+    let read = ArrayReader { path, array, dims, leading, monitor };
     Ok((dtype, by_type!(dtype, read.all)?))
 }
 
@@ -117,14 +119,14 @@ impl ZarrBoxes {
         part: &ArraySubset,
         convert: impl Fn(T) -> f32,
     ) -> Result<Vec<f32>, VolumeError> {
-        shards::check(&self.array, part).map_err(|error| damaged(&self.path, &error))?;
+        check_shards(&self.array, part).map_err(|error| damaged(&self.path, &error))?;
         let read = self.array.retrieve_array_subset_elements::<T>(part);
         let samples = read.map_err(|error| damaged(&self.path, &error))?;
         Ok(samples.into_iter().map(convert).collect())
     }
 }
 
-struct Read<'a> {
+struct ArrayReader<'a> {
     path: &'a Path,
     array: &'a Array<FilesystemStore>,
     dims: Dims,
@@ -157,7 +159,7 @@ fn stored(folder: &Path, enough: u64) -> u64 {
     bytes
 }
 
-impl Read<'_> {
+impl ArrayReader<'_> {
     /// Refuses an array that claims far more than what is stored can hold, before memory is asked for.
     fn check_stored(&self) -> Result<(), VolumeError> {
         let Self { path, dims, .. } = self;
@@ -184,10 +186,10 @@ impl Read<'_> {
         convert: impl Fn(T) -> f32 + Send + Sync,
     ) -> Result<Vec<f32>, VolumeError> {
         let Self { path, array, dims, leading, monitor } = self;
-        let said = |reason: Reason| format_error(path, reason);
+        let fail = |reason: Reason| format_error(path, reason);
         let axes = array.dimensionality();
         let damaged = |error: &dyn std::fmt::Display| {
-            said(Reason::damaged(format!("is a Zarr array that cannot be read ({error})")))
+            fail(Reason::damaged(format!("is a Zarr array that cannot be read ({error})")))
         };
         let chunk = array.chunk_shape(&vec![0; axes]).map_err(|error| damaged(&error))?;
         check_chunk(path, &chunk, *dims)?;
@@ -196,7 +198,7 @@ impl Read<'_> {
         let mut samples = Vec::new();
         asking(|| samples.try_reserve_exact(dims.samples())).map_err(|_| {
             let bytes = dims.samples() * size_of::<f32>();
-            said(Reason::choice(
+            fail(Reason::choice(
                 Setting::Level,
                 format!("needs {bytes} bytes of memory, which cannot be had"),
                 advice!["choose a coarser ", Setting::Level],
@@ -217,7 +219,7 @@ impl Read<'_> {
             let mut ranges: Vec<_> = leading.iter().map(|&i| i..i + 1).collect();
             ranges.extend([slices.clone(), rows.clone(), 0..x]);
             let part = ArraySubset::new_with_ranges(&ranges);
-            shards::check(array, &part).map_err(|error| damaged(&error))?;
+            check_shards(array, &part).map_err(|error| damaged(&error))?;
             let part: Vec<T> =
                 array.retrieve_array_subset_elements(&part).map_err(|error| damaged(&error))?;
             let in_slice = ((rows.end - rows.start) * x) as usize;
@@ -229,5 +231,94 @@ impl Read<'_> {
             monitor.report(slices.start * y + rows.end * (slices.end - slices.start), z * y)?;
         }
         Ok(samples)
+    }
+}
+
+pub(super) fn damaged(path: &Path, error: &dyn std::fmt::Display) -> VolumeError {
+    let what = format!("is a Zarr store that cannot be read ({error})");
+    format_error(path, Reason::damaged(what))
+}
+
+// Shards: chunks that hold chunks, and an index of where these are. The index is looked at before it is believed: the
+// reader adds an offset to a length without asking whether the sum is a number.
+
+/// How the index of a shard lies in its file.
+struct Index {
+    /// Chunks in a shard; each has an offset and a length of 64 bits.
+    chunks: u64,
+    at_start: bool,
+    /// Bytes of a checksum behind it.
+    sum: u64,
+}
+
+/// Whether the shards of a part of an array lead to places in their own files. Arrays without shards pass, and so do
+/// shards whose index is compressed, which nobody writes.
+///
+/// # Errors
+/// What is wrong.
+fn check_shards(array: &Array<FilesystemStore>, part: &ArraySubset) -> io::Result<()> {
+    let Some(index) = Index::of(array) else { return Ok(()) };
+    let Ok(Some(shards)) = array.chunks_in_array_subset(part) else { return Ok(()) };
+    let store = array.storage();
+    for place in &shards.indices() {
+        let path = store.key_to_fspath(&array.chunk_key(&place));
+        match File::open(path) {
+            Ok(file) => index.check(file)?,
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}
+
+impl Index {
+    fn of(array: &Array<FilesystemStore>) -> Option<Self> {
+        let metadata = serde_json::to_value(array.metadata()).ok()?;
+        let codecs = metadata["codecs"].as_array()?;
+        let sharding = codecs.iter().find(|codec| codec["name"] == "sharding_indexed")?;
+        let about = &sharding["configuration"];
+        let product = |sizes: &Value| -> Option<u64> {
+            sizes
+                .as_array()?
+                .iter()
+                .try_fold(1u64, |product, size| product.checked_mul(size.as_u64()?))
+        };
+        let shard = product(&metadata["chunk_grid"]["configuration"]["chunk_shape"])?;
+        let chunks = shard.checked_div(product(&about["chunk_shape"])?)?;
+        let mut sum = 0;
+        for codec in about["index_codecs"].as_array()? {
+            match codec["name"].as_str()? {
+                "bytes" if codec["configuration"]["endian"] != "big" => {}
+                "crc32c" => sum = 4,
+                _ => return None,
+            }
+        }
+        Some(Self { chunks, at_start: about["index_location"] == "start", sum })
+    }
+
+    /// Looks at the index of a shard.
+    fn check(&self, mut shard: File) -> io::Result<()> {
+        /// What an offset and a length are where there is no chunk.
+        const NONE: [u64; 2] = [u64::MAX; 2];
+        let wrong = |what: String| io::Error::new(ErrorKind::InvalidData, what);
+        let length = shard.metadata()?.len();
+        let bytes = self.chunks.checked_mul(16).filter(|bytes| *bytes <= length);
+        let from = bytes.and_then(|bytes| length.checked_sub(bytes.checked_add(self.sum)?));
+        let (Some(bytes), Some(from)) = (bytes, from) else {
+            return Err(wrong(format!("a shard of {length} bytes is too short for its index")));
+        };
+        shard.seek(SeekFrom::Start(if self.at_start { 0 } else { from }))?;
+        let mut index = Vec::new();
+        shard.take(bytes).read_to_end(&mut index)?;
+        for entry in index.as_chunks::<16>().0 {
+            let [at, size] =
+                [0, 8].map(|k| u64::from_le_bytes(entry[k..k + 8].try_into().expect("8 bytes")));
+            if [at, size] != NONE && at.checked_add(size).is_none_or(|end| end > length) {
+                return Err(wrong(format!(
+                    "a shard of {length} bytes says that a chunk of {size} is at {at}"
+                )));
+            }
+        }
+        Ok(())
     }
 }

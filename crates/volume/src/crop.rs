@@ -1,4 +1,4 @@
-//! Parts of a volume, and coarser ones.
+//! Cropping and downsampling.
 
 use std::num::NonZeroUsize;
 use std::ops::Range;
@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{Volume, VolumeError};
 
-/// Samples from one index up to, and without, another along each axis (x, y, z); an end that is left
-/// away is that of the volume.
+/// Samples from one index up to, and without, another along each axis (x, y, z); a missing
+/// end is that of the volume.
 #[expect(
     clippy::unsafe_derive_deserialize,
     reason = "the unsafe code is that of a macro of ndarray"
@@ -32,7 +32,7 @@ impl Region {
         let sizes = volume.dims().xyz();
         let end = [0, 1, 2].map(|k| self.end[k].unwrap_or(sizes[k]));
         if (0..3).any(|k| self.first[k] >= end[k] || end[k] > sizes[k]) {
-            return Err(VolumeError::Region { first: self.first, end, dims: volume.dims() });
+            return Err(VolumeError::Region { first: self.first, end, dims: volume.dims().xyz() });
         }
         let [x, y, z]: [Range<usize>; 3] = [0, 1, 2].map(|k| self.first[k]..end[k]);
         let part = s![z, y, x];
@@ -44,7 +44,7 @@ impl Region {
 }
 
 /// A coarser volume: the mean of each `n`×`n`×`n` samples is placed at their centre. What is left at the
-/// end of an axis is dropped; an axis of fewer samples becomes one. Missing samples have no part in the
+/// end of an axis is dropped; an axis of fewer samples becomes one. Missing samples are left out of the
 /// mean.
 #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn downsample(volume: Volume, n: NonZeroUsize) -> Volume {
@@ -116,7 +116,7 @@ mod tests {
         samples[[0, 0, 0]] = f32::NAN;
         samples.slice_mut(s![0..2, 0..2, 2..4]).fill(f32::NAN);
         let volume = Volume::of_file(samples, Frame::VOXEL).unwrap();
-        let volume = volume.settled(Some(Nan::Mask)).unwrap();
+        let volume = volume.resolve_nan(Some(Nan::Mask)).unwrap();
         assert!(volume.is_missing(0) && !volume.is_missing(1) && volume.as_slice()[0] == 1.0);
         let coarse = downsample(volume.clone(), NonZeroUsize::new(2).unwrap());
         assert_eq!(coarse.as_slice()[0], (8.0 * 55.5 - 0.0) / 7.0);

@@ -1,4 +1,4 @@
-//! What a file says of its α and its coordinates, where the programs that read it look.
+//! Notes in exported files: α and coordinates, in the form that other programs look for.
 
 use walpha_base::shown::{number, six_digits};
 
@@ -32,8 +32,8 @@ pub fn line(sign: &str, coordinates: Coordinates) -> String {
 /// The same as VTK's field data in XML: arrays of one string each, in the numbers of its characters.
 #[cfg(feature = "formats")]
 pub fn field_data(coordinates: Coordinates) -> String {
-    let told = pairs(coordinates);
-    if told.is_empty() {
+    let pairs = pairs(coordinates);
+    if pairs.is_empty() {
         return String::new();
     }
     let array = |(name, value): &(&str, &str)| {
@@ -44,7 +44,7 @@ pub fn field_data(coordinates: Coordinates) -> String {
             bytes.join(" ")
         )
     };
-    format!("<FieldData>\n{}</FieldData>\n", told.iter().map(array).collect::<String>())
+    format!("<FieldData>\n{}</FieldData>\n", pairs.iter().map(array).collect::<String>())
 }
 
 /// The names and texts of what is known.
@@ -60,9 +60,9 @@ mod tests {
 
     #[test]
     fn alpha_is_a_squared_length() {
-        let told = [10.0, -1e300, f64::INFINITY].map(|x| alpha(Alpha::from_squared(x).unwrap()));
-        assert_eq!(told[0], "α = 10 (squared length; √α = 3.16228)");
-        assert_eq!(told[1], "α = -1e300 (squared length; negative, so no radius)");
-        assert_eq!(told[2], "α = inf (squared length; √α = inf)");
+        let texts = [10.0, -1e300, f64::INFINITY].map(|x| alpha(Alpha::from_squared(x).unwrap()));
+        assert_eq!(texts[0], "α = 10 (squared length; √α = 3.16228)");
+        assert_eq!(texts[1], "α = -1e300 (squared length; negative, so no radius)");
+        assert_eq!(texts[2], "α = inf (squared length; √α = inf)");
     }
 }

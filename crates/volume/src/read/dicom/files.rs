@@ -6,47 +6,47 @@ use rayon::prelude::*;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::shown::shown;
 
-use super::slice::{Found, Slice};
-use crate::read::format_error;
-use crate::read::series::{Files, files};
+use super::slice::{DicomFile, Slice};
+use crate::error::format_error;
+use crate::read::series::{self, Files};
 use crate::{Reason, VolumeError};
 
 /// What the files of a folder are.
-pub(super) struct Gathered {
-    pub found: Vec<Found>,
+pub(super) struct SeriesFiles {
+    pub found: Vec<DicomFile>,
     /// Files that may be slices and cannot be read, each with the reason.
     damaged: Vec<(PathBuf, VolumeError)>,
 }
 
-impl Gathered {
+impl SeriesFiles {
     /// Looks at the headers in a folder; indices of media (DICOMDIR) are passed over.
     pub(super) fn of(folder: &Path, nested: bool) -> Result<Self, VolumeError> {
         let is_index = |path: &PathBuf| path.file_name().is_some_and(|name| name == "DICOMDIR");
-        let Files { dicom, ruins } = files(folder, nested)?;
-        let open = |path: &PathBuf| (path.clone(), Found::open(path));
+        let Files { dicom, suspects } = series::files(folder, nested)?;
+        let open = |path: &PathBuf| (path.clone(), DicomFile::open(path));
         let opened: Vec<_> = dicom.par_iter().filter(|path| !is_index(path)).map(open).collect();
-        let mut gathered = Self { found: Vec::new(), damaged: Vec::new() };
+        let mut files = Self { found: Vec::new(), damaged: Vec::new() };
         for (path, opened) in opened {
             match opened {
-                Ok(found) => gathered.found.push(found),
-                Err(error) => gathered.damaged.push((path, error)),
+                Ok(found) => files.found.push(found),
+                Err(error) => files.damaged.push((path, error)),
             }
         }
         // A header that breaks off before it names its series.
-        let named = gathered.found.iter().any(|found| !found.series.is_empty());
-        for broken in gathered
+        let named = files.found.iter().any(|found| !found.series.is_empty());
+        for broken in files
             .found
             .extract_if(.., |found| named && found.series.is_empty() && found.slices.is_err())
         {
             if let Err(error) = broken.slices {
-                gathered.damaged.push((broken.path, error));
+                files.damaged.push((broken.path, error));
             }
         }
-        gathered.damaged.extend(ruins.into_iter().map(|path| {
-            let error = format_error(&path, ruined(&path));
+        files.damaged.extend(suspects.into_iter().map(|path| {
+            let error = format_error(&path, not_dicom(&path));
             (path, error)
         }));
-        Ok(gathered)
+        Ok(files)
     }
 
     /// The slices of a series, and those of its files that cannot be read dealt with: refused, or left out with
@@ -100,7 +100,7 @@ pub(super) fn reason(error: &VolumeError) -> String {
 }
 
 /// What is wrong with a file that has no mark of DICOM, and is named as if it had.
-fn ruined(path: &Path) -> Reason {
+fn not_dicom(path: &Path) -> Reason {
     let length = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
     Reason::damaged(if length == 0 {
         "is empty, beside DICOM files".to_owned()

@@ -1,31 +1,32 @@
 //! Points of legacy VTK files: those of polygons, unstructured and curved grids.
 
-use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::{BufRead, Read};
 use std::path::Path;
 
-use super::super::lines::Lines;
-use super::super::payload::{Length, Payload};
-use super::super::{format_error, io_error, payload_error_of, text};
-use super::MAGIC;
-use super::arrays::{self, Array, CellList, POINTS};
-use crate::{Endian, Reason, VolumeError};
 use walpha_base::Monitor;
+
+use super::legacy_arrays::{self as arrays, Array, CellList, POINTS};
+use crate::error::{format_error, io_error};
+use crate::formats::is_vtk;
+use crate::read::OpenFile;
+use crate::read::payload::{Length, Payload, payload_error_of};
+use crate::read::text::{self, Lines};
+use crate::{Endian, Reason, VolumeError};
 
 /// The datasets whose points are listed.
 const LISTED: [&str; 3] = ["POLYDATA", "UNSTRUCTURED_GRID", "STRUCTURED_GRID"];
 
 /// A legacy VTK file that lists points.
 pub struct VtkPoints<'a> {
-    path: &'a Path,
+    file: &'a OpenFile,
     text: bool,
     arrays: Vec<Array>,
-    /// How many cells it lists, single points aside.
+    /// Numbers of cells by kind, vertices aside.
     pub cells: Vec<CellList>,
 }
 
 /// What a legacy VTK file begins with.
-struct Head {
+struct Preamble {
     /// Whether cells are two arrays, as from version 5 on.
     offsets: bool,
     text: bool,
@@ -37,18 +38,19 @@ impl<'a> VtkPoints<'a> {
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn are_in(path: &Path) -> Result<bool, VolumeError> {
-        let head = head(path, &mut lines(path)?)?;
-        Ok(LISTED.contains(&head.dataset.as_str()))
+    pub fn lists_points(file: &OpenFile) -> Result<bool, VolumeError> {
+        let preamble = preamble(file.path(), &mut Lines::new(file.reader()?))?;
+        Ok(LISTED.contains(&preamble.dataset.as_str()))
     }
 
     /// Finds the points and their data.
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn open(path: &'a Path) -> Result<Self, VolumeError> {
-        let mut lines = lines(path)?;
-        let Head { offsets, text, dataset } = head(path, &mut lines)?;
+    pub fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
+        let path = file.path();
+        let mut lines = Lines::new(file.reader()?);
+        let Preamble { offsets, text, dataset } = preamble(path, &mut lines)?;
         if !LISTED.contains(&dataset.as_str()) {
             let what = format!("holds {dataset}: points are read from {}", LISTED.join(", "));
             return Err(format_error(path, Reason::unsupported(what, "convert it first")));
@@ -56,7 +58,7 @@ impl<'a> VtkPoints<'a> {
         let (arrays, cells) = arrays::find_all(path, &mut lines, text, offsets)?;
         match arrays.first() {
             Some(Array { name, components: 3, .. }) if name == POINTS => {
-                Ok(Self { path, text, arrays, cells })
+                Ok(Self { file, text, arrays, cells })
             }
             _ => Err(format_error(path, Reason::damaged("has no POINTS: it is damaged"))),
         }
@@ -71,7 +73,7 @@ impl<'a> VtkPoints<'a> {
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn places(&self) -> Result<Vec<f64>, VolumeError> {
+    pub fn coordinates(&self) -> Result<Vec<f64>, VolumeError> {
         self.values(&self.arrays[0])
     }
 
@@ -98,24 +100,22 @@ impl<'a> VtkPoints<'a> {
     }
 
     fn values(&self, array: &Array) -> Result<Vec<f64>, VolumeError> {
-        let (path, count) = (self.path, array.values);
+        let (path, count) = (self.file.path(), array.values);
         if count != self.count().saturating_mul(array.components) {
             let (name, points) = (&array.name, self.count());
             let what = format!("has {count} values {name} for {points} points");
             return Err(format_error(path, Reason::header(what)));
         }
         let dtype = arrays::scalar(path, &array.kind, 1)?;
-        let mut file = File::open(path).map_err(io_error(path))?;
-        let length = file.metadata().map_err(io_error(path))?.len();
-        file.seek(SeekFrom::Start(array.start)).map_err(io_error(path))?;
-        let left = array.end.unwrap_or(length).saturating_sub(array.start);
+        let reader = self.file.reader_at(array.start)?;
+        let left = array.end.unwrap_or(self.file.length()).saturating_sub(array.start);
         if self.text {
-            return text::numbers(file.take(left), left, dtype, count)
+            return text::numbers(reader.take(left), left, dtype, count)
                 .map_err(|reason| format_error(path, reason));
         }
         let bytes = count.saturating_mul(dtype.size() as u64).min(left);
         let length = Length::Exactly(bytes);
-        let payload = Payload { reader: BufReader::new(file).take(bytes), length };
+        let payload = Payload { reader: reader.take(bytes), length };
         let claim = format!("{count} numbers {} of type {dtype}", array.name);
         payload
             .samples(dtype, Endian::Big, count, &Monitor::noop())
@@ -123,15 +123,11 @@ impl<'a> VtkPoints<'a> {
     }
 }
 
-fn lines(path: &Path) -> Result<Lines<BufReader<File>>, VolumeError> {
-    Ok(Lines::new(BufReader::new(File::open(path).map_err(io_error(path))?)))
-}
-
 /// Reads up to the line that names the dataset.
-fn head(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Head, VolumeError> {
+fn preamble(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Preamble, VolumeError> {
     let mut next = || lines.read_line().map_err(io_error(path));
     let first = next()?.unwrap_or_default();
-    if !first.as_bytes().starts_with(MAGIC) {
+    if !is_vtk(first.as_bytes()) {
         let what = "is not a legacy VTK file: it does not begin with # vtk DataFile";
         return Err(format_error(path, Reason::other(what)));
     }
@@ -146,7 +142,7 @@ fn head(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Head, VolumeE
             (Some("ASCII"), ..) => text = Some(true),
             (Some("BINARY"), ..) => text = Some(false),
             (Some("DATASET"), Some(dataset), Some(text)) => {
-                return Ok(Head { offsets, text, dataset: dataset.clone() });
+                return Ok(Preamble { offsets, text, dataset: dataset.clone() });
             }
             (None, ..) => {}
             _ => break,

@@ -1,3 +1,5 @@
+//! What the header of a file says of its samples, and reading them as it says.
+
 use std::io::{BufReader, Read};
 use std::path::Path;
 
@@ -6,20 +8,21 @@ use flate2::read::{MultiGzDecoder, ZlibDecoder};
 use ndarray::Array3;
 use walpha_base::Monitor;
 
-use super::frames::Frames;
-use super::payload::{Length, Payload};
-use super::{format_error, payload_error, text};
+use super::frames::FrameChoice;
+use super::payload::{Length, Payload, payload_error};
+use super::text;
+use crate::error::format_error;
 use crate::{Coordinates, Dims, Dtype, Endian, Frame, Reason, Volume, VolumeError};
 
 /// A volume as the header of a file describes it, x fastest.
 #[derive(Clone, Debug)]
-pub(super) struct Described {
+pub(super) struct Layout {
     pub dims: Dims,
     pub dtype: Dtype,
     pub endian: Endian,
     pub frame: Frame,
     pub encoding: Encoding,
-    pub frames: Frames,
+    pub frames: FrameChoice,
 }
 
 /// How samples become bytes.
@@ -37,7 +40,7 @@ pub(super) enum Encoding {
     Bzip2,
 }
 
-impl Described {
+impl Layout {
     /// Bytes of all volumes of the file where they are not compressed.
     pub(super) fn bytes(&self) -> u64 {
         self.each().saturating_mul(self.frames.count)
@@ -88,7 +91,7 @@ impl Described {
         length: Length,
         monitor: &Monitor,
     ) -> Result<Volume, VolumeError> {
-        let (reader, length) = self.frames.one(path, reader, length, self.each())?;
+        let (reader, length) = self.frames.select(path, reader, length, self.each())?;
         let samples = Payload { reader, length }
             .samples(self.dtype, self.endian, self.dims.samples() as u64, monitor)
             .map_err(payload_error(path, &self.dims, self.dtype))?;

@@ -1,5 +1,7 @@
 //! How files of each format begin.
 
+use walpha_base::npy;
+
 use crate::Endian;
 
 /// Lengths of the headers of `NIfTI`'s versions 1 and 2, which their first numbers repeat.
@@ -39,6 +41,12 @@ pub fn is_vtk_xml(start: &[u8]) -> bool {
     text.starts_with(b"<") && start.windows(name.len()).any(|window| window == name)
 }
 
+/// Whether a file begins as TIFF or `BigTIFF` does, of either byte order.
+pub(super) fn is_tiff(start: &[u8]) -> bool {
+    const MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
+    MAGIC.iter().any(|magic| start.starts_with(magic))
+}
+
 /// Whether a file begins as an MGH header does: with version 1, four sizes from 1 up, and a type that there is.
 pub(super) fn is_mgh(start: &[u8]) -> bool {
     let (numbers, _) = start.as_chunks();
@@ -50,6 +58,16 @@ pub(super) fn is_mgh(start: &[u8]) -> bool {
 /// Whether a file begins as legacy VTK files do.
 pub fn is_vtk(start: &[u8]) -> bool {
     start.starts_with(b"# vtk DataFile")
+}
+
+/// Whether a file begins as NPY does.
+pub fn is_npy(start: &[u8]) -> bool {
+    start.starts_with(npy::MAGIC)
+}
+
+/// Whether a file begins as a gzip stream does.
+pub(crate) fn is_gzip(start: &[u8]) -> bool {
+    start.starts_with(&[0x1f, 0x8b])
 }
 
 /// Whether a file begins as a DICOM file does. The bytes before the mark are anybody's: some scanners

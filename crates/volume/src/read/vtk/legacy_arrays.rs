@@ -3,8 +3,8 @@
 use std::io::BufRead;
 use std::path::Path;
 
-use super::super::lines::Lines;
-use super::super::{format_error, io_error};
+use crate::error::{format_error, io_error};
+use crate::read::text::Lines;
 use crate::{Dtype, Reason, VolumeError};
 
 /// Keywords that begin a section after the grid.
@@ -52,16 +52,16 @@ pub(super) struct Array {
 
 /// Finds the arrays; `line` begins the data of points or cells.
 ///
-/// The search ends at whatever cannot be parsed after the first array.
+/// The scan ends at whatever cannot be parsed after the first array.
 pub(super) fn find(
     path: &Path,
     lines: &mut Lines<impl BufRead>,
     line: &str,
     text: bool,
 ) -> Result<Vec<Array>, VolumeError> {
-    let mut search = Search::new(path, lines, text, false);
-    search.all(Some(line.to_owned()))?;
-    Ok(search.found)
+    let mut scanner = Scanner::new(path, lines, text, false);
+    scanner.all(Some(line.to_owned()))?;
+    Ok(scanner.found)
 }
 
 /// How many cells a keyword lists, in the plural.
@@ -76,12 +76,12 @@ pub(super) fn find_all(
     offsets: bool,
 ) -> Result<(Vec<Array>, Vec<CellList>), VolumeError> {
     let line = lines.read_line().map_err(io_error(path))?;
-    let mut search = Search::new(path, lines, text, offsets);
-    search.all(line)?;
-    Ok((search.found, search.listed))
+    let mut scanner = Scanner::new(path, lines, text, offsets);
+    scanner.all(line)?;
+    Ok((scanner.found, scanner.listed))
 }
 
-struct Search<'a, R> {
+struct Scanner<'a, R> {
     path: &'a Path,
     lines: &'a mut Lines<R>,
     text: bool,
@@ -96,7 +96,7 @@ struct Search<'a, R> {
     listed: Vec<CellList>,
 }
 
-impl<'a, R: BufRead> Search<'a, R> {
+impl<'a, R: BufRead> Scanner<'a, R> {
     fn new(path: &'a Path, lines: &'a mut Lines<R>, text: bool, offsets: bool) -> Self {
         let (lists, cells, count, found, listed) = ([0; 2], false, 0, Vec::new(), Vec::new());
         Self { path, lines, text, offsets, lists, cells, count, found, listed }
@@ -104,21 +104,21 @@ impl<'a, R: BufRead> Search<'a, R> {
 
     /// Finds them all, from a line on.
     fn all(&mut self, mut line: Option<String>) -> Result<(), VolumeError> {
-        let search = self;
-        let path = search.path;
+        let scanner = self;
+        let path = scanner.path;
         while let Some(words) = line {
-            match search.section(&words) {
+            match scanner.section(&words) {
                 Ok(true) => {}
                 Ok(false) => break,
-                Err(_) if !search.found.is_empty() => break,
+                Err(_) if !scanner.found.is_empty() => break,
                 Err(error) => return Err(error),
             }
-            line = match search.lines.read_line() {
-                Err(_) if !search.found.is_empty() => break,
+            line = match scanner.lines.read_line() {
+                Err(_) if !scanner.found.is_empty() => break,
                 next => next.map_err(io_error(path))?,
             };
         }
-        if search.found.is_empty() {
+        if scanner.found.is_empty() {
             let reason =
                 Reason::truncated("ends before any SCALARS: it is truncated, or holds no samples");
             return Err(format_error(path, reason));

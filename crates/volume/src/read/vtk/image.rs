@@ -1,25 +1,27 @@
-use std::path::Path;
+//! VTI, VTK's image data in XML.
 
-use super::described::{Described, Encoding, frame};
-use super::format_error;
-use super::frames::Frames;
-use super::vtk::{choice, to_centres};
-use super::vtk_xml::VtkXml;
+use super::legacy::{choice, to_centres};
+use super::xml::VtkXml;
+use crate::error::format_error;
+use crate::read::OpenFile;
+use crate::read::frames::FrameChoice;
+use crate::read::layout::{Encoding, Layout, frame};
 use crate::{Coordinates, Dims, Endian, LengthUnit, Reason, Space, Volume, VolumeError};
 use walpha_base::Monitor;
 
 /// Reads VTI, VTK's image data in XML, in one piece: the array of this name; or else the active scalars of
 /// its points, its first array of points, or of cells, whose samples are at the cells' centres.
 pub(crate) fn read(
-    path: &Path,
+    file: &OpenFile,
     wanted: Option<&str>,
     monitor: &Monitor,
 ) -> Result<Volume, VolumeError> {
-    let said = |reason: Reason| format_error(path, reason);
-    let file = VtkXml::open(path)?.monitored(monitor);
+    let path = file.path();
+    let fail = |reason: Reason| format_error(path, reason);
+    let file = VtkXml::open(file)?.monitored(monitor);
     if file.kind() != "ImageData" {
         let kind = file.kind();
-        return Err(said(Reason::header(format!(
+        return Err(fail(Reason::header(format!(
             "holds {kind}: a volume is ImageData (.vti) in one file"
         ))));
     }
@@ -32,7 +34,7 @@ pub(crate) fn read(
     let extent: [f64; 6] = file.numbers(piece, "Extent", None)?;
     let whole = file.numbers(image, "WholeExtent", Some(extent))?;
     if whole != extent {
-        return Err(said(Reason::unsupported("is a piece of a larger image", "write it whole")));
+        return Err(fail(Reason::unsupported("is a piece of a larger image", "write it whole")));
     }
 
     let mut dims = [0; 3];
@@ -40,7 +42,7 @@ pub(crate) fn read(
     for axis in 0..3 {
         let (first, last) = (extent[2 * axis], extent[2 * axis + 1]);
         if first.fract() != 0.0 || last.fract() != 0.0 || last < first || last - first > 4e9 {
-            return Err(said(Reason::header(format!(
+            return Err(fail(Reason::header(format!(
                 "has Extent {extent:?}: it is not a grid of samples"
             ))));
         }
@@ -50,20 +52,20 @@ pub(crate) fn read(
         }
     }
 
-    let (array, cells) = choose(&file, piece, wanted).map_err(said)?;
+    let (array, cells) = choose(&file, piece, wanted).map_err(fail)?;
     if cells {
         to_centres(&mut dims, &mut corner, axes);
     }
     let components = file.components(array);
     if components != "1" {
-        return Err(said(Reason::not_scalar(format!("{components} values a voxel"), Some(dims))));
+        return Err(fail(Reason::not_scalar(format!("{components} values a voxel"), Some(dims))));
     }
     let dims = Dims::new(dims[0], dims[1], dims[2])?;
     let (frame, dtype) =
         (frame(path, corner, axes, coordinates(&file, image)?)?, file.dtype(array)?);
     let samples = file.values(array, dims.samples() as u64)?;
-    let (endian, encoding, frames) = (Endian::Little, Encoding::Raw, Frames::ONE);
-    Described { dims, dtype, endian, frame, encoding, frames }.volume(samples)
+    let (endian, encoding, frames) = (Endian::Little, Encoding::Raw, FrameChoice::ONE);
+    Layout { dims, dtype, endian, frame, encoding, frames }.volume(samples)
 }
 
 /// The array to read, and whether it is one of cells. Those of points come first; which one was taken is

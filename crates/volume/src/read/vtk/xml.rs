@@ -1,77 +1,71 @@
-mod arrays;
-mod query;
+//! VTK's XML formats: elements, and what they say.
 
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
+use std::io::{self, BufRead, Read};
 
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 use walpha_base::Monitor;
 
-use super::{format_error, io_error};
-use crate::{Endian, Reason, VolumeError};
+use crate::error::{format_error, io_error};
+use crate::read::OpenFile;
+use crate::{Dtype, Endian, Reason, VolumeError};
 
 /// A file of VTK's XML formats (VTK User's Guide, "VTK File Formats"): its elements, and the arrays
 /// they hold, which are read on demand. Arrays may be text, base64, or appended raw or in base64, and
 /// compressed with zlib or LZ4.
-pub struct VtkXml {
-    path: PathBuf,
-    length: u64,
-    endian: Endian,
+pub struct VtkXml<'a> {
+    pub(super) file: &'a OpenFile,
+    pub(super) endian: Endian,
     /// Bytes of a length in front of an array.
-    word: usize,
-    compressor: Option<Compressor>,
-    elements: Vec<XmlElement>,
-    appended: Option<Appended>,
-    monitor: Monitor,
+    pub(super) word: usize,
+    pub(super) compressor: Option<Compressor>,
+    pub(super) elements: Vec<XmlElement>,
+    pub(super) appended: Option<Appended>,
+    pub(super) monitor: Monitor,
 }
 
 /// An element with what it says of itself.
 #[derive(Debug)]
-struct XmlElement {
-    name: String,
-    parent: Option<usize>,
-    attributes: HashMap<String, String>,
+pub(super) struct XmlElement {
+    pub(super) name: String,
+    pub(super) parent: Option<usize>,
+    pub(super) attributes: HashMap<String, String>,
     /// Where its text begins in the file, and where it ends: at its end or its first child.
-    text: u64,
-    text_end: Option<u64>,
+    pub(super) text: u64,
+    pub(super) text_end: Option<u64>,
 }
 
 /// How the blocks of arrays are compressed.
 #[derive(Clone, Copy, Debug)]
-enum Compressor {
+pub(super) enum Compressor {
     Zlib,
     Lz4,
 }
 
 /// Where appended arrays begin, and whether they are in base64.
 #[derive(Clone, Copy, Debug)]
-struct Appended {
-    start: u64,
-    base64: bool,
+pub(super) struct Appended {
+    pub(super) start: u64,
+    pub(super) base64: bool,
 }
 
-impl VtkXml {
+impl<'a> VtkXml<'a> {
     /// Reads all but the arrays. The root must be `VTKFile`.
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    pub fn open(path: &Path) -> Result<Self, VolumeError> {
-        let file = File::open(path).map_err(io_error(path))?;
-        let metadata = file.metadata().map_err(io_error(path))?;
-        if !metadata.is_file() {
+    pub fn open(file: &'a OpenFile) -> Result<Self, VolumeError> {
+        let path = file.path();
+        if !file.is_ordinary() {
             let reason = Reason::unsupported(
                 "is not an ordinary file, and VTK's XML is read in several passes",
                 "copy it into one",
             );
             return Err(format_error(path, reason));
         }
-        let length = metadata.len();
         let mut this = Self {
-            path: path.into(),
-            length,
+            file,
             endian: Endian::Little,
             word: 4,
             compressor: None,
@@ -79,14 +73,14 @@ impl VtkXml {
             appended: None,
             monitor: Monitor::noop(),
         };
-        let mut file = BufReader::new(file);
+        let mut reader = file.reader()?;
         // Before a search for the first element, which may go through all of a huge file.
-        if !begins_as_xml(file.fill_buf().map_err(io_error(path))?) {
+        if !begins_as_xml(reader.fill_buf().map_err(io_error(path))?) {
             return Err(
-                this.said(Reason::other("is no VTK file: it does not begin with an element"))
+                this.fail(Reason::other("is no VTK file: it does not begin with an element"))
             );
         }
-        this.scan(file)?;
+        this.scan(reader)?;
         this.root()?;
         Ok(this)
     }
@@ -97,11 +91,11 @@ impl VtkXml {
         Self { monitor: monitor.clone(), ..self }
     }
 
-    fn said(&self, reason: Reason) -> VolumeError {
-        format_error(&self.path, reason)
+    pub(super) fn fail(&self, reason: Reason) -> VolumeError {
+        format_error(self.file.path(), reason)
     }
 
-    fn scan(&mut self, file: BufReader<File>) -> Result<(), VolumeError> {
+    fn scan(&mut self, file: impl BufRead) -> Result<(), VolumeError> {
         let mut reader = Reader::from_reader(file);
         let mut buffer = Vec::new();
         let mut open: Vec<usize> = Vec::new();
@@ -110,9 +104,9 @@ impl VtkXml {
             let before = reader.buffer_position();
             let event = reader.read_event_into(&mut buffer).map_err(|error| match error {
                 quick_xml::Error::Io(error) => {
-                    io_error(&self.path)(io::Error::new(error.kind(), error.to_string()))
+                    io_error(self.file.path())(io::Error::new(error.kind(), error.to_string()))
                 }
-                other => self.said(Reason::header(format!(
+                other => self.fail(Reason::header(format!(
                     "is not well-formed XML at byte {before}: {other}"
                 ))),
             })?;
@@ -137,7 +131,7 @@ impl VtkXml {
                 Event::End(_) => {
                     let closed = open
                         .pop()
-                        .ok_or_else(|| self.said(Reason::header("closes an element twice")))?;
+                        .ok_or_else(|| self.fail(Reason::header("closes an element twice")))?;
                     self.end_text(Some(&closed), before);
                 }
                 Event::Eof => break,
@@ -148,7 +142,7 @@ impl VtkXml {
             None => Ok(()),
             Some(&inner) => {
                 let name = &self.elements[inner].name;
-                Err(self.said(Reason::truncated(format!(
+                Err(self.fail(Reason::truncated(format!(
                     "ends inside its element {name}: it is truncated"
                 ))))
             }
@@ -171,7 +165,7 @@ impl VtkXml {
         let mut attributes = HashMap::new();
         for attribute in start.attributes() {
             let damaged = |error: &dyn std::fmt::Display| {
-                self.said(Reason::damaged(format!(
+                self.fail(Reason::damaged(format!(
                     "has a damaged attribute before byte {position}: {error}"
                 )))
             };
@@ -191,16 +185,19 @@ impl VtkXml {
             Some("base64") => true,
             other => {
                 let given = other.unwrap_or("(missing)");
-                return Err(self.said(Reason::header(format!(
+                return Err(self.fail(Reason::header(format!(
                     "has appended data in encoding {given}, not raw or base64"
                 ))));
             }
         };
         let mut before = Vec::new();
-        let mut reader = self.part(element.text, self.length)?;
-        (&mut reader).take(4096).read_until(b'_', &mut before).map_err(io_error(&self.path))?;
+        let mut reader = self.part(element.text, self.file.length())?;
+        (&mut reader)
+            .take(4096)
+            .read_until(b'_', &mut before)
+            .map_err(io_error(self.file.path()))?;
         if before.pop() != Some(b'_') || !before.trim_ascii().is_empty() {
-            return Err(self.said(Reason::damaged(
+            return Err(self.fail(Reason::damaged(
                 "has no underscore before its appended data: it is damaged",
             )));
         }
@@ -211,7 +208,7 @@ impl VtkXml {
     fn root(&mut self) -> Result<(), VolumeError> {
         let Some(root) = self.elements.first().filter(|root| root.name == "VTKFile") else {
             return Err(
-                self.said(Reason::other("is no VTK file: its first element is not VTKFile"))
+                self.fail(Reason::other("is no VTK file: its first element is not VTKFile"))
             );
         };
         let attribute = |name: &str| root.attributes.get(name).map(String::as_str);
@@ -220,7 +217,7 @@ impl VtkXml {
             Some("BigEndian") => Endian::Big,
             Some(other) => {
                 return Err(
-                    self.said(Reason::header(format!("has byte_order {other:?}, which is none")))
+                    self.fail(Reason::header(format!("has byte_order {other:?}, which is none")))
                 );
             }
         };
@@ -228,7 +225,7 @@ impl VtkXml {
             Some("UInt32") | None => 4,
             Some("UInt64") => 8,
             Some(other) => {
-                return Err(self.said(Reason::header(format!(
+                return Err(self.fail(Reason::header(format!(
                     "has header_type {other:?}, not UInt32 or UInt64"
                 ))));
             }
@@ -238,7 +235,7 @@ impl VtkXml {
             Some("vtkZLibDataCompressor") => Some(Compressor::Zlib),
             Some("vtkLZ4DataCompressor") => Some(Compressor::Lz4),
             Some(other) => {
-                return Err(self.said(Reason::unsupported(
+                return Err(self.fail(Reason::unsupported(
                     format!("is compressed by {other}, which is not read"),
                     "choose LZ4, ZLib or none where it is written",
                 )));
@@ -248,14 +245,112 @@ impl VtkXml {
     }
 
     /// A part of the file.
-    fn part(&self, start: u64, end: u64) -> Result<impl BufRead + use<>, VolumeError> {
-        let mut file = File::open(&self.path).map_err(io_error(&self.path))?;
-        file.seek(SeekFrom::Start(start)).map_err(io_error(&self.path))?;
-        Ok(BufReader::new(file.take(end.saturating_sub(start))))
+    pub(super) fn part(&self, start: u64, end: u64) -> Result<impl BufRead + use<'a>, VolumeError> {
+        Ok(self.file.reader_at(start)?.take(end.saturating_sub(start)))
     }
 }
 
 fn begins_as_xml(start: &[u8]) -> bool {
     let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
     start.trim_ascii_start().starts_with(b"<")
+}
+
+/// Queries of elements and their attributes.
+impl VtkXml<'_> {
+    /// What the file holds, such as `ImageData`.
+    pub fn kind(&self) -> &str {
+        self.attribute(0, "type").unwrap_or("(nothing)")
+    }
+
+    /// An attribute of an element.
+    pub fn attribute(&self, element: usize, name: &str) -> Option<&str> {
+        self.elements[element].attributes.get(name).map(String::as_str)
+    }
+
+    /// As many numbers as an attribute should have, or the default where it is missing.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn numbers<const N: usize>(
+        &self,
+        element: usize,
+        name: &str,
+        default: Option<[f64; N]>,
+    ) -> Result<[f64; N], VolumeError> {
+        let place = &self.elements[element].name;
+        let Some(text) = self.attribute(element, name) else {
+            return default.ok_or_else(|| {
+                self.fail(Reason::header(format!("its element {place} has no {name}")))
+            });
+        };
+        let numbers: Option<Vec<f64>> =
+            text.split_whitespace().map(|number| number.parse().ok()).collect();
+        numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| {
+            self.fail(Reason::header(format!(
+                "its element {place} has {name}={text:?}, which is not {N} numbers"
+            )))
+        })
+    }
+
+    /// The elements of this name right inside another.
+    pub fn children(&self, parent: usize, name: &str) -> impl Iterator<Item = usize> {
+        let is_child = move |i: &usize| {
+            self.elements[*i].parent == Some(parent) && self.elements[*i].name == name
+        };
+        (0..self.elements.len()).filter(is_child)
+    }
+
+    /// The element `Piece` of the dataset, of which there must be one.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn piece(&self) -> Result<(usize, usize), VolumeError> {
+        let kind = self.kind();
+        let dataset = self.children(0, kind).next().ok_or_else(|| {
+            self.fail(Reason::damaged(format!("has no element {kind}: it is damaged")))
+        })?;
+        let pieces: Vec<usize> = self.children(dataset, "Piece").collect();
+        match pieces[..] {
+            [piece] => Ok((dataset, piece)),
+            _ => Err(self.fail(Reason::unsupported(
+                format!("holds {} pieces: only one is read", pieces.len()),
+                "write it in one piece",
+            ))),
+        }
+    }
+
+    /// The type of an array's numbers.
+    ///
+    /// # Errors
+    /// [`VolumeError`]: what cannot be read, and why.
+    pub fn dtype(&self, array: usize) -> Result<Dtype, VolumeError> {
+        Ok(match self.attribute(array, "type") {
+            Some("Int8") => Dtype::I8,
+            Some("UInt8") => Dtype::U8,
+            Some("Int16") => Dtype::I16,
+            Some("UInt16") => Dtype::U16,
+            Some("Int32") => Dtype::I32,
+            Some("UInt32") => Dtype::U32,
+            Some("Int64") => Dtype::I64,
+            Some("UInt64") => Dtype::U64,
+            Some("Float32") => Dtype::F32,
+            Some("Float64") => Dtype::F64,
+            other => {
+                let name = other.unwrap_or("(missing)");
+                return Err(self.fail(Reason::unsupported(
+                    format!("has an array of type {name}, which is not read"),
+                    "convert it first",
+                )));
+            }
+        })
+    }
+
+    /// Number of components of an array.
+    pub fn components(&self, array: usize) -> &str {
+        self.attribute(array, "NumberOfComponents").unwrap_or("1")
+    }
+
+    pub(super) fn name(&self, array: usize) -> &str {
+        self.attribute(array, "Name").unwrap_or("without a name")
+    }
 }

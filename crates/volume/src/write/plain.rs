@@ -1,4 +1,8 @@
+//! Samples with hardly a header: raw, and NPY.
+
 use std::io::{self, Write};
+
+use ndarray_npy::{WriteNpyError, WriteNpyExt};
 
 use crate::Volume;
 
@@ -17,4 +21,15 @@ pub(crate) fn raw(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
         out.write_all(&bytes)?;
     }
     Ok(())
+}
+
+/// Writes the samples of a volume as a `NumPy` array: `f32`, axes z, y, x.
+///
+/// # Errors
+/// Whatever `out` returns.
+pub(crate) fn npy(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
+    volume.samples().write_npy(out).map_err(|error| match error {
+        WriteNpyError::Io(error) => error,
+        other => io::Error::other(other),
+    })
 }

@@ -1,17 +1,16 @@
-//! The arrays of a file, in each of their codings.
+//! The arrays of VTK's XML formats, in each of their codings: text, base64, raw, and compressed.
 
-use std::io::{self, Read, Take};
+use std::io::{self, BufRead, Read, Take};
 use std::str::FromStr;
 
 use flate2::read::ZlibDecoder;
 
-use super::{Appended, Compressor, VtkXml, XmlElement};
-use crate::read::base64::Base64;
-use crate::read::payload::{Element, Length, MOST_EXPANSION, Payload};
-use crate::read::{payload_error_of, text};
+use super::xml::{Appended, Compressor, VtkXml, XmlElement};
+use crate::read::payload::{Element, Length, MOST_EXPANSION, Payload, payload_error_of};
+use crate::read::text;
 use crate::{Endian, Reason, VolumeError};
 
-impl VtkXml {
+impl VtkXml<'_> {
     /// Reads an array, which must have exactly `count` numbers.
     ///
     /// # Errors
@@ -26,7 +25,7 @@ impl VtkXml {
         let end = text_end.unwrap_or(start);
         let of_array = |reason: Reason| {
             let part = format!("its array {}", self.name(array));
-            self.said(Reason::Within { part, reason: Box::new(reason) })
+            self.fail(Reason::Within { part, reason: Box::new(reason) })
         };
         match self.attribute(array, "format") {
             Some("ascii") => {
@@ -46,8 +45,8 @@ impl VtkXml {
                 let Some(from) = offset.and_then(|offset: u64| start.checked_add(offset)) else {
                     return Err(of_array(Reason::header("has no offset in the appended data")));
                 };
-                let left = self.length.saturating_sub(from);
-                let data = self.part(from, self.length)?;
+                let left = self.file.length().saturating_sub(from);
+                let data = self.part(from, self.file.length())?;
                 if base64 {
                     self.decoded(array, Base64::new(data), left / 4 * 3, count)
                 } else {
@@ -82,7 +81,7 @@ impl VtkXml {
         let mut text = String::new();
         let read = self.part(start, end)?.read_to_string(&mut text);
         read.map_err(|error| {
-            self.said(Reason::damaged(format!("has damaged field data {name}: {error}")))
+            self.fail(Reason::damaged(format!("has damaged field data {name}: {error}")))
         })?;
         let bytes: Vec<u8> = text.split_whitespace().map_while(|byte| byte.parse().ok()).collect();
         let first = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
@@ -100,13 +99,13 @@ impl VtkXml {
     ) -> Result<Vec<T>, VolumeError> {
         let dtype = self.dtype(array)?;
         let claim = format!("an array {} of {count} numbers of type {dtype}", self.name(array));
-        let located = |error| payload_error_of(&self.path, &claim, error);
+        let located = |error| payload_error_of(self.file.path(), &claim, error);
         let cut = |error: io::Error| match error.kind() {
-            io::ErrorKind::UnexpectedEof => self.said(Reason::truncated(format!(
+            io::ErrorKind::UnexpectedEof => self.fail(Reason::truncated(format!(
                 "ends before its array {}: it is truncated",
                 self.name(array)
             ))),
-            _ => self.said(Reason::damaged(format!(
+            _ => self.fail(Reason::damaged(format!(
                 "has a damaged array {}: {error}",
                 self.name(array)
             ))),
@@ -114,7 +113,7 @@ impl VtkXml {
         let first = self.word(&mut data).map_err(cut)?;
         let Some(compressor) = self.compressor else {
             if first > most {
-                return Err(self.said(Reason::truncated(format!(
+                return Err(self.fail(Reason::truncated(format!(
                     "claims {first} bytes for its array {}, but at most {most} follow: it is \
                      truncated",
                     self.name(array)
@@ -126,7 +125,7 @@ impl VtkXml {
         let [block, last] =
             [self.word(&mut data).map_err(cut)?, self.word(&mut data).map_err(cut)?];
         if first > most / self.word as u64 {
-            return Err(self.said(Reason::header(format!(
+            return Err(self.fail(Reason::header(format!(
                 "claims {first} compressed blocks for its array {}, which it cannot hold",
                 self.name(array)
             ))));
@@ -135,7 +134,7 @@ impl VtkXml {
         let bytes = whole.checked_mul(block).and_then(|bytes| bytes.checked_add(last));
         let bytes = bytes.filter(|&bytes| bytes <= most.saturating_mul(MOST_EXPANSION));
         let Some(bytes) = bytes else {
-            return Err(self.said(Reason::header(format!(
+            return Err(self.fail(Reason::header(format!(
                 "claims {first} compressed blocks of {block} bytes for its array {}, more than \
                  it can hold",
                 self.name(array)
@@ -145,14 +144,14 @@ impl VtkXml {
         let sizes = sizes.map_err(cut)?;
         let packed = sizes.iter().fold(0u64, |sum, &size| sum.saturating_add(size));
         if packed > most {
-            return Err(self.said(Reason::truncated(format!(
+            return Err(self.fail(Reason::truncated(format!(
                 "claims {packed} compressed bytes for its array {}, but at most {most} follow: it is \
                  truncated",
                 self.name(array)
             ))));
         }
         if bytes > packed.saturating_mul(MOST_EXPANSION) {
-            return Err(self.said(Reason::header(format!(
+            return Err(self.fail(Reason::header(format!(
                 "claims that {packed} compressed bytes of its array {} hold {bytes}, which they cannot",
                 self.name(array)
             ))));
@@ -241,6 +240,121 @@ impl<R: Read> Read for Blocks<R> {
                     At::Ready(io::Cursor::new(bytes))
                 }
             };
+        }
+    }
+}
+
+/// Decodes base64 (RFC 4648) as VTK writes it: white space is passed over, and padding may end one
+/// piece of data in the middle of the text, where the next begins.
+struct Base64<R> {
+    text: R,
+    /// Decoded bytes not yet given out, and how many were.
+    ready: [u8; 3],
+    length: usize,
+    given: usize,
+}
+
+impl<R: BufRead> Base64<R> {
+    fn new(text: R) -> Self {
+        Self { text, ready: [0; 3], length: 0, given: 0 }
+    }
+
+    /// Decodes the next four characters; `false` at the end of the text.
+    fn refill(&mut self) -> io::Result<bool> {
+        let mut group = [0; 4];
+        let mut filled = 0;
+        while filled < 4 {
+            let buffer = self.text.fill_buf()?;
+            if buffer.is_empty() {
+                break;
+            }
+            let mut used = 0;
+            for &byte in buffer {
+                used += 1;
+                if !byte.is_ascii_whitespace() {
+                    group[filled] = byte;
+                    filled += 1;
+                    if filled == 4 {
+                        break;
+                    }
+                }
+            }
+            self.text.consume(used);
+        }
+        if filled == 0 {
+            return Ok(false);
+        }
+        let (ready, length) = decode(group).filter(|_| filled == 4).ok_or_else(|| {
+            io::Error::new(io::ErrorKind::InvalidData, "its base64 text is cut off or damaged")
+        })?;
+        (self.ready, self.length, self.given) = (ready, length, 0);
+        Ok(true)
+    }
+}
+
+impl<R: BufRead> Read for Base64<R> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        let mut written = 0;
+        while written < out.len() {
+            if self.given == self.length && !self.refill()? {
+                break;
+            }
+            let count = (self.length - self.given).min(out.len() - written);
+            out[written..written + count].copy_from_slice(&self.ready[self.given..][..count]);
+            self.given += count;
+            written += count;
+        }
+        Ok(written)
+    }
+}
+
+/// Up to three bytes of four characters.
+fn decode(group: [u8; 4]) -> Option<([u8; 3], usize)> {
+    let padding = group.iter().rev().take_while(|&&character| character == b'=').count();
+    let mut bits = 0u32;
+    for (i, character) in group.into_iter().enumerate() {
+        let six = match character {
+            b'A'..=b'Z' => character - b'A',
+            b'a'..=b'z' => character - b'a' + 26,
+            b'0'..=b'9' => character - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            b'=' if i + padding >= 4 => 0,
+            _ => return None,
+        };
+        bits = bits << 6 | u32::from(six);
+    }
+    let [_, a, b, c] = bits.to_be_bytes();
+    (padding <= 2).then(|| ([a, b, c], 3 - padding))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decoded(text: &str) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        Base64::new(text.as_bytes()).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// The examples of RFC 4648, section 10.
+    #[test]
+    fn text_becomes_bytes() {
+        for (text, bytes) in [
+            ("", ""),
+            ("Zg==", "f"),
+            ("Zm8=", "fo"),
+            ("Zm9v", "foo"),
+            ("Zm9vYg==", "foob"),
+            ("Zm9vYmE=", "fooba"),
+            (" Zm9v\nYm Fy\n", "foobar"),
+            ("Zg==Zm9v", "ffoo"),
+        ] {
+            assert_eq!(decoded(text).unwrap(), bytes.as_bytes(), "{text}");
+        }
+        for text in ["Z", "Zg=", "Z===", "====", "Zg=v", "Zm9*"] {
+            assert!(decoded(text).is_err(), "{text}");
         }
     }
 }

@@ -1,0 +1,434 @@
+//! NRRD, the format of teem.
+
+use std::collections::HashMap;
+use std::io::BufRead;
+use std::path::{Path, PathBuf};
+
+use walpha_base::Monitor;
+
+use super::OpenFile;
+use super::detached::{self, data_paths, numbered};
+use super::frames::FrameChoice;
+use super::layout::{Encoding, Layout, diagonal, frame};
+use super::text::Lines;
+use super::uncompressed::Uncompressed;
+use crate::error::{format_error, io_error};
+use crate::{
+    Coordinates, Dims, Dtype, Endian, Frame, LengthUnit, Reason, Space, Volume, VolumeError,
+};
+
+/// The first bytes of each NRRD file, before the digit of its version.
+const MAGIC: &[u8] = b"NRRD000";
+
+/// Reads NRRD ("nearly raw raster data", teem.sourceforge.net/nrrd/format.html) with its samples
+/// behind the header (`.nrrd`) or in other files (`.nhdr`: one, a `LIST`, or a numbered row).
+///
+/// Encodings raw, gzip, bzip2 and text; every scalar type. `space directions` and `space origin`, or
+/// `spacings` and `axis mins`, give the frame, in the space the file names. Axes beyond the third count
+/// volumes, of which `frame` is read; axes of colours or vectors, `hex` and `line skip` are refused.
+pub(crate) fn read(
+    file: &OpenFile,
+    frame: Option<u64>,
+    monitor: &Monitor,
+) -> Result<Volume, VolumeError> {
+    let path = file.path();
+    let fail = |reason: Reason| format_error(path, reason);
+    let mut lines = Lines::new(file.reader()?);
+    let header = Header::read(path, &mut lines)?;
+    let layout = header.layout(path, frame)?;
+    let skip = header.skip(path, &layout)?;
+    match &header.files {
+        None => {
+            let behind = file.length() - lines.bytes();
+            let skip = skip.unwrap_or(behind.saturating_sub(layout.bytes()));
+            let mut reader = lines.into_inner();
+            let skipped =
+                std::io::copy(&mut std::io::Read::take(&mut reader, skip), &mut std::io::sink());
+            let bytes = behind - skipped.map_err(io_error(path))?;
+            layout.read(path, reader, bytes, monitor)
+        }
+        Some(names) => {
+            if names.is_empty() {
+                return Err(fail(Reason::damaged("names no data file: its header is damaged")));
+            }
+            let each = layout.bytes() / names.len() as u64;
+            let skip = |length: u64| skip.unwrap_or(length.saturating_sub(each));
+            detached::read(path, layout, &data_paths(path, names), skip, monitor)
+        }
+    }
+}
+
+/// Where the samples of a volume lie, to be read part by part.
+pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompressed, VolumeError> {
+    let path = file.path();
+    let mut lines = Lines::new(file.reader()?);
+    let header = Header::read(path, &mut lines)?;
+    let layout = header.layout(path, frame)?;
+    let skip = header.skip(path, &layout)?;
+    match &header.files {
+        None => Uncompressed::after_header(file, layout, lines.bytes(), skip),
+        Some(names) => Uncompressed::in_data_file(path, layout, &data_paths(path, names), skip),
+    }
+}
+
+/// The files that hold the samples, where the header does not.
+pub(crate) fn data_files(file: &OpenFile) -> Result<Vec<PathBuf>, VolumeError> {
+    let path = file.path();
+    let header = Header::read(path, &mut Lines::new(file.reader()?))?;
+    Ok(header.files.map_or_else(Vec::new, |names| data_paths(path, &names)))
+}
+
+struct Header {
+    /// By name, in lower case.
+    fields: HashMap<String, String>,
+    /// The files that hold the samples; `None` where they follow the header.
+    files: Option<Vec<String>>,
+}
+
+impl Header {
+    fn read(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<Self, VolumeError> {
+        let fail = |reason: Reason| format_error(path, reason);
+        let first = lines.read_line().map_err(io_error(path))?.unwrap_or_default();
+        if !first.as_bytes().starts_with(MAGIC) {
+            return Err(fail(Reason::other("is no NRRD file: it does not begin with NRRD000")));
+        }
+        let mut header = Self { fields: HashMap::new(), files: None };
+        // A header alone may end with its file; samples need the blank line.
+        while let Some(line) = lines.read_line().map_err(io_error(path))? {
+            if line.is_empty() {
+                return Ok(header);
+            }
+            if line.starts_with('#') || line.contains(":=") {
+                continue;
+            }
+            let Some((name, value)) = line.split_once(':') else {
+                return Err(fail(Reason::header(format!(
+                    "has a header line {line:?}, which is not a field"
+                ))));
+            };
+            let (name, value) = (name.trim().to_lowercase(), value.trim());
+            if name == "data file" || name == "datafile" {
+                header.files = Some(named(path, value, lines)?);
+                if value.starts_with("LIST") {
+                    return Ok(header);
+                }
+            } else if header.fields.insert(name.clone(), value.into()).is_some() {
+                return Err(fail(Reason::header(format!("gives {name:?} twice in its header"))));
+            }
+        }
+        if header.files.is_some() {
+            return Ok(header);
+        }
+        Err(fail(Reason::truncated("ends inside its NRRD header: it is truncated")))
+    }
+
+    fn field(&self, name: &str) -> Option<&str> {
+        self.fields.get(name).map(String::as_str)
+    }
+
+    fn needed(&self, path: &Path, name: &str) -> Result<&str, VolumeError> {
+        let missing = || {
+            format_error(
+                path,
+                Reason::damaged(format!("its NRRD header has no {name}: it is damaged")),
+            )
+        };
+        self.field(name).ok_or_else(missing)
+    }
+
+    fn layout(&self, path: &Path, frame: Option<u64>) -> Result<Layout, VolumeError> {
+        let sizes = self.sizes(path)?;
+        self.check_scalar(path, &sizes)?;
+        let mut axes: Vec<(usize, u64)> = sizes.iter().copied().enumerate().collect();
+        while axes.len() > 3 {
+            let Some(single) = axes.iter().position(|&(_, size)| size == 1) else { break };
+            axes.remove(single);
+        }
+        let beyond: Vec<u64> = axes.iter().skip(3).map(|&(_, size)| size).collect();
+        axes.truncate(3);
+        let size = |axis: usize| axes.get(axis).map_or(1, |&(_, size)| size);
+        let dims = Dims::unbounded(size(0), size(1), size(2))?;
+        let kept: Vec<usize> = axes.iter().map(|&(axis, _)| axis).collect();
+        let (dtype, encoding) = (self.dtype(path)?, self.encoding(path)?);
+        let endian = self.endian(path, dtype, encoding)?;
+        let frames = FrameChoice::choose(path, &beyond, frame)?;
+        let frame = self.frame(path, sizes.len(), &kept, dims.xyz())?;
+        Ok(Layout { dims, dtype, endian, frame, encoding, frames })
+    }
+
+    /// Samples along each axis, the fastest first.
+    fn sizes(&self, path: &Path) -> Result<Vec<u64>, VolumeError> {
+        let fail = |what: String| format_error(path, Reason::header(what));
+        let text = self.needed(path, "sizes")?;
+        let sizes: Result<Vec<u64>, _> = text.split_whitespace().map(str::parse).collect();
+        let sizes = sizes.map_err(|_| fail(format!("sizes: {text} are not numbers")))?;
+        let dimension = self.needed(path, "dimension")?;
+        if dimension.parse() != Ok(sizes.len()) {
+            let count = sizes.len();
+            return Err(fail(format!("has dimension: {dimension}, but {count} sizes")));
+        }
+        Ok(sizes)
+    }
+
+    /// Refuses axes along which a voxel has several values.
+    fn check_scalar(&self, path: &Path, sizes: &[u64]) -> Result<(), VolumeError> {
+        let kinds: Vec<&str> =
+            self.field("kinds").map(|kinds| kinds.split_whitespace().collect()).unwrap_or_default();
+        for (axis, &size) in sizes.iter().enumerate() {
+            let kind = kinds.get(axis).copied().unwrap_or("none");
+            let scalar = ["domain", "space", "time", "none", "???", "scalar", "stub"];
+            if size > 1 && !scalar.contains(&kind.to_lowercase().as_str()) {
+                let what = format!("{size} values a voxel (axis {axis} is of kind {kind})");
+                let others = sizes.iter().enumerate().filter(|(other, _)| *other != axis);
+                let others: Vec<u64> = others.map(|(_, &size)| size).collect();
+                let dims = <[u64; 3]>::try_from(others).ok();
+                return Err(format_error(path, Reason::not_scalar(what, dims)));
+            }
+        }
+        Ok(())
+    }
+
+    fn dtype(&self, path: &Path) -> Result<Dtype, VolumeError> {
+        let name = self.needed(path, "type")?;
+        scalar_type(name).ok_or_else(|| {
+            let what = format!(
+                "holds samples of type {name}: integers of 8 to 64 bits, float and double are read"
+            );
+            format_error(path, Reason::unsupported(what, "convert it first"))
+        })
+    }
+
+    fn encoding(&self, path: &Path) -> Result<Encoding, VolumeError> {
+        Ok(match self.needed(path, "encoding")?.to_lowercase().as_str() {
+            "raw" => Encoding::Raw,
+            "gzip" | "gz" => Encoding::Gzip,
+            "bzip2" | "bz2" => Encoding::Bzip2,
+            "text" | "txt" | "ascii" => Encoding::Text,
+            other => {
+                let what = format!("is encoded as {other}, which is not read");
+                let reason = Reason::unsupported(what, "save it as raw or gzip");
+                return Err(format_error(path, reason));
+            }
+        })
+    }
+
+    fn endian(&self, path: &Path, dtype: Dtype, encoding: Encoding) -> Result<Endian, VolumeError> {
+        match self.field("endian").map(str::to_lowercase).as_deref() {
+            Some("little") => Ok(Endian::Little),
+            Some("big") => Ok(Endian::Big),
+            None if dtype.size() == 1 || encoding == Encoding::Text => Ok(Endian::Little),
+            other => {
+                let given = other.unwrap_or("(missing)");
+                let what = format!("endian: {given} is not a byte order");
+                Err(format_error(path, Reason::unsupported(what, "give little or big")))
+            }
+        }
+    }
+
+    /// Bytes before the samples; `None` where they are at the end of the file.
+    fn skip(&self, path: &Path, layout: &Layout) -> Result<Option<u64>, VolumeError> {
+        let fail = |reason: Reason| format_error(path, reason);
+        let lines = self.field("line skip").or(self.field("lineskip")).unwrap_or("0");
+        if lines != "0" {
+            return Err(fail(Reason::unsupported(
+                format!("line skip: {lines} is not read"),
+                "give byte skip instead",
+            )));
+        }
+        let bytes = self.field("byte skip").or(self.field("byteskip")).unwrap_or("0");
+        match bytes.parse::<u64>() {
+            Ok(0) => Ok(Some(0)),
+            _ if layout.encoding != Encoding::Raw => Err(fail(Reason::unsupported(
+                format!("byte skip: {bytes} is read only where the encoding is raw"),
+                "convert it first",
+            ))),
+            Ok(skip) => Ok(Some(skip)),
+            Err(_) if bytes == "-1" => Ok(None),
+            Err(_) => {
+                Err(fail(Reason::header(format!("byte skip: {bytes} is not a number of bytes"))))
+            }
+        }
+    }
+}
+
+fn scalar_type(name: &str) -> Option<Dtype> {
+    Some(match name.to_lowercase().as_str() {
+        "signed char" | "int8" | "int8_t" => Dtype::I8,
+        "uchar" | "unsigned char" | "uint8" | "uint8_t" => Dtype::U8,
+        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => {
+            Dtype::I16
+        }
+        "ushort" | "unsigned short" | "unsigned short int" | "uint16" | "uint16_t" => Dtype::U16,
+        "int" | "signed int" | "int32" | "int32_t" => Dtype::I32,
+        "uint" | "unsigned int" | "uint32" | "uint32_t" => Dtype::U32,
+        "longlong"
+        | "long long"
+        | "long long int"
+        | "signed long long"
+        | "signed long long int"
+        | "int64"
+        | "int64_t" => Dtype::I64,
+        "ulonglong" | "unsigned long long" | "unsigned long long int" | "uint64" | "uint64_t" => {
+            Dtype::U64
+        }
+        "float" => Dtype::F32,
+        "double" => Dtype::F64,
+        _ => return None,
+    })
+}
+
+/// The names a `data file` field gives: one, a `LIST` of the lines that follow, or a numbered row
+/// `pattern min max step`, where the pattern has one `%d` or, say, `%03d`.
+fn named(
+    path: &Path,
+    value: &str,
+    lines: &mut Lines<impl BufRead>,
+) -> Result<Vec<String>, VolumeError> {
+    if value.starts_with("LIST") {
+        let mut names = Vec::new();
+        while let Some(line) = lines.read_line().map_err(io_error(path))? {
+            if !line.trim().is_empty() {
+                names.push(line.trim().to_owned());
+            }
+        }
+        return Ok(names);
+    }
+    let words: Vec<&str> = value.split_whitespace().collect();
+    match numbered(&words) {
+        Some(names) => names.map_err(|reason| format_error(path, reason)),
+        None => Ok(vec![value.to_owned()]),
+    }
+}
+
+impl Header {
+    /// Where the grid lies; `kept` are the axes that are read, of `all`, and `dims` their sizes.
+    ///
+    /// `space directions` and `space origin` say it, or else `spacings` and `axis mins`, or `axis mins`
+    /// and `axis maxs`. The ends of an axis are those of its samples, or lie half a spacing beyond
+    /// their middles where `centerings` says `cell` or nothing, as teem and ITK take it.
+    fn frame(
+        &self,
+        path: &Path,
+        all: usize,
+        kept: &[usize],
+        dims: [usize; 3],
+    ) -> Result<Frame, VolumeError> {
+        let fail = |reason: Reason| format_error(path, reason);
+        let mut steps = diagonal([1.0; 3]);
+        let mut origin = [0.0; 3];
+        if let Some(text) = self.field("space directions") {
+            let directions = vectors(text).filter(|rows| rows.len() == all).ok_or_else(|| {
+                fail(Reason::header(format!(
+                    "space directions: {text} are not {all} vectors of numbers"
+                )))
+            })?;
+            for (step, &axis) in steps.iter_mut().zip(kept) {
+                if let Some(direction) = directions[axis] {
+                    *step = direction;
+                }
+            }
+        } else {
+            let [spacings, mins, maxs] = [
+                self.numbers(path, &["spacings"], all)?,
+                self.numbers(path, &["axis mins", "axismins"], all)?,
+                self.numbers(path, &["axis maxs", "axismaxs"], all)?,
+            ];
+            let centers = self.field("centerings").or(self.field("centers")).unwrap_or_default();
+            let centers: Vec<&str> = centers.split_whitespace().collect();
+            for (c, &axis) in kept.iter().enumerate() {
+                let node = centers.get(axis).is_some_and(|center| *center == "node");
+                let parts = if node { dims[c] - 1 } else { dims[c] };
+                let ends = mins[axis].zip(maxs[axis]).filter(|_| parts > 0);
+                let between = ends.map(|(low, high)| (high - low) / parts as f64);
+                if let Some(step) = spacings[axis].or(between) {
+                    steps[c][c] = step;
+                }
+                if let Some(low) = mins[axis] {
+                    origin[c] = if node { low } else { low + steps[c][c] / 2.0 };
+                }
+            }
+        }
+        if let Some(text) = self.field("space origin") {
+            origin = match vectors(text).as_deref() {
+                Some([Some(origin)]) => *origin,
+                _ => {
+                    return Err(fail(Reason::header(format!(
+                        "space origin: {text} is not a vector of numbers"
+                    ))));
+                }
+            };
+        }
+        frame(path, origin, steps, self.coordinates(kept))
+    }
+
+    /// The space the file names, and its unit: of `space units`, or else of `units`. A patient is
+    /// measured in millimetres where neither is there, as ITK and Slicer take it.
+    fn coordinates(&self, kept: &[usize]) -> Coordinates {
+        let places = ["space directions", "space origin", "spacings", "axis mins", "axismins"];
+        if places.iter().all(|name| self.field(name).is_none()) {
+            return Coordinates::VOXEL;
+        }
+        let space = match self.field("space").unwrap_or_default().to_lowercase().as_str() {
+            "left-posterior-superior" | "lps" => Space::Lps,
+            "right-anterior-superior" | "ras" => Space::Ras,
+            "left-anterior-superior" | "las" => Space::Las,
+            _ => Space::Unknown,
+        };
+        let of_axes = || self.field("units").map(|text| (text, kept.first().copied().unwrap_or(0)));
+        let named = self.field("space units").map(|text| (text, 0)).or_else(of_axes);
+        let named = named.and_then(|(text, axis)| quoted(text).nth(axis));
+        let unit = match named.map(LengthUnit::named) {
+            Some(unit) if unit != LengthUnit::Unstated => unit,
+            _ if space.is_known() => LengthUnit::Millimetre,
+            _ => LengthUnit::Unstated,
+        };
+        Coordinates { space, unit }
+    }
+
+    /// A number for each axis; `None` if the field is absent or NaN, which means
+    /// "unknown".
+    fn numbers(
+        &self,
+        path: &Path,
+        names: &[&str],
+        all: usize,
+    ) -> Result<Vec<Option<f64>>, VolumeError> {
+        let Some(text) = names.iter().find_map(|name| self.field(name)) else {
+            return Ok(vec![None; all]);
+        };
+        let numbers: Option<Vec<f64>> = text.split_whitespace().map(|n| n.parse().ok()).collect();
+        let numbers = numbers.filter(|numbers| numbers.len() == all).ok_or_else(|| {
+            format_error(
+                path,
+                Reason::header(format!("{}: {text} are not {all} numbers", names[0])),
+            )
+        })?;
+        Ok(numbers.into_iter().map(|number| (!number.is_nan()).then_some(number)).collect())
+    }
+}
+
+/// Words such as `"mm" "mm" ""`, without their quotes.
+fn quoted(text: &str) -> impl Iterator<Item = &str> {
+    text.split('"').skip(1).step_by(2)
+}
+
+/// Vectors such as `(1,0,0) none (0,0,2)`, of up to three components.
+fn vectors(text: &str) -> Option<Vec<Option<[f64; 3]>>> {
+    let mut rest = text.trim();
+    let mut rows = Vec::new();
+    while !rest.is_empty() {
+        if let Some(after) = rest.strip_prefix("none") {
+            rows.push(None);
+            rest = after.trim_start();
+            continue;
+        }
+        let (row, after) = rest.strip_prefix('(')?.split_once(')')?;
+        let numbers: Vec<f64> =
+            row.split(',').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?;
+        let mut vector = [0.0; 3];
+        vector.get_mut(..numbers.len())?.copy_from_slice(&numbers);
+        rows.push(Some(vector));
+        rest = after.trim_start();
+    }
+    Some(rows)
+}

@@ -1,0 +1,102 @@
+//! A file that is read: opened once, from the look at its first bytes to its samples.
+
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use flate2::read::MultiGzDecoder;
+
+use super::payload::Length;
+use crate::VolumeError;
+use crate::error::io_error;
+use crate::formats::is_gzip;
+
+/// Bytes from which a format is recognised.
+const START: u64 = 1024;
+
+/// An open file and its first bytes. Detection looks at these, and readers start at the first byte again.
+pub struct OpenFile {
+    path: PathBuf,
+    file: File,
+    length: u64,
+    is_ordinary: bool,
+    start: Vec<u8>,
+}
+
+impl OpenFile {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// [`VolumeError::Io`]: it cannot be opened or read.
+    pub fn open(path: &Path) -> Result<Self, VolumeError> {
+        let failed = io_error(path);
+        let file = File::open(path).map_err(&failed)?;
+        let metadata = file.metadata().map_err(&failed)?;
+        let mut start = Vec::new();
+        // A pipe gives its bytes only once: they are left to the reader. A folder says what it is.
+        if metadata.is_file() || metadata.is_dir() {
+            (&file).take(START).read_to_end(&mut start).map_err(&failed)?;
+        }
+        let (length, is_ordinary) = (metadata.len(), metadata.is_file());
+        Ok(Self { path: path.into(), file, length, is_ordinary, start })
+    }
+
+    /// The path it was opened by.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Its length in bytes.
+    pub fn length(&self) -> u64 {
+        self.length
+    }
+
+    /// Whether it is an ordinary file, which can be read in several passes, and no pipe or device.
+    pub fn is_ordinary(&self) -> bool {
+        self.is_ordinary
+    }
+
+    /// Its first bytes: up to 1024, and none of a pipe.
+    pub fn start(&self) -> &[u8] {
+        &self.start
+    }
+
+    /// Reads from the first byte on. All readers of a file share one position in it: a new one ends the use of
+    /// those before.
+    ///
+    /// # Errors
+    /// [`VolumeError::Io`].
+    pub fn reader(&self) -> Result<BufReader<&File>, VolumeError> {
+        if self.start.is_empty() { Ok(BufReader::new(&self.file)) } else { self.reader_at(0) }
+    }
+
+    /// Reads from another byte on.
+    ///
+    /// # Errors
+    /// [`VolumeError::Io`]: among others, a pipe has no other bytes than the next ones.
+    pub fn reader_at(&self, offset: u64) -> Result<BufReader<&File>, VolumeError> {
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start(offset)).map_err(io_error(&self.path))?;
+        Ok(BufReader::new(file))
+    }
+
+    /// The same as [`reader`](Self::reader), for what wants a file of its own: another handle of the same open file.
+    ///
+    /// # Errors
+    /// [`VolumeError::Io`].
+    pub fn owned_reader(&self) -> Result<BufReader<File>, VolumeError> {
+        self.reader()?;
+        Ok(BufReader::new(self.file.try_clone().map_err(io_error(&self.path))?))
+    }
+
+    /// Reads from the first byte on, unpacked where the file is compressed with gzip; and what is known of the
+    /// number of bytes.
+    pub(crate) fn unpacked(&self) -> Result<(Box<dyn Read + '_>, Length), VolumeError> {
+        let reader = self.reader()?;
+        Ok(if is_gzip(&self.start) {
+            (Box::new(MultiGzDecoder::new(reader)), Length::of_gzip(self.length))
+        } else {
+            (Box::new(reader), Length::Exactly(self.length))
+        })
+    }
+}
