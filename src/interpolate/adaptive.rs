@@ -6,7 +6,7 @@ use walpha_base::Monitor;
 use walpha_base::setters;
 
 use super::fill::corners;
-use super::raster::NOTHING;
+use super::grid::OUTSIDE;
 use super::sampled::Sampled;
 use super::{Deviation, InterpolateError};
 use crate::points::Units;
@@ -143,15 +143,15 @@ pub(super) fn worst(
     chunks.for_each(|(chunk, ((theirs, ours), owners))| {
         // Samples side by side are often in one cell: these are written together.
         let write = |owner: u32, sum: u64, most: u64| {
-            if owner != NOTHING {
+            if owner != OUTSIDE {
                 sums[owner as usize].fetch_add(sum, Relaxed);
                 worst[owner as usize].fetch_max(most, Relaxed);
             }
         };
-        let (mut last, mut sum, mut most) = (NOTHING, 0, 0);
+        let (mut last, mut sum, mut most) = (OUTSIDE, 0, 0);
         for (i, ((f, g), &owner)) in theirs.iter().zip(ours).zip(owners).enumerate() {
             let (error, voxel) = ((f - g).abs(), (chunk * CHUNK + i) as u32);
-            if owner == NOTHING || error == 0.0 {
+            if owner == OUTSIDE || error == 0.0 {
                 continue;
             }
             if owner != last {

@@ -119,6 +119,9 @@ impl Grid {
     }
 }
 
+/// The simplex of a sample that is outside the shape.
+pub(super) const OUTSIDE: u32 = u32::MAX;
+
 /// So many numbers at equal steps from the first to the last, or the middle.
 fn steps(first: f64, last: f64, n: usize) -> Vec<f64> {
     if n == 1 {

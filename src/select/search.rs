@@ -2,8 +2,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::budget::{Bin, Budget, Dropped, Spent};
-use super::{Cut, EXPONENT, INFINITY, magnitude};
+use super::cut::{Bin, Budget, Cut, Dropped, EXPONENT, INFINITY, Spent, magnitude};
 
 /// The same cut as [`Cut::new`] finds, of values that are never in one place: rounds of
 /// [counting](Self::count), piece by piece, whose joined counts go to [`Search::learn`].
