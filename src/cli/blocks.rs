@@ -1,30 +1,32 @@
 //! `walpha blocks`: one shape in pieces that other processes or machines compute.
+//!
+//! What `walpha blocks` prints about its steps.
 
+use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
+use serde::Serialize;
 use walpha_base::Monitor;
+use walpha_base::memory::readable;
 use walpha_base::shown::shown;
 use walpha_files::{Working, fill_all, keep_input};
 
+use super::args::{InputArgs, PipelineArgs, ShapeArgs};
+use super::errors::{CommandError, fail_usage};
+use super::output::{name, tell};
+use super::progress::Progress;
+use super::report::Report;
+use super::{DIFFERENT, Global, folder, pipeline};
 use crate::Recipe;
 use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target};
-use crate::outofcore::merge_monitored;
 use crate::outofcore::{
-    Alone, BlocksError, Checked, Cutting, Finding, Job, Merged, Pieces, Plan, Team, price, run,
-    run_all, whole,
+    Alone, BlocksError, Checked, Cutting, Finding, Job, Merged, Pieces, Plan, Price, Team,
+    merge_monitored, price, run, run_all, whole,
 };
 use crate::progress::Stage;
 use crate::volume::files_of;
-
-use super::args::{InputArgs, PipelineArgs, ShapeArgs};
-use super::block_summaries::{CheckSummary, PlanSummary, PriceSummary, RunSummary};
-use super::output::tell;
-use super::progress::Progress;
-use super::report::Report;
-use super::said::{Said, misused};
-use super::{DIFFERENT, Global, folder, pipeline};
 
 /// Compute a shape in blocks, on as many machines as see one folder: plan, run each block, merge.
 ///
@@ -266,21 +268,173 @@ impl Outputs {
 pub(super) fn job(args: &InputArgs, recipe: Recipe) -> anyhow::Result<Job> {
     let input = &args.input;
     if input.is_stdin() {
-        misused!("standard input cannot be read in parts, as blocks are" => "name a file");
+        fail_usage!("standard input cannot be read in parts, as blocks are" => "name a file");
     }
     if input.path().to_str().is_none() {
-        misused!("the plan of blocks is a text, and {input} is no name in UTF-8" => "name a link to it");
+        fail_usage!("the plan of blocks is a text, and {input} is no name in UTF-8" => "name a link to it");
     }
     if recipe.is_points(input.path())? {
         let name = shown(input.path());
-        misused!("{name} holds points, and blocks are cut from volumes" => "start one process, and write another format than .pvtu and .pvtp");
+        fail_usage!("{name} holds points, and blocks are cut from volumes" => "start one process, and write another format than .pvtu and .pvtp");
     }
-    args.given.refuse(&["columns"], format!("{input} holds a volume"))?;
+    args.typed.refuse(&["columns"], format!("{input} holds a volume"))?;
     let alone = ["refit", "exchange", "max_error"];
-    args.given.refuse(&alone, "blocks look at a part of the volume each")?;
+    args.typed.refuse(&alone, "blocks look at a part of the volume each")?;
     Job::new(input, recipe).map_err(|error| match error {
         BlocksError::Volume(error) => pipeline::with_points(error),
-        error @ BlocksError::NotLocal { .. } => Said::usage_of(&error).into(),
+        error @ BlocksError::NotLocal { .. } => CommandError::usage_of(&error).into(),
         other => other.into(),
     })
+}
+
+/// What a plan is.
+#[derive(Serialize)]
+pub(super) struct PlanSummary {
+    folder: String,
+    plan: String,
+    input: String,
+    samples: usize,
+    points: u64,
+    blocks: usize,
+    largest_block: u64,
+    /// Points that are looked at by more than one block, as a share of all.
+    halo_share: f64,
+    seconds: f64,
+}
+
+impl PlanSummary {
+    pub(super) fn of(plan: &Plan, seconds: f64) -> Self {
+        let points = plan.blocks.iter().map(|block| block.points).sum::<u64>();
+        let halo = plan.blocks.iter().map(|block| block.halo).sum::<u64>();
+        Self {
+            folder: plan.folder().display().to_string(),
+            plan: plan.digest(),
+            input: plan.job.input.clone(),
+            samples: plan.job.dims.samples(),
+            points,
+            blocks: plan.blocks.len(),
+            largest_block: plan.blocks.iter().map(|block| block.points).max().unwrap_or(0),
+            halo_share: halo as f64 / points.max(1) as f64,
+            seconds,
+        }
+    }
+}
+
+impl Display for PlanSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "plan      {} of {}", self.plan, self.input)?;
+        writeln!(f, "points    {} of {} samples", self.points, self.samples)?;
+        writeln!(
+            f,
+            "blocks    {} of up to {} points, and at most {:.0} % of all points again around them",
+            self.blocks,
+            self.largest_block,
+            100.0 * self.halo_share
+        )?;
+        writeln!(f, "wrote     {}", name(&self.folder))
+    }
+}
+
+/// What work will cost.
+#[derive(Serialize)]
+#[serde(transparent)]
+pub(super) struct PriceSummary(pub Price);
+
+impl Display for PriceSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Price { samples, points, blocks, halo_share, memory_per_block, .. } = self.0;
+        let [by_plan, by_blocks] = self.0.bytes_read.map(readable);
+        let [by_rows, by_keys] = self.0.bytes_written.map(readable);
+        let [plan, run, merge] = self.0.core_seconds;
+        writeln!(f, "points    {points} of {samples} samples")?;
+        writeln!(
+            f,
+            "blocks    {blocks}, and {:.1} % of all points again around them",
+            100.0 * halo_share
+        )?;
+        writeln!(f, "memory    {} for each block at work", readable(memory_per_block))?;
+        writeln!(f, "reads     {by_plan} to plan, {by_blocks} by all blocks")?;
+        let by_plan = readable(self.0.bytes_of_plan);
+        writeln!(f, "writes    {by_rows}, of which merging reads {by_keys}; to plan {by_plan}")?;
+        let hours = (plan + run + merge) / 3600.0;
+        writeln!(
+            f,
+            "time      {hours:.3} core-hours: plan {plan:.0} s, blocks {run:.0} s, merge {merge:.0} s of one core"
+        )
+    }
+}
+
+/// What was run.
+#[derive(Serialize)]
+pub(super) struct RunSummary {
+    pub folder: String,
+    pub blocks: Vec<usize>,
+    pub seconds: f64,
+}
+
+impl Display for RunSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { folder, blocks, seconds } = self;
+        let folder = name(folder);
+        writeln!(f, "blocks    {} done in {folder}, {seconds:.2} s", blocks.len())
+    }
+}
+
+/// What was found of the files of a plan.
+#[derive(Serialize)]
+pub(super) struct CheckSummary {
+    folder: String,
+    /// What identifies the plan; nothing where it cannot be read.
+    plan: Option<String>,
+    /// How many there should be.
+    blocks: Option<usize>,
+    missing: Vec<usize>,
+    findings: Vec<Found>,
+    /// Whether all is there, as it was written.
+    pub whole: bool,
+}
+
+/// A file that does not verify.
+#[derive(Serialize)]
+struct Found {
+    path: String,
+    what: String,
+}
+
+impl CheckSummary {
+    pub(super) fn of(folder: &Path, plan: Option<&Plan>, checked: Checked) -> Self {
+        let whole = checked.is_whole();
+        let found = checked.findings.into_iter();
+        Self {
+            folder: folder.display().to_string(),
+            plan: plan.map(Plan::digest),
+            blocks: plan.map(|plan| plan.blocks.len()),
+            findings: found
+                .map(|found| Found { path: found.path.display().to_string(), what: found.what })
+                .collect(),
+            missing: checked.missing,
+            whole,
+        }
+    }
+}
+
+impl Display for CheckSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for Found { path, what } in &self.findings {
+            writeln!(f, "{}: {what}", name(path))?;
+        }
+        if !self.missing.is_empty() {
+            let missing: Vec<String> = self.missing.iter().map(usize::to_string).collect();
+            writeln!(f, "missing   {}", missing.join(", "))?;
+        }
+        let folder = name(&self.folder);
+        match (self.whole, self.blocks, self.findings.len()) {
+            (true, Some(blocks), _) => writeln!(f, "verified  {blocks} blocks in {folder}"),
+            (_, Some(_), 0) => writeln!(f, "verified  what is there in {folder}"),
+            (_, Some(_), _) => {
+                writeln!(f, "next      walpha blocks run {folder}, which computes these again")
+            }
+            (_, None, _) => writeln!(f, "next      plan again"),
+        }
+    }
 }

@@ -100,7 +100,7 @@ impl Filtration {
             targets.push((Target::open(path)?, format));
         }
         let mut progress = Progress::new(global);
-        input.given.refuse(&["refit"], "a filtration has no values")?;
+        input.typed.refuse(&["refit"], "a filtration has no values")?;
         let torus = self.periodic.periodic;
         let recipe = self.pipeline.recipe()?.periodic(torus);
         let (mut weighed, _) = pipeline::weighted_points(input, &recipe, &mut progress)?;

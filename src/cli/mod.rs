@@ -1,30 +1,25 @@
 //! The command. It parses, calls the library, prints, and chooses an exit code.
 
 mod args;
-mod block_summaries;
 mod blocks;
 mod check;
+mod command_line;
 mod compare;
-mod complaint;
 mod completions;
 mod config;
 #[cfg(feature = "zarr")]
 mod convert;
-mod curve;
-mod filled;
+mod errors;
 mod filtration;
 mod folder;
 mod formats;
-mod given;
 mod haar;
 mod info;
-mod inputs;
 mod interpolate;
-mod judged;
 mod ladder;
 mod man;
 mod output;
-#[cfg_attr(not(feature = "render"), path = "picture/absent.rs")]
+#[cfg_attr(not(feature = "render"), path = "no_picture.rs")]
 mod picture;
 mod pipeline;
 mod points;
@@ -34,13 +29,11 @@ mod ranks;
 mod report;
 #[cfg(feature = "paper")]
 mod reproduce;
-mod said;
 mod shape;
+mod shape_in_blocks;
 mod signals;
-mod together;
 #[cfg(feature = "render")]
 mod view;
-mod warnings;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -54,9 +47,9 @@ use tracing_subscriber::util::SubscriberInitExt;
 use crate::export::Target;
 use crate::threads;
 
+use errors::command_error;
 use output::{print, print_with};
 use ranks::Ranks;
-use said::said;
 
 /// Volume modelling of scattered data with wavelet-weighted alpha shapes.
 #[derive(Parser)]
@@ -152,7 +145,11 @@ pub fn run() -> ExitCode {
     let typed: Vec<OsString> = std::env::args_os().collect();
     let name = named(&command, &typed);
     let ranks = Ranks::find(&name);
-    ranks.run(&name, || lead(command, &name, typed, &ranks), || together::serve(ranks.team()))
+    ranks.run(
+        &name,
+        || lead(command, &name, typed, &ranks),
+        || shape_in_blocks::serve(ranks.team()),
+    )
 }
 
 /// Runs a command line. The error is the exit code after a failure, which has been told.
@@ -165,7 +162,7 @@ fn lead(
     let args = match config::with_file(&command, typed.clone()) {
         Ok(args) => args,
         Err(error) => {
-            complaint::tell(name, &error);
+            errors::tell(name, &error);
             return Err(USAGE);
         }
     };
@@ -180,7 +177,7 @@ fn lead(
         if matches.get_flag(config::PRINT) {
             return Ok(Err(matches));
         }
-        kept = inputs::keep(&command, &matches);
+        kept = command_line::keep(&command, &matches);
         Cli::from_arg_matches(&matches).map(|cli| Ok((cli, is_piped(&matches))))
     });
     let done = match parsed {
@@ -194,7 +191,7 @@ fn lead(
             printed.map(|()| ExitCode::SUCCESS).map_err(Into::into)
         }
         Err(error) => {
-            complaint::tell_usage(name, &error, args.len() > typed.len());
+            errors::tell_usage(name, &error, args.len() > typed.len());
             return Err(USAGE);
         }
     };
@@ -205,11 +202,11 @@ fn lead(
             if progress::is_cancelled() {
                 return Err(INTERRUPTED as u8);
             }
-            complaint::tell(name, &error);
-            return Err(complaint::code(&error));
+            errors::tell(name, &error);
+            return Err(errors::code(&error));
         }
     };
-    together::dismiss(ranks.team());
+    shape_in_blocks::dismiss(ranks.team());
     Ok(code)
 }
 
@@ -260,7 +257,7 @@ fn start_threads(asked: Option<u16>) -> anyhow::Result<()> {
     // Where no thread can be had, this one does the work.
     let pool = if count == 0 { pool.use_current_thread() } else { pool };
     pool.build_global().map_err(|error| {
-        said!("threads cannot be started: {error}" => "give fewer with --threads").into()
+        command_error!("threads cannot be started: {error}" => "give fewer with --threads").into()
     })
 }
 
@@ -270,11 +267,11 @@ fn execute(global: Global, command: Command, ranks: &Ranks) -> anyhow::Result<Ex
         Global { verbose: true, .. } => LevelFilter::DEBUG,
         _ => LevelFilter::WARN,
     };
-    let log = tracing_subscriber::fmt::layer().with_ansi(complaint::coloured()).with_target(false);
+    let log = tracing_subscriber::fmt::layer().with_ansi(errors::coloured()).with_target(false);
     // Nor does what cannot be logged end the command.
     let log = log.log_internal_errors(false);
     let log = log.with_writer(std::io::stderr).without_time().with_filter(level);
-    let warnings = warnings::Listener.with_filter(LevelFilter::WARN);
+    let warnings = output::Listener.with_filter(LevelFilter::WARN);
     tracing_subscriber::registry().with(warnings).with(log).init();
     let alone = ranks.team().size() == 1;
     start_threads(global.threads.or((!alone).then_some(1)))?;

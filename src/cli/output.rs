@@ -1,21 +1,27 @@
 //! What goes to standard output.
+//!
+//! The warnings of a run, which the JSON of its report repeats: standard error may not be looked at.
 
-use std::fmt::Display;
+use std::fmt::{self, Debug, Display};
 use std::io::{self, ErrorKind, Write};
+use std::sync::{Mutex, PoisonError};
 
 use serde::Serialize;
+use tracing::field::{Field, Visit};
+use tracing::{Event, Level, Subscriber};
+use tracing_subscriber::Layer;
+use tracing_subscriber::layer::Context;
 use walpha_base::advice::Advice;
+use walpha_base::shown::escaped;
 use walpha_base::standard_output;
 
-use walpha_base::shown::escaped;
-
-use super::{Global, warnings};
+use super::Global;
 
 /// Prints facts as the user wants them: as JSON, as text, or not at all; to standard error when
 /// standard output has a file (`-o -`).
 pub(super) fn tell<T: Serialize + Display>(global: Global, facts: &T) -> anyhow::Result<()> {
     if global.json {
-        let warnings = warnings::heard();
+        let warnings = heard();
         let text =
             if warnings.is_empty() { json(facts) } else { json(&Warned { facts, warnings }) };
         say(global, &text?)?;
@@ -92,4 +98,41 @@ pub(super) fn is_broken_pipe(error: &anyhow::Error) -> bool {
         cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe)
     };
     error.chain().any(broken)
+}
+
+/// What was heard so far.
+static HEARD: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Hears warnings, once each.
+pub(super) struct Listener;
+
+impl<S: Subscriber> Layer<S> for Listener {
+    fn on_event(&self, event: &Event<'_>, _: Context<'_, S>) {
+        if *event.metadata().level() != Level::WARN {
+            return;
+        }
+        let mut message = Message::default();
+        event.record(&mut message);
+        let mut heard = HEARD.lock().unwrap_or_else(PoisonError::into_inner);
+        if !heard.contains(&message.0) {
+            heard.push(message.0);
+        }
+    }
+}
+
+/// The text of an event.
+#[derive(Default)]
+struct Message(String);
+
+impl Visit for Message {
+    fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
+        if field.name() == "message" {
+            fmt::write(&mut self.0, format_args!("{value:?}")).expect("strings take all");
+        }
+    }
+}
+
+/// The warnings so far.
+pub(super) fn heard() -> Vec<String> {
+    HEARD.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }

@@ -25,6 +25,7 @@
 //! ```
 
 mod colour;
+mod exporter;
 mod filtration;
 mod format;
 mod glb;
@@ -38,8 +39,9 @@ mod vtp;
 mod vtu;
 
 pub use crate::volume::UnknownFormat;
+pub use exporter::{ExportOptions, Exporter};
 pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
-pub use format::{ExportOptions, Exporter, FORMATS, Format};
+pub use format::{FORMATS, Format};
 pub use glb::Glb;
 pub use json::Json;
 pub use npz::Npz;

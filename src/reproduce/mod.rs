@@ -5,17 +5,12 @@
 //! beside them. Nothing is tuned to agree.
 
 mod compare;
-mod compressors;
 mod error;
 mod figures;
 mod html;
-mod hull;
-mod numbers;
 mod off;
-mod outline;
 pub mod plane;
 mod report;
-mod stage;
 mod study;
 mod text;
 
@@ -23,8 +18,8 @@ use std::time::Instant;
 
 pub use error::ReproduceError;
 pub use html::page;
-pub use numbers::ShapeNumbers;
 pub use off::{OffError, OffMesh};
+pub use report::ShapeNumbers;
 pub use report::{Fact, Finding, Input, Item, Report, Table, Verdict};
 
 use walpha_base::Cancelled;

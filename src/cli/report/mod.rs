@@ -1,7 +1,6 @@
 //! The facts a command prints, as JSON or as text.
 
 mod parts;
-mod shape;
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -18,9 +17,9 @@ use crate::{Coordinates, GrayRange};
 
 use super::output::name;
 use super::pipeline::VolumeSummary;
+use parts::ShapeReport;
 use parts::{Ended, InputReport, PointsReport};
 pub(super) use parts::{Folded, HaarReport, WeightsReport};
-use shape::ShapeReport;
 
 /// Counted up when a field changes its meaning or goes; new fields may come at any time.
 pub(super) const SCHEMA_VERSION: u32 = 1;

@@ -1,11 +1,11 @@
-use super::claim::{Claim, judge};
-use super::{Bench, figure};
+use super::bench::{Bench, figure};
+use super::bench::{Claim, judge};
 use crate::export::{ExportOptions, Exporter, Off};
 use crate::render::{Figure, Panel, Picture};
 use crate::reproduce::compare::{PixelDifference, same_set};
 use crate::reproduce::off::OffMesh;
-use crate::reproduce::stage::{Eye, panel};
 use crate::reproduce::study::{ALPHA, Shaped};
+use crate::reproduce::study::{Eye, panel};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Verdict};
 use crate::shape::{Betti, Surface};
 

@@ -1,8 +1,8 @@
-use super::claim::{Claim, judge};
-use super::{Bench, VIEWS, figure};
+use super::bench::{Bench, VIEWS, figure};
+use super::bench::{Claim, judge};
 use crate::points::difference;
 use crate::render::{Figure, Isosurface, Scene};
-use crate::reproduce::stage::{Eye, panel};
+use crate::reproduce::study::{Eye, panel};
 use crate::reproduce::study::{PAPER_POINTS, PAPER_SAMPLES, Study};
 use crate::reproduce::{Fact, Item, ReproduceError, Table, Verdict};
 use crate::volume::Volume;

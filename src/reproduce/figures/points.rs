@@ -1,9 +1,9 @@
-use super::claim::{Claim, judge};
-use super::{Bench, figure};
+use super::bench::{Bench, figure};
+use super::bench::{Claim, judge};
 use crate::haar::Truncation;
 use crate::render::{Ball, ColourBar, ColourMap, Figure, Scene, Size};
-use crate::reproduce::stage::panel;
 use crate::reproduce::study::Study;
+use crate::reproduce::study::panel;
 use crate::reproduce::{Fact, Item, ReproduceError, Verdict, text};
 
 /// The truncation, and the points.

@@ -1,5 +1,5 @@
-use super::Bench;
-use super::claim::{Claim, judge};
+use super::bench::Bench;
+use super::bench::{Claim, judge};
 use crate::haar::Unnormalised;
 use crate::points::difference_row;
 use crate::reproduce::{Item, ReproduceError, Table, Verdict, text};

@@ -28,8 +28,7 @@
 //! ```
 
 mod contact;
-mod curvature;
-mod curve;
+pub(in crate::reproduce) mod curve;
 mod eks;
 mod error;
 mod exact;
@@ -39,8 +38,8 @@ mod power_cell;
 mod sample;
 mod weighted;
 
-pub use curvature::{Curvature, NotACurvature};
 pub use curve::{Arc, Piece};
+pub use eks::{Curvature, NotACurvature};
 pub use eks::{EksShape, NoDisc, eks_shape};
 pub use error::PlaneError;
 pub use hull::AlphaHull;

@@ -1,30 +1,32 @@
 //! Levels of detail: fewer points, or a coarser volume, and full detail in a region.
+//!
+//! What `walpha ladder` did over detail.
 
-mod summary;
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+use std::io;
 
-use crate::cli::said::{misused, refused};
-use crate::haar::smooth_monitored;
-use crate::pipeline::{Input, Source};
-use crate::points::{Points, Units, difference, select, weigh};
-use crate::points::{Region, focus};
-use crate::progress::Stage;
-use crate::shape::alpha_shape_monitored;
-use crate::shape::{AlphaShape, ShapeOptions};
-use crate::{
-    HaarOptions, Recipe, Selection, SelectionRule, Tolerance, Truncation, Volume, Weighting,
-};
+use serde::Serialize;
 use walpha_base::Monitor;
 
-use super::errors::Errors;
-use super::{Ladder, Mesh, short};
+use super::{Errors, Ladder, Mesh, short};
 use crate::cli::Global;
 use crate::cli::args::one_alpha;
+use crate::cli::errors::{fail, fail_usage};
 use crate::cli::folder::Folder;
-use crate::cli::output::tell;
+use crate::cli::output::{name, tell};
 use crate::cli::pipeline::{Domain, read};
 use crate::cli::progress::Progress;
 use crate::cli::report::SCHEMA_VERSION;
-use summary::{DetailSummary, Row, write_rows};
+use crate::haar::smooth_monitored;
+use crate::pipeline::{Input, Parameter, Source};
+use crate::points::{Points, Region, Units, difference, focus, select, weigh};
+use crate::progress::Stage;
+use crate::shape::{AlphaShape, Betti, Measures, ShapeOptions, Surface, alpha_shape_monitored};
+use crate::{
+    Coordinates, HaarOptions, Recipe, Selection, SelectionRule, Tolerance, Truncation, Volume,
+    Weighting,
+};
 
 /// What a level asks for.
 struct Wanted {
@@ -42,12 +44,12 @@ impl Ladder {
         meshes: &[Mesh],
         mut folder: Folder,
     ) -> anyhow::Result<()> {
-        let given = &self.pipeline.input.given;
+        let given = &self.pipeline.input.typed;
         given.refuse(&["refit"], "levels of detail keep the values of the samples")?;
         let mut progress = Progress::new(global);
         let recipe = self.pipeline.recipe()?;
         let Input::Volume(grays) = read(&self.pipeline.input, &recipe, &mut progress)? else {
-            refused!("levels of detail are made of a volume, and this is a point file" => "use --alphas");
+            fail!("levels of detail are made of a volume, and this is a point file" => "use --alphas");
         };
         let weighting = recipe.weighting.unwrap_or(Weighting::Common(0.0));
         let source = recipe.source(grays)?;
@@ -58,7 +60,7 @@ impl Ladder {
         let domain = Domain::of_grid(volume, units);
         let monitor = progress.monitor();
         let Some(selection) = recipe.selection(&source.range) else {
-            misused!("--select adaptive has no effect: levels of detail are selected by differences" => "omit it");
+            fail_usage!("--select adaptive has no effect: levels of detail are selected by differences" => "omit it");
         };
         let mut front_end = FrontEnd { volume, units, smoothed: None, monitor: &monitor };
         let full =
@@ -114,7 +116,7 @@ impl Ladder {
         let Some(region) = &self.focus else { return Ok(None) };
         let (points, _) = front_end.points(&recipe.haar, &selection)?;
         if inside(&points, region) == 0 {
-            refused!("no point lies in --focus: it is in the units of the points, x first");
+            fail!("no point lies in --focus: it is in the units of the points, x first");
         }
         Ok(Some((points, region)))
     }
@@ -180,4 +182,164 @@ impl FrontEnd<'_> {
         let points = select(self.volume, smoothed, &difference(smoothed), selection, self.units)?;
         Ok((points, *truncation))
     }
+}
+
+/// What `walpha ladder` did over detail.
+#[derive(Serialize)]
+pub(super) struct DetailSummary {
+    pub schema_version: u32,
+    pub input: String,
+    /// Of points and all lengths.
+    pub coordinates: Coordinates,
+    pub alpha: Parameter,
+    pub weights: String,
+    pub domain: Domain,
+    /// Points with full detail, which each level has besides its own; null without a region.
+    pub points_in_region: Option<usize>,
+    pub levels: Vec<Row>,
+    pub seconds: BTreeMap<&'static str, f64>,
+}
+
+#[derive(Serialize)]
+pub(super) struct Row {
+    pub points: usize,
+    /// Of the wavelet stage: coefficients kept, ‖f − f̂‖ and its root mean square, gray levels.
+    pub kept: u64,
+    pub epsilon: f64,
+    pub rms: f64,
+    pub cells: usize,
+    pub boundary_facets: usize,
+    pub betti: Option<Betti>,
+    #[serde(flatten)]
+    pub measures: Measures,
+    pub coverage: f64,
+    /// How far F is from the volume, in gray levels: on the samples of the shape, and on all.
+    #[serde(flatten)]
+    pub errors: Errors,
+    /// Of all meshes of this level.
+    pub bytes: u64,
+    pub files: Vec<String>,
+}
+
+impl Row {
+    /// Of a level's shape, before its meshes are written.
+    pub(super) fn of(
+        shape: &AlphaShape,
+        truncation: &Truncation,
+        domain: &Domain,
+        errors: Errors,
+    ) -> Self {
+        Self {
+            errors,
+            points: shape.points().len(),
+            kept: truncation.kept,
+            epsilon: truncation.epsilon,
+            rms: truncation.rms,
+            cells: shape.complex().cells.len(),
+            boundary_facets: Surface::of(shape).facets().count(),
+            betti: shape.betti(),
+            measures: *shape.measures(),
+            coverage: if domain.volume > 0.0 {
+                shape.measures().volume / domain.volume
+            } else {
+                0.0
+            },
+            bytes: 0,
+            files: Vec::new(),
+        }
+    }
+}
+
+impl Display for DetailSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "input     {}", name(&self.input))?;
+        writeln!(f, "lengths   in {}", self.coordinates)?;
+        writeln!(f, "weights   {}", self.weights)?;
+        writeln!(f, "parameter {}", self.alpha)?;
+        if let Some(points) = self.points_in_region {
+            writeln!(
+                f,
+                "region    {points} points of full detail in each level, and those of the level"
+            )?;
+        }
+        writeln!(
+            f,
+            "{:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>10}  files",
+            "points",
+            "rms",
+            "F inside",
+            "F filled",
+            "cells",
+            "boundary",
+            "volume",
+            "coverage",
+            "bytes"
+        )?;
+        for row in &self.levels {
+            writeln!(
+                f,
+                "{:>9} {:>9.4} {:>9} {:>9.4} {:>9} {:>9} {:>12.1} {:>8.2}% {:>10}  {}",
+                row.points,
+                row.rms,
+                row.errors.inside.map_or("–".into(), |rmse| format!("{rmse:.4}")),
+                row.errors.filled,
+                row.cells,
+                row.boundary_facets,
+                row.measures.volume,
+                100.0 * row.coverage,
+                row.bytes,
+                row.files.join(", ")
+            )?;
+        }
+        writeln!(
+            f,
+            "rms: the error of the wavelet stage; F: RMSE of the interpolant, on the samples of the \
+             shape, and filled, on all; in gray levels"
+        )
+    }
+}
+
+/// `detail.csv`: a row for each level.
+pub(super) fn write_rows(rows: &[Row], out: &mut dyn io::Write) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(out);
+    csv.write_record([
+        "points",
+        "kept",
+        "epsilon",
+        "rms",
+        "cells",
+        "boundary_facets",
+        "b0",
+        "b1",
+        "b2",
+        "volume",
+        "area",
+        "coverage",
+        "rmse_inside",
+        "rmse_filled",
+        "bytes",
+    ])?;
+    for row in rows {
+        let betti = row.betti.map(<[u64; 3]>::from);
+        let betti = [0, 1, 2].map(|k| betti.map_or(String::new(), |betti| betti[k].to_string()));
+        let [b0, b1, b2] = betti;
+        csv.write_record([
+            row.points.to_string(),
+            row.kept.to_string(),
+            row.epsilon.to_string(),
+            row.rms.to_string(),
+            row.cells.to_string(),
+            row.boundary_facets.to_string(),
+            b0,
+            b1,
+            b2,
+            row.measures.volume.to_string(),
+            row.measures.area.to_string(),
+            row.coverage.to_string(),
+            row.errors.inside.map_or(String::new(), |rmse| rmse.to_string()),
+            row.errors.filled.to_string(),
+            row.bytes.to_string(),
+        ])?;
+    }
+    csv.flush()
 }

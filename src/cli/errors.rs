@@ -1,16 +1,165 @@
+//! Errors of the command itself, and the advice of all errors in the words of its options.
+//!
 //! Errors in three lines: what could not be done, why, and what to do next.
 
 use std::error::Error;
 use std::io::IsTerminal;
 
 use clap::error::ErrorKind;
+use walpha_base::advice::{Advice, Setting};
+use walpha_base::memory::NoMemory;
 use walpha_base::shown::escaped;
-
-use crate::volume::UnknownFormat;
+use walpha_regular::{SitesError, TriangulationError};
 
 use super::output::{Unprinted, is_broken_pipe, remark};
-use super::said::{Said, advice};
 use super::{FAILURE, UNREAD, USAGE, progress};
+use crate::check::schema::SchemaError;
+use crate::check::{CertifyError, CertifyFiltrationError, CompareError};
+use crate::export::TargetError;
+use crate::haar::HaarError;
+use crate::interpolate::InterpolateError;
+use crate::outofcore::BlocksError;
+use crate::pipeline::PipelineError;
+use crate::points::{UnknownColumns, UnknownWeighting};
+#[cfg(feature = "paper")]
+use crate::reproduce::ReproduceError;
+use crate::shape::{AlphaError, PlanError, ShapeError, TorusError};
+use crate::volume::{UnknownFormat, UnknownName};
+use crate::{CgalError, PointsError, VolumeError};
+
+/// Why a command cannot do something, and what to do next.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{why}")]
+pub(crate) struct CommandError {
+    pub why: String,
+    pub next: Option<String>,
+    /// Whether the command line makes no sense, whatever is in the files: exit code 2.
+    pub usage: bool,
+}
+
+impl CommandError {
+    /// An error of the library that the command line is to blame for.
+    pub(super) fn usage_of(error: &(impl Error + 'static)) -> Self {
+        Self { why: error.to_string(), next: advice(error), usage: true }
+    }
+}
+
+/// A [`CommandError`]: why, and after `=>` what to do next.
+macro_rules! command_error {
+    ($why:literal $(, $of_why:expr)* $(=> $next:literal $(, $of_next:expr)*)?) => {
+        $crate::cli::errors::CommandError {
+            why: format!($why $(, $of_why)*),
+            next: [$(format!($next $(, $of_next)*))?].into_iter().next(),
+            usage: false,
+        }
+    };
+}
+
+/// Returns a [`CommandError`].
+macro_rules! fail {
+    ($($text:tt)*) => {
+        return Err($crate::cli::errors::command_error!($($text)*).into())
+    };
+}
+
+/// Returns a [`CommandError`] about the command line itself.
+macro_rules! fail_usage {
+    ($($text:tt)*) => {
+        return Err($crate::cli::errors::CommandError {
+            usage: true,
+            ..$crate::cli::errors::command_error!($($text)*)
+        }
+        .into())
+    };
+}
+
+pub(crate) use {command_error, fail, fail_usage};
+
+/// Lists the library's errors that know what to do.
+macro_rules! advising {
+    ($($(#[$condition:meta])? $error:ty),* $(,)?) => {
+        /// What an error of the library knows about what to do.
+        fn of_library(error: &(dyn Error + 'static)) -> Option<Advice> {
+            $($(#[$condition])? {
+                if let Some(error) = error.downcast_ref::<$error>() {
+                    return error.advice().into();
+                }
+            })*
+            None
+        }
+
+        $($(#[$condition])? impl From<$error> for CommandError {
+            fn from(error: $error) -> Self {
+                Self { usage: false, ..Self::usage_of(&error) }
+            }
+        })*
+    };
+}
+advising![
+    BlocksError,
+    CgalError,
+    HaarError,
+    InterpolateError,
+    NoMemory,
+    PipelineError,
+    PlanError,
+    PointsError,
+    #[cfg(feature = "paper")]
+    ReproduceError,
+    ShapeError,
+    SitesError,
+    TargetError,
+    TorusError,
+    TriangulationError,
+    UnknownColumns,
+    UnknownFormat,
+    UnknownName,
+    UnknownWeighting,
+    Unprinted,
+    VolumeError,
+];
+
+impl From<AlphaError> for CommandError {
+    fn from(error: AlphaError) -> Self {
+        Self { why: error.to_string(), next: Some(error.advice().into()), usage: false }
+    }
+}
+
+/// What an error of the checker knows about what to do.
+fn of_checker(error: &(dyn Error + 'static)) -> Option<&'static str> {
+    if let Some(error) = error.downcast_ref::<AlphaError>() {
+        return Some(error.advice());
+    }
+    if let Some(error) = error.downcast_ref::<SchemaError>() {
+        return error.advice();
+    }
+    if let Some(error) = error.downcast_ref::<CertifyError>() {
+        return error.advice();
+    }
+    if let Some(error) = error.downcast_ref::<CertifyFiltrationError>() {
+        return error.advice();
+    }
+    error.downcast_ref::<CompareError>()?.advice()
+}
+
+/// What an error knows about what to do, in the words of the command.
+pub(super) fn advice(error: &(dyn Error + 'static)) -> Option<String> {
+    match error.downcast_ref::<CommandError>() {
+        Some(said) => said.next.clone(),
+        None => of_checker(error)
+            .map(Into::into)
+            .or_else(|| of_library(error).map(|advice| advice.with_names(option))),
+    }
+}
+
+/// What the command calls a setting.
+pub(super) fn option(setting: Setting) -> String {
+    match setting {
+        Setting::Format => "--input-format".into(),
+        Setting::Region => "--roi".into(),
+        other => format!("--{}", other.name().replace('_', "-")),
+    }
+}
 
 /// Whether standard error takes colours: a terminal, and `NO_COLOR` is not set (<https://no-color.org>).
 pub(super) fn coloured() -> bool {
@@ -45,7 +194,8 @@ pub(super) fn tell(command: &str, error: &anyhow::Error) {
 
 /// Whether the command line makes no sense, whatever is in the files.
 pub(super) fn is_usage(error: &anyhow::Error) -> bool {
-    error.is::<UnknownFormat>() || error.downcast_ref::<Said>().is_some_and(|said| said.usage)
+    error.is::<UnknownFormat>()
+        || error.downcast_ref::<CommandError>().is_some_and(|said| said.usage)
 }
 
 /// The exit code after an error.
@@ -141,14 +291,14 @@ pub(super) fn reasons(error: &anyhow::Error) -> (String, Option<String>) {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::cli::said::said;
+    use super::{said, *};
 
     #[test]
     fn causes_are_told_once_and_before_advice() {
         let error = anyhow::anyhow!("no room").context("cannot write a: no room").context("shape");
         assert_eq!(reasons(&error), ("shape: cannot write a: no room".into(), None));
-        let error = anyhow::Error::from(said!("b; or c: it is a folder" => "check the path"));
+        let error =
+            anyhow::Error::from(command_error!("b; or c: it is a folder" => "check the path"));
         let error = error.context("cannot read a");
         let told = ("cannot read a: b; or c: it is a folder".into(), Some("check the path".into()));
         assert_eq!(reasons(&error), told);

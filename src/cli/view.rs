@@ -1,34 +1,37 @@
 //! `walpha view`: a page to look at.
+//!
+//! A level of detail: the shapes of one set of points.
+//!
+//! The level of an isosurface, as it is given on the command line.
+//!
+//! What `walpha view` did.
 
-mod detail;
-mod isovalue;
-mod summary;
-
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use anyhow::bail;
 use clap::Args;
+use serde::Serialize;
 use walpha_base::Monitor;
 use walpha_base::shown::{number, shown};
 
-use crate::export::Target;
-use crate::pipeline::{AlphaRule, Input, Parameter, Source, Values, Weighed};
-use crate::progress::Stage;
-use crate::render::{self, Original, Page, Subject};
-use crate::volume::UnknownFormat;
-use crate::{Frame, GrayRange, Recipe, Units};
-
 use super::Global;
-use super::args::{Alphas, FrozenPipelineArgs};
-use super::output::{remark, tell};
-use super::pipeline::{self, VolumeSummary};
+use super::args::{self, Alphas, FrozenPipelineArgs};
+use super::errors::fail_usage;
+use super::output::{name, remark, tell};
+use super::pipeline::{self, VolumeSummary, filled_in};
 use super::progress::Progress;
 use super::report::{SCHEMA_VERSION, WeightsReport};
-use super::said::misused;
-
-use detail::Detail;
-use isovalue::Isovalue;
-use summary::{DetailSummary, ViewSummary};
+use crate::export::Target;
+use crate::interpolate::{Deviation, Grid, Interpolant};
+use crate::ladder::Filtration;
+use crate::pipeline::{AlphaRule, Input, Parameter, Source, Values, Weighed};
+use crate::progress::Stage;
+use crate::render::{self, Differences, Original, Page, Subject};
+use crate::volume::UnknownFormat;
+use crate::{Alpha, Frame, GrayRange, Recipe, Units};
 
 /// Write an interactive page for the browser: self-contained, no network needed.
 ///
@@ -110,10 +113,10 @@ impl View {
         let grays = match read {
             Input::Points(..) => {
                 if self.isovalue.is_some() {
-                    misused!("--isovalue has no effect: points have no isosurface" => "omit it");
+                    fail_usage!("--isovalue has no effect: points have no isosurface" => "omit it");
                 }
                 if !self.counts.is_empty() {
-                    misused!("--counts chooses samples of a volume, and {} holds points", input.input => "omit it");
+                    fail_usage!("--counts chooses samples of a volume, and {} holds points", input.input => "omit it");
                 }
                 let weigh = |monitor: &Monitor| recipe.weigh(read, Values::Written, monitor);
                 let (weighed, _) = progress.watch(weigh)?;
@@ -157,7 +160,7 @@ impl View {
         for detail in details {
             let opening = detail.opening(self.alpha);
             let alphas = match &self.alphas {
-                Alphas::Given(alphas) => {
+                Alphas::TypedOptions(alphas) => {
                     [&alphas[..], self.alpha.map(|_| opening).as_slice()].concat()
                 }
                 Alphas::Auto => progress.stage(Stage::Curve, || detail.stops(opening)),
@@ -165,7 +168,7 @@ impl View {
             let levels = detail.filtration.levels(&alphas);
             if levels.len() > Page::MOST_LEVELS {
                 let (levels, most) = (levels.len(), Page::MOST_LEVELS);
-                misused!("{levels} levels are too many for a page" => "give --alphas at most {most}");
+                fail_usage!("{levels} levels are too many for a page" => "give --alphas at most {most}");
             }
             let domain = pipeline::domain(&detail.weighed, facts).volume;
             let ladder = progress.stage(Stage::Ladder, || levels.ladder(domain));
@@ -227,5 +230,178 @@ impl View {
         ));
         told.push(("made by".into(), format!("walpha {}", env!("CARGO_PKG_VERSION"))));
         told
+    }
+}
+
+/// Levels that `--alphas auto` chooses, suggested ones not counted.
+const STOPS: usize = 28;
+
+pub(super) struct Detail {
+    pub weighed: Weighed,
+    pub filtration: Filtration,
+    /// How far F is from the volume, in the values that are written.
+    pub differences: Option<Differences>,
+}
+
+impl Detail {
+    pub(super) fn new(
+        weighed: Weighed,
+        source: Option<&Source>,
+        progress: &mut Progress,
+    ) -> anyhow::Result<Self> {
+        let filtration = progress.watch(|monitor| pipeline::filtration(None, &weighed, monitor))?;
+        let differences = match source {
+            Some(source) => {
+                let monitor = progress.monitor();
+                let found = || differences(&weighed, source, &filtration, &monitor);
+                progress.stage(Stage::Interpolate, found)?
+            }
+            None => None,
+        };
+        Ok(Self { weighed, filtration, differences })
+    }
+
+    /// The α that weights are meant for, or else the one found.
+    pub(super) fn reference(&self) -> Parameter {
+        self.weighed.parameter.unwrap_or_else(|| self.found())
+    }
+
+    /// The α that the page opens at.
+    pub(super) fn opening(&self, asked: Option<AlphaRule>) -> Alpha {
+        let given = |rule: AlphaRule| {
+            rule.given(self.weighed.origin.coordinates.unit).unwrap_or_else(|| self.found())
+        };
+        asked.map_or_else(|| self.reference(), given).alpha
+    }
+
+    fn found(&self) -> Parameter {
+        Parameter::of_filtration(&self.filtration, self.weighed.origin.coordinates.unit)
+    }
+
+    /// Levels that each show something, and something else than the one before: the one to open at,
+    /// suggested ones, and others between.
+    pub(super) fn stops(&self, opening: Alpha) -> Vec<Alpha> {
+        let curve = self.filtration.curve();
+        let mut alphas = self.filtration.stops(&curve, STOPS);
+        alphas.push(opening);
+        alphas.extend(pipeline::suggested(&self.filtration, &curve));
+        let distinct = self.filtration.levels(&alphas).distinct(opening);
+        if distinct.is_empty() { vec![opening] } else { distinct }
+    }
+}
+
+/// How far the interpolant, filled in, is from the volume; `None` where the points have no values.
+fn differences(
+    weighed: &Weighed,
+    source: &Source,
+    filtration: &Filtration,
+    monitor: &Monitor,
+) -> anyhow::Result<Option<Differences>> {
+    let Source { volume, units, written, .. } = source;
+    let Some(values) = &weighed.points.values else { return Ok(None) };
+    let grays: Vec<f64> = values.iter().map(|&value| written.gray(value)).collect();
+    let hull = filtration.levels(&[Alpha::INFINITE]);
+    let hull = hull.shape(0, false, hull.betti()[0]);
+    let (whole, grays) = filled_in(&hull, &grays, volume, *units, monitor)?;
+    let interpolant = Interpolant::with_values(&whole, &grays)?;
+    let grid = Grid::of(volume, *units);
+    let mut local = interpolant.local_deviations(volume, &grid)?;
+    local.truncate(weighed.points.len());
+    let step = written.step();
+    local.iter_mut().for_each(|difference| *difference *= step);
+    let rmse = Deviation::of(volume, &interpolant.resample(&grid)?).rmse.unwrap_or_default() * step;
+    Ok(Some(Differences { local, rmse }))
+}
+
+/// A gray level, or a value of the file: `50` or `300v`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Isovalue {
+    /// As the wavelet stage has it.
+    Gray(f64),
+    /// As the file has it.
+    Value(f64),
+}
+
+impl Default for Isovalue {
+    fn default() -> Self {
+        Self::Gray(50.0)
+    }
+}
+
+impl Isovalue {
+    /// The gray level, where values `range` are gray 0..255.
+    pub(super) fn gray(self, range: &GrayRange) -> f64 {
+        match self {
+            Self::Gray(gray) => gray,
+            Self::Value(value) => range.gray(value),
+        }
+    }
+}
+
+impl FromStr for Isovalue {
+    type Err = anyhow::Error;
+
+    fn from_str(text: &str) -> anyhow::Result<Self> {
+        let (number, level): (_, fn(f64) -> Self) = match text.strip_suffix('v') {
+            Some(value) => (value, Self::Value),
+            None => (text, Self::Gray),
+        };
+        match args::number(number)? {
+            number if number.is_finite() => Ok(level(number)),
+            _ => bail!(
+                "a finite number is needed; give a gray level as in 50, or a value as in 300v"
+            ),
+        }
+    }
+}
+
+#[derive(Serialize)]
+pub(super) struct ViewSummary {
+    pub schema_version: u32,
+    pub input: String,
+    /// The coarsest first; the shape's own is the last.
+    pub details: Vec<DetailSummary>,
+    pub bytes: usize,
+    /// What was left out for display, if anything.
+    pub simplified: Option<String>,
+    pub file: String,
+    pub seconds: BTreeMap<&'static str, f64>,
+}
+
+/// A level of detail.
+#[derive(Serialize)]
+pub(super) struct DetailSummary {
+    points: usize,
+    levels: usize,
+    /// Of F, filled in, on all samples, in the values that are written; null without a volume.
+    rmse_filled: Option<f64>,
+}
+
+impl DetailSummary {
+    pub(super) fn of(detail: &render::Detail<'_>) -> Self {
+        Self {
+            points: detail.levels.points().len(),
+            levels: detail.levels.len(),
+            rmse_filled: detail.differences.map(|differences| differences.rmse),
+        }
+    }
+}
+
+impl Display for ViewSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "input     {}", name(&self.input))?;
+        for DetailSummary { points, levels, rmse_filled } in &self.details {
+            write!(f, "detail    {points} points, {levels} levels")?;
+            match rmse_filled {
+                Some(rmse) => writeln!(f, ", RMSE of F {rmse:.4} (filled in)")?,
+                None => writeln!(f)?,
+            }
+        }
+        if let Some(told) = &self.simplified {
+            writeln!(f, "page      {told}")?;
+        }
+        writeln!(f, "wrote     {}, {:.1} MB", name(&self.file), self.bytes as f64 / 1e6)?;
+        let total = self.seconds.get("total").copied().unwrap_or_default();
+        writeln!(f, "time      total {total:.2} s")
     }
 }

@@ -2,9 +2,8 @@
 
 use std::time::Duration;
 
-use mpi::Threading;
-use mpi::environment::{Universe, initialize_with_threading};
-use mpi::request;
+use mpi::{request, Threading};
+use mpi::environment::{initialize_with_threading, Universe};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Destination, Source};
 
@@ -18,7 +17,7 @@ const EAGER: u32 = 200;
 const PAUSE: Duration = Duration::from_micros(500);
 
 /// All processes that mpirun started. MPI ends when this is dropped.
-pub(in crate::cli) struct World {
+pub(in super) struct World {
     world: SimpleCommunicator,
     _universe: Universe,
 }

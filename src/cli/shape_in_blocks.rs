@@ -5,21 +5,19 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use walpha_base::memory;
 
-use crate::Recipe;
-use crate::export::{NewFolder, Target};
-use crate::outofcore::merge_monitored;
-use crate::outofcore::{Cutting, Job, Merged, Pieces, Plan, Team, run_missing};
-use crate::progress::Stage;
-
 use super::args::InputArgs;
 use super::blocks::{Outputs, job};
 use super::progress::Progress;
 use super::report::Report;
 use super::{Global, folder, start_threads};
+use crate::Recipe;
+use crate::export::{NewFolder, Target};
+use crate::outofcore::{Cutting, Job, Merged, Pieces, Plan, Team, merge_monitored, run_missing};
+use crate::progress::Stage;
 
 /// What processes do together. The first one reads the command line and sends it to the others.
 #[derive(Serialize, Deserialize)]
-pub(super) struct Work {
+pub(super) struct SharedWork {
     job: Job,
     cutting: Cutting,
     /// Holds unfinished work.
@@ -30,8 +28,8 @@ pub(super) struct Work {
     threads: u16,
 }
 
-impl Work {
-    /// What the options ask for, in a [working folder](folder()).
+impl SharedWork {
+    /// What the options ask for, in a [working folder](working_folder).
     pub(super) fn new(
         input: &InputArgs,
         recipe: Recipe,
@@ -91,7 +89,7 @@ fn order(team: &dyn Team, work: Option<String>) {
 /// Does what the first process orders, until it [dismisses](dismiss) this one.
 pub(super) fn serve(team: &dyn Team) -> anyhow::Result<()> {
     while let Some(work) = team.broadcast::<Option<String>>(None) {
-        let work: Work = serde_json::from_str(&work)?;
+        let work: SharedWork = serde_json::from_str(&work)?;
         start_threads(Some(work.threads))?;
         let silent = Global { quiet: true, ..Global::default() };
         let outputs = Outputs { pieces: work.pieces.clone(), whole: Vec::new() };
@@ -114,7 +112,7 @@ pub(super) fn peak(team: &dyn Team) -> Option<u64> {
 /// Where unfinished work is kept: beside the first output with pieces, `bone.blocks` for `bone.pvtp`, or else the
 /// first file; without any in the current folder, named after the input. It goes at the end, and after an
 /// interruption the same command goes on with it.
-pub(super) fn folder(outputs: &[PathBuf], input: &str) -> PathBuf {
+pub(super) fn working_folder(outputs: &[PathBuf], input: &str) -> PathBuf {
     let pieces = outputs.iter().find(|path| Pieces::of(path).is_some());
     let file = || outputs.iter().find(|path| *path != Path::new(Target::STDOUT));
     if let Some(first) = pieces.or_else(file) {

@@ -1,16 +1,12 @@
 //! Processes that a launcher such as mpirun started for one command.
 
-#[cfg(feature = "mpi")]
-mod world;
-
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
+use super::errors::{self, CommandError, command_error};
+use super::{PANICKED, USAGE};
 use crate::outofcore::{Alone, Team};
-
-use super::said::{Said, said};
-use super::{PANICKED, USAGE, complaint};
 
 /// Which process this is of how many.
 pub(super) enum Ranks {
@@ -21,7 +17,7 @@ pub(super) enum Ranks {
     Mute(Launched),
     /// One of several that share the work.
     #[cfg(feature = "mpi")]
-    Many(world::World),
+    Many(super::mpi::World),
 }
 
 /// What a launcher says.
@@ -55,17 +51,17 @@ impl Launched {
     }
 
     /// Why the command cannot be run by so many.
-    fn refusal(self, command: &str) -> Said {
+    fn refusal(self, command: &str) -> CommandError {
         let Self { size, variable, .. } = self;
         let each = format!("unset {variable} where each process is to work on its own");
         let said = if command != SHARED {
-            said!("{size} processes were started, and would all do the same: of the commands only {SHARED} can be shared" => "start one process, or {each}")
+            command_error!("{size} processes were started, and would all do the same: of the commands only {SHARED} can be shared" => "start one process, or {each}")
         } else if cfg!(feature = "mpi") {
-            said!("{size} processes were started, but not by the MPI that this walpha was built with" => "start it with the mpirun of that MPI, or build it again; {each}")
+            command_error!("{size} processes were started, but not by the MPI that this walpha was built with" => "start it with the mpirun of that MPI, or build it again; {each}")
         } else {
-            said!("{size} processes were started, and this walpha was built without MPI, so that all would write the same files" => "build it with `cargo install --features mpi`, or start one process; {each}")
+            command_error!("{size} processes were started, and this walpha was built without MPI, so that all would write the same files" => "build it with `cargo install --features mpi`, or start one process; {each}")
         };
-        Said { usage: true, ..said }
+        CommandError { usage: true, ..said }
     }
 }
 
@@ -85,7 +81,7 @@ impl Ranks {
 
     #[cfg(feature = "mpi")]
     fn of(launched: Launched, command: &str) -> Self {
-        let world = if command == SHARED { world::World::start() } else { None };
+        let world = if command == SHARED { super::mpi::World::start() } else { None };
         match world {
             Some(world) if world.size() == launched.size => Self::Many(world),
             _ => Self::Mute(launched),
@@ -119,7 +115,7 @@ impl Ranks {
             if launched.rank > 0 {
                 return ExitCode::SUCCESS;
             }
-            complaint::tell(command, &launched.refusal(command).into());
+            errors::tell(command, &launched.refusal(command).into());
             return ExitCode::from(USAGE);
         }
         let done = if is_first {
@@ -142,8 +138,8 @@ impl Ranks {
         /// What fails everywhere is reported by the first process, which ends all others meanwhile.
         const PATIENCE: std::time::Duration = std::time::Duration::from_secs(2);
         std::thread::sleep(PATIENCE);
-        complaint::tell(&format!("{command} (rank {})", self.team().rank()), error);
-        complaint::code(error)
+        errors::tell(&format!("{command} (rank {})", self.team().rank()), error);
+        errors::code(error)
     }
 
     /// Ends all processes.

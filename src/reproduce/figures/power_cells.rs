@@ -1,10 +1,9 @@
 //! Figure 4: a weighted shape, its discs and their power cells.
 
-use super::draw::{GRAY, INK, SHADE, around, panel, shaded, step};
+use super::bench::{Bench, Claim, judge};
+use super::plane::{GRAY, INK, SHADE, around, panel, shaded, step};
 use crate::render::{Drawing, Figure, PALETTE, Pen, Rgb, Size};
-use crate::reproduce::figures::Bench;
-use crate::reproduce::figures::claim::{Claim, judge};
-use crate::reproduce::outline::{area, loops};
+use crate::reproduce::plane::curve::{area, loops};
 use crate::reproduce::plane::{Piece, WeightedPlaneShape, sample_discs, weighted_plane_shape};
 use crate::reproduce::{Fact, Item, ReproduceError, Verdict, text};
 use crate::shape::{Alpha, Class};
@@ -88,9 +87,7 @@ const CLAIMS: [Claim<Evidence>; 2] = [
 ];
 
 /// Figure 4: a weighted α-shape: discs, power cells, dual complex.
-pub(in crate::reproduce::figures) fn figure_4(
-    bench: &mut Bench<'_>,
-) -> Result<Item, ReproduceError> {
+pub(super) fn figure_4(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let (points, weights) = sample_discs();
     let alpha = Alpha::from_squared(DISCS).expect("a number");
     let shape = weighted_plane_shape(&points, &weights, alpha)?;

@@ -1,11 +1,13 @@
 //! Figures 2 and 3: the shapes of Edelsbrunner, Kirkpatrick and Seidel over α.
+//!
+//! One step of a ladder of α-shapes: its shape, its hull, and how both are drawn.
+//!
+//! What drawings of the plane have in common.
 
-use super::draw::{GRAY, panel};
-use super::rung::{Rung, draw_hull, draw_shape};
-use crate::render::{Figure, PALETTE, Size};
-use crate::reproduce::figures::Bench;
-use crate::reproduce::figures::claim::{Claim, judge};
-use crate::reproduce::plane::sample_points;
+use super::bench::{Bench, Claim, judge};
+use crate::render::{Content, Drawing, Figure, PALETTE, Panel, Pen, Rgb, Size, Step};
+use crate::reproduce::plane::curve::area;
+use crate::reproduce::plane::{AlphaHull, Curvature, EksShape, Piece, eks_shape, sample_points};
 use crate::reproduce::{Fact, Item, ReproduceError, Table, Verdict, text};
 
 /// The α of Figure 2, from top to bottom: reciprocal lengths.
@@ -77,9 +79,7 @@ const LIMITED: Claim<Limit> = Claim {
 };
 
 /// Figure 2: α-shapes of negative α.
-pub(in crate::reproduce::figures) fn figure_2(
-    bench: &mut Bench<'_>,
-) -> Result<Item, ReproduceError> {
+pub(super) fn figure_2(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let title = "Figure 2. α-shapes of negative α, α increasing from top to bottom";
     let mut ladder = ladder(&NEGATIVE)?;
     let item = item(bench, title, "figure-02", &ladder)?;
@@ -103,9 +103,7 @@ pub(in crate::reproduce::figures) fn figure_2(
 }
 
 /// Figure 3: α-shapes of positive α.
-pub(in crate::reproduce::figures) fn figure_3(
-    bench: &mut Bench<'_>,
-) -> Result<Item, ReproduceError> {
+pub(super) fn figure_3(bench: &mut Bench<'_>) -> Result<Item, ReproduceError> {
     let title = "Figure 3. α-shapes of positive α, α increasing from top to bottom";
     let mut ladder = ladder(&POSITIVE)?;
     let item = item(bench, title, "figure-03", &ladder)?;
@@ -186,4 +184,104 @@ fn table(ladder: &[Rung]) -> Table {
         head: head.map(String::from).into(),
         rows: rows.collect(),
     }
+}
+
+/// The shape of the sample points at one α.
+pub(super) struct Rung {
+    pub alpha: f64,
+    pub shape: EksShape,
+    hull: AlphaHull,
+}
+
+impl Rung {
+    pub(super) fn at(alpha: f64) -> Result<Self, ReproduceError> {
+        let shape = eks_shape(&sample_points(), Curvature::new(alpha)?)?;
+        let hull = shape.hull();
+        Ok(Self { alpha, shape, hull })
+    }
+
+    pub(super) fn hull_area(&self) -> f64 {
+        area(&self.hull.outline)
+    }
+}
+
+pub(super) fn draw_shape(shape: &EksShape) -> Drawing {
+    let points = shape.positions();
+    let place = |v: u32| points[v as usize];
+    let mut drawing = around(points, 0.7);
+    for triangle in shape.triangles() {
+        drawing.polygon(&triangle.map(place), Pen { width: 1.0, ..shaded(SHADE) });
+    }
+    for edge in shape.edges() {
+        drawing.segment(edge.map(place), Pen::line(INK, 4.0));
+    }
+    dots(&mut drawing, shape);
+    drawing
+}
+
+pub(super) fn draw_hull(rung: &Rung) -> Drawing {
+    let mut drawing = around(rung.shape.positions(), 0.7);
+    let arcs = rung.hull.outline.iter().filter_map(|piece| match piece {
+        Piece::Arc(arc) => Some(arc),
+        Piece::Segment(_) => None,
+    });
+    if let Some(arc) = arcs.max_by(|a, b| a.sweep().abs().total_cmp(&b.sweep().abs())) {
+        drawing.disc(arc.centre, arc.radius, Pen::line(GRAY, 2.5).dashed());
+    }
+    for piece in &rung.hull.outline {
+        draw_piece(&mut drawing, piece, Pen::line(PALETTE[0], 5.0));
+    }
+    dots(&mut drawing, &rung.shape);
+    for &point in &rung.hull.points {
+        drawing.dot(rung.shape.positions()[point as usize], 10.0, PALETTE[0]);
+    }
+    drawing
+}
+
+fn dots(drawing: &mut Drawing, shape: &EksShape) {
+    shape.positions().iter().for_each(|&p| drawing.dot(p, 7.0, GRAY));
+    let extreme = shape.extreme().iter().map(|&v| shape.positions()[v as usize]);
+    extreme.for_each(|p| drawing.dot(p, 8.5, PALETTE[1]));
+}
+
+fn draw_piece(drawing: &mut Drawing, piece: &Piece, pen: Pen) {
+    match piece {
+        Piece::Arc(arc) if arc.is_circle() => drawing.disc(arc.centre, arc.radius, pen),
+        piece => drawing.outline(piece.ends()[0], vec![step(piece)], false, pen),
+    }
+}
+
+/// The grays and the tint of all drawings of the plane.
+pub(super) const GRAY: Rgb = Rgb([120, 120, 120]);
+pub(super) const INK: Rgb = Rgb([40, 40, 40]);
+pub(super) const SHADE: Rgb = Rgb([226, 214, 190]);
+
+/// An empty drawing of the part of the plane around some points.
+pub(super) fn around(points: &[[f64; 2]], margin: f64) -> Drawing {
+    let end = |k: usize, pick: fn(f64, f64) -> f64| points.iter().map(|p| p[k]).reduce(pick);
+    let low = [0, 1].map(|k| end(k, f64::min).unwrap_or(0.0) - margin);
+    let high = [0, 1].map(|k| end(k, f64::max).unwrap_or(1.0) + margin);
+    Drawing::plane([low, high])
+}
+
+pub(super) fn shaded(colour: Rgb) -> Pen {
+    // Outlined in its own colour, so that no seam shows between neighbours.
+    Pen { stroke: Some(colour), ..Pen::area(colour, 1.0) }
+}
+
+pub(super) fn step(piece: &Piece) -> Step {
+    match piece {
+        Piece::Segment([_, to]) => Step::Line(*to),
+        Piece::Arc(arc) => Step::Arc {
+            to: arc.end,
+            radius: arc.radius,
+            counter_clockwise: arc.counter_clockwise,
+            large: arc.sweep().abs() > std::f64::consts::PI,
+        },
+    }
+}
+
+/// A drawing with a title, and nothing below it.
+pub(super) fn panel(title: impl Into<String>, drawing: Drawing) -> Panel {
+    Panel { title: title.into(), content: Content::Drawing(drawing), captions: Vec::new() }
 }

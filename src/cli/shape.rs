@@ -1,28 +1,31 @@
 //! `walpha shape`: the whole pipeline.
+//!
+//! Where a shape goes.
 
-mod outputs;
-
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
 use walpha_base::shown::shown;
 use walpha_files::Working;
 
-use crate::Recipe;
-use crate::export::{FORMATS, Format};
-use crate::outofcore::{Pieces, Team};
-use crate::progress::Stage;
-
 use super::args::{OutputArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
+use super::errors::{fail_usage, option};
 use super::formats::shape_output;
 use super::output::{remark, tell};
 use super::picture::PictureArgs;
 use super::progress::Progress;
 use super::report::Report;
-use super::said::misused;
-use super::together::{self, Work};
+use super::shape_in_blocks::{self, SharedWork};
 use super::{Global, blocks, pipeline};
-use outputs::Outputs;
+use crate::export::{
+    Content, ExportOptions, Exporter, FORMATS, Format, Target, TargetError, write_all,
+};
+use crate::outofcore::{Pieces, Team};
+use crate::points::{ModelFacts, Packing, PointWriter};
+use crate::progress::Stage;
+use crate::volume::UnknownFormat;
+use crate::{AlphaShape, Recipe};
 
 /// Compute the weighted alpha shape of a volume or of points.
 ///
@@ -69,7 +72,7 @@ pub(super) struct Shape {
 /// Refuses a switch that has no effect.
 fn unused(name: &str, given: bool, why: &str) -> anyhow::Result<()> {
     if given {
-        misused!("{name} has no effect: {why}" => "omit it");
+        fail_usage!("{name} has no effect: {why}" => "omit it");
     }
     Ok(())
 }
@@ -93,10 +96,10 @@ impl Shape {
             }
         };
         if self.solid && self.periodic.periodic.is_some() {
-            misused!("--solid is for shapes in space, and the boundary of one of a torus is cut open at the sides of the box" => "omit it, or omit --periodic");
+            fail_usage!("--solid is for shapes in space, and the boundary of one of a torus is cut open at the sides of the box" => "omit it, or omit --periodic");
         }
         if !names.iter().any(|name| PictureArgs::wanted(name)) {
-            input.given.refuse(&PictureArgs::NAMES, "no picture (.png) is written")?;
+            input.typed.refuse(&PictureArgs::NAMES, "no picture (.png) is written")?;
         }
         if !written(|format| format.ascii) {
             let why = format!("only {} has a binary form and a text form", known(|f| f.ascii));
@@ -117,7 +120,7 @@ impl Shape {
     pub(super) fn run(self, global: Global, team: &dyn Team) -> anyhow::Result<()> {
         // Before the long work: a bad option, extension or place costs nothing yet.
         let recipe = self.recipe()?;
-        let folder = together::folder(&self.output, &self.pipeline.input.input);
+        let folder = shape_in_blocks::working_folder(&self.output, &self.pipeline.input.input);
         let in_blocks =
             team.size() > 1 || self.output.iter().any(|path| Pieces::of(path).is_some());
         let working = (in_blocks && !global.in_place).then(|| Working::folder(&folder));
@@ -133,7 +136,7 @@ impl Shape {
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
         if team.size() > 1 {
-            report.peak_memory_bytes = together::peak(team);
+            report.peak_memory_bytes = shape_in_blocks::peak(team);
         }
         tell(global, &report)
     }
@@ -152,14 +155,14 @@ impl Shape {
         unused("--dimension", self.dimension.is_some(), flat)?;
         let parts = "it takes the whole boundary, and there are blocks";
         unused("--solid", self.solid, parts)?;
-        self.pipeline.input.given.refuse(&["refit", "periodic"], "there are blocks")?;
+        self.pipeline.input.typed.refuse(&["refit", "periodic"], "there are blocks")?;
         if let Some((target, _)) = outputs.models.first() {
             let name = shown(target.path());
-            misused!("{name} takes all points at once, and there are blocks" => "write it by `walpha points`");
+            fail_usage!("{name} takes all points at once, and there are blocks" => "write it by `walpha points`");
         }
         let outputs = blocks::Outputs { pieces: outputs.pieces, whole: outputs.whole };
         let pieces = outputs.pieces.clone();
-        let work = Work::new(&self.pipeline.input, recipe, pieces, folder, global)?;
+        let work = SharedWork::new(&self.pipeline.input, recipe, pieces, folder, global)?;
         work.lead(outputs, progress, team)
     }
 
@@ -190,4 +193,76 @@ impl Shape {
         }
         Ok(report)
     }
+}
+
+/// The outputs by what they take.
+#[derive(Default)]
+pub(super) struct Outputs {
+    /// A file for each block.
+    pub pieces: Vec<(Pieces, PathBuf)>,
+    /// The shape.
+    pub whole: Vec<(Target, Box<dyn Exporter>)>,
+    /// The points, and what the shape can be made from again.
+    pub models: Vec<(Target, &'static PointWriter)>,
+}
+
+impl Outputs {
+    /// Looks at what the options name.
+    pub(super) fn open(shape: &Shape) -> anyhow::Result<Self> {
+        let export = ExportOptions {
+            ascii: shape.ascii,
+            solid: shape.solid,
+            groups: shape.groups,
+            input: Some(shape.pipeline.input.input.to_string()),
+        };
+        let mut outputs = Self::default();
+        for path in &shape.output {
+            let name = shape.format.named(path)?;
+            if let Some(pieces) = Pieces::of(&name) {
+                pieces.check(path)?;
+                outputs.pieces.push((pieces, path.clone()));
+            } else if let Some(writer) = PointWriter::of(&name).ok().filter(|writer| writer.packs) {
+                outputs.models.push((Target::open(path)?, writer));
+            } else if PictureArgs::wanted(&name) {
+                outputs.whole.push((Target::open(path)?, shape.picture.exporter()));
+            } else {
+                let unknown = |_| UnknownFormat::new(path, "a shape", extensions());
+                let format = Format::of(&name).map_err(unknown)?;
+                outputs.whole.push((Target::open(path)?, format.exporter(&export)));
+            }
+        }
+        Ok(outputs)
+    }
+
+    /// What there is to say of the shape in the formats chosen.
+    pub(super) fn remarks(&self, shape: &AlphaShape) -> Vec<String> {
+        let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
+            let remark = exporter.remark(shape)?.with_names(option);
+            Some(format!("{}: {remark}", shown(target.path())))
+        };
+        self.whole.iter().filter_map(remark).collect()
+    }
+
+    /// Writes all that take a whole shape.
+    pub(super) fn write(self, shape: &AlphaShape, facts: &ModelFacts) -> Result<(), TargetError> {
+        let whole = self.whole.into_iter().map(|(target, exporter)| {
+            let content = move |out: &mut dyn Write| exporter.write_any(shape, out);
+            (target, Box::new(content) as Content<'_>)
+        });
+        let models = self.models.into_iter().map(|(target, writer)| {
+            let content = move |out: &mut dyn Write| {
+                writer.write_model(shape.points(), facts, &Packing::default(), out)
+            };
+            (target, Box::new(content) as Content<'_>)
+        });
+        write_all(whole.chain(models))
+    }
+}
+
+/// Extensions of all formats that a shape is written in.
+fn extensions() -> impl Iterator<Item = &'static str> + Clone {
+    let pieces = Pieces::ALL.iter().map(|(_, extension)| *extension);
+    let models = PointWriter::all().filter(|writer| writer.packs).map(|writer| writer.extension);
+    let shapes = FORMATS.iter().map(|format| format.extension);
+    shapes.chain(PictureArgs::EXTENSIONS).chain(models).chain(pieces)
 }
