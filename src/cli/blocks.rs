@@ -15,10 +15,11 @@ use walpha_files::{Working, fill_all, keep_input};
 
 use super::args::{InputArgs, PipelineArgs, ShapeArgs};
 use super::errors::{CommandError, fail_usage};
+use super::global::{DIFFERENT, Global};
 use super::output::{name, tell};
 use super::progress::Progress;
 use super::report::Report;
-use super::{DIFFERENT, Global, folder, pipeline};
+use super::{folder, pipeline};
 use crate::Recipe;
 use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target};
 use crate::outofcore::{

@@ -20,10 +20,11 @@ use crate::shape::placed_complex;
 use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::compare::{self, Judged};
 use super::errors::{CommandError, fail, fail_usage};
+use super::global::{DIFFERENT, Global};
 use super::output::{name, tell};
+use super::pipeline;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
-use super::{DIFFERENT, Global, pipeline};
 
 /// Check a complex exactly: one of an engine, or one that another program wrote.
 ///

@@ -13,9 +13,9 @@ use serde::Serialize;
 use walpha_base::shown::shown;
 
 use super::errors::{CommandError, command_error, fail};
+use super::global::{DIFFERENT, Global};
 use super::output::{name, tell};
 use super::report::SCHEMA_VERSION;
-use super::{DIFFERENT, Global};
 use crate::check::schema::{AnyFile, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
 use crate::check::{compare, compare_filtrations};
 use crate::points::read_points;

@@ -26,7 +26,8 @@ const NOT_CONFIGURED: [&str; 4] = [FILE, PRINT, "help", "version"];
 
 /// The two options, for every command.
 pub(super) fn options_of_it() -> [Arg; 2] {
-    let option = |name| Arg::new(name).long(name).global(true).help_heading(super::EVERY_COMMAND);
+    let option =
+        |name| Arg::new(name).long(name).global(true).help_heading(super::global::EVERY_COMMAND);
     let file = option(FILE).value_name("FILE");
     let print = option(PRINT).action(ArgAction::SetTrue);
     [

@@ -9,9 +9,9 @@ use walpha_base::shown::shown;
 use crate::progress::Stage;
 use crate::volume::{Source, convert_monitored, open_monitored};
 
-use super::Global;
 use super::args::InputArgs;
 use super::errors::fail_usage;
+use super::global::Global;
 use super::output::{name, tell};
 use super::pipeline::{with_file, with_points};
 use super::progress::Progress;

@@ -11,8 +11,9 @@ use walpha_base::memory::NoMemory;
 use walpha_base::shown::escaped;
 use walpha_regular::{SitesError, TriangulationError};
 
+use super::global::{FAILURE, UNREAD, USAGE};
 use super::output::{Unprinted, is_broken_pipe, remark};
-use super::{FAILURE, UNREAD, USAGE, progress};
+use super::progress;
 use crate::check::schema::SchemaError;
 use crate::check::{CertifyError, CertifyFiltrationError, CompareError};
 use crate::export::TargetError;

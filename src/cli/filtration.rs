@@ -16,10 +16,11 @@ use crate::progress::Stage;
 
 use super::args::{FrozenPipelineArgs, OutputArgs, PeriodicArgs};
 use super::formats::filtration_output;
+use super::global::Global;
 use super::output::{name, tell};
+use super::pipeline;
 use super::progress::Progress;
 use super::report::{Folded, SCHEMA_VERSION, WeightsReport, ending};
-use super::{Global, pipeline};
 
 /// Every simplex of the regular triangulation, and the α at which it comes.
 ///

@@ -11,10 +11,10 @@ use crate::pipeline::{Grays, Input};
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
 
-use super::Global;
 use super::args::{HaarArgs, InputArgs, OutputArgs};
 use super::errors::fail;
 use super::formats::volume_output;
+use super::global::Global;
 use super::output::tell;
 use super::pipeline::{accept, read};
 use super::progress::Progress;

@@ -15,10 +15,11 @@ use crate::volume::{
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
 
 use super::args::InputArgs;
+use super::global::Global;
 use super::output::{name, tell};
+use super::pipeline;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
-use super::{Global, pipeline};
 
 /// Describe a file, without computing anything.
 ///

@@ -12,12 +12,13 @@ use walpha_base::number_or_null_or_name;
 
 use super::args::{OutputArgs, PipelineArgs, SelectArgs, ShapeArgs, one_alpha};
 use super::errors::{fail, fail_usage};
+use super::folder;
 use super::formats::volume_output;
+use super::global::Global;
 use super::output::{name, tell};
 use super::pipeline::{self, VolumeSummary, read};
 use super::progress::Progress;
 use super::report::{Report, SCHEMA_VERSION};
-use super::{Global, folder};
 use crate::export::{Content, NewFolder, Target, TargetError, write_all};
 use crate::haar::smooth_monitored;
 #[cfg(feature = "render")]

@@ -13,11 +13,14 @@ mod errors;
 mod filtration;
 mod folder;
 mod formats;
+mod global;
 mod haar;
 mod info;
 mod interpolate;
 mod ladder;
 mod man;
+#[cfg(feature = "mpi")]
+mod mpi;
 mod output;
 #[cfg_attr(not(feature = "render"), path = "no_picture.rs")]
 mod picture;
@@ -32,22 +35,22 @@ mod reproduce;
 mod shape;
 mod shape_in_blocks;
 mod signals;
+mod threads;
 #[cfg(feature = "render")]
 mod view;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use tracing::level_filters::LevelFilter;
 use tracing_subscriber::Layer;
 use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::util::SubscriberInitExt;
 
 use crate::export::Target;
-use crate::threads;
 
-use errors::command_error;
+use global::{Global, INTERRUPTED, USAGE};
 use output::{print, print_with};
 use ranks::Ranks;
 
@@ -65,32 +68,6 @@ const VERSION: &str = concat!(
     env!("CARGO_PKG_VERSION"),
     "\nlicence GPL-3.0-or-later (it contains CGAL's triangulations and alpha shapes, under the GPL)"
 );
-
-/// Options of every command.
-#[derive(Args, Clone, Copy, Default)]
-#[command(next_help_heading = EVERY_COMMAND)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
-struct Global {
-    /// Print one JSON object instead of text.
-    #[arg(long, global = true)]
-    json: bool,
-    /// Print nothing but errors (and JSON, if asked for).
-    #[arg(short, long, global = true)]
-    quiet: bool,
-    /// Log to standard error what is being done.
-    #[arg(short, long, global = true, conflicts_with = "quiet")]
-    verbose: bool,
-    /// Number of threads, at most four per processor; results do not depend on it [default: one per
-    /// processor, or one for each process that mpirun starts].
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
-    /// Let outputs replace inputs, or what is in the working folder of a plan.
-    #[arg(long, global = true)]
-    in_place: bool,
-    /// Whether a file goes to standard output.
-    #[arg(skip)]
-    piped: bool,
-}
 
 #[derive(Subcommand)]
 enum Command {
@@ -113,23 +90,6 @@ enum Command {
     Completions(completions::Completions),
     Man(man::Man),
 }
-
-/// What is above options that all commands have, behind their own.
-const EVERY_COMMAND: &str = "Every command";
-/// The exit code of what cannot be done.
-const FAILURE: u8 = 1;
-/// The exit code of wrong arguments.
-const USAGE: u8 = 2;
-/// The exit code of a fault of the program, as Rust has it.
-const PANICKED: u8 = 101;
-/// The exit code after nobody read to the end, as shells have it for what the signal PIPE ends.
-const UNREAD: u8 = 141;
-/// The exit code of a check or comparison that found something.
-const DIFFERENT: u8 = 3;
-/// Bytes of the stack of a thread, as rayon has it.
-const STACK: usize = 2 << 20;
-/// The exit code after Ctrl-C, as shells have it.
-const INTERRUPTED: i32 = 130;
 
 /// The command line, with all its options in place.
 fn described() -> clap::Command {
@@ -236,31 +196,6 @@ fn print_config(command: &clap::Command, matches: &ArgMatches) -> anyhow::Result
     Ok(ExitCode::SUCCESS)
 }
 
-/// Starts the threads asked for, or as many as are right; fewer where not so many can be had.
-fn start_threads(asked: Option<u16>) -> anyhow::Result<()> {
-    let asked = asked.map(usize::from);
-    let (wanted, most) = (threads::wanted(asked), threads::most());
-    if let Some(count) = asked.filter(|&count| count > most) {
-        let processors = threads::processors();
-        tracing::warn!(
-            "--threads {count} is more than {processors} processors can use: {most} start"
-        );
-    }
-    let count = threads::available(wanted, STACK);
-    if count < wanted {
-        tracing::warn!(
-            "memory, or the number of processes, is limited so much that {} of {wanted} threads start",
-            count.max(1)
-        );
-    }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.max(1));
-    // Where no thread can be had, this one does the work.
-    let pool = if count == 0 { pool.use_current_thread() } else { pool };
-    pool.build_global().map_err(|error| {
-        command_error!("threads cannot be started: {error}" => "give fewer with --threads").into()
-    })
-}
-
 fn execute(global: Global, command: Command, ranks: &Ranks) -> anyhow::Result<ExitCode> {
     let level = match global {
         Global { quiet: true, .. } => LevelFilter::ERROR,
@@ -274,7 +209,7 @@ fn execute(global: Global, command: Command, ranks: &Ranks) -> anyhow::Result<Ex
     let warnings = output::Listener.with_filter(LevelFilter::WARN);
     tracing_subscriber::registry().with(warnings).with(log).init();
     let alone = ranks.team().size() == 1;
-    start_threads(global.threads.or((!alone).then_some(1)))?;
+    threads::start(global.threads.or((!alone).then_some(1)))?;
     match command {
         #[cfg(feature = "paper")]
         Command::Reproduce(reproduce) => reproduce.run(global)?,

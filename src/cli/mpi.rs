@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use mpi::{request, Threading};
-use mpi::environment::{initialize_with_threading, Universe};
+use mpi::environment::{Universe, initialize_with_threading};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Destination, Source};
+use mpi::{Threading, request};
 
 use crate::outofcore::Team;
 
@@ -17,7 +17,7 @@ const EAGER: u32 = 200;
 const PAUSE: Duration = Duration::from_micros(500);
 
 /// All processes that mpirun started. MPI ends when this is dropped.
-pub(in super) struct World {
+pub(super) struct World {
     world: SimpleCommunicator,
     _universe: Universe,
 }

@@ -15,7 +15,7 @@ use walpha_base::advice::Advice;
 use walpha_base::shown::escaped;
 use walpha_base::standard_output;
 
-use super::Global;
+use super::global::Global;
 
 /// Prints facts as the user wants them: as JSON, as text, or not at all; to standard error when
 /// standard output has a file (`-o -`).

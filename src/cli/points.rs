@@ -11,10 +11,11 @@ use crate::progress::Stage;
 use super::args::{OutputArgs, PipelineArgs, not_negative};
 use super::errors::fail_usage;
 use super::formats::points_output;
+use super::global::Global;
 use super::output::tell;
+use super::pipeline;
 use super::progress::Progress;
 use super::report::Report;
-use super::{Global, pipeline};
 
 /// Select points from a volume and weight them.
 ///

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use super::{Global, STACK};
+use super::global::{Global, STACK};
 use crate::progress::{Listener, Monitor, Stage};
 use crate::threads;
 

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 use super::errors::{self, CommandError, command_error};
-use super::{PANICKED, USAGE};
+use super::global::{PANICKED, USAGE};
 use crate::outofcore::{Alone, Team};
 
 /// Which process this is of how many.

@@ -12,12 +12,13 @@ use walpha_files::Working;
 use super::args::{OutputArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::errors::{fail_usage, option};
 use super::formats::shape_output;
+use super::global::Global;
 use super::output::{remark, tell};
 use super::picture::PictureArgs;
 use super::progress::Progress;
 use super::report::Report;
 use super::shape_in_blocks::{self, SharedWork};
-use super::{Global, blocks, pipeline};
+use super::{blocks, pipeline};
 use crate::export::{
     Content, ExportOptions, Exporter, FORMATS, Format, Target, TargetError, write_all,
 };

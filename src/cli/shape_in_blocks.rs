@@ -7,9 +7,10 @@ use walpha_base::memory;
 
 use super::args::InputArgs;
 use super::blocks::{Outputs, job};
+use super::global::Global;
 use super::progress::Progress;
 use super::report::Report;
-use super::{Global, folder, start_threads};
+use super::{folder, threads};
 use crate::Recipe;
 use crate::export::{NewFolder, Target};
 use crate::outofcore::{Cutting, Job, Merged, Pieces, Plan, Team, merge_monitored, run_missing};
@@ -90,7 +91,7 @@ fn order(team: &dyn Team, work: Option<String>) {
 pub(super) fn serve(team: &dyn Team) -> anyhow::Result<()> {
     while let Some(work) = team.broadcast::<Option<String>>(None) {
         let work: SharedWork = serde_json::from_str(&work)?;
-        start_threads(Some(work.threads))?;
+        threads::start(Some(work.threads))?;
         let silent = Global { quiet: true, ..Global::default() };
         let outputs = Outputs { pieces: work.pieces.clone(), whole: Vec::new() };
         work.share(None, outputs, &mut Progress::new(silent), team)?;

@@ -17,9 +17,9 @@ use serde::Serialize;
 use walpha_base::Monitor;
 use walpha_base::shown::{number, shown};
 
-use super::Global;
 use super::args::{self, Alphas, FrozenPipelineArgs};
 use super::errors::fail_usage;
+use super::global::Global;
 use super::output::{name, remark, tell};
 use super::pipeline::{self, VolumeSummary, filled_in};
 use super::progress::Progress;

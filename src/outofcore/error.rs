@@ -1,3 +1,4 @@
+use std::fmt::{self, Display};
 use std::path::PathBuf;
 
 use walpha_base::Cancelled;
@@ -5,13 +6,29 @@ use walpha_base::advice::Advice;
 use walpha_base::memory::NoMemory;
 use walpha_base::shown::shown;
 
-use super::{Finding, Job};
 use crate::export::TargetError;
 use crate::haar::HaarError;
 use crate::pipeline::PipelineError;
 use crate::points::PointsError;
 use crate::shape::ShapeError;
 use crate::volume::VolumeError;
+
+/// A file of a plan that does not verify.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Finding {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong, as of "block-00001.walpha …".
+    pub what: String,
+}
+
+impl Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = self.path.file_name().map_or(self.path.as_path(), |name| name.as_ref());
+        write!(f, "{} {}", shown(name), self.what)
+    }
+}
 
 /// Why work in blocks cannot be done.
 #[derive(Debug, thiserror::Error)]
@@ -149,8 +166,8 @@ fn number(count: usize, one: &str, many: &str) -> String {
 }
 
 impl BlocksError {
-    pub(super) fn changed(job: &Job, what: String) -> Self {
-        Self::Changed { input: job.input.clone(), what }
+    pub(super) fn changed(input: &str, what: String) -> Self {
+        Self::Changed { input: input.to_owned(), what }
     }
 
     pub(super) fn not_local(what: &str, next: &'static str) -> Self {

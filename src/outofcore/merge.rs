@@ -4,8 +4,8 @@ use std::collections::hash_map::Entry;
 use serde::{Deserialize, Serialize};
 use walpha_base::{Monitor, Sum, UnionFind};
 
-use super::file::BlockFile;
-use super::run::{BlockComponent, BlockSheet, BlockSummary, Met, Weights};
+use super::block_file::BlockFile;
+use super::block_file::{BlockComponent, BlockSheet, BlockSummary, Met, Weights};
 use super::{BlocksError, Plan};
 use crate::points::WeightSummary;
 use crate::shape::{

@@ -64,41 +64,35 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod check;
-mod cut;
-mod digest;
-mod digested;
+mod block_file;
+mod brick_digests;
+mod bytes;
 mod error;
 mod field;
-mod file;
 mod job;
 mod merge;
-mod passes;
 mod pieces;
 mod plan;
+mod plan_files;
 mod price;
-mod read_digests;
-mod rows;
 mod run;
 mod sample_box;
-mod stamp;
 mod survey;
 mod team;
-mod turn;
+mod truncate;
 mod whole;
+#[cfg(feature = "zarr")]
+mod zarr;
 
-pub use check::{Checked, Finding};
-pub use error::BlocksError;
-use field::Field;
+pub use error::{BlocksError, Finding};
 pub use job::Job;
 pub use merge::{Merged, merge, merge_monitored};
 pub use pieces::Pieces;
 pub use plan::{BlockPlan, Cutting, Plan};
+pub use plan_files::Checked;
 pub use price::{Price, price};
-use run::BlockSummary;
-pub use run::run;
+pub use run::{run, run_all, run_missing};
 pub use sample_box::SampleBox;
 pub use survey::Survey;
 pub use team::{Alone, Team};
-pub use turn::{run_all, run_missing};
 pub use whole::whole;

@@ -6,8 +6,9 @@ use crate::points::SelectionRule;
 use crate::shape::{AT_WORK, PlanError, ShapeError};
 use crate::volume::{GrayRange, Source};
 
-use super::cut::{SILENT, TILE_SAMPLE};
-use super::{BlocksError, Cutting, Field, Job};
+use super::field::Field;
+use super::plan::{SILENT, TILE_SAMPLE};
+use super::{BlocksError, Cutting, Job};
 
 /// What a job will cost, by a model: as if its blocks were cubes, three tenths of the volume were filled evenly with
 /// points, and the cores were those of the machine in `docs/clusters.md`, which has what was measured. Nothing of the volume is read.

@@ -10,10 +10,10 @@ use serde::Serialize;
 use walpha_base::Monitor;
 
 use super::{Errors, Ladder, Mesh, short};
-use crate::cli::Global;
 use crate::cli::args::one_alpha;
 use crate::cli::errors::{fail, fail_usage};
 use crate::cli::folder::Folder;
+use crate::cli::global::Global;
 use crate::cli::output::{name, tell};
 use crate::cli::pipeline::{Domain, read};
 use crate::cli::progress::Progress;

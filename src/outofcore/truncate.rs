@@ -4,15 +4,156 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use super::FEW;
+use serde::{Deserialize, Serialize};
+
+use super::brick_digests::ReadDigests;
+use super::bytes::{Digest, Hasher, digest_of};
+use super::field::{Field, Passes, Truncated};
+use super::{BlocksError, Job, SampleBox};
 use crate::export::Target;
-use crate::haar::{Slabs, Truncation};
-use crate::outofcore::digest::Hasher;
-use crate::outofcore::digested::DigestedFile;
-use crate::outofcore::field::{Field, Truncated};
-use crate::outofcore::passes::Passes;
-use crate::outofcore::{BlocksError, Job, Plan, SampleBox};
+use crate::haar::{Decomposition, Slabs, Truncation};
 use crate::select::{Counts, Cut, Search};
+use crate::volume::{Dims, Dtype, RawLayout, ReadOptions, Source};
+
+/// The file of the sums of bricks.
+pub(super) const SUMS: &str = "sums.f64";
+/// The file of the truncated volume, of the standard decomposition.
+pub(super) const SMOOTHED: &str = "truncated.f32";
+
+/// A file that the plan has the digest of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct DigestedFile {
+    pub name: String,
+    pub bytes: u64,
+    pub digest: Digest,
+}
+
+impl DigestedFile {
+    /// Writes the sums of bricks into a folder.
+    pub(super) fn write_sums(sums: &[f64], folder: &Path) -> Result<Self, BlocksError> {
+        let bytes: Vec<u8> = sums.iter().flat_map(|sum| sum.to_le_bytes()).collect();
+        Target::open(&folder.join(SUMS))?.write(|out| out.write_all(&bytes))?;
+        let digest = Digest::of(&bytes);
+        Ok(Self { name: SUMS.into(), bytes: bytes.len() as u64, digest })
+    }
+
+    /// Reads it and looks whether it is what was written.
+    ///
+    /// # Errors
+    /// It is not, or is not there.
+    pub(super) fn verify(&self, folder: &Path) -> Result<(), BlocksError> {
+        let path = folder.join(&self.name);
+        let found = File::open(&path).and_then(digest_of);
+        match found {
+            Ok((bytes, digest)) if bytes == self.bytes && self.digest.is(digest) => Ok(()),
+            Ok(_) => Err(BlocksError::Damaged { path, what: Self::DAMAGED.into() }),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                Err(BlocksError::Damaged { path, what: "is not there".into() })
+            }
+            Err(source) => Err(BlocksError::Io { path, source }),
+        }
+    }
+
+    pub(super) const DAMAGED: &str = "is damaged, cut off, or of another plan";
+}
+
+/// The truncated volume that a plan of the standard decomposition left in its folder, and that nothing
+/// was read of it.
+pub(super) fn smoothed(folder: &Path, dims: Dims) -> Result<(Source, ReadDigests), BlocksError> {
+    let path = folder.join(SMOOTHED);
+    let options = ReadOptions::default().raw(RawLayout::new(dims, Dtype::F32));
+    let source = Source::open(&path, &options)?;
+    let dims = dims.xyz();
+    Ok((source, ReadDigests::none_of(&SampleBox::whole(dims), Field::bricks_of(dims).side(), dims)))
+}
+
+/// Values that a cut is looked for among are listed when so few are left: 64 MB.
+pub(super) const FEW: u64 = 1 << 22;
+
+/// Truncates the volume of a job whose gray levels are known, and gives what is kept in a file.
+pub(super) fn truncated(
+    job: &Job,
+    field: &Field,
+    folder: &Path,
+    passes: &mut Passes<'_>,
+) -> Result<(Truncation, Truncated, Vec<DigestedFile>), BlocksError> {
+    match job.recipe.haar.decomposition {
+        Decomposition::NonStandard => {
+            let (truncation, truncated) = truncate(job, field, passes)?;
+            Ok((truncation, truncated, Vec::new()))
+        }
+        Decomposition::Standard => truncate_to_file(job, field, folder, passes),
+    }
+}
+
+/// Finds which coefficients of the non-standard decomposition stay, and the sums of bricks of the truncated
+/// volume.
+pub(super) fn truncate(
+    job: &Job,
+    field: &Field,
+    passes: &mut Passes<'_>,
+) -> Result<(Truncation, Truncated), BlocksError> {
+    let total = job.dims.samples() as u64;
+    let tolerance = job.recipe.haar.tolerance;
+    tolerance.check()?;
+    let search = Search::new(tolerance.budget(total), FEW);
+    let mut sums = vec![0.0; field.bricks.count().iter().product()];
+    let mut is_first = true;
+    let (cut, dropped) = search.find(|search| {
+        let mut counts = Counts::default();
+        passes.each(
+            |tile| {
+                let values = field.coefficients(tile, &field.grays(tile)?.values);
+                let (mut details, mut firsts) = (Vec::new(), Vec::new());
+                details.reserve_exact(values.len());
+                field.places(tile, |place, voxel, brick| match brick {
+                    Some(brick) => firsts.push((brick, values[place])),
+                    None => details.push((values[place], voxel)),
+                });
+                Ok((search.count(details.into_iter()), firsts))
+            },
+            |(more, firsts)| {
+                counts.join(more);
+                if is_first {
+                    firsts.into_iter().for_each(|(brick, sum)| sums[brick] = sum);
+                }
+            },
+        )?;
+        counts = passes.team.reduce(counts, Counts::join);
+        if is_first {
+            let mine = std::mem::take(&mut sums);
+            sums = passes.team.reduce(mine, |sums, others| either(sums, others));
+            field.bricks.coarse(&mut sums);
+            is_first = false;
+        }
+        counts.join(search.count(coarse(field, &sums)));
+        Ok::<_, BlocksError>(counts)
+    })?;
+    let truncation = Truncation::new(tolerance, total, dropped);
+    if truncation.epsilon == 0.0 {
+        return Ok((truncation, Truncated::Same));
+    }
+    let kept: Vec<f64> =
+        coarse(field, &sums).map(|(v, i)| if cut.keeps(v, i) { v } else { 0.0 }).collect();
+    let mut sums = kept;
+    field.bricks.inverse_coarse(&mut sums);
+    Ok((truncation, Truncated::Bricks { cut, sums }))
+}
+
+/// Takes in sums of other bricks: those of which nothing is known are positive zeros.
+fn either(sums: &mut [f64], others: Vec<f64>) {
+    let known = sums.iter_mut().zip(others).filter(|(_, other)| other.to_bits() != 0);
+    known.for_each(|(sum, other)| *sum = other);
+}
+
+/// The coefficients of levels above bricks, with their places in the volume.
+fn coarse<'a>(field: &'a Field, sums: &'a [f64]) -> impl Iterator<Item = (f64, u64)> + 'a {
+    let ([cx, cy, _], side) = (field.bricks.count(), field.bricks.side());
+    sums.iter().enumerate().map(move |(brick, &value)| {
+        let at = [brick % cx, brick / cx % cy, brick / (cx * cy)].map(|i| i * side);
+        (value, field.voxel(at))
+    })
+}
 
 /// Samples of a slab, about; it has at least a plane or a wall.
 const SLAB: usize = 1 << 22;
@@ -27,7 +168,7 @@ pub(super) fn truncate_to_file(
     passes: &mut Passes<'_>,
 ) -> Result<(Truncation, Truncated, Vec<DigestedFile>), BlocksError> {
     let mine = if passes.team.is_first() {
-        let io = |source| BlocksError::Written { path: folder.join(Plan::SMOOTHED), source };
+        let io = |source| BlocksError::Written { path: folder.join(SMOOTHED), source };
         let file = tempfile::tempfile_in(folder).map_err(io)?;
         let mut work = Work { file, dims: field.dims, slabs: Slabs::new(field.dims), folder };
         Some(work.truncate(job, field, passes)?)
@@ -36,7 +177,7 @@ pub(super) fn truncate_to_file(
     };
     let (truncation, kept) = passes.team.broadcast(mine);
     let Some(kept) = kept else { return Ok((truncation, Truncated::Same, Vec::new())) };
-    let (source, seen) = Plan::smoothed(folder, job.dims)?;
+    let (source, seen) = smoothed(folder, job.dims)?;
     Ok((truncation, Truncated::File(source, seen), vec![kept]))
 }
 
@@ -106,7 +247,7 @@ impl Work<'_> {
             self.slabs.inverse_walls(&mut values, walls.first[1]);
             self.write(walls, &values)
         })?;
-        let target = Target::open(&self.folder.join(Plan::SMOOTHED))?;
+        let target = Target::open(&self.folder.join(SMOOTHED))?;
         let (mut failed, mut hasher, mut length) = (None, Hasher::default(), 0);
         let written = target.write(|out| {
             let done = passes.serial(planes, |planes| {
@@ -127,7 +268,7 @@ impl Work<'_> {
             return Err(error);
         }
         written?;
-        Ok(DigestedFile { name: Plan::SMOOTHED.into(), bytes: length, digest: hasher.digest() })
+        Ok(DigestedFile { name: SMOOTHED.into(), bytes: length, digest: hasher.digest() })
     }
 
     /// Whole planes (axis 2) or whole walls (axis 1), of about [`SLAB`] samples each.
@@ -185,6 +326,6 @@ impl Work<'_> {
     }
 
     fn failed(&self, source: io::Error) -> BlocksError {
-        BlocksError::Written { path: self.folder.join(Plan::SMOOTHED), source }
+        BlocksError::Written { path: self.folder.join(SMOOTHED), source }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use super::SampleBox;
-use super::digest::{Digest, Hasher};
+use super::bytes::{Digest, Hasher};
 
 /// Digests of the bricks of a box: 8 bytes for each, of 8³ or 16³ samples.
 pub(super) struct ReadDigests {

@@ -13,8 +13,8 @@ use zarrs::array_subset::ArraySubset;
 use zarrs::filesystem::FilesystemStore;
 use zarrs::group::GroupBuilder;
 
-use super::Piece;
-use crate::outofcore::{BlocksError, Merged, Plan};
+use super::whole::Piece;
+use super::{BlocksError, Merged, Plan};
 use crate::shape::Simplices;
 
 /// Rows of a chunk.
@@ -106,7 +106,7 @@ impl File<'_> {
     }
 
     /// An array of so many rows, each of one number or of `width`.
-    fn array<T: DigestedFile>(
+    fn array<T: ArrayNumber>(
         &self,
         name: &str,
         rows: usize,
@@ -134,14 +134,14 @@ impl File<'_> {
 }
 
 /// A number that an array holds.
-trait DigestedFile: Element + Copy {
+trait ArrayNumber: Element + Copy {
     const TYPE: DataType;
     fn fill(self) -> FillValue;
 }
 
-macro_rules! kept {
+macro_rules! array_numbers {
     ($($number:ty: $data_type:ident),*) => {
-        $(impl DigestedFile for $number {
+        $(impl ArrayNumber for $number {
             const TYPE: DataType = DataType::$data_type;
             fn fill(self) -> FillValue {
                 FillValue::from(self)
@@ -150,7 +150,7 @@ macro_rules! kept {
     };
 }
 
-kept!(u8: UInt8, u32: UInt32, u64: UInt64, f64: Float64);
+array_numbers!(u8: UInt8, u32: UInt32, u64: UInt64, f64: Float64);
 
 /// An array that is written from its beginning on.
 struct Growing {
@@ -161,7 +161,7 @@ struct Growing {
 }
 
 impl Growing {
-    fn push<T: DigestedFile>(
+    fn push<T: ArrayNumber>(
         &mut self,
         file: &File<'_>,
         numbers: impl AsRef<[T]>,

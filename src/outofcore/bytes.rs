@@ -1,8 +1,12 @@
 //! Digests, by which files and samples are known again.
 
 use std::fmt::{self, Debug, Display};
+use std::io::{self, Read};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+
+use super::BlocksError;
 
 /// BLAKE3 of some bytes, its first 128 bits: against accidents, not against somebody who wants to deceive.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -89,6 +93,67 @@ impl Hasher {
         let mut digest = [0; 16];
         self.0.finalize_xof().fill(&mut digest);
         Digest(digest)
+    }
+}
+
+/// A number as files have it.
+pub(super) trait Number: Copy {
+    const SIZE: usize;
+    fn put(self, bytes: &mut Vec<u8>);
+    fn get(bytes: &[u8]) -> Self;
+}
+
+macro_rules! number {
+    ($($number:ty)*) => {$(
+        impl Number for $number {
+            const SIZE: usize = size_of::<$number>();
+            fn put(self, bytes: &mut Vec<u8>) {
+                bytes.extend(self.to_le_bytes());
+            }
+            fn get(bytes: &[u8]) -> Self {
+                Self::from_le_bytes(bytes.try_into().expect("as many bytes as it has"))
+            }
+        }
+    )*};
+}
+
+number!(u8 u32 u64 f64);
+
+impl<T: Number, const N: usize> Number for [T; N] {
+    const SIZE: usize = N * T::SIZE;
+    fn put(self, bytes: &mut Vec<u8>) {
+        self.into_iter().for_each(|number| number.put(bytes));
+    }
+    fn get(bytes: &[u8]) -> Self {
+        std::array::from_fn(|i| T::get(&bytes[i * T::SIZE..][..T::SIZE]))
+    }
+}
+
+/// Numbers out of their bytes; `None` where some are left.
+pub(super) fn numbers<T: Number>(bytes: &[u8]) -> Option<Vec<T>> {
+    let whole = bytes.len().is_multiple_of(T::SIZE);
+    whole.then(|| bytes.chunks(T::SIZE).map(T::get).collect())
+}
+
+/// A whole file.
+pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, BlocksError> {
+    std::fs::read(path).map_err(|source| BlocksError::Io { path: path.into(), source })
+}
+
+/// How many bytes a file has, and their digest. Reads it, a little at a time.
+pub(super) fn digest_of(file: impl Read) -> io::Result<(u64, Digest)> {
+    let (mut file, mut hasher, mut length) = (file, Hasher::default(), 0);
+    let mut bytes = vec![0; 1 << 18];
+    loop {
+        match file.read(&mut bytes) {
+            Ok(0) => return Ok((length, hasher.digest())),
+            Ok(count) => {
+                hasher.update(&bytes[..count]);
+                length += count as u64;
+            }
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
     }
 }
 

@@ -1,81 +1,24 @@
 //! The files of blocks: a header in JSON, then arrays of little-endian numbers. The start has the digest of the
 //! header, which has those of the arrays, so that no byte is used unseen.
+//!
+//! The simplices in the file of a block.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::Sum;
 
-use super::digest::{Digest, Hasher};
-use super::{BlockSummary, BlocksError, Plan};
+use super::bytes::{Digest, Number, digest_of, numbers};
+use super::{BlocksError, Plan};
 use crate::export::Target;
+use crate::shape::{Class, Complex, ComponentSums, SheetSums, Sheets, Simplices};
 
 /// How a file of a block begins. The length of the header in 64 bits follows, and its digest.
 const MAGIC: &[u8; 16] = b"walpha block 2\r\n";
 /// Bytes before the header.
 const START: usize = 40;
-
-/// A number as files have it.
-pub(super) trait Number: Copy {
-    const SIZE: usize;
-    fn put(self, bytes: &mut Vec<u8>);
-    fn get(bytes: &[u8]) -> Self;
-}
-
-macro_rules! number {
-    ($($number:ty)*) => {$(
-        impl Number for $number {
-            const SIZE: usize = size_of::<$number>();
-            fn put(self, bytes: &mut Vec<u8>) {
-                bytes.extend(self.to_le_bytes());
-            }
-            fn get(bytes: &[u8]) -> Self {
-                Self::from_le_bytes(bytes.try_into().expect("as many bytes as it has"))
-            }
-        }
-    )*};
-}
-
-number!(u8 u32 u64 f64);
-
-impl<T: Number, const N: usize> Number for [T; N] {
-    const SIZE: usize = N * T::SIZE;
-    fn put(self, bytes: &mut Vec<u8>) {
-        self.into_iter().for_each(|number| number.put(bytes));
-    }
-    fn get(bytes: &[u8]) -> Self {
-        std::array::from_fn(|i| T::get(&bytes[i * T::SIZE..][..T::SIZE]))
-    }
-}
-
-/// Numbers out of their bytes; `None` where some are left.
-pub(super) fn numbers<T: Number>(bytes: &[u8]) -> Option<Vec<T>> {
-    let whole = bytes.len().is_multiple_of(T::SIZE);
-    whole.then(|| bytes.chunks(T::SIZE).map(T::get).collect())
-}
-
-/// A whole file.
-pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, BlocksError> {
-    std::fs::read(path).map_err(|source| BlocksError::Io { path: path.into(), source })
-}
-
-/// How many bytes a file has, and their digest. Reads it, a little at a time.
-pub(super) fn digest_of(file: impl Read) -> io::Result<(u64, Digest)> {
-    let (mut file, mut hasher, mut length) = (file, Hasher::default(), 0);
-    let mut bytes = vec![0; 1 << 18];
-    loop {
-        match file.read(&mut bytes) {
-            Ok(0) => return Ok((length, hasher.digest())),
-            Ok(count) => {
-                hasher.update(&bytes[..count]);
-                length += count as u64;
-            }
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(error),
-        }
-    }
-}
 
 /// What precedes the arrays.
 #[derive(Serialize, Deserialize)]
@@ -325,4 +268,122 @@ impl BlockFile {
         }
         Ok(())
     }
+}
+
+/// The facts of a block: all that merging needs but for keys and rows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct BlockSummary {
+    pub points: u64,
+    pub halo: u64,
+    pub cells: usize,
+    /// By class: interior, regular, singular.
+    pub facets: [usize; 3],
+    pub edges: [usize; 3],
+    pub vertices: [usize; 3],
+    /// `None` where there is no point.
+    pub weights: Option<Weights>,
+    pub components: Vec<BlockComponent>,
+    pub sheets: Vec<BlockSheet>,
+}
+
+/// The weights ω of some points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Weights {
+    pub min: f64,
+    pub max: f64,
+    pub sum: Sum,
+}
+
+/// What a block has of a component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct BlockComponent {
+    /// The smallest vertex, by its index in the volume.
+    pub first: u64,
+    pub sums: ComponentSums,
+}
+
+/// What a block has of a sheet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct BlockSheet {
+    /// Where it is met first in the order of the rows; `None` where the block has no row of it.
+    pub met: Option<Met>,
+    pub sums: SheetSums,
+}
+
+/// A place in the order in which sheets are met: along the facets of the boundary, then the singular edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub(super) struct Met {
+    pub is_edge: bool,
+    pub row: [u64; 3],
+    /// Of a singular facet: its second side.
+    pub is_second: bool,
+    /// The component, within the block.
+    pub component: u32,
+}
+
+/// What a block has of the shape: rows of `points` points, and sheets by their common numbers.
+///
+/// # Errors
+/// The file cannot be read, does not verify, or has simplices that cannot be.
+pub(super) fn read_rows(
+    file: &BlockFile,
+    points: usize,
+    numbers: &[u32],
+) -> Result<(Complex, Sheets), BlocksError> {
+    let complex = Complex {
+        cells: rows(file, "cells", None, points)?,
+        facets: rows(file, "facets", Some("facet_classes"), points)?,
+        edges: rows(file, "edges", Some("edge_classes"), points)?,
+        vertices: rows(file, "vertices", Some("vertex_classes"), points)?,
+    };
+    let [facets, edges, vertices] =
+        [complex.facets.counts(), complex.edges.counts(), complex.vertices.counts()]
+            .map(|counts| [Class::Interior, Class::Regular, Class::Singular].map(|c| counts[c]));
+    let facts = &file.facts;
+    if (facets, edges, vertices) != (facts.facets, facts.edges, facts.vertices) {
+        return Err(file.damaged("has classes that it did not count"));
+    }
+    let sheet = |name: u32| numbers[name as usize];
+    let count = numbers.len() as u32;
+    let mut names = file.below::<u32>("facet_sheets", count)?.into_iter().map(sheet);
+    // As many as there are sides: `BlockFile::open` has compared them.
+    let mut next = || names.next().unwrap_or_default();
+    let mut sheets = Sheets::default();
+    for class in complex.facets.classes() {
+        match class {
+            Class::Regular => sheets.regular.push(next()),
+            Class::Singular => sheets.singular.push([next(), next()]),
+            _ => {}
+        }
+    }
+    sheets.edges = file.below::<u32>("edge_sheets", count)?.into_iter().map(sheet).collect();
+    Ok((complex, sheets))
+}
+
+/// Simplices with their classes; without an array of these, all are interior.
+fn rows<const N: usize>(
+    file: &BlockFile,
+    name: &str,
+    classes: Option<&str>,
+    points: usize,
+) -> Result<Simplices<N>, BlocksError> {
+    let rows = file.read::<[u32; N]>(name)?;
+    let is_row = |row: &[u32; N]| {
+        let is_new = |(k, v): (usize, &u32)| (*v as usize) < points && !row[..k].contains(v);
+        row.iter().enumerate().all(is_new)
+    };
+    if !rows.iter().all(is_row) {
+        return Err(file.damaged(&format!("has {name} of points that are not there")));
+    }
+    let classes = match classes {
+        Some(classes) => file.read(classes)?,
+        None => vec![Class::Interior as u8; rows.len()],
+    };
+    let mut simplices = Simplices::default();
+    for (row, number) in rows.into_iter().zip(classes) {
+        let class = Class::from_number(number);
+        let class = class.ok_or_else(|| file.damaged("has a class that is none"))?;
+        simplices.push(row, class);
+    }
+    Ok(simplices)
 }
