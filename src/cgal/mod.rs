@@ -7,7 +7,6 @@
 //! [`Sites`](walpha_regular::Sites). C++ never calls back into Rust, because CGAL changes the
 //! rounding mode while it works.
 
-mod canonical;
 #[allow(unused_qualifications, reason = "in what the macro writes")]
 #[expect(unreachable_pub, reason = "cxx writes `pub`")]
 mod ffi;
@@ -20,7 +19,7 @@ mod shape;
 pub(crate) use plane::{RawTriangulation, farthest_plane, regular_plane};
 pub(crate) use shape::complex;
 
-use crate::shape::CgalError;
+use walpha_shape::CgalError;
 
 /// What C++ threw in a stage.
 fn thrown(stage: &'static str) -> impl Fn(cxx::Exception) -> CgalError {

@@ -30,6 +30,7 @@ mod scattered;
 mod select;
 mod sets;
 mod weigh;
+mod weighting;
 mod write;
 #[cfg(feature = "formats")]
 mod wvm;
@@ -47,5 +48,6 @@ pub use scattered::scattered_difference;
 pub(crate) use select::{Asked, check_least};
 pub use select::{Selection, SelectionRule, Units, points_at, select};
 pub use sets::Points;
-pub(crate) use weigh::{Differences, Shares};
-pub use weigh::{UnknownWeighting, Weighting, weigh, weights};
+pub use weigh::{weigh, weights};
+pub(crate) use weighting::{Differences, Shares};
+pub use weighting::{UnknownWeighting, Weighting};

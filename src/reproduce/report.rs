@@ -258,3 +258,12 @@ impl ShapeNumbers {
         self.betti.b1 + self.betti.b2
     }
 }
+
+/// A file to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct File {
+    /// Its name, without a folder.
+    pub name: String,
+    /// Its content.
+    pub bytes: Vec<u8>,
+}

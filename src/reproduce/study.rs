@@ -2,9 +2,11 @@
 //!
 //! The cameras that all pictures of a volume share.
 
-use walpha_base::Monitor;
+use std::time::Instant;
 
-use super::{Clock, Input, ReproduceError, ShapeNumbers, Subject, text};
+use walpha_base::{Cancelled, Monitor};
+
+use super::{Input, ReproduceError, ShapeNumbers, text};
 use crate::haar::{HaarOptions, Truncation, smooth_monitored};
 use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, select, weigh,
@@ -14,7 +16,20 @@ use crate::render::{
     View,
 };
 use crate::shape::{Alpha, AlphaShape, Balls, Engine, ShapeOptions, alpha_shape};
-use crate::volume::{Dims, LengthUnit, Volume};
+use crate::volume::{Dims, GrayRange, LengthUnit, Volume};
+
+/// What the paper is made again on.
+#[derive(Clone, Debug)]
+pub struct Subject<'a> {
+    /// The gray levels.
+    pub volume: &'a Volume,
+    /// The values that became gray 0 and 255.
+    pub range: GrayRange,
+    /// What a user writes to get this volume: a sample's name, or a file.
+    pub name: &'a str,
+    /// The day to write into the report, as 2025-12-31.
+    pub date: &'a str,
+}
 
 /// The paper's points.
 pub(super) const PAPER_POINTS: usize = 15956;
@@ -278,4 +293,43 @@ impl Stage {
 /// A picture with words around it.
 pub(super) fn panel(title: impl Into<String>, picture: Picture, captions: Vec<String>) -> Panel {
     Panel { title: title.into(), content: Content::Picture(picture), captions }
+}
+
+/// Times stages, and logs them.
+pub(super) struct Clock<'a> {
+    monitor: &'a Monitor,
+    running: Option<(&'static str, Instant)>,
+    started: Instant,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+impl<'a> Clock<'a> {
+    pub(super) fn new(monitor: &'a Monitor) -> Self {
+        Self { monitor, running: None, started: Instant::now(), seconds: Vec::new() }
+    }
+
+    /// Ends the running stage and starts another. Stages of the same name add up.
+    pub(super) fn enter(&mut self, name: &'static str) -> Result<(), Cancelled> {
+        self.end();
+        self.monitor.stage(name)?;
+        self.running = Some((name, Instant::now()));
+        Ok(())
+    }
+
+    fn end(&mut self) {
+        if let Some((name, since)) = self.running.take() {
+            let seconds = since.elapsed().as_secs_f64();
+            match self.seconds.iter_mut().find(|stage| stage.0 == name) {
+                Some(stage) => stage.1 += seconds,
+                None => self.seconds.push((name, seconds)),
+            }
+        }
+    }
+
+    /// Seconds of each stage, and of all.
+    pub(super) fn stop(mut self) -> Vec<(&'static str, f64)> {
+        self.end();
+        self.seconds.push(("total", self.started.elapsed().as_secs_f64()));
+        self.seconds
+    }
 }
