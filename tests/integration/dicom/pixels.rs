@@ -1,3 +1,5 @@
+//! Pixels compressed as other standards have it.
+//!
 //! Files that are deflated as a whole, and what they claim.
 
 use std::fs;
@@ -6,10 +8,46 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
 
-use super::{element, open, slice};
-use crate::common::alone::alone;
-use crate::common::largest::largest;
-use crate::common::told::Told;
+use super::{Slice, element, open, slice};
+use crate::common::{Told, alone, largest};
+
+/// 3×2 pixels 10 to 15 of 16 bits, as `OpenJPEG` 2.5 packs them without loss.
+const JPEG_2000: &str = "ff4fff5100290000000000030000000200000000000000000000000300000002000000000000\
+                         000000010f0101ff52000c00000001000004040001ff5c00044080ff64002500014372656174\
+                         6564206279204f70656e4a5045472076657273696f6e20322e352e34ff90000a00000000001b\
+                         0001ff93cffc3024089068abf8016e9f7fffd9";
+
+fn packed(syntax: &'static str, mut pixels: Vec<u8>) -> Slice {
+    pixels.resize(pixels.len().next_multiple_of(2), 0);
+    let unsigned = (0x28, 0x103, b"US", vec![0, 0]);
+    Slice { packed: Some((syntax, pixels)), changed: vec![unsigned], ..slice(1, 7.0) }
+}
+
+#[test]
+fn jpeg_2000_is_read() {
+    let pixels = (0..JPEG_2000.len() / 2)
+        .map(|i| u8::from_str_radix(&JPEG_2000[2 * i..2 * i + 2], 16).unwrap())
+        .collect();
+    let folder = tempfile::tempdir().unwrap();
+    packed("1.2.840.10008.1.2.4.90", pixels).save(folder.path(), "a.dcm");
+    let volume = open(&folder.path().join("a.dcm")).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(volume.as_slice(), [10.0, 11.0, 12.0, 13.0, 14.0, 15.0]);
+}
+
+#[test]
+fn what_is_not_read_is_called_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    for (syntax, name) in [
+        ("1.2.840.10008.1.2.4.80", "JPEG-LS Lossless"),
+        ("1.2.840.10008.1.2.4.81", "JPEG-LS Lossy"),
+        ("1.2.840.10008.1.2.4.100", "MPEG2"),
+    ] {
+        packed(syntax, vec![1, 2, 3, 4]).save(folder.path(), "a.dcm");
+        let error = open(&folder.path().join("a.dcm")).unwrap_err().told();
+        assert!(error.contains(name) && error.contains(syntax), "{error}");
+        assert!(error.contains("gdcmconv"), "{error}");
+    }
+}
 
 /// A slice without its pixels, from the header of a file on.
 fn header() -> Vec<u8> {
@@ -21,7 +59,7 @@ fn header() -> Vec<u8> {
 }
 
 /// A file of what is written.
-fn packed(write: impl FnOnce(&mut dyn Write)) -> Vec<u8> {
+fn deflated(write: impl FnOnce(&mut dyn Write)) -> Vec<u8> {
     let meta = [
         element(2, 1, b"OB", &[0, 1]),
         element(2, 2, b"UI", b"1.2.840.10008.5.1.4.1.1.2"),
@@ -59,12 +97,12 @@ fn what_a_small_file_unpacks_to_is_bounded() {
         let header = header();
         let pixels = element(0x7fe0, 0x10, b"OW", &[1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 6, 0]);
 
-        fs::write(&path, packed(|out| out.write_all(&[&header[..], &pixels].concat()).unwrap()))
+        fs::write(&path, deflated(|out| out.write_all(&[&header[..], &pixels].concat()).unwrap()))
             .unwrap();
         assert_eq!(open(&path).unwrap().as_slice(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
 
         // An element of nobody in front of the header.
-        let bytes = packed(|out| {
+        let bytes = deflated(|out| {
             out.write_all(&long(7, 0x1001, b"OB", MEGABYTES << 20)).unwrap();
             zeros(out, MEGABYTES);
             out.write_all(&[&header[..], &pixels].concat()).unwrap();
@@ -77,7 +115,7 @@ fn what_a_small_file_unpacks_to_is_bounded() {
         // Far more pixels than the header says.
         fs::write(
             &path,
-            packed(|out| {
+            deflated(|out| {
                 out.write_all(&header).unwrap();
                 out.write_all(&long(0x7fe0, 0x10, b"OW", MEGABYTES << 20)).unwrap();
                 zeros(out, MEGABYTES);
@@ -93,7 +131,7 @@ fn what_a_small_file_unpacks_to_is_bounded() {
         // Many elements, each of which may be.
         fs::write(
             &path,
-            packed(|out| {
+            deflated(|out| {
                 for number in 0..30 {
                     out.write_all(&long(7, 0x1001 + number, b"OB", 10 << 20)).unwrap();
                     zeros(out, 10);

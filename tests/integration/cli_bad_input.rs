@@ -1,6 +1,6 @@
 //! Bad input of every kind, and the exit codes it gets.
 
-use super::*;
+use crate::cli::*;
 
 #[test]
 fn usage_errors_exit_with_2() {

@@ -1,13 +1,14 @@
 //! What people expect of a command: configuration, pipes, near misses, three lines of error, manual
 //! pages, names.
+//!
+//! Files of options.
+//!
+//! Standard output and standard error that take nothing, or not all: nothing is lost with exit code 0.
 
-mod config;
-
-mod streams;
-
-use std::fs;
+use std::fs::{self, OpenOptions};
+use std::io::Read;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use crate::common::{json, ok, run};
 
@@ -199,5 +200,183 @@ fn help_leads_with_what_is_special() {
         let (head, _) = help.split_once("Usage:").unwrap();
         assert!(head.matches(&format!("walpha {command}")).count() >= 2, "{head}");
         assert!(head.contains("ct.nii.gz"), "{head}");
+    }
+}
+
+#[test]
+fn a_file_sets_options_and_the_command_line_wins() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let text = "alpha = 4\nrms = 2.5\nweights = 'min-max'\nquiet = false\n\n\
+                [shape]\nalpha = 5.5\nexterior = true\n\n[points]\ncount = 100\n";
+    fs::write(f.join("walpha.toml"), text).unwrap();
+    let with = |args: &[&str]| json(f, &[args, &["--config", "walpha.toml"]].concat());
+    let shape = with(&["shape", "sample:phantom@16"]);
+    assert_eq!(shape["alpha"]["squared"], 5.5);
+    assert_eq!(shape["weights"]["kind"], "min-max");
+    assert!(shape["shape"]["voids"].is_array(), "exterior was set");
+    let points = with(&["points", "sample:phantom@16"]);
+    assert_eq!(points["alpha"]["squared"], 4.0);
+    assert_eq!(points["points"]["selected"], 100);
+    // What is given wins, over what it excludes, too.
+    let given = with(&["points", "sample:phantom@16", "--alpha-radius", "3", "--ratio", "0.5"]);
+    assert_eq!(given["alpha"]["squared"], 9.0);
+    assert_eq!(given["points"]["selected"], 2048);
+    let epsilon = with(&["haar", "sample:phantom@16", "--epsilon", "0"]);
+    assert_eq!(epsilon["haar"]["rms"], 0.0);
+}
+
+#[test]
+fn what_a_file_says_wrongly_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let cases = [
+        ("alhpa = 4", "alhpa", "did you mean alpha?"),
+        ("[shape]\nalhpa = 4", "[shape] alhpa", "did you mean alpha?"),
+        ("[shape]\ninput = 'a.nrrd'", "[shape] input", ""),
+        ("[shap]\nalpha = 4", "shap", "did you mean shape?"),
+        ("config = 'b.toml'", "config", ""),
+        ("alpha = ", "is no TOML file", "--print-config"),
+        ("exterior = 3", "exterior = 3 makes no sense", "give true or false"),
+        ("alpha = true", "alpha = true makes no sense", "give a text or a number"),
+    ];
+    for (text, why, next) in cases {
+        fs::write(f.join("c.toml"), text).unwrap();
+        let [_, got_why, got_next] = complaint(f, 2, "shape sample:phantom@8 --config c.toml");
+        assert!(got_why.contains("c.toml") && got_why.contains(why), "{text}: {got_why}");
+        assert!(got_next.contains(next), "{text}: {got_next}");
+    }
+    let [_, why, _] = complaint(f, 2, "shape sample:phantom@8 --config d.toml");
+    assert!(why.contains("d.toml"), "{why}");
+    fs::write(f.join("c.toml"), "alpha = 'ten'").unwrap();
+    let [what, _, next] = complaint(f, 2, "shape sample:phantom@8 --config c.toml");
+    assert!(what.contains("'ten'") && next.contains("--config"), "{what} {next}");
+}
+
+#[test]
+fn what_is_printed_can_be_fed_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let given: [&[&str]; 5] = [
+        &["shape"],
+        &[
+            "shape",
+            "--alpha-radius",
+            "3",
+            "--count",
+            "99",
+            "-o",
+            "a.ply",
+            "b file.vtu",
+            "--exterior",
+        ],
+        &["points", "a.raw", "--dims", "2,3,4", "--dtype", "u8", "--gray=-10..20", "--alpha=-1"],
+        &["haar", "--epsilon", "1e3", "--threads", "1", "--json"],
+        &["reproduce", "--out", "it's"],
+    ];
+    for args in given {
+        let first = ok(f, &[args, &["--print-config"]].concat());
+        let table: toml::Table = first.parse().unwrap();
+        assert!(!table.is_empty(), "{first}");
+        fs::write(f.join("walpha.toml"), &first).unwrap();
+        let again = ok(f, &[args[0], "--config", "walpha.toml", "--print-config"]);
+        assert_eq!(first, again);
+    }
+    let text = ok(f, &["shape", "--count", "99", "--print-config"]);
+    assert!(text.contains("rms = 1\n") && text.contains("count = 99\n"), "{text}");
+    assert!(!text.contains("ratio"), "excluded by --count: {text}");
+}
+
+/// Commands that print, each in its way.
+const PRINTING: [&[&str]; 13] = [
+    &["info", "sample:phantom@8"],
+    &["info", "sample:phantom@8", "--json"],
+    &["shape", "sample:phantom@12", "-o", "a.ply"],
+    &["shape", "sample:phantom@12", "-o", "-", "--output-format", "json"],
+    &["points", "sample:phantom@12", "-o", "-", "--output-format", "csv"],
+    &["haar", "sample:phantom@8", "-o", "-", "--output-format", "nrrd"],
+    &["check", "a.json"],
+    &["compare", "a.json", "a.json"],
+    &["man"],
+    &["completions", "zsh"],
+    &["--help"],
+    &["--version"],
+    &["shape", "--print-config"],
+];
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    ok(folder.path(), &["shape", "sample:phantom@12", "-o", "a.json", "-q"]);
+    folder
+}
+
+fn walpha(folder: &Path, args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_walpha"));
+    command.args(args).current_dir(folder).stderr(Stdio::piped());
+    command
+}
+
+/// A reader that goes away early, as `head` does: what it did not read is lost, and the code says so, as that
+/// of a program which the signal PIPE ends.
+#[test]
+fn a_reader_that_goes_away_is_told_of() {
+    let folder = folder();
+    for args in PRINTING {
+        let mut child = walpha(folder.path(), args).stdout(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let mut said = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(141), "{args:?}: {said}");
+        assert!(said.contains("error: ") && said.contains("roken pipe"), "{args:?}: {said}");
+        assert!(!said.contains("panicked"), "{args:?}: {said}");
+    }
+}
+
+#[test]
+fn a_standard_output_that_is_full_is_an_error() {
+    let Ok(full) = OpenOptions::new().write(true).open("/dev/full") else { return };
+    let folder = folder();
+    for args in PRINTING {
+        let done = walpha(folder.path(), args).stdout(full.try_clone().unwrap()).output().unwrap();
+        let said = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(1), "{args:?}: {said}");
+        assert!(said.contains("No space left"), "{args:?}: {said}");
+    }
+}
+
+/// As after `>&-`: only a shell starts a process without one.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_standard_output_that_is_closed_is_an_error() {
+    let folder = folder();
+    for args in PRINTING {
+        let mut shell = Command::new("sh");
+        shell.args(["-c", "exec \"$0\" \"$@\" >&-", env!("CARGO_BIN_EXE_walpha")]).args(args);
+        let done = shell.current_dir(&folder).output().unwrap();
+        let said = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(1), "{args:?}: {said}");
+        assert!(said.contains("standard output is closed"), "{args:?}: {said}");
+    }
+    // Nothing is lost of what is not printed.
+    let quiet = "exec \"$0\" shape sample:phantom@12 -o b.json -q >&-";
+    let mut shell = Command::new("sh");
+    shell.args(["-c", quiet, env!("CARGO_BIN_EXE_walpha")]).current_dir(&folder);
+    assert!(shell.status().unwrap().success());
+}
+
+/// As in `walpha … 2>&1 >/dev/null | true`: nobody hears it, and that is no fault of the program.
+#[test]
+fn nobody_hears_standard_error() {
+    let folder = folder();
+    for (args, code) in [
+        (&["shape", "nope.csv"][..], 1),
+        (&["shape", "--no-such-option"], 2),
+        (&["shape", "sample:phantom@12", "--solid", "--verbose", "-o", "b.off"], 0),
+        (&["view", "sample:phantom@12", "-o", "b.html"], 0),
+        (&["shape", "sample:phantom@12", "--threads", "10000"], 0),
+    ] {
+        let mut child = walpha(folder.path(), args).stdout(Stdio::null()).spawn().unwrap();
+        drop(child.stderr.take());
+        assert_eq!(child.wait().unwrap().code(), Some(code), "{args:?}");
     }
 }
