@@ -16,15 +16,15 @@ use walpha_files::{Working, fill_all, keep_input};
 use super::args::{InputArgs, PipelineArgs, ShapeArgs};
 use super::errors::{CommandError, fail_usage};
 use super::global::{DIFFERENT, Global};
-use super::output::{name, tell};
+use super::output::{name, print_summary};
 use super::progress::Progress;
 use super::report::Report;
 use super::{folder, pipeline};
 use crate::Recipe;
 use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target};
 use crate::outofcore::{
-    Alone, BlocksError, Checked, Cutting, Finding, Job, Merged, Pieces, Plan, Price, Team,
-    merge_monitored, price, run, run_all, whole,
+    Alone, BlocksError, BlockwiseFormat, Checked, CostEstimate, Cutting, Finding, Job, Merged,
+    Plan, Team, estimate_cost, merge_monitored, run, run_all, whole,
 };
 use crate::progress::Stage;
 use crate::volume::files_of;
@@ -133,7 +133,7 @@ impl CheckStep {
             Err(error) => return Err(error.into()),
         };
         progress.finish();
-        tell(global, &facts)?;
+        print_summary(global, &facts)?;
         Ok(if facts.whole { ExitCode::SUCCESS } else { DIFFERENT.into() })
     }
 }
@@ -147,7 +147,7 @@ impl PlanStep {
         let job = job(&self.pipeline.input, recipe)?;
         let Some(folder) = self.output else {
             progress.finish();
-            return tell(global, &PriceSummary(price(&job, cutting)?));
+            return print_summary(global, &CostSummary(estimate_cost(&job, cutting)?));
         };
         let new = folder::make(&folder, "with --output")?;
         let plan = progress
@@ -156,7 +156,7 @@ impl PlanStep {
             new.keep();
         }
         let seconds = progress.total();
-        tell(global, &PlanSummary::of(&plan, seconds))
+        print_summary(global, &PlanSummary::of(&plan, seconds))
     }
 }
 
@@ -177,7 +177,7 @@ impl RunStep {
         })?;
         let seconds = progress.total();
         let folder = self.folder.display().to_string();
-        tell(global, &RunSummary { folder, blocks, seconds })
+        print_summary(global, &RunSummary { folder, blocks, seconds })
     }
 }
 
@@ -195,7 +195,7 @@ impl MergeStep {
         }
         let mut outputs = Outputs::default();
         for path in &self.output {
-            if let Some(pieces) = Pieces::of(path) {
+            if let Some(pieces) = BlockwiseFormat::of(path) {
                 pieces.check(path)?;
                 outputs.pieces.push((pieces, path.clone()));
             } else {
@@ -211,7 +211,7 @@ impl MergeStep {
         progress.stage(Stage::Write, || outputs.write(&plan, Some(&merged), &Alone, &monitor))?;
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
-        tell(global, &report)
+        print_summary(global, &report)
     }
 }
 
@@ -219,7 +219,7 @@ impl MergeStep {
 #[derive(Default)]
 pub(super) struct Outputs {
     /// With a file for each block.
-    pub pieces: Vec<(Pieces, PathBuf)>,
+    pub pieces: Vec<(BlockwiseFormat, PathBuf)>,
     /// In one file.
     pub whole: Vec<(Target, Box<dyn Exporter>)>,
 }
@@ -339,11 +339,11 @@ impl Display for PlanSummary {
 /// What work will cost.
 #[derive(Serialize)]
 #[serde(transparent)]
-pub(super) struct PriceSummary(pub Price);
+pub(super) struct CostSummary(pub CostEstimate);
 
-impl Display for PriceSummary {
+impl Display for CostSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Price { samples, points, blocks, halo_share, memory_per_block, .. } = self.0;
+        let CostEstimate { samples, points, blocks, halo_share, memory_per_block, .. } = self.0;
         let [by_plan, by_blocks] = self.0.bytes_read.map(readable);
         let [by_rows, by_keys] = self.0.bytes_written.map(readable);
         let [plan, run, merge] = self.0.core_seconds;
@@ -390,14 +390,14 @@ pub(super) struct CheckSummary {
     /// How many there should be.
     blocks: Option<usize>,
     missing: Vec<usize>,
-    findings: Vec<Found>,
+    findings: Vec<FileFinding>,
     /// Whether all is there, as it was written.
     pub whole: bool,
 }
 
 /// A file that does not verify.
 #[derive(Serialize)]
-struct Found {
+struct FileFinding {
     path: String,
     what: String,
 }
@@ -411,7 +411,10 @@ impl CheckSummary {
             plan: plan.map(Plan::digest),
             blocks: plan.map(|plan| plan.blocks.len()),
             findings: found
-                .map(|found| Found { path: found.path.display().to_string(), what: found.what })
+                .map(|found| FileFinding {
+                    path: found.path.display().to_string(),
+                    what: found.what,
+                })
                 .collect(),
             missing: checked.missing,
             whole,
@@ -421,7 +424,7 @@ impl CheckSummary {
 
 impl Display for CheckSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for Found { path, what } in &self.findings {
+        for FileFinding { path, what } in &self.findings {
             writeln!(f, "{}: {what}", name(path))?;
         }
         if !self.missing.is_empty() {

@@ -18,10 +18,10 @@ use crate::progress::Stage;
 use crate::shape::placed_complex;
 
 use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
-use super::compare::{self, Judged};
+use super::compare::{self, CheckFile};
 use super::errors::{CommandError, fail, fail_usage};
 use super::global::{DIFFERENT, Global};
-use super::output::{name, tell};
+use super::output::{name, print_summary};
 use super::pipeline;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
@@ -138,12 +138,12 @@ impl Check {
         }
         let read = || compare::read(path, self.points.as_deref());
         match progress.stage(Stage::Read, read)? {
-            Judged::Complex(complex) => {
+            CheckFile::Complex(complex) => {
                 self.refuse_ours(&[], format!("{} is a complex, made already", name(input)))?;
                 let judged = format!("the complex of {}", name(input));
                 self.complex(global, Subject { input, judged }, &complex, &[], progress)
             }
-            Judged::Filtration(filtration) => {
+            CheckFile::Filtration(filtration) => {
                 self.refuse_ours(&[], format!("{} is a filtration, made already", name(input)))?;
                 if self.enumerate {
                     fail_usage!("--enumerate belongs to a complex, and {} is a filtration", name(input) => "omit it");
@@ -337,7 +337,7 @@ impl<F: Serialize + Display, C: Serialize> CheckSummary<F, C> {
     /// Prints them.
     fn tell(mut self, global: Global) -> anyhow::Result<ExitCode> {
         self.findings.truncate(MOST_LISTED);
-        tell(global, &self)?;
+        print_summary(global, &self)?;
         Ok(if self.valid { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
     }
 }

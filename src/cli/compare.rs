@@ -14,7 +14,7 @@ use walpha_base::shown::shown;
 
 use super::errors::{CommandError, command_error, fail};
 use super::global::{DIFFERENT, Global};
-use super::output::{name, tell};
+use super::output::{name, print_summary};
 use super::report::SCHEMA_VERSION;
 use crate::check::schema::{AnyFile, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
 use crate::check::{compare, compare_filtrations};
@@ -57,14 +57,14 @@ impl Compare {
     pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
         let read = |path: &Path| read(path, None);
         match (read(&self.a)?, read(&self.b)?) {
-            (Judged::Complex(a), Judged::Complex(b)) => {
+            (CheckFile::Complex(a), CheckFile::Complex(b)) => {
                 if a.periodic.or(b.periodic).is_some() {
                     fail!("complexes of a periodic box are not compared: their simplices have no one place" => "judge each with `walpha check`");
                 }
                 let comparison = compare(a.placed(), b.placed())?;
                 self.tell(global, comparison.is_equal(), comparison)
             }
-            (Judged::Filtration(a), Judged::Filtration(b)) => {
+            (CheckFile::Filtration(a), CheckFile::Filtration(b)) => {
                 let comparison = compare_filtrations(&a, &b)?;
                 self.tell(global, comparison.is_equal(), comparison)
             }
@@ -81,7 +81,10 @@ impl Compare {
         comparison: impl Serialize + Display,
     ) -> anyhow::Result<ExitCode> {
         let [a, b] = [&self.a, &self.b].map(|path| path.display().to_string());
-        tell(global, &CompareSummary { schema_version: SCHEMA_VERSION, a, b, equal, comparison })?;
+        print_summary(
+            global,
+            &CompareSummary { schema_version: SCHEMA_VERSION, a, b, equal, comparison },
+        )?;
         Ok(if equal { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
     }
 }
@@ -97,7 +100,7 @@ impl<C: Display> Display for CompareSummary<C> {
 
 /// What a file holds, to be judged or compared.
 #[expect(clippy::large_enum_variant, reason = "there are one or two, moved a few times")]
-pub(super) enum Judged {
+pub(super) enum CheckFile {
     /// A complex, whose fields fit together.
     Complex(PlacedComplex),
     /// A filtration, whose fields fit together.
@@ -111,7 +114,7 @@ pub(super) fn is_named(path: &Path) -> bool {
 
 /// Reads a complex or filtration, with points (and weights, if it has some) from a file of their own
 /// if one is given.
-pub(super) fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<Judged> {
+pub(super) fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<CheckFile> {
     let mut file = opened(path)?;
     if let Some(points) = points {
         let points = read_points(points, None)?;
@@ -123,8 +126,8 @@ pub(super) fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<Judged>
         *weights = points.weights.or(weights.take());
     }
     let judged = match file {
-        AnyFile::Complex(file) => PlacedComplex::try_from(file).map(Judged::Complex),
-        AnyFile::Filtration(file) => file.check().map(|()| Judged::Filtration(file)),
+        AnyFile::Complex(file) => PlacedComplex::try_from(file).map(CheckFile::Complex),
+        AnyFile::Filtration(file) => file.check().map(|()| CheckFile::Filtration(file)),
     };
     judged.map_err(|error| refusal(path, error))
 }

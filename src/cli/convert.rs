@@ -12,7 +12,7 @@ use crate::volume::{Source, convert_monitored, open_monitored};
 use super::args::InputArgs;
 use super::errors::fail_usage;
 use super::global::Global;
-use super::output::{name, tell};
+use super::output::{name, print_summary};
 use super::pipeline::{with_file, with_points};
 use super::progress::Progress;
 
@@ -74,6 +74,6 @@ impl Convert {
         })?;
         let seconds = progress.total();
         let (input, file) = (self.input.input.to_string(), self.output.display().to_string());
-        tell(global, &ConvertSummary { input, dims, file, seconds })
+        print_summary(global, &ConvertSummary { input, dims, file, seconds })
     }
 }

@@ -12,7 +12,7 @@ use walpha_base::shown::escaped;
 use walpha_regular::{SitesError, TriangulationError};
 
 use super::global::{FAILURE, UNREAD, USAGE};
-use super::output::{Unprinted, is_broken_pipe, remark};
+use super::output::{OutputError, is_broken_pipe, remark};
 use super::progress;
 use crate::check::schema::SchemaError;
 use crate::check::{CertifyError, CertifyFiltrationError, CompareError};
@@ -116,7 +116,7 @@ advising![
     UnknownFormat,
     UnknownName,
     UnknownWeighting,
-    Unprinted,
+    OutputError,
     VolumeError,
 ];
 
@@ -169,17 +169,17 @@ pub(super) fn coloured() -> bool {
 }
 
 /// Three lines for standard error.
-struct Complaint {
+struct ErrorMessage {
     what: String,
     why: String,
     next: String,
 }
 
 /// Prints why a command failed. The work that was going on is the one last announced.
-pub(super) fn tell(command: &str, error: &anyhow::Error) {
+pub(super) fn print_error(command: &str, error: &anyhow::Error) {
     let what = match progress::current().as_str() {
         _ if is_usage(error) => "cannot do this".to_owned(),
-        _ if error.is::<Unprinted>() => "could not print its result".into(),
+        _ if error.is::<OutputError>() => "could not print its result".into(),
         "" => "could not start".into(),
         "read" => "could not read its input".into(),
         "haar" => "could not transform the volume".into(),
@@ -190,7 +190,7 @@ pub(super) fn tell(command: &str, error: &anyhow::Error) {
     };
     let (why, next) = reasons(error);
     let next = next.unwrap_or_else(|| help(command));
-    Complaint { what: format!("{command} {what}"), why, next }.print();
+    ErrorMessage { what: format!("{command} {what}"), why, next }.print();
 }
 
 /// Whether the command line makes no sense, whatever is in the files.
@@ -200,7 +200,7 @@ pub(super) fn is_usage(error: &anyhow::Error) -> bool {
 }
 
 /// The exit code after an error.
-pub(super) fn code(error: &anyhow::Error) -> u8 {
+pub(super) fn exit_code(error: &anyhow::Error) -> u8 {
     match error {
         _ if is_usage(error) => USAGE,
         _ if is_broken_pipe(error) => UNREAD,
@@ -209,7 +209,7 @@ pub(super) fn code(error: &anyhow::Error) -> u8 {
 }
 
 /// Prints what is wrong with a command line; `configured` if some of it comes from a file.
-pub(super) fn tell_usage(command: &str, error: &clap::Error, configured: bool) {
+pub(super) fn print_usage_error(command: &str, error: &clap::Error, configured: bool) {
     if matches!(error.kind(), ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand) {
         let _ = error.print();
         return;
@@ -255,10 +255,10 @@ pub(super) fn tell_usage(command: &str, error: &clap::Error, configured: bool) {
         tips.push("mind that --config sets options, too".into());
     }
     let next = if tips.is_empty() { help(command) } else { tips.join("; ") };
-    Complaint { what, why, next }.print();
+    ErrorMessage { what, why, next }.print();
 }
 
-impl Complaint {
+impl ErrorMessage {
     fn print(&self) {
         let (red, bold, plain) =
             if coloured() { ("\x1b[1;31m", "\x1b[1m", "\x1b[0m") } else { ("", "", "") };

@@ -17,7 +17,7 @@ use crate::progress::Stage;
 use super::args::{FrozenPipelineArgs, OutputArgs, PeriodicArgs};
 use super::formats::filtration_output;
 use super::global::Global;
-use super::output::{name, tell};
+use super::output::{name, print_summary};
 use super::pipeline;
 use super::progress::Progress;
 use super::report::{Folded, SCHEMA_VERSION, WeightsReport, ending};
@@ -124,7 +124,7 @@ impl Filtration {
         }
         facts.files = self.output.iter().map(|path| path.display().to_string()).collect();
         facts.seconds = progress.finish().into_iter().collect();
-        tell(global, &facts)
+        print_summary(global, &facts)
     }
 }
 

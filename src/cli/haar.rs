@@ -15,7 +15,7 @@ use super::args::{HaarArgs, InputArgs, OutputArgs};
 use super::errors::fail;
 use super::formats::volume_output;
 use super::global::Global;
-use super::output::tell;
+use super::output::print_summary;
 use super::pipeline::{accept, read};
 use super::progress::Progress;
 use super::report::{HaarReport, SCHEMA_VERSION};
@@ -71,7 +71,7 @@ impl Haar {
         }
         progress.finish();
         let haar = HaarReport::new(&truncation, &range);
-        tell(
+        print_summary(
             global,
             &HaarSummary {
                 schema_version: SCHEMA_VERSION,

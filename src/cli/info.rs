@@ -16,7 +16,7 @@ use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
 
 use super::args::InputArgs;
 use super::global::Global;
-use super::output::{name, tell};
+use super::output::{name, print_summary};
 use super::pipeline;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
@@ -135,7 +135,7 @@ impl Info {
         let monitor = progress.monitor();
         let look = || pipeline::with_file(&self.input, |input| self.look(input, &monitor));
         let content = progress.stage(Stage::Read, look)?;
-        tell(
+        print_summary(
             global,
             &InfoSummary {
                 schema_version: SCHEMA_VERSION,

@@ -15,7 +15,7 @@ use super::errors::{fail, fail_usage};
 use super::folder;
 use super::formats::volume_output;
 use super::global::Global;
-use super::output::{name, tell};
+use super::output::{name, print_summary};
 use super::pipeline::{self, VolumeSummary, read};
 use super::progress::Progress;
 use super::report::{Report, SCHEMA_VERSION};
@@ -185,7 +185,7 @@ impl Interpolate {
         let files = self.output.iter().chain(&self.mask).map(|path| path.display().to_string());
         report.finish(progress.finish(), files.collect());
         let grid = grid.dims().xyz();
-        tell(
+        print_summary(
             global,
             &InterpolateSummary {
                 report,
@@ -353,7 +353,7 @@ pub(super) fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyho
         files: paths.iter().map(|path| path.display().to_string()).collect(),
         seconds,
     };
-    tell(global, &facts)
+    print_summary(global, &facts)
 }
 
 /// From a sixteenth to twice the points that would be selected.

@@ -122,7 +122,7 @@ fn lead(
     let args = match config::with_file(&command, typed.clone()) {
         Ok(args) => args,
         Err(error) => {
-            errors::tell(name, &error);
+            errors::print_error(name, &error);
             return Err(USAGE);
         }
     };
@@ -151,7 +151,7 @@ fn lead(
             printed.map(|()| ExitCode::SUCCESS).map_err(Into::into)
         }
         Err(error) => {
-            errors::tell_usage(name, &error, args.len() > typed.len());
+            errors::print_usage_error(name, &error, args.len() > typed.len());
             return Err(USAGE);
         }
     };
@@ -162,8 +162,8 @@ fn lead(
             if progress::is_cancelled() {
                 return Err(INTERRUPTED as u8);
             }
-            errors::tell(name, &error);
-            return Err(errors::code(&error));
+            errors::print_error(name, &error);
+            return Err(errors::exit_code(&error));
         }
     };
     shape_in_blocks::dismiss(ranks.team());

@@ -19,7 +19,10 @@ use super::global::Global;
 
 /// Prints facts as the user wants them: as JSON, as text, or not at all; to standard error when
 /// standard output has a file (`-o -`).
-pub(super) fn tell<T: Serialize + Display>(global: Global, facts: &T) -> anyhow::Result<()> {
+pub(super) fn print_summary<T: Serialize + Display>(
+    global: Global,
+    facts: &T,
+) -> anyhow::Result<()> {
     if global.json {
         let warnings = heard();
         let text =
@@ -56,9 +59,9 @@ fn say(global: Global, text: &str) -> anyhow::Result<()> {
 /// Standard output is closed, full, or nobody reads it any more: what was to be printed is lost.
 #[derive(Debug, thiserror::Error)]
 #[error("standard output does not take it: {0}")]
-pub(super) struct Unprinted(#[from] io::Error);
+pub(super) struct OutputError(#[from] io::Error);
 
-impl Unprinted {
+impl OutputError {
     pub(super) fn advice(&self) -> Advice {
         match self.0.kind() {
             ErrorKind::BrokenPipe => "have its reader read to the end, if all is needed".into(),
@@ -68,14 +71,14 @@ impl Unprinted {
 }
 
 /// Prints text, without the panic of `println!` when it cannot be.
-pub(super) fn print(text: &str) -> Result<(), Unprinted> {
+pub(super) fn print(text: &str) -> Result<(), OutputError> {
     print_with(|out| out.write_all(text.as_bytes()))
 }
 
 /// Prints what is written, to the last byte.
 pub(super) fn print_with(
     write: impl FnOnce(&mut io::StdoutLock<'static>) -> io::Result<()>,
-) -> Result<(), Unprinted> {
+) -> Result<(), OutputError> {
     standard_output::check()?;
     let mut out = io::stdout().lock();
     write(&mut out)?;

@@ -12,7 +12,7 @@ use super::args::{OutputArgs, PipelineArgs, not_negative};
 use super::errors::fail_usage;
 use super::formats::points_output;
 use super::global::Global;
-use super::output::tell;
+use super::output::print_summary;
 use super::pipeline;
 use super::progress::Progress;
 use super::report::Report;
@@ -79,6 +79,6 @@ impl Points {
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
-        tell(global, &report)
+        print_summary(global, &report)
     }
 }

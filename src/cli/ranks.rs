@@ -11,13 +11,13 @@ use crate::outofcore::{Alone, Team};
 /// Which process this is of how many.
 pub(super) enum Ranks {
     /// The only one.
-    One,
+    Single,
     /// One of several that were started for one command, which cannot talk to each other. All but the first have
     /// nothing to do.
-    Mute(Launched),
+    Unconnected(Launched),
     /// One of several that share the work.
     #[cfg(feature = "mpi")]
-    Many(super::mpi::World),
+    Connected(super::mpi::World),
 }
 
 /// What a launcher says.
@@ -75,7 +75,7 @@ impl Ranks {
     pub(super) fn find(command: &str) -> Self {
         match Launched::of(|name| std::env::var_os(name)) {
             Some(launched) if command != SINGLE => Self::of(launched, command),
-            _ => Self::One,
+            _ => Self::Single,
         }
     }
 
@@ -83,22 +83,22 @@ impl Ranks {
     fn of(launched: Launched, command: &str) -> Self {
         let world = if command == SHARED { super::mpi::World::start() } else { None };
         match world {
-            Some(world) if world.size() == launched.size => Self::Many(world),
-            _ => Self::Mute(launched),
+            Some(world) if world.size() == launched.size => Self::Connected(world),
+            _ => Self::Unconnected(launched),
         }
     }
 
     #[cfg(not(feature = "mpi"))]
     fn of(launched: Launched, _: &str) -> Self {
-        Self::Mute(launched)
+        Self::Unconnected(launched)
     }
 
     /// The processes that share the work.
     pub(super) fn team(&self) -> &dyn Team {
         match self {
-            Self::One | Self::Mute(_) => &Alone,
+            Self::Single | Self::Unconnected(_) => &Alone,
             #[cfg(feature = "mpi")]
-            Self::Many(world) => world,
+            Self::Connected(world) => world,
         }
     }
 
@@ -111,11 +111,11 @@ impl Ranks {
         serve: impl FnOnce() -> anyhow::Result<()>,
     ) -> ExitCode {
         let is_first = self.team().rank() == 0;
-        if let Self::Mute(launched) = self {
+        if let Self::Unconnected(launched) = self {
             if launched.rank > 0 {
                 return ExitCode::SUCCESS;
             }
-            errors::tell(command, &launched.refusal(command).into());
+            errors::print_error(command, &launched.refusal(command).into());
             return ExitCode::from(USAGE);
         }
         let done = if is_first {
@@ -138,15 +138,15 @@ impl Ranks {
         /// What fails everywhere is reported by the first process, which ends all others meanwhile.
         const PATIENCE: std::time::Duration = std::time::Duration::from_secs(2);
         std::thread::sleep(PATIENCE);
-        errors::tell(&format!("{command} (rank {})", self.team().rank()), error);
-        errors::code(error)
+        errors::print_error(&format!("{command} (rank {})", self.team().rank()), error);
+        errors::exit_code(error)
     }
 
     /// Ends all processes.
     fn end(&self, code: u8) -> ExitCode {
         match self {
             #[cfg(feature = "mpi")]
-            Self::Many(world) => world.abort(code),
+            Self::Connected(world) => world.abort(code),
             _ => ExitCode::from(code),
         }
     }

@@ -13,7 +13,7 @@ use super::args::{OutputArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
 use super::errors::{fail_usage, option};
 use super::formats::shape_output;
 use super::global::Global;
-use super::output::{remark, tell};
+use super::output::{print_summary, remark};
 use super::picture::PictureArgs;
 use super::progress::Progress;
 use super::report::Report;
@@ -22,7 +22,7 @@ use super::{blocks, pipeline};
 use crate::export::{
     Content, ExportOptions, Exporter, FORMATS, Format, Target, TargetError, write_all,
 };
-use crate::outofcore::{Pieces, Team};
+use crate::outofcore::{BlockwiseFormat, Team};
 use crate::points::{ModelFacts, Packing, PointWriter};
 use crate::progress::Stage;
 use crate::volume::UnknownFormat;
@@ -123,7 +123,7 @@ impl Shape {
         let recipe = self.recipe()?;
         let folder = shape_in_blocks::working_folder(&self.output, &self.pipeline.input.input);
         let in_blocks =
-            team.size() > 1 || self.output.iter().any(|path| Pieces::of(path).is_some());
+            team.size() > 1 || self.output.iter().any(|path| BlockwiseFormat::of(path).is_some());
         let working = (in_blocks && !global.in_place).then(|| Working::folder(&folder));
         let outputs = Outputs::open(&self)?;
         // From here on the blocks are written there.
@@ -139,7 +139,7 @@ impl Shape {
         if team.size() > 1 {
             report.peak_memory_bytes = shape_in_blocks::peak(team);
         }
-        tell(global, &report)
+        print_summary(global, &report)
     }
 
     /// Makes the shape in blocks, from file to file.
@@ -200,7 +200,7 @@ impl Shape {
 #[derive(Default)]
 pub(super) struct Outputs {
     /// A file for each block.
-    pub pieces: Vec<(Pieces, PathBuf)>,
+    pub pieces: Vec<(BlockwiseFormat, PathBuf)>,
     /// The shape.
     pub whole: Vec<(Target, Box<dyn Exporter>)>,
     /// The points, and what the shape can be made from again.
@@ -219,7 +219,7 @@ impl Outputs {
         let mut outputs = Self::default();
         for path in &shape.output {
             let name = shape.format.named(path)?;
-            if let Some(pieces) = Pieces::of(&name) {
+            if let Some(pieces) = BlockwiseFormat::of(&name) {
                 pieces.check(path)?;
                 outputs.pieces.push((pieces, path.clone()));
             } else if let Some(writer) = PointWriter::of(&name).ok().filter(|writer| writer.packs) {
@@ -262,7 +262,7 @@ impl Outputs {
 
 /// Extensions of all formats that a shape is written in.
 fn extensions() -> impl Iterator<Item = &'static str> + Clone {
-    let pieces = Pieces::ALL.iter().map(|(_, extension)| *extension);
+    let pieces = BlockwiseFormat::ALL.iter().map(|(_, extension)| *extension);
     let models = PointWriter::all().filter(|writer| writer.packs).map(|writer| writer.extension);
     let shapes = FORMATS.iter().map(|format| format.extension);
     shapes.chain(PictureArgs::EXTENSIONS).chain(models).chain(pieces)

@@ -13,7 +13,9 @@ use super::report::Report;
 use super::{folder, threads};
 use crate::Recipe;
 use crate::export::{NewFolder, Target};
-use crate::outofcore::{Cutting, Job, Merged, Pieces, Plan, Team, merge_monitored, run_missing};
+use crate::outofcore::{
+    BlockwiseFormat, Cutting, Job, Merged, Plan, Team, merge_monitored, run_missing,
+};
 use crate::progress::Stage;
 
 /// What processes do together. The first one reads the command line and sends it to the others.
@@ -24,7 +26,7 @@ pub(super) struct SharedWork {
     /// Holds unfinished work.
     folder: PathBuf,
     /// Where pieces go.
-    pieces: Vec<(Pieces, PathBuf)>,
+    pieces: Vec<(BlockwiseFormat, PathBuf)>,
     /// Of each process.
     threads: u16,
 }
@@ -34,7 +36,7 @@ impl SharedWork {
     pub(super) fn new(
         input: &InputArgs,
         recipe: Recipe,
-        pieces: Vec<(Pieces, PathBuf)>,
+        pieces: Vec<(BlockwiseFormat, PathBuf)>,
         folder: PathBuf,
         global: Global,
     ) -> anyhow::Result<Self> {
@@ -114,7 +116,7 @@ pub(super) fn peak(team: &dyn Team) -> Option<u64> {
 /// first file; without any in the current folder, named after the input. It goes at the end, and after an
 /// interruption the same command goes on with it.
 pub(super) fn working_folder(outputs: &[PathBuf], input: &str) -> PathBuf {
-    let pieces = outputs.iter().find(|path| Pieces::of(path).is_some());
+    let pieces = outputs.iter().find(|path| BlockwiseFormat::of(path).is_some());
     let file = || outputs.iter().find(|path| *path != Path::new(Target::STDOUT));
     if let Some(first) = pieces.or_else(file) {
         return first.with_extension("blocks");

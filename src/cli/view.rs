@@ -20,7 +20,7 @@ use walpha_base::shown::{number, shown};
 use super::args::{self, Alphas, FrozenPipelineArgs};
 use super::errors::fail_usage;
 use super::global::Global;
-use super::output::{name, remark, tell};
+use super::output::{name, print_summary, remark};
 use super::pipeline::{self, VolumeSummary, filled_in};
 use super::progress::Progress;
 use super::report::{SCHEMA_VERSION, WeightsReport};
@@ -100,7 +100,7 @@ impl View {
             file: self.output.display().to_string(),
             seconds: progress.finish().into_iter().collect(),
         };
-        tell(global, &facts)
+        print_summary(global, &facts)
     }
 
     /// The weighted points of each level of detail, the fewest first and those of the shape last, and the

@@ -52,7 +52,7 @@ pub use stl::Stl;
 pub use vtp::Vtp;
 pub(crate) use vtp::{Membership, write_surface};
 pub use vtu::Vtu;
-pub(crate) use vtu::{Corners, Made, write_grid};
+pub(crate) use vtu::{PointData, Provenance, write_grid};
 pub use walpha_files::{
     Content, Filled, NewFolder, Scratch, Target, TargetError, put_all, sweep, write_all,
 };

@@ -87,7 +87,7 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 /// From corners as seen from the place. Each coordinate is the share that the simplex with the
 /// place instead of that corner has of the whole.
-fn of_offsets<T: Part>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
+fn of_offsets<T: Scalar>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
     let negative = |x: &T| T::zero().minus(x);
     match offsets {
         [a, b, c, d] => {
@@ -114,14 +114,14 @@ fn of_offsets<T: Part>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
 }
 
 /// Shares by the first component in which the parts do not sum to 0.
-fn along_an_axis<T: Part, const N: usize>(parts: [[T; 3]; N]) -> Option<[f64; 4]> {
+fn along_an_axis<T: Scalar, const N: usize>(parts: [[T; 3]; N]) -> Option<[f64; 4]> {
     let whole = |k: usize| parts.iter().fold(T::zero(), |sum, part| sum.plus(&part[k]));
     let (k, sign) = (0..3).map(|k| (k, whole(k).sign())).find(|(_, sign)| sign.is_ne())?;
     shares(parts.map(|part| if sign.is_gt() { part[k].clone() } else { T::zero().minus(&part[k]) }))
 }
 
 /// Parts over their sum; `None` if one is negative.
-fn shares<T: Part, const N: usize>(parts: [T; N]) -> Option<[f64; 4]> {
+fn shares<T: Scalar, const N: usize>(parts: [T; N]) -> Option<[f64; 4]> {
     if parts.iter().any(|part| part.sign() == Ordering::Less) {
         return None;
     }
@@ -174,14 +174,14 @@ fn magnitudes(u: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
 
 /// A number of which barycentric coordinates are made; doubles are exact only where a
 /// [`BitRange`](walpha_regular::BitRange) says that no operation rounds.
-pub(super) trait Part: Number + Clone {
+pub(super) trait Scalar: Number + Clone {
     fn zero() -> Self;
     fn sign(&self) -> Ordering;
     /// The share of a positive whole, from 0 to 1, as the double nearest to it or beside that.
     fn over(&self, whole: &Self) -> f64;
 }
 
-impl Part for f64 {
+impl Scalar for f64 {
     fn zero() -> Self {
         0.0
     }
@@ -193,7 +193,7 @@ impl Part for f64 {
     }
 }
 
-impl Part for IBig {
+impl Scalar for IBig {
     fn zero() -> Self {
         Self::ZERO
     }

@@ -6,7 +6,7 @@ use walpha_regular::BitRange;
 
 use super::InterpolateError;
 use super::barycentric::coordinates;
-use super::least_squares::Pieces;
+use super::least_squares::PiecewiseLinear;
 use crate::shape::{AlphaShape, Class, Simplices};
 
 /// Places located as one piece of work, at least.
@@ -29,7 +29,7 @@ const CHUNK: usize = 256;
 pub struct Interpolant<'a> {
     positions: &'a [[f64; 3]],
     values: &'a [f64],
-    parts: Vec<Support>,
+    simplices: Vec<SupportSimplex>,
     bit_range: BitRange,
     /// Made when a single place is asked for; grids do without.
     tree: OnceLock<Tree>,
@@ -37,7 +37,7 @@ pub struct Interpolant<'a> {
 
 /// A simplex with a function on it: its vertices, as many as count.
 #[derive(Clone, Copy, Debug)]
-struct Support {
+struct SupportSimplex {
     vertices: [u32; 4],
     count: u8,
 }
@@ -77,21 +77,21 @@ impl<'a> Interpolant<'a> {
             return Err(InterpolateError::Value { index, value: values[index] });
         }
         let complex = shape.complex();
-        let mut parts = Vec::with_capacity(complex.cells.len());
-        add(&mut parts, &complex.cells, Class::Interior);
-        add(&mut parts, &complex.facets, Class::Singular);
-        add(&mut parts, &complex.edges, Class::Singular);
-        add(&mut parts, &complex.vertices, Class::Singular);
+        let mut simplices = Vec::with_capacity(complex.cells.len());
+        add(&mut simplices, &complex.cells, Class::Interior);
+        add(&mut simplices, &complex.facets, Class::Singular);
+        add(&mut simplices, &complex.edges, Class::Singular);
+        add(&mut simplices, &complex.vertices, Class::Singular);
         let positions = &shape.points().positions;
         let bit_range = BitRange::of(positions);
-        Ok(Self { positions, values, parts, bit_range, tree: OnceLock::new() })
+        Ok(Self { positions, values, simplices, bit_range, tree: OnceLock::new() })
     }
 
     /// F at a place (x, y, z) in the units of the points; `None` outside the shape, and for what is
     /// no place. O(log n) after the first.
     pub fn value_at(&self, place: [f64; 3]) -> Option<f64> {
-        let part = self.part_at(place)?;
-        Some(self.value(part, &self.coordinates(part, place)?))
+        let simplex = self.simplex_at(place)?;
+        Some(self.value(simplex, &self.coordinates(simplex, place)?))
     }
 
     /// F at many places, in parallel.
@@ -101,14 +101,14 @@ impl<'a> Interpolant<'a> {
 
     /// The simplex that a place belongs to, and its coordinates there.
     pub fn locate(&self, place: [f64; 3]) -> Option<Location<'_>> {
-        let part = self.part_at(place)?;
-        let simplex = self.parts[part as usize].vertices();
-        Some(Location { simplex, coordinates: self.coordinates(part, place)? })
+        let number = self.simplex_at(place)?;
+        let simplex = self.simplices[number as usize].vertices();
+        Some(Location { simplex, coordinates: self.coordinates(number, place)? })
     }
 
     /// The number of simplices with a function on them.
     pub(super) fn len(&self) -> usize {
-        self.parts.len()
+        self.simplices.len()
     }
 
     /// The values of the points.
@@ -122,30 +122,30 @@ impl<'a> Interpolant<'a> {
     }
 
     /// The corners of a simplex; the first so many count.
-    pub(super) fn corners(&self, part: u32) -> ([[f64; 3]; 4], usize) {
-        let part = self.parts[part as usize];
-        (part.vertices.map(|v| self.positions[v as usize]), usize::from(part.count))
+    pub(super) fn corners(&self, simplex: u32) -> ([[f64; 3]; 4], usize) {
+        let simplex = self.simplices[simplex as usize];
+        (simplex.vertices.map(|v| self.positions[v as usize]), usize::from(simplex.count))
     }
 
     /// The coordinates of a place in a simplex, if it holds it.
-    pub(super) fn coordinates(&self, part: u32, place: [f64; 3]) -> Option<[f64; 4]> {
-        let (corners, count) = self.corners(part);
+    pub(super) fn coordinates(&self, simplex: u32, place: [f64; 3]) -> Option<[f64; 4]> {
+        let (corners, count) = self.corners(simplex);
         coordinates(&corners[..count], place, self.bit_range.is_exact_with(place))
     }
 
     /// F on a simplex.
-    pub(super) fn value(&self, part: u32, coordinates: &[f64; 4]) -> f64 {
-        let part = self.parts[part as usize];
-        combine(coordinates, part.vertices.map(|v| self.values[v as usize]))
+    pub(super) fn value(&self, simplex: u32, coordinates: &[f64; 4]) -> f64 {
+        let simplex = self.simplices[simplex as usize];
+        combine(coordinates, simplex.vertices.map(|v| self.values[v as usize]))
     }
 
-    fn part_at(&self, place: [f64; 3]) -> Option<u32> {
+    fn simplex_at(&self, place: [f64; 3]) -> Option<u32> {
         if place.iter().any(|x| !x.is_finite()) {
             return None;
         }
         let tree = self.tree.get_or_init(|| {
-            let bounds = |part: u32| {
-                let (corners, count) = self.corners(part);
+            let bounds = |simplex: u32| {
+                let (corners, count) = self.corners(simplex);
                 let ends = |f: fn(f64, f64) -> f64| {
                     let join = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| f(a[k], b[k]));
                     corners[..count].iter().copied().reduce(join).expect("a vertex at least")
@@ -155,7 +155,7 @@ impl<'a> Interpolant<'a> {
             let boxes: Vec<_> = (0..self.len() as u32).into_par_iter().map(bounds).collect();
             Tree::new(&boxes)
         });
-        tree.first(place, |part| self.coordinates(part, place).is_some())
+        tree.first(place, |simplex| self.coordinates(simplex, place).is_some())
     }
 }
 
@@ -174,37 +174,37 @@ pub(super) fn combine(shares: &[f64; 4], values: [f64; 4]) -> f64 {
     terms.iter().sum()
 }
 
-impl Pieces for Interpolant<'_> {
+impl PiecewiseLinear for Interpolant<'_> {
     fn count(&self) -> usize {
-        self.parts.len()
+        self.simplices.len()
     }
 
-    fn vertices(&self, part: u32) -> ([u32; 4], usize) {
-        let part = self.parts[part as usize];
-        (part.vertices, usize::from(part.count))
+    fn vertices(&self, simplex: u32) -> ([u32; 4], usize) {
+        let simplex = self.simplices[simplex as usize];
+        (simplex.vertices, usize::from(simplex.count))
     }
 
-    fn coordinates(&self, part: u32, place: [f64; 3]) -> Option<[f64; 4]> {
-        self.coordinates(part, place)
+    fn coordinates(&self, simplex: u32, place: [f64; 3]) -> Option<[f64; 4]> {
+        self.coordinates(simplex, place)
     }
 
-    fn value(&self, part: u32, shares: &[f64; 4]) -> f64 {
-        self.value(part, shares)
+    fn value(&self, simplex: u32, shares: &[f64; 4]) -> f64 {
+        self.value(simplex, shares)
     }
 }
 
-impl Support {
+impl SupportSimplex {
     fn vertices(&self) -> &[u32] {
         &self.vertices[..usize::from(self.count)]
     }
 }
 
 /// Adds the simplices of a class, in their order.
-fn add<const N: usize>(parts: &mut Vec<Support>, simplices: &Simplices<N>, class: Class) {
-    parts.extend(simplices.of(class).map(|row| {
+fn add<const N: usize>(supports: &mut Vec<SupportSimplex>, simplices: &Simplices<N>, class: Class) {
+    supports.extend(simplices.of(class).map(|row| {
         let mut vertices = [row[0]; 4];
         vertices[..N].copy_from_slice(row);
-        Support { vertices, count: N as u8 }
+        SupportSimplex { vertices, count: N as u8 }
     }));
 }
 

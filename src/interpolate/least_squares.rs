@@ -18,7 +18,7 @@ const CHUNK: usize = 1 << 10;
 const TOLERANCE: f64 = 1e-6;
 
 /// Simplices with linear functions on them.
-pub(super) trait Pieces: Sync {
+pub(super) trait PiecewiseLinear: Sync {
     /// How many there are, or were.
     fn count(&self) -> usize;
     /// The vertices of one; the first so many count.
@@ -60,17 +60,17 @@ impl Normal {
     /// The equations for the values of the first `free` points; those of the others stay. Each row is
     /// summed by one thread, over the simplices at its point in their order.
     pub(super) fn assemble(
-        pieces: &impl Pieces,
+        cells: &impl PiecewiseLinear,
         owners: &[u32],
         grid: &Grid,
         volume: &Volume,
         free: usize,
     ) -> Result<Self, NoMemory> {
-        let sample_of = samples_of(pieces.count(), owners, volume)?;
+        let sample_of = samples_of(cells.count(), owners, volume)?;
         let part_of = Lists::new(free, |add| {
-            for part in 0..pieces.count() as u32 {
+            for part in 0..cells.count() as u32 {
                 if !sample_of.of(part).is_empty() {
-                    let (vertices, count) = pieces.vertices(part);
+                    let (vertices, count) = cells.vertices(part);
                     let corners = vertices[..count].iter();
                     corners.filter(|&&v| (v as usize) < free).for_each(|&v| add(v, part));
                 }
@@ -82,14 +82,14 @@ impl Normal {
         let row = |v: u32| {
             let mut row = Row::default();
             for &part in part_of.of(v) {
-                let (vertices, count) = pieces.vertices(part);
+                let (vertices, count) = cells.vertices(part);
                 let at = vertices.iter().position(|&w| w == v).expect("a part at this point");
                 let (mut products, mut right) = ([0.0; 4], 0.0);
                 for &sample in sample_of.of(part) {
                     let i = sample as usize;
                     let place = grid.position([i % nx, i / nx % ny, i / (nx * ny)]);
-                    let Some(shares) = pieces.coordinates(part, place) else { continue };
-                    let error = f64::from(volume.as_slice()[i]) - pieces.value(part, &shares);
+                    let Some(shares) = cells.coordinates(part, place) else { continue };
+                    let error = f64::from(volume.as_slice()[i]) - cells.value(part, &shares);
                     right += shares[at] * error;
                     (0..4).for_each(|k| products[k] += shares[at] * shares[k]);
                 }

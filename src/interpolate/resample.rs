@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use walpha_base::memory::try_with_capacity;
 
 use super::grid::OUTSIDE;
-use super::least_squares::Pieces;
+use super::least_squares::PiecewiseLinear;
 use super::raster::owners;
 use super::{Grid, Interpolant, InterpolateError};
 use crate::volume::Volume;

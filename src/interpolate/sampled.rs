@@ -14,7 +14,7 @@ use walpha_regular::{BitRange, Cell, Growing};
 use super::barycentric::coordinates;
 use super::grid::OUTSIDE;
 use super::interpolant::combine;
-use super::least_squares::{Normal, Pieces, Solved};
+use super::least_squares::{Normal, PiecewiseLinear, Solved};
 use super::raster::{CHUNK, for_each_inside, for_each_near};
 use super::{Deviation, Grid, InterpolateError};
 use crate::points::Units;
@@ -108,9 +108,9 @@ impl<'a> Sampled<'a> {
     /// # Errors
     /// No memory.
     pub(super) fn refit(&mut self, monitor: &Monitor) -> Result<(), InterpolateError> {
-        let pieces = Cells::of(&self.growing, &self.values);
+        let cells = Cells::of(&self.growing, &self.values);
         let free = self.values.len();
-        let normal = Normal::assemble(&pieces, &self.owners, &self.grid, self.volume, free)?;
+        let normal = Normal::assemble(&cells, &self.owners, &self.grid, self.volume, free)?;
         let Solved { change, .. } = normal.solve(monitor)?;
         self.values.iter_mut().zip(change).for_each(|(value, change)| *value += change);
         self.evaluate(|_, _| true);
@@ -346,7 +346,7 @@ impl<'a> Cells<'a> {
     }
 }
 
-impl Pieces for Cells<'_> {
+impl PiecewiseLinear for Cells<'_> {
     fn count(&self) -> usize {
         self.growing.cells().len()
     }

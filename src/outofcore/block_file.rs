@@ -29,7 +29,7 @@ struct Header {
     plan: Digest,
     /// The number of the block.
     block: usize,
-    facts: BlockSummary,
+    summary: BlockSummary,
     arrays: Vec<Array>,
 }
 
@@ -63,7 +63,7 @@ impl Arrays {
         self,
         plan: &Plan,
         block: usize,
-        facts: BlockSummary,
+        summary: BlockSummary,
     ) -> Result<(), BlocksError> {
         let array = |(name, bytes): &(&str, Vec<u8>)| Array {
             name: (*name).into(),
@@ -72,7 +72,7 @@ impl Arrays {
         };
         let arrays = self.0.iter().map(array).collect();
         let version = Plan::VERSION.into();
-        let header = Header { version, plan: plan.digest, block, facts, arrays };
+        let header = Header { version, plan: plan.digest, block, summary, arrays };
         let header = serde_json::to_vec(&header).expect("it has no maps");
         Target::open(&plan.block_file(block))?.write(|out| {
             out.write_all(MAGIC)?;
@@ -88,7 +88,7 @@ impl Arrays {
 /// A finished block.
 pub(super) struct BlockFile {
     path: PathBuf,
-    pub facts: BlockSummary,
+    pub summary: BlockSummary,
     /// Arrays, and where they begin.
     arrays: Vec<(Array, u64)>,
     /// Samples of the volume.
@@ -141,7 +141,7 @@ impl BlockFile {
             return Err(damaged(Self::DAMAGED));
         }
         let samples = plan.job.dims.samples() as u64;
-        let file = Self { path: path.clone(), facts: header.facts, arrays, samples };
+        let file = Self { path: path.clone(), summary: header.summary, arrays, samples };
         if !file.fits(plan.blocks[block].points) {
             return Err(damaged("contradicts itself"));
         }
@@ -153,7 +153,7 @@ impl BlockFile {
     /// Whether the facts are those of the arrays, by their lengths. A block that was written is; what is wrong
     /// here nobody has to expect later.
     fn fits(&self, points: u64) -> bool {
-        let BlockSummary { cells, facets, edges, vertices, components, sheets, .. } = &self.facts;
+        let BlockSummary { cells, facets, edges, vertices, components, sheets, .. } = &self.summary;
         let sum = |counts: &[usize; 3]| counts.iter().map(|&count| count as u128).sum::<u128>();
         let has = |name: &str, size: u128, count: u128| {
             let array = self.arrays.iter().find(|(known, _)| known.name == name);
@@ -189,8 +189,8 @@ impl BlockFile {
             ("shared_sheets", 4, shared),
         ];
         lengths.into_iter().all(|(name, size, count)| has(name, size, count))
-            && self.facts.points == points
-            && self.facts.halo <= self.samples
+            && self.summary.points == points
+            && self.summary.halo <= self.samples
             && components.iter().all(|component| {
                 component.sums.vertices as u128 <= sum(vertices) && component.sums.cells <= *cells
             })
@@ -339,8 +339,8 @@ pub(super) fn read_rows(
     let [facets, edges, vertices] =
         [complex.facets.counts(), complex.edges.counts(), complex.vertices.counts()]
             .map(|counts| [Class::Interior, Class::Regular, Class::Singular].map(|c| counts[c]));
-    let facts = &file.facts;
-    if (facets, edges, vertices) != (facts.facets, facts.edges, facts.vertices) {
+    let summary = &file.summary;
+    if (facets, edges, vertices) != (summary.facets, summary.edges, summary.vertices) {
         return Err(file.damaged("has classes that it did not count"));
     }
     let sheet = |name: u32| numbers[name as usize];

@@ -65,16 +65,16 @@
 //! ```
 
 mod block_file;
+mod blockwise;
 mod brick_digests;
 mod bytes;
+mod cost;
 mod error;
 mod field;
 mod job;
 mod merge;
-mod pieces;
 mod plan;
 mod plan_files;
-mod price;
 mod run;
 mod sample_box;
 mod survey;
@@ -84,13 +84,13 @@ mod whole;
 #[cfg(feature = "zarr")]
 mod zarr;
 
+pub use blockwise::BlockwiseFormat;
+pub use cost::{CostEstimate, estimate_cost};
 pub use error::{BlocksError, Finding};
 pub use job::Job;
 pub use merge::{Merged, merge, merge_monitored};
-pub use pieces::Pieces;
 pub use plan::{BlockPlan, Cutting, Plan};
 pub use plan_files::Checked;
-pub use price::{Price, price};
 pub use run::{run, run_all, run_missing};
 pub use sample_box::SampleBox;
 pub use survey::Survey;

@@ -258,7 +258,7 @@ impl Plan {
             })
         };
         self.job.check().is_ok()
-            && (1..=MOST).contains(&self.blocks.len())
+            && (1..=MAX_BLOCKS).contains(&self.blocks.len())
             && self.blocks.iter().all(is_inside)
             && self.survey.first < self.job.dims.samples() as u64
             && self.kept.iter().all(|kept| [SUMS, SMOOTHED].contains(&&*kept.name))
@@ -319,11 +319,11 @@ impl Plan {
 }
 
 /// Bytes of memory that blocks keep to where nothing is said.
-pub(super) const SILENT: u64 = 2 << 30;
+pub(super) const DEFAULT_MEMORY: u64 = 2 << 30;
 /// Bytes for each sample of a tile, of which each thread has one.
 pub(super) const TILE_SAMPLE: u64 = 48;
 /// No volume has use for more blocks.
-pub(super) const MOST: usize = 1 << 16;
+pub(super) const MAX_BLOCKS: usize = 1 << 16;
 
 /// Boxes of bricks with their points.
 pub(super) struct Boxes<'a> {
@@ -401,14 +401,14 @@ impl Boxes<'_> {
             return Ok(with_halo(blocks.max(1)));
         }
         let threads = rayon::current_num_threads() as u64;
-        let asked = cutting.memory.unwrap_or(SILENT);
+        let asked = cutting.memory.unwrap_or(DEFAULT_MEMORY);
         let needs = |largest: u64| {
             let tiles = TILE_SAMPLE * tile;
             memory::resident_bytes().unwrap_or(0) + threads * (tiles + AT_WORK * largest)
         };
         let mut least = PlanError { asked, needed: u64::MAX, blocks: 1 };
         let mut blocks = processes * threads as usize;
-        while blocks <= MOST {
+        while blocks <= MAX_BLOCKS {
             let cut = with_halo(blocks);
             let needed = needs(cut.iter().map(|(_, points)| *points).max().unwrap_or(0));
             if needed <= asked {

@@ -118,7 +118,7 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
     Ok(points)
 }
 
-/// Numbers from 0 in the order in which keys are met first.
+/// MergedNumbers from 0 in the order in which keys are met first.
 struct Numbering(Vec<u32>, u32);
 
 const NONE: u32 = u32::MAX;
@@ -166,7 +166,7 @@ fn write(plan: &Plan, block: usize, points: &Points, shape: BlockShape) -> Resul
         [Class::Interior, Class::Regular, Class::Singular].map(|class| counts[class])
     };
     let own = || points.own.iter().zip(&points.weights).filter(|(own, _)| **own).map(|(_, w)| *w);
-    let facts = BlockSummary {
+    let summary = BlockSummary {
         points: own().count() as u64,
         halo: shape.halo,
         cells: complex.cells.len(),
@@ -181,7 +181,7 @@ fn write(plan: &Plan, block: usize, points: &Points, shape: BlockShape) -> Resul
         components,
         sheets,
     };
-    arrays(points, &shape, &component_of, &border).write(plan, block, facts)
+    arrays(points, &shape, &component_of, &border).write(plan, block, summary)
 }
 
 /// What is known of each sheet.

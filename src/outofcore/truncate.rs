@@ -170,7 +170,8 @@ pub(super) fn truncate_to_file(
     let mine = if passes.team.is_first() {
         let io = |source| BlocksError::Written { path: folder.join(SMOOTHED), source };
         let file = tempfile::tempfile_in(folder).map_err(io)?;
-        let mut work = Work { file, dims: field.dims, slabs: Slabs::new(field.dims), folder };
+        let mut work =
+            StandardTransform { file, dims: field.dims, slabs: Slabs::new(field.dims), folder };
         Some(work.truncate(job, field, passes)?)
     } else {
         None
@@ -182,7 +183,7 @@ pub(super) fn truncate_to_file(
 }
 
 /// The coefficients of a volume in a file, in double precision.
-struct Work<'a> {
+struct StandardTransform<'a> {
     file: File,
     /// Samples along x, y and z.
     dims: [usize; 3],
@@ -191,7 +192,7 @@ struct Work<'a> {
     folder: &'a Path,
 }
 
-impl Work<'_> {
+impl StandardTransform<'_> {
     fn truncate(
         &mut self,
         job: &Job,

@@ -1,5 +1,5 @@
 use super::block_file::{BlockFile, read_rows};
-use super::merge::Numbers;
+use super::merge::MergedNumbers;
 use super::{BlocksError, Merged, Plan};
 use crate::points::WeightedPoints;
 use crate::shape::{
@@ -131,7 +131,7 @@ impl Gathered {
 }
 
 /// What a block has of the shape, with common numbers.
-pub(super) struct Piece {
+pub(super) struct MergedBlock {
     pub complex: Complex,
     pub voxels: Vec<u64>,
     pub positions: Vec<[f64; 3]>,
@@ -141,8 +141,12 @@ pub(super) struct Piece {
     pub sheets: Sheets,
 }
 
-impl Piece {
-    pub(super) fn read(plan: &Plan, block: usize, numbers: &Numbers) -> Result<Self, BlocksError> {
+impl MergedBlock {
+    pub(super) fn read(
+        plan: &Plan,
+        block: usize,
+        numbers: &MergedNumbers,
+    ) -> Result<Self, BlocksError> {
         let file = BlockFile::open(plan, block)?;
         let job = &plan.job;
         let voxels = file.voxels()?;

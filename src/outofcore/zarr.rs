@@ -13,7 +13,7 @@ use zarrs::array_subset::ArraySubset;
 use zarrs::filesystem::FilesystemStore;
 use zarrs::group::GroupBuilder;
 
-use super::whole::Piece;
+use super::whole::MergedBlock;
 use super::{BlocksError, Merged, Plan};
 use crate::shape::Simplices;
 
@@ -31,7 +31,7 @@ pub(super) fn write(
     fill_folder(path, failed, |part| fill(plan, merged, part, monitor))
 }
 
-/// Fills a folder: a group for each dimension, with the rows of all blocks, the first block first. Corners are
+/// Fills a folder: a group for each dimension, with the rows of all blocks, the first block first. PointData are
 /// named by their index in the volume, which `vertices/corners` and `vertices/positions` tie to places. A block
 /// for each thread is in memory.
 fn fill(plan: &Plan, merged: &Merged, folder: &Path, monitor: &Monitor) -> Result<(), BlocksError> {
@@ -54,8 +54,8 @@ fn fill(plan: &Plan, merged: &Merged, folder: &Path, monitor: &Monitor) -> Resul
     let mut cells = file.rows::<4>("cells", merged.cells)?;
     let blocks: Vec<usize> = (0..plan.blocks.len()).collect();
     for batch in blocks.chunks(rayon::current_num_threads()) {
-        let read = |&block: &usize| Piece::read(plan, block, &merged.numbers[block]);
-        let pieces: Result<Vec<Piece>, _> = batch.par_iter().map(read).collect();
+        let read = |&block: &usize| MergedBlock::read(plan, block, &merged.numbers[block]);
+        let pieces: Result<Vec<MergedBlock>, _> = batch.par_iter().map(read).collect();
         for piece in pieces? {
             let own = || piece.complex.vertices.rows().iter().map(|&[v]| v as usize);
             positions.push(&file, own().flat_map(|v| piece.positions[v]).collect::<Vec<_>>())?;

@@ -48,7 +48,7 @@ pub(super) struct Study<'a> {
     pub points: Points,
     /// The options of `walpha` that select the same points.
     select: String,
-    pub stage: Stage,
+    pub cameras: Cameras,
 }
 
 impl<'a> Study<'a> {
@@ -66,8 +66,8 @@ impl<'a> Study<'a> {
         let selection = Selection { rule, gray_min: None };
         let differences = difference(&smoothed);
         let points = select(volume, &smoothed, &differences, &selection, Units::Voxel)?;
-        let stage = Stage::of(volume.dims());
-        Ok(Self { subject, smoothed, truncation, points, select: select_option, stage })
+        let cameras = Cameras::of(volume.dims());
+        Ok(Self { subject, smoothed, truncation, points, select: select_option, cameras })
     }
 
     pub(super) fn input(&self) -> Input {
@@ -225,7 +225,7 @@ pub(super) enum Eye {
 
 /// What is looked at, and the size of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stage {
+pub(super) struct Cameras {
     target: [f64; 3],
     /// The longest axis over 64 samples.
     scale: f64,
@@ -238,7 +238,7 @@ pub(super) fn panel_size() -> Size {
     Size::new(900, 960).expect("a size that is right")
 }
 
-impl Stage {
+impl Cameras {
     pub(super) fn of(dims: Dims) -> Self {
         let scales = dims.xyz().map(|n| n as f64 / 64.0);
         Self {
@@ -326,7 +326,7 @@ impl<'a> Clock<'a> {
         }
     }
 
-    /// Seconds of each stage, and of all.
+    /// Seconds of each cameras, and of all.
     pub(super) fn stop(mut self) -> Vec<(&'static str, f64)> {
         self.end();
         self.seconds.push(("total", self.started.elapsed().as_secs_f64()));

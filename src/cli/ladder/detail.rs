@@ -14,7 +14,7 @@ use crate::cli::args::one_alpha;
 use crate::cli::errors::{fail, fail_usage};
 use crate::cli::folder::Folder;
 use crate::cli::global::Global;
-use crate::cli::output::{name, tell};
+use crate::cli::output::{name, print_summary};
 use crate::cli::pipeline::{Domain, read};
 use crate::cli::progress::Progress;
 use crate::cli::report::SCHEMA_VERSION;
@@ -103,7 +103,7 @@ impl Ladder {
         folder.write("detail.csv", |out| write_rows(&facts.levels, out))?;
         folder.write("detail.json", |out| Ok(serde_json::to_writer_pretty(out, &facts)?))?;
         folder.finish()?;
-        tell(global, &facts)
+        print_summary(global, &facts)
     }
 
     /// The points of full detail, and the region that keeps them, if one does.

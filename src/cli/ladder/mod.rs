@@ -16,7 +16,7 @@ use super::args::{Alphas, FrozenPipelineArgs};
 use super::errors::{CommandError, fail_usage};
 use super::folder::Folder;
 use super::global::Global;
-use super::output::tell;
+use super::output::print_summary;
 use super::pipeline::{self, filled_in};
 use super::progress::Progress;
 use super::ranges;
@@ -163,7 +163,7 @@ impl Ladder {
         facts.finish(progress.finish(), files);
         folder.write("ladder.json", |out| Ok(serde_json::to_writer_pretty(out, &facts)?))?;
         folder.finish()?;
-        tell(global, &facts)
+        print_summary(global, &facts)
     }
 }
 

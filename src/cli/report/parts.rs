@@ -275,10 +275,10 @@ impl ShapeReport {
 }
 
 /// Components listed at most.
-const TOLD: usize = 20;
+const MAX_LISTED: usize = 20;
 
 fn largest(mut components: Vec<Component>) -> Vec<Component> {
     components.sort_by(|a, b| b.volume.total_cmp(&a.volume).then(b.vertices.cmp(&a.vertices)));
-    components.truncate(TOLD);
+    components.truncate(MAX_LISTED);
     components
 }

@@ -50,7 +50,7 @@ impl<'a> Bench<'a> {
         if let Some(picture) = self.views.get(&key) {
             return Ok(picture.clone());
         }
-        let picture = self.study.stage.shape(&shaped.shape, eye)?;
+        let picture = self.study.cameras.shape(&shaped.shape, eye)?;
         self.views.insert(key, picture.clone());
         Ok(picture)
     }
@@ -78,7 +78,7 @@ impl<'a> Bench<'a> {
 
     /// The command line that draws a shape as our figure does, words left out.
     pub(super) fn drawing_command(&self, shaped: &Shaped, file: &str) -> String {
-        format!("{} {} -o {file}", shaped.numbers.command, self.study.stage.options())
+        format!("{} {} -o {file}", shaped.numbers.command, self.study.cameras.options())
     }
 }
 

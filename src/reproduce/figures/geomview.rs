@@ -152,7 +152,7 @@ impl Side {
         let positions = &shaped.shape.points().positions;
         let places = surface.vertices.iter().map(|&v| positions[v as usize]);
         let agrees = places.eq(mesh.positions.iter().copied()) && surface.facets().eq(&mesh.facets);
-        let picture = bench.study.stage.render(&mesh.scene(), Eye::Portrait)?;
+        let picture = bench.study.cameras.render(&mesh.scene(), Eye::Portrait)?;
         Ok(Self { title, file: bench.file(name, bytes), mesh, picture, agrees })
     }
     fn panel(&self) -> Panel {

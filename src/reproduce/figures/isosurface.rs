@@ -159,8 +159,8 @@ fn draw(
     surface: Isosurface,
 ) -> Result<Figure, ReproduceError> {
     let scene = Scene { meshes: vec![surface.into_mesh()], ..Scene::default() };
-    let front = study.stage.render(&scene, Eye::Portrait)?;
-    let side = study.stage.render(&scene, Eye::Side)?;
+    let front = study.cameras.render(&scene, Eye::Portrait)?;
+    let side = study.cameras.render(&scene, Eye::Side)?;
     let captions = vec![
         format!("marching cubes: {triangles} triangles, from all {read} samples"),
         format!("{beside} of them lie beside the surface"),

@@ -7,7 +7,9 @@
 use super::bench::{Bench, Claim, judge};
 use crate::render::{Content, Drawing, Figure, PALETTE, Panel, Pen, Rgb, Size, Step};
 use crate::reproduce::plane::curve::area;
-use crate::reproduce::plane::{AlphaHull, Curvature, EksShape, Piece, eks_shape, sample_points};
+use crate::reproduce::plane::{
+    AlphaHull, Curvature, EksShape, OutlinePiece, eks_shape, sample_points,
+};
 use crate::reproduce::{Fact, Item, ReproduceError, Table, Verdict, text};
 
 /// The α of Figure 2, from top to bottom: reciprocal lengths.
@@ -222,8 +224,8 @@ pub(super) fn draw_shape(shape: &EksShape) -> Drawing {
 pub(super) fn draw_hull(rung: &Rung) -> Drawing {
     let mut drawing = around(rung.shape.positions(), 0.7);
     let arcs = rung.hull.outline.iter().filter_map(|piece| match piece {
-        Piece::Arc(arc) => Some(arc),
-        Piece::Segment(_) => None,
+        OutlinePiece::Arc(arc) => Some(arc),
+        OutlinePiece::Segment(_) => None,
     });
     if let Some(arc) = arcs.max_by(|a, b| a.sweep().abs().total_cmp(&b.sweep().abs())) {
         drawing.disc(arc.centre, arc.radius, Pen::line(GRAY, 2.5).dashed());
@@ -244,9 +246,9 @@ fn dots(drawing: &mut Drawing, shape: &EksShape) {
     extreme.for_each(|p| drawing.dot(p, 8.5, PALETTE[1]));
 }
 
-fn draw_piece(drawing: &mut Drawing, piece: &Piece, pen: Pen) {
+fn draw_piece(drawing: &mut Drawing, piece: &OutlinePiece, pen: Pen) {
     match piece {
-        Piece::Arc(arc) if arc.is_circle() => drawing.disc(arc.centre, arc.radius, pen),
+        OutlinePiece::Arc(arc) if arc.is_circle() => drawing.disc(arc.centre, arc.radius, pen),
         piece => drawing.outline(piece.ends()[0], vec![step(piece)], false, pen),
     }
 }
@@ -269,10 +271,10 @@ pub(super) fn shaded(colour: Rgb) -> Pen {
     Pen { stroke: Some(colour), ..Pen::area(colour, 1.0) }
 }
 
-pub(super) fn step(piece: &Piece) -> Step {
+pub(super) fn step(piece: &OutlinePiece) -> Step {
     match piece {
-        Piece::Segment([_, to]) => Step::Line(*to),
-        Piece::Arc(arc) => Step::Arc {
+        OutlinePiece::Segment([_, to]) => Step::Line(*to),
+        OutlinePiece::Arc(arc) => Step::Arc {
             to: arc.end,
             radius: arc.radius,
             counter_clockwise: arc.counter_clockwise,

@@ -117,7 +117,7 @@ fn draw(study: &Study<'_>, map: ColourMap) -> Result<Figure, ReproduceError> {
         colour: map.colour(value),
     }));
     let size = Size::new(1600, 1240)?;
-    let picture = study.stage.render_box(scene, size)?;
+    let picture = study.cameras.render_box(scene, size)?;
     let title = format!("Figure 1. {} scattered points v with values F(v)", points.len());
     Ok(Figure {
         colour_bar: Some(ColourBar { map, label: "F, the original gray level".into() }),

@@ -4,7 +4,9 @@ use super::bench::{Bench, Claim, judge};
 use super::plane::{GRAY, INK, SHADE, around, panel, shaded, step};
 use crate::render::{Drawing, Figure, PALETTE, Pen, Rgb, Size};
 use crate::reproduce::plane::curve::{area, loops};
-use crate::reproduce::plane::{Piece, WeightedPlaneShape, sample_discs, weighted_plane_shape};
+use crate::reproduce::plane::{
+    OutlinePiece, WeightedPlaneShape, sample_discs, weighted_plane_shape,
+};
 use crate::reproduce::{Fact, Item, ReproduceError, Verdict, text};
 use crate::shape::{Alpha, Class};
 
@@ -31,7 +33,8 @@ struct Evidence {
 impl Evidence {
     fn of(shape: &WeightedPlaneShape) -> Self {
         let cells = shape.cells();
-        let outline: Vec<Piece> = shape.outline().into_iter().map(Piece::Arc).collect();
+        let outline: Vec<OutlinePiece> =
+            shape.outline().into_iter().map(OutlinePiece::Arc).collect();
         let complex = shape.complex();
         Self {
             discs: shape.positions().len(),
@@ -145,7 +148,9 @@ fn draw_cells(shape: &WeightedPlaneShape) -> Drawing {
         let boundary = &cell.boundary;
         let pen = Pen { fill: Some(Rgb([222, 234, 245])), ..Pen::line(PALETTE[1], 2.5) };
         match boundary[..] {
-            [Piece::Arc(arc)] if arc.is_circle() => drawing.disc(arc.centre, arc.radius, pen),
+            [OutlinePiece::Arc(arc)] if arc.is_circle() => {
+                drawing.disc(arc.centre, arc.radius, pen)
+            }
             _ => {
                 let steps = boundary.iter().map(step).collect();
                 drawing.outline(boundary[0].ends()[0], steps, true, pen);

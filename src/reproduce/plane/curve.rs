@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 /// A piece of a drawn line, from start to end.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Piece {
+pub enum OutlinePiece {
     /// Part of a circle.
     Arc(Arc),
     /// Straight, from the first to the second place.
@@ -61,7 +61,7 @@ impl Arc {
     }
 }
 
-impl Piece {
+impl OutlinePiece {
     /// Where the piece begins and ends.
     pub fn ends(&self) -> [[f64; 2]; 2] {
         match *self {
@@ -95,10 +95,10 @@ pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// The area on the left of closed curves (Green's theorem). Rounded.
-pub(in crate::reproduce) fn area(pieces: &[Piece]) -> f64 {
+pub(in crate::reproduce) fn area(pieces: &[OutlinePiece]) -> f64 {
     let double = pieces.iter().map(|piece| match piece {
-        Piece::Segment([[ax, ay], [bx, by]]) => ax * by - bx * ay,
-        Piece::Arc(arc) => {
+        OutlinePiece::Segment([[ax, ay], [bx, by]]) => ax * by - bx * ay,
+        OutlinePiece::Arc(arc) => {
             let [dx, dy] = [arc.end[0] - arc.start[0], arc.end[1] - arc.start[1]];
             arc.radius * arc.radius * arc.sweep() + arc.centre[0] * dy - arc.centre[1] * dx
         }
@@ -107,8 +107,8 @@ pub(in crate::reproduce) fn area(pieces: &[Piece]) -> f64 {
 }
 
 /// How many closed curves the pieces make, each beginning where another ends, up to rounding.
-pub(in crate::reproduce) fn loops(pieces: &[Piece]) -> usize {
-    let follows = |piece: &Piece, next: &Piece| {
+pub(in crate::reproduce) fn loops(pieces: &[OutlinePiece]) -> usize {
+    let follows = |piece: &OutlinePiece, next: &OutlinePiece| {
         let ([_, end], [start, _]) = (piece.ends(), next.ends());
         (end[0] - start[0]).hypot(end[1] - start[1]) < 1e-9
     };
@@ -135,10 +135,11 @@ mod tests {
     use crate::reproduce::plane::Arc;
 
     /// The two halves of a circle, turning left or right.
-    fn ring(centre: [f64; 2], radius: f64, counter_clockwise: bool) -> Vec<Piece> {
+    fn ring(centre: [f64; 2], radius: f64, counter_clockwise: bool) -> Vec<OutlinePiece> {
         let [x, y] = centre;
         let [left, right] = [[x - radius, y], [x + radius, y]];
-        let arc = |start, end| Piece::Arc(Arc { centre, radius, start, end, counter_clockwise });
+        let arc =
+            |start, end| OutlinePiece::Arc(Arc { centre, radius, start, end, counter_clockwise });
         vec![arc(left, right), arc(right, left)]
     }
 
@@ -152,8 +153,8 @@ mod tests {
     #[test]
     fn a_square_is_one_curve() {
         let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
-        let pieces: Vec<Piece> =
-            (0..4).map(|k| Piece::Segment([corners[k], corners[(k + 1) % 4]])).collect();
+        let pieces: Vec<OutlinePiece> =
+            (0..4).map(|k| OutlinePiece::Segment([corners[k], corners[(k + 1) % 4]])).collect();
         assert_eq!((loops(&pieces), area(&pieces)), (1, 4.0));
     }
 }

@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 use proptest::prelude::*;
 use walpha::Alpha;
 use walpha::reproduce::plane::{
-    Curvature, EksShape, Piece, WeightedPlaneShape, eks_shape, sample_discs, sample_points,
+    Curvature, EksShape, OutlinePiece, WeightedPlaneShape, eks_shape, sample_discs, sample_points,
     weighted_plane_shape,
 };
 
@@ -179,7 +179,7 @@ proptest! {
         for (k, piece) in hull.outline.iter().enumerate() {
             let next = &hull.outline[(k + 1) % hull.outline.len()];
             prop_assert_eq!(piece.ends()[1], next.ends()[0]);
-            let Piece::Arc(arc) = piece else { panic!("{piece:?} should be an arc") };
+            let OutlinePiece::Arc(arc) = piece else { panic!("{piece:?} should be an arc") };
             prop_assert!(arc.counter_clockwise && arc.sweep() <= TAU / 2.0 + 1e-6);
             for p in &points {
                 let apart = (p[0] - arc.centre[0]).hypot(p[1] - arc.centre[1]);
@@ -221,7 +221,7 @@ proptest! {
 }
 
 /// How often an outline winds around a place.
-fn winding(outline: &[Piece], place: [f64; 2]) -> i32 {
+fn winding(outline: &[OutlinePiece], place: [f64; 2]) -> i32 {
     let step = |a: [f64; 2], b: [f64; 2]| {
         let (a, b) = ([a[0] - place[0], a[1] - place[1]], [b[0] - place[0], b[1] - place[1]]);
         (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1])
@@ -229,7 +229,7 @@ fn winding(outline: &[Piece], place: [f64; 2]) -> i32 {
     let angle: f64 = outline
         .iter()
         .map(|piece| {
-            let Piece::Arc(arc) = piece else { panic!("{piece:?} should be an arc") };
+            let OutlinePiece::Arc(arc) = piece else { panic!("{piece:?} should be an arc") };
             (0..128)
                 .map(|k| step(arc.at(f64::from(k) / 128.0), arc.at(f64::from(k + 1) / 128.0)))
                 .sum::<f64>()

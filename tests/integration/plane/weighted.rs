@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use proptest::prelude::*;
 use walpha::Class;
-use walpha::reproduce::plane::{Arc, Piece};
+use walpha::reproduce::plane::{Arc, OutlinePiece};
 
 use super::{lattice, places, weighted};
 
@@ -80,7 +80,7 @@ fn union_agrees(points: &[[f64; 2]], weights: &[f64], alpha: f64) {
         assert!(cell.boundary.iter().zip(starts).all(|(piece, next)| piece.ends()[1] == next));
     }
     let tiles: f64 = cells.iter().flat_map(|cell| &cell.boundary).map(area_under).sum();
-    let whole: f64 = outline.iter().map(|&arc| area_under(&Piece::Arc(arc))).sum();
+    let whole: f64 = outline.iter().map(|&arc| area_under(&OutlinePiece::Arc(arc))).sum();
     assert!((tiles - whole).abs() < 1e-6 * whole.max(1.0), "{tiles} {whole}");
 }
 
@@ -209,7 +209,7 @@ pub fn betti(arcs: &[Arc]) -> [u64; 2] {
         let (mut at, mut area) = (first, 0.0);
         loop {
             used[at] = true;
-            area += area_under(&Piece::Arc(arcs[at]));
+            area += area_under(&OutlinePiece::Arc(arcs[at]));
             let end = arcs[at].end;
             let gap = |k: &usize| (arcs[*k].start[0] - end[0]).hypot(arcs[*k].start[1] - end[1]);
             at = (0..arcs.len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap();
@@ -225,10 +225,10 @@ pub fn betti(arcs: &[Arc]) -> [u64; 2] {
 }
 
 /// Half the integral of x dy − y dx along a piece; around a region it sums to the area.
-pub fn area_under(piece: &Piece) -> f64 {
+pub fn area_under(piece: &OutlinePiece) -> f64 {
     let arc = match piece {
-        Piece::Segment([a, b]) => return (a[0] * b[1] - a[1] * b[0]) / 2.0,
-        Piece::Arc(arc) => arc,
+        OutlinePiece::Segment([a, b]) => return (a[0] * b[1] - a[1] * b[0]) / 2.0,
+        OutlinePiece::Arc(arc) => arc,
     };
     let (from, sweep) = (arc.start_angle(), arc.sweep());
     let to = from + sweep;

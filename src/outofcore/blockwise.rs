@@ -10,10 +10,11 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::Monitor;
 
-use super::whole::Piece;
+use super::whole::MergedBlock;
 use super::{Alone, BlocksError, Merged, Plan, Team};
 use crate::export::{
-    Corners, Filled, Made, Membership, NewFolder, Target, put_all, write_grid, write_surface,
+    Filled, Membership, NewFolder, PointData, Provenance, Target, put_all, write_grid,
+    write_surface,
 };
 use crate::shape::{Complex, Surface};
 
@@ -21,7 +22,7 @@ use crate::shape::{Complex, Surface};
 /// others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub enum Pieces {
+pub enum BlockwiseFormat {
     /// `.pvtu`: all simplices, as [`Vtu`](crate::export::Vtu) has them.
     Grid,
     /// `.pvtp`: boundary, singular edges and vertices, as [`Vtp`](crate::export::Vtp) has them.
@@ -31,7 +32,7 @@ pub enum Pieces {
     Arrays,
 }
 
-impl Pieces {
+impl BlockwiseFormat {
     /// The formats, and the extensions of what they are opened by.
     pub const ALL: &[(Self, &str)] = &[
         (Self::Grid, "pvtu"),
@@ -48,7 +49,7 @@ impl Pieces {
         match self {
             Self::Grid | Self::Surface => {
                 Target::check(path)?;
-                Target::check(&Kind::folder(path))?;
+                Target::check(&VtkFormat::folder(path))?;
             }
             #[cfg(feature = "zarr")]
             Self::Arrays => {
@@ -82,7 +83,7 @@ impl Pieces {
     /// has what was merged, the file that names them; arrays are written by the first alone.
     ///
     /// # Errors
-    /// As [`Pieces::write`]. The others of the team would wait for a process that ends with an error.
+    /// As [`BlockwiseFormat::write`]. The others of the team would wait for a process that ends with an error.
     pub fn write_with(
         self,
         plan: &Plan,
@@ -120,8 +121,8 @@ impl Pieces {
         monitor: &Monitor,
     ) -> Result<Written, BlocksError> {
         match self {
-            Self::Grid => Kind::Grid.fill(plan, merged, path, team, monitor),
-            Self::Surface => Kind::Surface.fill(plan, merged, path, team, monitor),
+            Self::Grid => VtkFormat::Grid.fill(plan, merged, path, team, monitor),
+            Self::Surface => VtkFormat::Surface.fill(plan, merged, path, team, monitor),
             #[cfg(feature = "zarr")]
             Self::Arrays => {
                 let arrays = merged
@@ -144,12 +145,12 @@ pub(crate) struct Written {
 
 /// What is written.
 #[derive(Clone, Copy)]
-pub(super) enum Kind {
+pub(super) enum VtkFormat {
     Grid,
     Surface,
 }
 
-impl Kind {
+impl VtkFormat {
     /// Where the files of blocks go.
     pub(super) fn folder(path: &Path) -> PathBuf {
         path.with_extension("")
@@ -189,7 +190,7 @@ impl Kind {
         let work = monitor.units(own.len() as u64);
         let fill = |block: usize| -> Result<Option<(usize, Filled)>, BlocksError> {
             work.add(1)?;
-            let piece = Piece::read(plan, block, &numbers[block])?;
+            let piece = MergedBlock::read(plan, block, &numbers[block])?;
             if piece.complex.vertices.is_empty() && piece.complex.edges.is_empty() {
                 return Ok(None);
             }
@@ -241,7 +242,7 @@ impl Kind {
             arrays(of_cells),
         )?;
         for name in names {
-            writeln!(out, "<Piece Source=\"{}\"/>", escaped(name))?;
+            writeln!(out, "<MergedBlock Source=\"{}\"/>", escaped(name))?;
         }
         write!(out, "</{kind}>\n</VTKFile>\n")
     }
@@ -252,20 +253,20 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
-impl Piece {
-    fn write(&self, kind: Kind, plan: &Plan, out: &mut dyn Write) -> std::io::Result<()> {
+impl MergedBlock {
+    fn write(&self, kind: VtkFormat, plan: &Plan, out: &mut dyn Write) -> std::io::Result<()> {
         let job = &plan.job;
-        let corners = Corners {
+        let corners = PointData {
             positions: &self.positions,
             weights: &self.weights,
             values: Some(&self.values),
             voxels: Some(&self.voxels),
         };
         let coordinates = job.units.coordinates_of(&job.frame);
-        let made = Made { alpha: plan.alpha(), coordinates, input: Some(&job.input) };
+        let made = Provenance { alpha: plan.alpha(), coordinates, input: Some(&job.input) };
         match kind {
-            Kind::Grid => write_grid(&self.complex, &self.corners(), &corners, &made, out),
-            Kind::Surface => {
+            VtkFormat::Grid => write_grid(&self.complex, &self.corners(), &corners, &made, out),
+            VtkFormat::Surface => {
                 let surface = Surface::of_complex(&self.complex);
                 let parts = Membership { components: &self.components, sheets: Some(&self.sheets) };
                 write_surface(&surface, &corners, &parts, &made, out)

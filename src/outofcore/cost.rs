@@ -7,14 +7,14 @@ use crate::shape::{AT_WORK, PlanError, ShapeError};
 use crate::volume::{GrayRange, Source};
 
 use super::field::Field;
-use super::plan::{SILENT, TILE_SAMPLE};
+use super::plan::{DEFAULT_MEMORY, TILE_SAMPLE};
 use super::{BlocksError, Cutting, Job};
 
 /// What a job will cost, by a model: as if its blocks were cubes, three tenths of the volume were filled evenly with
 /// points, and the cores were those of the machine in `docs/clusters.md`, which has what was measured. Nothing of the volume is read.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
-pub struct Price {
+pub struct CostEstimate {
     /// Samples of the volume.
     pub samples: u64,
     /// Points that will be selected.
@@ -59,13 +59,13 @@ const PEAK: f64 = 8.0;
 ///
 /// # Errors
 /// As [`Job::check`]; a selection whose count is known only when the volume was read.
-pub fn price(job: &Job, cutting: Cutting) -> Result<Price, BlocksError> {
+pub fn estimate_cost(job: &Job, cutting: Cutting) -> Result<CostEstimate, BlocksError> {
     job.check()?;
     let source = Source::open(&job.input, &job.recipe.read)?;
     let model = Model::new(job, &source)?;
     let blocks = match cutting.blocks {
         Some(blocks) => blocks as u64,
-        None => model.blocks(cutting.memory.unwrap_or(SILENT))?,
+        None => model.blocks(cutting.memory.unwrap_or(DEFAULT_MEMORY))?,
     };
     let Model { samples: n, points: p, .. } = model;
     let size = source.dtype().size() as f64;
@@ -78,7 +78,7 @@ pub fn price(job: &Job, cutting: Cutting) -> Result<Price, BlocksError> {
         Decomposition::Standard => IN_FILE * n as u64,
     };
     let (halo_share, around) = (model.halo(blocks), n * model.around(blocks));
-    Ok(Price {
+    Ok(CostEstimate {
         samples: n as u64,
         points: p as u64,
         blocks,
