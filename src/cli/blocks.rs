@@ -1,6 +1,4 @@
-//! `walpha blocks`: one shape in pieces that other processes or machines compute.
-//!
-//! What `walpha blocks` prints about its steps.
+//! `walpha blocks`: a shape in blocks that other processes or machines compute, and what each step prints.
 
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
@@ -288,7 +286,7 @@ pub(super) fn job(args: &InputArgs, recipe: Recipe) -> anyhow::Result<Job> {
     })
 }
 
-/// What a plan is.
+/// Printed after planning.
 #[derive(Serialize)]
 pub(super) struct PlanSummary {
     folder: String,
@@ -336,7 +334,7 @@ impl Display for PlanSummary {
     }
 }
 
-/// What work will cost.
+/// The cost of the work, estimated.
 #[derive(Serialize)]
 #[serde(transparent)]
 pub(super) struct CostSummary(pub CostEstimate);
@@ -365,7 +363,7 @@ impl Display for CostSummary {
     }
 }
 
-/// What was run.
+/// Printed after running blocks.
 #[derive(Serialize)]
 pub(super) struct RunSummary {
     pub folder: String,
@@ -381,13 +379,13 @@ impl Display for RunSummary {
     }
 }
 
-/// What was found of the files of a plan.
+/// Printed after checking the files of a plan.
 #[derive(Serialize)]
 pub(super) struct CheckSummary {
     folder: String,
     /// What identifies the plan; nothing where it cannot be read.
     plan: Option<String>,
-    /// How many there should be.
+    /// Number of blocks of the plan.
     blocks: Option<usize>,
     missing: Vec<usize>,
     findings: Vec<FileFinding>,

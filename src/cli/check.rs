@@ -79,7 +79,7 @@ const MOST_ENUMERATED: usize = 200;
 const MOST_PRINTED: usize = 20;
 const MOST_LISTED: usize = 1000;
 
-/// What was found in a complex or filtration.
+/// Printed after checking a complex or filtration.
 #[derive(Serialize)]
 struct CheckSummary<F, C> {
     schema_version: u32,
@@ -320,7 +320,7 @@ impl Check {
     }
 }
 
-/// What is judged: the name of INPUT, and what of it.
+/// The name of INPUT, and which part of it is checked.
 struct Subject<'a> {
     input: &'a str,
     judged: String,

@@ -1,6 +1,4 @@
-//! What was said on the command line, and whether it can have an effect.
-//!
-//! What is read is not written over, unless `--in-place` says so.
+//! The options that were typed: those without effect are refused, and inputs are kept from being overwritten.
 
 use std::fmt;
 use std::path::Path;

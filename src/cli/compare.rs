@@ -1,6 +1,4 @@
-//! `walpha compare`: how do two complexes or filtrations differ?
-//!
-//! Complexes and filtrations that any program wrote.
+//! `walpha compare`: how two complexes or filtrations differ; and how such files are read.
 
 use std::fmt::{self, Display};
 use std::io::ErrorKind;
@@ -98,7 +96,7 @@ impl<C: Display> Display for CompareSummary<C> {
     }
 }
 
-/// What a file holds, to be judged or compared.
+/// A file to check or compare.
 #[expect(clippy::large_enum_variant, reason = "there are one or two, moved a few times")]
 pub(super) enum CheckFile {
     /// A complex, whose fields fit together.
@@ -132,7 +130,7 @@ pub(super) fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<CheckFi
     judged.map_err(|error| refusal(path, error))
 }
 
-/// What was read, or why it was not.
+/// Opens a file, or explains why it cannot.
 fn opened(path: &Path) -> anyhow::Result<AnyFile> {
     match AnyFile::open(path) {
         Ok(file) => Ok(file),

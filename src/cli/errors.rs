@@ -1,6 +1,4 @@
-//! Errors of the command itself, and the advice of all errors in the words of its options.
-//!
-//! Errors in three lines: what could not be done, why, and what to do next.
+//! Errors of the command, and how all errors are printed: what could not be done, why, and what to do next.
 
 use std::error::Error;
 use std::io::IsTerminal;
@@ -76,10 +74,10 @@ macro_rules! fail_usage {
 
 pub(crate) use {command_error, fail, fail_usage};
 
-/// Lists the library's errors that know what to do.
+/// Lists the errors of the library that have advice.
 macro_rules! advising {
     ($($(#[$condition:meta])? $error:ty),* $(,)?) => {
-        /// What an error of the library knows about what to do.
+        /// Advice of an error of the library.
         fn of_library(error: &(dyn Error + 'static)) -> Option<Advice> {
             $($(#[$condition])? {
                 if let Some(error) = error.downcast_ref::<$error>() {
@@ -126,7 +124,7 @@ impl From<AlphaError> for CommandError {
     }
 }
 
-/// What an error of the checker knows about what to do.
+/// Advice of an error of the checker.
 fn of_checker(error: &(dyn Error + 'static)) -> Option<&'static str> {
     if let Some(error) = error.downcast_ref::<AlphaError>() {
         return Some(error.advice());
@@ -143,7 +141,7 @@ fn of_checker(error: &(dyn Error + 'static)) -> Option<&'static str> {
     error.downcast_ref::<CompareError>()?.advice()
 }
 
-/// What an error knows about what to do, in the words of the command.
+/// Advice of any error, with settings named as options.
 pub(super) fn advice(error: &(dyn Error + 'static)) -> Option<String> {
     match error.downcast_ref::<CommandError>() {
         Some(said) => said.next.clone(),
@@ -153,7 +151,7 @@ pub(super) fn advice(error: &(dyn Error + 'static)) -> Option<String> {
     }
 }
 
-/// What the command calls a setting.
+/// The option for a setting.
 pub(super) fn option(setting: Setting) -> String {
     match setting {
         Setting::Format => "--input-format".into(),

@@ -59,7 +59,7 @@ struct FiltrationSummary {
     /// Outside of the periodic box, and moved into it; absent without a box.
     #[serde(skip_serializing_if = "Option::is_none")]
     folded: Option<usize>,
-    /// Of points and all lengths; values are in the square.
+    /// Unit of points and all lengths; values are in its square.
     coordinates: Coordinates,
     /// The α that weights are in proportion to; null where they need none.
     alpha_ref: Option<Parameter>,

@@ -28,19 +28,19 @@ pub(super) struct Global {
     pub(super) piped: bool,
 }
 
-/// What is above options that all commands have, behind their own.
+/// Heading of the options that all commands share.
 pub(super) const EVERY_COMMAND: &str = "Every command";
-/// The exit code of what cannot be done.
+/// Exit code of a failure.
 pub(super) const FAILURE: u8 = 1;
-/// The exit code of wrong arguments.
+/// Exit code of wrong arguments.
 pub(super) const USAGE: u8 = 2;
-/// The exit code of a fault of the program, as Rust has it.
+/// Exit code of a panic, as Rust has it.
 pub(super) const PANICKED: u8 = 101;
-/// The exit code after nobody read to the end, as shells have it for what the signal PIPE ends.
+/// Exit code after a broken pipe, as shells have it for the signal PIPE.
 pub(super) const UNREAD: u8 = 141;
-/// The exit code of a check or comparison that found something.
+/// Exit code of a check or comparison that found differences.
 pub(super) const DIFFERENT: u8 = 3;
-/// Bytes of the stack of a thread, as rayon has it.
+/// Stack of a thread in bytes, as in rayon.
 pub(super) const STACK: usize = 2 << 20;
-/// The exit code after Ctrl-C, as shells have it.
+/// Exit code after Ctrl-C, as shells have it.
 pub(super) const INTERRUPTED: i32 = 130;

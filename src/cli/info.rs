@@ -58,7 +58,7 @@ enum Content {
         direction: [[f64; 3]; 3],
         #[serde(flatten)]
         coordinates: Coordinates,
-        /// Of the values that are finite; null where none is.
+        /// Range of the finite values; null where there is none.
         min: Option<f32>,
         max: Option<f32>,
         /// Samples that are NaN or infinite.
@@ -74,7 +74,7 @@ enum Content {
     /// A volume with several values in each voxel, which is not read.
     Unread {
         format: String,
-        /// What a voxel holds.
+        /// Content of a voxel.
         voxels: String,
         /// Null where that takes reading it.
         dims: Option<[u64; 3]>,
@@ -89,7 +89,7 @@ enum Content {
         /// Whether the weights are squares of radii, which the file has in place of weights.
         of_radii: bool,
         values: bool,
-        /// What the file lists besides points.
+        /// Cells that the file lists.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         cells: Vec<CellCount>,
         /// The cell in which they repeat; absent where the file states none.
@@ -213,7 +213,7 @@ impl Info {
     }
 }
 
-/// What is seen of a volume.
+/// Statistics of a volume.
 struct Seen {
     dims: Dims,
     frame: Frame,
@@ -258,7 +258,7 @@ impl std::fmt::Display for InfoSummary {
 }
 
 impl Content {
-    /// What the points are meant for.
+    /// Purpose of the points.
     fn fmt_meant(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self::Points { alpha, gray_range, coordinates, .. } = self else { return Ok(()) };
         if let Some(alpha) = alpha {

@@ -1,6 +1,4 @@
-//! `walpha interpolate`: F on a grid, and how far it is from the volume.
-//!
-//! `walpha interpolate --curve`: error against the number of points.
+//! `walpha interpolate`: F on a grid and its error, or with `--curve` the error against the number of points.
 
 use std::fmt::{self, Display};
 use std::io::Write;
@@ -89,12 +87,12 @@ struct InterpolateSummary {
     interpolation: Interpolation,
 }
 
-/// What was sampled, and its error where there is a volume to compare with.
+/// The samples, and their error where there is a volume to compare with.
 #[derive(Serialize)]
 struct Interpolation {
     /// Samples written, along x, y and z.
     grid: [usize; 3],
-    /// Those of them on the shape.
+    /// Samples on the shape.
     on_shape: usize,
     /// On the samples of INPUT that the shape covers; null for points.
     inside: Option<Error>,
@@ -370,7 +368,7 @@ fn counts(volume: &Volume, select: &SelectArgs) -> anyhow::Result<Vec<u64>> {
     Ok([0.0625, 0.125, 0.25, 0.5, 1.0, 2.0].map(|f| (f * whole).round() as u64).into())
 }
 
-/// What the curve is written as.
+/// Formats of the curve.
 const EXTENSIONS: &[&str] = &[
     "csv",
     #[cfg(feature = "render")]

@@ -1,6 +1,4 @@
-//! What goes to standard output.
-//!
-//! The warnings of a run, which the JSON of its report repeats: standard error may not be looked at.
+//! Standard output, and the warnings of a run, which JSON reports repeat.
 
 use std::fmt::{self, Debug, Display};
 use std::io::{self, ErrorKind, Write};
@@ -103,10 +101,10 @@ pub(super) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error.chain().any(broken)
 }
 
-/// What was heard so far.
+/// Warnings so far.
 static HEARD: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Hears warnings, once each.
+/// Collects warnings, once each.
 pub(super) struct Listener;
 
 impl<S: Subscriber> Layer<S> for Listener {

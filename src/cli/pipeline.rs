@@ -1,10 +1,4 @@
-//! From an input to weighted points, with what is reported about it.
-//!
-//! Reading INPUT.
-//!
-//! What coverage is a share of.
-//!
-//! Interpolants that cover a whole volume, in gray levels.
+//! From INPUT to weighted points and shapes, as all commands go.
 
 use std::fmt::{self, Display};
 use std::path::Path;
@@ -27,7 +21,7 @@ use crate::{
     Alpha, AlphaShape, GrayRange, LengthUnit, PointsError, Recipe, Units, Volume, VolumeError,
 };
 
-/// What is reported about a volume.
+/// Reported numbers of a volume.
 #[derive(Clone, Copy)]
 pub(super) struct VolumeSummary {
     pub dims: [usize; 3],
@@ -55,7 +49,7 @@ pub(super) fn weighted_points(
     Ok((weighed, source.as_ref().map(VolumeSummary::of)))
 }
 
-/// The same, and the volume they come from.
+/// Weighted points, and the volume they were selected from.
 pub(super) fn points_and_volume(
     args: &InputArgs,
     recipe: &Recipe,
@@ -67,7 +61,7 @@ pub(super) fn points_and_volume(
     Ok(progress.watch(|monitor| recipe.weigh(read, values, monitor))?)
 }
 
-/// What a file of a model keeps besides its points, but for their order.
+/// Everything a model file stores besides its points, except their order.
 pub(super) fn model_facts(weighed: &Weighed, volume: Option<&VolumeSummary>) -> ModelFacts {
     let origin = weighed.origin;
     ModelFacts {
@@ -192,9 +186,9 @@ pub(super) fn accept(input: &Input, args: &InputArgs) -> Result<(), CommandError
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Domain {
     pub volume: f64,
-    /// Of length; the volume is in its cube.
+    /// Unit of length; the volume is in its cube.
     pub unit: LengthUnit,
-    /// What it is the volume of.
+    /// The region measured.
     pub of: &'static str,
 }
 

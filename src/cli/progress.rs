@@ -11,7 +11,7 @@ use super::global::{Global, STACK};
 use crate::progress::{Listener, Monitor, Stage};
 use crate::threads;
 
-/// What a terminal shows. There is one, as there is one standard error.
+/// The progress bar: one, as there is one standard error.
 static BAR: LazyLock<ProgressBar> = LazyLock::new(|| {
     ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
         .with_style(style(WITHOUT_LENGTH))
@@ -19,7 +19,7 @@ static BAR: LazyLock<ProgressBar> = LazyLock::new(|| {
 
 /// The bar of a stage that does not report how far it is.
 const WITHOUT_LENGTH: &str = "{spinner} {msg} {elapsed}";
-/// Of one that does.
+/// The bar of a stage that reports how far it is.
 const WITH_LENGTH: &str = "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left, {rate}";
 
 /// Times stages by name and shows the running one on a terminal.
@@ -32,7 +32,7 @@ pub(super) struct Progress {
 struct Times {
     started: Instant,
     stages: Vec<(&'static str, f64)>,
-    /// What is at work, and since when.
+    /// The running stage, and when it began.
     running: Option<(&'static str, Instant)>,
 }
 

@@ -10,7 +10,7 @@ use crate::outofcore::{Alone, Team};
 
 /// Which process this is of how many.
 pub(super) enum Ranks {
-    /// The only one.
+    /// The only process.
     Single,
     /// One of several that were started for one command, which cannot talk to each other. All but the first have
     /// nothing to do.
@@ -20,7 +20,7 @@ pub(super) enum Ranks {
     Connected(super::mpi::World),
 }
 
-/// What a launcher says.
+/// Rank and size that a launcher set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Launched {
     rank: usize,
@@ -41,7 +41,7 @@ const VARIABLES: [[&str; 2]; 4] = [
 ];
 
 impl Launched {
-    /// What the environment says, if there is more than one process.
+    /// Rank and size from the environment, if there is more than one process.
     fn of(variable: impl Fn(&str) -> Option<OsString>) -> Option<Self> {
         let number = |name: &str| variable(name)?.to_str()?.trim().parse::<usize>().ok();
         let launched = VARIABLES.iter().filter_map(|[size, rank]| {

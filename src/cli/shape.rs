@@ -1,6 +1,4 @@
-//! `walpha shape`: the whole pipeline.
-//!
-//! Where a shape goes.
+//! `walpha shape`: the whole pipeline, and its outputs.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -235,7 +233,7 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// What there is to say of the shape in the formats chosen.
+    /// Remarks of the chosen formats about the shape.
     pub(super) fn remarks(&self, shape: &AlphaShape) -> Vec<String> {
         let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
             let remark = exporter.remark(shape)?.with_names(option);

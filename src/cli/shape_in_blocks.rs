@@ -18,7 +18,7 @@ use crate::outofcore::{
 };
 use crate::progress::Stage;
 
-/// What processes do together. The first one reads the command line and sends it to the others.
+/// The work of a team. The first process reads the command line and sends it to the others.
 #[derive(Serialize, Deserialize)]
 pub(super) struct SharedWork {
     job: Job,
@@ -27,12 +27,12 @@ pub(super) struct SharedWork {
     folder: PathBuf,
     /// Where pieces go.
     pieces: Vec<(BlockwiseFormat, PathBuf)>,
-    /// Of each process.
+    /// Threads of each process.
     threads: u16,
 }
 
 impl SharedWork {
-    /// What the options ask for, in a [working folder](working_folder).
+    /// The work that the options ask for, in a [working folder](working_folder).
     pub(super) fn new(
         input: &InputArgs,
         recipe: Recipe,
@@ -62,7 +62,7 @@ impl SharedWork {
         Ok(report)
     }
 
-    /// What each process does.
+    /// The share of each process.
     fn share(
         &self,
         new: Option<NewFolder>,

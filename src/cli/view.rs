@@ -1,10 +1,4 @@
-//! `walpha view`: a page to look at.
-//!
-//! A level of detail: the shapes of one set of points.
-//!
-//! The level of an isosurface, as it is given on the command line.
-//!
-//! What `walpha view` did.
+//! `walpha view`: an interactive page.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -200,7 +194,7 @@ impl View {
         Ok((page, rendered.iter().map(DetailSummary::of).collect()))
     }
 
-    /// What the page shows besides the levels' numbers.
+    /// Parts of the page besides the numbers of levels.
     fn told(
         &self,
         weighed: &Weighed,
@@ -316,9 +310,9 @@ fn differences(
 /// A gray level, or a value of the file: `50` or `300v`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Isovalue {
-    /// As the wavelet stage has it.
+    /// A gray level.
     Gray(f64),
-    /// As the file has it.
+    /// A value of the file.
     Value(f64),
 }
 
@@ -362,7 +356,7 @@ pub(super) struct ViewSummary {
     /// The coarsest first; the shape's own is the last.
     pub details: Vec<DetailSummary>,
     pub bytes: usize,
-    /// What was left out for display, if anything.
+    /// What the page leaves out, if anything.
     pub simplified: Option<String>,
     pub file: String,
     pub seconds: BTreeMap<&'static str, f64>,
@@ -373,7 +367,7 @@ pub(super) struct ViewSummary {
 pub(super) struct DetailSummary {
     points: usize,
     levels: usize,
-    /// Of F, filled in, on all samples, in the values that are written; null without a volume.
+    /// RMSE of F, filled in, on all samples, in written values; null without a volume.
     rmse_filled: Option<f64>,
 }
 

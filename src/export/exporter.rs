@@ -6,7 +6,7 @@ use walpha_base::setters;
 
 use crate::shape::{AlphaShape, Surface};
 
-/// A way to write a shape down.
+/// A writer of shapes in one format.
 pub trait Exporter {
     /// Writes the whole file. The same shape gives the same bytes.
     ///
@@ -31,7 +31,7 @@ pub trait Exporter {
         }
     }
 
-    /// What whoever reads the file should know of this shape, if anything.
+    /// A remark for readers of the file, if this shape calls for one.
     fn remark(&self, _shape: &AlphaShape) -> Option<Advice> {
         None
     }
@@ -49,7 +49,7 @@ pub struct ExportOptions {
     /// Separate regular and singular facets, where some programs do not expect it: by groups (OBJ, edges
     /// and points too), colours (OFF) or numbers (PLY, components and sheets too).
     pub groups: bool,
-    /// What the shape was made of, recorded in the file: VTP and VTU.
+    /// The input of the shape, recorded in VTP and VTU files.
     pub input: Option<String>,
 }
 

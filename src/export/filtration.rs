@@ -16,11 +16,11 @@ use crate::volume::UnknownFormat;
 /// A format that filtrations are written in, chosen by file name extension.
 #[derive(Clone, Copy)]
 pub struct FiltrationFormat {
-    /// For people.
+    /// Its name, as users know it.
     pub name: &'static str,
     /// Its extension, without the dot.
     pub extension: &'static str,
-    /// What it holds.
+    /// Its content.
     pub about: &'static str,
     write: fn(&Ordered<'_>, &mut dyn Write, &Monitor) -> io::Result<()>,
 }
@@ -67,7 +67,7 @@ impl FiltrationFormat {
         self.write_monitored(ordered, out, &Monitor::noop())
     }
 
-    /// The same, which says how far it is and can be cancelled.
+    /// [`write`](Self::write) with progress and cancelling through `monitor`.
     ///
     /// # Errors
     /// Those of [`write`](Self::write), and one of the kind `Other` around [`Cancelled`](crate::progress::Cancelled).
@@ -87,7 +87,7 @@ impl fmt::Debug for FiltrationFormat {
     }
 }
 
-/// Those of some pairs whose simplices have different values.
+/// The pairs whose simplices have different values.
 fn lasting(ordered: &Ordered<'_>, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
     pairs.iter().copied().filter(|&pair| ordered.lasts(pair)).collect()
 }

@@ -7,11 +7,11 @@ use crate::volume::UnknownFormat;
 /// A format that shapes are written in, chosen by file name extension.
 #[derive(Clone, Copy)]
 pub struct Format {
-    /// For people.
+    /// Its name, as users know it.
     pub name: &'static str,
     /// Its extension, without the dot.
     pub extension: &'static str,
-    /// What it holds.
+    /// Its content.
     pub about: &'static str,
     /// Whether it holds the boundary alone, and so may be that of a solid.
     pub boundary: bool,

@@ -25,7 +25,7 @@ impl Exporter for Vtp {
     }
 }
 
-/// What a surface is part of.
+/// Components and sheets of a surface.
 pub(crate) struct Membership<'a> {
     /// The component of each point, by its number.
     pub components: &'a [u32],

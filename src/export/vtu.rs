@@ -37,7 +37,7 @@ impl<'a> Provenance<'a> {
     }
 }
 
-/// What is known of the points that simplices have as corners, by their numbers.
+/// Data of the points that are corners of simplices, by number.
 pub(crate) struct PointData<'a> {
     pub positions: &'a [[f64; 3]],
     pub weights: &'a [f64],
@@ -196,7 +196,7 @@ pub(super) struct Appended {
     pub data: Vec<u8>,
 }
 
-/// What the numbers of `class` mean.
+/// Meaning of the numbers of `class`.
 const LEGEND: &str = "0 exterior, 1 interior, 2 regular, 3 singular";
 
 impl Appended {

@@ -66,7 +66,7 @@ pub struct Coefficients {
     decomposition: Decomposition,
 }
 
-/// Transforms samples `[z, y, x]`. O(n), parallel, the same on any number of threads.
+/// Transforms samples `[z, y, x]`. O(n), parallel, independent of the number of threads.
 pub fn forward(samples: ArrayView3<'_, f32>, decomposition: Decomposition) -> Coefficients {
     let mut values = Array3::zeros(samples.dim());
     Zip::from(&mut values).and(samples).par_for_each(|value, &sample| *value = f64::from(sample));
@@ -128,10 +128,10 @@ impl Default for Tolerance {
     }
 }
 
-/// What truncation did.
+/// Result of a truncation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truncation {
-    /// What was asked for.
+    /// The tolerance asked for.
     pub asked: Tolerance,
     /// Coefficients that stay.
     pub kept: u64,
@@ -152,7 +152,7 @@ pub enum HaarError {
     Tolerance {
         /// The number given.
         given: f64,
-        /// What it was meant for.
+        /// The kind of tolerance.
         what: &'static str,
     },
     /// The truncated samples make no volume: they passed the range of `f32`.
@@ -205,7 +205,7 @@ impl Coefficients {
     /// of their index, the fewest stay for which the squares of the dropped ones sum to at most
     /// ε²; to 2⁻³⁴ of ε², so that rounding does not decide about sums of just ε².
     ///
-    /// O(n), the same on any number of threads. Zeros are always dropped when an error
+    /// O(n), independent of the number of threads. Zeros are always dropped when an error
     /// is asked for, so `Rms(0.0)` keeps the coefficients that are not 0.
     ///
     /// # Errors
@@ -227,7 +227,7 @@ impl Coefficients {
 }
 
 impl Truncation {
-    /// Of so many coefficients these were dropped.
+    /// The truncation of `total` coefficients of which `dropped` went.
     pub(crate) fn new(asked: Tolerance, total: u64, dropped: Dropped) -> Self {
         Self {
             asked,

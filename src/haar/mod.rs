@@ -63,7 +63,7 @@ pub fn smooth(volume: &Volume, options: &HaarOptions) -> Result<(Volume, Truncat
     smooth_monitored(volume, options, &Monitor::noop())
 }
 
-/// The same, which says how far it is and can be cancelled.
+/// [`smooth`] with progress and cancelling through `monitor`.
 ///
 /// # Errors
 /// Those of [`smooth`], and [`HaarError::Cancelled`].

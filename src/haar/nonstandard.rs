@@ -36,7 +36,7 @@ pub(super) struct Sums {
 }
 
 impl Sums {
-    /// So many samples.
+    /// A grid of samples.
     pub(super) fn of_samples(dims: [usize; 3]) -> Self {
         Self { axes: dims.map(Axis::of_samples), dims }
     }
@@ -53,7 +53,7 @@ impl Sums {
         level.each_bundle(flat, |bundle| level.forward(bundle));
     }
 
-    /// The same back.
+    /// Inverts one level.
     pub(super) fn inverse(&self, flat: &mut [f64], stride: usize) {
         let level = self.level(stride);
         level.each_bundle(flat, |bundle| level.inverse(bundle));
@@ -207,7 +207,7 @@ impl Bricks {
         1 << self.k
     }
 
-    /// How many bricks there are along x, y and z.
+    /// Number of bricks along x, y and z.
     pub(crate) fn count(self) -> [usize; 3] {
         self.dims.map(|n| n.div_ceil(self.side()))
     }
@@ -219,7 +219,7 @@ impl Bricks {
         self.strides().take(self.k as usize).for_each(|stride| sums.forward(values, stride));
     }
 
-    /// Back from that.
+    /// The inverse.
     pub(crate) fn inverse_fine(self, values: &mut [f64], dims: [usize; 3]) {
         let sums = Sums::of_samples(dims);
         let strides = self.strides().rev().filter(|&stride| stride < self.side());
@@ -234,7 +234,7 @@ impl Bricks {
         sums[0] /= whole_norm(self.dims);
     }
 
-    /// Back from that.
+    /// The inverse.
     pub(crate) fn inverse_coarse(self, sums: &mut [f64]) {
         let grid = Sums::of_cubes(self.dims, self.side());
         sums[0] *= whole_norm(self.dims);

@@ -27,7 +27,7 @@ pub struct Adaptive {
 }
 
 impl Adaptive {
-    /// So many points, whatever the error.
+    /// Selects `count` points, whatever the error.
     pub fn new(count: u64) -> Self {
         Self { count, rmse: 0.0, max_error: None }
     }
@@ -62,7 +62,7 @@ const FIRST_BATCH: usize = 32;
 /// at between batches: when that ends the selection, the last batch may have overshot the target.
 /// Fewer voxels than asked for suffice where their interpolant is perfect. A batch costs its
 /// insertions, samples in the cells that these make, and one pass over all errors; memory, 16 bytes a
-/// sample. The same on any number of threads.
+/// sample. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// A count below 8 or above the samples, a target or bound that is negative or NaN, missing samples, or
@@ -75,7 +75,7 @@ pub fn adaptive_voxels(
     adaptive_voxels_monitored(volume, goal, units, &Monitor::noop())
 }
 
-/// The same, which says how far it is and can be cancelled.
+/// [`adaptive_voxels`] with progress and cancelling through `monitor`.
 ///
 /// # Errors
 /// Those of [`adaptive_voxels`], and [`InterpolateError::Cancelled`].

@@ -1,6 +1,5 @@
-//! Barycentric coordinates of a place in a simplex, if it lies there: decided exactly.
-//!
-//! The two kinds of number in which barycentric coordinates are exact.
+//! Barycentric coordinates of a position in a simplex. Whether it lies there is decided exactly: in doubles
+//! where these are exact, behind an error bound, or in big integers.
 
 use std::cmp::Ordering;
 
@@ -67,7 +66,7 @@ impl Planes {
     }
 }
 
-/// What a coordinate may be off by where doubles round: 2⁻⁴³ ≈ 1.1e-13.
+/// Largest error of a coordinate where doubles round: 2⁻⁴³ ≈ 1.1e-13.
 const TOLERANCE: f64 = f64::from_bits((1023 - 43) << 52);
 
 fn in_box(corners: &[[f64; 3]], place: [f64; 3]) -> bool {
@@ -136,7 +135,7 @@ fn shares<T: Scalar, const N: usize>(parts: [T; N]) -> Option<[f64; 4]> {
     Some(shares)
 }
 
-/// What doubles alone can say.
+/// The answer of doubles with an error bound.
 enum Filtered {
     Outside,
     Inside([f64; 4]),

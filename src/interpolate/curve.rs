@@ -260,7 +260,7 @@ impl CurveBuilder<'_> {
 /// values, of which a gray level is `step`. What there is not is left empty.
 ///
 /// # Errors
-/// What the writer says.
+/// Errors of the writer.
 pub fn write_curve_csv(curve: &[CurvePoint], step: f64, out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,

@@ -39,7 +39,7 @@ pub enum InterpolateError {
     /// A target that no error can reach.
     #[error("{what} of {target} gray levels makes no sense as a target")]
     Target {
-        /// What is to be reached.
+        /// The kind of target.
         what: &'static str,
         /// The number.
         target: f64,

@@ -41,7 +41,7 @@ const LEAST: f64 = 2e-3;
 ///    half as large.
 ///
 /// The corners of the volume stay. `voxels` are samples of the volume, its corners among them, in any
-/// order; those that were never exchanged come first in the result, in that order. The same on any number
+/// order; those that were never exchanged come first in the result, in that order. The result does not depend on the number
 /// of threads. For n points a round takes about n removals and n/2 insertions, each of a few dozen cells.
 ///
 /// # Errors
@@ -54,7 +54,7 @@ pub fn exchange(
     exchange_monitored(volume, voxels, units, &Monitor::noop())
 }
 
-/// The same, which says how far it is and can be cancelled.
+/// [`exchange()`] with progress and cancelling through `monitor`.
 ///
 /// # Errors
 /// Those of [`exchange`], and [`InterpolateError::Cancelled`].
@@ -102,7 +102,7 @@ pub fn exchange_monitored(
     Ok(best)
 }
 
-/// What one round exchanges, by numbers of points.
+/// Points exchanged in one round, by number.
 struct Swap {
     leave: Vec<u32>,
     join: Vec<u32>,
@@ -165,25 +165,25 @@ fn pair(gains: &[Gain], losses: &[Loss], most: usize) -> Swap {
     swap
 }
 
-/// What the removal of a point would cost.
+/// Cost of removing a point.
 pub(super) struct Loss {
     /// The point, by its number.
     pub point: u32,
     /// The squared error added.
     pub loss: f64,
-    /// The points beside it.
+    /// Its neighbours.
     pub around: Vec<u32>,
 }
 
-/// What a new point would gain.
+/// Gain of inserting a point.
 pub(super) struct Gain {
     /// The point, by its number.
     pub point: u32,
     /// The squared error taken away.
     pub gain: f64,
-    /// The cells that would go.
+    /// The cells in conflict with it.
     pub removed: Vec<u32>,
-    /// The points that would be beside it.
+    /// The neighbours it would have.
     pub around: Vec<u32>,
 }
 
@@ -206,12 +206,12 @@ impl<'a> Trial<'a> {
         Ok(Self { volume, sampled, screen, samples })
     }
 
-    /// What [`Self::loss`] works with.
+    /// Scratch memory for [`Self::loss`].
     pub(super) fn workspace(&self) -> Result<Workspace, ShapeError> {
         Ok(Workspace::new(self.sampled.voxels().len())?)
     }
 
-    /// What the removal of a vertex costs, where it can be removed.
+    /// Cost of removing a vertex; `None` where it cannot be removed.
     pub(super) fn loss(
         &self,
         point: u32,

@@ -1,6 +1,4 @@
-//! The normal equations of the values of an interpolant, and conjugate gradients to solve them.
-//!
-//! Lists of numbers side by side.
+//! Values fitted by least squares: the normal equations, and conjugate gradients to solve them.
 
 use rayon::prelude::*;
 use walpha_base::memory::{NoMemory, afford, try_with_capacity};
@@ -19,20 +17,20 @@ const TOLERANCE: f64 = 1e-6;
 
 /// Simplices with linear functions on them.
 pub(super) trait PiecewiseLinear: Sync {
-    /// How many there are, or were.
+    /// One more than the largest number of a simplex.
     fn count(&self) -> usize;
-    /// The vertices of one; the first so many count.
+    /// The vertices of a simplex, and how many of the four count.
     fn vertices(&self, part: u32) -> ([u32; 4], usize);
-    /// The coordinates of a place in one, if it holds it.
+    /// The barycentric coordinates of a position in a simplex, if it lies there.
     fn coordinates(&self, part: u32, place: [f64; 3]) -> Option<[f64; 4]>;
-    /// F on one.
+    /// F on a simplex.
     fn value(&self, part: u32, shares: &[f64; 4]) -> f64;
 }
 
 /// Symmetric equations for the changes of values, in compressed rows: those of the diagonal apart.
 pub(super) struct Normal {
     starts: Vec<usize>,
-    /// Entries beside the diagonal: column and number.
+    /// Off-diagonal entries: column and number.
     entries: Vec<(u32, f64)>,
     diagonal: Vec<f64>,
     right: Vec<f64>,
@@ -40,7 +38,7 @@ pub(super) struct Normal {
 
 /// A solution of normal equations.
 pub(super) struct Solved {
-    /// What each value changes by.
+    /// The change of each value.
     pub change: Vec<f64>,
     /// Steps of conjugate gradients.
     pub steps: usize,
@@ -48,7 +46,7 @@ pub(super) struct Solved {
     pub residual: f64,
 }
 
-/// An equation: its entries beside the diagonal, the diagonal and the right side.
+/// An equation: its off-diagonal entries, diagonal and right-hand side.
 #[derive(Default)]
 struct Row {
     entries: Vec<(u32, f64)>,
@@ -207,7 +205,7 @@ pub(super) fn samples_of(
     })
 }
 
-/// Lists of numbers, one for each of so many keys, side by side.
+/// A list of numbers for each key, in one array.
 pub(super) struct Lists {
     starts: Vec<u32>,
     items: Vec<u32>,

@@ -1,6 +1,5 @@
-//! To which simplex each sample of a grid belongs.
-//!
-//! The samples in a cell whose corners are samples, too: in integers.
+//! Which samples of a grid lie in a simplex: by rounded planes and exact tests, or in integers where corners are
+//! samples, too.
 
 use std::ops::Range;
 use std::sync::atomic::AtomicU32;

@@ -19,7 +19,7 @@ pub struct Resampled {
 
 impl Interpolant<'_> {
     /// F on a grid. Each sample belongs to one simplex, decided as [`Interpolant`] says. O(simplices
-    /// + samples), in parallel over both, the same on any number of threads; 8 bytes a sample.
+    /// + samples), in parallel over both, independent of the number of threads; 8 bytes a sample.
     ///
     /// # Errors
     /// Values that pass the range of `f32`; no memory for as many samples.
@@ -85,7 +85,7 @@ impl Resampled {
     }
 }
 
-/// Samples summed at a time. Fixed, so that sums are the same on any number of threads.
+/// Samples summed at a time. Fixed, so that sums are independent of the number of threads.
 const CHUNK: usize = 1 << 16;
 
 /// How far F is from a volume, on the samples that the shape covers.
@@ -147,7 +147,7 @@ impl Deviation {
         }
     }
 
-    /// The same where a gray level is `step` of another unit.
+    /// The deviation in another unit, of which a gray level is `step`.
     #[must_use]
     pub fn scaled(&self, step: f64) -> Self {
         let scaled = |error: Option<f64>| error.map(|error| error * step);

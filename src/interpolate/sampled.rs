@@ -1,6 +1,4 @@
-//! F at the samples of a volume, kept while points come and leave.
-//!
-//! The cells of a growing triangulation, and to which of several a place belongs.
+//! F at the samples of a volume, updated while points are inserted and removed.
 
 use std::ops::Range;
 use std::sync::atomic::AtomicU32;
@@ -33,9 +31,9 @@ pub(super) struct Sampled<'a> {
     /// Whether no operation on places of samples rounds.
     exact: bool,
     growing: Growing,
-    /// The sample of each point by its number in the triangulation; that of the ghost is 0.
+    /// The sample of each point, by its number in the triangulation; 0 for the ghost.
     voxels: Vec<u32>,
-    /// Its index (x, y, z).
+    /// Its index (x, y, z) in the volume.
     indices: Vec<[i64; 3]>,
     /// Values of points by their numbers in the triangulation.
     values: Vec<f64>,
@@ -46,7 +44,7 @@ pub(super) struct Sampled<'a> {
 }
 
 impl<'a> Sampled<'a> {
-    /// Begins with some samples.
+    /// The interpolant of some samples.
     ///
     /// # Errors
     /// Samples that span no volume; no memory.
@@ -75,7 +73,7 @@ impl<'a> Sampled<'a> {
         Ok(sampled)
     }
 
-    /// Makes more samples points.
+    /// Inserts samples as points.
     ///
     /// # Errors
     /// No memory.
@@ -86,13 +84,13 @@ impl<'a> Sampled<'a> {
         Ok(())
     }
 
-    /// Gives samples numbers of points, which they are not yet.
+    /// Registers samples as points that are not inserted yet; returns their numbers.
     pub(super) fn name(&mut self, voxels: &[u32]) -> Range<u32> {
         self.describe(voxels);
         self.growing.register(&positions(self.volume, self.units, voxels))
     }
 
-    /// Takes points out and puts others in, by their numbers.
+    /// Removes points and inserts others, by their numbers.
     ///
     /// # Errors
     /// No memory.
@@ -142,7 +140,7 @@ impl<'a> Sampled<'a> {
         &self.voxels
     }
 
-    /// The numbers of the points there are.
+    /// Numbers of the vertices.
     pub(super) fn vertices(&self) -> Vec<u32> {
         let all = Growing::FIRST..self.voxels.len() as u32;
         all.filter(|&v| self.growing.is_vertex(v)).collect()

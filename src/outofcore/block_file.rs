@@ -1,7 +1,5 @@
-//! The files of blocks: a header in JSON, then arrays of little-endian numbers. The start has the digest of the
-//! header, which has those of the arrays, so that no byte is used unseen.
-//!
-//! The simplices in the file of a block.
+//! Files of blocks: a header in JSON, then arrays of little-endian numbers. The start has the digest of the
+//! header, which has those of the arrays, so that every byte is verified.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -20,10 +18,10 @@ const MAGIC: &[u8; 16] = b"walpha block 2\r\n";
 /// Bytes before the header.
 const START: usize = 40;
 
-/// What precedes the arrays.
+/// The header, before the arrays.
 #[derive(Serialize, Deserialize)]
 struct Header {
-    /// The program's.
+    /// Version of the program.
     version: String,
     /// The digest of the plan.
     plan: Digest,
@@ -33,11 +31,11 @@ struct Header {
     arrays: Vec<Array>,
 }
 
-/// What is said of an array.
+/// Name, length and digest of an array.
 #[derive(Serialize, Deserialize)]
 struct Array {
     name: String,
-    /// How many bytes it has.
+    /// Its length in bytes.
     bytes: u64,
     digest: Digest,
 }
@@ -222,7 +220,7 @@ impl BlockFile {
     /// An array of numbers that are below a bound each.
     ///
     /// # Errors
-    /// As [`read`](Self::read); one is not.
+    /// The errors of [`read`](Self::read); a number out of range.
     pub(super) fn below<T: Number + Ord>(
         &self,
         name: &str,
@@ -238,7 +236,7 @@ impl BlockFile {
     /// The points by their index in the volume, ascending.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// The errors of [`read`](Self::read).
     pub(super) fn voxels(&self) -> Result<Vec<u64>, BlocksError> {
         let voxels = self.below("voxels", self.samples)?;
         if !voxels.is_sorted_by(|a, b| a < b) {
@@ -270,7 +268,7 @@ impl BlockFile {
     }
 }
 
-/// The facts of a block: all that merging needs but for keys and rows.
+/// Summary of a block: all that merging needs besides keys and rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct BlockSummary {
     pub points: u64,
@@ -294,7 +292,7 @@ pub(super) struct Weights {
     pub sum: Sum,
 }
 
-/// What a block has of a component.
+/// The part of a component in a block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct BlockComponent {
     /// The smallest vertex, by its index in the volume.
@@ -302,7 +300,7 @@ pub(super) struct BlockComponent {
     pub sums: ComponentSums,
 }
 
-/// What a block has of a sheet.
+/// The part of a sheet in a block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct BlockSheet {
     /// Where it is met first in the order of the rows; `None` where the block has no row of it.
@@ -315,7 +313,7 @@ pub(super) struct BlockSheet {
 pub(super) struct Met {
     pub is_edge: bool,
     pub row: [u64; 3],
-    /// Of a singular facet: its second side.
+    /// Whether it is the second side of a singular facet.
     pub is_second: bool,
     /// The component, within the block.
     pub component: u32,

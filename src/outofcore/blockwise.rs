@@ -1,7 +1,5 @@
-//! Outputs that never are in memory as a whole: VTK's parallel formats, a file for each block and one that names
-//! them; and arrays of Zarr.
-//!
-//! VTK's parallel formats: a file for each block, and one that names them.
+//! Outputs written block by block, never whole in memory: VTK's parallel formats (a file for each block and an
+//! index), and arrays of Zarr.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -63,7 +61,7 @@ impl BlockwiseFormat {
         Ok(())
     }
 
-    /// What the extension of a path asks for.
+    /// The format for the extension of a path.
     pub fn of(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?;
         Self::ALL.iter().find(|(_, known)| extension == *known).map(|(pieces, _)| *pieces)
@@ -83,7 +81,7 @@ impl BlockwiseFormat {
     /// has what was merged, the file that names them; arrays are written by the first alone.
     ///
     /// # Errors
-    /// As [`BlockwiseFormat::write`]. The others of the team would wait for a process that ends with an error.
+    /// As [`BlockwiseFormat::write`]. A process that returns an error leaves the rest of the team waiting.
     pub fn write_with(
         self,
         plan: &Plan,
@@ -143,7 +141,7 @@ pub(crate) struct Written {
     pub new: Option<NewFolder>,
 }
 
-/// What is written.
+/// The two formats.
 #[derive(Clone, Copy)]
 pub(super) enum VtkFormat {
     Grid,

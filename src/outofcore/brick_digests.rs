@@ -59,7 +59,7 @@ impl ReadDigests {
         !self.differs.load(Ordering::Relaxed)
     }
 
-    /// What is kept of a brick; `None` where the box has not all of it.
+    /// The digest of a brick; `None` where the box does not contain all of it.
     fn of_brick(&self, at: [usize; 3], part: &SampleBox, samples: &[f32]) -> Option<u64> {
         let whole = SampleBox { first: at.map(|i| i * self.side), size: [self.side; 3] };
         let whole = whole.common(&SampleBox::whole(self.dims));

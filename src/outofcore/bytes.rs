@@ -25,7 +25,7 @@ impl Digest {
         self.is(Self::of(bytes))
     }
 
-    /// As files have it.
+    /// Its bytes, as stored in files.
     pub(super) fn bytes(&self) -> &[u8] {
         &self.0
     }
@@ -35,7 +35,7 @@ impl Digest {
         Self(bytes.try_into().expect("as many bytes as it has"))
     }
 
-    /// Whether this is what was found.
+    /// Whether it equals the digest found.
     pub(super) fn is(self, found: Self) -> bool {
         cfg!(fuzzing) || self == found
     }
@@ -140,7 +140,7 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, BlocksError> {
     std::fs::read(path).map_err(|source| BlocksError::Io { path: path.into(), source })
 }
 
-/// How many bytes a file has, and their digest. Reads it, a little at a time.
+/// Length and digest of a file, read in chunks.
 pub(super) fn digest_of(file: impl Read) -> io::Result<(u64, Digest)> {
     let (mut file, mut hasher, mut length) = (file, Hasher::default(), 0);
     let mut bytes = vec![0; 1 << 18];

@@ -55,10 +55,10 @@ const IN_FILE: u64 = 8 + 4;
 /// How many times the mean the largest difference is taken to be.
 const PEAK: f64 = 8.0;
 
-/// The price of a job.
+/// Estimates the cost of a job.
 ///
 /// # Errors
-/// As [`Job::check`]; a selection whose count is known only when the volume was read.
+/// The errors of [`Job::check`]; a selection whose count is known only after reading the volume.
 pub fn estimate_cost(job: &Job, cutting: Cutting) -> Result<CostEstimate, BlocksError> {
     job.check()?;
     let source = Source::open(&job.input, &job.recipe.read)?;
@@ -166,7 +166,7 @@ impl Model {
         self.samples_at_work + (self.point as f64 * points) as u64
     }
 
-    /// As few blocks as keep to so many bytes, one for each thread at work.
+    /// The fewest blocks that keep to `asked` bytes, with one block at work per thread.
     fn blocks(&self, asked: u64) -> Result<u64, ShapeError> {
         /// Powers of two that are tried.
         const POWERS: u32 = 32;

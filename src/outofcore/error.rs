@@ -63,7 +63,7 @@ pub enum BlocksError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// A folder cannot be written.
@@ -71,7 +71,7 @@ pub enum BlocksError {
     Written {
         /// The folder.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// A file of the plan's folder is not what it should be.
@@ -79,7 +79,7 @@ pub enum BlocksError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The problem.
         what: String,
     },
     /// There is no plan that can be used.
@@ -87,7 +87,7 @@ pub enum BlocksError {
     NoPlan {
         /// Its file.
         path: PathBuf,
-        /// What is wrong.
+        /// The problem.
         what: String,
     },
     /// A block was made by another plan.
@@ -99,9 +99,9 @@ pub enum BlocksError {
     /// Blocks are not there yet.
     #[error("{} of {all} blocks are missing: {}", missing.len(), first(missing))]
     Missing {
-        /// Which.
+        /// The missing blocks.
         missing: Vec<usize>,
-        /// How many there should be.
+        /// Number of blocks of the plan.
         all: usize,
     },
     /// There is no such block.
@@ -109,7 +109,7 @@ pub enum BlocksError {
     NoBlock {
         /// The one asked for.
         index: usize,
-        /// How many there are.
+        /// Number of blocks.
         count: usize,
     },
     /// Files do not verify.
@@ -123,23 +123,23 @@ pub enum BlocksError {
     /// The input is not what it was when the plan was made.
     #[error("{input} has changed since it was planned: {what}")]
     Changed {
-        /// What the plan is of.
+        /// The input of the plan.
         input: String,
-        /// What is not the same.
+        /// The difference.
         what: String,
     },
     /// What takes the whole volume or all points at once.
     #[error("{what} is not local, so that it cannot be computed in blocks")]
     NotLocal {
-        /// What was asked for.
+        /// The option or method.
         what: String,
-        /// What to do.
+        /// The advice.
         next: &'static str,
     },
     /// More than one file can hold.
     #[error("{what} pass 32-bit indices, so that they fit no single file")]
     TooLarge {
-        /// What.
+        /// The things counted.
         what: String,
     },
 }

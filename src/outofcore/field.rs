@@ -1,6 +1,4 @@
-//! Gray levels, truncated ones and differences of any part of a volume, from its own samples.
-//!
-//! Passes over a volume, tile by tile.
+//! Gray levels, truncated gray levels and differences of any part of a volume, and passes over all of it, tile by tile.
 
 use ndarray::Array3;
 use rayon::prelude::*;
@@ -31,14 +29,14 @@ pub(super) struct Field {
     pub range: GrayRange,
     /// The least value, which stands in for missing ones.
     pub least: f32,
-    /// What was read of it.
+    /// Digests of the bricks read so far.
     pub seen: ReadDigests,
 }
 
-/// What is known of the truncated volume as a whole.
+/// The truncated volume.
 #[expect(clippy::large_enum_variant, reason = "there is one for each block at work")]
 pub(super) enum Truncated {
-    /// It is the volume.
+    /// Nothing but zeros was dropped: it is the volume.
     Same,
     /// Of the non-standard decomposition: which coefficients stay, and the sums of the bricks of the
     /// truncated volume.
@@ -93,7 +91,7 @@ impl Field {
         Self::tile_of(&self.source)
     }
 
-    /// The same for a volume that is not looked at otherwise.
+    /// The tile size for an opened volume.
     pub(super) fn tile_of(source: &Source) -> [usize; 3] {
         let dims = source.dims().xyz();
         let side = Self::bricks_of(dims).side();
@@ -113,7 +111,7 @@ impl Field {
         tile
     }
 
-    /// As small as the sums of all can be gathered.
+    /// Bricks as small as memory for the sums of all allows.
     pub(super) fn bricks_of(dims: [usize; 3]) -> Bricks {
         let fine = Bricks::new(dims, 3);
         let is_fit = fine.count().iter().product::<usize>() <= SUMS;
@@ -269,19 +267,19 @@ impl Field {
 pub(super) struct Passes<'a> {
     pub team: &'a dyn Team,
     monitor: &'a Monitor,
-    /// Those of this process.
+    /// The tiles of this process.
     tiles: Vec<SampleBox>,
     done: u64,
 }
 
 impl<'a> Passes<'a> {
-    /// Those of a process of a team, none of them done.
+    /// Passes of a process of a team.
     pub(super) fn new(team: &'a dyn Team, tiles: &[SampleBox], monitor: &'a Monitor) -> Self {
         let tiles = team.own(tiles.len()).map(|tile| tiles[tile]).collect();
         Self { team, monitor, tiles, done: 0 }
     }
 
-    /// How many are usual.
+    /// The usual number of passes.
     const USUAL: u64 = 5;
 
     /// Works on each tile of this process, several at a time, and joins what they give in their order.

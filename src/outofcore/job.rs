@@ -13,7 +13,7 @@ use crate::points::{Selection, Units, Weighting};
 use crate::shape::{Alpha, Engine};
 use crate::volume::{Dims, Frame, GrayRange, Source, any_size, files_of};
 
-/// What is to be computed: an input, and the recipe for its shape. Plans hold it.
+/// An input, and the recipe for its shape. Plans hold it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Job {
@@ -144,7 +144,7 @@ pub(super) struct Stamp {
 }
 
 impl Stamp {
-    /// That of the input of a job as it is now; nothing of a sample. Looks at each file of a folder.
+    /// The stamp of the input of a job as it is now; empty for a sample. Looks at each file of a folder.
     pub(super) fn of(job: &Job) -> Self {
         let mut stamp = Self::default();
         if !job.input.starts_with("sample:") {

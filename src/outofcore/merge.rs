@@ -12,11 +12,11 @@ use crate::shape::{
     Betti, ByClass, Component, ComponentSums, Measures, SheetSums, components_of_sums,
 };
 
-/// What a shape in blocks is as a whole.
+/// The whole shape, merged from its blocks.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Merged {
-    /// How many points were selected.
+    /// Number of selected points.
     pub points: u64,
     /// The weights ω.
     pub weights: WeightSummary,
@@ -34,11 +34,11 @@ pub struct Merged {
     pub measures: Measures,
     /// The components, in the order of their smallest vertices.
     pub components: Vec<Component>,
-    /// How many points of other blocks were looked at, all blocks together.
+    /// Number of halo points, summed over all blocks.
     pub halo: u64,
     /// For each block the common numbers of its components and of its sheets.
     pub(super) numbers: Vec<MergedNumbers>,
-    /// How many sheets there are.
+    /// Number of sheets.
     pub(super) sheets: u32,
 }
 
@@ -60,7 +60,7 @@ pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
     merge_monitored(plan, &Monitor::noop())
 }
 
-/// The same, which says how far it is and can be cancelled.
+/// [`merge`] with progress and cancelling through `monitor`.
 ///
 /// # Errors
 /// Those of [`merge`], and [`BlocksError::Cancelled`].
@@ -178,7 +178,7 @@ impl Union {
     }
 }
 
-/// Notes that two names are one thing.
+/// Records that two numbers denote the same component or sheet.
 fn same<K>(entry: Entry<'_, K, u32>, now: u32, pairs: &mut Vec<[u32; 2]>) {
     match entry {
         Entry::Vacant(vacant) => _ = vacant.insert(now),
@@ -252,7 +252,7 @@ fn number_sheets(
     (numbers, sheets.collect())
 }
 
-/// What is added up.
+/// Sums over all blocks.
 #[derive(Default)]
 struct Totals {
     points: u64,

@@ -27,7 +27,7 @@ pub struct Cutting {
 }
 
 impl Cutting {
-    /// As a recipe has it.
+    /// The cutting of a recipe.
     pub fn of(recipe: &Recipe) -> Self {
         Self { blocks: recipe.blocks.map(usize::from), memory: recipe.memory }
     }
@@ -40,19 +40,19 @@ impl Cutting {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Plan {
-    /// What made it.
+    /// Version of the program that made it.
     version: String,
-    /// What is to be computed.
+    /// The job.
     pub job: Job,
-    /// How it was to be cut.
+    /// How it is cut.
     pub cutting: Cutting,
     /// The numbers of the whole volume.
     pub survey: Survey,
     /// The blocks.
     pub blocks: Vec<BlockPlan>,
-    /// The files beside it.
+    /// The files beside the plan.
     pub(super) kept: Vec<DigestedFile>,
-    /// How the files of the input looked.
+    /// Stamp of the input files.
     pub(super) stamp: Stamp,
     #[serde(skip)]
     pub(super) folder: PathBuf,
@@ -70,7 +70,7 @@ pub struct BlockPlan {
     pub points: u64,
     /// The points around it that it may need, counted by bricks.
     pub halo: u64,
-    /// What it reads.
+    /// Digests of the bricks it reads.
     pub(super) reads: Reads,
 }
 
@@ -78,7 +78,7 @@ pub struct BlockPlan {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Reads {
     pub input: Digest,
-    /// Of the truncated volume, where that is in a file.
+    /// Digest of the truncated volume, where that is in a file.
     pub truncated: Option<Digest>,
 }
 
@@ -100,7 +100,7 @@ impl Plan {
     /// all get it. Memory that blocks keep to is that of one process.
     ///
     /// # Errors
-    /// As [`Plan::make`]. The others of the team would wait for a process that ends with an error.
+    /// The errors of [`Plan::make`]. A process that returns an error leaves the rest of the team waiting.
     pub fn make_with(
         job: Job,
         cutting: Cutting,
@@ -200,7 +200,7 @@ impl Plan {
         Ok(target.write(|out| out.write_all(&self.text()))?)
     }
 
-    /// What is before the digest of a plan in its text, and behind it.
+    /// The text before and after the digest of a plan.
     const CHECKSUM: [&[u8]; 2] = [b",\n  \"checksum\": \"", b"\"\n}\n"];
 
     /// Its text: JSON, with the digest of all bytes before as the last field.
@@ -318,11 +318,11 @@ impl Plan {
     }
 }
 
-/// Bytes of memory that blocks keep to where nothing is said.
+/// Default memory limit of blocks, in bytes.
 pub(super) const DEFAULT_MEMORY: u64 = 2 << 30;
 /// Bytes for each sample of a tile, of which each thread has one.
 pub(super) const TILE_SAMPLE: u64 = 48;
-/// No volume has use for more blocks.
+/// Most blocks of a plan.
 pub(super) const MAX_BLOCKS: usize = 1 << 16;
 
 /// Boxes of bricks with their points.

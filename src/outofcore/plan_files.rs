@@ -1,6 +1,4 @@
-//! Whether the files of a plan are what was written.
-//!
-//! What a plan keeps in files beside its own: the sums of bricks, or the truncated volume.
+//! The files of a plan: verifying, restoring, resuming and removing them.
 
 use std::io;
 use std::path::Path;
@@ -17,7 +15,7 @@ use super::job::Stamp;
 use super::truncate::{DigestedFile, SMOOTHED, SUMS, smoothed, truncated};
 use super::{Alone, BlocksError, Cutting, Finding, Job, Plan, SampleBox, Team};
 
-/// What was found of the files of a plan.
+/// Result of verifying the files of a plan.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Checked {
@@ -48,7 +46,7 @@ impl Plan {
         Ok(checked)
     }
 
-    /// The same of the blocks alone: all that merging needs.
+    /// Like [`check`](Self::check), for the blocks alone, which are all that merging needs.
     ///
     /// # Errors
     /// A file cannot be read.
@@ -102,7 +100,7 @@ impl Plan {
     }
 }
 
-/// What is wrong with a file; other errors are errors.
+/// The problem of a file that does not verify; other errors are passed on.
 fn finding(found: Result<(), BlocksError>) -> Result<Option<Finding>, BlocksError> {
     match found {
         Ok(()) => Ok(None),
@@ -161,7 +159,7 @@ impl Plan {
     /// the volume a few times where that is so.
     ///
     /// # Errors
-    /// As planning; the input has changed.
+    /// The errors of planning; the input has changed.
     pub fn restore(&self) -> Result<(), BlocksError> {
         // Of several threads that miss it, one makes it.
         static ONE: Mutex<()> = Mutex::new(());
@@ -191,12 +189,12 @@ impl Plan {
     /// where it was.
     ///
     /// # Errors
-    /// As [`Plan::make`].
+    /// The errors of [`Plan::make`].
     pub fn resume(job: Job, cutting: Cutting, folder: &Path) -> Result<Self, BlocksError> {
         Self::resume_with(job, cutting, folder, &Alone, &Monitor::noop())
     }
 
-    /// The same as one of a team, which may be of another size than the one that was interrupted.
+    /// [`Plan::resume`] as one of a team, which may be of another size than the one that was interrupted.
     ///
     /// # Errors
     /// As [`Plan::make_with`].

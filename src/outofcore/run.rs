@@ -184,7 +184,7 @@ fn write(plan: &Plan, block: usize, points: &Points, shape: BlockShape) -> Resul
     arrays(points, &shape, &component_of, &border).write(plan, block, summary)
 }
 
-/// What is known of each sheet.
+/// The parts of sheets in the block.
 fn sheets(
     plan: &Plan,
     points: &Points,
@@ -269,7 +269,7 @@ fn arrays(
 /// Runs some blocks of a plan, as many at a time as there are threads. Those that are there are left alone.
 ///
 /// # Errors
-/// As [`run()`], of the first block that fails; [`BlocksError::Cancelled`]. Those that are done stay.
+/// The error of [`run()`] for the first block that fails; [`BlocksError::Cancelled`]. Finished blocks stay.
 pub fn run_all(plan: &Plan, blocks: &[usize], monitor: &Monitor) -> Result<(), BlocksError> {
     let size =
         |&block: &usize| plan.blocks.get(block).map_or(0, |planned| planned.points + planned.halo);
@@ -303,7 +303,7 @@ pub fn run_all(plan: &Plan, blocks: &[usize], monitor: &Monitor) -> Result<(), B
 /// gets blocks with about as many points, in and around them, as the others.
 ///
 /// # Errors
-/// As [`run_all`]. The others of the team would wait for a process that ends with an error.
+/// The errors of [`run_all`]. A process that returns an error leaves the rest of the team waiting.
 pub fn run_missing(plan: &Plan, team: &dyn Team, monitor: &Monitor) -> Result<(), BlocksError> {
     let missing = if team.is_first() { Some(plan.missing()?) } else { None };
     let missing = team.broadcast(missing);

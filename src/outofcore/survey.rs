@@ -14,14 +14,14 @@ use crate::points::{Asked, Differences, PointsError, Selection, check_least};
 use crate::select::{Budget, Counts, Cut, Search};
 use crate::volume::{GrayRange, Nan, VolumeError};
 
-/// What is known of a volume as a whole.
+/// Numbers that depend on the whole volume.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Survey {
     /// The values that are gray 0 and 255.
     pub range: GrayRange,
     /// The least value.
     pub(super) least: f32,
-    /// What was dropped.
+    /// The truncation.
     pub truncation: Truncation,
     /// Which coefficients stay, where blocks need it: not where nothing but zeros goes.
     pub(super) cut: Option<Cut>,
@@ -31,11 +31,11 @@ pub struct Survey {
     pub(super) first: u64,
 }
 
-/// What a survey leaves beside itself.
+/// The result of a survey, and what planning needs besides.
 pub(super) struct Surveyed {
     pub survey: Survey,
     pub truncated: Truncated,
-    /// How many points each brick has.
+    /// Number of points in each brick.
     pub counts: Vec<u32>,
     /// Files that are written.
     pub kept: Vec<DigestedFile>,
@@ -190,7 +190,7 @@ pub(super) fn choose(
     Ok(Chosen { rule: Rule::Largest(cut), gray_min })
 }
 
-/// What a search asks next about the differences of all samples, and the highest truncated gray level.
+/// One round of a search over the differences of all samples, and the highest truncated gray level.
 fn round(
     search: &Search,
     gray_min: Option<f64>,
@@ -219,13 +219,13 @@ fn round(
     Ok(passes.team.reduce(all, join))
 }
 
-/// What is known of the points together.
+/// Statistics of all points.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Counted {
     pub(super) differences: Differences,
     /// The first of them, by its index in the volume.
     pub(super) first: u64,
-    /// How many each brick has.
+    /// Number of points in each brick.
     pub(super) counts: Vec<u32>,
 }
 

@@ -188,7 +188,7 @@ struct StandardTransform<'a> {
     /// Samples along x, y and z.
     dims: [usize; 3],
     slabs: Slabs,
-    /// Of the plan.
+    /// The folder of the plan.
     folder: &'a Path,
 }
 

@@ -130,7 +130,7 @@ impl Gathered {
     }
 }
 
-/// What a block has of the shape, with common numbers.
+/// The simplices and points of a block, with the numbers of the merged shape.
 pub(super) struct MergedBlock {
     pub complex: Complex,
     pub voxels: Vec<u64>,

@@ -34,7 +34,7 @@ pub fn difference(volume: &Volume) -> Array3<f64> {
     Array3::from_shape_vec(volume.dims().shape(), differences).expect("one for each voxel")
 }
 
-/// The same on a row alone, with its own divisor: the worked example of the paper's Table 1.
+/// Differences along a row, with its own divisor: the worked example of the paper's Table 1.
 ///
 /// ```
 /// use walpha::points::difference_row;

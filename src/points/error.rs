@@ -19,7 +19,7 @@ pub enum PointsError {
     Number {
         /// Which one.
         what: &'static str,
-        /// What was given.
+        /// The number given.
         given: f64,
         /// What would do.
         need: &'static str,
@@ -90,7 +90,7 @@ pub enum PointsError {
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The problem.
         reason: Reason,
     },
     /// Memory for the samples cannot be had.

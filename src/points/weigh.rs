@@ -8,7 +8,7 @@ use super::{Points, PointsError, WeightedPoints};
 /// Gives points their weights, as [`weights`] computes them.
 ///
 /// # Errors
-/// Those of [`weights`].
+/// The errors of [`weights`].
 pub fn weigh(
     mut points: Points,
     weighting: Weighting,

@@ -37,7 +37,7 @@ impl Weighting {
 /// What weights in proportion to differences need to know of all of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Differences {
-    /// How many there are.
+    /// Number of points.
     pub count: u64,
     /// The smallest.
     pub min: f64,
@@ -54,14 +54,14 @@ impl Default for Differences {
 }
 
 impl Differences {
-    /// Those of some points. O(n).
+    /// Collects the differences of some points. O(n).
     pub(crate) fn of(differences: &[f64]) -> Self {
         let (min, max) = range(differences);
         let sum = differences.iter().copied().collect();
         Self { count: differences.len() as u64, min, max, sum }
     }
 
-    /// Takes in those of other points.
+    /// Adds the differences of other points.
     pub(crate) fn join(&mut self, other: &Self) {
         self.count += other.count;
         (self.min, self.max) = (self.min.min(other.min), self.max.max(other.max));
@@ -92,11 +92,11 @@ fn range(numbers: &[f64]) -> (f64, f64) {
 
 /// How weights of a kind are made.
 pub(super) enum Rule {
-    /// One for all.
+    /// The same weight for every point.
     Common,
-    /// As the input has them.
+    /// Taken from the input.
     Column,
-    /// Of the differences L and α.
+    /// Computed from the differences L and α.
     Proportional(fn(&Differences, f64) -> Shares),
 }
 

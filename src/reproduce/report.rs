@@ -40,7 +40,7 @@ pub struct Input {
     pub samples: usize,
     /// The values that became gray 0 and 255.
     pub gray_range: [f64; 2],
-    /// What the wavelet stage kept.
+    /// The truncation.
     pub haar: Truncation,
     /// Points selected.
     pub points: usize,
@@ -78,7 +78,7 @@ pub struct Item {
 /// A number with its name.
 #[derive(Clone, Debug, Serialize)]
 pub struct Fact {
-    /// What it is, with its unit.
+    /// The quantity, with its unit.
     pub label: String,
     /// The number.
     pub value: f64,
@@ -87,7 +87,7 @@ pub struct Fact {
 /// Rows of text and numbers.
 #[derive(Clone, Debug, Serialize)]
 pub struct Table {
-    /// What it shows.
+    /// Its caption.
     pub caption: String,
     /// Names of the columns.
     pub head: Vec<String>,
@@ -98,7 +98,7 @@ pub struct Table {
 /// A claim of the paper, judged.
 #[derive(Clone, Debug, Serialize)]
 pub struct Finding {
-    /// What the paper claims.
+    /// The claim of the paper.
     pub claim: String,
     /// Whether our numbers bear it out.
     pub verdict: Verdict,
@@ -176,7 +176,7 @@ impl Report {
     }
 }
 
-/// What is measured of a shape.
+/// Numbers measured of a shape.
 #[derive(Clone, Debug, Serialize)]
 pub struct ShapeNumbers {
     /// Its weights and α, in short.
@@ -223,7 +223,7 @@ pub struct ShapeNumbers {
 }
 
 impl ShapeNumbers {
-    /// As many voids are listed at most.
+    /// Most voids listed.
     pub const VOIDS: usize = 10;
 
     /// Measures a shape that was made with its exterior simplices.

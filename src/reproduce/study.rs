@@ -1,6 +1,4 @@
-//! The points of the volume, and the shapes that the figures share.
-//!
-//! The cameras that all pictures of a volume share.
+//! The volume, points, shapes and cameras that the figures share.
 
 use std::time::Instant;
 
@@ -18,7 +16,7 @@ use crate::render::{
 use crate::shape::{Alpha, AlphaShape, Balls, Engine, ShapeOptions, alpha_shape};
 use crate::volume::{Dims, GrayRange, LengthUnit, Volume};
 
-/// What the paper is made again on.
+/// The volume on which the paper is reproduced.
 #[derive(Clone, Debug)]
 pub struct Subject<'a> {
     /// The gray levels.
@@ -223,7 +221,7 @@ pub(super) enum Eye {
     Side,
 }
 
-/// What is looked at, and the size of it.
+/// Cameras for one volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cameras {
     target: [f64; 3],

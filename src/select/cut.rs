@@ -2,7 +2,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::Sum;
 
-/// Values counted into one histogram. Fixed, so that sums are the same on any number of threads.
+/// Values counted into one histogram. Fixed, so that sums are independent of the number of threads.
 const CHUNK: usize = 1 << 17;
 /// Position and number of the bits of a magnitude that each pass sorts by, 63 in all: the exponent
 /// and a bit of the mantissa first.
@@ -137,16 +137,16 @@ fn place_after(nth: u64, values: &[f64], wanted: u64) -> usize {
 /// What may be dropped, smallest magnitudes first.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Budget {
-    /// This many values.
+    /// A number of values.
     Count(u64),
     /// Values whose squares sum to no more than this.
     Energy(f64),
 }
 
-/// What a cut drops.
+/// The values that a cut drops.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Dropped {
-    /// How many values.
+    /// Number of values.
     pub count: u64,
     /// The sum of their squares, each rounded, the sum exact and rounded once.
     pub energy: f64,
@@ -192,7 +192,7 @@ fn units(bits: u64) -> u64 {
     (square & FRACTION | hidden) << (exponent.max(1) - least(bits >> EXPONENT))
 }
 
-/// What was dropped so far.
+/// Count and energy of the values dropped so far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Spent {
     budget: Budget,

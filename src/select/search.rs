@@ -45,7 +45,7 @@ const DIGIT: u32 = 18;
 /// Bits of a magnitude.
 const MAGNITUDE: u32 = 63;
 
-/// What a piece of the values has.
+/// Counts of a part of the values.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Counts {
     /// By digit.
@@ -55,12 +55,12 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
-    /// How many values were counted.
+    /// Number of values counted.
     pub(crate) fn total(&self) -> u64 {
         self.bins.values().map(|bin| bin.count).sum::<u64>() + self.list.len() as u64
     }
 
-    /// Takes in what another piece has.
+    /// Adds the counts of another part.
     pub(crate) fn join(&mut self, other: Self) {
         for (digit, bin) in other.bins {
             self.bins.entry(digit).or_default().join(&bin);

@@ -1,6 +1,4 @@
-//! What to read, and which part of it.
-//!
-//! What INPUT is called.
+//! INPUT: its name, how it is read, and which part of it is used.
 
 use std::ffi::OsString;
 use std::fmt::{self, Display};
@@ -23,7 +21,7 @@ use crate::{Dims, GrayRange, Recipe};
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Input")]
 pub(crate) struct InputArgs {
-    /// What was given, the command's own options aside.
+    /// Options typed on the command line.
     #[command(flatten)]
     pub typed: TypedOptions,
     /// Volume or point file, - (standard input), sample:skull, sample:phantom or sample:phantom@N.
@@ -68,7 +66,7 @@ impl InputArgs {
             .downsample(downsample)
     }
 
-    /// What the name of standard input would end with.
+    /// The extension that stands for the format of standard input.
     pub(crate) fn extension(&self) -> String {
         self.input_format.as_ref().map(|format| format!(".{format}")).unwrap_or_default()
     }
@@ -175,7 +173,7 @@ pub(crate) struct InputName {
 }
 
 impl InputName {
-    /// What is opened.
+    /// The path to open.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }

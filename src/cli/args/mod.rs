@@ -66,7 +66,7 @@ impl PipelineArgs {
     }
 }
 
-/// The same with weights that stay as they are while α varies.
+/// From an input to points with weights that stay fixed while α varies.
 pub(super) type FrozenPipelineArgs = PipelineArgs<FrozenArgs>;
 
 /// The names of the options that only a volume has: points may have levels, too, and gray levels.

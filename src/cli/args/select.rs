@@ -1,6 +1,4 @@
-//! The wavelet stage, which samples become points, and where these are.
-//!
-//! α and the weights in proportion to it.
+//! Options of the wavelet stage, of the selection of points, of their weights, and α.
 
 use std::str::FromStr;
 

@@ -1,8 +1,4 @@
-//! How the shape is computed.
-//!
-//! Points of a torus.
-//!
-//! What format an output is of whose name does not say it.
+//! Options of the shape: engine, blocks, memory, a periodic box, and the format of outputs.
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};

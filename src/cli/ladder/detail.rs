@@ -1,6 +1,4 @@
-//! Levels of detail: fewer points, or a coarser volume, and full detail in a region.
-//!
-//! What `walpha ladder` did over detail.
+//! `walpha ladder` over levels of detail: fewer points, or a coarser volume, and full detail in a region.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -28,7 +26,7 @@ use crate::{
     Weighting,
 };
 
-/// What a level asks for.
+/// How a level selects its points.
 struct Wanted {
     name: String,
     haar: HaarOptions,
@@ -189,7 +187,7 @@ impl FrontEnd<'_> {
 pub(super) struct DetailSummary {
     pub schema_version: u32,
     pub input: String,
-    /// Of points and all lengths.
+    /// Unit of points and all lengths.
     pub coordinates: Coordinates,
     pub alpha: Parameter,
     pub weights: String,
@@ -216,7 +214,7 @@ pub(super) struct Row {
     /// How far F is from the volume, in gray levels: on the samples of the shape, and on all.
     #[serde(flatten)]
     pub errors: Errors,
-    /// Of all meshes of this level.
+    /// Meshes of this level.
     pub bytes: u64,
     pub files: Vec<String>,
 }

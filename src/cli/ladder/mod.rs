@@ -1,6 +1,4 @@
-//! `walpha ladder`: many α, or many levels of detail.
-//!
-//! What a level of detail misses of the volume.
+//! `walpha ladder`: many α, or many levels of detail, and the error of each.
 
 mod detail;
 mod summary;
@@ -196,7 +194,7 @@ fn level_name(ladder: &Levels, k: usize, level: &Level, extension: &str) -> Stri
 
 /// A number for the name of a file, which must not have hundreds of digits.
 fn short(number: impl Display + LowerExp) -> String {
-    /// As a double has, with a sign and a point and some zeros.
+    /// Digits of a double, with sign, point and some zeros.
     const LONG: usize = 24;
     let text = number.to_string();
     if text.len() > LONG { format!("{number:e}") } else { text }

@@ -67,7 +67,7 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// What is known before there is a shape.
+    /// The report on points without a shape.
     pub(super) fn of_points(name: &str, weighed: &Weighed, volume: Option<&VolumeSummary>) -> Self {
         let origin = weighed.origin;
         let truncation = origin.truncation.as_ref().zip(volume);
@@ -117,7 +117,7 @@ impl Report {
         self.shape = Some(ShapeReport::of(shape));
     }
 
-    /// What is known of a shape that was made in blocks.
+    /// The report on a shape made in blocks.
     pub(super) fn of_blocks(plan: &Plan, merged: &Merged) -> Self {
         let (job, survey) = (&plan.job, &plan.survey);
         let GrayRange { low, high } = survey.range;

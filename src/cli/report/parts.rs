@@ -1,6 +1,4 @@
-//! What is reported before there is a shape.
-//!
-//! What is reported of a shape.
+//! The parts of a report: input, wavelet stage, points, weights, shape.
 
 use std::fmt::{self, Display};
 
@@ -75,7 +73,7 @@ impl Display for Ended {
     }
 }
 
-/// What the weights are.
+/// Kind and range of the weights.
 #[derive(Serialize)]
 pub(in crate::cli) struct WeightsReport {
     pub(super) kind: String,
@@ -84,7 +82,7 @@ pub(in crate::cli) struct WeightsReport {
     pub(super) min: f64,
     pub(super) mean: f64,
     pub(super) max: f64,
-    /// Of length; weights are in its square.
+    /// Unit of length; weights are in its square.
     pub(super) unit: LengthUnit,
 }
 
@@ -108,7 +106,7 @@ impl Display for WeightsReport {
 }
 
 impl HaarReport {
-    /// What was truncated, of values `range` that became gray 0..255.
+    /// The truncation, for values `range` that became gray 0..255.
     pub(in crate::cli) fn new(t: &Truncation, range: &GrayRange) -> Self {
         let rms_in_values = (!range.is_identity()).then(|| t.rms * range.step());
         Self { kept: t.kept, total: t.total, epsilon: t.epsilon, rms: t.rms, rms_in_values }
@@ -204,7 +202,7 @@ impl Display for Line<'_> {
 }
 
 impl ShapeReport {
-    /// What a shape is.
+    /// The report on a shape.
     pub(super) fn of(shape: &AlphaShape) -> Self {
         let complex = shape.complex();
         Self {
@@ -221,7 +219,7 @@ impl ShapeReport {
         }
     }
 
-    /// What a shape made in blocks is.
+    /// The report on a shape made in blocks.
     pub(super) fn of_blocks(merged: &Merged) -> Self {
         Self {
             cells: Cells { interior: merged.cells },

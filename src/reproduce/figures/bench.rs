@@ -10,11 +10,11 @@ use crate::reproduce::study::{Eye, panel, panel_size};
 use crate::reproduce::study::{Shaped, Shapes, Study};
 use crate::reproduce::{File, Finding, ReproduceError, Verdict, text};
 
-/// What figures are made from, and where their files go.
+/// Inputs of the figures, and the files they make.
 pub(in crate::reproduce) struct Bench<'a> {
     pub study: &'a Study<'a>,
     pub shapes: &'a Shapes,
-    /// Of what a figure does, whose progress is not shown.
+    /// Cancels the work of a figure, whose progress is not shown.
     pub monitor: Monitor,
     pub(in crate::reproduce) files: Vec<File>,
     /// Pictures of shapes, by label: several figures show the same.
@@ -82,7 +82,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// What the two views of a shape are called.
+/// Titles of the two views of a shape.
 pub(super) const VIEWS: [&str; 2] = ["from the front", "from its left"];
 
 /// A figure of plain shapes, two in a row.
@@ -117,7 +117,7 @@ pub(super) fn captions(shaped: &Shaped) -> Vec<String> {
 
 /// A claim of the paper, and how what was measured decides it.
 pub(super) struct Claim<Evidence> {
-    /// What the paper claims.
+    /// The claim.
     pub text: &'static str,
     /// The verdict, and the numbers that lead to it.
     pub decide: fn(&Evidence) -> (Verdict, String),

@@ -1,8 +1,4 @@
 //! Figures 2 and 3: the shapes of Edelsbrunner, Kirkpatrick and Seidel over α.
-//!
-//! One step of a ladder of α-shapes: its shape, its hull, and how both are drawn.
-//!
-//! What drawings of the plane have in common.
 
 use super::bench::{Bench, Claim, judge};
 use crate::render::{Content, Drawing, Figure, PALETTE, Panel, Pen, Rgb, Size, Step};
