@@ -290,7 +290,7 @@ pub(super) fn reasons(error: &anyhow::Error) -> (String, Option<String>) {
 
 #[cfg(test)]
 mod tests {
-    use super::{said, *};
+    use super::*;
 
     #[test]
     fn causes_are_told_once_and_before_advice() {
@@ -305,8 +305,7 @@ mod tests {
 
     #[test]
     fn the_library_speaks_in_options() {
-        let error =
-            crate::shape::ShapeError::Divided { by: crate::shape::Whole::Exterior, blocks: 3 };
+        let error = ShapeError::Divided { by: crate::shape::Whole::Exterior, blocks: 3 };
         let (why, next) = reasons(&error.into());
         assert!(why.contains("3 blocks") && !why.contains("--"), "{why}");
         assert_eq!(next.as_deref(), Some("give --blocks 1, or omit --exterior"));

@@ -52,7 +52,7 @@ impl SharedWork {
         progress: &mut Progress,
         team: &dyn Team,
     ) -> anyhow::Result<Report> {
-        let new = folder::make(&self.folder, "by another place for the output")?;
+        let new = folder::make(&self.folder, "by naming another output")?;
         if team.size() > 1 {
             order(team, Some(serde_json::to_string(&self)?));
         }

@@ -161,7 +161,7 @@ pub enum HaarError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Memory for the coefficients cannot be had.
+    /// Not enough memory for the coefficients.
     #[error(transparent)]
     Memory(#[from] NoMemory),
 }

@@ -55,7 +55,7 @@ pub enum BlocksError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Memory cannot be had.
+    /// Not enough memory.
     #[error(transparent)]
     Memory(#[from] NoMemory),
     /// A file of the plan's folder cannot be read.

@@ -10,7 +10,7 @@ use super::Weighting;
 use crate::shape::LengthsError;
 use crate::volume::{Reason, VolumeError};
 
-/// Why points or their weights cannot be had.
+/// Why points or their weights cannot be computed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PointsError {
@@ -93,7 +93,7 @@ pub enum PointsError {
         /// The problem.
         reason: Reason,
     },
-    /// Memory for the samples cannot be had.
+    /// Not enough memory for the samples.
     #[error(transparent)]
     Memory(#[from] NoMemory),
     /// The file cannot be read.

@@ -8,7 +8,7 @@ use super::cut::{Bin, Budget, Cut, Dropped, EXPONENT, INFINITY, Spent, magnitude
 /// [counting](Self::count), piece by piece, whose joined counts go to [`Search::learn`].
 ///
 /// Values are ordered by their magnitude, equal ones by descending index, as one number of 63 + 64 bits. A
-/// round counts what agrees with the digits prefix by the next one; when few are left they are listed.
+/// round counts what agrees with the known digits by the next one; when few are left they are listed.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Search {
     spent: Spent,
@@ -17,7 +17,7 @@ pub(crate) struct Search {
     state: State,
 }
 
-/// What is prefix.
+/// The digits of the cut found so far.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum State {
     /// The bits of the magnitude at the cut above `shift`.
@@ -209,7 +209,7 @@ fn by_index(counts: Counts, magnitude: u64, mut stay: u64, prefix: u64, shift: u
     unreachable!("fewer stay than there are")
 }
 
-/// Whether the bits from `shift` on are those prefix.
+/// Whether the bits from `shift` on are those of `prefix`.
 #[inline(always)]
 fn agrees(bits: u64, prefix: u64, shift: u32) -> bool {
     shift >= 63 && prefix == 0 || (bits ^ prefix) >> shift == 0

@@ -1,10 +1,4 @@
-//! Point sets, and what the engines make of them.
-//!
-//! `walpha check` and `walpha compare`.
-//!
-//! Certification: silent on right complexes, and a finding for each rule on wrong ones.
-//!
-//! Shapes as files that the checker reads.
+//! `walpha check` and `walpha compare`: point sets, certificates, and files that the checker reads.
 
 #[allow(dead_code, reason = "the tests of walpha-check use the rest")]
 #[path = "../../crates/check/tests/integration/common.rs"]

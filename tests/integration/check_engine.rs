@@ -1,8 +1,4 @@
-//! The CGAL engine against the enumeration, simplex by simplex.
-//!
-//! Numbers at the ends of what doubles hold.
-//!
-//! The order of the input.
+//! The CGAL engine against the enumeration, simplex by simplex: extreme numbers and the order of the input, too.
 
 use proptest::prelude::*;
 use walpha::Class;

@@ -1,6 +1,4 @@
-//! The command as a user meets it: results, and bad input of every kind.
-//!
-//! α where nobody gives it.
+//! The command as a user meets it: results, and the α that is chosen where none is given.
 
 use std::fs;
 

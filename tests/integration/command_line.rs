@@ -1,9 +1,5 @@
-//! What people expect of a command: configuration, pipes, near misses, three lines of error, manual
-//! pages, names.
-//!
-//! Files of options.
-//!
-//! Standard output and standard error that take nothing, or not all: nothing is lost with exit code 0.
+//! What people expect of a command: configuration, pipes, near misses, three lines of error, manual pages, names,
+//! and streams that take nothing.
 
 use std::fs::{self, OpenOptions};
 use std::io::Read;

@@ -1,12 +1,4 @@
-//! What several tests need.
-//!
-//! Tests that cannot share a process with others.
-//!
-//! The largest piece of memory that this process asked for. Tests that look at it run [`alone`](self).
-//!
-//! Weighted points for tests.
-//!
-//! What an error says, and what it says to do.
+//! Helpers that several tests need.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::any::type_name;

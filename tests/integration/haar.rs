@@ -1,8 +1,4 @@
-//! The Haar stage against its definition: explicit basis functions, sorting, sums.
-//!
-//! Ties and zeros, which rounding must not decide.
-//!
-//! What truncation keeps, drops and reports.
+//! The Haar stage against its definition: explicit basis functions, sorting, sums, ties and zeros, truncation.
 
 use ndarray::{Array3, ArrayView3};
 use proptest::prelude::*;

@@ -1,10 +1,4 @@
-//! Volume files of each kind and damage, written here byte by byte.
-//!
-//! INRIMAGE.
-//!
-//! NPY.
-//!
-//! Raw samples.
+//! Volume files of each kind and damage, written here byte by byte: INRIMAGE, NPY, raw samples.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,4 @@
-//! Series among others in a folder.
-//!
-//! What lies beside slices: files of no concern, and slices that were damaged.
-//!
-//! Slices that make no volume, and damaged files.
+//! DICOM series among other files in a folder, and damaged ones.
 
 use std::fs;
 use std::path::Path;

@@ -1,6 +1,4 @@
-//! Enhanced images: the frames of one file are slices.
-//!
-//! Doses of radiation: the frames of one file, each so far from the first, in units that the file scales.
+//! Enhanced images and radiation doses: several frames in one file.
 
 use super::{Slice, element, open, series, slice};
 use crate::common::Told;

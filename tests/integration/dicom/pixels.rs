@@ -1,6 +1,4 @@
-//! Pixels compressed as other standards have it.
-//!
-//! Files that are deflated as a whole, and what they claim.
+//! Pixels that are compressed as other standards have it, and files deflated as a whole.
 
 use std::fs;
 use std::io::Write;

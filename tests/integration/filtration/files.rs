@@ -1,8 +1,4 @@
-//! Files of filtrations: they come back, and the checker finds nothing in them.
-//!
-//! Damage, which the checker finds and names.
-//!
-//! `walpha filtration`, and what other commands make of its files.
+//! Files of filtrations: written, read, damaged, checked.
 
 use std::io::Cursor;
 use std::path::Path;

@@ -1,11 +1,5 @@
-//! The filtration simplex by simplex: against shapes made one by one and the exact checker, and its
-//! pairs against a plain reduction of matrices.
-//!
-//! Classes against those of shapes made one by one.
-//!
-//! Points of a plane, of a line, and alone: their filtration against the definition at every critical value.
-//!
-//! Pairs against a plain reduction of matrices.
+//! The filtration simplex by simplex: against shapes made one by one and the exact checker, flat points included,
+//! and its pairs against a plain reduction of matrices.
 
 mod files;
 

@@ -1,8 +1,4 @@
-//! Points of every format, damaged ones, and tables.
-//!
-//! Point clouds (PCD).
-//!
-//! Meshes, whose vertices are points.
+//! Points of every format: tables, point clouds, meshes, and damaged files.
 
 use walpha::points::{Columns, read_points};
 

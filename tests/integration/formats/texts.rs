@@ -1,6 +1,4 @@
-//! Points in text under their many extensions, those of extended XYZ and legacy VTK, and bare arrays.
-//!
-//! Columns of names that say what they are: radii, and coordinates of maps.
+//! Points in text: many extensions, extended XYZ, legacy VTK, bare arrays, and columns with names of their own.
 
 use std::process::Command;
 

@@ -1,8 +1,4 @@
-//! `walpha interpolate`, and adaptive points in other commands.
-//!
-//! F of points of a volume, against the volume.
-//!
-//! Adaptive points.
+//! `walpha interpolate`, F against its volume, and adaptive points.
 
 use std::fs;
 use std::path::Path;

@@ -1,8 +1,4 @@
-//! The interpolant against brute force and by its laws.
-//!
-//! Values against the definition of F, simplex by simplex.
-//!
-//! What holds of F whatever the points are.
+//! The interpolant against its definition by brute force, and its laws.
 
 mod command;
 

@@ -1,8 +1,4 @@
-//! The ladder against shapes made one by one: every simplex, every class, at every level.
-//!
-//! What is suggested, critical values and voids, to the last bit.
-//!
-//! Levels of detail with a region of full detail.
+//! The ladder against shapes made one by one: every simplex at every level, suggestions, levels of detail.
 
 mod command;
 

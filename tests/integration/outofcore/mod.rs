@@ -1,8 +1,4 @@
-//! A shape in blocks that do not know each other, against the same shape in one piece.
-//!
-//! Noise, ties, missing samples, tilted grids and flat volumes.
-//!
-//! What blocks cannot do, and blocks that are not there.
+//! A shape in independent blocks against the same shape in one piece: ties, noise, flat volumes, and what is refused.
 
 mod damaged;
 

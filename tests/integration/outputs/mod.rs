@@ -1,7 +1,4 @@
-//! What becomes of files: those that are replaced, those that cannot be written, and those that a
-//! failure or an interrupt leaves unfinished.
-//!
-//! What is read is not written over.
+//! What becomes of files: inputs, outputs that are replaced or cannot be written, and those left unfinished.
 
 mod unfinished;
 

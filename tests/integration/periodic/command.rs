@@ -1,6 +1,4 @@
-//! The exact checker on complexes of a torus.
-//!
-//! `--periodic` on the command line.
+//! `--periodic` on the command line, and the exact checker on complexes of a torus.
 
 use walpha::check::schema::{ComplexFile, PlacedComplex};
 use walpha::check::{CertifyError, Finding, NotJudged};

@@ -1,11 +1,5 @@
 //! Shapes of a torus: against copies in space, against homology by matrices, and by the laws that only a
-//! torus has.
-//!
-//! Betti numbers against homology by matrices: voids, lattices, and things that go round.
-//!
-//! Simplices against those of copies in space, and a torus laid out there.
-//!
-//! Filtrations of a torus, and what is born and dies in them.
+//! torus has; filtrations, too.
 
 #[cfg(feature = "cli")]
 mod command;

@@ -1,8 +1,4 @@
-//! Shapes in the plane against their definitions, degenerate sets above all.
-//!
-//! The hull of arcs against discs.
-//!
-//! What holds of every shape, by sets drawn by lot.
+//! Shapes in the plane against their definitions, degenerate sets above all; hulls of arcs, and laws.
 
 mod brute;
 mod weighted;

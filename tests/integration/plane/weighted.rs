@@ -1,6 +1,4 @@
-//! Weighted shapes of the plane.
-//!
-//! The union of discs by itself, without any triangulation.
+//! Weighted shapes of the plane, against the union of discs computed without a triangulation.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;

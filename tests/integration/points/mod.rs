@@ -1,6 +1,4 @@
-//! Differences, selection, weights and point files against brute force and by their laws.
-//!
-//! Weights.
+//! Differences, selection and weights against brute force and by their laws.
 
 mod files;
 

@@ -198,7 +198,7 @@ impl Read<'_> {
             let bytes = dims.samples() * size_of::<f32>();
             said(Reason::choice(
                 Setting::Level,
-                format!("needs {bytes} bytes of memory, which cannot be had"),
+                format!("needs {bytes} bytes of memory, more than is available"),
                 advice!["choose a coarser ", Setting::Level],
             ))
         })?;
