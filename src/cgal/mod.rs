@@ -39,7 +39,7 @@ mod tests {
     const INFINITE: [f64; 15] =
         [0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1., f64::INFINITY, 0., 0.];
 
-    fn told(error: cxx::Exception) -> (&'static str, String) {
+    fn stage_and_text(error: cxx::Exception) -> (&'static str, String) {
         match thrown("tried")(error) {
             CgalError::Thrown { stage, text } => (stage, text),
             other => panic!("{other}"),
@@ -50,7 +50,7 @@ mod tests {
     fn what_cgal_throws_is_an_error() {
         let space = [0.0; 5];
         let thrown = bridge::shape(&INFINITE, &space, 1.0).err();
-        let (stage, text) = told(thrown.expect("∞ was taken"));
+        let (stage, text) = stage_and_text(thrown.expect("∞ was taken"));
         assert_eq!(stage, "tried");
         assert!(text.starts_with("CGAL ERROR: assertion violation!"), "{text}");
     }

@@ -188,7 +188,7 @@ fn rivals<'a>(subcommand: &'a Command, arg: &Arg) -> Vec<&'a Arg> {
         .filter(|&id| id != arg.get_id());
     let of_groups =
         of_groups.filter_map(|id| subcommand.get_arguments().find(|a| a.get_id() == id));
-    let told = subcommand.get_arguments().filter(|other| {
+    let of_arguments = subcommand.get_arguments().filter(|other| {
         let excludes = |one, two: &Arg| {
             let conflicts = subcommand.get_arg_conflicts_with(one);
             conflicts.iter().any(|arg| arg.get_id() == two.get_id())
@@ -197,7 +197,7 @@ fn rivals<'a>(subcommand: &'a Command, arg: &Arg) -> Vec<&'a Arg> {
             && !other.is_global_set()
             && (excludes(arg, other) || excludes(other, arg))
     });
-    of_groups.chain(told).collect()
+    of_groups.chain(of_arguments).collect()
 }
 
 fn takes_many(arg: &Arg) -> bool {

@@ -299,8 +299,9 @@ mod tests {
         let error =
             anyhow::Error::from(command_error!("b; or c: it is a folder" => "check the path"));
         let error = error.context("cannot read a");
-        let told = ("cannot read a: b; or c: it is a folder".into(), Some("check the path".into()));
-        assert_eq!(reasons(&error), told);
+        let expected =
+            ("cannot read a: b; or c: it is a folder".into(), Some("check the path".into()));
+        assert_eq!(reasons(&error), expected);
     }
 
     #[test]

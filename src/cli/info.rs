@@ -113,19 +113,19 @@ struct CellSummary {
     /// What --periodic takes; null where the cell is no box along the axes.
     sides: Option<[f64; 3]>,
     #[serde(skip)]
-    told: String,
+    sides_text: String,
 }
 
 impl From<Cell> for CellSummary {
     fn from(cell: Cell) -> Self {
-        let told = match cell.sides() {
+        let sides_text = match cell.sides() {
             Some(sides) => {
                 let sides = sides.map(number).join(",");
                 format!("a box of sides {sides}, and --periodic {sides} makes its torus")
             }
             None => cell.to_string(),
         };
-        Self { vectors: cell.vectors, repeats: cell.repeats, sides: cell.sides(), told }
+        Self { vectors: cell.vectors, repeats: cell.repeats, sides: cell.sides(), sides_text }
     }
 }
 
@@ -384,8 +384,8 @@ impl std::fmt::Display for Content {
                 let has = |there: bool| if there { "yes" } else { "no" };
                 let squares = if *of_radii { ", squares of its radii" } else { "" };
                 writeln!(f, "weights   {}{squares}\nvalues    {}", has(*weights), has(*values))?;
-                if let Some(CellSummary { told, .. }) = cell {
-                    writeln!(f, "cell      {told}")?;
+                if let Some(CellSummary { sides_text, .. }) = cell {
+                    writeln!(f, "cell      {sides_text}")?;
                 }
                 if let Some([x, y, z]) = grid {
                     writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;

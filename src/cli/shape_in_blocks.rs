@@ -94,9 +94,9 @@ pub(super) fn serve(team: &dyn Team) -> anyhow::Result<()> {
     while let Some(work) = team.broadcast::<Option<String>>(None) {
         let work: SharedWork = serde_json::from_str(&work)?;
         threads::start(Some(work.threads))?;
-        let silent = Global { quiet: true, ..Global::default() };
+        let quiet = Global { quiet: true, ..Global::default() };
         let outputs = Outputs { pieces: work.pieces.clone(), whole: Vec::new() };
-        work.share(None, outputs, &mut Progress::new(silent), team)?;
+        work.share(None, outputs, &mut Progress::new(quiet), team)?;
         peak(team);
     }
     Ok(())

@@ -80,8 +80,8 @@ impl View {
         if !global.quiet {
             let size = page.html.len() as f64 / 1e6;
             remark(&format!("walpha: {} takes {size:.1} MB", shown(&self.output)));
-            if let Some(told) = &page.simplified {
-                remark(&format!("walpha: {told}"));
+            if let Some(simplified) = &page.simplified {
+                remark(&format!("walpha: {simplified}"));
             }
         }
         progress.stage(Stage::Write, || target.write(|out| out.write_all(page.html.as_bytes())))?;
@@ -141,7 +141,7 @@ impl View {
         let last = details.last().expect("the level of the shape");
         let facts = source.map(VolumeSummary::of);
         let facts = facts.as_ref();
-        let told = self.told(&last.weighed, facts, last.reference());
+        let facts_shown = self.page_facts(&last.weighed, facts, last.reference());
         let original = source.map(|Source { volume, units, range, .. }| Original {
             volume,
             isovalue: self.isovalue.unwrap_or_default().gray(range),
@@ -179,7 +179,7 @@ impl View {
         let grays = facts.is_some_and(|facts| facts.written == GrayRange::IDENTITY);
         let subject = Subject {
             title: &title,
-            facts: &told,
+            facts: &facts_shown,
             unit: last.weighed.origin.coordinates.unit.symbol(),
             value: match facts {
                 Some(_) if grays => "value of the original volume, in gray levels",
@@ -195,21 +195,21 @@ impl View {
     }
 
     /// Parts of the page besides the numbers of levels.
-    fn told(
+    fn page_facts(
         &self,
         weighed: &Weighed,
         volume: Option<&VolumeSummary>,
         reference: Parameter,
     ) -> Vec<(String, String)> {
-        let mut told = vec![("input".to_owned(), self.pipeline.input.input.to_string())];
+        let mut facts_shown = vec![("input".to_owned(), self.pipeline.input.input.to_string())];
         if let Some((volume, t)) = volume.zip(weighed.origin.truncation.as_ref()) {
             let [x, y, z] = volume.dims;
             let (low, high) = (number(volume.range.low), number(volume.range.high));
-            told.push((
+            facts_shown.push((
                 "volume".into(),
                 format!("{x}×{y}×{z} samples, values {low} to {high} are gray 0 to 255"),
             ));
-            told.push((
+            facts_shown.push((
                 "Haar".into(),
                 format!(
                     "{} of {} coefficients kept, rms {:.4} gray levels",
@@ -217,13 +217,13 @@ impl View {
                 ),
             ));
         }
-        told.push(("lengths in".into(), weighed.origin.coordinates.to_string()));
-        told.push((
+        facts_shown.push(("lengths in".into(), weighed.origin.coordinates.to_string()));
+        facts_shown.push((
             "weights ω".into(),
             format!("{}, frozen at {reference}", WeightsReport::of(weighed)),
         ));
-        told.push(("made by".into(), format!("walpha {}", env!("CARGO_PKG_VERSION"))));
-        told
+        facts_shown.push(("made by".into(), format!("walpha {}", env!("CARGO_PKG_VERSION"))));
+        facts_shown
     }
 }
 
@@ -391,8 +391,8 @@ impl Display for ViewSummary {
                 None => writeln!(f)?,
             }
         }
-        if let Some(told) = &self.simplified {
-            writeln!(f, "page      {told}")?;
+        if let Some(simplified) = &self.simplified {
+            writeln!(f, "page      {simplified}")?;
         }
         writeln!(f, "wrote     {}, {:.1} MB", name(&self.file), self.bytes as f64 / 1e6)?;
         let total = self.seconds.get("total").copied().unwrap_or_default();

@@ -105,14 +105,14 @@ pub fn adaptive_voxels_monitored(
         };
         tracing::debug!(points = voxels.len(), rmse, "adaptive");
         monitor.report(voxels.len() as u64, goal.count)?;
-        let room = goal.count as usize - voxels.len();
-        let batch = ((voxels.len() as f64 * BATCH).ceil() as usize).max(FIRST_BATCH).min(room);
+        let remaining = goal.count as usize - voxels.len();
+        let batch = ((voxels.len() as f64 * BATCH).ceil() as usize).max(FIRST_BATCH).min(remaining);
         let within = goal.max_error.is_some_and(|bound| max <= bound);
         if rmse <= goal.rmse || within || batch == 0 {
             return Ok(voxels);
         }
         let candidates = worst(volume, &sampled, max, goal.max_error, |_| true);
-        let joining = apart(volume.dims(), candidates, batch);
+        let joining = spaced(volume.dims(), candidates, batch);
         voxels.extend(&joining);
         if joining.is_empty() || voxels.len() as u64 == goal.count {
             return Ok(voxels);
@@ -173,26 +173,26 @@ pub(super) fn worst(
     ranked.into_iter().map(|(_, key)| !(key as u32)).collect()
 }
 
-/// The first so many of some voxels of which none is beside an earlier one.
-fn apart(dims: Dims, voxels: Vec<u32>, most: usize) -> Vec<u32> {
+/// The first `most` of some voxels, without those adjacent to an earlier one.
+fn spaced(dims: Dims, voxels: Vec<u32>, most: usize) -> Vec<u32> {
     let [nx, ny, nz] = dims.xyz();
     let mut near = HashSet::new();
-    let mut apart = Vec::with_capacity(most);
+    let mut spaced = Vec::with_capacity(most);
     for voxel in voxels {
-        if apart.len() == most {
+        if spaced.len() == most {
             break;
         }
         if near.contains(&voxel) {
             continue;
         }
-        apart.push(voxel);
+        spaced.push(voxel);
         let index = voxel as usize;
-        let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
-        for z in around(index / (nx * ny), nz) {
-            for y in around(index / nx % ny, ny) {
-                near.extend(around(index % nx, nx).map(|x| (x + nx * (y + ny * z)) as u32));
+        let neighbours = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
+        for z in neighbours(index / (nx * ny), nz) {
+            for y in neighbours(index / nx % ny, ny) {
+                near.extend(neighbours(index % nx, nx).map(|x| (x + nx * (y + ny * z)) as u32));
             }
         }
     }
-    apart
+    spaced
 }

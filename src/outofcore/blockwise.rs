@@ -172,12 +172,12 @@ impl VtkFormat {
         monitor: &Monitor,
     ) -> Result<Written, BlocksError> {
         let index = if team.is_first() { Some(Target::open(path)?) } else { None };
-        let told;
+        let received;
         let numbers = if let (1, Some(merged)) = (team.size(), merged) {
             &merged.numbers
         } else {
-            told = team.broadcast(merged.map(|merged| merged.numbers.clone()));
-            &told
+            received = team.broadcast(merged.map(|merged| merged.numbers.clone()));
+            &received
         };
         let folder = Self::folder(path);
         let stem = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();

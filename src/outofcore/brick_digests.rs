@@ -95,12 +95,12 @@ impl ReadDigests {
         hasher.digest()
     }
 
-    /// What this process saw, to be told to others.
+    /// Digests of this process, to send to others.
     pub(super) fn bricks(&self) -> Vec<u64> {
         self.bricks.iter().map(|brick| brick.load(Ordering::Relaxed)).collect()
     }
 
-    /// Joins what two processes saw; says whether they saw the same where both have been.
+    /// Joins the digests of two processes; says whether they agree where both have read.
     pub(super) fn join(seen: &mut [u64], other: &[u64]) -> bool {
         let mut same = true;
         for (mine, &theirs) in seen.iter_mut().zip(other) {
@@ -110,7 +110,7 @@ impl ReadDigests {
         same
     }
 
-    /// Takes what all processes saw together.
+    /// Takes the joined digests of all processes.
     pub(super) fn take(&mut self, all: Vec<u64>) {
         self.bricks = all.into_iter().map(AtomicU64::new).collect();
     }

@@ -30,7 +30,7 @@ pub(super) struct Field {
     /// The least value, which stands in for missing ones.
     pub least: f32,
     /// Digests of the bricks read so far.
-    pub seen: ReadDigests,
+    pub digests: ReadDigests,
 }
 
 /// The truncated volume.
@@ -73,11 +73,11 @@ impl Field {
         }
         let dims = source.dims().xyz();
         let (bricks, nan) = (Self::bricks_of(dims), job.recipe.read.nan);
-        let seen =
+        let digests =
             ReadDigests::none_of(part.unwrap_or(&SampleBox::whole(dims)), bricks.side(), dims);
         let input = job.input.clone();
         let (range, least) = (GrayRange::IDENTITY, 0.0);
-        Ok(Self { source, input, dims, bricks, nan, range, least, seen })
+        Ok(Self { source, input, dims, bricks, nan, range, least, digests })
     }
 
     /// Whether values are gray levels as they are, and all numbers.
@@ -127,7 +127,7 @@ impl Field {
     /// The values of a part, where NaN and infinities are values or [missing](Nan::Mask).
     pub(super) fn values(&self, part: &SampleBox) -> Result<Grays, BlocksError> {
         let mut values = self.source.read(part.first, part.size)?;
-        if !self.seen.note(part, &values) {
+        if !self.digests.note(part, &values) {
             let what = "a part of it was read twice, and was not the same".to_owned();
             return Err(BlocksError::changed(&self.input, what));
         }
@@ -204,9 +204,9 @@ impl Field {
     ) -> Result<Volume, BlocksError> {
         let samples = match truncated {
             Truncated::Same => grays.to_vec(),
-            Truncated::File(samples, seen) => {
+            Truncated::File(samples, digests) => {
                 let samples = samples.read(part.first, part.size)?;
-                seen.note(part, &samples);
+                digests.note(part, &samples);
                 samples
             }
             Truncated::Bricks { cut, sums } => {

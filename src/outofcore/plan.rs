@@ -176,9 +176,9 @@ impl Plan {
             };
             let part = part.common(&whole);
             let read = Self::read_around(&part, margin, field.dims);
-            let input = field.seen.digest(&read);
-            let truncated = if let Truncated::File(_, seen) = &truncated {
-                Some(seen.digest(&read))
+            let input = field.digests.digest(&read);
+            let truncated = if let Truncated::File(_, digests) = &truncated {
+                Some(digests.digest(&read))
             } else {
                 None
             };

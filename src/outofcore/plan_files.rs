@@ -140,8 +140,8 @@ impl Plan {
                 what: format!("cannot be read: {error}"),
             })?;
             let dims = self.job.dims.xyz();
-            let seen = ReadDigests::none_of(part, Field::bricks_of(dims).side(), dims);
-            Ok(Truncated::File(source, seen))
+            let digests = ReadDigests::none_of(part, Field::bricks_of(dims).side(), dims);
+            Ok(Truncated::File(source, digests))
         } else {
             Ok(Truncated::Same)
         }

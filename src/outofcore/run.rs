@@ -88,7 +88,7 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
             }
         })?;
     }
-    if !reads.input.is(field.seen.digest(&read)) {
+    if !reads.input.is(field.digests.digest(&read)) {
         let same = Stamp::of(job) == plan.stamp;
         let files = if same { "" } else { ", and files of another size or time" };
         return Err(BlocksError::changed(
@@ -96,8 +96,8 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
             format!("block {block} finds other samples{files}"),
         ));
     }
-    if let Truncated::File(_, seen) = &truncated
-        && !reads.truncated.is_some_and(|planned| planned.is(seen.digest(&read)))
+    if let Truncated::File(_, digests) = &truncated
+        && !reads.truncated.is_some_and(|planned| planned.is(digests.digest(&read)))
     {
         let path = plan.folder().join(SMOOTHED);
         return Err(BlocksError::Damaged { path, what: "is damaged".into() });

@@ -60,9 +60,9 @@ pub(super) fn survey(
     if differences.count == 0 {
         return Err(PointsError::Empty { voxels: job.dims.samples() as u64 }.into());
     }
-    all_saw(&mut field.seen, job, team)?;
-    if let Truncated::File(_, seen) = &mut truncated {
-        all_saw(seen, job, team)?;
+    join_digests(&mut field.digests, job, team)?;
+    if let Truncated::File(_, digests) = &mut truncated {
+        join_digests(digests, job, team)?;
     }
     let (range, least) = (field.range, field.least);
     let cut = if let Truncated::Bricks { cut, .. } = truncated { Some(cut) } else { None };
@@ -70,19 +70,19 @@ pub(super) fn survey(
     Ok(Surveyed { survey, truncated, counts, kept })
 }
 
-/// Joins what the processes of a team read.
-fn all_saw(seen: &mut ReadDigests, job: &Job, team: &dyn Team) -> Result<(), BlocksError> {
+/// Joins the digests of what the processes of a team read.
+fn join_digests(digests: &mut ReadDigests, job: &Job, team: &dyn Team) -> Result<(), BlocksError> {
     if team.size() == 1 {
         return Ok(());
     }
-    let (all, same) = team.reduce((seen.bricks(), true), |(all, same), (others, too)| {
+    let (all, same) = team.reduce((digests.bricks(), true), |(all, same), (others, too)| {
         *same &= too & ReadDigests::join(all, &others);
     });
     if !same {
         let what = "processes read other samples at one place".to_owned();
         return Err(BlocksError::changed(&job.input, what));
     }
-    seen.take(all);
+    digests.take(all);
     Ok(())
 }
 

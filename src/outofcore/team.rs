@@ -173,8 +173,8 @@ mod tests {
                         let mut sorted = all.clone();
                         sorted.sort_unstable();
                         assert_eq!(sorted, (0..size).collect::<Vec<_>>());
-                        let told = team.broadcast(team.is_first().then_some(all.clone()));
-                        assert_eq!(told, all);
+                        let received = team.broadcast(team.is_first().then_some(all.clone()));
+                        assert_eq!(received, all);
                         team.barrier();
                     });
                 }

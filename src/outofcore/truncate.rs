@@ -178,8 +178,8 @@ pub(super) fn truncate_to_file(
     };
     let (truncation, kept) = passes.team.broadcast(mine);
     let Some(kept) = kept else { return Ok((truncation, Truncated::Same, Vec::new())) };
-    let (source, seen) = smoothed(folder, job.dims)?;
-    Ok((truncation, Truncated::File(source, seen), vec![kept]))
+    let (source, digests) = smoothed(folder, job.dims)?;
+    Ok((truncation, Truncated::File(source, digests), vec![kept]))
 }
 
 /// The coefficients of a volume in a file, in double precision.

@@ -169,12 +169,12 @@ impl Weighting {
     /// The kinds as a user writes them, each with what it is: `common=C, min-max (eq. 4.1), … or column
     /// (from the input)`.
     pub fn known() -> String {
-        let told = KINDS.map(|WeightKind { name, parameter, about, .. }| {
+        let names = KINDS.map(|WeightKind { name, parameter, about, .. }| {
             let parameter = parameter.map(|p| format!("={p}")).unwrap_or_default();
             let about = if about.is_empty() { String::new() } else { format!(" ({about})") };
             format!("{name}{parameter}{about}")
         });
-        let [all @ .., last] = &told;
+        let [all @ .., last] = &names;
         format!("{} or {last}", all.join(", "))
     }
 }

@@ -7,7 +7,7 @@ use std::io;
 use serde::Serialize;
 use walpha_base::Monitor;
 
-use super::{Errors, Ladder, Mesh, short};
+use super::{Ladder, LevelErrors, Mesh, short};
 use crate::cli::args::one_alpha;
 use crate::cli::errors::{fail, fail_usage};
 use crate::cli::folder::Folder;
@@ -79,7 +79,7 @@ impl Ladder {
             let shape = progress
                 .stage(Stage::Shape, || alpha_shape_monitored(weighted, &options, &monitor))?;
             let shape = shape.with_coordinates(coordinates);
-            let errors = || Errors::of(&shape, &grays, volume, units, &monitor);
+            let errors = || LevelErrors::of(&shape, &grays, volume, units, &monitor);
             let errors = progress.stage(Stage::Interpolate, errors)?;
             let mut row = Row::of(&shape, &truncation, &domain, errors);
             progress.stage(Stage::Write, || {
@@ -213,7 +213,7 @@ pub(super) struct Row {
     pub coverage: f64,
     /// How far F is from the volume, in gray levels: on the samples of the shape, and on all.
     #[serde(flatten)]
-    pub errors: Errors,
+    pub errors: LevelErrors,
     /// Meshes of this level.
     pub bytes: u64,
     pub files: Vec<String>,
@@ -225,7 +225,7 @@ impl Row {
         shape: &AlphaShape,
         truncation: &Truncation,
         domain: &Domain,
-        errors: Errors,
+        errors: LevelErrors,
     ) -> Self {
         Self {
             errors,

@@ -216,12 +216,12 @@ struct Mesh {
     exporter: Box<dyn Exporter>,
 }
 
-fn meshes(asked: &[String], silent: &[&str]) -> anyhow::Result<Vec<Mesh>> {
+fn meshes(asked: &[String], default: &[&str]) -> anyhow::Result<Vec<Mesh>> {
     let plain = |extension: &str| extension.trim().trim_start_matches('.').to_ascii_lowercase();
     let mut extensions: Vec<String> = asked.iter().map(|extension| plain(extension)).collect();
     once("--mesh", &extensions)?;
     if extensions.is_empty() {
-        extensions = silent.iter().map(|extension| plain(extension)).collect();
+        extensions = default.iter().map(|extension| plain(extension)).collect();
     }
     let mesh = |extension: String| {
         let name = format!("level.{extension}");
@@ -236,7 +236,7 @@ fn meshes(asked: &[String], silent: &[&str]) -> anyhow::Result<Vec<Mesh>> {
 
 /// Root mean square differences of F from a volume, in gray levels.
 #[derive(Clone, Copy, Serialize)]
-pub(super) struct Errors {
+pub(super) struct LevelErrors {
     /// On the samples that the shape covers; null where there are none.
     #[serde(rename = "rmse_inside")]
     pub inside: Option<f64>,
@@ -245,7 +245,7 @@ pub(super) struct Errors {
     pub filled: f64,
 }
 
-impl Errors {
+impl LevelErrors {
     /// Of the shape of a volume's points, whose gray levels are given: its own values may be others. One
     /// triangulation, and two passes over the volume.
     pub(super) fn of(

@@ -96,12 +96,12 @@ fn segment(walls: &[HalfPlane], own: usize, radius: f64) -> Option<[[f64; 2]; 2]
     let (mut from, mut to) = (-reach, reach);
     for (_, wall) in walls.iter().enumerate().filter(|&(other, _)| other != own) {
         let [mx, my] = wall.normal;
-        let (slope, room) = (nx * my - ny * mx, wall.offset - offset * (nx * mx + ny * my));
+        let (slope, offset_along) = (nx * my - ny * mx, wall.offset - offset * (nx * mx + ny * my));
         if slope > 0.0 {
-            to = to.min(room / slope);
+            to = to.min(offset_along / slope);
         } else if slope < 0.0 {
-            from = from.max(room / slope);
-        } else if room < 0.0 {
+            from = from.max(offset_along / slope);
+        } else if offset_along < 0.0 {
             return None;
         }
     }
