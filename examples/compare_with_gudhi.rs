@@ -27,7 +27,7 @@ json.dump({**given, "cells": rows[4], "facets": rows[3], "edges": rows[2],
 "#;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // A grid: nothing but ties, where programs differ if they decide by rounded numbers.
+    // A grid is full of ties, where programs differ if they decide by rounded numbers.
     let place = |i: usize| [i % 5, i / 5 % 5, i / 25].map(|c| c as f64);
     let positions: Vec<[f64; 3]> = (0..125).map(place).collect();
     let alpha = Alpha::from_squared(0.75)?;

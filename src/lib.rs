@@ -24,7 +24,7 @@
 //! [`points::difference`], [`points::select`], [`points::weigh`], [`alpha_shape`].
 //!
 //! α and ω are squared lengths. Points are (x, y, z); volumes are stored `[z, y, x]`. Results are
-//! the same on any number of threads.
+//! independent of the number of threads.
 
 // Not in Cargo.toml: the modules that tests share are `pub` in each of them.
 #![warn(unreachable_pub)]

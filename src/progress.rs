@@ -2,7 +2,7 @@
 
 pub use walpha_base::monitor::{Cancelled, Listener, Monitor};
 
-/// What a command or a [`Recipe`](crate::Recipe) does at a time.
+/// A stage of a command or a [`Recipe`](crate::Recipe).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Stage {
@@ -53,7 +53,7 @@ impl Stage {
         monitor.stage(self.name())
     }
 
-    /// A word for it, as reports have it.
+    /// Its name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Read => "read",

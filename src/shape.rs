@@ -15,7 +15,7 @@ pub const MOST_FOR_CGAL: usize = 20_000;
 /// [`walpha_shape::alpha_shape`] for what a shape is; [`AlphaShape::options`] says which engine ran.
 ///
 /// # Errors
-/// As there; [`CgalError`] where CGAL gives no answer.
+/// The errors of that function; [`CgalError`] where CGAL gives no answer.
 pub fn alpha_shape(
     points: WeightedPoints,
     options: &ShapeOptions,
@@ -23,7 +23,7 @@ pub fn alpha_shape(
     alpha_shape_monitored(points, options, &Monitor::noop())
 }
 
-/// The same, which says how far it is and can be cancelled. CGAL works to its end.
+/// [`alpha_shape`] with progress and cancelling through `monitor`. CGAL cannot be interrupted.
 ///
 /// # Errors
 /// Those of [`alpha_shape`], and [`ShapeError::Cancelled`].
@@ -53,7 +53,7 @@ fn chosen(points: usize, options: &ShapeOptions) -> Engine {
     }
 }
 
-/// What a shape claims to be, for the checker to judge as a complex in space.
+/// The claim of a shape, for the checker to judge as a complex in space.
 pub fn claim(shape: &AlphaShape) -> Claim<'_> {
     Claim::new(shape.placed()).with_hidden(shape.hidden()).with_duplicates(shape.duplicates())
 }

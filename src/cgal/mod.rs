@@ -7,7 +7,6 @@
 //! [`Sites`](walpha_regular::Sites). C++ never calls back into Rust, because CGAL changes the
 //! rounding mode while it works.
 
-mod canonical;
 #[allow(unused_qualifications, reason = "in what the macro writes")]
 #[expect(unreachable_pub, reason = "cxx writes `pub`")]
 mod ffi;
@@ -20,7 +19,7 @@ mod shape;
 pub(crate) use plane::{RawTriangulation, farthest_plane, regular_plane};
 pub(crate) use shape::complex;
 
-use crate::shape::CgalError;
+use walpha_shape::CgalError;
 
 /// What C++ threw in a stage.
 fn thrown(stage: &'static str) -> impl Fn(cxx::Exception) -> CgalError {
@@ -40,7 +39,7 @@ mod tests {
     const INFINITE: [f64; 15] =
         [0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1., f64::INFINITY, 0., 0.];
 
-    fn told(error: cxx::Exception) -> (&'static str, String) {
+    fn stage_and_text(error: cxx::Exception) -> (&'static str, String) {
         match thrown("tried")(error) {
             CgalError::Thrown { stage, text } => (stage, text),
             other => panic!("{other}"),
@@ -51,7 +50,7 @@ mod tests {
     fn what_cgal_throws_is_an_error() {
         let space = [0.0; 5];
         let thrown = bridge::shape(&INFINITE, &space, 1.0).err();
-        let (stage, text) = told(thrown.expect("∞ was taken"));
+        let (stage, text) = stage_and_text(thrown.expect("∞ was taken"));
         assert_eq!(stage, "tried");
         assert!(text.starts_with("CGAL ERROR: assertion violation!"), "{text}");
     }

@@ -2,7 +2,7 @@ use bridge::{PlaneTriangulation, farthest_plane as farthest, regular_plane as re
 use walpha_regular::Sites;
 
 use super::thrown;
-use crate::CgalError;
+use walpha_shape::CgalError;
 
 /// The entries of `cpp/plane.cc`, compiled with the feature `paper` alone.
 #[allow(unused_qualifications, reason = "in what the macro writes")]

@@ -1,30 +1,31 @@
-//! `walpha blocks`: one shape in pieces that other processes or machines compute.
+//! `walpha blocks`: a shape in blocks that other processes or machines compute, and what each step prints.
 
+use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
+use serde::Serialize;
 use walpha_base::Monitor;
+use walpha_base::memory::readable;
 use walpha_base::shown::shown;
 use walpha_files::{Working, fill_all, keep_input};
 
+use super::args::{InputArgs, PipelineArgs, ShapeArgs};
+use super::errors::{CommandError, fail_usage};
+use super::global::{DIFFERENT, Global};
+use super::output::{name, print_summary};
+use super::progress::Progress;
+use super::report::Report;
+use super::{folder, pipeline};
 use crate::Recipe;
 use crate::export::{Content, ExportOptions, Exporter, Format, NewFolder, Target};
-use crate::outofcore::merge_monitored;
 use crate::outofcore::{
-    Alone, BlocksError, Checked, Cutting, Finding, Job, Merged, Pieces, Plan, Team, price, run,
-    run_all, whole,
+    Alone, BlocksError, BlockwiseFormat, Checked, CostEstimate, Cutting, Finding, Job, Merged,
+    Plan, Team, estimate_cost, merge_monitored, run, run_all, whole,
 };
 use crate::progress::Stage;
 use crate::volume::files_of;
-
-use super::args::{InputArgs, PipelineArgs, ShapeArgs};
-use super::block_summaries::{CheckSummary, PlanSummary, PriceSummary, RunSummary};
-use super::output::tell;
-use super::progress::Progress;
-use super::report::Report;
-use super::said::{Said, misused};
-use super::{DIFFERENT, Global, folder, pipeline};
 
 /// Compute a shape in blocks, on as many machines as see one folder: plan, run each block, merge.
 ///
@@ -130,7 +131,7 @@ impl CheckStep {
             Err(error) => return Err(error.into()),
         };
         progress.finish();
-        tell(global, &facts)?;
+        print_summary(global, &facts)?;
         Ok(if facts.whole { ExitCode::SUCCESS } else { DIFFERENT.into() })
     }
 }
@@ -144,7 +145,7 @@ impl PlanStep {
         let job = job(&self.pipeline.input, recipe)?;
         let Some(folder) = self.output else {
             progress.finish();
-            return tell(global, &PriceSummary(price(&job, cutting)?));
+            return print_summary(global, &CostSummary(estimate_cost(&job, cutting)?));
         };
         let new = folder::make(&folder, "with --output")?;
         let plan = progress
@@ -153,7 +154,7 @@ impl PlanStep {
             new.keep();
         }
         let seconds = progress.total();
-        tell(global, &PlanSummary::of(&plan, seconds))
+        print_summary(global, &PlanSummary::of(&plan, seconds))
     }
 }
 
@@ -174,7 +175,7 @@ impl RunStep {
         })?;
         let seconds = progress.total();
         let folder = self.folder.display().to_string();
-        tell(global, &RunSummary { folder, blocks, seconds })
+        print_summary(global, &RunSummary { folder, blocks, seconds })
     }
 }
 
@@ -192,7 +193,7 @@ impl MergeStep {
         }
         let mut outputs = Outputs::default();
         for path in &self.output {
-            if let Some(pieces) = Pieces::of(path) {
+            if let Some(pieces) = BlockwiseFormat::of(path) {
                 pieces.check(path)?;
                 outputs.pieces.push((pieces, path.clone()));
             } else {
@@ -208,7 +209,7 @@ impl MergeStep {
         progress.stage(Stage::Write, || outputs.write(&plan, Some(&merged), &Alone, &monitor))?;
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
-        tell(global, &report)
+        print_summary(global, &report)
     }
 }
 
@@ -216,7 +217,7 @@ impl MergeStep {
 #[derive(Default)]
 pub(super) struct Outputs {
     /// With a file for each block.
-    pub pieces: Vec<(Pieces, PathBuf)>,
+    pub pieces: Vec<(BlockwiseFormat, PathBuf)>,
     /// In one file.
     pub whole: Vec<(Target, Box<dyn Exporter>)>,
 }
@@ -266,21 +267,176 @@ impl Outputs {
 pub(super) fn job(args: &InputArgs, recipe: Recipe) -> anyhow::Result<Job> {
     let input = &args.input;
     if input.is_stdin() {
-        misused!("standard input cannot be read in parts, as blocks are" => "name a file");
+        fail_usage!("standard input cannot be read in parts, as blocks are" => "name a file");
     }
     if input.path().to_str().is_none() {
-        misused!("the plan of blocks is a text, and {input} is no name in UTF-8" => "name a link to it");
+        fail_usage!("the plan of blocks is a text, and {input} is no name in UTF-8" => "name a link to it");
     }
     if recipe.is_points(input.path())? {
         let name = shown(input.path());
-        misused!("{name} holds points, and blocks are cut from volumes" => "start one process, and write another format than .pvtu and .pvtp");
+        fail_usage!("{name} holds points, and blocks are cut from volumes" => "start one process, and write another format than .pvtu and .pvtp");
     }
-    args.given.refuse(&["columns"], format!("{input} holds a volume"))?;
+    args.typed.refuse(&["columns"], format!("{input} holds a volume"))?;
     let alone = ["refit", "exchange", "max_error"];
-    args.given.refuse(&alone, "blocks look at a part of the volume each")?;
+    args.typed.refuse(&alone, "blocks look at a part of the volume each")?;
     Job::new(input, recipe).map_err(|error| match error {
         BlocksError::Volume(error) => pipeline::with_points(error),
-        error @ BlocksError::NotLocal { .. } => Said::usage_of(&error).into(),
+        error @ BlocksError::NotLocal { .. } => CommandError::usage_of(&error).into(),
         other => other.into(),
     })
+}
+
+/// Printed after planning.
+#[derive(Serialize)]
+pub(super) struct PlanSummary {
+    folder: String,
+    plan: String,
+    input: String,
+    samples: usize,
+    points: u64,
+    blocks: usize,
+    largest_block: u64,
+    /// Points that are looked at by more than one block, as a share of all.
+    halo_share: f64,
+    seconds: f64,
+}
+
+impl PlanSummary {
+    pub(super) fn of(plan: &Plan, seconds: f64) -> Self {
+        let points = plan.blocks.iter().map(|block| block.points).sum::<u64>();
+        let halo = plan.blocks.iter().map(|block| block.halo).sum::<u64>();
+        Self {
+            folder: plan.folder().display().to_string(),
+            plan: plan.digest(),
+            input: plan.job.input.clone(),
+            samples: plan.job.dims.samples(),
+            points,
+            blocks: plan.blocks.len(),
+            largest_block: plan.blocks.iter().map(|block| block.points).max().unwrap_or(0),
+            halo_share: halo as f64 / points.max(1) as f64,
+            seconds,
+        }
+    }
+}
+
+impl Display for PlanSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "plan      {} of {}", self.plan, self.input)?;
+        writeln!(f, "points    {} of {} samples", self.points, self.samples)?;
+        writeln!(
+            f,
+            "blocks    {} of up to {} points, and at most {:.0} % of all points again around them",
+            self.blocks,
+            self.largest_block,
+            100.0 * self.halo_share
+        )?;
+        writeln!(f, "wrote     {}", name(&self.folder))
+    }
+}
+
+/// The cost of the work, estimated.
+#[derive(Serialize)]
+#[serde(transparent)]
+pub(super) struct CostSummary(pub CostEstimate);
+
+impl Display for CostSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let CostEstimate { samples, points, blocks, halo_share, memory_per_block, .. } = self.0;
+        let [by_plan, by_blocks] = self.0.bytes_read.map(readable);
+        let [by_rows, by_keys] = self.0.bytes_written.map(readable);
+        let [plan, run, merge] = self.0.core_seconds;
+        writeln!(f, "points    {points} of {samples} samples")?;
+        writeln!(
+            f,
+            "blocks    {blocks}, and {:.1} % of all points again around them",
+            100.0 * halo_share
+        )?;
+        writeln!(f, "memory    {} for each block at work", readable(memory_per_block))?;
+        writeln!(f, "reads     {by_plan} to plan, {by_blocks} by all blocks")?;
+        let by_plan = readable(self.0.bytes_of_plan);
+        writeln!(f, "writes    {by_rows}, of which merging reads {by_keys}; to plan {by_plan}")?;
+        let hours = (plan + run + merge) / 3600.0;
+        writeln!(
+            f,
+            "time      {hours:.3} core-hours: plan {plan:.0} s, blocks {run:.0} s, merge {merge:.0} s of one core"
+        )
+    }
+}
+
+/// Printed after running blocks.
+#[derive(Serialize)]
+pub(super) struct RunSummary {
+    pub folder: String,
+    pub blocks: Vec<usize>,
+    pub seconds: f64,
+}
+
+impl Display for RunSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { folder, blocks, seconds } = self;
+        let folder = name(folder);
+        writeln!(f, "blocks    {} done in {folder}, {seconds:.2} s", blocks.len())
+    }
+}
+
+/// Printed after checking the files of a plan.
+#[derive(Serialize)]
+pub(super) struct CheckSummary {
+    folder: String,
+    /// What identifies the plan; nothing where it cannot be read.
+    plan: Option<String>,
+    /// Number of blocks of the plan.
+    blocks: Option<usize>,
+    missing: Vec<usize>,
+    findings: Vec<FileFinding>,
+    /// Whether all is there, as it was written.
+    pub whole: bool,
+}
+
+/// A file that does not verify.
+#[derive(Serialize)]
+struct FileFinding {
+    path: String,
+    what: String,
+}
+
+impl CheckSummary {
+    pub(super) fn of(folder: &Path, plan: Option<&Plan>, checked: Checked) -> Self {
+        let whole = checked.is_whole();
+        let found = checked.findings.into_iter();
+        Self {
+            folder: folder.display().to_string(),
+            plan: plan.map(Plan::digest),
+            blocks: plan.map(|plan| plan.blocks.len()),
+            findings: found
+                .map(|found| FileFinding {
+                    path: found.path.display().to_string(),
+                    what: found.what,
+                })
+                .collect(),
+            missing: checked.missing,
+            whole,
+        }
+    }
+}
+
+impl Display for CheckSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for FileFinding { path, what } in &self.findings {
+            writeln!(f, "{}: {what}", name(path))?;
+        }
+        if !self.missing.is_empty() {
+            let missing: Vec<String> = self.missing.iter().map(usize::to_string).collect();
+            writeln!(f, "missing   {}", missing.join(", "))?;
+        }
+        let folder = name(&self.folder);
+        match (self.whole, self.blocks, self.findings.len()) {
+            (true, Some(blocks), _) => writeln!(f, "verified  {blocks} blocks in {folder}"),
+            (_, Some(_), 0) => writeln!(f, "verified  what is there in {folder}"),
+            (_, Some(_), _) => {
+                writeln!(f, "next      walpha blocks run {folder}, which computes these again")
+            }
+            (_, None, _) => writeln!(f, "next      plan again"),
+        }
+    }
 }

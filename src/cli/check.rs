@@ -18,12 +18,13 @@ use crate::progress::Stage;
 use crate::shape::placed_complex;
 
 use super::args::{PeriodicArgs, PipelineArgs, ShapeArgs};
-use super::judged::{self, Judged};
-use super::output::{name, tell};
+use super::compare::{self, CheckFile};
+use super::errors::{CommandError, fail, fail_usage};
+use super::global::{DIFFERENT, Global};
+use super::output::{name, print_summary};
+use super::pipeline;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
-use super::said::{Said, misused, refused};
-use super::{DIFFERENT, Global, pipeline};
 
 /// Check a complex exactly: one of an engine, or one that another program wrote.
 ///
@@ -78,7 +79,7 @@ const MOST_ENUMERATED: usize = 200;
 const MOST_PRINTED: usize = 20;
 const MOST_LISTED: usize = 1000;
 
-/// What was found in a complex or filtration.
+/// Printed after checking a complex or filtration.
 #[derive(Serialize)]
 struct CheckSummary<F, C> {
     schema_version: u32,
@@ -124,7 +125,7 @@ impl Check {
         let file = self.pipeline.input.input.clone();
         let path = file.path();
         let mut progress = Progress::new(global);
-        if !judged::is_named(path) {
+        if !compare::is_named(path) {
             if self.pipeline.input.recipe().is_points(path)? {
                 let cells = points::cells_of(path, &self.pipeline.input.of_points())?;
                 if !cells.is_empty() {
@@ -135,17 +136,17 @@ impl Check {
             let judged = format!("our own shape of {}", name(input));
             return self.complex(global, Subject { input, judged }, &made, &[], progress);
         }
-        let read = || judged::read(path, self.points.as_deref());
+        let read = || compare::read(path, self.points.as_deref());
         match progress.stage(Stage::Read, read)? {
-            Judged::Complex(complex) => {
+            CheckFile::Complex(complex) => {
                 self.refuse_ours(&[], format!("{} is a complex, made already", name(input)))?;
                 let judged = format!("the complex of {}", name(input));
                 self.complex(global, Subject { input, judged }, &complex, &[], progress)
             }
-            Judged::Filtration(filtration) => {
+            CheckFile::Filtration(filtration) => {
                 self.refuse_ours(&[], format!("{} is a filtration, made already", name(input)))?;
                 if self.enumerate {
-                    misused!("--enumerate belongs to a complex, and {} is a filtration", name(input) => "omit it");
+                    fail_usage!("--enumerate belongs to a complex, and {} is a filtration", name(input) => "omit it");
                 }
                 let judged = format!("the filtration of {}", name(input));
                 self.filtration(global, Subject { input, judged }, &filtration, progress)
@@ -165,20 +166,20 @@ impl Check {
         let why = format!("{} lists {listed}, which are judged", name(input));
         self.refuse_ours(&["alpha", "alpha_radius"], why)?;
         if self.points.is_some() {
-            misused!("--points has no effect: {} has points of its own", name(input) => "omit it");
+            fail_usage!("--points has no effect: {} has points of its own", name(input) => "omit it");
         }
         let path = self.pipeline.input.input.path();
         let read = || -> anyhow::Result<(PlacedComplex, bool)> {
             let mut file = points::read_complex(path, &self.pipeline.input.of_points()).map_err(|error| {
-                let Said { why, next, usage } = Said::from(error);
+                let CommandError { why, next, usage } = CommandError::from(error);
                 let csv = "write its points by `walpha points INPUT -o points.csv` to judge our own shape of them";
                 let next = next.map_or(csv.to_owned(), |next| format!("{next}, or {csv}"));
-                Said { why: format!("{} lists {listed}: {why}", name(input)), next: Some(next), usage }
+                CommandError { why: format!("{} lists {listed}: {why}", name(input)), next: Some(next), usage }
             })?;
             let states_alpha = file.alpha != Alpha::INFINITE || file.classes.vertices.is_some();
             if let AlphaRule::Given(alpha) = self.pipeline.weights.alpha() {
                 if states_alpha {
-                    misused!("--alpha has no effect: {} states its α", name(input) => "omit it");
+                    fail_usage!("--alpha has no effect: {} states its α", name(input) => "omit it");
                 }
                 file.alpha = alpha;
             }
@@ -197,13 +198,13 @@ impl Check {
     }
 
     /// Refuses options of how a complex is made, but some.
-    fn refuse_ours(&self, but: &[&str], why: String) -> Result<(), Said> {
+    fn refuse_ours(&self, but: &[&str], why: String) -> Result<(), CommandError> {
         let ours = ShapeArgs::augment_args(<PipelineArgs>::augment_args(Command::new("check")));
         let ours = PeriodicArgs::augment_args(ours);
         let options = ours.get_arguments().filter(|arg| !arg.is_positional());
         let names = options.map(|arg| arg.get_id().as_str());
         let names: Vec<&str> = names.filter(|name| !but.contains(name)).collect();
-        self.pipeline.input.given.refuse(&names, why)
+        self.pipeline.input.typed.refuse(&names, why)
     }
 
     /// The shape of INPUT, by an engine.
@@ -211,9 +212,9 @@ impl Check {
         let periodic = self.periodic.periodic;
         let mut recipe = self.pipeline.recipe_of(&self.shape, periodic)?;
         if self.points.is_some() {
-            misused!("--points belongs to a complex (.json, .npz), and {} is none", shown(path) => "omit it");
+            fail_usage!("--points belongs to a complex (.json, .npz), and {} is none", shown(path) => "omit it");
         }
-        let given = &self.pipeline.input.given;
+        let given = &self.pipeline.input.typed;
         given.refuse(&["refit"], "values are not judged")?;
         let (weighed, _) = pipeline::weighted_points(&self.pipeline.input, &recipe, progress)?;
         // The whole triangulation can be judged wholly. Several blocks are judged as they are; and of a
@@ -236,10 +237,10 @@ impl Check {
     ) -> anyhow::Result<ExitCode> {
         let n = judged.positions.len();
         if self.enumerate && judged.periodic.is_some() {
-            refused!("--enumerate knows no periodic box" => "omit it");
+            fail!("--enumerate knows no periodic box" => "omit it");
         }
         if self.enumerate && n > MOST_ENUMERATED {
-            refused!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}" => "omit it");
+            fail!("--enumerate takes at most {MOST_ENUMERATED} points, and there are {n}" => "omit it");
         }
         let (claim, complex) = (judged.claim(), &judged.complex);
         let started = Instant::now();
@@ -319,7 +320,7 @@ impl Check {
     }
 }
 
-/// What is judged: the name of INPUT, and what of it.
+/// The name of INPUT, and which part of it is checked.
 struct Subject<'a> {
     input: &'a str,
     judged: String,
@@ -336,7 +337,7 @@ impl<F: Serialize + Display, C: Serialize> CheckSummary<F, C> {
     /// Prints them.
     fn tell(mut self, global: Global) -> anyhow::Result<ExitCode> {
         self.findings.truncate(MOST_LISTED);
-        tell(global, &self)?;
+        print_summary(global, &self)?;
         Ok(if self.valid { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
     }
 }

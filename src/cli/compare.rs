@@ -1,19 +1,22 @@
-//! `walpha compare`: how do two complexes or filtrations differ?
+//! `walpha compare`: how two complexes or filtrations differ; and how such files are read.
 
 use std::fmt::{self, Display};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use anyhow::Context;
 use clap::Args;
 use serde::Serialize;
+use walpha_base::shown::shown;
 
-use crate::check::{compare, compare_filtrations};
-
-use super::judged::{self, Judged};
-use super::output::{name, tell};
+use super::errors::{CommandError, command_error, fail};
+use super::global::{DIFFERENT, Global};
+use super::output::{name, print_summary};
 use super::report::SCHEMA_VERSION;
-use super::said::refused;
-use super::{DIFFERENT, Global};
+use crate::check::schema::{AnyFile, ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
+use crate::check::{compare, compare_filtrations};
+use crate::points::read_points;
 
 /// Compare two complexes by points, weights, α and simplices with their classes, or two filtrations
 /// by points, weights, simplices with their values, and order.
@@ -50,21 +53,21 @@ struct CompareSummary<C> {
 
 impl Compare {
     pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
-        let read = |path: &Path| judged::read(path, None);
+        let read = |path: &Path| read(path, None);
         match (read(&self.a)?, read(&self.b)?) {
-            (Judged::Complex(a), Judged::Complex(b)) => {
+            (CheckFile::Complex(a), CheckFile::Complex(b)) => {
                 if a.periodic.or(b.periodic).is_some() {
-                    refused!("complexes of a periodic box are not compared: their simplices have no one place" => "judge each with `walpha check`");
+                    fail!("complexes of a periodic box are not compared: their simplices have no one place" => "judge each with `walpha check`");
                 }
                 let comparison = compare(a.placed(), b.placed())?;
                 self.tell(global, comparison.is_equal(), comparison)
             }
-            (Judged::Filtration(a), Judged::Filtration(b)) => {
+            (CheckFile::Filtration(a), CheckFile::Filtration(b)) => {
                 let comparison = compare_filtrations(&a, &b)?;
                 self.tell(global, comparison.is_equal(), comparison)
             }
             _ => {
-                refused!("one file is a filtration, the other a complex" => "compare two of a kind")
+                fail!("one file is a filtration, the other a complex" => "compare two of a kind")
             }
         }
     }
@@ -76,7 +79,10 @@ impl Compare {
         comparison: impl Serialize + Display,
     ) -> anyhow::Result<ExitCode> {
         let [a, b] = [&self.a, &self.b].map(|path| path.display().to_string());
-        tell(global, &CompareSummary { schema_version: SCHEMA_VERSION, a, b, equal, comparison })?;
+        print_summary(
+            global,
+            &CompareSummary { schema_version: SCHEMA_VERSION, a, b, equal, comparison },
+        )?;
         Ok(if equal { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
     }
 }
@@ -87,5 +93,68 @@ impl<C: Display> Display for CompareSummary<C> {
         writeln!(f, "{}", self.comparison)?;
         let verdict = if self.equal { "equal in all that was compared" } else { "different" };
         writeln!(f, "verdict   {verdict}")
+    }
+}
+
+/// A file to check or compare.
+#[expect(clippy::large_enum_variant, reason = "there are one or two, moved a few times")]
+pub(super) enum CheckFile {
+    /// A complex, whose fields fit together.
+    Complex(PlacedComplex),
+    /// A filtration, whose fields fit together.
+    Filtration(FiltrationFile),
+}
+
+/// Whether a file is a complex or filtration by its name: `.json` or `.npz`.
+pub(super) fn is_named(path: &Path) -> bool {
+    ComplexFile::is_named(path)
+}
+
+/// Reads a complex or filtration, with points (and weights, if it has some) from a file of their own
+/// if one is given.
+pub(super) fn read(path: &Path, points: Option<&Path>) -> anyhow::Result<CheckFile> {
+    let mut file = opened(path)?;
+    if let Some(points) = points {
+        let points = read_points(points, None)?;
+        let (positions, weights) = match &mut file {
+            AnyFile::Complex(file) => (&mut file.points, &mut file.weights),
+            AnyFile::Filtration(file) => (&mut file.points, &mut file.weights),
+        };
+        *positions = points.positions;
+        *weights = points.weights.or(weights.take());
+    }
+    let judged = match file {
+        AnyFile::Complex(file) => PlacedComplex::try_from(file).map(CheckFile::Complex),
+        AnyFile::Filtration(file) => file.check().map(|()| CheckFile::Filtration(file)),
+    };
+    judged.map_err(|error| refusal(path, error))
+}
+
+/// Opens a file, or explains why it cannot.
+fn opened(path: &Path) -> anyhow::Result<AnyFile> {
+    match AnyFile::open(path) {
+        Ok(file) => Ok(file),
+        Err(SchemaError::Extension) => {
+            fail!("{}: a complex is read from .json or .npz", shown(path) => "see docs/cross-checking.md")
+        }
+        Err(SchemaError::Io(error)) => {
+            let missing = error.kind() == ErrorKind::NotFound;
+            let next = missing.then(|| "check the path".to_owned());
+            Err(CommandError { next, ..command_error!("cannot read {}: {error}", shown(path)) }
+                .into())
+        }
+        Err(other) => Err(other).with_context(|| shown(path)),
+    }
+}
+
+/// Why the fields of a file do not fit together.
+fn refusal(path: &Path, error: SchemaError) -> anyhow::Error {
+    match error {
+        SchemaError::NoPoints => command_error!(
+            "{}: the file lists no points", shown(path) =>
+            "add `points`, or give them in a file of their own with --points"
+        )
+        .into(),
+        other => anyhow::Error::new(other).context(shown(path)),
     }
 }

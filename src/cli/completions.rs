@@ -3,8 +3,9 @@
 use clap::Args;
 use clap_complete::{Shell, generate};
 
+use super::described;
+use super::global::Global;
 use super::output::print;
-use super::{Global, described};
 
 /// Print the completions of a shell: what to type after `walpha` and the tab key.
 ///

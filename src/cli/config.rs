@@ -15,7 +15,7 @@ use toml::{Table, Value};
 use walpha_base::near::nearest;
 use walpha_base::shown::shown;
 
-use super::said::{Said, refused, said};
+use super::errors::{CommandError, command_error, fail};
 
 /// The option that names the file.
 const FILE: &str = "config";
@@ -26,7 +26,8 @@ const NOT_CONFIGURED: [&str; 4] = [FILE, PRINT, "help", "version"];
 
 /// The two options, for every command.
 pub(super) fn options_of_it() -> [Arg; 2] {
-    let option = |name| Arg::new(name).long(name).global(true).help_heading(super::EVERY_COMMAND);
+    let option =
+        |name| Arg::new(name).long(name).global(true).help_heading(super::global::EVERY_COMMAND);
     let file = option(FILE).value_name("FILE");
     let print = option(PRINT).action(ArgAction::SetTrue);
     [
@@ -122,13 +123,13 @@ fn path(matches: &ArgMatches) -> Option<PathBuf> {
 /// The file's settings for this command.
 fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
     let text = std::fs::read_to_string(file).map_err(|error| {
-        said!("cannot read {}: {error}", shown(file) => "give --config the name of a TOML file")
+        command_error!("cannot read {}: {error}", shown(file) => "give --config the name of a TOML file")
     })?;
     let table: Table = text.parse().map_err(|error: toml::de::Error| {
         let said = error.to_string();
         let lines = said.lines().map(str::trim).filter(|line| !line.is_empty());
         let said: Vec<&str> = lines.collect();
-        said!("{} is no TOML file: {}", shown(file), said.join(" ") => "walpha {name} --print-config shows how one looks")
+        command_error!("{} is no TOML file: {}", shown(file), said.join(" ") => "walpha {name} --print-config shows how one looks")
     })?;
     let (mut settings, mut own) = (Table::new(), Table::new());
     for (key, value) in table {
@@ -158,12 +159,12 @@ fn read(command: &Command, file: &Path, name: &str) -> anyhow::Result<Table> {
     Ok(settings)
 }
 
-fn unknown(file: &Path, name: &str, key: &str, known: Vec<&str>) -> Said {
+fn unknown(file: &Path, name: &str, key: &str, known: Vec<&str>) -> CommandError {
     let next = match nearest(key, known) {
         Some(near) => format!("did you mean {near}?"),
         None => "take it away, or see --print-config".to_owned(),
     };
-    said!("{}: no option has the name {name}", shown(file) => "{next}")
+    command_error!("{}: no option has the name {name}", shown(file) => "{next}")
 }
 
 /// The options a file may set.
@@ -187,7 +188,7 @@ fn rivals<'a>(subcommand: &'a Command, arg: &Arg) -> Vec<&'a Arg> {
         .filter(|&id| id != arg.get_id());
     let of_groups =
         of_groups.filter_map(|id| subcommand.get_arguments().find(|a| a.get_id() == id));
-    let told = subcommand.get_arguments().filter(|other| {
+    let of_arguments = subcommand.get_arguments().filter(|other| {
         let excludes = |one, two: &Arg| {
             let conflicts = subcommand.get_arg_conflicts_with(one);
             conflicts.iter().any(|arg| arg.get_id() == two.get_id())
@@ -196,7 +197,7 @@ fn rivals<'a>(subcommand: &'a Command, arg: &Arg) -> Vec<&'a Arg> {
             && !other.is_global_set()
             && (excludes(arg, other) || excludes(other, arg))
     });
-    of_groups.chain(told).collect()
+    of_groups.chain(of_arguments).collect()
 }
 
 fn takes_many(arg: &Arg) -> bool {
@@ -210,13 +211,13 @@ fn texts(arg: &Arg, value: &Value) -> anyhow::Result<Vec<String>> {
     let one = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
         Value::Integer(_) | Value::Float(_) => Ok(value.to_string()),
-        _ => refused!("a list or table is not a value" => "give a text or a number"),
+        _ => fail!("a list or table is not a value" => "give a text or a number"),
     };
     if !arg.get_action().takes_values() {
         return match value {
             Value::Boolean(true) => Ok(vec![format!("--{long}")]),
             Value::Boolean(false) => Ok(Vec::new()),
-            _ => refused!("{long} is a switch" => "give true or false"),
+            _ => fail!("{long} is a switch" => "give true or false"),
         };
     }
     let values = match value {

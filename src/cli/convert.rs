@@ -9,12 +9,12 @@ use walpha_base::shown::shown;
 use crate::progress::Stage;
 use crate::volume::{Source, convert_monitored, open_monitored};
 
-use super::Global;
 use super::args::InputArgs;
-use super::output::{name, tell};
+use super::errors::fail_usage;
+use super::global::Global;
+use super::output::{name, print_summary};
 use super::pipeline::{with_file, with_points};
 use super::progress::Progress;
-use super::said::misused;
 
 /// Convert a volume to Zarr, which can be read in parts.
 ///
@@ -53,10 +53,10 @@ impl Convert {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         if self.output.extension().is_none_or(|extension| extension != "zarr") {
             let path = shown(&self.output);
-            misused!("{path} does not end with .zarr, the one format written" => "name it so");
+            fail_usage!("{path} does not end with .zarr, the one format written" => "name it so");
         }
         let meaningless = ["gray", "gray_out", "columns", "nan"];
-        self.input.given.refuse(&meaningless, "values are converted as they are")?;
+        self.input.typed.refuse(&meaningless, "values are converted as they are")?;
         let mut progress = Progress::new(global);
         let monitor = progress.monitor();
         let options = self.input.options();
@@ -74,6 +74,6 @@ impl Convert {
         })?;
         let seconds = progress.total();
         let (input, file) = (self.input.input.to_string(), self.output.display().to_string());
-        tell(global, &ConvertSummary { input, dims, file, seconds })
+        print_summary(global, &ConvertSummary { input, dims, file, seconds })
     }
 }

@@ -16,10 +16,11 @@ use crate::progress::Stage;
 
 use super::args::{FrozenPipelineArgs, OutputArgs, PeriodicArgs};
 use super::formats::filtration_output;
-use super::output::{name, tell};
+use super::global::Global;
+use super::output::{name, print_summary};
+use super::pipeline;
 use super::progress::Progress;
 use super::report::{Folded, SCHEMA_VERSION, WeightsReport, ending};
-use super::{Global, pipeline};
 
 /// Every simplex of the regular triangulation, and the α at which it comes.
 ///
@@ -58,7 +59,7 @@ struct FiltrationSummary {
     /// Outside of the periodic box, and moved into it; absent without a box.
     #[serde(skip_serializing_if = "Option::is_none")]
     folded: Option<usize>,
-    /// Of points and all lengths; values are in the square.
+    /// Unit of points and all lengths; values are in its square.
     coordinates: Coordinates,
     /// The α that weights are in proportion to; null where they need none.
     alpha_ref: Option<Parameter>,
@@ -100,7 +101,7 @@ impl Filtration {
             targets.push((Target::open(path)?, format));
         }
         let mut progress = Progress::new(global);
-        input.given.refuse(&["refit"], "a filtration has no values")?;
+        input.typed.refuse(&["refit"], "a filtration has no values")?;
         let torus = self.periodic.periodic;
         let recipe = self.pipeline.recipe()?.periodic(torus);
         let (mut weighed, _) = pipeline::weighted_points(input, &recipe, &mut progress)?;
@@ -123,7 +124,7 @@ impl Filtration {
         }
         facts.files = self.output.iter().map(|path| path.display().to_string()).collect();
         facts.seconds = progress.finish().into_iter().collect();
-        tell(global, &facts)
+        print_summary(global, &facts)
     }
 }
 

@@ -7,7 +7,7 @@ use walpha_base::shown::shown;
 
 use crate::export::{Filled, NewFolder, Target, put_all};
 
-use super::said::{Said, said};
+use super::errors::{CommandError, command_error};
 
 /// The folder results go to: found writable before the long work. All files appear in it at the end,
 /// or none.
@@ -20,9 +20,9 @@ pub(super) struct Folder {
 }
 
 /// Makes a folder if it is not there; `instead` says how another is chosen.
-pub(super) fn make(path: &Path, instead: &str) -> Result<Option<NewFolder>, Said> {
+pub(super) fn make(path: &Path, instead: &str) -> Result<Option<NewFolder>, CommandError> {
     NewFolder::make(path).map_err(|error| {
-        said!("cannot make the folder {}: {error}", shown(path) => "choose another {instead}")
+        command_error!("cannot make the folder {}: {error}", shown(path) => "choose another {instead}")
     })
 }
 

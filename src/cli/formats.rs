@@ -1,6 +1,6 @@
 //! What help says of formats, from the library's tables.
 
-use crate::outofcore::Pieces;
+use crate::outofcore::BlockwiseFormat;
 use crate::{export, points, volume};
 
 /// What INPUT may be.
@@ -60,7 +60,7 @@ pub(super) fn shape_output() -> String {
          - (standard output, with --output-format). Files that are there are replaced",
         of(true),
         of(false),
-        dotted(Pieces::ALL.iter().map(|(_, extension)| *extension))
+        dotted(BlockwiseFormat::ALL.iter().map(|(_, extension)| *extension))
     )
 }
 

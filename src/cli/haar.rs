@@ -11,14 +11,14 @@ use crate::pipeline::{Grays, Input};
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
 
-use super::Global;
 use super::args::{HaarArgs, InputArgs, OutputArgs};
+use super::errors::fail;
 use super::formats::volume_output;
-use super::output::tell;
+use super::global::Global;
+use super::output::print_summary;
 use super::pipeline::{accept, read};
 use super::progress::Progress;
 use super::report::{HaarReport, SCHEMA_VERSION};
-use super::said::refused;
 
 /// Transform a volume, drop small coefficients, and transform it back.
 ///
@@ -59,7 +59,7 @@ impl Haar {
             accept(&read, &self.input)?;
         }
         let Input::Volume(Grays { volume, range, written, .. }) = read else {
-            refused!("{} holds points", self.input.input => "name a volume");
+            fail!("{} holds points", self.input.input => "name a volume");
         };
         let options = self.haar.options();
         let monitor = progress.monitor();
@@ -71,7 +71,7 @@ impl Haar {
         }
         progress.finish();
         let haar = HaarReport::new(&truncation, &range);
-        tell(
+        print_summary(
             global,
             &HaarSummary {
                 schema_version: SCHEMA_VERSION,

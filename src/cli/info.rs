@@ -16,10 +16,11 @@ use crate::volume::{
 use crate::{Alpha, Coordinates, Dims, Frame, LengthUnit, VolumeError};
 
 use super::args::InputArgs;
-use super::output::{name, tell};
+use super::global::Global;
+use super::output::{name, print_summary};
+use super::pipeline;
 use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
-use super::{Global, pipeline};
 
 /// Describe a file, without computing anything.
 ///
@@ -58,7 +59,7 @@ enum Content {
         direction: [[f64; 3]; 3],
         #[serde(flatten)]
         coordinates: Coordinates,
-        /// Of the values that are finite; null where none is.
+        /// Range of the finite values; null where there is none.
         min: Option<f32>,
         max: Option<f32>,
         /// Samples that are NaN or infinite.
@@ -74,7 +75,7 @@ enum Content {
     /// A volume with several values in each voxel, which is not read.
     Unread {
         format: String,
-        /// What a voxel holds.
+        /// Content of a voxel.
         voxels: String,
         /// Null where that takes reading it.
         dims: Option<[u64; 3]>,
@@ -89,7 +90,7 @@ enum Content {
         /// Whether the weights are squares of radii, which the file has in place of weights.
         of_radii: bool,
         values: bool,
-        /// What the file lists besides points.
+        /// Cells that the file lists.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         cells: Vec<CellCount>,
         /// The cell in which they repeat; absent where the file states none.
@@ -116,19 +117,19 @@ struct CellSummary {
     /// What --periodic takes; null where the cell is no box along the axes.
     sides: Option<[f64; 3]>,
     #[serde(skip)]
-    told: String,
+    sides_text: String,
 }
 
 impl From<Cell> for CellSummary {
     fn from(cell: Cell) -> Self {
-        let told = match cell.sides() {
+        let sides_text = match cell.sides() {
             Some(sides) => {
                 let sides = sides.map(number).join(",");
                 format!("a box of sides {sides}, and --periodic {sides} makes its torus")
             }
             None => cell.to_string(),
         };
-        Self { vectors: cell.vectors, repeats: cell.repeats, sides: cell.sides(), told }
+        Self { vectors: cell.vectors, repeats: cell.repeats, sides: cell.sides(), sides_text }
     }
 }
 
@@ -138,7 +139,7 @@ impl Info {
         let monitor = progress.monitor();
         let look = || pipeline::with_file(&self.input, |input| self.look(input, &monitor));
         let content = progress.stage(Stage::Read, look)?;
-        tell(
+        print_summary(
             global,
             &InfoSummary {
                 schema_version: SCHEMA_VERSION,
@@ -217,7 +218,7 @@ impl Info {
     }
 }
 
-/// What is seen of a volume.
+/// Statistics of a volume.
 struct Seen {
     dims: Dims,
     frame: Frame,
@@ -262,7 +263,7 @@ impl std::fmt::Display for InfoSummary {
 }
 
 impl Content {
-    /// What the points are meant for.
+    /// Purpose of the points.
     fn fmt_meant(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self::Points { alpha, gray_range, coordinates, recipe, .. } = self else {
             return Ok(());
@@ -393,8 +394,8 @@ impl std::fmt::Display for Content {
                 let has = |there: bool| if there { "yes" } else { "no" };
                 let squares = if *of_radii { ", squares of its radii" } else { "" };
                 writeln!(f, "weights   {}{squares}\nvalues    {}", has(*weights), has(*values))?;
-                if let Some(CellSummary { told, .. }) = cell {
-                    writeln!(f, "cell      {told}")?;
+                if let Some(CellSummary { sides_text, .. }) = cell {
+                    writeln!(f, "cell      {sides_text}")?;
                 }
                 if let Some([x, y, z]) = grid {
                     writeln!(f, "grid      {x}×{y}×{z} samples, coordinates in {coordinates}")?;

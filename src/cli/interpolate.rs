@@ -1,4 +1,4 @@
-//! `walpha interpolate`: F on a grid, and how far it is from the volume.
+//! `walpha interpolate`: F on a grid and its error, or with `--curve` the error against the number of points.
 
 use std::fmt::{self, Display};
 use std::io::Write;
@@ -6,23 +6,29 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
-
-use crate::export::{Content, Target, TargetError, write_all};
-use crate::interpolate::{Deviation, Grid, Interpolant, Resampled, fill_monitored};
-use crate::pipeline::{Source, Values, Weighed};
-use crate::progress::Stage;
-use crate::volume::VolumeWriter;
-use crate::{AlphaShape, Dims, GrayRange, Units, Volume};
 use walpha_base::number_or_null_or_name;
 
-use super::args::{OutputArgs, PipelineArgs, ShapeArgs};
+use super::args::{OutputArgs, PipelineArgs, SelectArgs, ShapeArgs, one_alpha};
+use super::errors::{fail, fail_usage};
+use super::folder;
 use super::formats::volume_output;
-use super::output::tell;
-use super::pipeline::VolumeSummary;
+use super::global::Global;
+use super::output::{name, print_summary};
+use super::pipeline::{self, VolumeSummary, read};
 use super::progress::Progress;
-use super::report::Report;
-use super::said::{misused, refused};
-use super::{Global, curve, pipeline};
+use super::report::{Report, SCHEMA_VERSION};
+use crate::export::{Content, NewFolder, Target, TargetError, write_all};
+use crate::haar::smooth_monitored;
+#[cfg(feature = "render")]
+use crate::interpolate::error_figure;
+use crate::interpolate::{
+    CurveOptions, CurvePoint, Deviation, Grid, Interpolant, Resampled, error_curve, fill_monitored,
+    write_curve_csv,
+};
+use crate::pipeline::{Input, Source, Values, Weighed};
+use crate::progress::Stage;
+use crate::volume::VolumeWriter;
+use crate::{AlphaShape, Dims, GrayRange, LengthUnit, SelectionRule, Units, Volume, Weighting};
 
 /// Interpolate the values of points on their shape, and measure the error.
 ///
@@ -81,12 +87,12 @@ struct InterpolateSummary {
     interpolation: Interpolation,
 }
 
-/// What was sampled, and its error where there is a volume to compare with.
+/// The samples, and their error where there is a volume to compare with.
 #[derive(Serialize)]
 struct Interpolation {
     /// Samples written, along x, y and z.
     grid: [usize; 3],
-    /// Those of them on the shape.
+    /// Samples on the shape.
     on_shape: usize,
     /// On the samples of INPUT that the shape covers; null for points.
     inside: Option<Error>,
@@ -130,10 +136,10 @@ impl Interpolate {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         if self.curve {
             if self.pipeline.input.raw.grid().is_some() {
-                misused!("--curve measures on the samples of INPUT" => "omit --dims");
+                fail_usage!("--curve measures on the samples of INPUT" => "omit --dims");
             }
             let base = self.output.as_deref().expect("clap requires it");
-            return curve::run(global, &self.pipeline, base);
+            return run(global, &self.pipeline, base);
         }
         self.format.check(self.output.iter())?;
         let recipe = self.pipeline.recipe_of(&self.shape, None)?;
@@ -177,7 +183,7 @@ impl Interpolate {
         let files = self.output.iter().chain(&self.mask).map(|path| path.display().to_string());
         report.finish(progress.finish(), files.collect());
         let grid = grid.dims().xyz();
-        tell(
+        print_summary(
             global,
             &InterpolateSummary {
                 report,
@@ -207,7 +213,7 @@ impl Interpolate {
                 Ok(Grid::spanning(end(f64::min), end(f64::max), dims))
             }
             (None, None, None) => {
-                refused!("{} holds points, which have no grid of their own", self.pipeline.input.input => "give --dims X,Y,Z")
+                fail!("{} holds points, which have no grid of their own", self.pipeline.input.input => "give --dims X,Y,Z")
             }
         }
     }
@@ -278,5 +284,148 @@ impl Display for Error {
             write!(f, ", PSNR {psnr:.2} dB")?;
         }
         Ok(())
+    }
+}
+
+#[derive(Serialize)]
+struct CurveSummary {
+    schema_version: u32,
+    input: String,
+    /// Squared, in the square of the unit.
+    alpha: f64,
+    unit: LengthUnit,
+    curve: Vec<CurvePoint>,
+    files: Vec<String>,
+    seconds: f64,
+}
+
+/// Measures the curve and writes it as CSV, PNG and SVG.
+pub(super) fn run(global: Global, pipeline: &PipelineArgs, base: &Path) -> anyhow::Result<()> {
+    let PipelineArgs { input, select, .. } = pipeline;
+    let recipe = pipeline.recipe()?;
+    let (new, paths) = paths(base)?;
+    let targets = paths.iter().map(|path| Target::open(path)).collect::<Result<Vec<_>, _>>()?;
+    let mut progress = Progress::new(global);
+    let Input::Volume(grays) = read(input, &recipe, &mut progress)? else {
+        fail!("{} holds points, and --curve needs a volume", input.input);
+    };
+    let source = recipe.source(grays)?;
+    let Source { ref volume, units, range, .. } = source;
+    let monitor = progress.monitor();
+    let (smoothed, _) =
+        progress.stage(Stage::Haar, || smooth_monitored(volume, &recipe.haar, &monitor))?;
+    let options = CurveOptions {
+        counts: counts(volume, select)?,
+        weightings: vec![Weighting::Common(0.0), Weighting::MinMax, Weighting::Barycentric],
+        alpha: one_alpha(recipe.alpha, &source)?.alpha,
+        units,
+    };
+    let curve =
+        progress.stage(Stage::Curve, || error_curve(volume, &smoothed, &options, &monitor))?;
+    let mut csv = Vec::new();
+    write_curve_csv(&curve, range.step(), &mut csv)?;
+    let alpha = options.alpha.squared();
+    #[cfg(feature = "render")]
+    let figure = error_figure(&format!("Error against points: {}", input.input), alpha, &curve);
+    let files = [
+        csv,
+        #[cfg(feature = "render")]
+        figure.to_png()?,
+        #[cfg(feature = "render")]
+        figure.to_svg()?.into_bytes(),
+    ];
+    write_all(targets.into_iter().zip(&files).map(|(target, bytes)| {
+        let content = |out: &mut dyn Write| out.write_all(bytes);
+        (target, Box::new(content) as Content<'_>)
+    }))?;
+    if let Some(new) = new {
+        new.keep();
+    }
+    let seconds = progress.total();
+    let facts = CurveSummary {
+        schema_version: SCHEMA_VERSION,
+        input: input.input.to_string(),
+        alpha,
+        unit: units.coordinates(volume).unit,
+        curve,
+        files: paths.iter().map(|path| path.display().to_string()).collect(),
+        seconds,
+    };
+    print_summary(global, &facts)
+}
+
+/// From a sixteenth to twice the points that would be selected.
+fn counts(volume: &Volume, select: &SelectArgs) -> anyhow::Result<Vec<u64>> {
+    let whole = match select.rule() {
+        SelectionRule::Count(count) => count as f64,
+        SelectionRule::Ratio(ratio) | SelectionRule::AtMost(ratio) => {
+            ratio * volume.dims().samples() as f64
+        }
+        SelectionRule::Threshold(_) => {
+            fail_usage!("--curve needs a number of points" => "give --count or --ratio")
+        }
+    };
+    Ok([0.0625, 0.125, 0.25, 0.5, 1.0, 2.0].map(|f| (f * whole).round() as u64).into())
+}
+
+/// Formats of the curve.
+const EXTENSIONS: &[&str] = &[
+    "csv",
+    #[cfg(feature = "render")]
+    "png",
+    #[cfg(feature = "render")]
+    "svg",
+];
+
+/// `curve.csv`, `.png` and `.svg` in a folder, made if it is not there, or files whose names begin as
+/// given.
+fn paths(base: &Path) -> anyhow::Result<(Option<NewFolder>, Vec<PathBuf>)> {
+    let asked = base.to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
+    let new = if asked { folder::make(base, "with --curve")? } else { None };
+    let stem = if base.is_dir() {
+        base.join("curve")
+    } else if EXTENSIONS.iter().any(|known| base.extension().is_some_and(|e| e == *known)) {
+        base.with_extension("")
+    } else {
+        base.to_owned()
+    };
+    let named = |extension: &&str| {
+        let mut path = stem.clone().into_os_string();
+        path.push(".");
+        path.push(extension);
+        path.into()
+    };
+    Ok((new, EXTENSIONS.iter().map(named).collect()))
+}
+
+impl Display for CurveSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = self.unit.symbol();
+        let input = name(&self.input);
+        writeln!(f, "input     {input}, α = {} {unit}² (squared length)", self.alpha)?;
+        writeln!(
+            f,
+            "{:<20}{:<12}{:>8}{:>8}{:>11}{:>13}{:>13}",
+            "method", "weights", "count", "hidden", "covered", "RMSE inside", "RMSE filled"
+        )?;
+        let number =
+            |rmse: Option<f64>| rmse.map_or_else(|| "–".into(), |rmse| format!("{rmse:.3}"));
+        for point in &self.curve {
+            writeln!(
+                f,
+                "{:<20}{:<12}{:>8}{:>8}{:>9.2} %{:>13}{:>13}",
+                point.method.to_string(),
+                point.weighting.map_or_else(|| "–".into(), |w| w.to_string()),
+                point.count,
+                point.hidden,
+                100.0 * point.inside.covered_share(),
+                number(point.inside.rmse),
+                number(point.filled.rmse)
+            )?;
+        }
+        for file in &self.files {
+            writeln!(f, "wrote     {}", name(file))?;
+        }
+        writeln!(f, "time      total {:.2} s", self.seconds)
     }
 }

@@ -8,8 +8,9 @@ use walpha_base::shown::shown;
 
 use crate::export::Target;
 
+use super::described;
+use super::global::Global;
 use super::output::print;
-use super::{Global, described};
 
 /// Print the manual page, or write one for each command.
 ///

@@ -1,30 +1,28 @@
 //! The command. It parses, calls the library, prints, and chooses an exit code.
 
 mod args;
-mod block_summaries;
 mod blocks;
 mod check;
+mod command_line;
 mod compare;
-mod complaint;
 mod completions;
 mod config;
 #[cfg(feature = "zarr")]
 mod convert;
-mod curve;
-mod filled;
+mod errors;
 mod filtration;
 mod folder;
 mod formats;
-mod given;
+mod global;
 mod haar;
 mod info;
-mod inputs;
 mod interpolate;
-mod judged;
 mod ladder;
 mod man;
+#[cfg(feature = "mpi")]
+mod mpi;
 mod output;
-#[cfg_attr(not(feature = "render"), path = "picture/absent.rs")]
+#[cfg_attr(not(feature = "render"), path = "no_picture.rs")]
 mod picture;
 mod pipeline;
 mod points;
@@ -34,29 +32,27 @@ mod ranks;
 mod report;
 #[cfg(feature = "paper")]
 mod reproduce;
-mod said;
 mod shape;
+mod shape_in_blocks;
 mod signals;
-mod together;
+mod threads;
 #[cfg(feature = "render")]
 mod view;
-mod warnings;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use tracing::level_filters::LevelFilter;
 use tracing_subscriber::Layer;
 use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::util::SubscriberInitExt;
 
 use crate::export::Target;
-use crate::threads;
 
+use global::{Global, INTERRUPTED, USAGE};
 use output::{print, print_with};
 use ranks::Ranks;
-use said::said;
 
 /// Volume modelling of scattered data with wavelet-weighted alpha shapes.
 #[derive(Parser)]
@@ -72,32 +68,6 @@ const VERSION: &str = concat!(
     env!("CARGO_PKG_VERSION"),
     "\nlicence GPL-3.0-or-later (it contains CGAL's triangulations and alpha shapes, under the GPL)"
 );
-
-/// Options of every command.
-#[derive(Args, Clone, Copy, Default)]
-#[command(next_help_heading = EVERY_COMMAND)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
-struct Global {
-    /// Print one JSON object instead of text.
-    #[arg(long, global = true)]
-    json: bool,
-    /// Print nothing but errors (and JSON, if asked for).
-    #[arg(short, long, global = true)]
-    quiet: bool,
-    /// Log to standard error what is being done.
-    #[arg(short, long, global = true, conflicts_with = "quiet")]
-    verbose: bool,
-    /// Number of threads, at most four per processor; results do not depend on it [default: one per
-    /// processor, or one for each process that mpirun starts].
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
-    /// Let outputs replace inputs, or what is in the working folder of a plan.
-    #[arg(long, global = true)]
-    in_place: bool,
-    /// Whether a file goes to standard output.
-    #[arg(skip)]
-    piped: bool,
-}
 
 #[derive(Subcommand)]
 enum Command {
@@ -121,23 +91,6 @@ enum Command {
     Man(man::Man),
 }
 
-/// What is above options that all commands have, behind their own.
-const EVERY_COMMAND: &str = "Every command";
-/// The exit code of what cannot be done.
-const FAILURE: u8 = 1;
-/// The exit code of wrong arguments.
-const USAGE: u8 = 2;
-/// The exit code of a fault of the program, as Rust has it.
-const PANICKED: u8 = 101;
-/// The exit code after nobody read to the end, as shells have it for what the signal PIPE ends.
-const UNREAD: u8 = 141;
-/// The exit code of a check or comparison that found something.
-const DIFFERENT: u8 = 3;
-/// Bytes of the stack of a thread, as rayon has it.
-const STACK: usize = 2 << 20;
-/// The exit code after Ctrl-C, as shells have it.
-const INTERRUPTED: i32 = 130;
-
 /// The command line, with all its options in place.
 fn described() -> clap::Command {
     let mut command = Cli::command().args(config::options_of_it());
@@ -152,7 +105,11 @@ pub fn run() -> ExitCode {
     let typed: Vec<OsString> = std::env::args_os().collect();
     let name = named(&command, &typed);
     let ranks = Ranks::find(&name);
-    ranks.run(&name, || lead(command, &name, typed, &ranks), || together::serve(ranks.team()))
+    ranks.run(
+        &name,
+        || lead(command, &name, typed, &ranks),
+        || shape_in_blocks::serve(ranks.team()),
+    )
 }
 
 /// Runs a command line. The error is the exit code after a failure, which has been told.
@@ -165,7 +122,7 @@ fn lead(
     let args = match config::with_file(&command, typed.clone()) {
         Ok(args) => args,
         Err(error) => {
-            complaint::tell(name, &error);
+            errors::print_error(name, &error);
             return Err(USAGE);
         }
     };
@@ -180,7 +137,7 @@ fn lead(
         if matches.get_flag(config::PRINT) {
             return Ok(Err(matches));
         }
-        kept = inputs::keep(&command, &matches);
+        kept = command_line::keep(&command, &matches);
         Cli::from_arg_matches(&matches).map(|cli| Ok((cli, is_piped(&matches))))
     });
     let done = match parsed {
@@ -194,7 +151,7 @@ fn lead(
             printed.map(|()| ExitCode::SUCCESS).map_err(Into::into)
         }
         Err(error) => {
-            complaint::tell_usage(name, &error, args.len() > typed.len());
+            errors::print_usage_error(name, &error, args.len() > typed.len());
             return Err(USAGE);
         }
     };
@@ -205,11 +162,11 @@ fn lead(
             if progress::is_cancelled() {
                 return Err(INTERRUPTED as u8);
             }
-            complaint::tell(name, &error);
-            return Err(complaint::code(&error));
+            errors::print_error(name, &error);
+            return Err(errors::exit_code(&error));
         }
     };
-    together::dismiss(ranks.team());
+    shape_in_blocks::dismiss(ranks.team());
     Ok(code)
 }
 
@@ -239,45 +196,20 @@ fn print_config(command: &clap::Command, matches: &ArgMatches) -> anyhow::Result
     Ok(ExitCode::SUCCESS)
 }
 
-/// Starts the threads asked for, or as many as are right; fewer where not so many can be had.
-fn start_threads(asked: Option<u16>) -> anyhow::Result<()> {
-    let asked = asked.map(usize::from);
-    let (wanted, most) = (threads::wanted(asked), threads::most());
-    if let Some(count) = asked.filter(|&count| count > most) {
-        let processors = threads::processors();
-        tracing::warn!(
-            "--threads {count} is more than {processors} processors can use: {most} start"
-        );
-    }
-    let count = threads::available(wanted, STACK);
-    if count < wanted {
-        tracing::warn!(
-            "memory, or the number of processes, is limited so much that {} of {wanted} threads start",
-            count.max(1)
-        );
-    }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.max(1));
-    // Where no thread can be had, this one does the work.
-    let pool = if count == 0 { pool.use_current_thread() } else { pool };
-    pool.build_global().map_err(|error| {
-        said!("threads cannot be started: {error}" => "give fewer with --threads").into()
-    })
-}
-
 fn execute(global: Global, command: Command, ranks: &Ranks) -> anyhow::Result<ExitCode> {
     let level = match global {
         Global { quiet: true, .. } => LevelFilter::ERROR,
         Global { verbose: true, .. } => LevelFilter::DEBUG,
         _ => LevelFilter::WARN,
     };
-    let log = tracing_subscriber::fmt::layer().with_ansi(complaint::coloured()).with_target(false);
+    let log = tracing_subscriber::fmt::layer().with_ansi(errors::coloured()).with_target(false);
     // Nor does what cannot be logged end the command.
     let log = log.log_internal_errors(false);
     let log = log.with_writer(std::io::stderr).without_time().with_filter(level);
-    let warnings = warnings::Listener.with_filter(LevelFilter::WARN);
+    let warnings = output::Listener.with_filter(LevelFilter::WARN);
     tracing_subscriber::registry().with(warnings).with(log).init();
     let alone = ranks.team().size() == 1;
-    start_threads(global.threads.or((!alone).then_some(1)))?;
+    threads::start(global.threads.or((!alone).then_some(1)))?;
     match command {
         #[cfg(feature = "paper")]
         Command::Reproduce(reproduce) => reproduce.run(global)?,

@@ -13,7 +13,7 @@ use crate::render::{
     View,
 };
 
-use super::said::refused;
+use super::errors::fail;
 
 /// How a shape is drawn.
 #[derive(Args, Clone, Copy)]
@@ -136,18 +136,18 @@ fn camera(text: &str) -> anyhow::Result<Camera> {
     let numbers: Vec<f64> =
         text.split(',').map(|number| number.trim().parse()).collect::<Result<_, _>>()?;
     let [ex, ey, ez, tx, ty, tz] = numbers[..] else {
-        refused!("six numbers are needed" => "give where the eye is and what it looks at, as in 99,0,9,0,0,0");
+        fail!("six numbers are needed" => "give where the eye is and what it looks at, as in 99,0,9,0,0,0");
     };
     let (eye, target) = ([ex, ey, ez], [tx, ty, tz]);
     if eye == target || !numbers.iter().all(|v| v.is_finite()) {
-        refused!("the eye and what it looks at must be two places, with finite coordinates");
+        fail!("the eye and what it looks at must be two places, with finite coordinates");
     }
     Ok(Camera::portrait(eye, target))
 }
 
 fn size(text: &str) -> anyhow::Result<Size> {
     let Some((width, height)) = text.split_once(['x', '×']) else {
-        refused!("two numbers are needed" => "give them as in 1600x1360");
+        fail!("two numbers are needed" => "give them as in 1600x1360");
     };
     Ok(Size::new(width.trim().parse()?, height.trim().parse()?)?)
 }

@@ -9,12 +9,13 @@ use crate::points::{Packing, PointWriter};
 use crate::progress::Stage;
 
 use super::args::{OutputArgs, PipelineArgs, not_negative};
+use super::errors::fail_usage;
 use super::formats::points_output;
-use super::output::tell;
+use super::global::Global;
+use super::output::print_summary;
+use super::pipeline;
 use super::progress::Progress;
 use super::report::Report;
-use super::said::misused;
-use super::{Global, pipeline};
 
 /// Select points from a volume and weight them.
 ///
@@ -58,14 +59,14 @@ impl Points {
         };
         if !target.as_ref().is_some_and(|(_, writer)| writer.packs) {
             let why = "no .wvm is written";
-            self.pipeline.input.given.refuse(&["value_error", "layers"], why)?;
+            self.pipeline.input.typed.refuse(&["value_error", "layers"], why)?;
         }
         let mut progress = Progress::new(global);
         let PipelineArgs { input, .. } = &self.pipeline;
         let recipe = self.pipeline.recipe()?;
         let (weighed, volume) = pipeline::weighted_points(input, &recipe, &mut progress)?;
         if self.layers > 1 && weighed.order().is_none() {
-            misused!("--layers has no effect: which points are the most important is known only where they are selected from a volume" => "omit it");
+            fail_usage!("--layers has no effect: which points are the most important is known only where they are selected from a volume" => "omit it");
         }
         if let Some((target, writer)) = target {
             let facts = pipeline::model_facts(&weighed, volume.as_ref()).order(weighed.order());
@@ -78,6 +79,6 @@ impl Points {
         let mut report = Report::of_points(&self.pipeline.input.input, &weighed, volume.as_ref());
         let files = self.output.iter().map(|path| path.display().to_string()).collect();
         report.finish(progress.finish(), files);
-        tell(global, &report)
+        print_summary(global, &report)
     }
 }

@@ -7,19 +7,20 @@ use std::time::{Duration, Instant};
 
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use super::{Global, STACK};
+use super::global::{Global, STACK};
 use crate::progress::{Listener, Monitor, Stage};
 use crate::threads;
 
-/// What a terminal shows. There is one, as there is one standard error.
+/// The progress bar: one, as there is one standard error.
 static BAR: LazyLock<ProgressBar> = LazyLock::new(|| {
-    ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(style(STAGE))
+    ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
+        .with_style(style(WITHOUT_LENGTH))
 });
 
 /// The bar of a stage that does not report how far it is.
-const STAGE: &str = "{spinner} {msg} {elapsed}";
-/// Of one that does.
-const PART: &str = "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left, {rate}";
+const WITHOUT_LENGTH: &str = "{spinner} {msg} {elapsed}";
+/// The bar of a stage that reports how far it is.
+const WITH_LENGTH: &str = "{spinner} {msg} [{bar:30}] {percent}% {elapsed}, {eta} left, {rate}";
 
 /// Times stages by name and shows the running one on a terminal.
 pub(super) struct Progress {
@@ -31,7 +32,7 @@ pub(super) struct Progress {
 struct Times {
     started: Instant,
     stages: Vec<(&'static str, f64)>,
-    /// What is at work, and since when.
+    /// The running stage, and when it began.
     running: Option<(&'static str, Instant)>,
 }
 
@@ -72,7 +73,7 @@ impl Progress {
         }
         let times = Times { started: Instant::now(), stages: Vec::new(), running: None };
         let times = Arc::new(Mutex::new(times));
-        let monitor = Monitor::new(Shown { times: Arc::clone(&times), drawn: watched });
+        let monitor = Monitor::new(ProgressListener { times: Arc::clone(&times), drawn: watched });
         *WORK.lock().unwrap_or_else(PoisonError::into_inner) = Some(monitor.clone());
         Self { times, monitor }
     }
@@ -149,16 +150,16 @@ impl Times {
 }
 
 /// Times the stages, and moves the bar where it is drawn.
-struct Shown {
+struct ProgressListener {
     times: Arc<Mutex<Times>>,
     drawn: bool,
 }
 
-impl Listener for Shown {
+impl Listener for ProgressListener {
     fn stage(&self, name: &'static str) {
         self.times.lock().unwrap_or_else(PoisonError::into_inner).begin(name);
         // In this order: each of them draws.
-        BAR.set_style(style(STAGE));
+        BAR.set_style(style(WITHOUT_LENGTH));
         BAR.set_message(name);
         BAR.unset_length();
         BAR.reset();
@@ -169,7 +170,7 @@ impl Listener for Shown {
             return;
         }
         if BAR.length() != Some(total) {
-            BAR.set_style(style(PART));
+            BAR.set_style(style(WITH_LENGTH));
             BAR.set_length(total);
         }
         BAR.set_position(done);

@@ -3,18 +3,18 @@
 use crate::points;
 use crate::volume::Region;
 
-use super::said::{Said, refused, said};
+use super::errors::{CommandError, command_error, fail};
 
 /// The ends of three ranges as they are written, without the white space around them.
-fn ends(text: &str) -> Result<[[&str; 2]; 3], Said> {
+fn ends(text: &str) -> Result<[[&str; 2]; 3], CommandError> {
     let ranges: Vec<&str> = text.split(',').collect();
     let &[x, y, z] = ranges.as_slice() else {
-        refused!("three ranges are needed" => "give those of x, y and z, as in 20:40,20:40,10:30");
+        fail!("three ranges are needed" => "give those of x, y and z, as in 20:40,20:40,10:30");
     };
     let mut ends = [[""; 2]; 3];
     for (range, ends) in [x, y, z].into_iter().zip(&mut ends) {
         let Some((first, end)) = range.split_once(':') else {
-            refused!("`{range}` is not a range" => "give two numbers, as in 20:40");
+            fail!("`{range}` is not a range" => "give two numbers, as in 20:40");
         };
         *ends = [first.trim(), end.trim()];
     }
@@ -22,14 +22,14 @@ fn ends(text: &str) -> Result<[[&str; 2]; 3], Said> {
 }
 
 /// Samples from one index up to, and without, another; ends may be omitted.
-pub(super) fn samples(text: &str) -> Result<Region, Said> {
+pub(super) fn samples(text: &str) -> Result<Region, CommandError> {
     let mut region = Region::default();
     for (k, [first, end]) in ends(text)?.into_iter().enumerate() {
         let index = |text: &str| {
             match text {
             "" => Ok(None),
             text => text.parse().map(Some).map_err(
-                |_| said!("`{text}` is not an index of a sample" => "give whole numbers, as in 20:40"),
+                |_| command_error!("`{text}` is not an index of a sample" => "give whole numbers, as in 20:40"),
             ),
         }
         };
@@ -39,16 +39,18 @@ pub(super) fn samples(text: &str) -> Result<Region, Said> {
 }
 
 /// A box in the units of the points, borders included.
-pub(super) fn places(text: &str) -> Result<points::Region, Said> {
+pub(super) fn places(text: &str) -> Result<points::Region, CommandError> {
     let mut region = points::Region { low: [0.0; 3], high: [0.0; 3] };
     for (k, [low, high]) in ends(text)?.into_iter().enumerate() {
         let finite = |text: &str| match text.parse() {
             Ok(number) if f64::is_finite(number) => Ok(number),
-            _ => Err(said!("`{text}` is not a finite number" => "give one, as in 20 or 2.5")),
+            _ => Err(
+                command_error!("`{text}` is not a finite number" => "give one, as in 20 or 2.5"),
+            ),
         };
         (region.low[k], region.high[k]) = (finite(low)?, finite(high)?);
         if region.low[k] > region.high[k] {
-            refused!("`{low}:{high}` is not a range" => "give the smaller number first, as in 20:40");
+            fail!("`{low}:{high}` is not a range" => "give the smaller number first, as in 20:40");
         }
     }
     Ok(region)

@@ -12,8 +12,8 @@ use crate::reproduce::{File, Report, Subject, page, reproduce};
 use crate::volume::{ReadOptions, open_monitored};
 use crate::{Gray, Volume, VolumeError};
 
-use super::Global;
 use super::folder::Folder;
+use super::global::Global;
 use super::output::{print, remark};
 use super::progress::Progress;
 

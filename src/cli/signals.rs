@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use walpha_files::abandon;
 
-use super::{INTERRUPTED, progress};
+use super::global::INTERRUPTED;
+use super::progress;
 
 /// How long work that was cancelled may take to end.
 const GRACE: Duration = Duration::from_secs(1);

@@ -24,7 +24,7 @@ pub(super) fn linear(values: &[f64]) -> Vec<[f64; 3]> {
     values.iter().map(colour).collect()
 }
 
-/// The same as bytes for a screen (sRGB).
+/// Colours as bytes for a screen (sRGB).
 pub(super) fn bytes(values: &[f64]) -> Vec<[u8; 3]> {
     let screen = |c: f64| {
         let c = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };

@@ -25,6 +25,7 @@
 //! ```
 
 mod colour;
+mod exporter;
 mod filtration;
 mod format;
 mod glb;
@@ -38,8 +39,9 @@ mod vtp;
 mod vtu;
 
 pub use crate::volume::UnknownFormat;
+pub use exporter::{ExportOptions, Exporter};
 pub use filtration::{FILTRATION_FORMATS, FiltrationFormat};
-pub use format::{ExportOptions, Exporter, FORMATS, Format};
+pub use format::{FORMATS, Format};
 pub use glb::Glb;
 pub use json::Json;
 pub use npz::Npz;
@@ -50,7 +52,7 @@ pub use stl::Stl;
 pub use vtp::Vtp;
 pub(crate) use vtp::{Membership, write_surface};
 pub use vtu::Vtu;
-pub(crate) use vtu::{Corners, Made, write_grid};
+pub(crate) use vtu::{PointData, Provenance, write_grid};
 pub use walpha_files::{
     Content, Filled, NewFolder, Scratch, Target, TargetError, put_all, sweep, write_all,
 };

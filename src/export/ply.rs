@@ -75,7 +75,7 @@ impl Exporter for Ply {
     }
 }
 
-/// What a vertex with a value has.
+/// Properties of a vertex with a value.
 const VALUED: &str =
     "property double value\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
 

@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use super::vtu::{Appended, Corners, Ids, Made, bytes};
+use super::vtu::{Appended, Ids, PointData, Provenance, bytes};
 use super::{ExportOptions, Exporter};
 use crate::shape::{AlphaShape, Class, Sheets, Surface};
 use crate::volume::annotation;
@@ -20,12 +20,12 @@ impl Exporter for Vtp {
             components: &shape.component_numbers(),
             sheets: shape.sheets().filter(|_| !self.0.solid),
         };
-        let made = Made::of(shape, &self.0);
-        write_surface(&self.0.surface(shape), &Corners::of(shape), &membership, &made, out)
+        let made = Provenance::of(shape, &self.0);
+        write_surface(&self.0.surface(shape), &PointData::of(shape), &membership, &made, out)
     }
 }
 
-/// What a surface is part of.
+/// Components and sheets of a surface.
 pub(crate) struct Membership<'a> {
     /// The component of each point, by its number.
     pub components: &'a [u32],
@@ -36,9 +36,9 @@ pub(crate) struct Membership<'a> {
 /// Writes a surface.
 pub(crate) fn write_surface(
     surface: &Surface,
-    corners: &Corners<'_>,
+    corners: &PointData<'_>,
     membership: &Membership<'_>,
-    made: &Made<'_>,
+    made: &Provenance<'_>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let facets = surface.regular.len() + surface.singular.len();

@@ -17,19 +17,19 @@ pub struct Vtu(pub ExportOptions);
 impl Exporter for Vtu {
     fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let vertices: Vec<u32> = shape.complex().vertices.rows().iter().map(|&[v]| v).collect();
-        let made = Made::of(shape, &self.0);
-        write_grid(shape.complex(), &vertices, &Corners::of(shape), &made, out)
+        let made = Provenance::of(shape, &self.0);
+        write_grid(shape.complex(), &vertices, &PointData::of(shape), &made, out)
     }
 }
 
 /// How a shape was made, as far as files record it.
-pub(crate) struct Made<'a> {
+pub(crate) struct Provenance<'a> {
     pub alpha: Alpha,
     pub coordinates: Coordinates,
     pub input: Option<&'a str>,
 }
 
-impl<'a> Made<'a> {
+impl<'a> Provenance<'a> {
     /// How a shape was made of an input.
     pub(crate) fn of(shape: &AlphaShape, options: &'a ExportOptions) -> Self {
         let (alpha, coordinates) = (shape.options().alpha, shape.coordinates());
@@ -37,8 +37,8 @@ impl<'a> Made<'a> {
     }
 }
 
-/// What is known of the points that simplices have as corners, by their numbers.
-pub(crate) struct Corners<'a> {
+/// Data of the points that are corners of simplices, by number.
+pub(crate) struct PointData<'a> {
     pub positions: &'a [[f64; 3]],
     pub weights: &'a [f64],
     pub values: Option<&'a [f64]>,
@@ -47,7 +47,7 @@ pub(crate) struct Corners<'a> {
     pub voxels: Option<&'a [u64]>,
 }
 
-impl<'a> Corners<'a> {
+impl<'a> PointData<'a> {
     /// The points of a shape.
     pub(crate) fn of(shape: &'a AlphaShape) -> Self {
         let points = shape.points();
@@ -78,8 +78,8 @@ impl<'a> Corners<'a> {
 pub(crate) fn write_grid(
     complex: &Complex,
     vertices: &[u32],
-    corners: &Corners<'_>,
-    made: &Made<'_>,
+    corners: &PointData<'_>,
+    made: &Provenance<'_>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let number = |v: u32| vertices.binary_search(&v).expect("all corners are there");
@@ -139,7 +139,7 @@ struct Grid {
     offsets: Ids,
     types: Vec<u8>,
     classes: Vec<u8>,
-    /// Corners so far.
+    /// PointData so far.
     end: usize,
 }
 
@@ -196,12 +196,16 @@ pub(super) struct Appended {
     pub data: Vec<u8>,
 }
 
-/// What the numbers of `class` mean.
+/// Meaning of the numbers of `class`.
 const LEGEND: &str = "0 exterior, 1 interior, 2 regular, 3 singular";
 
 impl Appended {
     /// How the shape was made, for whoever finds the file later; texts as such, or as numbers.
-    pub(super) fn field_data(&mut self, made: &Made<'_>, texts_as_such: bool) -> io::Result<()> {
+    pub(super) fn field_data(
+        &mut self,
+        made: &Provenance<'_>,
+        texts_as_such: bool,
+    ) -> io::Result<()> {
         let alpha = made.alpha;
         writeln!(self.xml, "<FieldData>")?;
         for (name, number) in [("alpha", Some(alpha.squared())), ("alpha_radius", alpha.radius())] {

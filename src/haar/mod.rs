@@ -18,18 +18,16 @@
 //! # Ok::<(), walpha::haar::HaarError>(())
 //! ```
 
-mod bricks;
 mod coefficients;
 mod nonstandard;
 mod standard;
 mod support;
-mod truncate;
 mod unnormalised;
 
-pub(crate) use bricks::Bricks;
 pub use coefficients::{Coefficients, Decomposition, forward};
+pub use coefficients::{HaarError, Tolerance, Truncation};
+pub(crate) use nonstandard::Bricks;
 pub(crate) use standard::Slabs;
-pub use truncate::{HaarError, Tolerance, Truncation};
 pub use unnormalised::Unnormalised;
 
 use serde::{Deserialize, Serialize};
@@ -65,7 +63,7 @@ pub fn smooth(volume: &Volume, options: &HaarOptions) -> Result<(Volume, Truncat
     smooth_monitored(volume, options, &Monitor::noop())
 }
 
-/// The same, which says how far it is and can be cancelled.
+/// [`smooth`] with progress and cancelling through `monitor`.
 ///
 /// # Errors
 /// Those of [`smooth`], and [`HaarError::Cancelled`].

@@ -34,7 +34,7 @@ impl Step {
     }
 }
 
-/// Of a power of two and a number that is not 0.
+/// The greatest common divisor of a power of two and a number that is not 0.
 fn common_divisor(power: usize, number: usize) -> usize {
     power.min(1 << number.trailing_zeros())
 }

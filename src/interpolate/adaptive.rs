@@ -6,7 +6,7 @@ use walpha_base::Monitor;
 use walpha_base::setters;
 
 use super::fill::corners;
-use super::raster::NOTHING;
+use super::grid::OUTSIDE;
 use super::sampled::Sampled;
 use super::{Deviation, InterpolateError};
 use crate::points::Units;
@@ -27,7 +27,7 @@ pub struct Adaptive {
 }
 
 impl Adaptive {
-    /// So many points, whatever the error.
+    /// Selects `count` points, whatever the error.
     pub fn new(count: u64) -> Self {
         Self { count, rmse: 0.0, max_error: None }
     }
@@ -62,7 +62,7 @@ const FIRST_BATCH: usize = 32;
 /// at between batches: when that ends the selection, the last batch may have overshot the target.
 /// Fewer voxels than asked for suffice where their interpolant is perfect. A batch costs its
 /// insertions, samples in the cells that these make, and one pass over all errors; memory, 16 bytes a
-/// sample. The same on any number of threads.
+/// sample. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// A count below 8 or above the samples, a target or bound that is negative or NaN, missing samples, or
@@ -75,7 +75,7 @@ pub fn adaptive_voxels(
     adaptive_voxels_monitored(volume, goal, units, &Monitor::noop())
 }
 
-/// The same, which says how far it is and can be cancelled.
+/// [`adaptive_voxels`] with progress and cancelling through `monitor`.
 ///
 /// # Errors
 /// Those of [`adaptive_voxels`], and [`InterpolateError::Cancelled`].
@@ -105,14 +105,14 @@ pub fn adaptive_voxels_monitored(
         };
         tracing::debug!(points = voxels.len(), rmse, "adaptive");
         monitor.report(voxels.len() as u64, goal.count)?;
-        let room = goal.count as usize - voxels.len();
-        let batch = ((voxels.len() as f64 * BATCH).ceil() as usize).max(FIRST_BATCH).min(room);
+        let remaining = goal.count as usize - voxels.len();
+        let batch = ((voxels.len() as f64 * BATCH).ceil() as usize).max(FIRST_BATCH).min(remaining);
         let within = goal.max_error.is_some_and(|bound| max <= bound);
         if rmse <= goal.rmse || within || batch == 0 {
             return Ok(voxels);
         }
         let candidates = worst(volume, &sampled, max, goal.max_error, |_| true);
-        let joining = apart(volume.dims(), candidates, batch);
+        let joining = spaced(volume.dims(), candidates, batch);
         voxels.extend(&joining);
         if joining.is_empty() || voxels.len() as u64 == goal.count {
             return Ok(voxels);
@@ -143,15 +143,15 @@ pub(super) fn worst(
     chunks.for_each(|(chunk, ((theirs, ours), owners))| {
         // Samples side by side are often in one cell: these are written together.
         let write = |owner: u32, sum: u64, most: u64| {
-            if owner != NOTHING {
+            if owner != OUTSIDE {
                 sums[owner as usize].fetch_add(sum, Relaxed);
                 worst[owner as usize].fetch_max(most, Relaxed);
             }
         };
-        let (mut last, mut sum, mut most) = (NOTHING, 0, 0);
+        let (mut last, mut sum, mut most) = (OUTSIDE, 0, 0);
         for (i, ((f, g), &owner)) in theirs.iter().zip(ours).zip(owners).enumerate() {
             let (error, voxel) = ((f - g).abs(), (chunk * CHUNK + i) as u32);
-            if owner == NOTHING || error == 0.0 {
+            if owner == OUTSIDE || error == 0.0 {
                 continue;
             }
             if owner != last {
@@ -173,26 +173,26 @@ pub(super) fn worst(
     ranked.into_iter().map(|(_, key)| !(key as u32)).collect()
 }
 
-/// The first so many of some voxels of which none is beside an earlier one.
-fn apart(dims: Dims, voxels: Vec<u32>, most: usize) -> Vec<u32> {
+/// The first `most` of some voxels, without those adjacent to an earlier one.
+fn spaced(dims: Dims, voxels: Vec<u32>, most: usize) -> Vec<u32> {
     let [nx, ny, nz] = dims.xyz();
     let mut near = HashSet::new();
-    let mut apart = Vec::with_capacity(most);
+    let mut spaced = Vec::with_capacity(most);
     for voxel in voxels {
-        if apart.len() == most {
+        if spaced.len() == most {
             break;
         }
         if near.contains(&voxel) {
             continue;
         }
-        apart.push(voxel);
+        spaced.push(voxel);
         let index = voxel as usize;
-        let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
-        for z in around(index / (nx * ny), nz) {
-            for y in around(index / nx % ny, ny) {
-                near.extend(around(index % nx, nx).map(|x| (x + nx * (y + ny * z)) as u32));
+        let neighbours = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
+        for z in neighbours(index / (nx * ny), nz) {
+            for y in neighbours(index / nx % ny, ny) {
+                near.extend(neighbours(index % nx, nx).map(|x| (x + nx * (y + ny * z)) as u32));
             }
         }
     }
-    apart
+    spaced
 }

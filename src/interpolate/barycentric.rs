@@ -1,16 +1,16 @@
-//! Barycentric coordinates of a place in a simplex, if it lies there: decided exactly.
+//! Barycentric coordinates of a position in a simplex. Whether it lies there is decided exactly: in doubles
+//! where these are exact, behind an error bound, or in big integers.
 
 use std::cmp::Ordering;
 
-use walpha_regular::number::{cross, dot};
-
-use super::number::{Part, integer_offsets};
+use dashu_int::IBig;
+use walpha_regular::number::{Number, cross, dot, integer, lowest_bit};
 
 /// The coordinates of a place in a simplex of one to four corners, or `None` where it lies outside;
 /// its boundary is inside. Four corners turn positively: det(b−a, c−a, d−a) > 0. Coordinates beyond
 /// the corners are 0.
 ///
-/// With `exact`, no operation on these doubles rounds ([`Lattice`](super::number::Lattice)), and
+/// With `exact`, no operation on these doubles rounds ([`Lattice`](Lattice)), and
 /// the coordinates are the doubles nearest to the true ones. Otherwise they are off by at most
 /// [`TOLERANCE`], and zeros and ones are right all the same.
 pub(super) fn coordinates(corners: &[[f64; 3]], place: [f64; 3], exact: bool) -> Option<[f64; 4]> {
@@ -66,7 +66,7 @@ impl Planes {
     }
 }
 
-/// What a coordinate may be off by where doubles round: 2⁻⁴³ ≈ 1.1e-13.
+/// Largest error of a coordinate where doubles round: 2⁻⁴³ ≈ 1.1e-13.
 const TOLERANCE: f64 = f64::from_bits((1023 - 43) << 52);
 
 fn in_box(corners: &[[f64; 3]], place: [f64; 3]) -> bool {
@@ -86,7 +86,7 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 /// From corners as seen from the place. Each coordinate is the share that the simplex with the
 /// place instead of that corner has of the whole.
-fn of_offsets<T: Part>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
+fn of_offsets<T: Scalar>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
     let negative = |x: &T| T::zero().minus(x);
     match offsets {
         [a, b, c, d] => {
@@ -113,14 +113,14 @@ fn of_offsets<T: Part>(offsets: &[[T; 3]]) -> Option<[f64; 4]> {
 }
 
 /// Shares by the first component in which the parts do not sum to 0.
-fn along_an_axis<T: Part, const N: usize>(parts: [[T; 3]; N]) -> Option<[f64; 4]> {
+fn along_an_axis<T: Scalar, const N: usize>(parts: [[T; 3]; N]) -> Option<[f64; 4]> {
     let whole = |k: usize| parts.iter().fold(T::zero(), |sum, part| sum.plus(&part[k]));
     let (k, sign) = (0..3).map(|k| (k, whole(k).sign())).find(|(_, sign)| sign.is_ne())?;
     shares(parts.map(|part| if sign.is_gt() { part[k].clone() } else { T::zero().minus(&part[k]) }))
 }
 
 /// Parts over their sum; `None` if one is negative.
-fn shares<T: Part, const N: usize>(parts: [T; N]) -> Option<[f64; 4]> {
+fn shares<T: Scalar, const N: usize>(parts: [T; N]) -> Option<[f64; 4]> {
     if parts.iter().any(|part| part.sign() == Ordering::Less) {
         return None;
     }
@@ -135,7 +135,7 @@ fn shares<T: Part, const N: usize>(parts: [T; N]) -> Option<[f64; 4]> {
     Some(shares)
 }
 
-/// What doubles alone can say.
+/// The answer of doubles with an error bound.
 enum Filtered {
     Outside,
     Inside([f64; 4]),
@@ -169,6 +169,53 @@ fn filtered([a, b, c, d]: &[[f64; 3]; 4]) -> Filtered {
 fn magnitudes(u: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
     let sum = |i: usize, j: usize| u[i] * v[j] + u[j] * v[i];
     [sum(1, 2), sum(2, 0), sum(0, 1)]
+}
+
+/// A number of which barycentric coordinates are made; doubles are exact only where a
+/// [`BitRange`](walpha_regular::BitRange) says that no operation rounds.
+pub(super) trait Scalar: Number + Clone {
+    fn zero() -> Self;
+    fn sign(&self) -> Ordering;
+    /// The share of a positive whole, from 0 to 1, as the double nearest to it or beside that.
+    fn over(&self, whole: &Self) -> f64;
+}
+
+impl Scalar for f64 {
+    fn zero() -> Self {
+        0.0
+    }
+    fn sign(&self) -> Ordering {
+        self.partial_cmp(&0.0).expect("products of bounded numbers")
+    }
+    fn over(&self, whole: &Self) -> f64 {
+        self / whole
+    }
+}
+
+impl Scalar for IBig {
+    fn zero() -> Self {
+        Self::ZERO
+    }
+    fn sign(&self) -> Ordering {
+        self.cmp(&Self::ZERO)
+    }
+    fn over(&self, whole: &Self) -> f64 {
+        const BITS: usize = 64;
+        let share = (self << BITS) / whole;
+        u128::try_from(share).expect("at most the whole") as f64 / 2f64.powi(BITS as i32)
+    }
+}
+
+/// Differences of a place from others, in one unit that makes all of them integers.
+pub(super) fn integer_offsets(corners: &[[f64; 3]], from: [f64; 3]) -> Vec<[IBig; 3]> {
+    let numbers = corners.iter().chain([&from]).flatten().copied();
+    let unit = numbers.filter_map(lowest_bit).min().unwrap_or(0);
+    let origin = from.map(|x| integer(x, unit));
+    let offset = |corner: &[f64; 3]| {
+        let [x, y, z] = corner.map(|x| integer(x, unit));
+        [x - &origin[0], y - &origin[1], z - &origin[2]]
+    };
+    corners.iter().map(offset).collect()
 }
 
 #[cfg(test)]
@@ -264,5 +311,12 @@ mod tests {
             unit[corner] = 1.0;
             assert_eq!(coordinates(&corners, corners[corner], false), Some(unit));
         }
+    }
+
+    #[test]
+    fn integers_are_what_doubles_are() {
+        let offsets = integer_offsets(&[[3.5, -1.0, 0.0], [0.25, 8.0, -0.0]], [0.5, 0.0, 1.0]);
+        let expected = [[12, -4, -4], [-1, 32, -4]].map(|row| row.map(IBig::from));
+        assert_eq!(offsets, expected);
     }
 }

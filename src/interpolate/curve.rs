@@ -98,7 +98,8 @@ pub fn error_curve(
     monitor: &Monitor,
 ) -> Result<Vec<CurvePoint>, InterpolateError> {
     let differences = difference(smoothed);
-    let bench = Bench { volume, smoothed, differences, options, monitor: monitor.unreported() };
+    let bench =
+        CurveBuilder { volume, smoothed, differences, options, monitor: monitor.unreported() };
     let mut curve = Vec::new();
     for (done, method) in Method::ALL.into_iter().enumerate() {
         monitor.report(done as u64, Method::ALL.len() as u64)?;
@@ -107,7 +108,7 @@ pub fn error_curve(
     Ok(curve)
 }
 
-struct Bench<'a> {
+struct CurveBuilder<'a> {
     volume: &'a Volume,
     smoothed: &'a Volume,
     differences: Array3<f64>,
@@ -115,7 +116,7 @@ struct Bench<'a> {
     monitor: Monitor,
 }
 
-impl Bench<'_> {
+impl CurveBuilder<'_> {
     /// Adds what is measured of a method.
     fn add(&self, method: Method, curve: &mut Vec<CurvePoint>) -> Result<(), InterpolateError> {
         if method == Method::Haar {
@@ -259,7 +260,7 @@ impl Bench<'_> {
 /// values, of which a gray level is `step`. What there is not is left empty.
 ///
 /// # Errors
-/// What the writer says.
+/// Errors of the writer.
 pub fn write_curve_csv(curve: &[CurvePoint], step: f64, out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,

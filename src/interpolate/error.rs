@@ -8,7 +8,7 @@ use crate::points::PointsError;
 use crate::shape::ShapeError;
 use crate::volume::VolumeError;
 
-/// Why an interpolant, or points for one, cannot be had.
+/// Why an interpolant, or points for one, cannot be computed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum InterpolateError {
@@ -39,7 +39,7 @@ pub enum InterpolateError {
     /// A target that no error can reach.
     #[error("{what} of {target} gray levels makes no sense as a target")]
     Target {
-        /// What is to be reached.
+        /// The kind of target.
         what: &'static str,
         /// The number.
         target: f64,
@@ -67,7 +67,7 @@ pub enum InterpolateError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Memory for the samples cannot be had.
+    /// Not enough memory for the samples.
     #[error(transparent)]
     Memory(#[from] NoMemory),
     /// The values make no volume: they pass the range of `f32`.

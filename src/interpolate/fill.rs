@@ -24,7 +24,7 @@ pub fn fill(
     fill_monitored(shape, volume, units, &Monitor::noop())
 }
 
-/// The same, which says how far it is and can be cancelled.
+/// [`fill()`] with progress and cancelling through `monitor`.
 ///
 /// # Errors
 /// Those of [`fill`], and [`InterpolateError::Cancelled`].

@@ -35,13 +35,13 @@ impl Grid {
         Self::over(volume, volume.dims(), units)
     }
 
-    /// As many samples as asked for over the extent of a volume.
+    /// `dims` samples over the extent of a volume.
     pub fn over(volume: &Volume, dims: Dims, units: Units) -> Self {
         let samples = SampleGrid { dims: volume.dims(), frame: *volume.frame(), units };
         Self::over_samples(&samples, dims)
     }
 
-    /// The same over the extent of the grid that points are samples of.
+    /// `dims` samples over the extent of the grid that points are samples of.
     pub fn over_samples(samples: &SampleGrid, dims: Dims) -> Self {
         let SampleGrid { dims: counts, frame: source, units } = *samples;
         let (counts, n) = (counts.xyz(), dims.xyz());
@@ -52,7 +52,7 @@ impl Grid {
         Self { dims, axes, world: (units == Units::World).then_some(world), frame }
     }
 
-    /// As many samples as asked for over a box, given by its corners (x, y, z).
+    /// `dims` samples over a box, given by its corners (x, y, z).
     pub fn spanning(low: [f64; 3], high: [f64; 3], dims: Dims) -> Self {
         let n = dims.xyz();
         let axes: [Vec<f64>; 3] = [0, 1, 2].map(|k| steps(low[k], high[k], n[k]));
@@ -119,7 +119,10 @@ impl Grid {
     }
 }
 
-/// So many numbers at equal steps from the first to the last, or the middle.
+/// The simplex of a sample that is outside the shape.
+pub(super) const OUTSIDE: u32 = u32::MAX;
+
+/// `n` numbers at equal steps from the first to the last; the middle where `n` is 1.
 fn steps(first: f64, last: f64, n: usize) -> Vec<f64> {
     if n == 1 {
         return vec![first / 2.0 + last / 2.0];
@@ -129,7 +132,7 @@ fn steps(first: f64, last: f64, n: usize) -> Vec<f64> {
     (0..n).map(at).collect()
 }
 
-/// From one of them to the next; 1 where there is no other place.
+/// The distance between neighbours of [`steps`]; 1 where there is one position.
 fn step(first: f64, last: f64, n: usize) -> f64 {
     let length = if last > first { last - first } else { 1.0 };
     length / (n - 1).max(1) as f64

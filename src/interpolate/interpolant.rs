@@ -1,3 +1,4 @@
+use std::cmp::Ordering;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
@@ -5,8 +6,7 @@ use walpha_regular::BitRange;
 
 use super::InterpolateError;
 use super::barycentric::coordinates;
-use super::least_squares::Pieces;
-use super::tree::Tree;
+use super::least_squares::PiecewiseLinear;
 use crate::shape::{AlphaShape, Class, Simplices};
 
 /// Places located as one piece of work, at least.
@@ -29,7 +29,7 @@ const CHUNK: usize = 256;
 pub struct Interpolant<'a> {
     positions: &'a [[f64; 3]],
     values: &'a [f64],
-    parts: Vec<Support>,
+    simplices: Vec<SupportSimplex>,
     bit_range: BitRange,
     /// Made when a single place is asked for; grids do without.
     tree: OnceLock<Tree>,
@@ -37,7 +37,7 @@ pub struct Interpolant<'a> {
 
 /// A simplex with a function on it: its vertices, as many as count.
 #[derive(Clone, Copy, Debug)]
-struct Support {
+struct SupportSimplex {
     vertices: [u32; 4],
     count: u8,
 }
@@ -77,21 +77,21 @@ impl<'a> Interpolant<'a> {
             return Err(InterpolateError::Value { index, value: values[index] });
         }
         let complex = shape.complex();
-        let mut parts = Vec::with_capacity(complex.cells.len());
-        add(&mut parts, &complex.cells, Class::Interior);
-        add(&mut parts, &complex.facets, Class::Singular);
-        add(&mut parts, &complex.edges, Class::Singular);
-        add(&mut parts, &complex.vertices, Class::Singular);
+        let mut simplices = Vec::with_capacity(complex.cells.len());
+        add(&mut simplices, &complex.cells, Class::Interior);
+        add(&mut simplices, &complex.facets, Class::Singular);
+        add(&mut simplices, &complex.edges, Class::Singular);
+        add(&mut simplices, &complex.vertices, Class::Singular);
         let positions = &shape.points().positions;
         let bit_range = BitRange::of(positions);
-        Ok(Self { positions, values, parts, bit_range, tree: OnceLock::new() })
+        Ok(Self { positions, values, simplices, bit_range, tree: OnceLock::new() })
     }
 
     /// F at a place (x, y, z) in the units of the points; `None` outside the shape, and for what is
     /// no place. O(log n) after the first.
     pub fn value_at(&self, place: [f64; 3]) -> Option<f64> {
-        let part = self.part_at(place)?;
-        Some(self.value(part, &self.coordinates(part, place)?))
+        let simplex = self.simplex_at(place)?;
+        Some(self.value(simplex, &self.coordinates(simplex, place)?))
     }
 
     /// F at many places, in parallel.
@@ -101,14 +101,14 @@ impl<'a> Interpolant<'a> {
 
     /// The simplex that a place belongs to, and its coordinates there.
     pub fn locate(&self, place: [f64; 3]) -> Option<Location<'_>> {
-        let part = self.part_at(place)?;
-        let simplex = self.parts[part as usize].vertices();
-        Some(Location { simplex, coordinates: self.coordinates(part, place)? })
+        let number = self.simplex_at(place)?;
+        let simplex = self.simplices[number as usize].vertices();
+        Some(Location { simplex, coordinates: self.coordinates(number, place)? })
     }
 
     /// The number of simplices with a function on them.
     pub(super) fn len(&self) -> usize {
-        self.parts.len()
+        self.simplices.len()
     }
 
     /// The values of the points.
@@ -122,30 +122,30 @@ impl<'a> Interpolant<'a> {
     }
 
     /// The corners of a simplex; the first so many count.
-    pub(super) fn corners(&self, part: u32) -> ([[f64; 3]; 4], usize) {
-        let part = self.parts[part as usize];
-        (part.vertices.map(|v| self.positions[v as usize]), usize::from(part.count))
+    pub(super) fn corners(&self, simplex: u32) -> ([[f64; 3]; 4], usize) {
+        let simplex = self.simplices[simplex as usize];
+        (simplex.vertices.map(|v| self.positions[v as usize]), usize::from(simplex.count))
     }
 
     /// The coordinates of a place in a simplex, if it holds it.
-    pub(super) fn coordinates(&self, part: u32, place: [f64; 3]) -> Option<[f64; 4]> {
-        let (corners, count) = self.corners(part);
+    pub(super) fn coordinates(&self, simplex: u32, place: [f64; 3]) -> Option<[f64; 4]> {
+        let (corners, count) = self.corners(simplex);
         coordinates(&corners[..count], place, self.bit_range.is_exact_with(place))
     }
 
     /// F on a simplex.
-    pub(super) fn value(&self, part: u32, coordinates: &[f64; 4]) -> f64 {
-        let part = self.parts[part as usize];
-        combine(coordinates, part.vertices.map(|v| self.values[v as usize]))
+    pub(super) fn value(&self, simplex: u32, coordinates: &[f64; 4]) -> f64 {
+        let simplex = self.simplices[simplex as usize];
+        combine(coordinates, simplex.vertices.map(|v| self.values[v as usize]))
     }
 
-    fn part_at(&self, place: [f64; 3]) -> Option<u32> {
+    fn simplex_at(&self, place: [f64; 3]) -> Option<u32> {
         if place.iter().any(|x| !x.is_finite()) {
             return None;
         }
         let tree = self.tree.get_or_init(|| {
-            let bounds = |part: u32| {
-                let (corners, count) = self.corners(part);
+            let bounds = |simplex: u32| {
+                let (corners, count) = self.corners(simplex);
                 let ends = |f: fn(f64, f64) -> f64| {
                     let join = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| f(a[k], b[k]));
                     corners[..count].iter().copied().reduce(join).expect("a vertex at least")
@@ -155,7 +155,7 @@ impl<'a> Interpolant<'a> {
             let boxes: Vec<_> = (0..self.len() as u32).into_par_iter().map(bounds).collect();
             Tree::new(&boxes)
         });
-        tree.first(place, |part| self.coordinates(part, place).is_some())
+        tree.first(place, |simplex| self.coordinates(simplex, place).is_some())
     }
 }
 
@@ -174,36 +174,131 @@ pub(super) fn combine(shares: &[f64; 4], values: [f64; 4]) -> f64 {
     terms.iter().sum()
 }
 
-impl Pieces for Interpolant<'_> {
+impl PiecewiseLinear for Interpolant<'_> {
     fn count(&self) -> usize {
-        self.parts.len()
+        self.simplices.len()
     }
 
-    fn vertices(&self, part: u32) -> ([u32; 4], usize) {
-        let part = self.parts[part as usize];
-        (part.vertices, usize::from(part.count))
+    fn vertices(&self, simplex: u32) -> ([u32; 4], usize) {
+        let simplex = self.simplices[simplex as usize];
+        (simplex.vertices, usize::from(simplex.count))
     }
 
-    fn coordinates(&self, part: u32, place: [f64; 3]) -> Option<[f64; 4]> {
-        self.coordinates(part, place)
+    fn coordinates(&self, simplex: u32, place: [f64; 3]) -> Option<[f64; 4]> {
+        self.coordinates(simplex, place)
     }
 
-    fn value(&self, part: u32, shares: &[f64; 4]) -> f64 {
-        self.value(part, shares)
+    fn value(&self, simplex: u32, shares: &[f64; 4]) -> f64 {
+        self.value(simplex, shares)
     }
 }
 
-impl Support {
+impl SupportSimplex {
     fn vertices(&self) -> &[u32] {
         &self.vertices[..usize::from(self.count)]
     }
 }
 
 /// Adds the simplices of a class, in their order.
-fn add<const N: usize>(parts: &mut Vec<Support>, simplices: &Simplices<N>, class: Class) {
-    parts.extend(simplices.of(class).map(|row| {
+fn add<const N: usize>(supports: &mut Vec<SupportSimplex>, simplices: &Simplices<N>, class: Class) {
+    supports.extend(simplices.of(class).map(|row| {
         let mut vertices = [row[0]; 4];
         vertices[..N].copy_from_slice(row);
-        Support { vertices, count: N as u8 }
+        SupportSimplex { vertices, count: N as u8 }
     }));
+}
+
+/// Boxes in a binary tree, to find those that hold a place.
+///
+/// Nodes are in preorder, each with the node that follows its whole subtree, so that a search
+/// needs no stack. Memory: a node for every two boxes or so.
+#[derive(Debug)]
+pub(super) struct Tree {
+    nodes: Vec<Node>,
+    /// The boxes' numbers, those of a leaf side by side.
+    order: Vec<u32>,
+}
+
+#[derive(Debug)]
+struct Node {
+    low: [f64; 3],
+    high: [f64; 3],
+    /// The node after this one's subtree.
+    next: u32,
+    /// The range of its boxes in the order, if it is a leaf.
+    leaf: Option<(u32, u32)>,
+}
+
+/// Low and high corners.
+pub(super) type Bounds = [[f64; 3]; 2];
+
+/// Boxes of a leaf, at most.
+const LEAF: usize = 4;
+
+impl Tree {
+    /// Halves the boxes by their middles along the axis in which these are farthest apart, again
+    /// and again. O(n log n).
+    pub(super) fn new(boxes: &[Bounds]) -> Self {
+        let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+        let mut nodes = Vec::with_capacity(boxes.len());
+        if !order.is_empty() {
+            grow(&mut nodes, boxes, &mut order, 0);
+        }
+        Self { nodes, order }
+    }
+
+    /// The least number for which `holds`, among the boxes that hold a place.
+    pub(super) fn first(&self, place: [f64; 3], holds: impl Fn(u32) -> bool) -> Option<u32> {
+        let mut first = None;
+        let mut at = 0;
+        while let Some(node) = self.nodes.get(at) {
+            if (0..3).any(|k| place[k] < node.low[k] || place[k] > node.high[k]) {
+                at = node.next as usize;
+                continue;
+            }
+            if let Some((start, end)) = node.leaf {
+                for &number in &self.order[start as usize..end as usize] {
+                    if first.is_none_or(|best| number < best) && holds(number) {
+                        first = Some(number);
+                    }
+                }
+            }
+            at += 1;
+        }
+        first
+    }
+}
+
+fn grow(nodes: &mut Vec<Node>, boxes: &[Bounds], order: &mut [u32], start: u32) {
+    let node = nodes.len();
+    let around = order.iter().map(|&i| boxes[i as usize]).reduce(union).expect("a box at least");
+    let leaf = order.len() <= LEAF;
+    let range = (start, start + order.len() as u32);
+    nodes.push(Node { low: around[0], high: around[1], next: 0, leaf: leaf.then_some(range) });
+    if !leaf {
+        let middle =
+            |i: u32, k: usize| boxes[i as usize][0][k] / 2.0 + boxes[i as usize][1][k] / 2.0;
+        let spread = |k: usize| {
+            let ends = order.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &i| {
+                (low.min(middle(i, k)), high.max(middle(i, k)))
+            });
+            ends.1 - ends.0
+        };
+        let spreads = [0, 1, 2].map(spread);
+        let axis = (0..3).max_by(|&a, &b| spreads[a].total_cmp(&spreads[b])).unwrap_or(0);
+        let half = order.len() / 2;
+        let by_middle = |a: &u32, b: &u32| -> Ordering {
+            middle(*a, axis).total_cmp(&middle(*b, axis)).then(a.cmp(b))
+        };
+        order.select_nth_unstable_by(half, by_middle);
+        let (low, high) = order.split_at_mut(half);
+        grow(nodes, boxes, low, start);
+        grow(nodes, boxes, high, start + half as u32);
+    }
+    nodes[node].next = nodes.len() as u32;
+}
+
+fn union(a: Bounds, b: Bounds) -> Bounds {
+    let by = |i: usize, f: fn(f64, f64) -> f64| [0, 1, 2].map(|k| f(a[i][k], b[i][k]));
+    [by(0, f64::min), by(1, f64::max)]
 }

@@ -1,10 +1,10 @@
-//! The normal equations of the values of an interpolant, and conjugate gradients to solve them.
+//! Values fitted by least squares: the normal equations, and conjugate gradients to solve them.
 
 use rayon::prelude::*;
-use walpha_base::memory::{NoMemory, afford};
+use walpha_base::memory::{NoMemory, afford, try_with_capacity};
 use walpha_base::{Cancelled, Monitor};
 
-use super::lists::{Lists, samples_of};
+use super::grid::OUTSIDE;
 use super::{Grid, InterpolateError};
 use crate::volume::Volume;
 
@@ -16,21 +16,21 @@ const CHUNK: usize = 1 << 10;
 const TOLERANCE: f64 = 1e-6;
 
 /// Simplices with linear functions on them.
-pub(super) trait Pieces: Sync {
-    /// How many there are, or were.
+pub(super) trait PiecewiseLinear: Sync {
+    /// One more than the largest number of a simplex.
     fn count(&self) -> usize;
-    /// The vertices of one; the first so many count.
+    /// The vertices of a simplex, and how many of the four count.
     fn vertices(&self, part: u32) -> ([u32; 4], usize);
-    /// The coordinates of a place in one, if it holds it.
+    /// The barycentric coordinates of a position in a simplex, if it lies there.
     fn coordinates(&self, part: u32, place: [f64; 3]) -> Option<[f64; 4]>;
-    /// F on one.
+    /// F on a simplex.
     fn value(&self, part: u32, shares: &[f64; 4]) -> f64;
 }
 
 /// Symmetric equations for the changes of values, in compressed rows: those of the diagonal apart.
 pub(super) struct Normal {
     starts: Vec<usize>,
-    /// Entries beside the diagonal: column and number.
+    /// Off-diagonal entries: column and number.
     entries: Vec<(u32, f64)>,
     diagonal: Vec<f64>,
     right: Vec<f64>,
@@ -38,7 +38,7 @@ pub(super) struct Normal {
 
 /// A solution of normal equations.
 pub(super) struct Solved {
-    /// What each value changes by.
+    /// The change of each value.
     pub change: Vec<f64>,
     /// Steps of conjugate gradients.
     pub steps: usize,
@@ -46,7 +46,7 @@ pub(super) struct Solved {
     pub residual: f64,
 }
 
-/// An equation: its entries beside the diagonal, the diagonal and the right side.
+/// An equation: its off-diagonal entries, diagonal and right-hand side.
 #[derive(Default)]
 struct Row {
     entries: Vec<(u32, f64)>,
@@ -58,17 +58,17 @@ impl Normal {
     /// The equations for the values of the first `free` points; those of the others stay. Each row is
     /// summed by one thread, over the simplices at its point in their order.
     pub(super) fn assemble(
-        pieces: &impl Pieces,
+        cells: &impl PiecewiseLinear,
         owners: &[u32],
         grid: &Grid,
         volume: &Volume,
         free: usize,
     ) -> Result<Self, NoMemory> {
-        let sample_of = samples_of(pieces.count(), owners, volume)?;
+        let sample_of = samples_of(cells.count(), owners, volume)?;
         let part_of = Lists::new(free, |add| {
-            for part in 0..pieces.count() as u32 {
+            for part in 0..cells.count() as u32 {
                 if !sample_of.of(part).is_empty() {
-                    let (vertices, count) = pieces.vertices(part);
+                    let (vertices, count) = cells.vertices(part);
                     let corners = vertices[..count].iter();
                     corners.filter(|&&v| (v as usize) < free).for_each(|&v| add(v, part));
                 }
@@ -80,14 +80,14 @@ impl Normal {
         let row = |v: u32| {
             let mut row = Row::default();
             for &part in part_of.of(v) {
-                let (vertices, count) = pieces.vertices(part);
+                let (vertices, count) = cells.vertices(part);
                 let at = vertices.iter().position(|&w| w == v).expect("a part at this point");
                 let (mut products, mut right) = ([0.0; 4], 0.0);
                 for &sample in sample_of.of(part) {
                     let i = sample as usize;
                     let place = grid.position([i % nx, i / nx % ny, i / (nx * ny)]);
-                    let Some(shares) = pieces.coordinates(part, place) else { continue };
-                    let error = f64::from(volume.as_slice()[i]) - pieces.value(part, &shares);
+                    let Some(shares) = cells.coordinates(part, place) else { continue };
+                    let error = f64::from(volume.as_slice()[i]) - cells.value(part, &shares);
                     right += shares[at] * error;
                     (0..4).for_each(|k| products[k] += shares[at] * shares[k]);
                 }
@@ -187,4 +187,56 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// a + s·b, in the place of a.
 fn add(a: &mut [f64], s: f64, b: &[f64]) {
     a.par_iter_mut().zip(b).with_min_len(CHUNK).for_each(|(a, b)| *a += s * b);
+}
+
+/// The samples of each of so many simplices, ascending, by the simplex of each sample; missing ones are
+/// left out.
+pub(super) fn samples_of(
+    simplices: usize,
+    owners: &[u32],
+    volume: &Volume,
+) -> Result<Lists, NoMemory> {
+    Lists::new(simplices, |add| {
+        for (sample, &owner) in owners.iter().enumerate() {
+            if owner != OUTSIDE && !volume.is_missing(sample) {
+                add(owner, sample as u32);
+            }
+        }
+    })
+}
+
+/// A list of numbers for each key, in one array.
+pub(super) struct Lists {
+    starts: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Lists {
+    /// `visit` names all pairs of a key and an item, in the same order each time it is called.
+    pub(super) fn new(
+        keys: usize,
+        visit: impl Fn(&mut dyn FnMut(u32, u32)),
+    ) -> Result<Self, NoMemory> {
+        let mut starts = try_with_capacity(keys + 2, || "lists of samples".into())?;
+        starts.resize(keys + 2, 0u32);
+        visit(&mut |key, _| starts[key as usize + 2] += 1);
+        for key in 2..starts.len() {
+            starts[key] += starts[key - 1];
+        }
+        let count = starts[keys + 1] as usize;
+        let mut items = try_with_capacity(count, || "lists of samples".into())?;
+        items.resize(count, 0);
+        visit(&mut |key, item| {
+            let place = &mut starts[key as usize + 1];
+            items[*place as usize] = item;
+            *place += 1;
+        });
+        Ok(Self { starts, items })
+    }
+
+    /// The items of a key, in the order in which they were named.
+    pub(super) fn of(&self, key: u32) -> &[u32] {
+        let [start, end] = [0, 1].map(|k| self.starts[key as usize + k] as usize);
+        &self.items[start..end]
+    }
 }

@@ -39,37 +39,29 @@
 
 mod adaptive;
 mod barycentric;
-mod cells;
 #[cfg(feature = "render")]
 mod chart;
 mod curve;
-mod deviation;
-mod drawn;
 mod error;
 mod exchange;
 mod fill;
 mod grid;
 mod interpolant;
 mod least_squares;
-mod lists;
-mod local;
-mod number;
 mod raster;
 mod refit;
 mod resample;
 mod sampled;
-mod tree;
-mod trial;
 
 pub use adaptive::{Adaptive, adaptive_voxels, adaptive_voxels_monitored};
 #[cfg(feature = "render")]
 pub use chart::error_figure;
 pub use curve::{CurveOptions, CurvePoint, Method, error_curve, write_curve_csv};
-pub use deviation::Deviation;
 pub use error::InterpolateError;
 pub use exchange::{exchange, exchange_monitored};
 pub use fill::{fill, fill_monitored};
 pub use grid::Grid;
 pub use interpolant::{Interpolant, Location};
 pub use refit::{Fit, Refit, Refitted, refit, refit_monitored};
+pub use resample::Deviation;
 pub use resample::Resampled;

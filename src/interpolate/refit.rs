@@ -16,7 +16,7 @@ pub enum Refit {
     /// All samples, with F on the whole triangulation as [`fill`](super::fill()) makes it.
     #[default]
     Whole,
-    /// Those on the shape.
+    /// The samples on the shape.
     Shape,
 }
 
@@ -51,7 +51,7 @@ pub struct Fit {
 /// say. So do the values of corners that [`fill`](super::fill()) adds. Missing samples take no part.
 ///
 /// O(samples + points) for each step, of which a few dozen do; 8 bytes a sample and about 200 a
-/// point. The same on any number of threads.
+/// point. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// Points without values; no memory; what [`fill`](super::fill()) refuses.
@@ -64,7 +64,7 @@ pub fn refit(
     refit_monitored(shape, volume, units, to, &Monitor::noop())
 }
 
-/// The same, which says how far it is and can be cancelled.
+/// [`refit()`] with progress and cancelling through `monitor`.
 ///
 /// # Errors
 /// Those of [`refit`], and [`InterpolateError::Cancelled`].

@@ -1,8 +1,11 @@
 use ndarray::Array3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use walpha_base::memory::try_with_capacity;
 
-use super::raster::{NOTHING, owners};
+use super::grid::OUTSIDE;
+use super::least_squares::PiecewiseLinear;
+use super::raster::owners;
 use super::{Grid, Interpolant, InterpolateError};
 use crate::volume::Volume;
 
@@ -16,7 +19,7 @@ pub struct Resampled {
 
 impl Interpolant<'_> {
     /// F on a grid. Each sample belongs to one simplex, decided as [`Interpolant`] says. O(simplices
-    /// + samples), in parallel over both, the same on any number of threads; 8 bytes a sample.
+    /// + samples), in parallel over both, independent of the number of threads; 8 bytes a sample.
     ///
     /// # Errors
     /// Values that pass the range of `f32`; no memory for as many samples.
@@ -32,7 +35,7 @@ impl Interpolant<'_> {
             |(row, (samples, owners))| {
                 for (i, (sample, &part)) in samples.iter_mut().zip(owners).enumerate() {
                     let place = || grid.position([i, row % ny, row / ny]);
-                    if part != NOTHING
+                    if part != OUTSIDE
                         && let Some(coordinates) = self.coordinates(part, place())
                     {
                         *sample = self.value(part, &coordinates) as f32;
@@ -59,12 +62,12 @@ impl Resampled {
 
     /// Whether a sample, by its index in memory order, is on the shape.
     pub fn is_inside(&self, sample: usize) -> bool {
-        self.owners[sample] != NOTHING
+        self.owners[sample] != OUTSIDE
     }
 
     /// Samples on the shape.
     pub fn covered(&self) -> usize {
-        self.owners.par_iter().filter(|&&part| part != NOTHING).count()
+        self.owners.par_iter().filter(|&&part| part != OUTSIDE).count()
     }
 
     /// A volume that is 1 on the shape and 0 outside.
@@ -75,9 +78,130 @@ impl Resampled {
     pub fn mask(&self) -> Result<Volume, InterpolateError> {
         let dims = self.volume.dims();
         let mut inside = try_with_capacity(dims.samples(), || format!("a mask of {dims} samples"))?;
-        let value = |&part: &u32| f32::from(u8::from(part != NOTHING));
+        let value = |&part: &u32| f32::from(u8::from(part != OUTSIDE));
         inside.par_extend(self.owners.par_iter().map(value));
         let samples = Array3::from_shape_vec(dims.shape(), inside).expect("one for each sample");
         Ok(Volume::new(samples, *self.volume.frame())?)
+    }
+}
+
+/// Samples summed at a time. Fixed, so that sums are independent of the number of threads.
+const CHUNK: usize = 1 << 16;
+
+/// How far F is from a volume, on the samples that the shape covers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Deviation {
+    /// Samples of the volume that are not missing.
+    pub samples: usize,
+    /// Samples on the shape.
+    pub covered: usize,
+    /// Root mean square difference over these, in gray levels; `None` where there are none.
+    pub rmse: Option<f64>,
+    /// The largest difference, in gray levels.
+    pub max: Option<f64>,
+}
+
+impl Deviation {
+    /// The peak that [`Deviation::psnr`] refers to.
+    pub const PEAK: f64 = 255.0;
+
+    /// Compares a volume with F on its grid. O(n), sums in f64 in a fixed order.
+    ///
+    /// # Panics
+    /// When the two are not of one shape.
+    pub fn of(original: &Volume, resampled: &Resampled) -> Self {
+        assert_eq!(original.dims(), resampled.volume().dims(), "one grid");
+        Self::at(original, resampled.volume().as_slice(), |sample| resampled.is_inside(sample))
+    }
+
+    /// Compares a volume with numbers at its samples, where there are some.
+    pub(super) fn at(
+        original: &Volume,
+        ours: &[f32],
+        is_inside: impl Fn(usize) -> bool + Sync,
+    ) -> Self {
+        let pairs = original.as_slice().par_chunks(CHUNK);
+        let pairs = pairs.zip(ours.par_chunks(CHUNK)).enumerate();
+        let part = |(chunk, (theirs, ours)): (usize, (&[f32], &[f32]))| {
+            let (mut count, mut sum, mut max) = (0, 0.0, 0f64);
+            for (i, (f, g)) in theirs.iter().zip(ours).enumerate() {
+                let sample = chunk * CHUNK + i;
+                if is_inside(sample) && !original.is_missing(sample) {
+                    let difference = (f64::from(*f) - f64::from(*g)).abs();
+                    count += 1;
+                    sum += difference * difference;
+                    max = max.max(difference);
+                }
+            }
+            (count, sum, max)
+        };
+        let parts: Vec<(usize, f64, f64)> = pairs.map(part).collect();
+        let covered: usize = parts.iter().map(|part| part.0).sum();
+        let sum: f64 = parts.iter().map(|part| part.1).sum();
+        let max = parts.iter().map(|part| part.2).fold(0.0, f64::max);
+        Self {
+            samples: original.samples_there(),
+            covered,
+            rmse: (covered > 0).then(|| (sum / covered as f64).sqrt()),
+            max: (covered > 0).then_some(max),
+        }
+    }
+
+    /// The deviation in another unit, of which a gray level is `step`.
+    #[must_use]
+    pub fn scaled(&self, step: f64) -> Self {
+        let scaled = |error: Option<f64>| error.map(|error| error * step);
+        Self { rmse: scaled(self.rmse), max: scaled(self.max), ..*self }
+    }
+
+    /// The share of samples on the shape; coverage, of a ladder, is one of volume.
+    pub fn covered_share(&self) -> f64 {
+        self.covered as f64 / self.samples as f64
+    }
+
+    /// The peak signal-to-noise ratio in decibels, 20·log₁₀(255/RMSE); ∞ where nothing differs.
+    pub fn psnr(&self) -> Option<f64> {
+        self.rmse.map(|rmse| 20.0 * (Self::PEAK / rmse).log10())
+    }
+}
+
+impl Interpolant<'_> {
+    /// How far F is from a volume around each point: the root mean square difference at the samples of the
+    /// point's simplices, each weighted by the point's barycentric coordinate there. In the units of the
+    /// values; 0 for a point that no sample counts for. `grid` is that of the volume, in the units of the
+    /// points. O(samples).
+    ///
+    /// # Errors
+    /// No memory.
+    ///
+    /// # Panics
+    /// When grid and volume are not of one shape.
+    pub fn local_deviations(
+        &self,
+        original: &Volume,
+        grid: &Grid,
+    ) -> Result<Vec<f64>, InterpolateError> {
+        assert_eq!(original.dims(), grid.dims(), "one grid");
+        let [nx, ny, _] = grid.dims().xyz();
+        let owners = owners(self, grid)?;
+        let mut sums = vec![[0.0; 2]; self.values().len()];
+        for (sample, &part) in owners.iter().enumerate() {
+            if part == OUTSIDE || original.is_missing(sample) {
+                continue;
+            }
+            let place = grid.position([sample % nx, sample / nx % ny, sample / (nx * ny)]);
+            let Some(shares) = self.coordinates(part, place) else { continue };
+            let difference = self.value(part, &shares) - f64::from(original.as_slice()[sample]);
+            let (vertices, count) = self.vertices(part);
+            for (vertex, share) in vertices[..count].iter().zip(shares) {
+                let [squares, weights] = &mut sums[*vertex as usize];
+                *squares += share * difference * difference;
+                *weights += share;
+            }
+        }
+        let root = |[squares, weights]: [f64; 2]| {
+            if weights > 0.0 { (squares / weights).sqrt() } else { 0.0 }
+        };
+        Ok(sums.into_iter().map(root).collect())
     }
 }

@@ -1,17 +1,19 @@
-//! F at the samples of a volume, kept while points come and leave.
+//! F at the samples of a volume, updated while points are inserted and removed.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::AtomicU32;
+use std::sync::atomic::Ordering::Relaxed;
 
 use rayon::prelude::*;
 use walpha_base::Monitor;
-use walpha_regular::Growing;
+use walpha_complex::canonical::smallest_even;
+use walpha_regular::{BitRange, Cell, Growing};
 
-use super::cells::Cells;
-use super::drawn::for_each_inside;
+use super::barycentric::coordinates;
+use super::grid::OUTSIDE;
 use super::interpolant::combine;
-use super::least_squares::{Normal, Pieces, Solved};
-use super::raster::{CHUNK, NOTHING, for_each_near};
+use super::least_squares::{Normal, PiecewiseLinear, Solved};
+use super::raster::{CHUNK, for_each_inside, for_each_near};
 use super::{Deviation, Grid, InterpolateError};
 use crate::points::Units;
 use crate::shape::ShapeError;
@@ -29,9 +31,9 @@ pub(super) struct Sampled<'a> {
     /// Whether no operation on places of samples rounds.
     exact: bool,
     growing: Growing,
-    /// The sample of each point by its number in the triangulation; that of the ghost is 0.
+    /// The sample of each point, by its number in the triangulation; 0 for the ghost.
     voxels: Vec<u32>,
-    /// Its index (x, y, z).
+    /// Its index (x, y, z) in the volume.
     indices: Vec<[i64; 3]>,
     /// Values of points by their numbers in the triangulation.
     values: Vec<f64>,
@@ -42,7 +44,7 @@ pub(super) struct Sampled<'a> {
 }
 
 impl<'a> Sampled<'a> {
-    /// Begins with some samples.
+    /// The interpolant of some samples.
     ///
     /// # Errors
     /// Samples that span no volume; no memory.
@@ -64,14 +66,14 @@ impl<'a> Sampled<'a> {
             indices: vec![[0; 3]; Growing::FIRST as usize],
             values: vec![0.0; Growing::FIRST as usize],
             f: vec![0.0; samples],
-            owners: vec![NOTHING; samples],
+            owners: vec![OUTSIDE; samples],
         };
         sampled.describe(voxels);
         sampled.follow();
         Ok(sampled)
     }
 
-    /// Makes more samples points.
+    /// Inserts samples as points.
     ///
     /// # Errors
     /// No memory.
@@ -82,13 +84,13 @@ impl<'a> Sampled<'a> {
         Ok(())
     }
 
-    /// Gives samples numbers of points, which they are not yet.
+    /// Registers samples as points that are not inserted yet; returns their numbers.
     pub(super) fn name(&mut self, voxels: &[u32]) -> Range<u32> {
         self.describe(voxels);
         self.growing.register(&positions(self.volume, self.units, voxels))
     }
 
-    /// Takes points out and puts others in, by their numbers.
+    /// Removes points and inserts others, by their numbers.
     ///
     /// # Errors
     /// No memory.
@@ -104,9 +106,9 @@ impl<'a> Sampled<'a> {
     /// # Errors
     /// No memory.
     pub(super) fn refit(&mut self, monitor: &Monitor) -> Result<(), InterpolateError> {
-        let pieces = Cells::of(&self.growing, &self.values);
+        let cells = Cells::of(&self.growing, &self.values);
         let free = self.values.len();
-        let normal = Normal::assemble(&pieces, &self.owners, &self.grid, self.volume, free)?;
+        let normal = Normal::assemble(&cells, &self.owners, &self.grid, self.volume, free)?;
         let Solved { change, .. } = normal.solve(monitor)?;
         self.values.iter_mut().zip(change).for_each(|(value, change)| *value += change);
         self.evaluate(|_, _| true);
@@ -115,7 +117,7 @@ impl<'a> Sampled<'a> {
 
     /// How far F is from the volume.
     pub(super) fn deviation(&self) -> Deviation {
-        Deviation::at(self.volume, &self.f, |sample| self.owners[sample] != NOTHING)
+        Deviation::at(self.volume, &self.f, |sample| self.owners[sample] != OUTSIDE)
     }
 
     /// F at each sample, 0 where no cell is.
@@ -138,7 +140,7 @@ impl<'a> Sampled<'a> {
         &self.voxels
     }
 
-    /// The numbers of the points there are.
+    /// Numbers of the vertices.
     pub(super) fn vertices(&self) -> Vec<u32> {
         let all = Growing::FIRST..self.voxels.len() as u32;
         all.filter(|&v| self.growing.is_vertex(v)).collect()
@@ -149,7 +151,7 @@ impl<'a> Sampled<'a> {
         self.units.position(self.volume, sample)
     }
 
-    /// The cell of each sample, or [`NOTHING`].
+    /// The cell of each sample, or [`OUTSIDE`].
     pub(super) fn owners(&self) -> &[u32] {
         &self.owners
     }
@@ -175,9 +177,9 @@ impl<'a> Sampled<'a> {
         let mut is_fresh = vec![false; self.cells()];
         fresh.iter().for_each(|&cell| is_fresh[cell as usize] = true);
         let stays = |&&owner: &&u32| {
-            owner != NOTHING && !is_fresh[owner as usize] && self.growing.is_cell(owner)
+            owner != OUTSIDE && !is_fresh[owner as usize] && self.growing.is_cell(owner)
         };
-        let left = |owner: &u32| AtomicU32::new(*Some(owner).filter(stays).unwrap_or(&NOTHING));
+        let left = |owner: &u32| AtomicU32::new(*Some(owner).filter(stays).unwrap_or(&OUTSIDE));
         let owners: Vec<AtomicU32> = self.owners.par_iter().map(left).collect();
         if self.exact {
             self.draw_exactly(&fresh, &is_fresh, &owners);
@@ -240,7 +242,7 @@ impl<'a> Sampled<'a> {
         self.f.par_chunks_mut(nx).enumerate().for_each(|(y, f)| {
             for (x, f) in f.iter_mut().enumerate() {
                 let owner = owners[x + nx * y];
-                if owner == NOTHING || !wanted(x + nx * y, owner) {
+                if owner == OUTSIDE || !wanted(x + nx * y, owner) {
                     continue;
                 }
                 let place = grid.position([x, y % ny, y / ny]);
@@ -254,4 +256,108 @@ impl<'a> Sampled<'a> {
 
 fn positions(volume: &Volume, units: Units, voxels: &[u32]) -> Vec<[f64; 3]> {
     voxels.iter().map(|&voxel| units.position(volume, voxel)).collect()
+}
+
+/// The cells of a triangulation as an interpolant has them.
+pub(super) struct Cells<'a> {
+    growing: &'a Growing,
+    values: &'a [f64],
+    bit_range: BitRange,
+}
+
+impl<'a> Cells<'a> {
+    pub(super) fn of(growing: &'a Growing, values: &'a [f64]) -> Self {
+        Self { growing, values, bit_range: BitRange::of(growing.positions()) }
+    }
+
+    /// The corners of a cell in canonical order. Numbers of points are in the order of their indices.
+    pub(super) fn row(&self, cell: u32) -> [u32; 4] {
+        smallest_even(self.growing.cells()[cell as usize].corners)
+    }
+
+    pub(super) fn coordinates(&self, row: [u32; 4], place: [f64; 3]) -> Option<[f64; 4]> {
+        coordinates(&self.corners(row), place, self.bit_range.is_exact_with(place))
+    }
+
+    pub(super) fn corners(&self, row: [u32; 4]) -> [[f64; 3]; 4] {
+        row.map(|v| self.growing.positions()[v as usize])
+    }
+
+    /// Gives a sample in a new cell to the first of the cells that hold it. Shares that are 0 may be so by
+    /// rounding; then `holds` says which of the cells beside hold the sample, too.
+    #[inline(always)]
+    pub(super) fn claim(
+        &self,
+        cell: u32,
+        shares: &[f64; 4],
+        holds: impl Fn([u32; 4]) -> bool,
+        owner: &AtomicU32,
+    ) {
+        match shares.iter().filter(|share| **share == 0.0).count() {
+            0 => owner.store(cell, Relaxed),
+            1 => owner.store(self.first_across(cell, shares, holds), Relaxed),
+            2 => owner.store(self.first_at(cell, shares, holds), Relaxed),
+            // At a vertex F is its value, whichever cell the sample belongs to.
+            _ => drop(owner.fetch_min(cell, Relaxed)),
+        }
+    }
+
+    /// The first in canonical order of a cell and the one beyond the facet that a place lies on.
+    fn first_across(&self, cell: u32, shares: &[f64; 4], holds: impl Fn([u32; 4]) -> bool) -> u32 {
+        let row = self.row(cell);
+        let apex = (0..4).find(|&k| shares[k] == 0.0).expect("a share is 0");
+        let Cell { corners, neighbors } = self.growing.cells()[cell as usize];
+        let k = (0..4).find(|&k| corners[k] == row[apex]).expect("a corner");
+        let next = neighbors[k] / 4;
+        if !self.growing.is_cell(next) {
+            return cell;
+        }
+        let across = self.row(next);
+        if across < row && holds(across) { next } else { cell }
+    }
+
+    /// The first in canonical order of the cells at the face that a place lies on within one of them. They
+    /// are those with all vertices of the face, and from one to the next the way leads through facets
+    /// that have all of them, too.
+    fn first_at(&self, cell: u32, shares: &[f64; 4], holds: impl Fn([u32; 4]) -> bool) -> u32 {
+        let row = self.row(cell);
+        let on = |v: u32| (0..4).any(|k| row[k] == v && shares[k] != 0.0);
+        let mut seen = vec![cell];
+        let mut first = (row, cell);
+        let mut at = 0;
+        while let Some(&cell) = seen.get(at) {
+            at += 1;
+            let Cell { corners, neighbors } = self.growing.cells()[cell as usize];
+            for k in 0..4 {
+                let next = neighbors[k] / 4;
+                if on(corners[k]) || !self.growing.is_cell(next) || seen.contains(&next) {
+                    continue;
+                }
+                let row = self.row(next);
+                if holds(row) {
+                    first = first.min((row, next));
+                    seen.push(next);
+                }
+            }
+        }
+        first.1
+    }
+}
+
+impl PiecewiseLinear for Cells<'_> {
+    fn count(&self) -> usize {
+        self.growing.cells().len()
+    }
+
+    fn vertices(&self, cell: u32) -> ([u32; 4], usize) {
+        (self.row(cell), 4)
+    }
+
+    fn coordinates(&self, cell: u32, place: [f64; 3]) -> Option<[f64; 4]> {
+        self.coordinates(self.row(cell), place)
+    }
+
+    fn value(&self, cell: u32, shares: &[f64; 4]) -> f64 {
+        combine(shares, self.row(cell).map(|v| self.values[v as usize]))
+    }
 }

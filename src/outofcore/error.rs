@@ -1,3 +1,4 @@
+use std::fmt::{self, Display};
 use std::path::PathBuf;
 
 use walpha_base::Cancelled;
@@ -5,13 +6,29 @@ use walpha_base::advice::Advice;
 use walpha_base::memory::NoMemory;
 use walpha_base::shown::shown;
 
-use super::{Finding, Job};
 use crate::export::TargetError;
 use crate::haar::HaarError;
 use crate::pipeline::PipelineError;
 use crate::points::PointsError;
 use crate::shape::ShapeError;
 use crate::volume::VolumeError;
+
+/// A file of a plan that does not verify.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Finding {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong, as of "block-00001.walpha …".
+    pub what: String,
+}
+
+impl Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = self.path.file_name().map_or(self.path.as_path(), |name| name.as_ref());
+        write!(f, "{} {}", shown(name), self.what)
+    }
+}
 
 /// Why work in blocks cannot be done.
 #[derive(Debug, thiserror::Error)]
@@ -38,7 +55,7 @@ pub enum BlocksError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Memory cannot be had.
+    /// Not enough memory.
     #[error(transparent)]
     Memory(#[from] NoMemory),
     /// A file of the plan's folder cannot be read.
@@ -46,7 +63,7 @@ pub enum BlocksError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// A folder cannot be written.
@@ -54,7 +71,7 @@ pub enum BlocksError {
     Written {
         /// The folder.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// A file of the plan's folder is not what it should be.
@@ -62,7 +79,7 @@ pub enum BlocksError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The problem.
         what: String,
     },
     /// There is no plan that can be used.
@@ -70,7 +87,7 @@ pub enum BlocksError {
     NoPlan {
         /// Its file.
         path: PathBuf,
-        /// What is wrong.
+        /// The problem.
         what: String,
     },
     /// A block was made by another plan.
@@ -82,9 +99,9 @@ pub enum BlocksError {
     /// Blocks are not there yet.
     #[error("{} of {all} blocks are missing: {}", missing.len(), first(missing))]
     Missing {
-        /// Which.
+        /// The missing blocks.
         missing: Vec<usize>,
-        /// How many there should be.
+        /// Number of blocks of the plan.
         all: usize,
     },
     /// There is no such block.
@@ -92,7 +109,7 @@ pub enum BlocksError {
     NoBlock {
         /// The one asked for.
         index: usize,
-        /// How many there are.
+        /// Number of blocks.
         count: usize,
     },
     /// Files do not verify.
@@ -106,23 +123,23 @@ pub enum BlocksError {
     /// The input is not what it was when the plan was made.
     #[error("{input} has changed since it was planned: {what}")]
     Changed {
-        /// What the plan is of.
+        /// The input of the plan.
         input: String,
-        /// What is not the same.
+        /// The difference.
         what: String,
     },
     /// What takes the whole volume or all points at once.
     #[error("{what} is not local, so that it cannot be computed in blocks")]
     NotLocal {
-        /// What was asked for.
+        /// The option or method.
         what: String,
-        /// What to do.
+        /// The advice.
         next: &'static str,
     },
     /// More than one file can hold.
     #[error("{what} pass 32-bit indices, so that they fit no single file")]
     TooLarge {
-        /// What.
+        /// The things counted.
         what: String,
     },
 }
@@ -149,8 +166,8 @@ fn number(count: usize, one: &str, many: &str) -> String {
 }
 
 impl BlocksError {
-    pub(super) fn changed(job: &Job, what: String) -> Self {
-        Self::Changed { input: job.input.clone(), what }
+    pub(super) fn changed(input: &str, what: String) -> Self {
+        Self::Changed { input: input.to_owned(), what }
     }
 
     pub(super) fn not_local(what: &str, next: &'static str) -> Self {

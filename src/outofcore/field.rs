@@ -1,10 +1,11 @@
-//! Gray levels, truncated ones and differences of any part of a volume, from its own samples.
+//! Gray levels, truncated gray levels and differences of any part of a volume, and passes over all of it, tile by tile.
 
 use ndarray::Array3;
 use rayon::prelude::*;
+use walpha_base::Monitor;
 
-use super::read_digests::ReadDigests;
-use super::{BlocksError, Job, SampleBox};
+use super::brick_digests::ReadDigests;
+use super::{BlocksError, Job, SampleBox, Team};
 use crate::haar::{Bricks, HaarError};
 use crate::points::difference;
 use crate::select::Cut;
@@ -28,14 +29,14 @@ pub(super) struct Field {
     pub range: GrayRange,
     /// The least value, which stands in for missing ones.
     pub least: f32,
-    /// What was read of it.
-    pub seen: ReadDigests,
+    /// Digests of the bricks read so far.
+    pub digests: ReadDigests,
 }
 
-/// What is known of the truncated volume as a whole.
+/// The truncated volume.
 #[expect(clippy::large_enum_variant, reason = "there is one for each block at work")]
 pub(super) enum Truncated {
-    /// It is the volume.
+    /// Nothing but zeros was dropped: it is the volume.
     Same,
     /// Of the non-standard decomposition: which coefficients stay, and the sums of the bricks of the
     /// truncated volume.
@@ -68,15 +69,15 @@ impl Field {
         let source = Source::open(&job.input, &job.recipe.read)?;
         if source.dims() != job.dims {
             let what = format!("it has {} samples, not {}", source.dims(), job.dims);
-            return Err(BlocksError::changed(job, what));
+            return Err(BlocksError::changed(&job.input, what));
         }
         let dims = source.dims().xyz();
         let (bricks, nan) = (Self::bricks_of(dims), job.recipe.read.nan);
-        let seen =
+        let digests =
             ReadDigests::none_of(part.unwrap_or(&SampleBox::whole(dims)), bricks.side(), dims);
         let input = job.input.clone();
         let (range, least) = (GrayRange::IDENTITY, 0.0);
-        Ok(Self { source, input, dims, bricks, nan, range, least, seen })
+        Ok(Self { source, input, dims, bricks, nan, range, least, digests })
     }
 
     /// Whether values are gray levels as they are, and all numbers.
@@ -90,7 +91,7 @@ impl Field {
         Self::tile_of(&self.source)
     }
 
-    /// The same for a volume that is not looked at otherwise.
+    /// The tile size for an opened volume.
     pub(super) fn tile_of(source: &Source) -> [usize; 3] {
         let dims = source.dims().xyz();
         let side = Self::bricks_of(dims).side();
@@ -110,7 +111,7 @@ impl Field {
         tile
     }
 
-    /// As small as the sums of all can be gathered.
+    /// Bricks as small as memory for the sums of all allows.
     pub(super) fn bricks_of(dims: [usize; 3]) -> Bricks {
         let fine = Bricks::new(dims, 3);
         let is_fit = fine.count().iter().product::<usize>() <= SUMS;
@@ -126,9 +127,9 @@ impl Field {
     /// The values of a part, where NaN and infinities are values or [missing](Nan::Mask).
     pub(super) fn values(&self, part: &SampleBox) -> Result<Grays, BlocksError> {
         let mut values = self.source.read(part.first, part.size)?;
-        if !self.seen.note(part, &values) {
+        if !self.digests.note(part, &values) {
             let what = "a part of it was read twice, and was not the same".to_owned();
-            return Err(BlocksError::Changed { input: self.input.clone(), what });
+            return Err(BlocksError::changed(&self.input, what));
         }
         let mut missing = None;
         if !self.is_gray() {
@@ -203,9 +204,9 @@ impl Field {
     ) -> Result<Volume, BlocksError> {
         let samples = match truncated {
             Truncated::Same => grays.to_vec(),
-            Truncated::File(samples, seen) => {
+            Truncated::File(samples, digests) => {
                 let samples = samples.read(part.first, part.size)?;
-                seen.note(part, &samples);
+                digests.note(part, &samples);
                 samples
             }
             Truncated::Bricks { cut, sums } => {
@@ -258,6 +259,61 @@ impl Field {
                 }
             }
         }
+        Ok(())
+    }
+}
+
+/// Passes over all tiles.
+pub(super) struct Passes<'a> {
+    pub team: &'a dyn Team,
+    monitor: &'a Monitor,
+    /// The tiles of this process.
+    tiles: Vec<SampleBox>,
+    done: u64,
+}
+
+impl<'a> Passes<'a> {
+    /// Passes of a process of a team.
+    pub(super) fn new(team: &'a dyn Team, tiles: &[SampleBox], monitor: &'a Monitor) -> Self {
+        let tiles = team.own(tiles.len()).map(|tile| tiles[tile]).collect();
+        Self { team, monitor, tiles, done: 0 }
+    }
+
+    /// The usual number of passes.
+    const USUAL: u64 = 5;
+
+    /// Works on each tile of this process, several at a time, and joins what they give in their order.
+    pub(super) fn each<T: Send>(
+        &mut self,
+        work: impl Fn(&SampleBox) -> Result<T, BlocksError> + Sync,
+        mut join: impl FnMut(T),
+    ) -> Result<(), BlocksError> {
+        let all = self.tiles.len() as u64;
+        let total = Self::USUAL.max(self.done + 1) * all;
+        let mut tiles_done = 0;
+        for batch in self.tiles.chunks(rayon::current_num_threads()) {
+            let results: Result<Vec<T>, _> = batch.par_iter().map(&work).collect();
+            results?.into_iter().for_each(&mut join);
+            tiles_done += batch.len() as u64;
+            self.monitor.report(self.done * all + tiles_done, total)?;
+        }
+        self.done += 1;
+        Ok(())
+    }
+
+    /// Works on pieces of the volume one after the other, in this process alone.
+    pub(super) fn serial(
+        &mut self,
+        pieces: &[SampleBox],
+        mut work: impl FnMut(&SampleBox) -> Result<(), BlocksError>,
+    ) -> Result<(), BlocksError> {
+        let all = pieces.len() as u64;
+        let total = Self::USUAL.max(self.done + 1) * all;
+        for (piece, done) in pieces.iter().zip(1..) {
+            work(piece)?;
+            self.monitor.report(self.done * all + done, total)?;
+        }
+        self.done += 1;
         Ok(())
     }
 }

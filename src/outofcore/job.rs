@@ -1,3 +1,9 @@
+//! How the files of an input look without reading them.
+
+use std::fs::{self, Metadata};
+use std::path::Path;
+use std::time::UNIX_EPOCH;
+
 use serde::{Deserialize, Serialize};
 
 use super::BlocksError;
@@ -5,9 +11,9 @@ use crate::Recipe;
 use crate::pipeline::{Choice, Parameter};
 use crate::points::{Selection, Units, Weighting};
 use crate::shape::{Alpha, Engine};
-use crate::volume::{Dims, Frame, GrayRange, Source, any_size};
+use crate::volume::{Dims, Frame, GrayRange, Source, any_size, files_of};
 
-/// What is to be computed: an input, and the recipe for its shape. Plans hold it.
+/// An input, and the recipe for its shape. Plans hold it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Job {
@@ -125,4 +131,34 @@ fn inverse([a, b, c]: [[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
     let volume = dot(a, cross(b, c));
     let rows = [cross(b, c), cross(c, a), cross(a, b)].map(|row| row.map(|v| v / volume));
     rows.as_flattened().iter().all(|v| v.is_finite()).then_some(rows)
+}
+
+/// How many files an input has, how large they are, and when one was written last. A hint: a file may be touched
+/// and stay what it was. What was read of it is known by its digests ([`ReadDigests`](super::brick_digests::ReadDigests)).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Stamp {
+    files: u64,
+    bytes: u64,
+    /// Nanoseconds since 1970.
+    newest: u64,
+}
+
+impl Stamp {
+    /// The stamp of the input of a job as it is now; empty for a sample. Looks at each file of a folder.
+    pub(super) fn of(job: &Job) -> Self {
+        let mut stamp = Self::default();
+        if !job.input.starts_with("sample:") {
+            let files = files_of(Path::new(&job.input)).into_iter();
+            // Whoever reads says what is wrong with one that is not there.
+            files.filter_map(|path| fs::metadata(path).ok()).for_each(|file| stamp.add(&file));
+        }
+        stamp
+    }
+
+    fn add(&mut self, file: &Metadata) {
+        self.files += 1;
+        self.bytes = self.bytes.wrapping_add(file.len());
+        let written = file.modified().ok().and_then(|at| at.duration_since(UNIX_EPOCH).ok());
+        self.newest = self.newest.max(written.map_or(0, |at| at.as_nanos() as u64));
+    }
 }

@@ -4,19 +4,19 @@ use std::collections::hash_map::Entry;
 use serde::{Deserialize, Serialize};
 use walpha_base::{Monitor, Sum, UnionFind};
 
-use super::file::BlockFile;
-use super::run::{BlockComponent, BlockSheet, BlockSummary, Met, Weights};
+use super::block_file::BlockFile;
+use super::block_file::{BlockComponent, BlockSheet, BlockSummary, Met, Weights};
 use super::{BlocksError, Plan};
 use crate::points::WeightSummary;
 use crate::shape::{
     Betti, ByClass, Component, ComponentSums, Measures, SheetSums, components_of_sums,
 };
 
-/// What a shape in blocks is as a whole.
+/// The whole shape, merged from its blocks.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Merged {
-    /// How many points were selected.
+    /// Number of selected points.
     pub points: u64,
     /// The weights ω.
     pub weights: WeightSummary,
@@ -34,17 +34,17 @@ pub struct Merged {
     pub measures: Measures,
     /// The components, in the order of their smallest vertices.
     pub components: Vec<Component>,
-    /// How many points of other blocks were looked at, all blocks together.
+    /// Number of halo points, summed over all blocks.
     pub halo: u64,
     /// For each block the common numbers of its components and of its sheets.
-    pub(super) numbers: Vec<Numbers>,
-    /// How many sheets there are.
+    pub(super) numbers: Vec<MergedNumbers>,
+    /// Number of sheets.
     pub(super) sheets: u32,
 }
 
 /// The common numbers of a block's components and sheets.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(super) struct Numbers {
+pub(super) struct MergedNumbers {
     pub components: Vec<u32>,
     pub sheets: Vec<u32>,
 }
@@ -60,7 +60,7 @@ pub fn merge(plan: &Plan) -> Result<Merged, BlocksError> {
     merge_monitored(plan, &Monitor::noop())
 }
 
-/// The same, which says how far it is and can be cancelled.
+/// [`merge`] with progress and cancelling through `monitor`.
 ///
 /// # Errors
 /// Those of [`merge`], and [`BlocksError::Cancelled`].
@@ -89,10 +89,10 @@ pub fn merge_monitored(plan: &Plan, monitor: &Monitor) -> Result<Merged, BlocksE
     union.merged().ok_or_else(|| BlocksError::Damaged { path: folder.into(), what: what() })
 }
 
-/// The facts of all blocks, side by side.
+/// The summaries of all blocks, side by side.
 #[derive(Default)]
 struct Union {
-    facts: Vec<BlockSummary>,
+    summaries: Vec<BlockSummary>,
     /// The components of all blocks, and pairs that are one.
     components: u32,
     sheets: u32,
@@ -105,53 +105,53 @@ struct Union {
 
 impl Union {
     fn take(&mut self, file: &BlockFile) -> Result<(), BlocksError> {
-        let facts = &file.facts;
+        let summary = &file.summary;
         let added = |before: u32, more: usize, what: &str| {
             let sum = u32::try_from(more).ok().and_then(|more| before.checked_add(more));
             sum.ok_or_else(|| BlocksError::TooLarge { what: format!("{what} of all blocks") })
         };
-        let components = added(self.components, facts.components.len(), "components")?;
-        let sheets = added(self.sheets, facts.sheets.len(), "sheets")?;
+        let components = added(self.components, summary.components.len(), "components")?;
+        let sheets = added(self.sheets, summary.sheets.len(), "sheets")?;
         let points = file.read::<u64>("border_points")?;
-        let of_points = file.below("border_components", facts.components.len() as u32)?;
+        let of_points = file.below("border_components", summary.components.len() as u32)?;
         for (point, component) in points.into_iter().zip(of_points) {
             let component = self.components + component;
             same(self.points.entry(point), component, &mut self.same_components);
         }
         let simplices = file.read::<[u64; 3]>("shared_simplices")?;
         let sides = simplices.into_iter().zip(file.read::<u32>("shared_sides")?);
-        for (side, sheet) in sides.zip(file.below("shared_sheets", facts.sheets.len() as u32)?) {
+        for (side, sheet) in sides.zip(file.below("shared_sheets", summary.sheets.len() as u32)?) {
             same(self.sides.entry(side), self.sheets + sheet, &mut self.same_sheets);
         }
         (self.components, self.sheets) = (components, sheets);
-        self.facts.push(facts.clone());
+        self.summaries.push(summary.clone());
         Ok(())
     }
 
     /// `None` where the numbers of the blocks are of no shape.
     fn merged(self) -> Option<Merged> {
-        let Self { facts, components: all_components, sheets: all_sheets, .. } = &self;
+        let Self { summaries, components: all_components, sheets: all_sheets, .. } = &self;
         let components = united(*all_components, &self.same_components);
         let sheets = united(*all_sheets, &self.same_sheets);
-        let parts = facts.iter().flat_map(|facts| &facts.components);
+        let parts = summaries.iter().flat_map(|summary| &summary.components);
         let (component_numbers, components) = number_components(parts, components);
         // The components of a block's sheets are counted within it.
         let mut offset = 0;
         let mut parts = Vec::new();
-        for facts in facts {
-            parts.extend(facts.sheets.iter().map(|sheet| (sheet, offset)));
-            offset += facts.components.len();
+        for summary in summaries {
+            parts.extend(summary.sheets.iter().map(|sheet| (sheet, offset)));
+            offset += summary.components.len();
         }
         let (sheet_numbers, sheets) = number_sheets(&parts, sheets, &component_numbers);
         let count = sheets.len() as u32;
         let mut numbers = Vec::new();
         let (mut a, mut b) = (component_numbers.into_iter(), sheet_numbers.into_iter());
-        for facts in facts {
-            let components = a.by_ref().take(facts.components.len()).collect();
-            let sheets = b.by_ref().take(facts.sheets.len()).collect();
-            numbers.push(Numbers { components, sheets });
+        for summary in summaries {
+            let components = a.by_ref().take(summary.components.len()).collect();
+            let sheets = b.by_ref().take(summary.sheets.len()).collect();
+            numbers.push(MergedNumbers { components, sheets });
         }
-        let totals = Totals::of(facts);
+        let totals = Totals::of(summaries);
         let measures = ComponentSums::measures(components.iter());
         let lone = totals.vertices.singular as u64;
         let b0 = components.len() as u64;
@@ -178,7 +178,7 @@ impl Union {
     }
 }
 
-/// Notes that two names are one thing.
+/// Records that two numbers denote the same component or sheet.
 fn same<K>(entry: Entry<'_, K, u32>, now: u32, pairs: &mut Vec<[u32; 2]>) {
     match entry {
         Entry::Vacant(vacant) => _ = vacant.insert(now),
@@ -192,7 +192,7 @@ fn united(count: u32, pairs: &[[u32; 2]]) -> UnionFind {
     sets
 }
 
-/// Numbers components in the order of their smallest vertices: for each part its number, and the
+/// MergedNumbers components in the order of their smallest vertices: for each part its number, and the
 /// components. A part without vertices has none of its own.
 fn number_components<'a>(
     parts: impl Iterator<Item = &'a BlockComponent>,
@@ -219,7 +219,7 @@ fn number_components<'a>(
     (numbers, order.into_iter().map(|(_, _, sums)| sums).collect())
 }
 
-/// Numbers sheets in the order in which they are met: for each part its number, and the sheets with their
+/// MergedNumbers sheets in the order in which they are met: for each part its number, and the sheets with their
 /// components. A part comes with the number of the first component of its block.
 fn number_sheets(
     parts: &[(&BlockSheet, usize)],
@@ -252,7 +252,7 @@ fn number_sheets(
     (numbers, sheets.collect())
 }
 
-/// What is added up.
+/// Sums over all blocks.
 #[derive(Default)]
 struct Totals {
     points: u64,
@@ -273,14 +273,14 @@ impl Totals {
             to.regular += regular;
             to.singular += singular;
         };
-        for facts in all {
-            totals.points += facts.points;
-            totals.halo += facts.halo;
-            totals.cells += facts.cells;
-            add(&mut totals.facets, facts.facets);
-            add(&mut totals.edges, facts.edges);
-            add(&mut totals.vertices, facts.vertices);
-            if let Some(Weights { min: least, max: most, sum: more }) = &facts.weights {
+        for summaries in all {
+            totals.points += summaries.points;
+            totals.halo += summaries.halo;
+            totals.cells += summaries.cells;
+            add(&mut totals.facets, summaries.facets);
+            add(&mut totals.edges, summaries.edges);
+            add(&mut totals.vertices, summaries.vertices);
+            if let Some(Weights { min: least, max: most, sum: more }) = &summaries.weights {
                 (min, max) = (min.min(*least), max.max(*most));
                 sum.join(more);
             }

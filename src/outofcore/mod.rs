@@ -15,9 +15,9 @@
 //! - *Wavelets*: the levels below 2ᵏ stay within *bricks* of 2ᵏ samples a side (k = 3, or 4 for large volumes); the
 //!   levels above are a transform of the bricks' sums alone, an 8ᵏ-th of the samples, which the plan holds
 //!   (`haar::Bricks`). The standard decomposition has functions as long as the volume: the first process transforms
-//!   it in a file, planes along x and y, then walls along z (`haar::Slabs`, `survey/slabs.rs`), and leaves the
+//!   it in a file, planes along x and y, then walls along z (`haar::Slabs`, `truncate.rs`), and leaves the
 //!   truncated volume in the folder of the plan.
-//! - *Global numbers* (`survey/`): the gray range; which coefficients stay and which samples become points, each
+//! - *Global numbers* (`survey.rs`): the gray range; which coefficients stay and which samples become points, each
 //!   found by `select::Search` in rounds of counting digits of (magnitude, index) until few enough are left to be
 //!   listed; min, max and ΣL; the number of points of each brick, by which the volume is cut into boxes of bricks
 //!   with about equally many points (`plan.rs`).
@@ -28,24 +28,24 @@
 //! - *Names*: points are named by their index in the volume, 64 bits, in files and keys, and by their rank within
 //!   the block, 32 bits, at work. Both orders are that of the input indices of one piece, so rows, owners and ties
 //!   are the same.
-//! - *Trust* (`digest.rs`, `file.rs`, `digested.rs`, `check.rs`): each file has digests over all of its bytes, and
+//! - *Trust* (`bytes.rs`, `block_file.rs`, `plan_files.rs`): each file has digests over all of its bytes, and
 //!   is verified where it is read: `plan.json` ends with its own, a block's start has that of its header, which has
 //!   those of its arrays, and the plan has those of the files beside it. What verifies is still looked at
-//!   (`BlockFile::fits`, `rows.rs`), because fuzzers skip digests (`cfg(fuzzing)`). `run` makes again what does not
+//!   (`BlockFile::fits`, `read_rows`), because fuzzers skip digests (`cfg(fuzzing)`). `run` makes again what does not
 //!   verify.
-//! - *What was read* (`read_digests.rs`): all passes and blocks read whole bricks of samples. Each read notes the
+//! - *What was read* (`brick_digests.rs`): all passes and blocks read whole bricks of samples. Each read notes the
 //!   digest of every brick, the plan keeps one digest of the bricks that each block will read, and the block
-//!   compares. The size and time of files (`stamp.rs`) only decide whether interrupted work is planned again.
+//!   compares. The size and time of files (`job.rs`) only decide whether interrupted work is planned again.
 //! - *Merging* (`merge.rs`) reads the summaries and border keys of blocks, never rows; the command verifies all of
 //!   them first: points at edges between blocks unite components, sides of facets and singular edges unite sheets.
 //!   A sheet's number comes from the first row that it is met in.
-//! - *Outputs* (`pieces/`) are filled and wait until all outputs of all processes are, and take a block at a time:
+//! - *Outputs* (`blockwise.rs`) are filled and wait until all outputs of all processes are, and take a block at a time:
 //!   VTK's parallel formats, a file for each block, and arrays of Zarr. One file of any other format takes the
 //!   memory of the whole shape (`whole.rs`).
 //! - *Teams* (`team.rs`): processes with ranks share tiles of the survey, blocks and pieces. What each found is
 //!   joined along a binomial tree, in whatever order, as counts and sums are exact. The command's team is MPI
-//!   (`cli/ranks/`, feature `mpi`): the first rank reads the command line and sends the others their work
-//!   (`cli/together.rs`). MPI is used by the main thread alone, asked now and then rather than waited in, and
+//!   (`cli/mpi.rs`, feature `mpi`): the first rank reads the command line and sends the others their work
+//!   (`cli/shape_in_blocks.rs`). MPI is used by the main thread alone, asked now and then rather than waited in, and
 //!   finalised by a destructor; a failure or a panic aborts all ranks.
 //!
 //! ```
@@ -64,41 +64,35 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod check;
-mod cut;
-mod digest;
-mod digested;
+mod block_file;
+mod blockwise;
+mod brick_digests;
+mod bytes;
+mod cost;
 mod error;
 mod field;
-mod file;
 mod job;
 mod merge;
-mod passes;
-mod pieces;
 mod plan;
-mod price;
-mod read_digests;
-mod rows;
+mod plan_files;
 mod run;
 mod sample_box;
-mod stamp;
 mod survey;
 mod team;
-mod turn;
+mod truncate;
 mod whole;
+#[cfg(feature = "zarr")]
+mod zarr;
 
-pub use check::{Checked, Finding};
-pub use error::BlocksError;
-use field::Field;
+pub use blockwise::BlockwiseFormat;
+pub use cost::{CostEstimate, estimate_cost};
+pub use error::{BlocksError, Finding};
 pub use job::Job;
 pub use merge::{Merged, merge, merge_monitored};
-pub use pieces::Pieces;
 pub use plan::{BlockPlan, Cutting, Plan};
-pub use price::{Price, price};
-use run::BlockSummary;
-pub use run::run;
+pub use plan_files::Checked;
+pub use run::{run, run_all, run_missing};
 pub use sample_box::SampleBox;
 pub use survey::Survey;
 pub use team::{Alone, Team};
-pub use turn::{run_all, run_missing};
 pub use whole::whole;

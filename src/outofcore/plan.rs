@@ -1,20 +1,19 @@
+//! Into which boxes a volume is cut.
+
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use walpha_base::Monitor;
-use walpha_base::setters;
+use walpha_base::{Monitor, memory, setters};
 
-use super::cut::{Boxes, MOST};
-use super::digest::Digest;
-use super::digested::DigestedFile;
-use super::field::Truncated;
-use super::file::read_file;
-use super::stamp::Stamp;
+use super::bytes::{Digest, read_file};
+use super::field::{Field, Truncated};
+use super::job::Stamp;
 use super::survey::{Survey, Surveyed, survey};
-use super::{Alone, BlocksError, Field, Job, SampleBox, Team};
+use super::truncate::{DigestedFile, SMOOTHED, SUMS};
+use super::{Alone, BlocksError, Job, SampleBox, Team};
 use crate::export::Target;
 use crate::points::{PointsError, Shares};
-use crate::shape::Alpha;
+use crate::shape::{AT_WORK, Alpha, PlanError, ShapeError};
 use crate::{Recipe, Weighting};
 
 /// How a job is cut into blocks.
@@ -28,7 +27,7 @@ pub struct Cutting {
 }
 
 impl Cutting {
-    /// As a recipe has it.
+    /// The cutting of a recipe.
     pub fn of(recipe: &Recipe) -> Self {
         Self { blocks: recipe.blocks.map(usize::from), memory: recipe.memory }
     }
@@ -41,19 +40,19 @@ impl Cutting {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Plan {
-    /// What made it.
+    /// Version of the program that made it.
     version: String,
-    /// What is to be computed.
+    /// The job.
     pub job: Job,
-    /// How it was to be cut.
+    /// How it is cut.
     pub cutting: Cutting,
     /// The numbers of the whole volume.
     pub survey: Survey,
     /// The blocks.
     pub blocks: Vec<BlockPlan>,
-    /// The files beside it.
+    /// The files beside the plan.
     pub(super) kept: Vec<DigestedFile>,
-    /// How the files of the input looked.
+    /// Stamp of the input files.
     pub(super) stamp: Stamp,
     #[serde(skip)]
     pub(super) folder: PathBuf,
@@ -71,7 +70,7 @@ pub struct BlockPlan {
     pub points: u64,
     /// The points around it that it may need, counted by bricks.
     pub halo: u64,
-    /// What it reads.
+    /// Digests of the bricks it reads.
     pub(super) reads: Reads,
 }
 
@@ -79,7 +78,7 @@ pub struct BlockPlan {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Reads {
     pub input: Digest,
-    /// Of the truncated volume, where that is in a file.
+    /// Digest of the truncated volume, where that is in a file.
     pub truncated: Option<Digest>,
 }
 
@@ -101,7 +100,7 @@ impl Plan {
     /// all get it. Memory that blocks keep to is that of one process.
     ///
     /// # Errors
-    /// As [`Plan::make`]. The others of the team would wait for a process that ends with an error.
+    /// The errors of [`Plan::make`]. A process that returns an error leaves the rest of the team waiting.
     pub fn make_with(
         job: Job,
         cutting: Cutting,
@@ -177,9 +176,9 @@ impl Plan {
             };
             let part = part.common(&whole);
             let read = Self::read_around(&part, margin, field.dims);
-            let input = field.seen.digest(&read);
-            let truncated = if let Truncated::File(_, seen) = &truncated {
-                Some(seen.digest(&read))
+            let input = field.digests.digest(&read);
+            let truncated = if let Truncated::File(_, digests) = &truncated {
+                Some(digests.digest(&read))
             } else {
                 None
             };
@@ -201,7 +200,7 @@ impl Plan {
         Ok(target.write(|out| out.write_all(&self.text()))?)
     }
 
-    /// What is before the digest of a plan in its text, and behind it.
+    /// The text before and after the digest of a plan.
     const CHECKSUM: [&[u8]; 2] = [b",\n  \"checksum\": \"", b"\"\n}\n"];
 
     /// Its text: JSON, with the digest of all bytes before as the last field.
@@ -259,10 +258,10 @@ impl Plan {
             })
         };
         self.job.check().is_ok()
-            && (1..=MOST).contains(&self.blocks.len())
+            && (1..=MAX_BLOCKS).contains(&self.blocks.len())
             && self.blocks.iter().all(is_inside)
             && self.survey.first < self.job.dims.samples() as u64
-            && self.kept.iter().all(|kept| [Self::SUMS, Self::SMOOTHED].contains(&&*kept.name))
+            && self.kept.iter().all(|kept| [SUMS, SMOOTHED].contains(&&*kept.name))
     }
 
     /// The folder it is in.
@@ -319,6 +318,113 @@ impl Plan {
     }
 }
 
+/// Default memory limit of blocks, in bytes.
+pub(super) const DEFAULT_MEMORY: u64 = 2 << 30;
+/// Bytes for each sample of a tile, of which each thread has one.
+pub(super) const TILE_SAMPLE: u64 = 48;
+/// Most blocks of a plan.
+pub(super) const MAX_BLOCKS: usize = 1 << 16;
+
+/// Boxes of bricks with their points.
+pub(super) struct Boxes<'a> {
+    pub counts: &'a [u32],
+    pub bricks: [usize; 3],
+}
+
+impl Boxes<'_> {
+    /// The points of a box.
+    pub(super) fn points(&self, part: &SampleBox) -> u64 {
+        let mut points = 0;
+        self.rows(part, |_, row| points += row.iter().map(|&n| u64::from(n)).sum::<u64>());
+        points
+    }
+
+    fn rows(&self, part: &SampleBox, mut visit: impl FnMut([usize; 2], &[u32])) {
+        let [cx, cy, _] = self.bricks;
+        for z in part.first[2]..part.first[2] + part.size[2] {
+            for y in part.first[1]..part.first[1] + part.size[1] {
+                let from = (z * cy + y) * cx + part.first[0];
+                visit([y - part.first[1], z - part.first[2]], &self.counts[from..][..part.size[0]]);
+            }
+        }
+    }
+
+    /// Cuts all bricks into so many boxes with about equally many points, each across its longest side, and
+    /// fewer where a box is one brick. O(bricks log boxes).
+    fn cut(&self, blocks: usize) -> Vec<SampleBox> {
+        let mut pending = vec![(SampleBox::whole(self.bricks), blocks)];
+        let mut cut = Vec::new();
+        while let Some((part, blocks)) = pending.pop() {
+            // Of equals the last, the slowest in memory.
+            let axis = (0..3).max_by_key(|&k| part.size[k]).unwrap_or(2);
+            if blocks <= 1 || part.size[axis] == 1 {
+                cut.push(part);
+                continue;
+            }
+            let mut planes = vec![0u64; part.size[axis]];
+            self.rows(&part, |[y, z], row| match axis {
+                0 => planes.iter_mut().zip(row).for_each(|(plane, &n)| *plane += u64::from(n)),
+                _ => planes[[0, y, z][axis]] += row.iter().map(|&n| u64::from(n)).sum::<u64>(),
+            });
+            let left = blocks / 2;
+            let wanted = planes.iter().sum::<u64>() * left as u64 / blocks as u64;
+            let mut so_far = 0;
+            let over = planes.iter().position(|&n| {
+                so_far += n;
+                so_far > wanted
+            });
+            let at = over.unwrap_or(0).clamp(1, part.size[axis] - 1);
+            let (mut low, mut high) = (part, part);
+            low.size[axis] = at;
+            high.first[axis] += at;
+            high.size[axis] -= at;
+            // From the last to the first, so that blocks are numbered from low to high.
+            pending.extend([(high, blocks - left), (low, left)]);
+        }
+        cut
+    }
+
+    /// The boxes asked for, or as few as keep to the memory of each process, and one for each of its threads,
+    /// each with the points in it and around it.
+    pub(super) fn planned(
+        &self,
+        cutting: Cutting,
+        margin: [usize; 3],
+        tile: u64,
+        processes: usize,
+    ) -> Result<Vec<(SampleBox, u64)>, ShapeError> {
+        let with_halo = |blocks: usize| -> Vec<(SampleBox, u64)> {
+            let around = |part: &SampleBox| self.points(&part.grown(margin, self.bricks));
+            self.cut(blocks).into_iter().map(|part| (part, around(&part))).collect()
+        };
+        if let Some(blocks) = cutting.blocks {
+            return Ok(with_halo(blocks.max(1)));
+        }
+        let threads = rayon::current_num_threads() as u64;
+        let asked = cutting.memory.unwrap_or(DEFAULT_MEMORY);
+        let needs = |largest: u64| {
+            let tiles = TILE_SAMPLE * tile;
+            memory::resident_bytes().unwrap_or(0) + threads * (tiles + AT_WORK * largest)
+        };
+        let mut least = PlanError { asked, needed: u64::MAX, blocks: 1 };
+        let mut blocks = processes * threads as usize;
+        while blocks <= MAX_BLOCKS {
+            let cut = with_halo(blocks);
+            let needed = needs(cut.iter().map(|(_, points)| *points).max().unwrap_or(0));
+            if needed <= asked {
+                return Ok(cut);
+            }
+            if needed < least.needed {
+                least = PlanError { needed, blocks, ..least };
+            } else if cut.len() < blocks / 2 {
+                break;
+            }
+            blocks *= 2;
+        }
+        Err(ShapeError::Plan(least))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -345,5 +451,19 @@ mod tests {
         refused(|plan| plan.blocks.clear(), "contradicts itself");
         refused(|plan| plan.job.recipe.alpha = AlphaRule::Auto, "contradicts itself");
         refused(|plan| plan.survey.first = 12 * 12 * 12, "contradicts itself");
+    }
+
+    #[test]
+    fn boxes_share_the_points() {
+        let bricks = [5, 4, 7];
+        let counts: Vec<u32> = (0..140).map(|i| if i % 3 == 0 { i % 50 } else { 0 }).collect();
+        let boxes = Boxes { counts: &counts, bricks };
+        for blocks in [1, 2, 5, 64, 1000] {
+            let cut = boxes.cut(blocks);
+            assert!(cut.len() <= blocks && (blocks > 64 || cut.len() * 2 > blocks), "{blocks}");
+            assert_eq!(cut.iter().map(SampleBox::samples).sum::<usize>(), 140);
+            let points: u64 = cut.iter().map(|part| boxes.points(part)).sum();
+            assert_eq!(points, counts.iter().map(|&n| u64::from(n)).sum::<u64>());
+        }
     }
 }

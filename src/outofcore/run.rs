@@ -1,64 +1,22 @@
-use serde::{Deserialize, Serialize};
-use walpha_base::Sum;
+//! All blocks, several at a time, from file to file: on one machine, or shared by a team.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use walpha_base::Monitor;
+
+use super::block_file::{
+    Arrays, BlockComponent, BlockFile, BlockSheet, BlockSummary, Met, Weights,
+};
 use super::field::{Field, Truncated};
-use super::file::{Arrays, BlockFile};
-use super::stamp::Stamp;
-use super::{BlockPlan, BlocksError, Plan};
+use super::job::Stamp;
+use super::truncate::SMOOTHED;
+use super::{BlockPlan, BlocksError, Plan, Team};
 use crate::shape::{
     BlockShape, ByClass, Class, ComponentSums, Own, ShapeError, SheetSums, Side, block_shape,
 };
-
-/// The facts of a block: all that merging needs but for keys and rows.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct BlockSummary {
-    pub points: u64,
-    pub halo: u64,
-    pub cells: usize,
-    /// By class: interior, regular, singular.
-    pub facets: [usize; 3],
-    pub edges: [usize; 3],
-    pub vertices: [usize; 3],
-    /// `None` where there is no point.
-    pub weights: Option<Weights>,
-    pub components: Vec<BlockComponent>,
-    pub sheets: Vec<BlockSheet>,
-}
-
-/// The weights ω of some points.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Weights {
-    pub min: f64,
-    pub max: f64,
-    pub sum: Sum,
-}
-
-/// What a block has of a component.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct BlockComponent {
-    /// The smallest vertex, by its index in the volume.
-    pub first: u64,
-    pub sums: ComponentSums,
-}
-
-/// What a block has of a sheet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct BlockSheet {
-    /// Where it is met first in the order of the rows; `None` where the block has no row of it.
-    pub met: Option<Met>,
-    pub sums: SheetSums,
-}
-
-/// A place in the order in which sheets are met: along the facets of the boundary, then the singular edges.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub(super) struct Met {
-    is_edge: bool,
-    row: [u64; 3],
-    /// Of a singular facet: its second side.
-    is_second: bool,
-    /// The component, within the block.
-    pub component: u32,
-}
 
 /// The points of a block and those around it, in order of their index in the volume.
 #[derive(Default)]
@@ -96,7 +54,7 @@ pub fn run(plan: &Plan, block: usize) -> Result<(), BlocksError> {
     if found != planned.points {
         let planned = planned.points;
         let what = format!("block {block} has {found} points where {planned} were counted");
-        return Err(BlocksError::changed(&plan.job, what));
+        return Err(BlocksError::changed(&plan.job.input, what));
     }
     let job = &plan.job;
     // Named by its place in the volume.
@@ -130,15 +88,18 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
             }
         })?;
     }
-    if !reads.input.is(field.seen.digest(&read)) {
+    if !reads.input.is(field.digests.digest(&read)) {
         let same = Stamp::of(job) == plan.stamp;
         let files = if same { "" } else { ", and files of another size or time" };
-        return Err(BlocksError::changed(job, format!("block {block} finds other samples{files}")));
+        return Err(BlocksError::changed(
+            &job.input,
+            format!("block {block} finds other samples{files}"),
+        ));
     }
-    if let Truncated::File(_, seen) = &truncated
-        && !reads.truncated.is_some_and(|planned| planned.is(seen.digest(&read)))
+    if let Truncated::File(_, digests) = &truncated
+        && !reads.truncated.is_some_and(|planned| planned.is(digests.digest(&read)))
     {
-        let path = plan.folder().join(Plan::SMOOTHED);
+        let path = plan.folder().join(SMOOTHED);
         return Err(BlocksError::Damaged { path, what: "is damaged".into() });
     }
     found.sort_unstable_by_key(|&(voxel, ..)| voxel);
@@ -157,7 +118,7 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
     Ok(points)
 }
 
-/// Numbers from 0 in the order in which keys are met first.
+/// MergedNumbers from 0 in the order in which keys are met first.
 struct Numbering(Vec<u32>, u32);
 
 const NONE: u32 = u32::MAX;
@@ -205,7 +166,7 @@ fn write(plan: &Plan, block: usize, points: &Points, shape: BlockShape) -> Resul
         [Class::Interior, Class::Regular, Class::Singular].map(|class| counts[class])
     };
     let own = || points.own.iter().zip(&points.weights).filter(|(own, _)| **own).map(|(_, w)| *w);
-    let facts = BlockSummary {
+    let summary = BlockSummary {
         points: own().count() as u64,
         halo: shape.halo,
         cells: complex.cells.len(),
@@ -220,10 +181,10 @@ fn write(plan: &Plan, block: usize, points: &Points, shape: BlockShape) -> Resul
         components,
         sheets,
     };
-    arrays(points, &shape, &component_of, &border).write(plan, block, facts)
+    arrays(points, &shape, &component_of, &border).write(plan, block, summary)
 }
 
-/// What is known of each sheet.
+/// The parts of sheets in the block.
 fn sheets(
     plan: &Plan,
     points: &Points,
@@ -303,4 +264,88 @@ fn arrays(
     arrays.add("shared_sides", shape.shared.iter().map(|side: &Side| side.side));
     arrays.add("shared_sheets", shape.shared.iter().map(|side| side.sheet));
     arrays
+}
+
+/// Runs some blocks of a plan, as many at a time as there are threads. Those that are there are left alone.
+///
+/// # Errors
+/// The error of [`run()`] for the first block that fails; [`BlocksError::Cancelled`]. Finished blocks stay.
+pub fn run_all(plan: &Plan, blocks: &[usize], monitor: &Monitor) -> Result<(), BlocksError> {
+    let size =
+        |&block: &usize| plan.blocks.get(block).map_or(0, |planned| planned.points + planned.halo);
+    let work = monitor.units(blocks.iter().map(size).sum());
+    let next = AtomicUsize::new(0);
+    let failed = Mutex::new(None);
+    let is_over = || failed.lock().is_ok_and(|failed| failed.is_some());
+    // Threads of their own: one of rayon's that waits within a block might begin with another.
+    std::thread::scope(|scope| {
+        for _ in 0..rayon::current_num_threads().min(blocks.len()) {
+            scope.spawn(|| {
+                while let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let done = run(plan, *block).and_then(|()| Ok(work.add(size(block))?));
+                    if let Err(error) = done {
+                        failed
+                            .lock()
+                            .unwrap_or_else(std::sync::PoisonError::into_inner)
+                            .get_or_insert(error);
+                    }
+                    if is_over() {
+                        break;
+                    }
+                }
+            });
+        }
+    });
+    failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).map_or(Ok(()), Err)
+}
+
+/// Runs the blocks of a plan that are missing, as one of a team, and waits until all are there. Each process
+/// gets blocks with about as many points, in and around them, as the others.
+///
+/// # Errors
+/// The errors of [`run_all`]. A process that returns an error leaves the rest of the team waiting.
+pub fn run_missing(plan: &Plan, team: &dyn Team, monitor: &Monitor) -> Result<(), BlocksError> {
+    let missing = if team.is_first() { Some(plan.missing()?) } else { None };
+    let missing = team.broadcast(missing);
+    let size = |block: usize| plan.blocks[block].points + plan.blocks[block].halo;
+    run_all(plan, &shared(missing, size, team.size())[team.rank()], monitor)?;
+    team.barrier();
+    Ok(())
+}
+
+/// Shares blocks among processes: the largest first, each to the one that has least (Graham, "Bounds on
+/// multiprocessing timing anomalies", 1969, doi:10.1137/0117039). No share is above 4/3 of what it could be.
+fn shared(
+    mut blocks: Vec<usize>,
+    size: impl Fn(usize) -> u64,
+    processes: usize,
+) -> Vec<Vec<usize>> {
+    blocks.sort_by_key(|&block| Reverse(size(block)));
+    let mut shares = vec![Vec::new(); processes];
+    let mut least: BinaryHeap<Reverse<(u64, usize)>> =
+        (0..processes).map(|process| Reverse((0, process))).collect();
+    for block in blocks {
+        let Some(Reverse((load, process))) = least.pop() else { break };
+        shares[process].push(block);
+        least.push(Reverse((load + size(block), process)));
+    }
+    shares
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_about_equal() {
+        let sizes = [7, 1, 4, 0, 9, 3, 3];
+        let shares = shared((0..7).collect(), |block| sizes[block], 3);
+        let loads: Vec<u64> =
+            shares.iter().map(|share| share.iter().map(|&block| sizes[block]).sum()).collect();
+        assert_eq!(loads, [9, 10, 8], "{shares:?}");
+        let mut all = shares.concat();
+        all.sort_unstable();
+        assert_eq!(all, [0, 1, 2, 3, 4, 5, 6]);
+        assert_eq!(shared(vec![2], |_| 0, 3), [vec![2], vec![], vec![]]);
+    }
 }

@@ -120,7 +120,7 @@ mod tests {
 
     use super::*;
     use crate::Recipe;
-    use crate::outofcore::{Cutting, Job, Pieces, Plan, merge, run_all, run_missing};
+    use crate::outofcore::{BlockwiseFormat, Cutting, Job, Plan, merge, run_all, run_missing};
     use crate::progress::Monitor;
     use crate::{GrayRange, Weighting};
 
@@ -173,8 +173,8 @@ mod tests {
                         let mut sorted = all.clone();
                         sorted.sort_unstable();
                         assert_eq!(sorted, (0..size).collect::<Vec<_>>());
-                        let told = team.broadcast(team.is_first().then_some(all.clone()));
-                        assert_eq!(told, all);
+                        let received = team.broadcast(team.is_first().then_some(all.clone()));
+                        assert_eq!(received, all);
                         team.barrier();
                     });
                 }
@@ -211,12 +211,14 @@ mod tests {
                         );
                         run_missing(&plan, team, &Monitor::noop()).unwrap();
                         let merged = team.is_first().then(|| merge(&plan).unwrap());
-                        let (kind, path) = (Pieces::Surface, at.join("out.pvtp"));
+                        let (kind, path) = (BlockwiseFormat::Surface, at.join("out.pvtp"));
                         kind.write_with(&plan, merged.as_ref(), &path, team).unwrap();
                     });
                 }
             });
-            Pieces::Surface.write(&expected, &merged, &folder.path().join("out.pvtp")).unwrap();
+            BlockwiseFormat::Surface
+                .write(&expected, &merged, &folder.path().join("out.pvtp"))
+                .unwrap();
             let blocks = ["0", "1", "2"]
                 .map(|i| [format!("block-0000{i}.walpha"), format!("out/out_{i}.vtp")]);
             let rest = ["plan.json", "sums.f64", "out.pvtp"].map(String::from);

@@ -1,9 +1,9 @@
-use super::file::BlockFile;
-use super::rows::read_rows;
+use super::block_file::{BlockFile, read_rows};
+use super::merge::MergedNumbers;
 use super::{BlocksError, Merged, Plan};
 use crate::points::WeightedPoints;
 use crate::shape::{
-    AlphaShape, Assembled, Class, Complex, Engine, ShapeOptions, Sheets, Simplices,
+    AlphaShape, Assembled, Class, Complex, Engine, NO_COMPONENT, ShapeOptions, Sheets, Simplices,
 };
 
 /// The shape of all blocks in one piece, as [`alpha_shape`](crate::alpha_shape) gives it: for results
@@ -127,5 +127,42 @@ impl Gathered {
         self.vertices.into_iter().for_each(|(row, class)| vertices.push(row, class));
         complex.vertices = vertices;
         (complex, sheets)
+    }
+}
+
+/// The simplices and points of a block, with the numbers of the merged shape.
+pub(super) struct MergedBlock {
+    pub complex: Complex,
+    pub voxels: Vec<u64>,
+    pub positions: Vec<[f64; 3]>,
+    pub weights: Vec<f64>,
+    pub values: Vec<f64>,
+    pub components: Vec<u32>,
+    pub sheets: Sheets,
+}
+
+impl MergedBlock {
+    pub(super) fn read(
+        plan: &Plan,
+        block: usize,
+        numbers: &MergedNumbers,
+    ) -> Result<Self, BlocksError> {
+        let file = BlockFile::open(plan, block)?;
+        let job = &plan.job;
+        let voxels = file.voxels()?;
+        let place = |&voxel: &u64| job.units.place(&job.frame, job.dims, voxel);
+        let common = |component: u32| {
+            numbers.components.get(component as usize).copied().unwrap_or(NO_COMPONENT)
+        };
+        let (complex, sheets) = read_rows(&file, voxels.len(), &numbers.sheets)?;
+        Ok(Self {
+            positions: voxels.iter().map(place).collect(),
+            weights: file.read("weights")?,
+            values: file.read("values")?,
+            components: file.read::<u32>("components")?.into_iter().map(common).collect(),
+            complex,
+            voxels,
+            sheets,
+        })
     }
 }

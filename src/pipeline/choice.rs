@@ -12,9 +12,9 @@ use crate::volume::Volume;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Choice {
-    /// Those of the largest differences, as in the paper.
+    /// The voxels of largest difference, as in the paper.
     Difference(Selection),
-    /// Those where the interpolant of the ones before is worst.
+    /// The voxels where the interpolant of the earlier ones is worst.
     Adaptive(Goal),
     /// The same, and then those whose loss costs little exchanged for others
     /// ([`exchange`](crate::interpolate::exchange())).
@@ -25,7 +25,7 @@ pub enum Choice {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Goal {
-    /// So many points.
+    /// A number of points.
     pub count: Option<u64>,
     /// This share of all samples, in place of `count`.
     pub ratio: Option<f64>,
@@ -36,12 +36,12 @@ pub struct Goal {
 }
 
 impl Goal {
-    /// So many points.
+    /// A number of points.
     pub fn of_count(count: u64) -> Self {
         Self { count: Some(count), ..Self::default() }
     }
 
-    /// The same for a volume of so many samples.
+    /// The goal for a volume of `samples` samples.
     fn of(&self, samples: u64) -> Adaptive {
         let share = |ratio: f64| (ratio * samples as f64).round() as u64;
         let asked = self.count.or(self.ratio.map(share));
@@ -61,12 +61,12 @@ impl Default for Choice {
 pub(super) struct Chosen {
     pub(super) points: Points,
     pub(super) importance: Importance,
-    /// What they were asked for, where fewer do.
+    /// The goal, where fewer points reach it.
     pub(super) ended: Option<Adaptive>,
 }
 
 impl Choice {
-    /// The same without samples below a gray level, where there is one.
+    /// The choice without samples below a gray level, where there is one.
     pub(super) fn at_least(self, gray_min: Option<f64>) -> Self {
         match (self, gray_min) {
             (Self::Difference(selection), Some(_)) => {
@@ -77,7 +77,7 @@ impl Choice {
         }
     }
 
-    /// The same with so many points, however many there were to be.
+    /// The choice with another number of points.
     #[must_use]
     pub fn with_count(self, count: u64) -> Self {
         let goal = |goal: Goal| Goal { count: Some(count), ratio: None, ..goal };

@@ -6,7 +6,7 @@ use super::{PipelineError, Recipe};
 use crate::points::{ModelFacts, Points, PointsError, Units, read_model_file};
 use crate::volume::{self, GrayRange, OpenFile, Volume};
 
-/// What an input turned out to be.
+/// The content of an input.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Input {
@@ -24,7 +24,7 @@ pub struct Grays {
     pub volume: Volume,
     /// The values that became gray 0 and 255.
     pub range: GrayRange,
-    /// The same where values are written, or else no change.
+    /// The mapping to written values, or the identity.
     pub written: GrayRange,
 }
 
@@ -38,11 +38,11 @@ pub struct Source {
     pub units: Units,
     /// The values that became gray 0 and 255.
     pub range: GrayRange,
-    /// The same where values are written, or else no change.
+    /// The mapping to written values, or the identity.
     pub written: GrayRange,
 }
 
-/// What the values of points are.
+/// Which values points get.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Values {
     /// Gray levels, where they come from a volume.
@@ -99,7 +99,7 @@ impl Recipe {
     /// The volume in the space that its points are going to be in.
     ///
     /// # Errors
-    /// Those of [`Recipe::place`].
+    /// The errors of [`Recipe::place`].
     pub fn source(&self, grays: Grays) -> Result<Source, PipelineError> {
         let Grays { volume, range, written } = grays;
         let (frame, units) = self.place(*volume.frame())?;

@@ -47,7 +47,7 @@ impl Recipe {
         self.run_monitored(volume, &Monitor::noop())
     }
 
-    /// The same. The monitor hears of each stage, and can cancel it.
+    /// With a monitor, which hears of each stage and can cancel it.
     ///
     /// # Errors
     /// Whatever a stage refuses, and [`PipelineError::Cancelled`].
@@ -64,7 +64,7 @@ impl Recipe {
         self.run_points_monitored(points, &Monitor::noop())
     }
 
-    /// The same. The monitor hears of each stage, and can cancel it.
+    /// With a monitor, which hears of each stage and can cancel it.
     ///
     /// # Errors
     /// Whatever a stage refuses, and [`PipelineError::Cancelled`].

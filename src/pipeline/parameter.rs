@@ -69,7 +69,7 @@ impl TryFrom<String> for AlphaRule {
 pub struct Parameter {
     /// A squared length.
     pub alpha: Alpha,
-    /// Of lengths; α is in its square.
+    /// Unit of length; α is in its square.
     pub unit: LengthUnit,
     /// Where it comes from.
     pub origin: ParameterOrigin,
@@ -88,7 +88,7 @@ pub enum ParameterOrigin {
     Stored,
     /// The smallest at which all points are in one solid component.
     Auto,
-    /// The same without weights, which are in proportion to it.
+    /// Suggested for the points without weights, as weights are in proportion to it.
     AutoUnweighted,
 }
 
@@ -118,7 +118,7 @@ impl AlphaRule {
         self.of_frame(volume.frame(), units)
     }
 
-    /// The same of the points of a grid.
+    /// The α for points of a grid.
     pub(crate) fn of_frame(
         self,
         frame: &Frame,
@@ -148,7 +148,7 @@ impl Parameter {
         Self { alpha: filtration.one_region(), unit, origin: ParameterOrigin::Auto }
     }
 
-    /// The same of points that are triangulated for it; of a torus, if there is one.
+    /// The α for points, which are triangulated for it; on a torus, if there is one.
     pub(super) fn find(
         points: &WeightedPoints,
         torus: Option<Torus>,

@@ -36,15 +36,15 @@ pub(super) enum Importance {
     Order(Vec<u32>),
 }
 
-/// What is known of points besides themselves.
+/// Where points come from.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Origin {
-    /// What their coordinates mean.
+    /// Axes and unit of the coordinates.
     pub coordinates: Coordinates,
     /// Where their weights come from.
     pub weighting: Weighting,
-    /// What was dropped of the volume they come from.
+    /// The truncation of the volume.
     pub truncation: Option<Truncation>,
     /// The grid that they are samples of, where that is known.
     pub grid: Option<SampleGrid>,
@@ -110,7 +110,7 @@ impl Weighed {
         self.find_on(None, monitor)
     }
 
-    /// The same of a torus, if there is one.
+    /// The filtration on a torus, if there is one.
     pub(super) fn find_on(
         &mut self,
         torus: Option<Torus>,

@@ -10,7 +10,7 @@ use super::Weighting;
 use crate::shape::LengthsError;
 use crate::volume::{Reason, VolumeError};
 
-/// Why points or their weights cannot be had.
+/// Why points or their weights cannot be computed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PointsError {
@@ -19,7 +19,7 @@ pub enum PointsError {
     Number {
         /// Which one.
         what: &'static str,
-        /// What was given.
+        /// The number given.
         given: f64,
         /// What would do.
         need: &'static str,
@@ -90,10 +90,10 @@ pub enum PointsError {
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The problem.
         reason: Reason,
     },
-    /// Memory for the samples cannot be had.
+    /// Not enough memory for the samples.
     #[error(transparent)]
     Memory(#[from] NoMemory),
     /// The file cannot be read.

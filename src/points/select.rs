@@ -36,7 +36,7 @@ pub enum SelectionRule {
     /// (half up, and at least 1), then as `Count`; the voxels that `gray_min` leaves are too few
     /// if they are fewer than that.
     Ratio(f64),
-    /// The same, or all voxels that take part where these are fewer.
+    /// Like a ratio, or all voxels that take part where these are fewer.
     AtMost(f64),
     /// All voxels with L of at least this, in gray levels: as doubles, 5/6 is at least 5/6.
     Threshold(f64),
@@ -54,7 +54,7 @@ impl Default for SelectionRule {
     }
 }
 
-/// What the coordinates of points are measured in.
+/// Units of the coordinates of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
@@ -115,7 +115,7 @@ impl Units {
 ///
 /// `volume` gives the values of the points and the grid, and its missing samples take no part; `smoothed` is the truncated volume, which
 /// `gray_min` judges, and `differences` are its [`difference`](super::difference)s. O(n),
-/// parallel, the same on any number of threads.
+/// parallel, independent of the number of threads.
 ///
 /// # Errors
 /// A rule whose number makes no sense, more voxels asked for than there are, no voxel left, or no
@@ -201,9 +201,9 @@ fn chosen(
     }
 }
 
-/// What a rule asks of a volume.
+/// A rule applied to a volume.
 pub(crate) enum Asked {
-    /// So many voxels of the largest L.
+    /// The voxels of the largest L, this many.
     Largest(Most),
     /// All with an L of at least this.
     AtLeast(f64),
@@ -236,7 +236,7 @@ impl Most {
 }
 
 impl SelectionRule {
-    /// What it asks of a volume of so many voxels.
+    /// The rule for a volume of `samples` voxels.
     pub(crate) fn asked(&self, voxels: u64) -> Result<Asked, PointsError> {
         let wrong = |what, given, need| Err(PointsError::Number { what, given, need });
         match *self {

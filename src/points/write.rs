@@ -9,7 +9,7 @@ use super::WeightedPoints;
 /// the shortest form that reads back as the same double.
 ///
 /// # Errors
-/// What the writer says.
+/// Errors of the writer.
 pub(super) fn csv(points: &WeightedPoints, writer: &mut dyn Write) -> io::Result<()> {
     let value = if points.values.is_some() { ",value" } else { "" };
     writeln!(writer, "x,y,z,weight{value}")?;
@@ -26,7 +26,7 @@ pub(super) fn csv(points: &WeightedPoints, writer: &mut dyn Write) -> io::Result
 /// Writes points as an NPY array of doubles, n×4 (x, y, z, weight) or, where values are known, n×5.
 ///
 /// # Errors
-/// What the writer says.
+/// Errors of the writer.
 pub(super) fn npy(points: &WeightedPoints, mut writer: &mut dyn Write) -> io::Result<()> {
     let columns = if points.values.is_some() { 5 } else { 4 };
     let rows = Array2::from_shape_fn((points.len(), columns), |(i, column)| match column {

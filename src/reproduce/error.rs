@@ -41,7 +41,7 @@ pub enum ReproduceError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Memory for a file cannot be had.
+    /// Not enough memory for a file.
     #[error("cannot write a file into memory: {0}")]
     Io(#[from] std::io::Error),
 }

@@ -1,14 +1,33 @@
-//! The points of the volume, and the shapes that the figures share.
+//! The volume, points, shapes and cameras that the figures share.
 
-use super::stage::Stage;
-use super::{Clock, Input, ReproduceError, ShapeNumbers, Subject, text};
+use std::time::Instant;
+
+use walpha_base::{Cancelled, Monitor};
+
+use super::{Input, ReproduceError, ShapeNumbers, text};
 use crate::haar::{HaarOptions, Truncation, smooth_monitored};
 use crate::points::{
     Points, Selection, SelectionRule, Units, Weighting, difference, select, weigh,
 };
+use crate::render::{
+    Background, Camera, Colouring, Content, Panel, Picture, Projection, Scene, ShapeStyle, Size,
+    View,
+};
 use crate::shape::{Alpha, AlphaShape, Balls, Engine, ShapeOptions, alpha_shape};
-use crate::volume::{LengthUnit, Volume};
-use walpha_base::Monitor;
+use crate::volume::{Dims, GrayRange, LengthUnit, Volume};
+
+/// The volume on which the paper is reproduced.
+#[derive(Clone, Debug)]
+pub struct Subject<'a> {
+    /// The gray levels.
+    pub volume: &'a Volume,
+    /// The values that became gray 0 and 255.
+    pub range: GrayRange,
+    /// What a user writes to get this volume: a sample's name, or a file.
+    pub name: &'a str,
+    /// The day to write into the report, as 2025-12-31.
+    pub date: &'a str,
+}
 
 /// The paper's points.
 pub(super) const PAPER_POINTS: usize = 15956;
@@ -27,7 +46,7 @@ pub(super) struct Study<'a> {
     pub points: Points,
     /// The options of `walpha` that select the same points.
     select: String,
-    pub stage: Stage,
+    pub cameras: Cameras,
 }
 
 impl<'a> Study<'a> {
@@ -45,8 +64,8 @@ impl<'a> Study<'a> {
         let selection = Selection { rule, gray_min: None };
         let differences = difference(&smoothed);
         let points = select(volume, &smoothed, &differences, &selection, Units::Voxel)?;
-        let stage = Stage::of(volume.dims());
-        Ok(Self { subject, smoothed, truncation, points, select: select_option, stage })
+        let cameras = Cameras::of(volume.dims());
+        Ok(Self { subject, smoothed, truncation, points, select: select_option, cameras })
     }
 
     pub(super) fn input(&self) -> Input {
@@ -190,5 +209,125 @@ impl Shapes {
         shapes.extend(&self.ladder);
         shapes.sort_by(|a, b| a.numbers.alpha.squared().total_cmp(&b.numbers.alpha.squared()));
         shapes
+    }
+}
+
+/// From where a head is seen whose face is turned to −y and whose crown to +z.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Eye {
+    /// From the front and a little to its left: the portrait.
+    Portrait,
+    /// From its left.
+    Side,
+}
+
+/// Cameras for one volume.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Cameras {
+    target: [f64; 3],
+    /// The longest axis over 64 samples.
+    scale: f64,
+    /// The last sample.
+    high: [f64; 3],
+}
+
+/// Pixels of a panel with a shape, two in a row.
+pub(super) fn panel_size() -> Size {
+    Size::new(900, 960).expect("a size that is right")
+}
+
+impl Cameras {
+    pub(super) fn of(dims: Dims) -> Self {
+        let scales = dims.xyz().map(|n| n as f64 / 64.0);
+        Self {
+            target: [32.0 * scales[0], 32.0 * scales[1], 30.0 * scales[2]],
+            scale: scales.iter().fold(0.0, |a: f64, &b| a.max(b)),
+            high: dims.xyz().map(|n| (n - 1) as f64),
+        }
+    }
+
+    /// For 64³ samples the portrait is taken from (90, −110, 60), looking at (32, 32, 30).
+    fn place(&self, eye: Eye) -> [f64; 3] {
+        let away = match eye {
+            Eye::Portrait => [58.0, -142.0, 30.0],
+            Eye::Side => [150.0, -36.0, 22.0],
+        };
+        [0, 1, 2].map(|k| self.target[k] + away[k] * self.scale)
+    }
+
+    /// The options of `walpha shape` that draw a shape as the portrait panels do.
+    pub(super) fn options(&self) -> String {
+        let all = [self.place(Eye::Portrait), self.target].concat();
+        let numbers: Vec<String> = all.iter().map(f64::to_string).collect();
+        let size = panel_size();
+        format!("--camera={} --size {}x{}", numbers.join(","), size.width(), size.height())
+    }
+
+    pub(super) fn render(&self, scene: &Scene, eye: Eye) -> Result<Picture, ReproduceError> {
+        let camera = Camera::portrait(self.place(eye), self.target);
+        Ok(scene.render(&camera, panel_size(), Background::White)?)
+    }
+
+    /// The picture of a scene within the whole box of the volume, in the portrait's direction.
+    pub(super) fn render_box(
+        &self,
+        mut scene: Scene,
+        size: Size,
+    ) -> Result<Picture, ReproduceError> {
+        let bounds = [[0.0; 3], self.high];
+        let tube = 0.12 * self.scale;
+        scene.add_box(bounds, tube, crate::render::Rgb([110, 110, 110]));
+        let camera = Camera::fit(bounds, View::ThreeQuarter, Projection::Perspective, size)?;
+        Ok(scene.render(&camera, size, Background::White)?)
+    }
+
+    /// The picture of a shape, in the colour of bone.
+    pub(super) fn shape(&self, shape: &AlphaShape, eye: Eye) -> Result<Picture, ReproduceError> {
+        let style = ShapeStyle { colouring: Colouring::Plain, ..ShapeStyle::default() };
+        self.render(&Scene::of_shape(&shape.points().positions, shape.complex(), &style)?, eye)
+    }
+}
+
+/// A picture with words around it.
+pub(super) fn panel(title: impl Into<String>, picture: Picture, captions: Vec<String>) -> Panel {
+    Panel { title: title.into(), content: Content::Picture(picture), captions }
+}
+
+/// Times stages, and logs them.
+pub(super) struct Clock<'a> {
+    monitor: &'a Monitor,
+    running: Option<(&'static str, Instant)>,
+    started: Instant,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+impl<'a> Clock<'a> {
+    pub(super) fn new(monitor: &'a Monitor) -> Self {
+        Self { monitor, running: None, started: Instant::now(), seconds: Vec::new() }
+    }
+
+    /// Ends the running stage and starts another. Stages of the same name add up.
+    pub(super) fn enter(&mut self, name: &'static str) -> Result<(), Cancelled> {
+        self.end();
+        self.monitor.stage(name)?;
+        self.running = Some((name, Instant::now()));
+        Ok(())
+    }
+
+    fn end(&mut self) {
+        if let Some((name, since)) = self.running.take() {
+            let seconds = since.elapsed().as_secs_f64();
+            match self.seconds.iter_mut().find(|stage| stage.0 == name) {
+                Some(stage) => stage.1 += seconds,
+                None => self.seconds.push((name, seconds)),
+            }
+        }
+    }
+
+    /// Seconds of each cameras, and of all.
+    pub(super) fn stop(mut self) -> Vec<(&'static str, f64)> {
+        self.end();
+        self.seconds.push(("total", self.started.elapsed().as_secs_f64()));
+        self.seconds
     }
 }

@@ -2,40 +2,39 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::budget::{Bin, Budget, Dropped, Spent};
-use super::{Cut, EXPONENT, INFINITY, magnitude};
+use super::cut::{Bin, Budget, Cut, Dropped, EXPONENT, INFINITY, Spent, magnitude};
 
 /// The same cut as [`Cut::new`] finds, of values that are never in one place: rounds of
 /// [counting](Self::count), piece by piece, whose joined counts go to [`Search::learn`].
 ///
 /// Values are ordered by their magnitude, equal ones by descending index, as one number of 63 + 64 bits. A
-/// round counts what agrees with the digits known by the next one; when few are left they are listed.
+/// round counts what agrees with the known digits by the next one; when few are left they are listed.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Search {
     spent: Spent,
     /// Values listed rather than counted.
-    few: u64,
-    stage: Stage,
+    list_below: u64,
+    state: State,
 }
 
-/// What is known.
+/// The digits of the cut found so far.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-enum Stage {
+enum State {
     /// The bits of the magnitude at the cut above `shift`.
     Magnitude {
-        known: u64,
+        prefix: u64,
         shift: u32,
     },
     /// The magnitude, of which so many stay; the bits of the first index that goes above `shift`.
     Index {
         magnitude: u64,
         stay: u64,
-        known: u64,
+        prefix: u64,
         shift: u32,
     },
     /// There are few values left that agree with these bits of the magnitude.
-    Few {
-        known: u64,
+    List {
+        prefix: u64,
         shift: u32,
     },
     Found(Cut),
@@ -46,7 +45,7 @@ const DIGIT: u32 = 18;
 /// Bits of a magnitude.
 const MAGNITUDE: u32 = 63;
 
-/// What a piece of the values has.
+/// Counts of a part of the values.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Counts {
     /// By digit.
@@ -56,12 +55,12 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
-    /// How many values were counted.
+    /// Number of values counted.
     pub(crate) fn total(&self) -> u64 {
         self.bins.values().map(|bin| bin.count).sum::<u64>() + self.list.len() as u64
     }
 
-    /// Takes in what another piece has.
+    /// Adds the counts of another part.
     pub(crate) fn join(&mut self, other: Self) {
         for (digit, bin) in other.bins {
             self.bins.entry(digit).or_default().join(&bin);
@@ -73,9 +72,9 @@ impl Counts {
 impl Search {
     /// Looks for the cut that drops as many values as the budget allows. Where no more than `few` values
     /// are in question, 16 bytes each, they are listed.
-    pub(crate) fn new(budget: Budget, few: u64) -> Self {
-        let stage = Stage::Magnitude { known: 0, shift: MAGNITUDE };
-        Self { spent: Spent::of(budget), few, stage }
+    pub(crate) fn new(budget: Budget, list_below: u64) -> Self {
+        let state = State::Magnitude { prefix: 0, shift: MAGNITUDE };
+        Self { spent: Spent::of(budget), list_below, state }
     }
 
     /// Goes on until the cut is found, with what it drops: `round` counts all values.
@@ -94,8 +93,8 @@ impl Search {
 
     /// The cut and what it drops, when it is found.
     pub(crate) fn found(&self) -> Option<(Cut, Dropped)> {
-        match self.stage {
-            Stage::Found(cut) => Some((cut, self.spent.dropped())),
+        match self.state {
+            State::Found(cut) => Some((cut, self.spent.dropped())),
             _ => None,
         }
     }
@@ -105,104 +104,104 @@ impl Search {
         let mut counts = Counts::default();
         let values = values.map(|(value, index)| (magnitude(value), index));
         let values = values.filter(|&(bits, _)| bits < INFINITY);
-        match self.stage {
-            Stage::Magnitude { known, shift } => {
+        match self.state {
+            State::Magnitude { prefix, shift } => {
                 let next = shift.saturating_sub(DIGIT);
                 let mut dense = vec![Bin::default(); 1 << (shift - next)];
                 let mask = dense.len() as u64 - 1;
-                for (bits, _) in values.filter(|(bits, _)| agrees(*bits, known, shift)) {
+                for (bits, _) in values.filter(|(bits, _)| agrees(*bits, prefix, shift)) {
                     dense[(bits >> next & mask) as usize].add(bits);
                 }
                 let there = (0..).zip(dense).filter(|(_, bin)| bin.count > 0);
                 counts.bins = there.collect();
             }
-            Stage::Index { magnitude, known, shift, .. } => {
+            State::Index { magnitude, prefix, shift, .. } => {
                 let next = shift.saturating_sub(DIGIT);
-                for (_, index) in
-                    values.filter(|&(bits, index)| bits == magnitude && agrees(index, known, shift))
+                for (_, index) in values
+                    .filter(|&(bits, index)| bits == magnitude && agrees(index, prefix, shift))
                 {
                     let digit = index >> next & ((1 << (shift - next)) - 1);
                     counts.bins.entry(digit).or_default().count += 1;
                 }
             }
-            Stage::Few { known, shift } => {
-                counts.list = values.filter(|(bits, _)| agrees(*bits, known, shift)).collect();
+            State::List { prefix, shift } => {
+                counts.list = values.filter(|(bits, _)| agrees(*bits, prefix, shift)).collect();
             }
-            Stage::Found(_) => {}
+            State::Found(_) => {}
         }
         counts
     }
 
     /// Goes on to the next round with what all pieces have.
     pub(crate) fn learn(&mut self, counts: Counts) {
-        self.stage = match self.stage {
-            Stage::Magnitude { known, shift } => self.by_magnitude(counts, known, shift),
-            Stage::Index { magnitude, stay, known, shift } => {
-                by_index(counts, magnitude, stay, known, shift)
+        self.state = match self.state {
+            State::Magnitude { prefix, shift } => self.by_magnitude(counts, prefix, shift),
+            State::Index { magnitude, stay, prefix, shift } => {
+                by_index(counts, magnitude, stay, prefix, shift)
             }
-            Stage::Few { known, shift } => self.by_list(counts.list, known, shift),
-            found @ Stage::Found(_) => found,
+            State::List { prefix, shift } => self.by_list(counts.list, prefix, shift),
+            found @ State::Found(_) => found,
         }
     }
 
-    fn by_magnitude(&mut self, counts: Counts, known: u64, shift: u32) -> Stage {
+    fn by_magnitude(&mut self, counts: Counts, prefix: u64, shift: u32) -> State {
         let next = shift.saturating_sub(DIGIT);
         for (digit, bin) in counts.bins {
-            let here = known | digit << next;
+            let here = prefix | digit << next;
             if next == 0 {
-                if let Some(stage) = self.ties(here, bin.count) {
-                    return stage;
+                if let Some(state) = self.ties(here, bin.count) {
+                    return state;
                 }
             } else if !self.spent.take(&bin, here >> EXPONENT) {
-                let few = bin.count <= self.few;
-                return if few {
-                    Stage::Few { known: here, shift: next }
+                let list_below = bin.count <= self.list_below;
+                return if list_below {
+                    State::List { prefix: here, shift: next }
                 } else {
-                    Stage::Magnitude { known: here, shift: next }
+                    State::Magnitude { prefix: here, shift: next }
                 };
             }
         }
-        above(known, shift)
+        above(prefix, shift)
     }
 
-    fn by_list(&mut self, mut list: Vec<(u64, u64)>, known: u64, shift: u32) -> Stage {
+    fn by_list(&mut self, mut list: Vec<(u64, u64)>, prefix: u64, shift: u32) -> State {
         list.sort_unstable();
         for equal in list.chunk_by(|a, b| a.0 == b.0) {
             let (magnitude, count) = (equal[0].0, equal.len() as u64);
             let stay = count - self.spent.equal(magnitude, count);
             if stay > 0 {
                 let ties_end = if stay == count { u64::MAX } else { equal[stay as usize].1 };
-                return Stage::Found(Cut { magnitude, ties_end });
+                return State::Found(Cut { magnitude, ties_end });
             }
         }
-        above(known, shift)
+        above(prefix, shift)
     }
 
     /// Drops what it can of equal magnitudes; `None` if that is all of them.
-    fn ties(&mut self, magnitude: u64, count: u64) -> Option<Stage> {
+    fn ties(&mut self, magnitude: u64, count: u64) -> Option<State> {
         let stay = count - self.spent.equal(magnitude, count);
         match stay {
             0 => None,
-            _ if stay == count => Some(Stage::Found(Cut { magnitude, ties_end: u64::MAX })),
-            _ => Some(Stage::Index { magnitude, stay, known: 0, shift: 64 }),
+            _ if stay == count => Some(State::Found(Cut { magnitude, ties_end: u64::MAX })),
+            _ => Some(State::Index { magnitude, stay, prefix: 0, shift: 64 }),
         }
     }
 }
 
 /// The cut above all values that agree with these bits.
-fn above(known: u64, shift: u32) -> Stage {
-    Stage::Found(Cut { magnitude: known | ((1 << shift) - 1), ties_end: 0 })
+fn above(prefix: u64, shift: u32) -> State {
+    State::Found(Cut { magnitude: prefix | ((1 << shift) - 1), ties_end: 0 })
 }
 
-fn by_index(counts: Counts, magnitude: u64, mut stay: u64, known: u64, shift: u32) -> Stage {
+fn by_index(counts: Counts, magnitude: u64, mut stay: u64, prefix: u64, shift: u32) -> State {
     let next = shift.saturating_sub(DIGIT);
     for (digit, bin) in counts.bins {
         // The first that goes is the one behind those that stay.
         if stay < bin.count {
-            let known = known | digit << next;
+            let prefix = prefix | digit << next;
             return match next {
-                0 => Stage::Found(Cut { magnitude, ties_end: known }),
-                shift => Stage::Index { magnitude, stay, known, shift },
+                0 => State::Found(Cut { magnitude, ties_end: prefix }),
+                shift => State::Index { magnitude, stay, prefix, shift },
             };
         }
         stay -= bin.count;
@@ -210,10 +209,10 @@ fn by_index(counts: Counts, magnitude: u64, mut stay: u64, known: u64, shift: u3
     unreachable!("fewer stay than there are")
 }
 
-/// Whether the bits from `shift` on are those known.
+/// Whether the bits from `shift` on are those of `prefix`.
 #[inline(always)]
-fn agrees(bits: u64, known: u64, shift: u32) -> bool {
-    shift >= 63 && known == 0 || (bits ^ known) >> shift == 0
+fn agrees(bits: u64, prefix: u64, shift: u32) -> bool {
+    shift >= 63 && prefix == 0 || (bits ^ prefix) >> shift == 0
 }
 
 #[cfg(test)]
@@ -223,8 +222,8 @@ mod tests {
     use super::*;
 
     /// A search over pieces of the values, in as many rounds as it takes.
-    fn searched(values: &[f64], budget: Budget, few: u64) -> (Cut, Dropped) {
-        let mut search = Search::new(budget, few);
+    fn searched(values: &[f64], budget: Budget, list_below: u64) -> (Cut, Dropped) {
+        let mut search = Search::new(budget, list_below);
         for _ in 0..20 {
             if let Some(found) = search.found() {
                 return found;
@@ -254,13 +253,13 @@ mod tests {
             let energies = [0.0, 1e-9, 0.3, 0.9, 1.0, 2.0].map(|k| Budget::Energy(k * energy));
             for budget in counts.into_iter().chain(energies) {
                 let (whole, dropped) = Cut::new(values, budget);
-                for few in [0, 10, 1000] {
-                    let (cut, also_dropped) = searched(values, budget, few);
+                for list_below in [0, 10, 1000] {
+                    let (cut, also_dropped) = searched(values, budget, list_below);
                     let kept = |cut: Cut| -> Vec<bool> {
                         values.iter().zip(0..).map(|(&v, i)| cut.keeps(v, i)).collect()
                     };
-                    assert_eq!(kept(cut), kept(whole), "{budget:?} {few}");
-                    assert_eq!(also_dropped, dropped, "{budget:?} {few}");
+                    assert_eq!(kept(cut), kept(whole), "{budget:?} {list_below}");
+                    assert_eq!(also_dropped, dropped, "{budget:?} {list_below}");
                 }
             }
         }

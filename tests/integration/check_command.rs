@@ -1,8 +1,40 @@
-//! `walpha check` and `walpha compare`.
+//! `walpha check` and `walpha compare`: point sets, certificates, and files that the checker reads.
 
+#[allow(dead_code, reason = "the tests of walpha-check use the rest")]
+#[path = "../../crates/check/tests/integration/common.rs"]
+mod cases;
+
+use std::io::Cursor;
+use std::num::NonZeroUsize;
 use std::path::Path;
 
+use walpha::check::schema::ComplexFile;
+use walpha::check::{Extent, Finding, NotJudged};
+use walpha::export::{Exporter, Json, Npz};
+use walpha::shape::{Engine, ShapeError, ShapeOptions, claim};
+use walpha::{Alpha, WeightedPoints, alpha_shape};
+use walpha_base::random::Random;
+
 use crate::common;
+
+pub use cases::{Answer, Case, definition, grid, shape_of};
+
+/// CGAL's own answer: the whole triangulation.
+pub fn engine(case: &Case) -> Result<Answer, ShapeError> {
+    engine_of(case, Engine::Cgal)
+}
+
+/// An engine's answer: the whole triangulation.
+pub fn engine_of(case: &Case, engine: Engine) -> Result<Answer, ShapeError> {
+    let options = ShapeOptions::new(case.alpha()).exterior(true).engine(engine);
+    let Case { positions, weights, .. } = case.clone();
+    let shape = alpha_shape(WeightedPoints::new(positions, weights).unwrap(), &options)?;
+    Ok(Answer {
+        complex: shape.complex().clone(),
+        hidden: shape.hidden().expect("the whole triangulation was seen").to_vec(),
+        duplicates: shape.duplicates().to_vec(),
+    })
+}
 
 /// What has no sphere is a finding, and an exit code of its own.
 #[test]
@@ -225,4 +257,111 @@ fn flat_sets_are_judged() {
     }
     sizes.dedup();
     assert!(sizes.len() > 4, "{sizes:?}");
+}
+
+fn whole(case: &Case, answer: &Answer) -> Vec<Finding> {
+    case.findings(answer, Extent::Whole)
+}
+
+fn shape(case: &Case, answer: &Answer) -> Vec<Finding> {
+    case.findings(answer, Extent::Shape)
+}
+
+/// Points with ties, hidden points and duplicates.
+fn lattice_case(random: &mut Random) -> Case {
+    let n = 10 + random.below(40);
+    let side = 3 + random.below(3);
+    let positions = (0..n).map(|_| [0; 3].map(|_| random.below(side) as f64)).collect();
+    let kinds = 1 + random.below(5);
+    let weights = (0..n).map(|_| random.below(kinds) as f64 / 2.0).collect();
+    let alpha = random.pick(&[-1.0, 0.0, 0.5, 0.75, 1.0, 2.0, 5.0, f64::INFINITY]);
+    Case { positions, weights, alpha }
+}
+
+#[test]
+fn right_answers_are_certified() {
+    let mut random = Random::new(3);
+    let mut certified = 0;
+    for _ in 0..1500 {
+        let case = lattice_case(&mut random);
+        let Ok(answer) = engine(&case) else { continue };
+        assert_eq!(whole(&case, &answer), [], "{case:?}");
+        assert_eq!(shape(&case, &shape_of(&answer)), [], "{case:?}");
+        certified += 1;
+    }
+    assert!(certified > 1200);
+}
+
+#[test]
+fn a_grid_with_min_max_weights_is_certified() {
+    let mut random = Random::new(12);
+    let positions = grid(12);
+    let weights = (0..positions.len()).map(|_| 3.0 * random.unit()).collect();
+    let case = Case { positions, weights, alpha: 3.0 };
+    let answer = engine(&case).unwrap();
+    assert!(answer.hidden.len() > 50);
+    let (findings, certificate) = case.claim(&answer, Extent::Whole).findings().unwrap();
+    assert_eq!(findings, []);
+    assert_eq!(certificate.not_judged, []);
+    assert_eq!(certificate.six_volumes.to_string(), (6 * 11 * 11 * 11).to_string());
+    assert_eq!(shape(&case, &shape_of(&answer)), []);
+}
+
+/// The local engine never sees the whole triangulation; its shape is certified all the same.
+#[test]
+fn shapes_made_slab_by_slab_are_certified() {
+    let mut random = Random::new(8);
+    for blocks in [2, 5] {
+        let mut positions = grid(14);
+        positions.retain(|_| random.unit() < 0.5);
+        let weights: Vec<_> = positions.iter().map(|_| random.below(4) as f64 / 2.0).collect();
+        let mut options = ShapeOptions::new(Alpha::from_squared(1.5).unwrap());
+        (options.engine, options.blocks) = (Engine::Native, NonZeroUsize::new(blocks));
+        let points = WeightedPoints::new(positions, weights).unwrap();
+        let shape = alpha_shape(points, &options).unwrap();
+        let (findings, certificate) = claim(&shape).findings().unwrap();
+        assert_eq!(findings, []);
+        assert!(certificate.not_judged.contains(&NotJudged::HiddenAndHull));
+        assert!(shape.complex().cells.len() > 1000);
+    }
+}
+
+fn points() -> WeightedPoints {
+    let mut random = Random::new(5);
+    let mut positions = grid(4);
+    positions.iter_mut().flatten().step_by(7).for_each(|x| *x += random.unit());
+    positions.push(positions[3]);
+    let weights = (0..65).map(|_| random.unit()).collect();
+    WeightedPoints::new(positions, weights).unwrap()
+}
+
+/// The two files of a shape say the same, also when `NumPy` has compressed one of them.
+#[test]
+fn npz_is_json() {
+    let points = points();
+    for (alpha, exterior) in [(0.9, true), (0.9, false), (f64::INFINITY, false), (-5.0, false)] {
+        let options = ShapeOptions::new(Alpha::from_squared(alpha).unwrap()).exterior(exterior);
+        let shape = alpha_shape(points.clone(), &options).unwrap();
+        let (mut json, mut npz) = (Vec::new(), Vec::new());
+        Json.write(&shape, &mut json).unwrap();
+        Npz.write(&shape, &mut npz).unwrap();
+        let mut json = ComplexFile::read_json(&json[..]).unwrap();
+        json.info = None;
+        for bytes in [compressed(&npz), npz] {
+            assert_eq!(ComplexFile::read_npz(Cursor::new(bytes)).unwrap(), json, "α = {alpha}");
+        }
+    }
+}
+
+fn compressed(archive: &[u8]) -> Vec<u8> {
+    let mut stored = zip::ZipArchive::new(Cursor::new(archive)).unwrap();
+    let mut packed = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    let options = zip::write::SimpleFileOptions::default()
+        .compression_method(zip::CompressionMethod::Deflated);
+    for i in 0..stored.len() {
+        let mut member = stored.by_index(i).unwrap();
+        packed.start_file(member.name(), options).unwrap();
+        std::io::copy(&mut member, &mut packed).unwrap();
+    }
+    packed.finish().unwrap().into_inner()
 }

@@ -8,8 +8,8 @@ use walpha::shape::{Engine, ShapeError, ShapeOptions, Whole, direct_betti};
 use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
 
 use crate::common;
-use crate::common::sites::{lattice, weighted};
-use crate::common::told::Told;
+use crate::common::Told;
+use crate::common::{lattice, weighted};
 
 const BLOCKS: [usize; 5] = [1, 2, 3, 7, 16];
 

@@ -2,8 +2,8 @@
 
 use walpha::points::{is_point_file, read_points};
 
-use crate::common::alone::alone;
-use crate::common::told::Told;
+use crate::common::Told;
+use crate::common::alone;
 
 /// Coordinates are whole numbers of thousandths, so that the format's scales keep them.
 fn write(path: &std::path::Path, version: (u8, u8)) {

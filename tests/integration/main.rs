@@ -1,11 +1,8 @@
 //! All integration tests in one program: each program links everything once more.
 
 mod blocks_command;
-mod check_certify;
 mod check_command;
-mod check_common;
 mod check_engine;
-mod check_files;
 mod cli;
 mod command_line;
 mod common;

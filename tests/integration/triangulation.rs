@@ -9,7 +9,7 @@ use walpha::triangulation::{Sites, Triangulation, TriangulationError, triangulat
 use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
 use walpha_base::random::Random;
 
-use crate::common::sites::weighted;
+use crate::common::weighted;
 
 /// What a set is made of, by its number.
 const FAMILIES: [fn(&mut Random) -> WeightedPoints; 9] = [

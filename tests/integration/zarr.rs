@@ -12,9 +12,9 @@ use zarrs::array_subset::ArraySubset;
 use zarrs::filesystem::FilesystemStore;
 use zarrs::group::GroupBuilder;
 
-use crate::common::alone::alone;
-use crate::common::largest::largest;
-use crate::common::told::Told;
+use crate::common::Told;
+use crate::common::alone;
+use crate::common::largest;
 
 fn open(path: &Path, level: Option<u32>) -> Result<Volume, VolumeError> {
     read(path, &ReadOptions::default().level(level))

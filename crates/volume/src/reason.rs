@@ -214,7 +214,7 @@ impl fmt::Display for Reason {
                 )
             }
             Self::Memory { claim, needed } => {
-                write!(f, "{claim} needs {needed} bytes of memory, which cannot be had")
+                write!(f, "{claim} needs {needed} bytes of memory, more than is available")
             }
             Self::Within { part, reason } => write!(f, "{part} {reason}"),
             Self::NotScalar { what, .. } => write!(f, "has {what}"),

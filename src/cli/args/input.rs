@@ -1,26 +1,29 @@
-//! What to read, and which part of it.
+//! INPUT: its name, how it is read, and which part of it is used.
 
+use std::ffi::OsString;
+use std::fmt::{self, Display};
 use std::num::NonZeroUsize;
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::given::Given;
+use super::values::{dims, gray_range, input_format, nan};
+use crate::cli::command_line::TypedOptions;
+use crate::cli::errors::CommandError;
 use crate::cli::ranges;
-use crate::cli::said::Said;
+use crate::export::Target;
 use crate::points::{Columns, PointOptions};
 use crate::volume::{Dtype, Endian, Nan, RawLayout, ReadOptions, Region};
 use crate::{Dims, GrayRange, Recipe};
-
-use super::name::InputName;
-use super::values::{dims, gray_range, input_format, nan};
 
 /// What to read.
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Input")]
 pub(crate) struct InputArgs {
-    /// What was given, the command's own options aside.
+    /// Options typed on the command line.
     #[command(flatten)]
-    pub given: Given,
+    pub typed: TypedOptions,
     /// Volume or point file, - (standard input), sample:skull, sample:phantom or sample:phantom@N.
     #[arg(value_name = "INPUT", help_heading = None::<&str>)]
     pub input: InputName,
@@ -63,7 +66,7 @@ impl InputArgs {
             .downsample(downsample)
     }
 
-    /// What the name of standard input would end with.
+    /// The extension that stands for the format of standard input.
     pub(crate) fn extension(&self) -> String {
         self.input_format.as_ref().map(|format| format!(".{format}")).unwrap_or_default()
     }
@@ -83,11 +86,11 @@ impl InputArgs {
     }
 
     /// Refuses a format of INPUT that is a sample, or a folder.
-    pub(crate) fn check_format(&self) -> Result<(), Said> {
+    pub(crate) fn check_format(&self) -> Result<(), CommandError> {
         if self.input.starts_with("sample:") {
-            self.given.refuse(&["input_format"], "a sample is no file")?;
+            self.typed.refuse(&["input_format"], "a sample is no file")?;
         } else if self.input.path().is_dir() {
-            self.given.refuse(&["input_format"], "a folder says what it holds")?;
+            self.typed.refuse(&["input_format"], "a folder says what it holds")?;
         }
         Ok(())
     }
@@ -160,4 +163,44 @@ impl RawArgs {
 /// The help of `--dtype`.
 fn dtype_help() -> String {
     format!("Type of a sample: {}", Dtype::ALL.map(Dtype::name).join(", "))
+}
+
+/// A sample or a file: as the system has its name, which need not be text, and as people and reports are shown it.
+#[derive(Clone, Debug)]
+pub(crate) struct InputName {
+    path: PathBuf,
+    text: String,
+}
+
+impl InputName {
+    /// The path to open.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether it is standard input.
+    pub(crate) fn is_stdin(&self) -> bool {
+        self.path == Path::new(Target::STDOUT)
+    }
+}
+
+impl From<OsString> for InputName {
+    fn from(name: OsString) -> Self {
+        Self { text: name.to_string_lossy().into_owned(), path: name.into() }
+    }
+}
+
+/// The text.
+impl Deref for InputName {
+    type Target = str;
+
+    fn deref(&self) -> &str {
+        &self.text
+    }
+}
+
+impl Display for InputName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
 }

@@ -1,28 +1,24 @@
 //! Options that several commands share, and how they become options of the library.
 
 mod input;
-mod name;
-mod output;
-mod periodic;
 mod select;
 mod shape;
 mod values;
-mod weights;
 
 use clap::{Args, Command};
 
 pub(super) use input::InputArgs;
 use input::PartArgs;
-pub(super) use output::OutputArgs;
-pub(super) use periodic::PeriodicArgs;
+pub(super) use select::{Alphas, FrozenArgs, WeightArgs, one_alpha};
 pub(super) use select::{HaarArgs, RefitArgs, SelectArgs};
+pub(super) use shape::OutputArgs;
+pub(super) use shape::PeriodicArgs;
 pub(super) use shape::ShapeArgs;
 pub(super) use values::not_negative;
 #[cfg(feature = "render")]
 pub(super) use values::number;
-pub(super) use weights::{Alphas, FrozenArgs, WeightArgs, one_alpha};
 
-use super::said::{Said, misused};
+use super::errors::{CommandError, fail_usage};
 use crate::Recipe;
 use crate::interpolate::Refit;
 use crate::shape::Torus;
@@ -44,7 +40,7 @@ pub(super) struct PipelineArgs<W: Args = WeightArgs> {
 
 impl<W: Args + Copy + Into<WeightArgs>> PipelineArgs<W> {
     /// The options of all stages, but how the shape is computed.
-    pub(super) fn recipe(&self) -> Result<Recipe, Said> {
+    pub(super) fn recipe(&self) -> Result<Recipe, CommandError> {
         let recipe = self.input.recipe().haar(self.haar.options()).refit(self.refit.refit);
         Ok(self.weights.into().set(self.select.set(recipe)?))
     }
@@ -56,21 +52,21 @@ impl PipelineArgs {
         &self,
         shape: &ShapeArgs,
         periodic: Option<Torus>,
-    ) -> Result<Recipe, Said> {
+    ) -> Result<Recipe, CommandError> {
         let recipe = shape.set(self.recipe()?.periodic(periodic))?;
         if periodic.is_some() {
             self.input
-                .given
+                .typed
                 .refuse(&["refit"], "a periodic box repeats, and F is fitted in space")?;
         }
         if recipe.refit == Some(Refit::Whole) && recipe.memory.is_some() {
-            misused!("--memory has no effect: --refit fits values on the whole triangulation" => "omit it, or give --refit=shape");
+            fail_usage!("--memory has no effect: --refit fits values on the whole triangulation" => "omit it, or give --refit=shape");
         }
         Ok(recipe)
     }
 }
 
-/// The same with weights that stay as they are while α varies.
+/// From an input to points with weights that stay fixed while α varies.
 pub(super) type FrozenPipelineArgs = PipelineArgs<FrozenArgs>;
 
 /// The names of the options that only a volume has: points may have levels, too, and gray levels.

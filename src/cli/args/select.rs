@@ -1,15 +1,17 @@
-//! The wavelet stage, which samples become points, and where these are.
+//! Options of the wavelet stage, of the selection of points, of their weights, and α.
+
+use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
-use crate::cli::said::{Said, misused};
+use super::values::{alpha_radius, count, not_nan, not_negative, share};
+use crate::cli::errors::{CommandError, command_error, fail_usage};
 use crate::interpolate::Refit;
-use crate::pipeline::{Choice, Goal};
+use crate::pipeline::{AlphaRule, Choice, Goal, Parameter, Source};
 use crate::{
-    Decomposition, HaarOptions, Recipe, Selection, SelectionRule, Space, Tolerance, Units,
+    Alpha, Decomposition, HaarOptions, Recipe, Selection, SelectionRule, Space, Tolerance, Units,
+    Weighting,
 };
-
-use super::values::{count, not_nan, not_negative, share};
 
 /// The wavelet stage.
 #[derive(Args, Clone, Copy)]
@@ -128,19 +130,19 @@ impl SelectArgs {
     }
 
     /// Which samples become points, and the least value of the input.
-    fn choice(&self) -> Result<(Choice, Option<f64>), Said> {
+    fn choice(&self) -> Result<(Choice, Option<f64>), CommandError> {
         if self.select != SelectArg::Adaptive {
             if self.target_rmse.is_some() {
-                misused!("--target-rmse belongs to --select adaptive" => "add it, or use --count");
+                fail_usage!("--target-rmse belongs to --select adaptive" => "add it, or use --count");
             }
             if self.max_error.is_some() || self.exchange {
-                misused!("--max-error and --exchange belong to --select adaptive" => "add it");
+                fail_usage!("--max-error and --exchange belong to --select adaptive" => "add it");
             }
             let selection = Selection { rule: self.rule(), gray_min: self.gray_min };
             return Ok((Choice::Difference(selection), self.value_min));
         }
         if self.threshold.is_some() || self.gray_min.or(self.value_min).is_some() {
-            misused!("--threshold, --gray-min and --value-min choose by gray levels, which --select adaptive does not" => "use --count, --ratio or --target-rmse");
+            fail_usage!("--threshold, --gray-min and --value-min choose by gray levels, which --select adaptive does not" => "use --count, --ratio or --target-rmse");
         }
         let goal = Goal {
             count: self.count,
@@ -152,9 +154,97 @@ impl SelectArgs {
     }
 
     /// A recipe with these options.
-    pub(super) fn set(&self, recipe: Recipe) -> Result<Recipe, Said> {
+    pub(super) fn set(&self, recipe: Recipe) -> Result<Recipe, CommandError> {
         let (choice, value_min) = self.choice()?;
         let PlaceArgs { units, space } = self.place;
         Ok(recipe.choice(choice).value_min(value_min).units(units).space(space))
     }
+}
+
+/// α and the weights in proportion to it.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Weights and α")]
+pub(crate) struct WeightArgs {
+    /// The parameter α, a squared length in the units of the points; `inf` gives the convex hull,
+    /// `auto` the smallest α at which all points lie in one solid component [default: auto for
+    /// scattered points; 10·h² for a volume, where h³ is the volume of a voxel].
+    #[arg(long, value_name = "A", group = "parameter", allow_negative_numbers = true)]
+    alpha: Option<AlphaRule>,
+    /// The parameter as a radius: α = R².
+    #[arg(long, value_name = "R", value_parser = alpha_radius, group = "parameter",
+          allow_negative_numbers = true)]
+    alpha_radius: Option<Alpha>,
+    #[arg(long, value_name = "KIND", allow_hyphen_values = true, help = weights_help())]
+    pub weights: Option<Weighting>,
+}
+
+impl WeightArgs {
+    /// α as it is asked for.
+    pub(crate) fn alpha(&self) -> AlphaRule {
+        self.alpha_radius.map(AlphaRule::Given).or(self.alpha).unwrap_or_default()
+    }
+
+    /// A recipe with these options.
+    pub(super) fn set(self, recipe: Recipe) -> Recipe {
+        recipe.alpha(self.alpha()).weighting(self.weights)
+    }
+}
+
+/// α for work on a volume that makes several sets of points.
+pub(crate) fn one_alpha(rule: AlphaRule, source: &Source) -> anyhow::Result<Parameter> {
+    rule.of_volume(&source.volume, source.units)?.ok_or_else(|| {
+        command_error!(
+            "there are several sets of points, each with an `auto` of its own" => "give α as a \
+             number"
+        )
+        .into()
+    })
+}
+
+/// Weights in proportion to an α at which they are frozen.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Weights, frozen")]
+pub(crate) struct FrozenArgs {
+    /// The α, a squared length, for which weights are computed; they are the same at every level, so
+    /// that levels are nested [default: as --alpha of `walpha shape`].
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    alpha_ref: Option<AlphaRule>,
+    #[arg(long, value_name = "KIND", allow_hyphen_values = true, help = weights_help())]
+    weights: Option<Weighting>,
+}
+
+impl From<FrozenArgs> for WeightArgs {
+    fn from(FrozenArgs { alpha_ref, weights }: FrozenArgs) -> Self {
+        Self { alpha: alpha_ref, alpha_radius: None, weights }
+    }
+}
+
+/// The α of a ladder.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Alphas {
+    /// Critical values, chosen to be readable.
+    Auto,
+    /// These.
+    TypedOptions(Vec<Alpha>),
+}
+
+impl FromStr for Alphas {
+    type Err = CommandError;
+
+    fn from_str(text: &str) -> Result<Self, CommandError> {
+        if text == "auto" {
+            return Ok(Self::Auto);
+        }
+        Ok(Self::TypedOptions(
+            text.split(',').map(|item| item.trim().parse()).collect::<Result<_, _>>()?,
+        ))
+    }
+}
+
+/// The help of `--weights`.
+fn weights_help() -> String {
+    format!(
+        "Weights ω (squared lengths): {} [default: column where the input has weights, else common=0]",
+        Weighting::known()
+    )
 }

@@ -1,14 +1,15 @@
-//! How the shape is computed.
+//! Options of the shape: engine, blocks, memory, a periodic box, and the format of outputs.
 
 use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::said::{Said, misused};
-use crate::shape::Engine;
+use super::values::{bytes, number};
+use crate::cli::errors::{CommandError, fail, fail_usage};
+use crate::export::Target;
+use crate::shape::{Engine, Torus};
 use crate::{Balls, Recipe};
-
-use super::values::bytes;
 
 /// How the shape is computed.
 #[derive(Args, Clone, Copy)]
@@ -37,10 +38,10 @@ pub(crate) struct ShapeArgs {
 
 impl ShapeArgs {
     /// A recipe with these options, which are refused where they have no use for each other.
-    pub(crate) fn set(&self, recipe: Recipe) -> Result<Recipe, Said> {
+    pub(crate) fn set(&self, recipe: Recipe) -> Result<Recipe, CommandError> {
         let Self { balls, engine, exterior, hidden, blocks, memory } = *self;
         if engine == Engine::Cgal && blocks.is_some_and(|blocks| blocks.get() > 1) {
-            misused!("--blocks has no effect: the engine cgal knows no blocks" => "omit it, or take --engine native");
+            fail_usage!("--blocks has no effect: the engine cgal knows no blocks" => "omit it, or take --engine native");
         }
         let recipe = recipe
             .balls(balls)
@@ -49,7 +50,60 @@ impl ShapeArgs {
             .hidden(hidden)
             .blocks(blocks)
             .memory(memory);
-        recipe.check().map_err(|error| Said::usage_of(&error))?;
+        recipe.check().map_err(|error| CommandError::usage_of(&error))?;
         Ok(recipe)
+    }
+}
+
+/// Points of a torus.
+#[derive(Args, Clone, Copy)]
+#[command(next_help_heading = "Shape")]
+pub(crate) struct PeriodicArgs {
+    /// Sides of a box that repeats along x, y and z, in the unit of the points: these are those of a torus.
+    /// No edge may span half of the box; with 4·√(α + largest weight) less than each side none does.
+    #[arg(long, value_name = "X,Y,Z", value_parser = torus)]
+    pub periodic: Option<Torus>,
+}
+
+fn torus(text: &str) -> Result<Torus, CommandError> {
+    let sides: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    let &[x, y, z] = &sides[..] else {
+        fail!("three sides are needed" => "give those along x, y and z, as in 10,10,20");
+    };
+    Ok(Torus::new([x, y, z])?)
+}
+
+/// The format of outputs without an extension.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct OutputArgs {
+    /// Format of an output whose name does not say it, as standard output (-): its extension, as in
+    /// --output-format nrrd.
+    #[arg(long, value_name = "EXTENSION")]
+    output_format: Option<String>,
+}
+
+impl OutputArgs {
+    /// A path for an output whose extension names the format: its own path, if it has one.
+    pub(crate) fn named(&self, path: &Path) -> anyhow::Result<PathBuf> {
+        match &self.output_format {
+            _ if path.extension().is_some() => Ok(path.to_owned()),
+            Some(format) => Ok(format!("output.{}", format.trim_start_matches('.')).into()),
+            None if path == Path::new(Target::STDOUT) => {
+                fail_usage!("standard output has no extension" => "name the format, as in --output-format nrrd")
+            }
+            None => Ok(path.to_owned()),
+        }
+    }
+
+    /// Refuses the format where no output needs it.
+    pub(crate) fn check<'a>(
+        &self,
+        mut outputs: impl Iterator<Item = &'a PathBuf>,
+    ) -> anyhow::Result<()> {
+        if self.output_format.is_some() && !outputs.any(|path| path.extension().is_none()) {
+            fail_usage!("--output-format has no effect: each output has an extension, which says its format" => "omit it");
+        }
+        Ok(())
     }
 }

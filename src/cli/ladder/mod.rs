@@ -1,31 +1,32 @@
-//! `walpha ladder`: many α, or many levels of detail.
+//! `walpha ladder`: many α, or many levels of detail, and the error of each.
 
 mod detail;
-mod errors;
 mod summary;
 
 use std::fmt::{Display, LowerExp};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde::Serialize;
+use walpha_base::Monitor;
 
-use crate::Coordinates;
-use crate::cli::ranges;
-use crate::cli::said::{Said, misused};
+use super::args::{Alphas, FrozenPipelineArgs};
+use super::errors::{CommandError, fail_usage};
+use super::folder::Folder;
+use super::global::Global;
+use super::output::print_summary;
+use super::pipeline::{self, filled_in};
+use super::progress::Progress;
+use super::ranges;
 use crate::export::{ExportOptions, Exporter, Format};
+use crate::interpolate::{Deviation, Grid, Interpolant, InterpolateError};
 use crate::ladder::{Ladder as Levels, Level};
 use crate::pipeline::Parameter;
 use crate::points::Region;
 use crate::progress::Stage;
 #[cfg(feature = "render")]
 use crate::render::ladder_figure;
-
-use super::Global;
-use super::args::{Alphas, FrozenPipelineArgs};
-use super::folder::Folder;
-use super::output::tell;
-use super::pipeline;
-use super::progress::Progress;
+use crate::{AlphaShape, Coordinates, Units, Volume};
 use summary::{LadderSummary, write_levels, write_voids};
 
 /// Compute shapes at many α from one triangulation, or at several levels of detail.
@@ -86,7 +87,7 @@ impl Ladder {
     pub(super) fn run(self, global: Global) -> anyhow::Result<()> {
         let detail = !(self.counts.is_empty() && self.epsilons.is_empty());
         if self.focus.is_some() && !detail {
-            misused!("--focus belongs to levels of detail" => "give --counts or --epsilons too");
+            fail_usage!("--focus belongs to levels of detail" => "give --counts or --epsilons too");
         }
         once("--counts", &self.counts)?;
         once("--epsilons", &self.epsilons)?;
@@ -130,7 +131,7 @@ impl Ladder {
         let curve = progress.stage(Stage::Curve, || filtration.curve());
         let suggested = progress.stage(Stage::Curve, || filtration.suggest(&curve));
         let alphas = match &self.alphas {
-            Alphas::Given(alphas) => alphas.clone(),
+            Alphas::TypedOptions(alphas) => alphas.clone(),
             Alphas::Auto => progress.stage(Stage::Curve, || {
                 pipeline::readable(&filtration, &curve, READABLE, reference.alpha)
             }),
@@ -160,7 +161,7 @@ impl Ladder {
         facts.finish(progress.finish(), files);
         folder.write("ladder.json", |out| Ok(serde_json::to_writer_pretty(out, &facts)?))?;
         folder.finish()?;
-        tell(global, &facts)
+        print_summary(global, &facts)
     }
 }
 
@@ -193,7 +194,7 @@ fn level_name(ladder: &Levels, k: usize, level: &Level, extension: &str) -> Stri
 
 /// A number for the name of a file, which must not have hundreds of digits.
 fn short(number: impl Display + LowerExp) -> String {
-    /// As a double has, with a sign and a point and some zeros.
+    /// Digits of a double, with sign, point and some zeros.
     const LONG: usize = 24;
     let text = number.to_string();
     if text.len() > LONG { format!("{number:e}") } else { text }
@@ -203,7 +204,7 @@ fn short(number: impl Display + LowerExp) -> String {
 fn once<T: PartialEq + Display>(option: &str, values: &[T]) -> anyhow::Result<()> {
     match values.iter().enumerate().find(|(k, value)| values[..*k].contains(value)) {
         Some((_, value)) => {
-            misused!("{option} names {value} twice" => "each level has a file of its own")
+            fail_usage!("{option} names {value} twice" => "each level has a file of its own")
         }
         None => Ok(()),
     }
@@ -215,20 +216,52 @@ struct Mesh {
     exporter: Box<dyn Exporter>,
 }
 
-fn meshes(asked: &[String], silent: &[&str]) -> anyhow::Result<Vec<Mesh>> {
+fn meshes(asked: &[String], default: &[&str]) -> anyhow::Result<Vec<Mesh>> {
     let plain = |extension: &str| extension.trim().trim_start_matches('.').to_ascii_lowercase();
     let mut extensions: Vec<String> = asked.iter().map(|extension| plain(extension)).collect();
     once("--mesh", &extensions)?;
     if extensions.is_empty() {
-        extensions = silent.iter().map(|extension| plain(extension)).collect();
+        extensions = default.iter().map(|extension| plain(extension)).collect();
     }
     let mesh = |extension: String| {
         let name = format!("level.{extension}");
         let format = Format::of(Path::new(&name)).map_err(|unknown| {
-            let unknown = Said::usage_of(&unknown);
-            Said { why: format!("--mesh: {}", unknown.why), ..unknown }
+            let unknown = CommandError::usage_of(&unknown);
+            CommandError { why: format!("--mesh: {}", unknown.why), ..unknown }
         })?;
         Ok(Mesh { exporter: format.exporter(&ExportOptions::default()), extension })
     };
     extensions.into_iter().map(mesh).collect()
+}
+
+/// Root mean square differences of F from a volume, in gray levels.
+#[derive(Clone, Copy, Serialize)]
+pub(super) struct LevelErrors {
+    /// On the samples that the shape covers; null where there are none.
+    #[serde(rename = "rmse_inside")]
+    pub inside: Option<f64>,
+    /// On all samples, F being filled in.
+    #[serde(rename = "rmse_filled")]
+    pub filled: f64,
+}
+
+impl LevelErrors {
+    /// Of the shape of a volume's points, whose gray levels are given: its own values may be others. One
+    /// triangulation, and two passes over the volume.
+    pub(super) fn of(
+        shape: &AlphaShape,
+        grays: &[f64],
+        volume: &Volume,
+        units: Units,
+        monitor: &Monitor,
+    ) -> Result<Self, InterpolateError> {
+        let grid = Grid::of(volume, units);
+        let rmse = |interpolant: Interpolant<'_>| -> Result<Option<f64>, InterpolateError> {
+            Ok(Deviation::of(volume, &interpolant.resample(&grid)?).rmse)
+        };
+        let inside = rmse(Interpolant::with_values(shape, grays)?)?;
+        let (whole, all) = filled_in(shape, grays, volume, units, monitor)?;
+        let filled = rmse(Interpolant::with_values(&whole, &all)?)?;
+        Ok(Self { inside, filled: filled.unwrap_or_default() })
+    }
 }

@@ -23,7 +23,7 @@ pub(super) struct LadderSummary {
     points: usize,
     hidden: usize,
     duplicates: usize,
-    /// Of points and all lengths.
+    /// Unit of points and all lengths.
     coordinates: Coordinates,
     alpha_ref: Parameter,
     weights: WeightsReport,

@@ -1,7 +1,6 @@
 //! The facts a command prints, as JSON or as text.
 
 mod parts;
-mod shape;
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -18,9 +17,9 @@ use crate::{Coordinates, GrayRange};
 
 use super::output::name;
 use super::pipeline::VolumeSummary;
+use parts::ShapeReport;
 use parts::{Ended, InputReport, PointsReport};
 pub(super) use parts::{Folded, HaarReport, WeightsReport};
-use shape::ShapeReport;
 
 /// Counted up when a field changes its meaning or goes; new fields may come at any time.
 pub(super) const SCHEMA_VERSION: u32 = 1;
@@ -68,7 +67,7 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// What is known before there is a shape.
+    /// The report on points without a shape.
     pub(super) fn of_points(name: &str, weighed: &Weighed, volume: Option<&VolumeSummary>) -> Self {
         let origin = weighed.origin;
         let truncation = origin.truncation.as_ref().zip(volume);
@@ -118,7 +117,7 @@ impl Report {
         self.shape = Some(ShapeReport::of(shape));
     }
 
-    /// What is known of a shape that was made in blocks.
+    /// The report on a shape made in blocks.
     pub(super) fn of_blocks(plan: &Plan, merged: &Merged) -> Self {
         let (job, survey) = (&plan.job, &plan.survey);
         let GrayRange { low, high } = survey.range;

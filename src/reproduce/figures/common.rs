@@ -1,5 +1,5 @@
-use super::claim::{Claim, judge};
-use super::{Bench, figure};
+use super::bench::{Bench, figure};
+use super::bench::{Claim, judge};
 use crate::reproduce::study::{ALPHA, COMMON, Shapes};
 use crate::reproduce::{Item, ReproduceError, ShapeNumbers, Verdict, text};
 use crate::shape::Complex;

@@ -1,8 +1,8 @@
-use super::claim::{Claim, judge};
-use super::{Bench, figure};
+use super::bench::{Bench, figure};
+use super::bench::{Claim, judge};
 use crate::reproduce::compare::{Difference, PixelDifference, same_set};
-use crate::reproduce::stage::Eye;
 use crate::reproduce::study::ALPHA;
+use crate::reproduce::study::Eye;
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Table, Verdict, text};
 
 /// Four shapes, and how far the paper's two differ: without weights, left, and with barycentric

@@ -1,4 +1,4 @@
-use super::Bench;
+use super::bench::Bench;
 use crate::interpolate::{
     CurveOptions, CurvePoint, Method, error_curve, error_figure, write_curve_csv,
 };

@@ -1,11 +1,11 @@
-use super::claim::{Claim, judge};
-use super::{Bench, figure};
+use super::bench::{Bench, figure};
+use super::bench::{Claim, judge};
 use crate::export::{ExportOptions, Exporter, Off};
 use crate::render::{Figure, Panel, Picture};
 use crate::reproduce::compare::{PixelDifference, same_set};
 use crate::reproduce::off::OffMesh;
-use crate::reproduce::stage::{Eye, panel};
 use crate::reproduce::study::{ALPHA, Shaped};
+use crate::reproduce::study::{Eye, panel};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Verdict};
 use crate::shape::{Betti, Surface};
 
@@ -152,7 +152,7 @@ impl Side {
         let positions = &shaped.shape.points().positions;
         let places = surface.vertices.iter().map(|&v| positions[v as usize]);
         let agrees = places.eq(mesh.positions.iter().copied()) && surface.facets().eq(&mesh.facets);
-        let picture = bench.study.stage.render(&mesh.scene(), Eye::Portrait)?;
+        let picture = bench.study.cameras.render(&mesh.scene(), Eye::Portrait)?;
         Ok(Self { title, file: bench.file(name, bytes), mesh, picture, agrees })
     }
     fn panel(&self) -> Panel {

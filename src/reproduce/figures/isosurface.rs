@@ -1,8 +1,8 @@
-use super::claim::{Claim, judge};
-use super::{Bench, VIEWS, figure};
+use super::bench::{Bench, VIEWS, figure};
+use super::bench::{Claim, judge};
 use crate::points::difference;
 use crate::render::{Figure, Isosurface, Scene};
-use crate::reproduce::stage::{Eye, panel};
+use crate::reproduce::study::{Eye, panel};
 use crate::reproduce::study::{PAPER_POINTS, PAPER_SAMPLES, Study};
 use crate::reproduce::{Fact, Item, ReproduceError, Table, Verdict};
 use crate::volume::Volume;
@@ -159,8 +159,8 @@ fn draw(
     surface: Isosurface,
 ) -> Result<Figure, ReproduceError> {
     let scene = Scene { meshes: vec![surface.into_mesh()], ..Scene::default() };
-    let front = study.stage.render(&scene, Eye::Portrait)?;
-    let side = study.stage.render(&scene, Eye::Side)?;
+    let front = study.cameras.render(&scene, Eye::Portrait)?;
+    let side = study.cameras.render(&scene, Eye::Side)?;
     let captions = vec![
         format!("marching cubes: {triangles} triangles, from all {read} samples"),
         format!("{beside} of them lie beside the surface"),

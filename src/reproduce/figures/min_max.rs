@@ -1,5 +1,5 @@
-use super::claim::{Claim, judge};
-use super::{Bench, figure};
+use super::bench::{Bench, figure};
+use super::bench::{Claim, judge};
 use crate::reproduce::compare::Difference;
 use crate::reproduce::study::{ALPHA, Shapes};
 use crate::reproduce::{Fact, Item, ReproduceError, ShapeNumbers, Verdict, text};

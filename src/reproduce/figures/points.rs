@@ -1,9 +1,9 @@
-use super::claim::{Claim, judge};
-use super::{Bench, figure};
+use super::bench::{Bench, figure};
+use super::bench::{Claim, judge};
 use crate::haar::Truncation;
 use crate::render::{Ball, ColourBar, ColourMap, Figure, Scene, Size};
-use crate::reproduce::stage::panel;
 use crate::reproduce::study::Study;
+use crate::reproduce::study::panel;
 use crate::reproduce::{Fact, Item, ReproduceError, Verdict, text};
 
 /// The truncation, and the points.
@@ -117,7 +117,7 @@ fn draw(study: &Study<'_>, map: ColourMap) -> Result<Figure, ReproduceError> {
         colour: map.colour(value),
     }));
     let size = Size::new(1600, 1240)?;
-    let picture = study.stage.render_box(scene, size)?;
+    let picture = study.cameras.render_box(scene, size)?;
     let title = format!("Figure 1. {} scattered points v with values F(v)", points.len());
     Ok(Figure {
         colour_bar: Some(ColourBar { map, label: "F, the original gray level".into() }),

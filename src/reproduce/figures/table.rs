@@ -1,5 +1,5 @@
-use super::Bench;
-use super::claim::{Claim, judge};
+use super::bench::Bench;
+use super::bench::{Claim, judge};
 use crate::haar::Unnormalised;
 use crate::points::difference_row;
 use crate::reproduce::{Item, ReproduceError, Table, Verdict, text};
@@ -85,10 +85,10 @@ const CLAIMS: [Claim<Evidence>; 4] = [
 
 /// Whether what is computed is what is printed.
 fn agree(pairs: &[(&[f64], &[f64])]) -> (Verdict, String) {
-    let told = |(computed, printed): &(&[f64], &[f64])| {
+    let reason = |(computed, printed): &(&[f64], &[f64])| {
         format!("computed {}, printed {}", list(computed), list(printed))
     };
-    let reasons: Vec<String> = pairs.iter().map(told).collect();
+    let reasons: Vec<String> = pairs.iter().map(reason).collect();
     (Verdict::of(pairs.iter().all(|(ours, paper)| ours == paper)), reasons.join("; "))
 }
 

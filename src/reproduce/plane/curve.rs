@@ -1,8 +1,10 @@
+//! Areas and closed curves of outlines made of segments and arcs.
+
 use std::f64::consts::TAU;
 
 /// A piece of a drawn line, from start to end.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Piece {
+pub enum OutlinePiece {
     /// Part of a circle.
     Arc(Arc),
     /// Straight, from the first to the second place.
@@ -59,7 +61,7 @@ impl Arc {
     }
 }
 
-impl Piece {
+impl OutlinePiece {
     /// Where the piece begins and ends.
     pub fn ends(&self) -> [[f64; 2]; 2] {
         match *self {
@@ -90,4 +92,69 @@ pub(super) fn angle(from: [f64; 2], to: [f64; 2]) -> f64 {
 /// The distance of two places.
 pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
+}
+
+/// The area on the left of closed curves (Green's theorem). Rounded.
+pub(in crate::reproduce) fn area(pieces: &[OutlinePiece]) -> f64 {
+    let double = pieces.iter().map(|piece| match piece {
+        OutlinePiece::Segment([[ax, ay], [bx, by]]) => ax * by - bx * ay,
+        OutlinePiece::Arc(arc) => {
+            let [dx, dy] = [arc.end[0] - arc.start[0], arc.end[1] - arc.start[1]];
+            arc.radius * arc.radius * arc.sweep() + arc.centre[0] * dy - arc.centre[1] * dx
+        }
+    });
+    double.sum::<f64>() / 2.0
+}
+
+/// How many closed curves the pieces make, each beginning where another ends, up to rounding.
+pub(in crate::reproduce) fn loops(pieces: &[OutlinePiece]) -> usize {
+    let follows = |piece: &OutlinePiece, next: &OutlinePiece| {
+        let ([_, end], [start, _]) = (piece.ends(), next.ends());
+        (end[0] - start[0]).hypot(end[1] - start[1]) < 1e-9
+    };
+    let mut walked = vec![false; pieces.len()];
+    let mut loops = 0;
+    for first in 0..pieces.len() {
+        if walked[first] {
+            continue;
+        }
+        loops += 1;
+        let mut at = Some(first);
+        while let Some(k) = at {
+            walked[k] = true;
+            let next = (0..pieces.len()).find(|&n| !walked[n] && follows(&pieces[k], &pieces[n]));
+            at = next;
+        }
+    }
+    loops
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reproduce::plane::Arc;
+
+    /// The two halves of a circle, turning left or right.
+    fn ring(centre: [f64; 2], radius: f64, counter_clockwise: bool) -> Vec<OutlinePiece> {
+        let [x, y] = centre;
+        let [left, right] = [[x - radius, y], [x + radius, y]];
+        let arc =
+            |start, end| OutlinePiece::Arc(Arc { centre, radius, start, end, counter_clockwise });
+        vec![arc(left, right), arc(right, left)]
+    }
+
+    #[test]
+    fn a_ring_has_two_curves_and_the_area_between_them() {
+        let pieces = [ring([1.0, 2.0], 3.0, true), ring([1.5, 2.0], 1.0, false)].concat();
+        assert_eq!(loops(&pieces), 2);
+        assert!((area(&pieces) - 8.0 * std::f64::consts::PI).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_square_is_one_curve() {
+        let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+        let pieces: Vec<OutlinePiece> =
+            (0..4).map(|k| OutlinePiece::Segment([corners[k], corners[(k + 1) % 4]])).collect();
+        assert_eq!((loops(&pieces), area(&pieces)), (1, 4.0));
+    }
 }

@@ -2,7 +2,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 use super::EksShape;
-use super::curve::{Arc, Piece, angle, at, distance};
+use super::curve::{Arc, OutlinePiece, angle, at, distance};
 
 /// The outline of an α-hull: the intersection of all generalised discs of radius 1/α that contain
 /// the points. Rounded.
@@ -11,7 +11,7 @@ pub struct AlphaHull {
     /// Pieces with the hull on their left; each is an arc of radius 1/|α|, bulging out of the hull
     /// (counter-clockwise) for α > 0 and into it for α < 0, or straight for α = 0. For α > 0 they
     /// follow each other around the hull. When the hull at α = 0 is but a line, it is walked once.
-    pub outline: Vec<Piece>,
+    pub outline: Vec<OutlinePiece>,
     /// Input indices of points that are parts of the hull by themselves, ascending.
     pub points: Vec<u32>,
 }
@@ -28,16 +28,19 @@ impl EksShape {
     /// near O(k²) when few points lie within one radius; O(n log n) for α ≥ 0.
     pub fn hull(&self) -> AlphaHull {
         let alpha = self.alpha().value();
-        let outline: Vec<Piece> = if alpha > 0.0 {
-            self.chain().map(|way| Piece::Arc(self.arc(way))).collect()
+        let outline: Vec<OutlinePiece> = if alpha > 0.0 {
+            self.chain().map(|way| OutlinePiece::Arc(self.arc(way))).collect()
         } else if alpha < 0.0 {
-            self.uncovered().into_iter().map(Piece::Arc).collect()
+            self.uncovered().into_iter().map(OutlinePiece::Arc).collect()
         } else {
             let place = |v: u32| self.positions[v as usize];
-            self.arcs.iter().map(|&way| Piece::Segment(way.map(place))).collect()
+            self.arcs.iter().map(|&way| OutlinePiece::Segment(way.map(place))).collect()
         };
-        let touched: BTreeSet<[u64; 2]> =
-            outline.iter().flat_map(Piece::ends).map(|place| place.map(f64::to_bits)).collect();
+        let touched: BTreeSet<[u64; 2]> = outline
+            .iter()
+            .flat_map(OutlinePiece::ends)
+            .map(|place| place.map(f64::to_bits))
+            .collect();
         let alone = |v: &u32| !touched.contains(&self.positions[*v as usize].map(f64::to_bits));
         AlphaHull { points: self.extreme().iter().copied().filter(alone).collect(), outline }
     }

@@ -1,10 +1,8 @@
 use std::collections::HashMap;
 
-use walpha_regular::Sites;
+use walpha_regular::{Sites, SitesError};
 
-use crate::cgal;
-
-use crate::CgalError;
+use crate::{CgalError, cgal};
 
 /// A triangulation of the plane with what lies on the two sides of each edge, by site index and in
 /// an order of its own: triangles counter-clockwise from their smallest vertex, edges with the
@@ -81,4 +79,24 @@ fn from_smallest(mut triangle: [u32; 3]) -> [u32; 3] {
     let first = (0..3).min_by_key(|&i| triangle[i]).unwrap_or(0);
     triangle.rotate_left(first);
     triangle
+}
+
+/// Why a shape in the plane cannot be computed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlaneError {
+    /// The points are no sites.
+    #[error(transparent)]
+    Sites(#[from] SitesError),
+    /// CGAL gave no answer.
+    #[error(transparent)]
+    Cgal(#[from] CgalError),
+    /// Discs of infinite or no size cannot be drawn.
+    #[error(
+        "discs of squared radius α + ω need a finite α, got {given}: give a number; any α above the largest squared circumradius makes the convex hull"
+    )]
+    InfiniteAlpha {
+        /// The α given.
+        given: f64,
+    },
 }

@@ -4,7 +4,7 @@
 //! *generalised discs* whose α is a signed curvature, [`Curvature`]: [`eks_shape`]. The weighted
 //! ones (Edelsbrunner 1992) are made of discs of squared radius α + ω, [`Alpha`](crate::Alpha):
 //! [`weighted_plane_shape`]. What belongs to a shape is decided exactly; curves drawn around it
-//! ([`Piece`]) are rounded.
+//! ([`OutlinePiece`]) are rounded.
 //!
 //! Points are (x, y), in any one unit; results name them by input index. Any number of points from
 //! one up will do, on one line too. Of several points at one place the heaviest stays, of equal
@@ -28,10 +28,8 @@
 //! ```
 
 mod contact;
-mod curvature;
-mod curve;
+pub(in crate::reproduce) mod curve;
 mod eks;
-mod error;
 mod exact;
 mod hull;
 mod mesh;
@@ -39,11 +37,11 @@ mod power_cell;
 mod sample;
 mod weighted;
 
-pub use curvature::{Curvature, NotACurvature};
-pub use curve::{Arc, Piece};
+pub use curve::{Arc, OutlinePiece};
+pub use eks::{Curvature, NotACurvature};
 pub use eks::{EksShape, NoDisc, eks_shape};
-pub use error::PlaneError;
 pub use hull::AlphaHull;
+pub use mesh::PlaneError;
 pub use power_cell::PowerCell;
 pub use sample::{sample_discs, sample_points};
 pub use weighted::{PlaneComplex, WeightedPlaneShape, weighted_plane_shape};

@@ -1,7 +1,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::WeightedPlaneShape;
-use super::curve::{Arc, Piece, angle, at};
+use super::curve::{Arc, OutlinePiece, angle, at};
 
 /// The part of a disc that is nearer, in power, to its own point than to any other. Rounded.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,7 +10,7 @@ pub struct PowerCell {
     pub point: u32,
     /// Its convex boundary, counter-clockwise, each piece beginning where the one before it ends:
     /// segments towards other cells, arcs where the union of all discs ends.
-    pub boundary: Vec<Piece>,
+    pub boundary: Vec<OutlinePiece>,
 }
 
 /// Pieces shorter than this share of the radius are rounding.
@@ -48,8 +48,8 @@ impl WeightedPlaneShape {
         let pieces = self.cells().into_iter().flat_map(|cell| cell.boundary);
         pieces
             .filter_map(|piece| match piece {
-                Piece::Arc(arc) => Some(arc),
-                Piece::Segment(_) => None,
+                OutlinePiece::Arc(arc) => Some(arc),
+                OutlinePiece::Segment(_) => None,
             })
             .collect()
     }
@@ -68,20 +68,20 @@ impl WeightedPlaneShape {
 }
 
 /// The boundary of a disc cut by half-planes.
-fn boundary(centre: [f64; 2], radius: f64, walls: &[HalfPlane]) -> Vec<Piece> {
+fn boundary(centre: [f64; 2], radius: f64, walls: &[HalfPlane]) -> Vec<OutlinePiece> {
     if walls.iter().any(|wall| wall.offset <= -radius) {
         return Vec::new();
     }
     let walls: Vec<_> = walls.iter().copied().filter(|wall| wall.offset < radius).collect();
     if walls.is_empty() {
-        return vec![Piece::Arc(Arc::circle(centre, radius))];
+        return vec![OutlinePiece::Arc(Arc::circle(centre, radius))];
     }
-    let mut pieces: Vec<Piece> = (0..walls.len())
+    let mut pieces: Vec<OutlinePiece> = (0..walls.len())
         .filter_map(|own| segment(&walls, own, radius))
-        .map(|ends| Piece::Segment(ends.map(|[x, y]| [centre[0] + x, centre[1] + y])))
+        .map(|ends| OutlinePiece::Segment(ends.map(|[x, y]| [centre[0] + x, centre[1] + y])))
         .chain(arcs(&walls, radius).into_iter().map(|[from, to]| {
             let (start, end) = (at(centre, radius, from), at(centre, radius, to));
-            Piece::Arc(Arc { centre, radius, start, end, counter_clockwise: true })
+            OutlinePiece::Arc(Arc { centre, radius, start, end, counter_clockwise: true })
         }))
         .collect();
     in_order(&mut pieces);
@@ -96,12 +96,12 @@ fn segment(walls: &[HalfPlane], own: usize, radius: f64) -> Option<[[f64; 2]; 2]
     let (mut from, mut to) = (-reach, reach);
     for (_, wall) in walls.iter().enumerate().filter(|&(other, _)| other != own) {
         let [mx, my] = wall.normal;
-        let (slope, room) = (nx * my - ny * mx, wall.offset - offset * (nx * mx + ny * my));
+        let (slope, offset_along) = (nx * my - ny * mx, wall.offset - offset * (nx * mx + ny * my));
         if slope > 0.0 {
-            to = to.min(room / slope);
+            to = to.min(offset_along / slope);
         } else if slope < 0.0 {
-            from = from.max(room / slope);
-        } else if room < 0.0 {
+            from = from.max(offset_along / slope);
+        } else if offset_along < 0.0 {
             return None;
         }
     }
@@ -136,12 +136,12 @@ fn arcs(walls: &[HalfPlane], radius: f64) -> Vec<[f64; 2]> {
 
 /// Sorts the pieces of a convex boundary counter-clockwise and joins their ends, which differ in
 /// the last digits.
-fn in_order(pieces: &mut [Piece]) {
+fn in_order(pieces: &mut [OutlinePiece]) {
     let n = pieces.len() as f64;
-    let middles = pieces.iter().map(Piece::middle);
+    let middles = pieces.iter().map(OutlinePiece::middle);
     let inner = middles.fold([0.0; 2], |sum, [x, y]| [sum[0] + x / n, sum[1] + y / n]);
     pieces.sort_by(|a, b| {
-        let turn = |piece: &Piece| (angle(inner, piece.middle()) + PI).rem_euclid(TAU);
+        let turn = |piece: &OutlinePiece| (angle(inner, piece.middle()) + PI).rem_euclid(TAU);
         turn(a).total_cmp(&turn(b))
     });
     for next in 0..pieces.len() {
@@ -149,8 +149,8 @@ fn in_order(pieces: &mut [Piece]) {
         let [_, corner] = pieces[before].ends();
         if before != next {
             match &mut pieces[next] {
-                Piece::Arc(arc) => arc.start = corner,
-                Piece::Segment(ends) => ends[0] = corner,
+                OutlinePiece::Arc(arc) => arc.start = corner,
+                OutlinePiece::Segment(ends) => ends[0] = corner,
             }
         }
     }

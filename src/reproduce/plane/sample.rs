@@ -45,13 +45,13 @@ pub fn sample_discs() -> (Vec<[f64; 2]>, Vec<f64>) {
 /// Adds points that keep apart: of 32 candidates each time the one farthest from all before it.
 fn scatter(points: &mut Vec<[f64; 2]>, count: usize, mut candidate: impl FnMut() -> [f64; 2]) {
     for _ in 0..count {
-        let room = |place: &[f64; 2]| {
+        let clearance = |place: &[f64; 2]| {
             let squares =
                 points.iter().map(|p| (p[0] - place[0]).powi(2) + (p[1] - place[1]).powi(2));
             squares.fold(f64::INFINITY, f64::min)
         };
         let candidates = (0..32).map(|_| candidate());
-        points.extend(candidates.max_by(|a, b| room(a).total_cmp(&room(b))));
+        points.extend(candidates.max_by(|a, b| clearance(a).total_cmp(&clearance(b))));
     }
 }
 

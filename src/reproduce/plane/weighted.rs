@@ -109,7 +109,7 @@ fn classify(mesh: &Mesh, exact: &Exact) -> PlaneComplex {
     }
 }
 
-/// What is known of a vertex from its edges.
+/// The edges around a vertex.
 #[derive(Clone, Copy, Default)]
 struct Around {
     /// An edge belongs to the shape.

@@ -1,12 +1,8 @@
 //! DICOM series, written here element by element as part 5 of the standard has them.
 
-mod compressed;
-mod damaged;
-mod dose;
-mod enhanced;
 mod folders;
-mod neighbours;
-mod packed;
+mod frames;
+mod pixels;
 
 use std::fs;
 use std::path::Path;

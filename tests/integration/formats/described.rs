@@ -5,7 +5,7 @@ use walpha::volume::{Nan, ReadOptions, Space, read};
 use walpha::{Coordinates, Frame, LengthUnit, Volume};
 
 use super::files::{save, written};
-use crate::common::told::Told;
+use crate::common::Told;
 use crate::common::{fails, json, names, ok};
 
 fn npy<D: ndarray::Dimension>(array: &ndarray::Array<f32, D>) -> Vec<u8> {

@@ -9,7 +9,7 @@ use flate2::write::{GzEncoder, ZlibEncoder};
 use ndarray::Array3;
 use walpha::volume::*;
 
-use crate::common::told::Told;
+use crate::common::Told;
 
 /// Samples 0, 2, 4, … of a 3×2×2 grid, in the byte order of most files.
 pub fn shorts() -> Vec<u8> {

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use walpha::volume::{Nan, ReadOptions, read};
 
 use super::files::*;
-use crate::common::told::Told;
+use crate::common::Told;
 use crate::common::{json, ok, run};
 
 /// Two volumes of 3×2×2 shorts, the second the ten-fold of the first.

@@ -1,4 +1,4 @@
-//! Points of every format, damaged ones, and tables.
+//! Points of every format: tables, point clouds, meshes, and damaged files.
 
 #[cfg(unix)]
 use std::{process::Command, sync::mpsc, thread, time::Duration};
@@ -7,8 +7,8 @@ use walpha::points::{Columns, read_points};
 #[cfg(unix)]
 use walpha::{Recipe, pipeline::Input, progress::Monitor};
 
-use super::files::*;
-use crate::common::told::Told;
+use super::files::{save, *};
+use crate::common::Told;
 
 #[test]
 fn points_of_every_format_are_read() {
@@ -161,4 +161,147 @@ fn cgal_s_point_sets_are_read() {
     }
     // Later versions of CGAL have more of them.
     assert!(counts["xyz"] >= 16 && counts["pwn"] >= 3 && counts["off"] >= 1, "{counts:?}");
+}
+
+/// A PCD of the fields x, y, z, a normal of three numbers, and intensity.
+fn pcd(data: &str, bytes: &[u8]) -> Vec<u8> {
+    let head = format!(
+        "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z normal intensity\nSIZE 4 4 8 4 2\nTYPE F F F F U\n\
+         COUNT 1 1 1 3 1\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA {data}\n"
+    );
+    [head.as_bytes(), bytes].concat()
+}
+
+/// Two points with values 7 and 8, and one without a place between them.
+fn pcd_examples() -> [(&'static str, Vec<u8>); 4] {
+    let nan = f32::NAN;
+    let rows = [(1f32, 2f32, 3f64, 7u16), (nan, nan, f64::NAN, 9), (4.0, 5.0, 6.0, 8)];
+    let text: String = rows.iter().map(|(x, y, z, i)| format!("{x} {y} {z} 0 0 1 {i}\n")).collect();
+    let normal = [0f32, 0.0, 1.0].map(f32::to_le_bytes).concat();
+    let side_by_side: Vec<u8> = rows
+        .iter()
+        .flat_map(|(x, y, z, i)| {
+            [&x.to_le_bytes()[..], &y.to_le_bytes(), &z.to_le_bytes(), &normal, &i.to_le_bytes()]
+                .concat()
+        })
+        .collect();
+    let by_field = [
+        rows.iter().flat_map(|row| row.0.to_le_bytes()).collect::<Vec<u8>>(),
+        rows.iter().flat_map(|row| row.1.to_le_bytes()).collect(),
+        rows.iter().flat_map(|row| row.2.to_le_bytes()).collect(),
+        normal.repeat(3),
+        rows.iter().flat_map(|row| row.3.to_le_bytes()).collect(),
+    ]
+    .concat();
+    let packed = |pieces: Vec<u8>| {
+        let sizes = [pieces.len(), by_field.len()].map(|n| (n as u32).to_le_bytes()).concat();
+        [sizes, pieces].concat()
+    };
+    // As they are; and with the second and third normals as copies of what stands 12 bytes before, too.
+    let literal = |bytes: &[u8]| {
+        bytes.chunks(32).flat_map(|c| [&[c.len() as u8 - 1], c].concat()).collect::<Vec<u8>>()
+    };
+    let (before, after) = (3 * (4 + 4 + 8) + 12, 3 * (4 + 4 + 8) + 36);
+    let copied = [
+        // The zeros of z = 3 as copies of the first of them.
+        literal(&by_field[..25]),
+        vec![3 << 5, 0],
+        literal(&by_field[30..before]),
+        vec![7 << 5, 24 - 9, 11],
+        literal(&by_field[after..]),
+    ]
+    .concat();
+    [
+        ("text.pcd", pcd("ascii", text.as_bytes())),
+        ("binary.pcd", pcd("binary", &side_by_side)),
+        ("literal.pcd", pcd("binary_compressed", &packed(literal(&by_field)))),
+        ("copied.pcd", pcd("binary_compressed", &packed(copied))),
+    ]
+}
+
+#[test]
+fn point_clouds_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in pcd_examples() {
+        let points = read_points(&save(folder.path(), name, bytes), None).unwrap();
+        assert_eq!(points.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{name}");
+        assert_eq!(points.values, Some(vec![7.0, 8.0]), "{name}");
+    }
+    let [text, binary, packed, _] = pcd_examples();
+    let refuses = |name: &str, bytes: &[u8], part: &str| {
+        let error = read_points(&save(folder.path(), name, bytes), None).unwrap_err().told();
+        assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
+    };
+    let cut = |bytes: &[u8]| bytes[..bytes.len() - 5].to_vec();
+    refuses("a.pcd", &binary.1[..60], "truncated");
+    refuses("b.pcd", &cut(&binary.1), "claims 3 points of 30 bytes");
+    refuses("c.pcd", &cut(&packed.1), "compressed data");
+    let text = String::from_utf8(text.1).unwrap();
+    refuses("d.pcd", text.replace("POINTS 3", "POINTS 4").as_bytes(), "claims 4 points");
+    refuses("e.pcd", text.replace("FIELDS x", "FIELDS q").as_bytes(), "without x, y or z");
+    refuses("f.pcd", text.replace("SIZE 4", "SIZE 8 4").as_bytes(), "different lengths");
+    refuses("g.pcd", text.replace("ascii", "utf-8").as_bytes(), "ascii, binary");
+    refuses("h.pcd", text.replace("POINTS 3", "POINTS 999999999999").as_bytes(), "cannot hold");
+    // Found by fuzzing: a field without numbers, looked for beyond the last one.
+    let none = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 0\nPOINTS 1\nDATA ascii\n1 2\n";
+    refuses("i.pcd", none.as_bytes(), "no bytes or numbers");
+}
+
+/// The corners of a tetrahedron, in the order in which its facets name them.
+const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.5], [0.0, 4.0, 0.0], [4.0, 0.0, 0.0], [0.0, 0.0, 4.0]];
+const FACETS: [[usize; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+
+#[test]
+fn vertices_of_meshes_are_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let lines = |begin: &str, end: &str| -> String {
+        CORNERS.iter().map(|[x, y, z]| format!("{begin}{x} {y} {z}{end}\n")).collect()
+    };
+    let faces: String = FACETS.iter().map(|[a, b, c]| format!("3 {a} {b} {c}\n")).collect();
+    let mut binary = [b' '; 80].to_vec();
+    // The word that text begins with.
+    binary[..5].copy_from_slice(b"solid");
+    binary.extend(4u32.to_le_bytes());
+    let mut text = "solid a\n".to_owned();
+    for facet in FACETS {
+        binary.extend([0; 12]);
+        text += "facet normal 0 0 1\nouter loop\n";
+        for [x, y, z] in facet.map(|v| CORNERS[v]) {
+            [x, y, z].iter().for_each(|&c| binary.extend((c as f32).to_le_bytes()));
+            text += &format!(" vertex {x} {y} {z}\n");
+        }
+        binary.extend([0; 2]);
+        text += "endloop\nendfacet\n";
+    }
+    text += "endsolid a\n";
+    let files: [(&str, Vec<u8>); 8] = [
+        ("a.off", format!("OFF # a mesh\n\n4 4 6\n{}{faces}", lines("", "")).into()),
+        ("counts.off", format!("OFF 4 4 0\n{}{faces}", lines("", "")).into()),
+        ("colours.off", format!("COFF\n4 4 0\n{}{faces}", lines("", " 9 9 9 255")).into()),
+        ("a.obj", format!("# a\nmtllib b\n{}vn 0 0 1\nf 1//1 2//1 3//1\n", lines("v ", "")).into()),
+        ("colours.obj", lines("v ", " 0.5 0.5 1").into()),
+        ("text.stl", text.clone().into()),
+        ("binary.stl", binary.clone()),
+        ("a.pwn", format!("4\n{}{}", lines("", ""), "0 0 1\n".repeat(4)).into()),
+    ];
+    for (name, bytes) in files {
+        let path = save(folder.path(), name, bytes);
+        assert!(walpha::points::is_point_file(&path).unwrap(), "{name}");
+        let points = read_points(&path, None).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(points.positions, CORNERS, "{name}");
+        assert_eq!((points.weights, points.values), (None, None), "{name}");
+    }
+    let refuses = |name: &str, bytes: &[u8], part: &str| {
+        let error = read_points(&save(folder.path(), name, bytes), None).unwrap_err().told();
+        assert!(error.contains(part) && error.contains(name), "{part:?} is missing in: {error}");
+    };
+    refuses("a.off", format!("OFF\n4 9 0\n{}{faces}", lines("", "")).as_bytes(), "truncated");
+    refuses("a.off", b"OFF\nhello\n", "how many vertices");
+    refuses("a.off", b"4OFF\n1 0 0\n1 2 3 4\n", "three coordinates");
+    refuses("a.off", b"OFF BINARY\n", "binary");
+    refuses("a.obj", b"v 1 2\n", "line 1: z");
+    refuses("a.obj", b"f 1 2 3\n", "no point");
+    refuses("a.stl", &binary[..200], "truncated");
+    refuses("a.stl", &text.as_bytes()[..90], "truncated");
+    refuses("a.pwn", b"2\n0 0 0\n1 1 1\n0 0 1\n", "claims 2 points");
 }

@@ -1,8 +1,147 @@
-//! `--periodic` on the command line.
+//! `--periodic` on the command line, and the exact checker on complexes of a torus.
 
-use super::{BCC, crystal};
+use walpha::check::schema::{ComplexFile, PlacedComplex};
+use walpha::check::{CertifyError, Finding, NotJudged};
+use walpha::export::{Exporter, Json, Npz};
+use walpha::shape::{Class, placed_complex};
 
+use super::{BCC, CUBIC, WeightedPoints, alpha_shape, crystal, dense, options, sets, shape};
 use crate::common;
+
+fn findings(placed: &PlacedComplex) -> Vec<Finding> {
+    placed.findings().unwrap().0
+}
+
+#[test]
+fn shapes_of_a_torus_are_certified() {
+    let mut judged = 0;
+    for (points, sides) in sets(36) {
+        for squared in [0.5, 1.0] {
+            let Ok(shape) = shape(&points, sides, squared) else { continue };
+            assert_eq!(findings(&placed_complex(&shape)), []);
+            judged += 1;
+        }
+    }
+    for seed in 0..6 {
+        let (points, sides) = dense(seed);
+        for squared in [0.2, f64::INFINITY] {
+            let whole = options(sides, squared).exterior(true);
+            let shape = alpha_shape(points.clone(), &whole).unwrap();
+            let (found, certificate) = placed_complex(&shape).findings().unwrap();
+            assert_eq!(found, []);
+            assert!(!certificate.not_judged.contains(&NotJudged::MissingSimplices));
+            judged += 1;
+        }
+    }
+    assert!(judged > 40, "{judged}");
+}
+
+/// A grid in a box of 96. Its cells have spheres of squared radius 768.
+fn grid() -> Vec<[f64; 3]> {
+    crystal([3; 3], &CUBIC).positions.iter().map(|place| place.map(|x| 32.0 * x)).collect()
+}
+
+/// Large ones, and that much beyond weights far below zero.
+#[test]
+fn large_spheres_of_a_torus_are_judged() {
+    for (weight, squared) in [(0.0, 767.0), (0.0, 768.0), (-5000.0, 5767.0), (-5000.0, 5768.0)] {
+        let points = WeightedPoints::new(grid(), vec![weight; 27]).unwrap();
+        let shape = alpha_shape(points, &options([96.0; 3], squared).exterior(true)).unwrap();
+        let full = squared + weight >= 768.0;
+        let class = if full { Class::Interior } else { Class::Exterior };
+        assert!(shape.complex().cells.classes().iter().all(|&found| found == class));
+        assert_eq!(findings(&placed_complex(&shape)), []);
+    }
+}
+
+/// One point hidden beside a heavier one, and one at the place of another.
+#[test]
+fn hidden_points_of_a_torus_are_judged() {
+    let mut positions = grid();
+    positions.extend([[1.0, 0.0, 0.0], [64.0, 0.0, 32.0]]);
+    let mut weights = vec![0.0; 27];
+    weights.extend([-100.0, -1.0]);
+    let points = WeightedPoints::new(positions, weights).unwrap();
+    let whole = options([96.0; 3], 768.0).exterior(true);
+    let right = placed_complex(&alpha_shape(points, &whole).unwrap());
+    assert_eq!(
+        (right.hidden.as_deref(), right.duplicates.as_deref()),
+        (Some(&[27][..]), Some(&[[28, 19]][..]))
+    );
+    let (found, certificate) = right.findings().unwrap();
+    assert_eq!(found, []);
+    // Whether a point is rightly hidden is not, whether it is that alone is.
+    assert!(certificate.not_judged.contains(&NotJudged::HiddenAndHull));
+    let mut vertex = right;
+    vertex.hidden = Some(vec![13, 27]);
+    let found = findings(&vertex);
+    assert!(matches!(found[..], [Finding::NotOnlyHidden { point: 13 }]), "{found:?}");
+}
+
+#[test]
+fn what_is_wrong_on_a_torus_is_found() {
+    let (points, sides) = dense(3);
+    let whole = options(sides, 0.3).exterior(true);
+    let right = placed_complex(&alpha_shape(points, &whole).unwrap());
+    let count = right.complex.cells.len();
+    // Cells at the sides of the box as well as within.
+    for at in [0, count / 3, count / 2, count - 1] {
+        let mut damaged = right.clone();
+        damaged.complex.cells = right
+            .complex
+            .cells
+            .clone()
+            .into_iter()
+            .enumerate()
+            .filter(|(k, _)| *k != at)
+            .map(|(_, cell)| cell)
+            .collect();
+        let found = findings(&damaged);
+        let names = |finding: &Finding| {
+            matches!(finding, Finding::MissingCell { .. } | Finding::Volume { .. })
+        };
+        assert!(found.iter().any(names), "{found:?}");
+        let mut damaged = right.clone();
+        let other =
+            |class| if class == Class::Interior { Class::Exterior } else { Class::Interior };
+        let cells = right.complex.cells.clone().into_iter().enumerate();
+        damaged.complex.cells = cells
+            .map(|(k, (row, class))| (row, if k == at { other(class) } else { class }))
+            .collect();
+        let row = right.complex.cells.rows()[at];
+        let found = findings(&damaged);
+        let named = found.iter().filter(|finding| matches!(finding, Finding::Class { simplex, .. } if simplex.vertices() == row));
+        assert_eq!(named.count(), 1, "{found:?}");
+    }
+    let mut damaged = right.clone();
+    damaged.periodic = Some([sides[0] + 1.0, sides[1], sides[2]]);
+    assert!(!findings(&damaged).is_empty());
+    let mut damaged = right.clone();
+    damaged.periodic = Some([2.0, sides[1], sides[2]]);
+    assert!(matches!(damaged.findings(), Err(CertifyError::NotInBox(_))));
+    let mut damaged = right;
+    damaged.complex.edges.rows_mut()[0] = [0, 40];
+    assert!(
+        findings(&damaged).iter().any(|finding| matches!(
+            finding,
+            Finding::LongEdge { .. } | Finding::MissingFace { .. }
+        ))
+    );
+}
+
+#[test]
+fn files_hold_the_box() {
+    let (points, sides) = dense(1);
+    let shape = shape(&points, sides, 0.3).unwrap();
+    let (mut json, mut npz) = (Vec::new(), Vec::new());
+    Json.write_any(&shape, &mut json).unwrap();
+    Npz.write_any(&shape, &mut npz).unwrap();
+    let json = PlacedComplex::try_from(ComplexFile::read_json(&json[..]).unwrap()).unwrap();
+    let npz =
+        PlacedComplex::try_from(ComplexFile::read_npz(std::io::Cursor::new(npz)).unwrap()).unwrap();
+    assert_eq!(json.periodic, Some(sides));
+    assert_eq!((&json, &json), (&npz, &placed_complex(&shape)));
+}
 
 fn points(folder: &std::path::Path) {
     let lines =

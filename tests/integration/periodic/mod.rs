@@ -1,17 +1,16 @@
 //! Shapes of a torus: against copies in space, against homology by matrices, and by the laws that only a
-//! torus has.
+//! torus has; filtrations, too.
 
-mod betti;
-mod check;
 #[cfg(feature = "cli")]
 mod command;
-mod copies;
-mod levels;
 mod oracle;
 
-use walpha::shape::{Engine, ShapeError, ShapeOptions, Torus};
+use walpha::ladder::Filtration;
+use walpha::shape::{Betti, Engine, Measures, ShapeError, ShapeOptions, Torus, Void};
 use walpha::{Alpha, AlphaShape, WeightedPoints, alpha_shape};
 use walpha_base::random::Random;
+
+use oracle::{by_copies, homology};
 
 fn alpha(squared: f64) -> Alpha {
     Alpha::from_squared(squared).unwrap()
@@ -172,5 +171,253 @@ fn moving_all_points_changes_nothing() {
             assert_eq!(still.complex(), moved.complex(), "set {k}, moved by {by:?}");
             assert_eq!(still.betti(), moved.betti());
         }
+    }
+}
+
+#[test]
+fn voids_that_lie_across_the_sides_of_the_box() {
+    // A hollow about the corner of the box, another in its middle, and a pore along z.
+    let all = (0..1000).map(|i| [i % 10, i / 10 % 10, i / 100].map(f64::from));
+    let near = |p: [f64; 3], q: [f64; 3], r: f64| {
+        let away = |k: usize| (p[k] - q[k]).abs().min(10.0 - (p[k] - q[k]).abs());
+        (0..3).map(|k| away(k) * away(k)).sum::<f64>() <= r * r
+    };
+    let keep = |p: &[f64; 3]| {
+        !near(*p, [0.0; 3], 1.0) && *p != [5.0; 3] && !near([p[0], p[1], 0.0], [7.0, 2.0, 0.0], 1.0)
+    };
+    let points = unweighted(all.filter(keep).collect());
+    let options = options([10.0; 3], 0.75).exterior(true);
+    let shape = alpha_shape(points, &options).unwrap();
+    let voids = shape.voids().unwrap();
+    let [corner, middle] = voids[..] else { panic!("{voids:?}") };
+    assert_eq!((middle.low, middle.high), ([4.0; 3], [6.0; 3]));
+    assert_eq!((0..3).map(|k| corner.high[k] - corner.low[k]).collect::<Vec<_>>(), [4.0; 3]);
+    assert!((middle.volume - 4.0 / 3.0).abs() < 1e-12 && corner.volume > 8.0, "{voids:?}");
+    // Two voids and the pore are three parts of the complement, and the pore goes round once.
+    let betti = shape.betti().unwrap();
+    assert_eq!((betti.b2, betti.b3), (3 + 2 - 1, Some(0)));
+    assert_eq!(<Vec<u64>>::from(betti), homology(&shape));
+}
+
+#[test]
+fn betti_numbers_are_those_of_homology() {
+    let mut seen = std::collections::BTreeSet::new();
+    for (k, (points, sides)) in sets(200).enumerate() {
+        for squared in [0.25, 0.5, 0.75, 1.0, 1.5, 2.25, 4.0] {
+            let Ok(shape) = shape(&points, sides, squared) else { continue };
+            let Betti { b0, b1, b2, b3 } = shape.betti().unwrap();
+            let found = [b0, b1, b2, b3.unwrap()];
+            assert_eq!(found, homology(&shape), "set {k}, α = {squared}");
+            seen.insert(found);
+        }
+    }
+    assert!(seen.len() > 100 && seen.contains(&[1, 3, 3, 1]), "{}", seen.len());
+}
+
+#[test]
+fn a_lattice_covers_the_torus() {
+    for (basis, full, almost) in
+        [(&CUBIC[..], 0.75, 0.5), (&BCC, 0.3125, 0.28125), (&FCC, 0.25, 0.1875)]
+    {
+        let points = crystal([4, 5, 6], basis);
+        let whole = shape(&points, [4.0, 5.0, 6.0], full).unwrap();
+        assert_eq!(whole.betti(), Some(Betti { b0: 1, b1: 3, b2: 3, b3: Some(1) }));
+        assert_eq!(whole.measures().volume, 120.0);
+        assert_eq!((whole.measures().area, whole.complex().euler_characteristic()), (0.0, 0));
+        let open = shape(&points, [4.0, 5.0, 6.0], almost).unwrap();
+        let Betti { b0, b1, b2, b3 } = open.betti().unwrap();
+        assert_eq!([b0, b1, b2, b3.unwrap()], homology(&open));
+        assert_eq!(b3, Some(0));
+        // The holes of FCC are octahedra, four in each cell, which touch at vertices and edges.
+        if basis.len() == 4 {
+            assert_eq!(b2, 4 * 120 + 2);
+        }
+    }
+}
+
+/// What goes round has no end along that axis.
+#[test]
+fn boxes_of_rods_and_slabs_span_the_torus() {
+    let box_of = |keep: fn(&[f64; 3]) -> bool| {
+        let all = (0..480).map(|i| [i % 8, i / 8 % 10, i / 80].map(f64::from));
+        let shape = shape(&unweighted(all.filter(keep).collect()), [8.0, 10.0, 6.0], 0.75).unwrap();
+        let parts = shape.components();
+        assert_eq!(parts.len(), 1);
+        (parts[0].low, parts[0].high)
+    };
+    assert_eq!(box_of(|p| p[1] == 1.0 && p[2] == 5.0), ([0.0, 1.0, 5.0], [8.0, 1.0, 5.0]));
+    assert_eq!(box_of(|p| p[1] == 3.0), ([0.0, 3.0, 0.0], [8.0, 3.0, 6.0]));
+    assert_eq!(box_of(|_| true), ([0.0; 3], [8.0, 10.0, 6.0]));
+    assert_eq!(
+        box_of(|p| p[0] < 3.0 && p[2] == 0.0 && p[1] == 4.0),
+        ([0.0, 4.0, 0.0], [2.0, 4.0, 0.0])
+    );
+}
+
+#[test]
+fn things_that_go_round() {
+    let betti = |positions: Vec<[f64; 3]>, squared| {
+        let shape = shape(&unweighted(positions), [8.0; 3], squared).unwrap();
+        assert_eq!(<Vec<u64>>::from(shape.betti().unwrap()), homology(&shape));
+        let mut rounds: Vec<_> =
+            shape.components().iter().map(|part| part.rounds.unwrap()).collect();
+        rounds.sort_unstable();
+        (homology(&shape), rounds)
+    };
+    let all = || (0..512).map(|i| [i % 8, i / 8 % 8, i / 64].map(f64::from));
+    // A rod, a slab of one layer, three rods across each other, two slabs, and the torus less a ball.
+    let rod = all().filter(|p| p[1] == 1.0 && p[2] == 7.0).collect();
+    assert_eq!(betti(rod, 0.75), ([1, 1, 0, 0], vec![1]));
+    let slab = all().filter(|p| p[2] == 0.0).collect();
+    assert_eq!(betti(slab, 0.75), ([1, 2, 1, 0], vec![2]));
+    let rods = all().filter(|p| p.iter().filter(|&&x| x == 0.0).count() >= 2).collect();
+    assert_eq!(betti(rods, 0.75), ([1, 3, 0, 0], vec![3]));
+    let slabs = all().filter(|p| p[0] == 2.0 || p[0] == 5.0 || *p == [0.0; 3]).collect();
+    assert_eq!(betti(slabs, 0.75), ([3, 4, 2, 0], vec![0, 2, 2]));
+    let hole = all().filter(|p| *p != [0.0, 3.0, 7.0]).collect();
+    assert_eq!(betti(hole, 0.75), ([1, 3, 3, 0], vec![3]));
+    // A staircase that goes round in all directions at once is one loop.
+    let stairs = (0..24).map(|i| [(i + 2) / 3, (i + 1) / 3, i / 3].map(f64::from)).collect();
+    assert_eq!(betti(stairs, 0.25), ([1, 1, 0, 0], vec![1]));
+}
+
+#[test]
+fn simplices_are_those_of_copies_in_space() {
+    let (mut equal, mut refused) = (0, 0);
+    for (k, (points, sides)) in sets(48).enumerate() {
+        for squared in [0.5, 1.0, 2.25] {
+            let expected = by_copies(&points, sides, alpha(squared), false);
+            match (shape(&points, sides, squared), expected) {
+                (Ok(shape), Some(expected)) => {
+                    assert_eq!(*shape.complex(), expected, "set {k}, α = {squared}");
+                    equal += 1;
+                }
+                (Err(ShapeError::Wraps { .. }), None) => refused += 1,
+                (made, expected) => panic!("set {k}, α = {squared}: {made:?}, not {expected:?}"),
+            }
+        }
+    }
+    assert!(equal > 50 && refused > 10, "{equal} equal, {refused} refused");
+}
+
+#[test]
+fn whole_triangulations_are_those_of_copies_in_space() {
+    for seed in 0..12 {
+        let (points, sides) = dense(seed);
+        for squared in [0.2, 0.5, f64::INFINITY] {
+            let whole = options(sides, squared).exterior(true);
+            let whole = alpha_shape(points.clone(), &whole).unwrap();
+            let expected = by_copies(&points, sides, alpha(squared), true).unwrap();
+            assert_eq!(*whole.complex(), expected, "set {seed}, α = {squared}");
+            let vertices: Vec<u32> = expected.vertices.rows().iter().map(|&[v]| v).collect();
+            let hidden: Vec<u32> =
+                (0..points.len() as u32).filter(|v| !vertices.contains(v)).collect();
+            assert_eq!(whole.hidden(), Some(&hidden[..]));
+            assert_eq!(whole.complex().euler_characteristic(), chi(&whole));
+        }
+    }
+}
+
+/// Spheres across the gap are larger than those that a block looks for first.
+#[test]
+fn a_gap_is_looked_across() {
+    let (points, sides) = (crystal([12, 12, 8], &CUBIC), [12.0; 3]);
+    let all = options(sides, f64::INFINITY);
+    let whole = alpha_shape(points.clone(), &options(sides, 1.0).exterior(true)).unwrap();
+    assert!(*whole.complex() == by_copies(&points, sides, alpha(1.0), true).unwrap());
+    let expected = by_copies(&points, sides, alpha(f64::INFINITY), false).unwrap();
+    for blocks in [1, 3, 8] {
+        let cut = all.blocks(std::num::NonZeroUsize::new(blocks));
+        let shape = alpha_shape(points.clone(), &cut).unwrap();
+        assert!(*shape.complex() == expected, "{blocks}");
+    }
+}
+
+fn chi(shape: &AlphaShape) -> i64 {
+    let [b0, b1, b2, b3] = homology(shape).map(|b| b as i64);
+    b0 - b1 + b2 - b3
+}
+
+#[test]
+fn a_laid_out_shape_has_the_sizes_of_the_torus() {
+    for seed in 0..6 {
+        let (points, sides) = dense(seed);
+        let shape = shape(&points, sides, 0.3).unwrap();
+        let flat = shape.unwrapped();
+        assert_eq!(flat.complex().cells.len(), shape.complex().cells.len());
+        assert_eq!(flat.points().len(), shape.points().len() + flat.copies().len());
+        let [here, there] = [&shape, &flat]
+            .map(|s| Measures::of(s.complex(), &s.points().positions, s.options().periodic));
+        assert!((here.volume - there.volume).abs() < 1e-9 && (here.area - there.area).abs() < 1e-9);
+        let numbers = flat.component_numbers();
+        assert_eq!(&numbers[..shape.points().len()], shape.component_numbers());
+        for (at, &of) in flat.copies().iter().enumerate() {
+            assert_eq!(numbers[shape.points().len() + at], numbers[of as usize]);
+        }
+        let inside = |p: &[f64; 3]| (0..3).all(|k| p[k] >= 0.0 && p[k] < 1.5 * sides[k]);
+        assert!(flat.points().positions.iter().all(inside));
+    }
+}
+
+#[test]
+fn filtrations_hold_all_shapes_of_the_torus() {
+    for seed in 0..8 {
+        let (points, sides) = dense(seed);
+        let filtration = Filtration::on(Some(Torus::new(sides).unwrap()), points.clone()).unwrap();
+        let curve = filtration.curve();
+        for (k, squared) in curve.alphas().enumerate().step_by(1 + curve.len() / 12) {
+            let one = shape(&points, sides, squared).unwrap();
+            let taken = filtration.shape(alpha(squared));
+            assert_eq!(one.complex(), taken.complex(), "set {seed}, α = {squared}");
+            assert_eq!((one.betti(), one.betti()), (taken.betti(), Some(curve.betti[k])));
+            assert_eq!(one.measures(), taken.measures());
+            let whole = options(sides, squared).exterior(true);
+            let whole = alpha_shape(points.clone(), &whole).unwrap();
+            let levels = filtration.levels(&[alpha(squared)]);
+            assert_same_voids(&whole.voids().unwrap(), &levels.voids()[0]);
+        }
+        assert_eq!(curve.betti.last(), Some(&Betti { b0: 1, b1: 3, b2: 3, b3: Some(1) }));
+    }
+}
+
+/// The same voids, but for the rounding of their volumes.
+fn assert_same_voids(some: &[Void], others: &[Void]) {
+    let sorted = |voids: &[Void]| {
+        let mut voids = voids.to_vec();
+        voids.sort_by(|a, b| a.low.partial_cmp(&b.low).unwrap().then(a.cells.cmp(&b.cells)));
+        voids
+    };
+    let (some, others) = (sorted(some), sorted(others));
+    assert_eq!(some.len(), others.len());
+    for (a, b) in some.iter().zip(&others) {
+        assert!((a.volume - b.volume).abs() < 1e-12);
+        assert_eq!(Void { volume: 0.0, ..*a }, Void { volume: 0.0, ..*b });
+    }
+}
+
+#[test]
+fn persistence_pairs_of_a_torus() {
+    for seed in 0..8 {
+        let (points, sides) = dense(seed);
+        let filtration = Filtration::on(Some(Torus::new(sides).unwrap()), points).unwrap();
+        let ordered = filtration.simplices().unwrap();
+        let pairs = ordered.pairs();
+        assert_eq!((pairs.lasting.len(), pairs.lasting_voids.len()), (1, 3));
+        assert_eq!(pairs.voids.len() + 1, ordered.count(3));
+        // What is born and has not died is what the Betti numbers count.
+        let rank = |number: u32| ordered.simplex(number).rank;
+        for (at, betti) in ordered.betti_curve().iter().enumerate() {
+            let there = |&[from, to]: &[u32; 2]| rank(from) <= at as u32 && (at as u32) < rank(to);
+            let come = |number: &u32| rank(*number) <= at as u32;
+            let b0 = pairs.components.iter().filter(|pair| there(pair)).count()
+                + pairs.lasting.iter().filter(|v| come(v)).count();
+            let b2 = pairs.voids.iter().filter(|pair| there(pair)).count()
+                + pairs.lasting_voids.iter().filter(|facet| come(facet)).count();
+            let b3 = pairs.last.iter().filter(|cell| come(cell)).count();
+            assert_eq!([b0, b2, b3].map(|b| b as u64), [betti.b0, betti.b2, betti.b3.unwrap()]);
+        }
+        // Faces never come after what they are faces of.
+        let values: Vec<u32> = ordered.iter().map(|entry| entry.rank).collect();
+        assert!(values.is_sorted());
     }
 }

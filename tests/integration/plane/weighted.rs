@@ -1,12 +1,13 @@
-//! Weighted shapes of the plane.
+//! Weighted shapes of the plane, against the union of discs computed without a triangulation.
 
 use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 
 use proptest::prelude::*;
 use walpha::Class;
-use walpha::reproduce::plane::Piece;
+use walpha::reproduce::plane::{Arc, OutlinePiece};
 
-use super::{lattice, places, union, weighted};
+use super::{lattice, places, weighted};
 
 #[test]
 fn points_on_a_line_have_cells_and_a_shape() {
@@ -61,14 +62,14 @@ fn union_agrees(points: &[[f64; 2]], weights: &[f64], alpha: f64) {
     let shape = weighted(points, weights, alpha);
     // Of discs around one place the first of the largest counts.
     let gone: BTreeSet<u32> = shape.duplicates().iter().map(|pair| pair[0]).collect();
-    let discs: Vec<union::Disc> = (points.iter().zip(shape.radii()).enumerate())
+    let discs: Vec<Disc> = (points.iter().zip(shape.radii()).enumerate())
         .filter(|(k, _)| !gone.contains(&(*k as u32)))
         .filter_map(|(_, (&centre, radius))| Some((centre, radius?)))
         .collect();
-    let outline = union::outline(&discs);
-    assert_eq!(shape.complex().betti(), union::betti(&outline), "{points:?} {weights:?} {alpha}");
-    assert_eq!(union::betti(&shape.outline()), union::betti(&outline));
-    let (ours, theirs) = (union::length(&shape.outline()), union::length(&outline));
+    let outline = outline(&discs);
+    assert_eq!(shape.complex().betti(), betti(&outline), "{points:?} {weights:?} {alpha}");
+    assert_eq!(betti(&shape.outline()), betti(&outline));
+    let (ours, theirs) = (length(&shape.outline()), length(&outline));
     assert!((ours - theirs).abs() < 1e-6 * theirs.max(1.0), "{ours} {theirs}");
 
     let cells = shape.cells();
@@ -76,8 +77,8 @@ fn union_agrees(points: &[[f64; 2]], weights: &[f64], alpha: f64) {
         let starts = cell.boundary.iter().map(|piece| piece.ends()[0]).cycle().skip(1);
         assert!(cell.boundary.iter().zip(starts).all(|(piece, next)| piece.ends()[1] == next));
     }
-    let tiles: f64 = cells.iter().flat_map(|cell| &cell.boundary).map(union::area_under).sum();
-    let whole: f64 = outline.iter().map(|&arc| union::area_under(&Piece::Arc(arc))).sum();
+    let tiles: f64 = cells.iter().flat_map(|cell| &cell.boundary).map(area_under).sum();
+    let whole: f64 = outline.iter().map(|&arc| area_under(&OutlinePiece::Arc(arc))).sum();
     assert!((tiles - whole).abs() < 1e-6 * whole.max(1.0), "{tiles} {whole}");
 }
 
@@ -148,4 +149,93 @@ fn belongs(points: &[[f64; 2]], weights: &[f64], alpha: f64, simplex: &[u32]) ->
             let (e, t) = ray(v);
             t >= centre[0] * e[0] + centre[1] * e[1]
         })
+}
+
+/// A disc: centre and radius.
+pub type Disc = ([f64; 2], f64);
+
+/// The arcs of each circle that no other disc covers, found from all pairs of discs.
+pub fn outline(discs: &[Disc]) -> Vec<Arc> {
+    let mut arcs = Vec::new();
+    for (i, &(centre, radius)) in discs.iter().enumerate() {
+        let at = |angle: f64| {
+            let (sin, cos) = angle.sin_cos();
+            [centre[0] + radius * cos, centre[1] + radius * sin]
+        };
+        let mut ends = Vec::new();
+        for (j, &(other, reach)) in discs.iter().enumerate() {
+            let (dx, dy) = (other[0] - centre[0], other[1] - centre[1]);
+            let apart = dx.hypot(dy);
+            if j != i && apart < radius + reach && apart > (radius - reach).abs() {
+                let cos =
+                    (apart * apart + radius * radius - reach * reach) / (2.0 * apart * radius);
+                let (middle, spread) = (dy.atan2(dx), cos.acos());
+                ends.extend([middle - spread, middle + spread].map(|end| end.rem_euclid(TAU)));
+            }
+        }
+        ends.sort_by(f64::total_cmp);
+        let free = |angle: f64| {
+            let place = at(angle);
+            discs.iter().enumerate().all(|(j, &(other, reach))| {
+                j == i || (place[0] - other[0]).hypot(place[1] - other[1]) > reach
+            })
+        };
+        let arc = |start, end| Arc { centre, radius, start, end, counter_clockwise: true };
+        match ends.first() {
+            None if free(0.0) => arcs.push(arc(at(0.0), at(0.0))),
+            None => {}
+            Some(&first) => {
+                let next = ends.iter().copied().skip(1).chain([first + TAU]);
+                let pieces = ends.iter().copied().zip(next);
+                let free = pieces.filter(|&(from, to)| free(f64::midpoint(from, to)));
+                arcs.extend(free.map(|(from, to)| arc(at(from), at(to))));
+            }
+        }
+    }
+    arcs
+}
+
+/// Components and holes of a region bounded by arcs that have it on their left: loops around it,
+/// which enclose a positive area, and loops inside it.
+pub fn betti(arcs: &[Arc]) -> [u64; 2] {
+    let mut used = vec![false; arcs.len()];
+    let mut count = [0, 0];
+    for first in 0..arcs.len() {
+        if used[first] {
+            continue;
+        }
+        let (mut at, mut area) = (first, 0.0);
+        loop {
+            used[at] = true;
+            area += area_under(&OutlinePiece::Arc(arcs[at]));
+            let end = arcs[at].end;
+            let gap = |k: &usize| (arcs[*k].start[0] - end[0]).hypot(arcs[*k].start[1] - end[1]);
+            at = (0..arcs.len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap();
+            assert!(gap(&at) < 1e-6, "the outline is torn: a gap of {}", gap(&at));
+            if at == first {
+                break;
+            }
+            assert!(!used[at], "two arcs end in one");
+        }
+        count[usize::from(area < 0.0)] += 1;
+    }
+    count
+}
+
+/// Half the integral of x dy − y dx along a piece; around a region it sums to the area.
+pub fn area_under(piece: &OutlinePiece) -> f64 {
+    let arc = match piece {
+        OutlinePiece::Segment([a, b]) => return (a[0] * b[1] - a[1] * b[0]) / 2.0,
+        OutlinePiece::Arc(arc) => arc,
+    };
+    let (from, sweep) = (arc.start_angle(), arc.sweep());
+    let to = from + sweep;
+    let [x, y] = arc.centre;
+    let r = arc.radius;
+    (r * r * sweep + r * x * (to.sin() - from.sin()) - r * y * (to.cos() - from.cos())) / 2.0
+}
+
+/// The sum of lengths.
+pub fn length(arcs: &[Arc]) -> f64 {
+    arcs.iter().map(|arc| arc.radius * arc.sweep().abs()).sum()
 }

@@ -15,7 +15,7 @@ use walpha::{
     Alpha, Coordinates, Dims, Frame, GrayRange, LengthUnit, Space, Units, WeightedPoints,
 };
 
-use crate::common::told::Told;
+use crate::common::Told;
 
 fn written(points: &WeightedPoints, facts: &ModelFacts, packing: Packing) -> Vec<u8> {
     let mut bytes = Vec::new();

@@ -170,7 +170,7 @@ fn volume(
     asking(|| samples.try_reserve_exact(dims.samples())).map_err(|_| {
         let bytes = dims.samples() * size_of::<f32>();
         let reason = Reason::unsupported(
-            format!("needs {bytes} bytes of memory, which cannot be had"),
+            format!("needs {bytes} bytes of memory, more than is available"),
             "crop it first",
         );
         format_error(path, reason)

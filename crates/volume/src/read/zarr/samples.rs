@@ -200,7 +200,7 @@ impl ArrayReader<'_> {
             let bytes = dims.samples() * size_of::<f32>();
             fail(Reason::choice(
                 Setting::Level,
-                format!("needs {bytes} bytes of memory, which cannot be had"),
+                format!("needs {bytes} bytes of memory, more than is available"),
                 advice!["choose a coarser ", Setting::Level],
             ))
         })?;

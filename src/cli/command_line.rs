@@ -1,0 +1,98 @@
+//! The options that were typed: those without effect are refused, and inputs are kept from being overwritten.
+
+use std::fmt;
+use std::path::Path;
+
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+use walpha_files::keep_input;
+
+use super::config;
+use super::errors::{CommandError, fail_usage};
+use crate::volume::files_of;
+
+/// The names of the options that the user gave on the command line; those of a file of `--config` are
+/// for all inputs, and need not fit this one.
+///
+/// It must be the first field that a command parses: others take their values out of the matches.
+#[derive(Clone, Debug, Default)]
+pub(super) struct TypedOptions(Vec<String>);
+
+impl TypedOptions {
+    /// Refuses options that would have no effect; `why` follows their names.
+    pub(super) fn refuse(
+        &self,
+        names: &[impl AsRef<str>],
+        why: impl fmt::Display,
+    ) -> Result<(), CommandError> {
+        let wanted = self.0.iter().filter(|given| names.iter().any(|name| name.as_ref() == *given));
+        let options: Vec<String> =
+            wanted.map(|name| format!("--{}", name.replace('_', "-"))).collect();
+        match &options[..] {
+            [] => Ok(()),
+            [one] => fail_usage!("{one} has no effect: {why}" => "omit it"),
+            several => {
+                let names = several.join(", ");
+                fail_usage!("{names} have no effect: {why}" => "omit them")
+            }
+        }
+    }
+}
+
+impl FromArgMatches for TypedOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let typed = |name: &str| {
+            matches.value_source(name) == Some(ValueSource::CommandLine) && !config::has_set(name)
+        };
+        let names = matches.ids().map(|id| id.as_str().to_owned());
+        Ok(Self(names.filter(|name| typed(name)).collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for TypedOptions {
+    fn augment_args(command: Command) -> Command {
+        command
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        command
+    }
+}
+
+/// Options that name files to read, as arguments without a name do.
+const READ: [&str; 2] = ["input", "points"];
+/// Options that name files to write.
+const WRITTEN: [&str; 3] = ["output", "out", "mask"];
+/// The option that allows it.
+const IN_PLACE: &str = "in_place";
+
+/// Keeps all that a command line names as inputs from being replaced by an output.
+pub(super) fn keep(command: &Command, matches: &ArgMatches) -> anyhow::Result<()> {
+    let (mut command, mut matches, mut name) = (command, matches, String::from("walpha"));
+    while let Some((of, inner)) = matches.subcommand()
+        && let Some(subcommand) = command.find_subcommand(of)
+    {
+        (command, matches) = (subcommand, inner);
+        name = format!("{name} {of}");
+    }
+    let args = || command.get_arguments();
+    if matches.get_flag(IN_PLACE) {
+        let typed = matches.value_source(IN_PLACE) == Some(ValueSource::CommandLine);
+        let writes = args().any(|arg| WRITTEN.contains(&arg.get_id().as_str()));
+        if typed && !config::has_set(IN_PLACE) && !writes {
+            fail_usage!("--in-place has no effect: `{name}` writes no file that it is given" => "omit it");
+        }
+        return Ok(());
+    }
+    let is_read = |id: &str, is_positional: bool| is_positional || READ.contains(&id);
+    for arg in args().filter(|arg| is_read(arg.get_id().as_str(), arg.is_positional())) {
+        let values = matches.try_get_raw(arg.get_id().as_str()).ok().flatten();
+        values.into_iter().flatten().for_each(|value| keep_input(Path::new(value), files_of));
+    }
+    Ok(())
+}

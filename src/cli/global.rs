@@ -1,0 +1,46 @@
+//! Options and exit codes that all commands share.
+
+use clap::Args;
+
+/// Options of every command.
+#[derive(Args, Clone, Copy, Default)]
+#[command(next_help_heading = EVERY_COMMAND)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an answer of its own")]
+pub(super) struct Global {
+    /// Print one JSON object instead of text.
+    #[arg(long, global = true)]
+    pub(super) json: bool,
+    /// Print nothing but errors (and JSON, if asked for).
+    #[arg(short, long, global = true)]
+    pub(super) quiet: bool,
+    /// Log to standard error what is being done.
+    #[arg(short, long, global = true, conflicts_with = "quiet")]
+    pub(super) verbose: bool,
+    /// Number of threads, at most four per processor; results do not depend on it [default: one per
+    /// processor, or one for each process that mpirun starts].
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(super) threads: Option<u16>,
+    /// Let outputs replace inputs, or what is in the working folder of a plan.
+    #[arg(long, global = true)]
+    pub(super) in_place: bool,
+    /// Whether a file goes to standard output.
+    #[arg(skip)]
+    pub(super) piped: bool,
+}
+
+/// Heading of the options that all commands share.
+pub(super) const EVERY_COMMAND: &str = "Every command";
+/// Exit code of a failure.
+pub(super) const FAILURE: u8 = 1;
+/// Exit code of wrong arguments.
+pub(super) const USAGE: u8 = 2;
+/// Exit code of a panic, as Rust has it.
+pub(super) const PANICKED: u8 = 101;
+/// Exit code after a broken pipe, as shells have it for the signal PIPE.
+pub(super) const UNREAD: u8 = 141;
+/// Exit code of a check or comparison that found differences.
+pub(super) const DIFFERENT: u8 = 3;
+/// Stack of a thread in bytes, as in rayon.
+pub(super) const STACK: usize = 2 << 20;
+/// Exit code after Ctrl-C, as shells have it.
+pub(super) const INTERRUPTED: i32 = 130;

@@ -1,0 +1,244 @@
+//! From INPUT to weighted points and shapes, as all commands go.
+
+use std::fmt::{self, Display};
+use std::path::Path;
+
+use serde::Serialize;
+use walpha_base::Monitor;
+
+use super::args::{self, InputArgs};
+use super::errors::{CommandError, command_error, is_usage, reasons};
+use super::progress::Progress;
+use crate::export::Scratch;
+use crate::interpolate::{InterpolateError, fill_monitored};
+use crate::ladder::{Curve, Filtration};
+use crate::pipeline::{Input, Model, PipelineError, Source, Values, Weighed};
+use crate::points::ModelFacts;
+use crate::progress::Stage;
+use crate::shape::{ShapeError, Torus};
+use crate::volume::Reason;
+use crate::{
+    Alpha, AlphaShape, GrayRange, LengthUnit, PointsError, Recipe, Units, Volume, VolumeError,
+};
+
+/// Reported numbers of a volume.
+#[derive(Clone, Copy)]
+pub(super) struct VolumeSummary {
+    pub dims: [usize; 3],
+    /// The volume of the samples' box.
+    pub extent: f64,
+    pub range: GrayRange,
+    pub written: GrayRange,
+}
+
+impl VolumeSummary {
+    pub(super) fn of(source: &Source) -> Self {
+        let Source { volume, units, range, written, .. } = source;
+        let extent = box_volume(volume, *units);
+        Self { dims: volume.dims().xyz(), extent, range: *range, written: *written }
+    }
+}
+
+/// Steps 1 to 7: reads INPUT and makes weighted points of it, with the values that are written.
+pub(super) fn weighted_points(
+    args: &InputArgs,
+    recipe: &Recipe,
+    progress: &mut Progress,
+) -> anyhow::Result<(Weighed, Option<VolumeSummary>)> {
+    let (weighed, source) = points_and_volume(args, recipe, Values::Written, progress)?;
+    Ok((weighed, source.as_ref().map(VolumeSummary::of)))
+}
+
+/// Weighted points, and the volume they were selected from.
+pub(super) fn points_and_volume(
+    args: &InputArgs,
+    recipe: &Recipe,
+    values: Values,
+    progress: &mut Progress,
+) -> anyhow::Result<(Weighed, Option<Source>)> {
+    let read = read(args, recipe, progress)?;
+    accept(&read, args)?;
+    Ok(progress.watch(|monitor| recipe.weigh(read, values, monitor))?)
+}
+
+/// Everything a model file stores besides its points, except their order.
+pub(super) fn model_facts(weighed: &Weighed, volume: Option<&VolumeSummary>) -> ModelFacts {
+    let origin = weighed.origin;
+    ModelFacts {
+        grid: origin.grid,
+        coordinates: origin.coordinates,
+        alpha: weighed.parameter.map(|parameter| parameter.alpha),
+        range: volume.map(|volume| volume.written).or(origin.range),
+        recipe: weighed.recipe.clone(),
+        order: None,
+        cell: None,
+    }
+}
+
+/// The shape of weighted points.
+pub(super) fn shape(
+    weighed: Weighed,
+    recipe: &Recipe,
+    progress: &mut Progress,
+) -> anyhow::Result<Model> {
+    progress.watch(|monitor| recipe.finish(weighed, monitor)).map_err(|error| match &error {
+        PipelineError::Radii { .. } => CommandError::usage_of(&error).into(),
+        _ => error.into(),
+    })
+}
+
+/// All shapes of weighted points with the weights that they have; of a torus, if there is one.
+pub(super) fn filtration(
+    torus: Option<Torus>,
+    weighed: &Weighed,
+    monitor: &Monitor,
+) -> Result<Filtration, ShapeError> {
+    Stage::Filtration.begin(monitor)?;
+    Filtration::monitored(torus, weighed.points.clone(), monitor)
+}
+
+/// Readable critical values, those suggested, and the α that the weights are meant for.
+pub(super) fn readable(
+    filtration: &Filtration,
+    curve: &Curve,
+    count: usize,
+    reference: Alpha,
+) -> Vec<Alpha> {
+    let mut alphas = filtration.readable(curve, count);
+    alphas.push(reference);
+    alphas.extend(suggested(filtration, curve));
+    alphas
+}
+
+/// The suggested values of α that are finite.
+pub(super) fn suggested(filtration: &Filtration, curve: &Curve) -> Vec<Alpha> {
+    let suggested = filtration.suggest(curve);
+    let [low, high] = suggested.plateau;
+    let also = [suggested.all_points, suggested.one_region, suggested.no_void, low, high];
+    also.into_iter().filter(|alpha| alpha.squared().is_finite()).collect()
+}
+
+/// Reads INPUT.
+pub(super) fn read(
+    args: &InputArgs,
+    recipe: &Recipe,
+    progress: &mut Progress,
+) -> anyhow::Result<Input> {
+    let monitor = progress.monitor();
+    progress.stage(Stage::Read, || {
+        with_file(args, |input| {
+            recipe.open(input, &monitor).map_err(|error| match error {
+                PipelineError::Points(PointsError::File(error)) => with_points(error),
+                error => error.into(),
+            })
+        })
+    })
+}
+
+/// Adds the formats of points to the error for a file of no format known.
+pub(super) fn with_points(error: VolumeError) -> anyhow::Error {
+    if !matches!(error, VolumeError::Format { reason: Reason::Unknown { .. }, .. }) {
+        return error.into();
+    }
+    let names: Vec<&str> = crate::points::FORMATS.iter().map(|format| format.name).collect();
+    let said = CommandError::from(error);
+    CommandError { why: format!("{}, {} as points", said.why, names.join(", ")), ..said }.into()
+}
+
+/// Does something with INPUT as a file or the name of a sample. Standard input becomes a file for that
+/// time: formats are read in several passes.
+pub(super) fn with_file<T>(
+    args: &InputArgs,
+    work: impl FnOnce(&Path) -> anyhow::Result<T>,
+) -> anyhow::Result<T> {
+    args.check_format()?;
+    if !args.input.is_stdin() {
+        return work(args.input.path());
+    }
+    let file = Scratch::of(&mut std::io::stdin().lock(), &args.extension()).map_err(
+        |error| command_error!("cannot read standard input: {error}" => "name a file instead"),
+    )?;
+    let path = file.path().to_string_lossy().into_owned();
+    // Nobody knows the name of that file.
+    work(file.path()).map_err(|error| {
+        let (why, next) = reasons(&error);
+        let named = |text: String| text.replace(&path, "standard input");
+        let usage = is_usage(&error);
+        CommandError { why: named(why), next: next.map(named), usage }.into()
+    })
+}
+
+/// Refuses options that have no effect on what INPUT is.
+pub(super) fn accept(input: &Input, args: &InputArgs) -> Result<(), CommandError> {
+    let holds = |what| format!("{} holds {what}", args.input);
+    match input {
+        Input::Volume(..) => args.typed.refuse(&["columns"], holds("a volume")),
+        Input::Points(_, facts) => {
+            let what = holds("points, and no volume");
+            if facts.range.is_none() {
+                args.typed.refuse(&["gray_out"], &what)?;
+            }
+            args.typed.refuse(&args::of_volumes(), what)
+        }
+    }
+}
+
+/// The volume that coverage is a share of.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct Domain {
+    pub volume: f64,
+    /// Unit of length; the volume is in its cube.
+    pub unit: LengthUnit,
+    /// The region measured.
+    pub of: &'static str,
+}
+
+impl Domain {
+    /// The box between the outermost samples of a grid.
+    pub(super) fn of_grid(volume: &Volume, units: Units) -> Self {
+        let unit = units.coordinates(volume).unit;
+        Self { volume: box_volume(volume, units), unit, of: "the box of the samples" }
+    }
+}
+
+impl Display for Domain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, volume {} {}³", self.of, self.volume, self.unit.symbol())
+    }
+}
+
+/// The domain of weighted points: that of the grid they come from, or their own box.
+pub(super) fn domain(weighed: &Weighed, volume: Option<&VolumeSummary>) -> Domain {
+    let unit = weighed.origin.coordinates.unit;
+    if let Some(volume) = volume {
+        return Domain { volume: volume.extent, unit, of: "the box of the samples" };
+    }
+    let extent = |k: usize| {
+        let ends = (weighed.points.positions.iter())
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| [l.min(p[k]), h.max(p[k])]);
+        ends[1] - ends[0]
+    };
+    Domain { volume: extent(0) * extent(1) * extent(2), unit, of: "the box of the points" }
+}
+
+/// The box between the outermost samples.
+pub(super) fn box_volume(volume: &Volume, units: Units) -> f64 {
+    let steps: f64 = volume.dims().xyz().map(|n| (n - 1) as f64).iter().product();
+    steps * units.voxel_volume(volume)
+}
+
+/// A shape of a volume's points filled in, and the gray levels of its points, of which the first are given:
+/// the shape may have other values.
+pub(super) fn filled_in(
+    shape: &AlphaShape,
+    grays: &[f64],
+    volume: &Volume,
+    units: Units,
+    monitor: &Monitor,
+) -> Result<(AlphaShape, Vec<f64>), InterpolateError> {
+    let whole = fill_monitored(shape, Some(volume), units, monitor)?;
+    // The corners follow the points, in gray levels already.
+    let corners = whole.points().values.iter().flatten().skip(grays.len());
+    let all = grays.iter().chain(corners).copied().collect();
+    Ok((whole, all))
+}

@@ -1,0 +1,176 @@
+//! Processes that a launcher such as mpirun started for one command.
+
+use std::ffi::OsString;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+use super::errors::{self, CommandError, command_error};
+use super::global::{PANICKED, USAGE};
+use crate::outofcore::{Alone, Team};
+
+/// Which process this is of how many.
+pub(super) enum Ranks {
+    /// The only process.
+    Single,
+    /// One of several that were started for one command, which cannot talk to each other. All but the first have
+    /// nothing to do.
+    Unconnected(Launched),
+    /// One of several that share the work.
+    #[cfg(feature = "mpi")]
+    Connected(super::mpi::World),
+}
+
+/// Rank and size that a launcher set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Launched {
+    rank: usize,
+    size: usize,
+    /// The variable that says how many there are.
+    variable: &'static str,
+}
+
+/// Where launchers say how many processes they started, and which this is.
+const VARIABLES: [[&str; 2]; 4] = [
+    // Open MPI.
+    ["OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"],
+    // MPICH, Intel MPI, and Slurm for these.
+    ["PMI_SIZE", "PMI_RANK"],
+    ["MV2_COMM_WORLD_SIZE", "MV2_COMM_WORLD_RANK"],
+    // srun; what sbatch sets in its script has other names.
+    ["SLURM_STEP_NUM_TASKS", "SLURM_PROCID"],
+];
+
+impl Launched {
+    /// Rank and size from the environment, if there is more than one process.
+    fn of(variable: impl Fn(&str) -> Option<OsString>) -> Option<Self> {
+        let number = |name: &str| variable(name)?.to_str()?.trim().parse::<usize>().ok();
+        let launched = VARIABLES.iter().filter_map(|[size, rank]| {
+            Some(Self { rank: number(rank)?, size: number(size)?, variable: size })
+        });
+        launched.into_iter().find(|launched| launched.size > 1)
+    }
+
+    /// Why the command cannot be run by so many.
+    fn refusal(self, command: &str) -> CommandError {
+        let Self { size, variable, .. } = self;
+        let each = format!("unset {variable} where each process is to work on its own");
+        let said = if command != SHARED {
+            command_error!("{size} processes were started, and would all do the same: of the commands only {SHARED} can be shared" => "start one process, or {each}")
+        } else if cfg!(feature = "mpi") {
+            command_error!("{size} processes were started, but not by the MPI that this walpha was built with" => "start it with the mpirun of that MPI, or build it again; {each}")
+        } else {
+            command_error!("{size} processes were started, and this walpha was built without MPI, so that all would write the same files" => "build it with `cargo install --features mpi`, or start one process; {each}")
+        };
+        CommandError { usage: true, ..said }
+    }
+}
+
+/// The command that several processes share.
+const SHARED: &str = "walpha shape";
+/// The command whose steps are for processes on their own.
+const SINGLE: &str = "walpha blocks";
+
+impl Ranks {
+    /// Finds out how this process was started to run a command, and begins to talk to the others.
+    pub(super) fn find(command: &str) -> Self {
+        match Launched::of(|name| std::env::var_os(name)) {
+            Some(launched) if command != SINGLE => Self::of(launched, command),
+            _ => Self::Single,
+        }
+    }
+
+    #[cfg(feature = "mpi")]
+    fn of(launched: Launched, command: &str) -> Self {
+        let world = if command == SHARED { super::mpi::World::start() } else { None };
+        match world {
+            Some(world) if world.size() == launched.size => Self::Connected(world),
+            _ => Self::Unconnected(launched),
+        }
+    }
+
+    #[cfg(not(feature = "mpi"))]
+    fn of(launched: Launched, _: &str) -> Self {
+        Self::Unconnected(launched)
+    }
+
+    /// The processes that share the work.
+    pub(super) fn team(&self) -> &dyn Team {
+        match self {
+            Self::Single | Self::Unconnected(_) => &Alone,
+            #[cfg(feature = "mpi")]
+            Self::Connected(world) => world,
+        }
+    }
+
+    /// Runs the command line in the first process, while the others serve it. What fails or panics ends all;
+    /// `lead` gives the exit code of a failure as its error.
+    pub(super) fn run(
+        &self,
+        command: &str,
+        lead: impl FnOnce() -> Result<ExitCode, u8>,
+        serve: impl FnOnce() -> anyhow::Result<()>,
+    ) -> ExitCode {
+        let is_first = self.team().rank() == 0;
+        if let Self::Unconnected(launched) = self {
+            if launched.rank > 0 {
+                return ExitCode::SUCCESS;
+            }
+            errors::print_error(command, &launched.refusal(command).into());
+            return ExitCode::from(USAGE);
+        }
+        let done = if is_first {
+            catch_unwind(AssertUnwindSafe(lead))
+        } else {
+            catch_unwind(AssertUnwindSafe(|| {
+                serve().map(|()| ExitCode::SUCCESS).map_err(|error| self.tell(command, &error))
+            }))
+        };
+        match done {
+            Ok(Ok(code)) => code,
+            Ok(Err(code)) => self.end(code),
+            // Its message is on standard error already.
+            Err(_) => self.end(PANICKED),
+        }
+    }
+
+    /// Reports a failure in a process that is not the first, and returns its exit code.
+    fn tell(&self, command: &str, error: &anyhow::Error) -> u8 {
+        /// What fails everywhere is reported by the first process, which ends all others meanwhile.
+        const PATIENCE: std::time::Duration = std::time::Duration::from_secs(2);
+        std::thread::sleep(PATIENCE);
+        errors::print_error(&format!("{command} (rank {})", self.team().rank()), error);
+        errors::exit_code(error)
+    }
+
+    /// Ends all processes.
+    fn end(&self, code: u8) -> ExitCode {
+        match self {
+            #[cfg(feature = "mpi")]
+            Self::Connected(world) => world.abort(code),
+            _ => ExitCode::from(code),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn launched(variables: &[(&str, &str)]) -> Option<(usize, usize)> {
+        let value = |name: &str| variables.iter().find(|(known, _)| *known == name);
+        let launched = Launched::of(|name| value(name).map(|(_, value)| value.into()));
+        launched.map(|launched| (launched.rank, launched.size))
+    }
+
+    #[test]
+    fn launchers_are_recognised() {
+        assert_eq!(launched(&[]), None);
+        let one = [("OMPI_COMM_WORLD_SIZE", "1"), ("OMPI_COMM_WORLD_RANK", "0")];
+        assert_eq!(launched(&one), None);
+        assert_eq!(launched(&[("PMI_SIZE", "8"), ("PMI_RANK", "3")]), Some((3, 8)));
+        // srun, which may speak no dialect of MPI; and a script of sbatch, which is one process.
+        let step = [("SLURM_NTASKS", "4"), ("SLURM_STEP_NUM_TASKS", "4"), ("SLURM_PROCID", "2")];
+        assert_eq!(launched(&step), Some((2, 4)));
+        assert_eq!(launched(&[("SLURM_NTASKS", "4"), ("SLURM_PROCID", "0")]), None);
+    }
+}

@@ -1,0 +1,267 @@
+//! `walpha shape`: the whole pipeline, and its outputs.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use walpha_base::shown::shown;
+use walpha_files::Working;
+
+use super::args::{OutputArgs, PeriodicArgs, PipelineArgs, ShapeArgs};
+use super::errors::{fail_usage, option};
+use super::formats::shape_output;
+use super::global::Global;
+use super::output::{print_summary, remark};
+use super::picture::PictureArgs;
+use super::progress::Progress;
+use super::report::Report;
+use super::shape_in_blocks::{self, SharedWork};
+use super::{blocks, pipeline};
+use crate::export::{
+    Content, ExportOptions, Exporter, FORMATS, Format, Target, TargetError, write_all,
+};
+use crate::outofcore::{BlockwiseFormat, Team};
+use crate::points::{ModelFacts, Packing, PointWriter};
+use crate::progress::Stage;
+use crate::volume::UnknownFormat;
+use crate::{AlphaShape, Recipe};
+
+/// Compute the weighted alpha shape of a volume or of points.
+///
+/// Examples:
+///
+/// walpha shape ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.ply
+///
+/// walpha shape sample:skull --weights min-max --alpha 10 -o skull.ply skull.vtu
+///
+/// walpha shape scan.xyz --alpha auto --solid -o scan.stl
+///
+/// walpha shape foam.xyz --periodic 20,20,20 --alpha 1.5 -o foam.npz foam.vtu
+#[derive(Args)]
+pub(super) struct Shape {
+    #[arg(short, long, value_name = "FILE", num_args = 1.., help = shape_output())]
+    output: Vec<PathBuf>,
+    /// Write PLY as text instead of binary.
+    #[arg(long)]
+    ascii: bool,
+    /// Write boundaries as solids, for 3D printing or meshing: only regular facets, closed, oriented, and
+    /// cut apart where parts touch along edges or at vertices.
+    #[arg(long)]
+    solid: bool,
+    /// Distinguish regular and singular facets, which some programs do not expect: by groups (OBJ),
+    /// colours (OFF) or numbers (PLY, with components and sheets).
+    #[arg(long)]
+    groups: bool,
+    /// Refuse points that span no volume; without it those in one plane or on one line get the shape
+    /// that they have there: triangles or edges, and no cells.
+    #[arg(long, value_name = "3", value_parser = clap::value_parser!(u8).range(3..=3))]
+    dimension: Option<u8>,
+    #[command(flatten)]
+    pipeline: PipelineArgs,
+    #[command(flatten)]
+    shape: ShapeArgs,
+    #[command(flatten)]
+    periodic: PeriodicArgs,
+    #[command(flatten)]
+    format: OutputArgs,
+    #[command(flatten)]
+    picture: PictureArgs,
+}
+
+/// Refuses a switch that has no effect.
+fn unused(name: &str, given: bool, why: &str) -> anyhow::Result<()> {
+    if given {
+        fail_usage!("{name} has no effect: {why}" => "omit it");
+    }
+    Ok(())
+}
+
+impl Shape {
+    /// The options of all stages; refuses those that no output has a use for.
+    fn recipe(&self) -> anyhow::Result<Recipe> {
+        let input = &self.pipeline.input;
+        self.format.check(self.output.iter())?;
+        let names: Vec<PathBuf> =
+            self.output.iter().map(|path| self.format.named(path)).collect::<Result<_, _>>()?;
+        let written =
+            |has: fn(&Format) -> bool| names.iter().any(|name| Format::of(name).is_ok_and(has));
+        let known = |has: fn(&Format) -> bool| {
+            let names = FORMATS.iter().filter(|format| has(format)).map(|format| format.name);
+            let mut names: Vec<&str> = names.collect();
+            names.sort_unstable();
+            match &names[..] {
+                [all @ .., last] if !all.is_empty() => format!("{} and {last}", all.join(", ")),
+                _ => names.concat(),
+            }
+        };
+        if self.solid && self.periodic.periodic.is_some() {
+            fail_usage!("--solid is for shapes in space, and the boundary of one of a torus is cut open at the sides of the box" => "omit it, or omit --periodic");
+        }
+        if !names.iter().any(|name| PictureArgs::wanted(name)) {
+            input.typed.refuse(&PictureArgs::NAMES, "no picture (.png) is written")?;
+        }
+        if !written(|format| format.ascii) {
+            let why = format!("only {} has a binary form and a text form", known(|f| f.ascii));
+            unused("--ascii", self.ascii, &why)?;
+        }
+        if !written(|format| format.groups) {
+            let why =
+                format!("only {} can separate regular and singular facets", known(|f| f.groups));
+            unused("--groups", self.groups, &why)?;
+        }
+        if !written(|format| format.boundary) {
+            unused("--solid", self.solid, "no output holds a boundary alone")?;
+        }
+        let recipe = self.pipeline.recipe_of(&self.shape, self.periodic.periodic)?;
+        Ok(recipe.refuse_flat(self.dimension.is_some()))
+    }
+
+    pub(super) fn run(self, global: Global, team: &dyn Team) -> anyhow::Result<()> {
+        // Before the long work: a bad option, extension or place costs nothing yet.
+        let recipe = self.recipe()?;
+        let folder = shape_in_blocks::working_folder(&self.output, &self.pipeline.input.input);
+        let in_blocks =
+            team.size() > 1 || self.output.iter().any(|path| BlockwiseFormat::of(path).is_some());
+        let working = (in_blocks && !global.in_place).then(|| Working::folder(&folder));
+        let outputs = Outputs::open(&self)?;
+        // From here on the blocks are written there.
+        drop(working);
+        let mut progress = Progress::new(global);
+        let mut report = if in_blocks {
+            self.in_blocks(recipe, outputs, folder, global, &mut progress, team)?
+        } else {
+            self.at_once(&recipe, outputs, global, &mut progress)?
+        };
+        let files = self.output.iter().map(|path| path.display().to_string()).collect();
+        report.finish(progress.finish(), files);
+        if team.size() > 1 {
+            report.peak_memory_bytes = shape_in_blocks::peak(team);
+        }
+        print_summary(global, &report)
+    }
+
+    /// Makes the shape in blocks, from file to file.
+    fn in_blocks(
+        &self,
+        recipe: Recipe,
+        outputs: Outputs,
+        folder: PathBuf,
+        global: Global,
+        progress: &mut Progress,
+        team: &dyn Team,
+    ) -> anyhow::Result<Report> {
+        let flat = "a block may be flat where the whole is not";
+        unused("--dimension", self.dimension.is_some(), flat)?;
+        let parts = "it takes the whole boundary, and there are blocks";
+        unused("--solid", self.solid, parts)?;
+        self.pipeline.input.typed.refuse(&["refit", "periodic"], "there are blocks")?;
+        if let Some((target, _)) = outputs.models.first() {
+            let name = shown(target.path());
+            fail_usage!("{name} takes all points at once, and there are blocks" => "write it by `walpha points`");
+        }
+        let outputs = blocks::Outputs { pieces: outputs.pieces, whole: outputs.whole };
+        let pieces = outputs.pieces.clone();
+        let work = SharedWork::new(&self.pipeline.input, recipe, pieces, folder, global)?;
+        work.lead(outputs, progress, team)
+    }
+
+    /// Makes the shape in memory.
+    fn at_once(
+        &self,
+        recipe: &Recipe,
+        outputs: Outputs,
+        global: Global,
+        progress: &mut Progress,
+    ) -> anyhow::Result<Report> {
+        let input = &self.pipeline.input;
+        let (weighed, volume) = pipeline::weighted_points(input, recipe, progress)?;
+        let mut report = Report::of_points(&input.input, &weighed, volume.as_ref());
+        let mut facts = pipeline::model_facts(&weighed, volume.as_ref());
+        let model = pipeline::shape(weighed, recipe, progress)?;
+        facts.alpha = Some(model.parameter.alpha);
+        progress.stage(Stage::Measure, || {
+            report.add_model(&model);
+            if self.solid {
+                report.add_solid(model.shape.solid().1);
+            }
+        });
+        let remarks = outputs.remarks(&model.shape);
+        progress.stage(Stage::Write, || outputs.write(&model.shape, &facts))?;
+        if !global.quiet {
+            remarks.iter().for_each(|text| remark(&format!("walpha: {text}")));
+        }
+        Ok(report)
+    }
+}
+
+/// The outputs by what they take.
+#[derive(Default)]
+pub(super) struct Outputs {
+    /// A file for each block.
+    pub pieces: Vec<(BlockwiseFormat, PathBuf)>,
+    /// The shape.
+    pub whole: Vec<(Target, Box<dyn Exporter>)>,
+    /// The points, and what the shape can be made from again.
+    pub models: Vec<(Target, &'static PointWriter)>,
+}
+
+impl Outputs {
+    /// Looks at what the options name.
+    pub(super) fn open(shape: &Shape) -> anyhow::Result<Self> {
+        let export = ExportOptions {
+            ascii: shape.ascii,
+            solid: shape.solid,
+            groups: shape.groups,
+            input: Some(shape.pipeline.input.input.to_string()),
+        };
+        let mut outputs = Self::default();
+        for path in &shape.output {
+            let name = shape.format.named(path)?;
+            if let Some(pieces) = BlockwiseFormat::of(&name) {
+                pieces.check(path)?;
+                outputs.pieces.push((pieces, path.clone()));
+            } else if let Some(writer) = PointWriter::of(&name).ok().filter(|writer| writer.packs) {
+                outputs.models.push((Target::open(path)?, writer));
+            } else if PictureArgs::wanted(&name) {
+                outputs.whole.push((Target::open(path)?, shape.picture.exporter()));
+            } else {
+                let unknown = |_| UnknownFormat::new(path, "a shape", extensions());
+                let format = Format::of(&name).map_err(unknown)?;
+                outputs.whole.push((Target::open(path)?, format.exporter(&export)));
+            }
+        }
+        Ok(outputs)
+    }
+
+    /// Remarks of the chosen formats about the shape.
+    pub(super) fn remarks(&self, shape: &AlphaShape) -> Vec<String> {
+        let remark = |(target, exporter): &(Target, Box<dyn Exporter>)| {
+            let remark = exporter.remark(shape)?.with_names(option);
+            Some(format!("{}: {remark}", shown(target.path())))
+        };
+        self.whole.iter().filter_map(remark).collect()
+    }
+
+    /// Writes all that take a whole shape.
+    pub(super) fn write(self, shape: &AlphaShape, facts: &ModelFacts) -> Result<(), TargetError> {
+        let whole = self.whole.into_iter().map(|(target, exporter)| {
+            let content = move |out: &mut dyn Write| exporter.write_any(shape, out);
+            (target, Box::new(content) as Content<'_>)
+        });
+        let models = self.models.into_iter().map(|(target, writer)| {
+            let content = move |out: &mut dyn Write| {
+                writer.write_model(shape.points(), facts, &Packing::default(), out)
+            };
+            (target, Box::new(content) as Content<'_>)
+        });
+        write_all(whole.chain(models))
+    }
+}
+
+/// Extensions of all formats that a shape is written in.
+fn extensions() -> impl Iterator<Item = &'static str> + Clone {
+    let pieces = BlockwiseFormat::ALL.iter().map(|(_, extension)| *extension);
+    let models = PointWriter::all().filter(|writer| writer.packs).map(|writer| writer.extension);
+    let shapes = FORMATS.iter().map(|format| format.extension);
+    shapes.chain(PictureArgs::EXTENSIONS).chain(models).chain(pieces)
+}

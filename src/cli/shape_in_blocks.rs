@@ -1,0 +1,126 @@
+//! `walpha shape` in blocks, by one process or by all that MPI started.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use walpha_base::memory;
+
+use super::args::InputArgs;
+use super::blocks::{Outputs, job};
+use super::global::Global;
+use super::progress::Progress;
+use super::report::Report;
+use super::{folder, threads};
+use crate::Recipe;
+use crate::export::{NewFolder, Target};
+use crate::outofcore::{
+    BlockwiseFormat, Cutting, Job, Merged, Plan, Team, merge_monitored, run_missing,
+};
+use crate::progress::Stage;
+
+/// The work of a team. The first process reads the command line and sends it to the others.
+#[derive(Serialize, Deserialize)]
+pub(super) struct SharedWork {
+    job: Job,
+    cutting: Cutting,
+    /// Holds unfinished work.
+    folder: PathBuf,
+    /// Where pieces go.
+    pieces: Vec<(BlockwiseFormat, PathBuf)>,
+    /// Threads of each process.
+    threads: u16,
+}
+
+impl SharedWork {
+    /// The work that the options ask for, in a [working folder](working_folder).
+    pub(super) fn new(
+        input: &InputArgs,
+        recipe: Recipe,
+        pieces: Vec<(BlockwiseFormat, PathBuf)>,
+        folder: PathBuf,
+        global: Global,
+    ) -> anyhow::Result<Self> {
+        let threads = global.threads.unwrap_or(1);
+        let cutting = Cutting::of(&recipe);
+        Ok(Self { job: job(input, recipe)?, cutting, folder, pieces, threads })
+    }
+
+    /// Does the work as the first process, and writes what is written in one file.
+    pub(super) fn lead(
+        self,
+        outputs: Outputs,
+        progress: &mut Progress,
+        team: &dyn Team,
+    ) -> anyhow::Result<Report> {
+        let new = folder::make(&self.folder, "by naming another output")?;
+        if team.size() > 1 {
+            order(team, Some(serde_json::to_string(&self)?));
+        }
+        let (plan, merged) = self.share(new, outputs, progress, team)?;
+        let report = Report::of_blocks(&plan, &merged.expect("the first process merges"));
+        plan.remove()?;
+        Ok(report)
+    }
+
+    /// The share of each process.
+    fn share(
+        &self,
+        new: Option<NewFolder>,
+        outputs: Outputs,
+        progress: &mut Progress,
+        team: &dyn Team,
+    ) -> anyhow::Result<(Plan, Option<Merged>)> {
+        let monitor = progress.monitor();
+        let plan = progress.stage(Stage::Points, || {
+            Plan::resume_with(self.job.clone(), self.cutting, &self.folder, team, &monitor)
+        })?;
+        if let Some(new) = new {
+            new.keep();
+        }
+        progress.stage(Stage::Shape, || run_missing(&plan, team, &monitor))?;
+        let merge = || team.is_first().then(|| merge_monitored(&plan, &monitor)).transpose();
+        let merged = progress.stage(Stage::Shape, merge)?;
+        progress.stage(Stage::Write, || outputs.write(&plan, merged.as_ref(), team, &monitor))?;
+        Ok((plan, merged))
+    }
+}
+
+fn order(team: &dyn Team, work: Option<String>) {
+    team.broadcast(Some(work));
+}
+
+/// Does what the first process orders, until it [dismisses](dismiss) this one.
+pub(super) fn serve(team: &dyn Team) -> anyhow::Result<()> {
+    while let Some(work) = team.broadcast::<Option<String>>(None) {
+        let work: SharedWork = serde_json::from_str(&work)?;
+        threads::start(Some(work.threads))?;
+        let quiet = Global { quiet: true, ..Global::default() };
+        let outputs = Outputs { pieces: work.pieces.clone(), whole: Vec::new() };
+        work.share(None, outputs, &mut Progress::new(quiet), team)?;
+        peak(team);
+    }
+    Ok(())
+}
+
+/// Lets all others end.
+pub(super) fn dismiss(team: &dyn Team) {
+    order(team, None);
+}
+
+/// The most memory that any process held, in bytes; every process asks at the end of its work.
+pub(super) fn peak(team: &dyn Team) -> Option<u64> {
+    team.reduce(memory::peak_bytes(), |most, other| *most = (*most).max(other))
+}
+
+/// Where unfinished work is kept: beside the first output with pieces, `bone.blocks` for `bone.pvtp`, or else the
+/// first file; without any in the current folder, named after the input. It goes at the end, and after an
+/// interruption the same command goes on with it.
+pub(super) fn working_folder(outputs: &[PathBuf], input: &str) -> PathBuf {
+    let pieces = outputs.iter().find(|path| BlockwiseFormat::of(path).is_some());
+    let file = || outputs.iter().find(|path| *path != Path::new(Target::STDOUT));
+    if let Some(first) = pieces.or_else(file) {
+        return first.with_extension("blocks");
+    }
+    let name = Path::new(input.trim_start_matches("sample:")).file_name().unwrap_or_default();
+    Path::new(name).with_extension("blocks")
+}

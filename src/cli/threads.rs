@@ -1,0 +1,31 @@
+//! The threads that a command works with.
+
+use crate::threads;
+
+use super::errors::command_error;
+use super::global::STACK;
+
+/// Starts the threads asked for, or as many as are right; fewer where not so many can be had.
+pub(super) fn start(asked: Option<u16>) -> anyhow::Result<()> {
+    let asked = asked.map(usize::from);
+    let (wanted, most) = (threads::wanted(asked), threads::most());
+    if let Some(count) = asked.filter(|&count| count > most) {
+        let processors = threads::processors();
+        tracing::warn!(
+            "--threads {count} is more than {processors} processors can use: {most} start"
+        );
+    }
+    let count = threads::available(wanted, STACK);
+    if count < wanted {
+        tracing::warn!(
+            "memory, or the number of processes, is limited so much that {} of {wanted} threads start",
+            count.max(1)
+        );
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.max(1));
+    // Where no thread can be had, this one does the work.
+    let pool = if count == 0 { pool.use_current_thread() } else { pool };
+    pool.build_global().map_err(|error| {
+        command_error!("threads cannot be started: {error}" => "give fewer with --threads").into()
+    })
+}

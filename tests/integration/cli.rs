@@ -1,0 +1,241 @@
+//! The command as a user meets it: results, and the α that is chosen where none is given.
+
+use std::fs;
+
+use crate::common::{fails, json, ok, run};
+
+fn cube() -> String {
+    let corner = |i: usize| format!("{},{},{},0,{}\n", i & 1, i >> 1 & 1, i >> 2, 10 * i);
+    "x,y,z,weight,value\n".to_owned() + &(0..8).map(corner).collect::<String>()
+}
+
+#[test]
+fn json_has_what_is_promised() {
+    let folder = tempfile::tempdir().unwrap();
+    let report =
+        json(folder.path(), &["shape", "sample:phantom@24", "--weights", "min-max", "--hidden"]);
+    for path in [
+        "/schema_version",
+        "/input/dims",
+        "/input/gray_range",
+        "/haar/kept",
+        "/haar/epsilon",
+        "/haar/rms",
+        "/points/selected",
+        "/points/duplicates",
+        "/points/hidden",
+        "/points/in_shape",
+        "/alpha/squared",
+        "/alpha/radius",
+        "/weights/kind",
+        "/weights/min",
+        "/weights/mean",
+        "/weights/max",
+        "/shape/cells/interior",
+        "/shape/facets/regular",
+        "/shape/edges/singular",
+        "/shape/vertices/interior",
+        "/shape/betti/2",
+        "/shape/volume",
+        "/shape/area",
+        "/engine",
+        "/seconds/total",
+        "/peak_memory_bytes",
+    ] {
+        assert!(report.pointer(path).is_some(), "{path} is missing: {report:#}");
+    }
+    assert_eq!(report["points"]["selected"], (0.0609f64 * 24.0 * 24.0 * 24.0).round() as u64);
+    assert_eq!(report["weights"]["max"], 10.0);
+}
+
+#[test]
+fn a_cube_of_points_is_a_cube() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("cube.csv"), cube()).unwrap();
+    let args = ["shape", "cube.csv", "--weights", "column", "--alpha", "0.75"];
+    let report = json(folder.path(), &args);
+    assert_eq!(report["shape"]["volume"], 1.0);
+    assert_eq!(report["shape"]["area"], 6.0);
+    assert_eq!(report["shape"]["betti"], serde_json::json!([1, 0, 0]));
+    // The cube's sphere has squared radius 3/4 exactly.
+    let args = ["shape", "cube.csv", "--weights", "column", "--alpha", "0.7499999999999999"];
+    let report = json(folder.path(), &args);
+    assert_eq!(report["shape"]["cells"]["interior"], 0);
+    assert_eq!(report["shape"]["betti"], serde_json::json!([1, 0, 1]));
+    let hull = json(folder.path(), &["shape", "cube.csv", "--alpha", "inf"]);
+    assert_eq!(hull["shape"]["volume"], 1.0);
+    assert_eq!(hull["alpha"]["squared"], "inf");
+    let empty = json(folder.path(), &["shape", "cube.csv", "--alpha=-1"]);
+    assert_eq!(empty["points"]["in_shape"], 0);
+    assert_eq!(empty["shape"]["volume"], 0.0);
+    let said = ok(folder.path(), &["shape", "cube.csv", "--alpha=-1"]);
+    assert!(said.contains("the shape is empty"), "{said}");
+}
+
+#[test]
+fn both_readings_of_the_balls() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("cube.csv"), cube()).unwrap();
+    // A radius of α + 0 = 0.5 is a squared radius of 0.25: edges of length 1 just close.
+    let args = ["shape", "cube.csv", "--balls", "radius", "--alpha", "0.5"];
+    let radius = json(folder.path(), &args);
+    let power = json(folder.path(), &["shape", "cube.csv", "--alpha", "0.25"]);
+    assert_eq!(radius["shape"], power["shape"]);
+    assert_eq!(power["shape"]["edges"]["singular"], 12);
+    fails(
+        folder.path(),
+        1,
+        "shape cube.csv --balls radius --alpha=-1",
+        &["radius", "--balls power"],
+    );
+}
+
+#[test]
+fn points_written_are_points_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let select = ["sample:phantom@24", "--weights", "min-max", "--alpha", "4"];
+    let direct = json(folder.path(), &[&["shape"], &select[..]].concat());
+    for file in ["p.csv", "p.npy"] {
+        ok(folder.path(), &[&["points"], &select[..], &["-o", file]].concat());
+        let read = json(folder.path(), &["shape", file, "--alpha", "4"]);
+        assert_eq!(read["weights"]["kind"], "column");
+        assert_eq!(read["shape"], direct["shape"]);
+    }
+}
+
+#[test]
+fn check_names_a_wrong_simplex() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let make = ["shape", "sample:phantom@12", "--weights", "min-max", "--exterior", "-o", "a.json"];
+    ok(f, &make);
+    assert!(ok(f, &["check", "a.json"]).contains("exact: no findings"));
+    let mut file: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(f.join("a.json")).unwrap()).unwrap();
+    let classes = file["classes"]["facets"].as_array_mut().unwrap();
+    let at = classes.iter().position(|class| class == "regular").unwrap();
+    classes[at] = "interior".into();
+    let facet = format!("facet {}", file["facets"][at]).replace(',', ", ");
+    fs::write(f.join("b.json"), file.to_string()).unwrap();
+
+    let (code, stdout, _) = run(f, &["check", "b.json"]);
+    assert_eq!(code, 3);
+    assert!(stdout.contains(&facet) && stdout.contains("wrong: 1 finding"), "{facet}\n{stdout}");
+    let (code, stdout, _) = run(f, &["compare", "a.json", "b.json"]);
+    assert_eq!(code, 3);
+    assert!(stdout.contains(&facet) && stdout.contains("A Regular, B Interior"), "{stdout}");
+    assert!(ok(f, &["compare", "a.json", "a.json"]).contains("equal"));
+    // Points may stand in a file of their own.
+    ok(f, &["points", "sample:phantom@12", "--weights", "min-max", "-o", "p.csv"]);
+    file["points"] = serde_json::json!([]);
+    fs::write(f.join("c.json"), file.to_string()).unwrap();
+    let (code, _, stderr) = run(f, &["check", "c.json"]);
+    assert_eq!(code, 1);
+    assert!(stderr.contains("c.json") && stderr.contains("--points"), "{stderr}");
+    assert_eq!(run(f, &["check", "c.json", "--points", "p.csv"]).0, 3);
+    fails(f, 1, "compare a.json missing.json", &["missing.json"]);
+    fails(f, 1, "check sample:phantom@16 --enumerate", &["at most 200 points"]);
+    fails(f, 2, "check sample:phantom --points p.csv", &["--points belongs to a complex"]);
+    ok(f, &["check", "sample:phantom@12", "--weights", "min-max", "--enumerate", "--count", "50"]);
+}
+
+#[test]
+fn threads_change_no_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    for threads in ["1", "2", "5"] {
+        let file = format!("{threads}.vtu");
+        let args = ["shape", "sample:phantom@24", "--threads", threads, "-o", &file];
+        ok(folder.path(), &args);
+    }
+    let bytes = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(bytes("1.vtu"), bytes("2.vtu"));
+    assert_eq!(bytes("1.vtu"), bytes("5.vtu"));
+}
+
+/// All differences are 0: the first voxels are taken, and those are coplanar or a slab.
+#[test]
+fn a_constant_volume_is_no_accident() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    fs::write(f.join("flat.raw"), [7; 64]).unwrap();
+    let raw = ["flat.raw", "--dims", "4,4,4", "--dtype", "u8"];
+    let flat = "shape flat.raw --dims 4,4,4 --dtype u8 --count 10 --dimension 3";
+    fails(f, 1, flat, &["in one plane"]);
+    let args = [&["shape"], &raw[..], &["--ratio", "1", "--weights", "min-max"]].concat();
+    let report = json(f, &args);
+    assert_eq!(report["weights"]["max"], 0.0);
+    assert_eq!(report["shape"]["volume"], 27.0);
+}
+
+#[test]
+fn alpha_is_found_where_nobody_gives_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    // Two cubes of different sizes, and a gap of four between them.
+    let corner = |i: u32| [i & 1, i >> 1 & 1, i >> 2].map(f64::from);
+    let cubes = [(0.0, 1.0), (5.0, 3.0)];
+    let mut text = "x,y,z,value\n".to_owned();
+    for (place, side) in cubes {
+        for [x, y, z] in (0..8).map(corner) {
+            text += &format!("{},{},{},{}\n", place + side * x, side * y, side * z, x + y);
+        }
+    }
+    fs::write(f.join("two.csv"), &text).unwrap();
+    let silent = json(f, &["shape", "two.csv"]);
+    let asked = json(f, &["shape", "two.csv", "--alpha", "auto"]);
+    assert_eq!(silent["alpha"], asked["alpha"]);
+    assert_eq!(silent["alpha"]["origin"], "auto");
+    assert_eq!(
+        (&silent["points"]["in_shape"], &silent["shape"]["betti"][0]),
+        (&16.into(), &1.into())
+    );
+    // It is the smallest: just below it the shape falls apart, or leaves a point out.
+    let alpha = silent["alpha"]["squared"].as_f64().unwrap();
+    let solid = |alpha: f64| {
+        ok(f, &["shape", "two.csv", "--alpha", &alpha.to_string(), "-o", "two.json", "-q"]);
+        let made: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(f.join("two.json")).unwrap()).unwrap();
+        let cells: Vec<Vec<u64>> = serde_json::from_value(made["cells"].clone()).unwrap();
+        let shared = |a: &[u64], b: &[u64]| a.iter().filter(|v| b.contains(v)).count();
+        let mut reached = vec![0];
+        let mut next = 0;
+        while let Some(&cell) = reached.get(next) {
+            next += 1;
+            for other in 0..cells.len() {
+                if shared(&cells[cell], &cells[other]) == 3 && !reached.contains(&other) {
+                    reached.push(other);
+                }
+            }
+        }
+        let points: std::collections::BTreeSet<&u64> = cells.iter().flatten().collect();
+        points.len() == 16 && reached.len() == cells.len()
+    };
+    assert!(solid(alpha));
+    assert!(!solid(alpha.next_down()));
+    // The same number, given, gives the same shape; and every command finds it.
+    let given = json(f, &["shape", "two.csv", "--alpha", &alpha.to_string()]);
+    assert_eq!(given["shape"], silent["shape"]);
+    assert_eq!(given["alpha"]["origin"], "given");
+    let interpolated = json(f, &["interpolate", "two.csv", "--dims", "3,3,3"]);
+    assert_eq!(interpolated["alpha"], silent["alpha"]);
+    assert_eq!(run(f, &["check", "two.csv"]).0, 0);
+    let weighted = json(f, &["shape", "two.csv", "--weights", "min-max"]);
+    assert_eq!(weighted["alpha"]["origin"], "auto-unweighted");
+    assert_eq!(
+        (&weighted["alpha"]["squared"], &weighted["weights"]["max"]),
+        (&alpha.into(), &alpha.into())
+    );
+    // A volume has a scale of its own.
+    let volume = json(f, &["shape", "sample:phantom@8"]);
+    assert_eq!(
+        (&volume["alpha"]["squared"], &volume["alpha"]["origin"]),
+        (&10.0.into(), &"default".into())
+    );
+    let volume = json(f, &["shape", "sample:phantom@8", "--alpha", "auto"]);
+    assert_eq!(volume["alpha"]["squared"], 4.75);
+    let skull = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nspacings: 0.25 0.5 1\nencoding: raw\n\n";
+    let samples: Vec<u8> = (0..512u32).map(|i| (i * i % 251) as u8).collect();
+    fs::write(f.join("v.nrrd"), [skull.as_bytes(), &samples].concat()).unwrap();
+    let volume = json(f, &["shape", "v.nrrd", "--units", "world"]);
+    assert_eq!(volume["alpha"]["squared"], 2.5, "0.25·0.5·1 is the cube of 0.5");
+}

@@ -1,0 +1,378 @@
+//! What people expect of a command: configuration, pipes, near misses, three lines of error, manual pages, names,
+//! and streams that take nothing.
+
+use std::fs::{self, OpenOptions};
+use std::io::Read;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use crate::common::{json, ok, run};
+
+/// The three lines of an error: what, why, next.
+fn complaint(folder: &Path, code: i32, args: &str) -> [String; 3] {
+    let (got, stdout, stderr) = run(folder, &args.split(' ').collect::<Vec<_>>());
+    assert_eq!(got, code, "walpha {args}\n{stderr}");
+    assert_eq!(stdout, "", "walpha {args}");
+    let lines: Vec<&str> = stderr.lines().collect();
+    assert_eq!(lines.len(), 3, "walpha {args}\n{stderr}");
+    [("error: ", 0), ("  why: ", 1), (" next: ", 2)].map(|(label, line)| {
+        let text = lines[line].strip_prefix(label);
+        text.unwrap_or_else(|| panic!("walpha {args}: no {label:?}\n{stderr}")).to_owned()
+    })
+}
+
+#[test]
+fn errors_say_what_why_and_what_next() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    fs::write(f.join("skull.raw"), vec![0; 262_143]).unwrap();
+    fs::write(f.join("flat.csv"), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n1,1,0\n").unwrap();
+    fs::write(f.join("notes.doc"), "hello").unwrap();
+    fs::create_dir(f.join("empty")).unwrap();
+    let cases = [
+        (1, "shape sample:skul", "could not read its input", "did you mean sample:skull?"),
+        (1, "shape skull", "could not read its input", "did you mean sample:skull?"),
+        (1, "info missing.nrrd", "could not read its input", "check the path"),
+        (1, "info empty", "could not read its input", "a folder of slices"),
+        (1, "info notes.doc", "could not read its input", "--dims X,Y,Z"),
+        (1, "shape skull.raw --dims 64,64,64 --dtype u8", "could not read its input", "--dims"),
+        (1, "haar flat.csv", "could not read its input", "name a volume"),
+        (1, "shape flat.csv --dimension 3", "could not compute the shape", "select more points"),
+        (2, "shape sample:phantom@8 -o a.plx", "cannot do this", "did you mean .ply?"),
+        (2, "points sample:phantom@8 -o a.cvs", "cannot do this", "did you mean .csv?"),
+        (2, "haar sample:phantom@8 -o a.nrd", "cannot do this", "did you mean .nrrd?"),
+        (2, "haar sample:phantom@8 -o -", "cannot do this", "--output-format nrrd"),
+        (1, "haar sample:phantom@8 -o no/a.npy", "could not start", "choose an existing one"),
+        (2, "check flat.csv --points flat.csv", "cannot do this", "omit it"),
+        (1, "compare a.txt b.txt", "could not start", "docs/cross-checking.md"),
+        (
+            1,
+            "points sample:phantom@8 --count 999",
+            "could not make weighted points",
+            "from 1 to 512",
+        ),
+        (1, "reproduce --input sample:fantom", "could not read its input", "sample:phantom?"),
+        (2, "shpe sample:phantom", "unrecognized subcommand 'shpe'", "'shape'"),
+        (2, "shape sample:phantom --alpa 3", "unexpected argument '--alpa'", "'--alpha'"),
+        (2, "shape sample:phantom --balls pwer", "invalid value 'pwer'", "'power'"),
+        (2, "shape sample:phantom --alpha ten", "invalid value 'ten'", "as in 10"),
+        (2, "shape sample:phantom --weights minmax", "invalid value 'minmax'", "min-max"),
+        (2, "shape sample:phantom --count 1 --ratio 0.5", "cannot be used with", "--help"),
+        (2, "shape sample:phantom --memory 1G --alpha inf", "cannot do this", "a finite --alpha"),
+        (2, "shape sample:phantom --memory 1G --exterior", "cannot do this", "omit --exterior"),
+        (2, "check a.csv --memory 1G --engine cgal", "cannot do this", "--engine native"),
+        (2, "interpolate a --memory 1G --alpha-radius inf", "cannot do this", "a finite --alpha"),
+        (2, "interpolate sample:phantom --memory 1G --fill", "cannot be used with", "--help"),
+        (2, "shape", "required arguments", "walpha shape --help"),
+        (2, "shape a.raw --dims 2,2 --dtype u8", "invalid value '2,2'", "64,64,64"),
+        (2, "completions basch", "invalid value 'basch'", "'bash'"),
+    ];
+    for (code, args, what, next) in cases {
+        let [got_what, why, got_next] = complaint(f, code, args);
+        assert!(got_what.contains(what), "walpha {args}: {got_what}");
+        assert!(!why.is_empty(), "walpha {args}");
+        assert!(got_next.contains(next), "walpha {args}: {got_next}");
+    }
+}
+
+#[test]
+fn files_go_into_pipes() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let piped = |args: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_walpha"));
+        let done = command.args(args).current_dir(f).output().unwrap();
+        assert!(done.status.success(), "{args:?}: {}", String::from_utf8_lossy(&done.stderr));
+        (done.stdout, String::from_utf8(done.stderr).unwrap())
+    };
+    let cases: [(&[&str], &str); 4] = [
+        (&["shape", "sample:phantom@12"], "ply"),
+        (&["shape", "sample:phantom@12"], "npz"),
+        (&["points", "sample:phantom@12"], "csv"),
+        (&["haar", "sample:phantom@12"], "nii.gz"),
+    ];
+    for (args, format) in cases {
+        let file = format!("a.{format}");
+        ok(f, &[args, &["-o", &file]].concat());
+        let (bytes, report) = piped(&[args, &["-o", "-", "--output-format", format]].concat());
+        assert_eq!(bytes, fs::read(f.join(&file)).unwrap(), "{args:?}");
+        assert!(report.contains("coefficients kept"), "the report is elsewhere: {report}");
+        let (_, report) =
+            piped(&[args, &["-o", "-", "--output-format", format, "--quiet"]].concat());
+        assert_eq!(report, "");
+    }
+    assert_eq!(fs::read_dir(f).unwrap().count(), 4, "nothing is called -");
+}
+
+/// Names with control characters cannot play with the terminal.
+#[test]
+fn names_are_shown_without_control_characters() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let name = "a\x1b[2Jb\rc\nZ";
+    fs::write(f.join(format!("{name}.csv")), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n").unwrap();
+    let shown = "a\\u{1b}[2Jb\\rc\\nZ";
+    for args in [["info", &format!("{name}.nrrd")], ["check", &format!("{name}.json")]] {
+        let (code, _, said) = run(f, &args);
+        assert!(code == 1 && said.contains(shown), "{said}");
+        assert!(!said.contains(['\x1b', '\r']) && said.lines().count() == 3, "{said}");
+    }
+    let named = |extension: &str| format!("{name}.{extension}");
+    let [csv, json, npy, html, nrrd] = ["csv", "json", "npy", "html", "nrrd"].map(named);
+    let reports: [&[&str]; 8] = [
+        &["shape", &csv, "-o", &json],
+        &["points", &csv, "-o", &npy],
+        &["check", &csv],
+        &["compare", &json, &json],
+        &["ladder", &csv, "-o", name],
+        &["view", &csv, "-o", &html],
+        &["interpolate", "sample:phantom@8", "-o", &nrrd],
+        &["interpolate", &nrrd, "--curve", "-o", &named("curve")],
+    ];
+    for args in reports {
+        let said = ok(f, args);
+        assert!(!said.contains(['\x1b', '\r']) && said.contains(shown), "{said}");
+        // The last letter of the name, behind its line feed.
+        assert!(!said.lines().any(|line| line.starts_with('Z')), "{said}");
+    }
+}
+
+#[test]
+fn too_many_threads_are_not_started() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["haar", "sample:phantom@8", "--threads", "65535"];
+    let (code, _, said) = run(folder.path(), &args);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("--threads 65535") && said.contains("start"), "{said}");
+}
+
+#[test]
+fn pages_and_completions_know_every_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let page = ok(f, &["man"]);
+    assert!(page.contains(".TH walpha 1") && page.contains("shape"), "{page}");
+    ok(f, &["man", "-o", "."]);
+    let shape = fs::read_to_string(f.join("walpha-shape.1")).unwrap();
+    assert!(shape.contains("alpha\\-radius"), "{shape}");
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = ok(f, &["completions", shell]);
+        assert!(script.contains("alpha-radius") && script.contains("compare"), "{shell}");
+    }
+}
+
+/// Errors and help are plain where nobody can see colours.
+#[test]
+fn colours_stay_out_of_files() {
+    let folder = tempfile::tempdir().unwrap();
+    for args in [&["shape", "sample:skul", "-v"][..], &["shape", "--help"], &["shape", "--x"]] {
+        let (_, stdout, stderr) = run(folder.path(), args);
+        assert!(!stdout.contains('\x1b') && !stderr.contains('\x1b'), "{args:?}");
+    }
+}
+
+/// The command's own options stand first, those of every command last; each shows how it is used, on a
+/// CT, too.
+#[test]
+fn help_leads_with_what_is_special() {
+    let folder = tempfile::tempdir().unwrap();
+    for (command, own) in [("shape", "--output"), ("view", "--alphas"), ("check", "--enumerate")] {
+        let help = ok(folder.path(), &[command, "--help"]);
+        let at = |word: &str| help.find(word).unwrap_or_else(|| panic!("no {word} in\n{help}"));
+        assert!(help.contains("Examples:") && help.contains("ct.nii.gz"), "{help}");
+        let order = ["Usage:", "Options:", &format!("{own} <"), "Input:", "Every command:"];
+        let order = if command == "check" {
+            order.map(|o| o.trim_end_matches(" <").into())
+        } else {
+            order.map(String::from)
+        };
+        let places = order.each_ref().map(|word| at(word));
+        assert!(places.is_sorted(), "{order:?} at {places:?} in\n{help}");
+        assert!(at("--json") > at("Every command:"), "{help}");
+        assert!(at("[default: column") > at("--weights"), "{help}");
+    }
+    for command in ["points", "haar", "interpolate", "info", "ladder", "reproduce"] {
+        let help = ok(folder.path(), &[command, "--help"]);
+        let (head, _) = help.split_once("Usage:").unwrap();
+        assert!(head.matches(&format!("walpha {command}")).count() >= 2, "{head}");
+        assert!(head.contains("ct.nii.gz"), "{head}");
+    }
+}
+
+#[test]
+fn a_file_sets_options_and_the_command_line_wins() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let text = "alpha = 4\nrms = 2.5\nweights = 'min-max'\nquiet = false\n\n\
+                [shape]\nalpha = 5.5\nexterior = true\n\n[points]\ncount = 100\n";
+    fs::write(f.join("walpha.toml"), text).unwrap();
+    let with = |args: &[&str]| json(f, &[args, &["--config", "walpha.toml"]].concat());
+    let shape = with(&["shape", "sample:phantom@16"]);
+    assert_eq!(shape["alpha"]["squared"], 5.5);
+    assert_eq!(shape["weights"]["kind"], "min-max");
+    assert!(shape["shape"]["voids"].is_array(), "exterior was set");
+    let points = with(&["points", "sample:phantom@16"]);
+    assert_eq!(points["alpha"]["squared"], 4.0);
+    assert_eq!(points["points"]["selected"], 100);
+    // What is given wins, over what it excludes, too.
+    let given = with(&["points", "sample:phantom@16", "--alpha-radius", "3", "--ratio", "0.5"]);
+    assert_eq!(given["alpha"]["squared"], 9.0);
+    assert_eq!(given["points"]["selected"], 2048);
+    let epsilon = with(&["haar", "sample:phantom@16", "--epsilon", "0"]);
+    assert_eq!(epsilon["haar"]["rms"], 0.0);
+}
+
+#[test]
+fn what_a_file_says_wrongly_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let cases = [
+        ("alhpa = 4", "alhpa", "did you mean alpha?"),
+        ("[shape]\nalhpa = 4", "[shape] alhpa", "did you mean alpha?"),
+        ("[shape]\ninput = 'a.nrrd'", "[shape] input", ""),
+        ("[shap]\nalpha = 4", "shap", "did you mean shape?"),
+        ("config = 'b.toml'", "config", ""),
+        ("alpha = ", "is no TOML file", "--print-config"),
+        ("exterior = 3", "exterior = 3 makes no sense", "give true or false"),
+        ("alpha = true", "alpha = true makes no sense", "give a text or a number"),
+    ];
+    for (text, why, next) in cases {
+        fs::write(f.join("c.toml"), text).unwrap();
+        let [_, got_why, got_next] = complaint(f, 2, "shape sample:phantom@8 --config c.toml");
+        assert!(got_why.contains("c.toml") && got_why.contains(why), "{text}: {got_why}");
+        assert!(got_next.contains(next), "{text}: {got_next}");
+    }
+    let [_, why, _] = complaint(f, 2, "shape sample:phantom@8 --config d.toml");
+    assert!(why.contains("d.toml"), "{why}");
+    fs::write(f.join("c.toml"), "alpha = 'ten'").unwrap();
+    let [what, _, next] = complaint(f, 2, "shape sample:phantom@8 --config c.toml");
+    assert!(what.contains("'ten'") && next.contains("--config"), "{what} {next}");
+}
+
+#[test]
+fn what_is_printed_can_be_fed_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let given: [&[&str]; 5] = [
+        &["shape"],
+        &[
+            "shape",
+            "--alpha-radius",
+            "3",
+            "--count",
+            "99",
+            "-o",
+            "a.ply",
+            "b file.vtu",
+            "--exterior",
+        ],
+        &["points", "a.raw", "--dims", "2,3,4", "--dtype", "u8", "--gray=-10..20", "--alpha=-1"],
+        &["haar", "--epsilon", "1e3", "--threads", "1", "--json"],
+        &["reproduce", "--out", "it's"],
+    ];
+    for args in given {
+        let first = ok(f, &[args, &["--print-config"]].concat());
+        let table: toml::Table = first.parse().unwrap();
+        assert!(!table.is_empty(), "{first}");
+        fs::write(f.join("walpha.toml"), &first).unwrap();
+        let again = ok(f, &[args[0], "--config", "walpha.toml", "--print-config"]);
+        assert_eq!(first, again);
+    }
+    let text = ok(f, &["shape", "--count", "99", "--print-config"]);
+    assert!(text.contains("rms = 1\n") && text.contains("count = 99\n"), "{text}");
+    assert!(!text.contains("ratio"), "excluded by --count: {text}");
+}
+
+/// Commands that print, each in its way.
+const PRINTING: [&[&str]; 13] = [
+    &["info", "sample:phantom@8"],
+    &["info", "sample:phantom@8", "--json"],
+    &["shape", "sample:phantom@12", "-o", "a.ply"],
+    &["shape", "sample:phantom@12", "-o", "-", "--output-format", "json"],
+    &["points", "sample:phantom@12", "-o", "-", "--output-format", "csv"],
+    &["haar", "sample:phantom@8", "-o", "-", "--output-format", "nrrd"],
+    &["check", "a.json"],
+    &["compare", "a.json", "a.json"],
+    &["man"],
+    &["completions", "zsh"],
+    &["--help"],
+    &["--version"],
+    &["shape", "--print-config"],
+];
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    ok(folder.path(), &["shape", "sample:phantom@12", "-o", "a.json", "-q"]);
+    folder
+}
+
+fn walpha(folder: &Path, args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_walpha"));
+    command.args(args).current_dir(folder).stderr(Stdio::piped());
+    command
+}
+
+/// A reader that goes away early, as `head` does: what it did not read is lost, and the code says so, as that
+/// of a program which the signal PIPE ends.
+#[test]
+fn a_reader_that_goes_away_is_told_of() {
+    let folder = folder();
+    for args in PRINTING {
+        let mut child = walpha(folder.path(), args).stdout(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let mut said = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(141), "{args:?}: {said}");
+        assert!(said.contains("error: ") && said.contains("roken pipe"), "{args:?}: {said}");
+        assert!(!said.contains("panicked"), "{args:?}: {said}");
+    }
+}
+
+#[test]
+fn a_standard_output_that_is_full_is_an_error() {
+    let Ok(full) = OpenOptions::new().write(true).open("/dev/full") else { return };
+    let folder = folder();
+    for args in PRINTING {
+        let done = walpha(folder.path(), args).stdout(full.try_clone().unwrap()).output().unwrap();
+        let said = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(1), "{args:?}: {said}");
+        assert!(said.contains("No space left"), "{args:?}: {said}");
+    }
+}
+
+/// As after `>&-`: only a shell starts a process without one.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_standard_output_that_is_closed_is_an_error() {
+    let folder = folder();
+    for args in PRINTING {
+        let mut shell = Command::new("sh");
+        shell.args(["-c", "exec \"$0\" \"$@\" >&-", env!("CARGO_BIN_EXE_walpha")]).args(args);
+        let done = shell.current_dir(&folder).output().unwrap();
+        let said = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(1), "{args:?}: {said}");
+        assert!(said.contains("standard output is closed"), "{args:?}: {said}");
+    }
+    // Nothing is lost of what is not printed.
+    let quiet = "exec \"$0\" shape sample:phantom@12 -o b.json -q >&-";
+    let mut shell = Command::new("sh");
+    shell.args(["-c", quiet, env!("CARGO_BIN_EXE_walpha")]).current_dir(&folder);
+    assert!(shell.status().unwrap().success());
+}
+
+/// As in `walpha … 2>&1 >/dev/null | true`: nobody hears it, and that is no fault of the program.
+#[test]
+fn nobody_hears_standard_error() {
+    let folder = folder();
+    for (args, code) in [
+        (&["shape", "nope.csv"][..], 1),
+        (&["shape", "--no-such-option"], 2),
+        (&["shape", "sample:phantom@12", "--solid", "--verbose", "-o", "b.off"], 0),
+        (&["view", "sample:phantom@12", "-o", "b.html"], 0),
+        (&["shape", "sample:phantom@12", "--threads", "10000"], 0),
+    ] {
+        let mut child = walpha(folder.path(), args).stdout(Stdio::null()).spawn().unwrap();
+        drop(child.stderr.take());
+        assert_eq!(child.wait().unwrap().code(), Some(code), "{args:?}");
+    }
+}
