@@ -7,10 +7,12 @@ use std::process::ExitCode;
 use clap::Args;
 use serde::Serialize;
 
-use crate::check::{compare, compare_filtrations};
+use crate::check::{compare_filtrations_monitored, compare_monitored};
+use crate::progress::Stage;
 
 use super::judged::{self, Judged};
 use super::output::{name, tell};
+use super::progress::Progress;
 use super::report::SCHEMA_VERSION;
 use super::said::refused;
 use super::{DIFFERENT, Global};
@@ -50,17 +52,26 @@ struct CompareSummary<C> {
 
 impl Compare {
     pub(super) fn run(self, global: Global) -> anyhow::Result<ExitCode> {
-        let read = |path: &Path| judged::read(path, None);
+        let mut progress = Progress::new(global);
+        let mut read = |path: &Path| progress.stage(Stage::Read, || judged::read(path, None));
         match (read(&self.a)?, read(&self.b)?) {
             (Judged::Complex(a), Judged::Complex(b)) => {
                 if a.periodic.or(b.periodic).is_some() {
                     refused!("complexes of a periodic box are not compared: their simplices have no one place" => "judge each with `walpha check`");
                 }
-                let comparison = compare(a.placed(), b.placed())?;
+                let comparison = progress.watch(|monitor| {
+                    Stage::Compare.begin(monitor)?;
+                    compare_monitored(a.placed(), b.placed(), monitor)
+                })?;
+                progress.finish();
                 self.tell(global, comparison.is_equal(), comparison)
             }
             (Judged::Filtration(a), Judged::Filtration(b)) => {
-                let comparison = compare_filtrations(&a, &b)?;
+                let comparison = progress.watch(|monitor| {
+                    Stage::Compare.begin(monitor)?;
+                    compare_filtrations_monitored(&a, &b, monitor)
+                })?;
+                progress.finish();
                 self.tell(global, comparison.is_equal(), comparison)
             }
             _ => {

@@ -7,7 +7,7 @@ use walpha_base::memory::NoMemory;
 use walpha_regular::{SitesError, TriangulationError};
 
 use crate::check::schema::SchemaError;
-use crate::check::{CertifyError, CertifyFiltrationError, CompareError};
+use crate::check::{CertifyError, CertifyFiltrationError, CompareError, CompareFiltrationsError};
 use crate::export::TargetError;
 use crate::haar::HaarError;
 use crate::interpolate::InterpolateError;
@@ -131,6 +131,9 @@ fn of_checker(error: &(dyn Error + 'static)) -> Option<&'static str> {
         return error.advice();
     }
     if let Some(error) = error.downcast_ref::<CertifyFiltrationError>() {
+        return error.advice();
+    }
+    if let Some(error) = error.downcast_ref::<CompareFiltrationsError>() {
         return error.advice();
     }
     error.downcast_ref::<CompareError>()?.advice()

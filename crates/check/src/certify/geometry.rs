@@ -1,22 +1,26 @@
 //! Rules on cells and on pairs of neighbours.
 
-use rayon::prelude::*;
+use walpha_base::{Cancelled, Monitor};
 
 use super::structure::{Half, Structure};
 use super::{Finding, Points};
 use crate::exact::{in_conflict, orientation, power_value, six_volume};
+use crate::parallel::of_each;
 
 /// Judges that each cell is positively oriented.
-pub(super) fn orientations(cells: &[[u32; 4]], points: Points) -> Vec<Finding> {
-    let judge = |cell: &[u32; 4]| {
-        let corners = points.corners(*cell);
+pub(super) fn orientations(
+    cells: &[[u32; 4]],
+    points: Points,
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
+    of_each(cells.len(), monitor, |i| {
+        let corners = points.corners(cells[i]);
         let [a, b, c, d] = corners.map(|p| p.position);
         (!orientation(a, b, c, d).is_gt()).then(|| Finding::Orientation {
-            cell: (*cell).into(),
+            cell: cells[i].into(),
             six_volumes: six_volume(corners.each_ref()),
         })
-    };
-    cells.par_iter().filter_map(judge).collect()
+    })
 }
 
 /// Judges that the cells on a facet are on different sides of it, and neither is refuted by the other's
@@ -24,13 +28,16 @@ pub(super) fn orientations(cells: &[[u32; 4]], points: Points) -> Vec<Finding> {
 ///
 /// Over a convex domain this proves that the whole triangulation is regular: the lifted cells
 /// then make a function that is convex across every facet, hence convex.
-pub(super) fn neighbours(structure: &Structure, points: Points) -> Vec<Finding> {
-    let judge = |facet: usize| {
+pub(super) fn neighbours(
+    structure: &Structure,
+    points: Points,
+    monitor: &Monitor,
+) -> Result<Vec<Finding>, Cancelled> {
+    of_each(structure.sides.len(), monitor, |facet| {
         let mut halves = structure.halves(facet);
         let (one, other) = (halves.next()?, halves.next()?);
         overlap(structure, one, other).or_else(|| refuted(structure, points, one, other))
-    };
-    (0..structure.sides.len()).into_par_iter().filter_map(judge).collect()
+    })
 }
 
 fn overlap(structure: &Structure, one: Half, other: Half) -> Option<Finding> {

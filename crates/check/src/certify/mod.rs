@@ -30,7 +30,7 @@ pub use certificate::{Certificate, CertifyError, NotJudged, Verdict};
 pub use claim::{Claim, Extent};
 pub use filtration::{
     Bound, CertifyFiltrationError, FiltrationCertificate, FiltrationFinding, Unjudged,
-    certify_filtration,
+    certify_filtration, certify_filtration_monitored,
 };
 pub use finding::Finding;
 pub use simplex::Simplex;

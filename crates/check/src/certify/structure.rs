@@ -1,11 +1,13 @@
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::outward_facets;
 
 use super::index::{Index, NONE};
 use super::{Finding, Points};
 use crate::Complex;
+use crate::parallel::of_each;
 
 /// As many cells as the 32-bit numbers of their sides, 4 · cell + 0..4, leave room for.
 pub(super) const MAX_CELLS: usize = (u32::MAX / 4) as usize;
@@ -44,21 +46,27 @@ impl<'a> Structure<'a> {
     }
 
     /// Links cells by their facets. Vertices of all rows must be valid.
-    pub(super) fn new(complex: &'a Complex, points: Points) -> (Self, Vec<Finding>) {
+    pub(super) fn new(
+        complex: &'a Complex,
+        points: Points,
+        monitor: &Monitor,
+    ) -> Result<(Self, Vec<Finding>), Cancelled> {
         let n = points.len();
         let (cell_index, mut findings) = Index::new(complex.cells.rows(), n);
+        monitor.report(2, 10)?;
         let (facets, found) = Index::new(complex.facets.rows(), n);
         findings.extend(found);
+        monitor.report(5, 10)?;
         let (edges, found) = Index::new(complex.edges.rows(), n);
         findings.extend(found);
         let (vertices, found) = Index::new(complex.vertices.rows(), n);
         findings.extend(found);
+        monitor.report(7, 10)?;
 
         let cells = complex.cells.rows();
-        let cell_facets: Vec<[u32; 4]> = cells
-            .par_iter()
-            .map(|cell| outward_facets(*cell).map(|facet| facets.row(facet)))
-            .collect();
+        let cell_facets: Vec<[u32; 4]> = of_each(cells.len(), &monitor.part(7, 10, 10), |i| {
+            Some(outward_facets(cells[i]).map(|facet| facets.row(facet)))
+        })?;
         let mut crowded = BTreeSet::new();
         let mut sides = vec![[NONE; 2]; complex.facets.len()];
         for (cell, rows) in cell_facets.iter().enumerate() {
@@ -80,7 +88,7 @@ impl<'a> Structure<'a> {
             cells: cells_with(cells, &cell_facets, row),
         }));
         let cells = cell_index;
-        (Self { complex, cells, facets, edges, vertices, sides, cell_facets }, findings)
+        Ok((Self { complex, cells, facets, edges, vertices, sides, cell_facets }, findings))
     }
 
     /// The half-facets of a facet, at most two.

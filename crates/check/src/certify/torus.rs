@@ -8,6 +8,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use walpha_base::Monitor;
 use walpha_complex::canonical::sort;
 
 use super::{
@@ -25,6 +26,7 @@ use crate::{Alpha, Complex, Placed, Simplices};
 pub(super) fn findings(
     placed: &PlacedComplex,
     sides: [f64; 3],
+    monitor: &Monitor,
 ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
     let bad = |index| Err(CertifyError::NotInBox(index));
     if let Some(index) =
@@ -49,7 +51,7 @@ pub(super) fn findings(
     }
     let copies = Copies::of(placed, sides);
     let claim = copies.claim();
-    let (all, mut certificate) = claim.findings()?;
+    let (all, mut certificate) = claim.findings_monitored(monitor)?;
     let count = placed.positions.len() as u32;
     let mut seen = BTreeSet::new();
     // A sphere that reaches beyond the copied simplices lacks some of its own.

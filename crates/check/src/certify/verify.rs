@@ -2,6 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use walpha_base::Monitor;
+
+use super::rules::Stop;
 use super::structure::{MAX_CELLS, Structure};
 use super::{Certificate, CertifyError, Claim, Extent, Finding, NotJudged, Verdict, rules};
 use crate::exact::Exact;
@@ -34,11 +37,23 @@ impl Claim<'_> {
     /// # Errors
     /// [`CertifyError`].
     pub fn findings(&self) -> Result<(Vec<Finding>, Certificate), CertifyError> {
+        self.findings_monitored(&Monitor::noop())
+    }
+
+    /// The same, as one stage under a monitor, which can cancel it.
+    ///
+    /// # Errors
+    /// [`CertifyError`].
+    pub fn findings_monitored(
+        &self,
+        monitor: &Monitor,
+    ) -> Result<(Vec<Finding>, Certificate), CertifyError> {
         let mut all = Vec::new();
-        let certificate = self.visit(&mut |finding| {
+        let visitor = &mut |finding| {
             all.push(finding);
             ControlFlow::Continue(())
-        })?;
+        };
+        let certificate = self.visit_monitored(visitor, monitor)?;
         Ok((all, certificate))
     }
 
@@ -73,6 +88,18 @@ impl Claim<'_> {
         &self,
         visitor: &mut dyn FnMut(Finding) -> ControlFlow<()>,
     ) -> Result<Certificate, CertifyError> {
+        self.visit_monitored(visitor, &Monitor::noop())
+    }
+
+    /// The same, as one stage under a monitor, which can cancel it.
+    ///
+    /// # Errors
+    /// [`CertifyError`].
+    pub fn visit_monitored(
+        &self,
+        visitor: &mut dyn FnMut(Finding) -> ControlFlow<()>,
+        monitor: &Monitor,
+    ) -> Result<Certificate, CertifyError> {
         self.check()?;
         let mut certificate = Certificate {
             verdict: Verdict::Exact,
@@ -91,11 +118,17 @@ impl Claim<'_> {
             findings.into_iter().try_for_each(|finding| {
                 certificate.findings += 1;
                 certificate.ties += usize::from(finding.is_tie());
-                visitor(finding)
+                if visitor(finding).is_break() { Err(Stop::Enough) } else { Ok(()) }
             })
         };
         let mut volume = None;
-        let all_rules = rules::apply(self, &mut report, &mut volume).is_continue();
+        let rules = rules::apply(self, &mut report, &mut volume, &monitor.part(0, 99, 100));
+        let all_rules = match rules {
+            Ok(()) => true,
+            Err(Stop::Enough) => false,
+            Err(Stop::Cancelled(cancelled)) => return Err(cancelled.into()),
+        };
+        monitor.part(99, 100, 100).report(1, 1)?;
         certificate.verdict = Verdict::of(certificate.findings, certificate.ties);
         certificate.six_volumes = volume.unwrap_or_default();
         if !all_rules {

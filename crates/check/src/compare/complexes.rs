@@ -1,11 +1,13 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use walpha_base::monitor::Units;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::sorted;
 
 use super::common_positions::{CommonPositions, weights_by_position};
 use super::domain::{self, Domain};
-use crate::{Alpha, Class, Placed, Simplex, Simplices};
+use crate::{Alpha, Class, Complex, Placed, Simplex, Simplices};
 
 /// The differences between two complexes A and B.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -96,6 +98,9 @@ pub enum CompareError {
         /// The simplex.
         simplex: Simplex,
     },
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl CompareError {
@@ -113,17 +118,37 @@ impl CompareError {
 /// # Errors
 /// [`CompareError`].
 pub fn compare(a: Placed, b: Placed) -> Result<Comparison, CompareError> {
+    compare_monitored(a, b, &Monitor::noop())
+}
+
+/// The same, as one stage under a monitor, which can cancel it.
+///
+/// # Errors
+/// [`CompareError`].
+pub fn compare_monitored(
+    a: Placed,
+    b: Placed,
+    monitor: &Monitor,
+) -> Result<Comparison, CompareError> {
     check('A', a)?;
     check('B', b)?;
     let common = CommonPositions::new(a.positions, b.positions);
     let exterior = a.complex.lists_exterior() && b.complex.lists_exterior();
     let (of_a, of_b) = (a.complex, b.complex);
+    let rows = |complex: &Complex| {
+        let Complex { cells, facets, edges, vertices } = complex;
+        (cells.len() + facets.len() + edges.len() + vertices.len()) as u64
+    };
+    let listing = monitor.part(0, 6, 10);
+    let listed = listing.units(rows(of_a) + rows(of_b));
     let dimensions = [
-        differences(&of_a.vertices, &of_b.vertices, &common, exterior),
-        differences(&of_a.edges, &of_b.edges, &common, exterior),
-        differences(&of_a.facets, &of_b.facets, &common, exterior),
-        differences(&of_a.cells, &of_b.cells, &common, exterior),
+        differences(&of_a.vertices, &of_b.vertices, &common, exterior, &listed)?,
+        differences(&of_a.edges, &of_b.edges, &common, exterior, &listed)?,
+        differences(&of_a.facets, &of_b.facets, &common, exterior, &listed)?,
+        differences(&of_a.cells, &of_b.cells, &common, exterior, &listed)?,
     ];
+    let domain = domain::compare(a, b, &common, &monitor.part(6, 9, 10))?;
+    monitor.part(9, 10, 10).report(1, 1)?;
     let only = |own: &[u32], other: &[u32]| {
         let other: std::collections::BTreeSet<_> = other.iter().collect();
         (0..).zip(own).filter(|(_, position)| !other.contains(position)).map(|(i, _)| i).collect()
@@ -135,7 +160,7 @@ pub fn compare(a: Placed, b: Placed) -> Result<Comparison, CompareError> {
         points_only_b: only(&common.b, &common.a),
         exterior,
         dimensions,
-        domain: domain::compare(a, b, &common),
+        domain,
     })
 }
 
@@ -195,14 +220,18 @@ fn differences<const N: usize>(
     b: &Simplices<N>,
     common: &CommonPositions,
     exterior: bool,
-) -> Differences {
-    let listed = |simplices: &Simplices<N>, position_of: &[u32]| -> BTreeMap<[u32; N], _> {
+    work: &Units,
+) -> Result<Differences, Cancelled> {
+    let listed = |simplices: &Simplices<N>, position_of: &[u32]| {
         let rows = simplices.iter().filter(|(_, class)| exterior || *class != Class::Exterior);
-        rows.map(|(row, class)| (sorted(row.map(|v| position_of[v as usize])), (*row, class)))
-            .collect()
+        let keyed = rows.map(|(row, class)| {
+            work.add(1)?;
+            Ok((sorted(row.map(|v| position_of[v as usize])), (*row, class)))
+        });
+        keyed.collect::<Result<BTreeMap<[u32; N], _>, Cancelled>>()
     };
-    let a = listed(a, &common.a);
-    let mut b = listed(b, &common.b);
+    let a = listed(a, &common.a)?;
+    let mut b = listed(b, &common.b)?;
     let mut differences = Differences::default();
     for (key, (row, class)) in a {
         match b.remove(&key) {
@@ -216,5 +245,5 @@ fn differences<const N: usize>(
     }
     let rest = b.into_values();
     differences.only_b = rest.map(|(row, class)| (Simplex::from(row), class)).collect();
-    differences
+    Ok(differences)
 }

@@ -1,14 +1,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use std::ops::ControlFlow;
 
 use dashu_int::IBig;
 use serde::Serialize;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 
 use super::common_positions::{CommonPositions, weights_by_position};
 use crate::exact::{Exact, Lattice, Lift, WeightedPoint, orientation};
+use crate::parallel::of_each;
 use crate::schema::orient;
-use crate::{Claim, Class, Placed, Verdict};
+use crate::{CertifyError, Claim, Class, Placed, Verdict};
 
 /// How the regions that the cells of two shapes cover are related.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -73,11 +76,16 @@ impl fmt::Display for Domain {
 /// would have no boundary. The boundaries are compared plane by plane, because a flat face may be cut
 /// into other triangles: within a plane, two sets of triangles cover the same region if their
 /// boundaries cancel, edge by directed edge.
-pub(super) fn compare(a: Placed, b: Placed, common: &CommonPositions) -> Domain {
-    let in_a = interior_cells(a, &common.a, common);
-    let in_b = interior_cells(b, &common.b, common);
+pub(super) fn compare(
+    a: Placed,
+    b: Placed,
+    common: &CommonPositions,
+    monitor: &Monitor,
+) -> Result<Domain, Cancelled> {
+    let in_a = interior_cells(a, &common.a, common, &monitor.part(0, 1, 8))?;
+    let in_b = interior_cells(b, &common.b, common, &monitor.part(1, 2, 8))?;
     if in_a == in_b {
-        return Domain::SameCells;
+        return Ok(Domain::SameCells);
     }
     let lattice = Lattice::through(&common.positions);
     let six_volumes = |cells: &BTreeSet<[u32; 4]>| {
@@ -86,21 +94,34 @@ pub(super) fn compare(a: Placed, b: Placed, common: &CommonPositions) -> Domain 
         Exact::integer(sum, 3 * i64::from(lattice.exponent()))
     };
     let (six_volumes_a, six_volumes_b) = (six_volumes(&in_a), six_volumes(&in_b));
-    if six_volumes_a == six_volumes_b && same_surface(&in_a, &in_b, common, lattice) {
+    monitor.report(3, 8)?;
+    Ok(if six_volumes_a == six_volumes_b && same_surface(&in_a, &in_b, common, lattice) {
+        monitor.report(4, 8)?;
         let tied = tied(Side::new(a, &common.a, &in_a), Side::new(b, &common.b, &in_b), common);
-        let verdicts = tied.then(|| [a, b].map(verdict));
+        monitor.report(5, 8)?;
+        let verdicts = if tied {
+            let of_a = verdict(a, &monitor.part(5, 6, 8))?;
+            Some([of_a, verdict(b, &monitor.part(6, 7, 8))?])
+        } else {
+            None
+        };
         Domain::SameRegion { six_volumes: six_volumes_a, tied, verdicts }
     } else {
         Domain::Different { six_volumes_a, six_volumes_b }
-    }
+    })
 }
 
 /// The verdict on a complex whose simplices are oriented canonically first, as windings are not compared.
 /// A complex that cannot be judged counts as wrong.
-fn verdict(placed: Placed) -> Verdict {
+fn verdict(placed: Placed, monitor: &Monitor) -> Result<Verdict, Cancelled> {
     let mut complex = placed.complex.clone();
     orient(&mut complex, placed.positions, None);
-    Claim::new(placed.with_complex(&complex)).verdict().unwrap_or(Verdict::Wrong)
+    let claim = Claim::new(placed.with_complex(&complex));
+    match claim.visit_monitored(&mut |_| ControlFlow::Continue(()), monitor) {
+        Ok(certificate) => Ok(certificate.verdict),
+        Err(CertifyError::Cancelled(cancelled)) => Err(cancelled),
+        Err(_) => Ok(Verdict::Wrong),
+    }
 }
 
 /// The interior cells in terms of positions, positively oriented, without flat ones.
@@ -108,18 +129,23 @@ fn interior_cells(
     Placed { complex, .. }: Placed,
     position: &[u32],
     common: &CommonPositions,
-) -> BTreeSet<[u32; 4]> {
-    let cells = complex.cells.of(Class::Interior);
-    let oriented = cells.filter_map(|cell| {
-        let [a, b, c, d] = cell.map(|v| position[v as usize]);
-        let [p, q, r, s] = at(common, [a, b, c, d]);
-        match orientation(p, q, r, s) {
-            std::cmp::Ordering::Greater => Some([a, b, c, d]),
-            std::cmp::Ordering::Less => Some([a, b, d, c]),
-            std::cmp::Ordering::Equal => None,
+    monitor: &Monitor,
+) -> Result<BTreeSet<[u32; 4]>, Cancelled> {
+    let (rows, classes) = (complex.cells.rows(), complex.cells.classes());
+    let oriented = of_each(rows.len(), monitor, |i| {
+        if classes[i] != Class::Interior {
+            return None;
         }
-    });
-    oriented.map(smallest_even).collect()
+        let [a, b, c, d] = rows[i].map(|v| position[v as usize]);
+        let [p, q, r, s] = at(common, [a, b, c, d]);
+        let cell = match orientation(p, q, r, s) {
+            std::cmp::Ordering::Greater => [a, b, c, d],
+            std::cmp::Ordering::Less => [a, b, d, c],
+            std::cmp::Ordering::Equal => return None,
+        };
+        Some(smallest_even(cell))
+    })?;
+    Ok(oriented.into_iter().collect())
 }
 
 /// The cells of a complex, and the largest weight at each position.

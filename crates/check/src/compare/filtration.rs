@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 use serde::Serialize;
+use walpha_base::monitor::Units;
+use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::sorted;
 
 use super::WeightDifference;
@@ -63,22 +65,57 @@ struct Listing {
     number: u32,
 }
 
+/// Why two filtrations cannot be compared.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareFiltrationsError {
+    /// Fields contradict each other, or a coordinate or weight is not finite.
+    #[error(transparent)]
+    Schema(#[from] SchemaError),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl CompareFiltrationsError {
+    /// How to resolve the error, if there is a way.
+    pub fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Schema(error) => error.advice(),
+            Self::Cancelled(_) => None,
+        }
+    }
+}
+
 /// Compares two filtrations, matching points by their positions, so that the two may number them
 /// differently. Values are compared as doubles. Cost O(n log n).
 ///
 /// # Errors
-/// Fields of different lengths, point numbers out of range.
+/// Fields of different lengths, point numbers out of range, coordinates or weights that are not finite.
 pub fn compare_filtrations(
     a: &FiltrationFile,
     b: &FiltrationFile,
-) -> Result<FiltrationComparison, SchemaError> {
+) -> Result<FiltrationComparison, CompareFiltrationsError> {
+    compare_filtrations_monitored(a, b, &Monitor::noop())
+}
+
+/// The same, as one stage under a monitor, which can cancel it.
+///
+/// # Errors
+/// [`CompareFiltrationsError`].
+pub fn compare_filtrations_monitored(
+    a: &FiltrationFile,
+    b: &FiltrationFile,
+    monitor: &Monitor,
+) -> Result<FiltrationComparison, CompareFiltrationsError> {
     a.check()?;
     b.check()?;
     finite(a)?;
     finite(b)?;
     let common = CommonPositions::new(&a.points, &b.points);
-    let of_a = simplices(a, &common.a);
-    let mut of_b = simplices(b, &common.b);
+    let work = monitor.units(2 * a.order.len() as u64 + b.order.len() as u64);
+    let of_a = simplices(a, &common.a, &work)?;
+    let mut of_b = simplices(b, &common.b, &work)?;
     let mut found = FiltrationComparison {
         weights: weights(a, b, &common),
         points_only_a: only(&common.a, &common.b),
@@ -95,6 +132,7 @@ pub fn compare_filtrations(
     };
     let mut same = BTreeMap::new();
     for (key, (simplex, here)) in of_a {
+        work.add(1)?;
         let Some((_, there)) = of_b.remove(&key) else {
             found.only_a.push(simplex);
             continue;
@@ -182,7 +220,11 @@ fn weights(
 }
 
 /// All simplices by the positions of their vertices.
-fn simplices(file: &FiltrationFile, position_of: &[u32]) -> BTreeMap<Vec<u32>, (Simplex, Listing)> {
+fn simplices(
+    file: &FiltrationFile,
+    position_of: &[u32],
+    work: &Units,
+) -> Result<BTreeMap<Vec<u32>, (Simplex, Listing)>, Cancelled> {
     let mut found = BTreeMap::new();
     let mut number = 0;
     let vertices: Vec<[u32; 1]> = file.vertices.iter().map(|&v| [v]).collect();
@@ -193,8 +235,10 @@ fn simplices(file: &FiltrationFile, position_of: &[u32]) -> BTreeMap<Vec<u32>, (
         rows: &[[u32; N]],
         number: &mut u32,
         data: impl Fn(usize) -> (Alpha, Option<bool>, Option<[Alpha; 2]>),
-    ) {
+        work: &Units,
+    ) -> Result<(), Cancelled> {
         for (i, row) in rows.iter().enumerate() {
+            work.add(1)?;
             let key = sorted(row.map(|v| position_of[v as usize])).to_vec();
             let (value, gabriel, interval) = data(i);
             found.insert(
@@ -203,6 +247,7 @@ fn simplices(file: &FiltrationFile, position_of: &[u32]) -> BTreeMap<Vec<u32>, (
             );
             *number += 1;
         }
+        Ok(())
     }
     let below = |dimension: usize, i: usize| {
         let gabriel = file.gabriel.as_ref().map(|gabriel| of(gabriel, dimension)[i]);
@@ -211,20 +256,48 @@ fn simplices(file: &FiltrationFile, position_of: &[u32]) -> BTreeMap<Vec<u32>, (
             .map(|(regular, interior)| [regular, interior].map(|bound| of(bound, dimension)[i]));
         (gabriel, interval)
     };
-    add(&mut found, position_of, &vertices, &mut number, |i| {
-        let (gabriel, interval) = below(0, i);
-        (values.vertices[i], gabriel, interval)
-    });
-    add(&mut found, position_of, &file.edges, &mut number, |i| {
-        let (gabriel, interval) = below(1, i);
-        (values.edges[i], gabriel, interval)
-    });
-    add(&mut found, position_of, &file.facets, &mut number, |i| {
-        let (gabriel, interval) = below(2, i);
-        (values.facets[i], gabriel, interval)
-    });
-    add(&mut found, position_of, &file.cells, &mut number, |i| (values.cells[i], None, None));
-    found
+    add(
+        &mut found,
+        position_of,
+        &vertices,
+        &mut number,
+        |i| {
+            let (gabriel, interval) = below(0, i);
+            (values.vertices[i], gabriel, interval)
+        },
+        work,
+    )?;
+    add(
+        &mut found,
+        position_of,
+        &file.edges,
+        &mut number,
+        |i| {
+            let (gabriel, interval) = below(1, i);
+            (values.edges[i], gabriel, interval)
+        },
+        work,
+    )?;
+    add(
+        &mut found,
+        position_of,
+        &file.facets,
+        &mut number,
+        |i| {
+            let (gabriel, interval) = below(2, i);
+            (values.facets[i], gabriel, interval)
+        },
+        work,
+    )?;
+    add(
+        &mut found,
+        position_of,
+        &file.cells,
+        &mut number,
+        |i| (values.cells[i], None, None),
+        work,
+    )?;
+    Ok(found)
 }
 
 fn of<T>(below: &Below<T>, dimension: usize) -> &[T] {

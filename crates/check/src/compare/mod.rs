@@ -8,6 +8,10 @@ mod text;
 
 pub use complexes::{
     ClassDifference, CompareError, Comparison, Differences, WeightDifference, compare,
+    compare_monitored,
 };
 pub use domain::Domain;
-pub use filtration::{FiltrationComparison, ValueDifference, compare_filtrations};
+pub use filtration::{
+    CompareFiltrationsError, FiltrationComparison, ValueDifference, compare_filtrations,
+    compare_filtrations_monitored,
+};

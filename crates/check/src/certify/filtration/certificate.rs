@@ -1,4 +1,6 @@
 use serde::Serialize;
+use walpha_base::Cancelled;
+use walpha_base::monitor::wraps;
 
 use crate::certify::certificate::write_verdict;
 use crate::certify::{Certificate, CertifyError, Verdict};
@@ -64,11 +66,16 @@ pub enum CertifyFiltrationError {
     Schema(#[from] SchemaError),
     /// The triangulation cannot be judged.
     #[error(transparent)]
-    Triangulation(#[from] CertifyError),
+    Triangulation(CertifyError),
     /// The points are those of a torus.
     #[error("filtrations of a periodic box are not judged")]
     Periodic,
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
+
+wraps! { CertifyFiltrationError: Triangulation(CertifyError) }
 
 impl CertifyFiltrationError {
     /// How to resolve the error, if there is a way.
@@ -76,6 +83,7 @@ impl CertifyFiltrationError {
         match self {
             Self::Schema(error) => error.advice(),
             Self::Triangulation(error) => error.advice(),
+            Self::Cancelled(_) => None,
             Self::Periodic => Some("judge its complexes at single values of α instead"),
         }
     }

@@ -1,3 +1,5 @@
+use walpha_base::{Cancelled, Monitor};
+
 use super::certificate::{CertifyFiltrationError, FiltrationCertificate, Unjudged};
 use super::finding::{self, Bound, FiltrationFinding, differences};
 use super::row_numbers::RowNumbers;
@@ -26,12 +28,23 @@ use crate::schema::{Below, ComplexFile, FiltrationFile, PlacedComplex, SchemaErr
 pub fn certify_filtration(
     file: &FiltrationFile,
 ) -> Result<(Vec<FiltrationFinding>, FiltrationCertificate), CertifyFiltrationError> {
+    certify_filtration_monitored(file, &Monitor::noop())
+}
+
+/// The same, as one stage under a monitor, which can cancel it.
+///
+/// # Errors
+/// [`CertifyFiltrationError`].
+pub fn certify_filtration_monitored(
+    file: &FiltrationFile,
+    monitor: &Monitor,
+) -> Result<(Vec<FiltrationFinding>, FiltrationCertificate), CertifyFiltrationError> {
     file.check()?;
     if file.periodic.is_some() {
         return Err(CertifyFiltrationError::Periodic);
     }
     let placed = whole(file)?;
-    let (found, triangulation) = placed.claim().findings()?;
+    let (found, triangulation) = placed.claim().findings_monitored(&monitor.part(0, 40, 100))?;
     let mut findings: Vec<_> = found.into_iter().map(FiltrationFinding::Triangulation).collect();
     let mut not_judged = Vec::new();
     let mut values = 0;
@@ -39,11 +52,12 @@ pub fn certify_filtration(
         not_judged.push(Unjudged::AfterFindings);
     } else {
         let points = Points { positions: &placed.positions, weights: &placed.weights };
-        let (structure, _) = Structure::new(&placed.complex, points);
-        let ranks = Ranks::of(&structure, points);
+        let (structure, _) = Structure::new(&placed.complex, points, &monitor.part(40, 50, 100))?;
+        let ranks = Ranks::of(&structure, points, &monitor.part(50, 80, 100))?;
         let spans = Spans::of(&structure, &ranks);
         values = ranks.values.len();
-        findings.extend(judge(file, &structure, &ranks, &spans));
+        let rest = monitor.part(80, 99, 100);
+        findings.extend(judge(file, &structure, &ranks, &spans, &rest)?);
     }
     let absent = [
         (file.gabriel.is_none(), Unjudged::Gabriel),
@@ -53,6 +67,7 @@ pub fn certify_filtration(
     not_judged.extend(absent.into_iter().filter(|absent| absent.0).map(|absent| absent.1));
     let verdict = Verdict::of(findings.len(), findings.iter().filter(|f| f.is_tie()).count());
     let count = findings.len();
+    monitor.part(99, 100, 100).report(1, 1)?;
     let certificate =
         FiltrationCertificate { verdict, findings: count, triangulation, values, not_judged };
     Ok((findings, certificate))
@@ -77,7 +92,8 @@ fn judge(
     structure: &Structure,
     ranks: &Ranks,
     spans: &Spans,
-) -> Vec<FiltrationFinding> {
+    monitor: &Monitor,
+) -> Result<Vec<FiltrationFinding>, Cancelled> {
     let vertices: Vec<[u32; 1]> = file.vertices.iter().map(|&v| [v]).collect();
     let rows = RowNumbers::of(file, structure);
     let at = |rank: u32| ranks.alpha(rank);
@@ -119,10 +135,11 @@ fn judge(
             own(&ranks.facets, rows.facets[i])
         }));
     }
-    let disorder = order::judge(file, &rows, ranks, spans);
+    let disorder = order::judge(file, &rows, ranks, spans, &monitor.part(1, 5, 10))?;
     if let (true, Some(given)) = (disorder.is_empty(), &file.pairs) {
-        findings.extend(pairs::judge(file, given, structure, &rows, spans));
+        let monitor = monitor.part(5, 10, 10);
+        findings.extend(pairs::judge(file, given, structure, &rows, spans, &monitor)?);
     }
     findings.extend(disorder);
-    findings
+    Ok(findings)
 }

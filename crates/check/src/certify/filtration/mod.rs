@@ -11,4 +11,4 @@ mod values;
 
 pub use certificate::{CertifyFiltrationError, FiltrationCertificate, Unjudged};
 pub use finding::{Bound, FiltrationFinding};
-pub use judge::certify_filtration;
+pub use judge::{certify_filtration, certify_filtration_monitored};
